@@ -1,0 +1,3 @@
+//! Fractional calculus on its own: no robot, no law.
+
+pub mod gamma;
