@@ -1,6 +1,6 @@
 //! The catalog of laws: what the parser, the command line and the documentation know about them.
 
-use super::{Derivative, Law};
+use super::{Derivative, Law, kelvin_voigt, magnetorheological, piezo, thermoviscoelastic};
 use std::sync::Arc;
 
 /// An admissible interval.
@@ -64,6 +64,27 @@ pub struct RuleError {
     pub parameter: &'static str,
 }
 
+/// The order of the fractional derivative, as every law names it.
+pub(super) const ALPHA: Param = Param {
+    name: "alpha",
+    unit: "",
+    meaning: "order of the fractional derivative (0: spring, 1: dashpot)",
+    range: Range::UNIT,
+    default: None,
+};
+
+/// A law without any positive coefficient is no material.
+pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Result<(), RuleError> {
+    if parameters.iter().any(|(_, value)| *value > 0.0) {
+        return Ok(());
+    }
+    let names: Vec<_> = parameters.iter().map(|(name, _)| *name).collect();
+    Err(RuleError {
+        rule: format!("at least one of {} must be positive", names.join(", ")),
+        parameter: parameters[0].0,
+    })
+}
+
 /// One law of the catalog.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
@@ -90,7 +111,18 @@ pub struct Catalog {
 impl Catalog {
     /// The laws that come with Springpot.
     pub fn standard() -> Self {
-        Self { entries: Vec::new() }
+        Self {
+            entries: vec![
+                kelvin_voigt::SPRING,
+                kelvin_voigt::DASHPOT,
+                kelvin_voigt::SPRINGPOT,
+                kelvin_voigt::KELVIN_VOIGT,
+                kelvin_voigt::FRACTIONAL_KELVIN_VOIGT,
+                thermoviscoelastic::THERMOVISCOELASTIC,
+                piezo::PIEZO_KELVIN_VOIGT,
+                magnetorheological::MAGNETORHEOLOGICAL,
+            ],
+        }
     }
 
     /// Adds a law; a law of the same name is replaced.

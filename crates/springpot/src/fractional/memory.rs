@@ -1,0 +1,405 @@
+//! The memory of one fractional derivative: what is kept of the past, and how a step adds to it.
+//!
+//! Within the current step the kernel is exact (see [`super::step`]); only the past goes through the exponentials of
+//! [`Kernel`], one lag z_k = ∫₀ᵗ e^{−λ_k(t−s)} x'(s) ds for each. Asking is pure; [`Memory::commit`] is the only mutation.
+//!
+//! There is no smallest step: where a lag shorter than the kernel's delta is asked for, faster modes are made for it from the
+//! last committed step alone. That is exact, since they have forgotten everything before it (λ·h > 100).
+
+use super::gamma::reciprocal_gamma;
+use super::kernel::{Kernel, KernelError};
+use super::kind::Kind;
+use super::step::{Form, MAX_NODES, Nodes, RADAU_NODES, RatePolynomial, TABLEAU, exponential_moments, local_factors};
+use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+
+/// The start of a step as a memory sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StepStart {
+    /// Time t_n, s.
+    pub t: f64,
+    /// Step size h, s.
+    pub h: f64,
+    /// x(t_n).
+    pub stroke: f64,
+    /// x'(t_n).
+    pub rate: f64,
+}
+
+/// D^alpha x at the nodes of a step as an affine map of the step's own data:
+/// D_i = Σ_j stroke_ij (x_j − x_0) + Σ_j rate_ij x'_j + history_i.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Affine {
+    /// Factors of the strokes, s^−alpha.
+    pub stroke: [[f64; MAX_NODES]; MAX_NODES],
+    /// Factors of the rates, s^{1−alpha}.
+    pub rate: [[f64; MAX_NODES]; MAX_NODES],
+    /// All that is known at the start of the step.
+    pub history: [f64; MAX_NODES],
+}
+
+/// Energy of a springpot of unit coefficient.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Energy {
+    /// ½(Σ w_k z_k² + d2·x'²), stored.
+    pub stored: f64,
+    /// Σ w_k λ_k z_k² + d1·x'², the rate of dissipation.
+    pub dissipation: f64,
+}
+
+/// The memory of D^alpha x for 0 ≤ alpha ≤ 1 from t = 0.
+///
+/// The limits keep no past: alpha = 0 is x (Riemann–Liouville) or x − x(0) (Caputo); alpha = 1 is x' for both.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Memory {
+    alpha: f64,
+    kind: Kind,
+    /// x(0).
+    origin: f64,
+    /// x(0) of a singular start, else 0.
+    jump: f64,
+    /// 1/Γ(1−alpha).
+    singular_factor: f64,
+    local: [f64; 4],
+    modes: Option<Modes>,
+}
+
+/// The exponentials and their lags.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Modes {
+    kernel: Kernel,
+    z: Vec<f64>,
+    /// The last committed step, from which faster modes are made.
+    last: Option<RatePolynomial>,
+    #[serde(skip)]
+    tables: RefCell<Tables>,
+}
+
+/// e^{−λτ} and ψ_p(λτ) of every mode for the lags used last.
+#[derive(Debug, Clone, Default)]
+struct Tables {
+    slots: Vec<Table>,
+    next: usize,
+}
+
+#[derive(Debug, Clone)]
+struct Table {
+    tau: f64,
+    decay: Vec<f64>,
+    psi: [Vec<f64>; 4],
+}
+
+/// Lags kept in the tables: the three nodes of two alternating step sizes.
+const SLOTS: usize = 6;
+
+/// Modes faster than the step needs are dropped once there are this many.
+const SURPLUS: usize = 16;
+
+impl Memory {
+    /// An empty memory at t = 0.
+    ///
+    /// `origin` is x(0), `jump` the same where a Riemann–Liouville start counts as singular and 0 elsewhere; `tolerance` bounds
+    /// the relative error of the kernel between the lag `delta` (c_1 times the first step) and `horizon` (the end of the run).
+    ///
+    /// # Errors
+    /// [`KernelError`] where no kernel can be built.
+    pub fn new(
+        alpha: f64,
+        kind: Kind,
+        origin: f64,
+        jump: f64,
+        tolerance: f64,
+        delta: f64,
+        horizon: f64,
+    ) -> Result<Self, KernelError> {
+        if !(0.0..=1.0).contains(&alpha) {
+            return Err(KernelError::Order(alpha));
+        }
+        let fractional = alpha > 0.0 && alpha < 1.0;
+        let modes = match fractional {
+            true => Some(Modes::new(Kernel::new(alpha, tolerance, delta.min(0.5 * horizon), horizon)?)),
+            false => None,
+        };
+        let singular = fractional && kind == Kind::RiemannLiouville;
+        Ok(Self {
+            alpha,
+            kind,
+            origin,
+            jump: if singular { jump } else { 0.0 },
+            singular_factor: reciprocal_gamma(1.0 - alpha),
+            local: local_factors(alpha),
+            modes,
+        })
+    }
+
+    /// The order.
+    pub fn alpha(&self) -> f64 {
+        self.alpha
+    }
+
+    /// Number of exponentials.
+    pub fn modes(&self) -> usize {
+        self.modes.as_ref().map_or(0, |m| m.z.len())
+    }
+
+    /// Whether D^alpha x is infinite at t = 0+.
+    pub fn is_singular(&self) -> bool {
+        self.jump != 0.0
+    }
+
+    /// x(0) t^−alpha/Γ(1−alpha) of a singular start, else 0; infinite at t = 0.
+    pub fn singular_part(&self, t: f64) -> f64 {
+        if self.jump == 0.0 { 0.0 } else { self.jump * t.powf(-self.alpha) * self.singular_factor }
+    }
+
+    /// D^alpha x at the nodes of a step as an affine map of the step's strokes and rates.
+    pub fn respond(&self, start: &StepStart, nodes: Nodes, form: Form) -> Affine {
+        let mut affine = Affine::default();
+        let positions = nodes.positions();
+        for (i, &c) in positions.iter().enumerate() {
+            let Some(modes) = &self.modes else {
+                if self.alpha == 0.0 {
+                    affine.stroke[i][i] = 1.0;
+                    affine.history[i] = start.stroke - self.held();
+                    continue;
+                }
+                match form {
+                    Form::Rates => affine.rate[i][i] = 1.0,
+                    Form::Strokes => affine.stroke[i] = self.stroke_row(start.h, c, nodes),
+                }
+                continue;
+            };
+            affine.history[i] = modes.history(c * start.h) + self.singular_part(start.t + c * start.h);
+            match form {
+                Form::Strokes => affine.stroke[i] = self.stroke_row(start.h, c, nodes),
+                Form::Rates => {
+                    let row = self.rate_row(start.h, c, nodes);
+                    affine.history[i] += row[0] * start.rate;
+                    affine.rate[i].copy_from_slice(&row[1..]);
+                }
+            }
+        }
+        affine
+    }
+
+    /// D^alpha x at t_n + θh, 0 < θ ≤ 1, from the step's polynomial and the exact x and x' there.
+    pub fn derivative(&self, start: &StepStart, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> f64 {
+        match &self.modes {
+            None if self.alpha == 0.0 => stroke - self.held(),
+            None => rate,
+            Some(modes) => {
+                let tau = theta * step.h;
+                self.local_part(step, theta) + modes.history(tau) + self.singular_part(start.t + tau)
+            }
+        }
+    }
+
+    /// |D^alpha x| at the end of the step by the step's polynomial less the same by the Hermite form: the embedded error.
+    ///
+    /// `resolution` is the rounding of the strokes; differences that it explains count as 0.
+    pub fn defect(&self, step: &RatePolynomial, stroke: [f64; 2], rate: [f64; 2], resolution: f64) -> f64 {
+        if self.modes.is_none() {
+            return 0.0;
+        }
+        let hermite = RatePolynomial::hermite(step.h, stroke, rate);
+        let difference = (self.local_part(step, 1.0) - self.local_part(&hermite, 1.0)).abs();
+        (difference - 6.0 * resolution * step.h.powf(-self.alpha)).max(0.0)
+    }
+
+    /// Energy of a unit springpot at t_n + θh; `rate` is x' there. The limits: ½(x − x(0))² or ½x² stored at alpha = 0,
+    /// x'² dissipated at alpha = 1.
+    pub fn energy(&self, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> Energy {
+        match &self.modes {
+            None if self.alpha == 0.0 => Energy { stored: 0.5 * (stroke - self.held()).powi(2), dissipation: 0.0 },
+            None => Energy { stored: 0.0, dissipation: rate * rate },
+            Some(modes) => modes.energy(step, theta, rate),
+        }
+    }
+
+    /// Energy at t = 0, before any step: that of the limits; a memory without past holds nothing.
+    pub fn initial_energy(&self, stroke: f64, rate: f64) -> Energy {
+        match &self.modes {
+            Some(_) => Energy::default(),
+            None => self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate),
+        }
+    }
+
+    /// Takes an accepted step into the past: z_k ← e^{−λ_k h} z_k + ∫ e^{−λ_k(h−s)} x'(s) ds, exact for the polynomial.
+    pub fn commit(&mut self, step: &RatePolynomial) {
+        if let Some(modes) = &mut self.modes {
+            modes.commit(step);
+        }
+    }
+
+    /// The stroke that counts as unloaded at alpha = 0.
+    fn held(&self) -> f64 {
+        match self.kind {
+            Kind::Caputo => self.origin,
+            Kind::RiemannLiouville => 0.0,
+        }
+    }
+
+    /// The current step's share: h^{1−alpha} Σ_p u_p p!/Γ(p+2−alpha) θ^{p+1−alpha}.
+    fn local_part(&self, step: &RatePolynomial, theta: f64) -> f64 {
+        let sum = (0..4).rev().fold(0.0, |sum, p| sum * theta + step.u[p] * self.local[p]);
+        (theta * step.h).powf(1.0 - self.alpha) * sum
+    }
+
+    /// Factors of x' at 0 and at the nodes.
+    fn rate_row(&self, h: f64, c: f64, nodes: Nodes) -> [f64; 4] {
+        let scale = (c * h).powf(1.0 - self.alpha);
+        let mut row = [0.0; 4];
+        match nodes {
+            Nodes::One => (row[0], row[1]) = (self.local[0] - c * self.local[1], c * self.local[1]),
+            Nodes::Radau => {
+                for (k, factor) in row.iter_mut().enumerate() {
+                    *factor = (0..4).rev().fold(0.0, |sum, p| sum * c + self.local[p] * TABLEAU.rates[p][k]);
+                }
+            }
+        }
+        row.map(|factor| scale * factor)
+    }
+
+    /// Factors of the strokes x_j − x_0.
+    fn stroke_row(&self, h: f64, c: f64, nodes: Nodes) -> [f64; 3] {
+        let scale = (c * h).powf(1.0 - self.alpha) / h;
+        let mut row = [0.0; 3];
+        match nodes {
+            Nodes::One => row[0] = self.local[0],
+            Nodes::Radau => {
+                for (j, factor) in row.iter_mut().enumerate() {
+                    let term = |p: usize| self.local[p] * (p + 1) as f64 * TABLEAU.strokes[p][j];
+                    *factor = (0..3).rev().fold(0.0, |sum, p| sum * c + term(p));
+                }
+            }
+        }
+        row.map(|factor| scale * factor)
+    }
+}
+
+impl Modes {
+    fn new(kernel: Kernel) -> Self {
+        let z = vec![0.0; kernel.modes()];
+        Self { kernel, z, last: None, tables: RefCell::default() }
+    }
+
+    /// Σ_k w_k e^{−λ_k τ} z_k, with faster modes where τ is shorter than the kernel's delta.
+    fn history(&self, tau: f64) -> f64 {
+        let Some(last) = &self.last else { return 0.0 };
+        let mut tables = self.tables.borrow_mut();
+        let table = tables.at(tau, &self.kernel.lambda);
+        let mut sum = 0.0;
+        for ((w, e), z) in self.kernel.weight.iter().zip(&table.decay).zip(&self.z) {
+            sum += w * e * z;
+        }
+        for k in 1..=self.kernel.missing(tau) {
+            let (lambda, weight) = self.kernel.faster(k);
+            sum += weight * (-lambda * tau).exp() * last.convolve(lambda, 1.0);
+        }
+        sum
+    }
+
+    fn energy(&self, step: &RatePolynomial, theta: f64, rate: f64) -> Energy {
+        let tau = theta * step.h;
+        let mut tables = self.tables.borrow_mut();
+        let table = tables.at(tau, &self.kernel.lambda);
+        let [u0, u1, u2, u3] = scaled(step, theta);
+        let [p0, p1, p2, p3] = &table.psi;
+        let (mut stored, mut dissipation) = (0.0, 0.0);
+        for k in 0..self.z.len() {
+            let z = table.decay[k] * self.z[k] + u0 * p0[k] + u1 * p1[k] + u2 * p2[k] + u3 * p3[k];
+            let square = self.kernel.weight[k] * z * z;
+            stored += square;
+            dissipation += self.kernel.lambda[k] * square;
+        }
+        let (d1, d2) = self.kernel.fast_tail();
+        Energy { stored: 0.5 * (stored + d2 * rate * rate), dissipation: dissipation + d1 * rate * rate }
+    }
+
+    fn commit(&mut self, step: &RatePolynomial) {
+        self.extend(RADAU_NODES[0] * step.h);
+        {
+            let mut tables = self.tables.borrow_mut();
+            let table = tables.at(step.h, &self.kernel.lambda);
+            let [u0, u1, u2, u3] = scaled(step, 1.0);
+            let [p0, p1, p2, p3] = &table.psi;
+            for (k, z) in self.z.iter_mut().enumerate() {
+                *z = table.decay[k] * *z + u0 * p0[k] + u1 * p1[k] + u2 * p2[k] + u3 * p3[k];
+            }
+        }
+        self.last = Some(*step);
+        self.drop_surplus(RADAU_NODES[0] * step.h);
+    }
+
+    /// Puts the faster modes that lags down to `lag` need in front, with the lags they have after the last committed step.
+    fn extend(&mut self, lag: f64) {
+        let missing = self.kernel.missing(lag);
+        if missing == 0 {
+            return;
+        }
+        let front: Vec<(f64, f64)> = (1..=missing).rev().map(|k| self.kernel.faster(k)).collect();
+        let lag_of = |lambda: f64| self.last.as_ref().map_or(0.0, |step| step.convolve(lambda, 1.0));
+        self.z.splice(0..0, front.iter().map(|(lambda, _)| lag_of(*lambda)));
+        self.kernel.lambda.splice(0..0, front.iter().map(|(lambda, _)| *lambda));
+        self.kernel.weight.splice(0..0, front.iter().map(|(_, weight)| *weight));
+        self.kernel.delta *= (-self.kernel.eta * missing as f64).exp();
+        self.tables.borrow_mut().slots.clear();
+    }
+
+    /// Drops modes that are faster than lags of `lag` and longer need, once there are many of them.
+    fn drop_surplus(&mut self, lag: f64) {
+        let surplus = ((lag / self.kernel.delta).ln() / self.kernel.eta).floor();
+        if surplus < SURPLUS as f64 {
+            return;
+        }
+        let surplus = (surplus as usize).min(self.z.len() - 1);
+        self.z.drain(..surplus);
+        self.kernel.lambda.drain(..surplus);
+        self.kernel.weight.drain(..surplus);
+        self.kernel.delta *= (self.kernel.eta * surplus as f64).exp();
+        self.tables.borrow_mut().slots.clear();
+    }
+}
+
+/// Coefficients of ψ_p in ∫₀^τ e^{−λ(τ−s)} x'(s) ds.
+fn scaled(step: &RatePolynomial, theta: f64) -> [f64; 4] {
+    let mut power = theta * step.h;
+    step.u.map(|u| {
+        let coefficient = power * u;
+        power *= theta;
+        coefficient
+    })
+}
+
+impl Tables {
+    /// The table for the lag `tau`, made when it is not there.
+    fn at(&mut self, tau: f64, lambda: &[f64]) -> &Table {
+        if let Some(found) = self.slots.iter().position(|t| t.tau == tau) {
+            return &self.slots[found];
+        }
+        if self.slots.len() < SLOTS {
+            self.slots.push(Table { tau, decay: Vec::new(), psi: Default::default() });
+            self.next = self.slots.len() - 1;
+        } else {
+            self.next = (self.next + 1) % SLOTS;
+        }
+        let table = &mut self.slots[self.next];
+        table.fill(tau, lambda);
+        table
+    }
+}
+
+impl Table {
+    fn fill(&mut self, tau: f64, lambda: &[f64]) {
+        self.tau = tau;
+        self.decay.clear();
+        self.decay.extend(lambda.iter().map(|l| (-l * tau).exp()));
+        self.psi.iter_mut().for_each(Vec::clear);
+        for l in lambda {
+            let moments = exponential_moments(l * tau);
+            for (column, moment) in self.psi.iter_mut().zip(moments) {
+                column.push(moment);
+            }
+        }
+    }
+}

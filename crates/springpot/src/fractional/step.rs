@@ -1,0 +1,242 @@
+//! One step of size h: its nodes, and the polynomial that stands for x' over it.
+//!
+//! With θ = (t − t_n)/h, x'(θ) = Σ_p u_p θ^p, p = 0…3. Against this polynomial the kernel is exact:
+//! 1/Γ(1−alpha) ∫ (t−s)^−alpha x'(s) ds from t_n to t_n + θh = h^{1−alpha} Σ_p u_p p!/Γ(p+2−alpha) θ^{p+1−alpha}.
+
+use super::gamma::gamma;
+use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
+
+/// √6 rounded to double precision.
+const SQRT6: f64 = 2.449_489_742_783_178;
+
+/// Nodes of Radau IIA with three stages, (4 ∓ √6)/10 and 1 (Hairer & Wanner, Solving ODEs II, IV.5).
+pub const RADAU_NODES: [f64; 3] = [(4.0 - SQRT6) / 10.0, (4.0 + SQRT6) / 10.0, 1.0];
+
+/// Weights of Radau IIA: ∫₀¹ f ≈ Σ b_i f(c_i), exact for degree 4.
+pub const RADAU_WEIGHTS: [f64; 3] = [(16.0 - SQRT6) / 36.0, (16.0 + SQRT6) / 36.0, 1.0 / 9.0];
+
+/// The largest number of nodes of a step.
+pub const MAX_NODES: usize = 3;
+
+/// Where a step is evaluated, 0 < c_1 < … < c_s ≤ 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Nodes {
+    /// s = 1, c = [1].
+    One,
+    /// s = 3, Radau IIA.
+    Radau,
+}
+
+impl Nodes {
+    /// The nodes c_i.
+    pub fn positions(self) -> &'static [f64] {
+        match self {
+            Self::One => &[1.0],
+            Self::Radau => &RADAU_NODES,
+        }
+    }
+
+    /// Number of nodes s.
+    pub fn count(self) -> usize {
+        self.positions().len()
+    }
+}
+
+/// Which data of the step determine the polynomial of x'.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Form {
+    /// x' at 0 and at the nodes; order 5 − alpha along a given motion with Radau nodes.
+    Rates,
+    /// x at 0 and at the nodes; order 4 − alpha with Radau nodes, 2 − alpha (the L1 scheme) with one.
+    Strokes,
+}
+
+/// x' over one step as a polynomial of θ.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RatePolynomial {
+    /// Step size, s.
+    pub h: f64,
+    /// Coefficients u_p of θ^p.
+    pub u: [f64; 4],
+}
+
+impl RatePolynomial {
+    /// Through x' at 0 and at the nodes (s + 1 values): the cubic for Radau, the straight line for one node.
+    pub fn through_rates(h: f64, nodes: Nodes, rate: &[f64]) -> Self {
+        let u = match nodes {
+            Nodes::One => [rate[0], rate[1] - rate[0], 0.0, 0.0],
+            Nodes::Radau => {
+                let inverse = &TABLEAU.rates;
+                std::array::from_fn(|p| (0..4).map(|k| inverse[p][k] * rate[k]).sum())
+            }
+        };
+        Self { h, u }
+    }
+
+    /// From x at 0 and at the nodes (s + 1 values): the derivative of the interpolating polynomial.
+    pub fn through_strokes(h: f64, nodes: Nodes, stroke: &[f64]) -> Self {
+        let mut u = [0.0; 4];
+        match nodes {
+            Nodes::One => u[0] = (stroke[1] - stroke[0]) / h,
+            Nodes::Radau => {
+                for p in 0..3 {
+                    let coefficient: f64 = (0..3).map(|j| TABLEAU.strokes[p][j] * (stroke[j + 1] - stroke[0])).sum();
+                    u[p] = (p + 1) as f64 * coefficient / h;
+                }
+            }
+        }
+        Self { h, u }
+    }
+
+    /// The derivative of the cubic Hermite polynomial of (x, x') at both ends; order 4 − alpha.
+    pub fn hermite(h: f64, stroke: [f64; 2], rate: [f64; 2]) -> Self {
+        let slope = (stroke[1] - stroke[0]) / h;
+        let [v0, v1] = rate;
+        Self { h, u: [v0, 6.0 * slope - 4.0 * v0 - 2.0 * v1, 3.0 * (v0 + v1) - 6.0 * slope, 0.0] }
+    }
+
+    /// ∫ e^{−λ(τ − s)} x'(s) ds over 0 ≤ s ≤ τ = θh, in closed form.
+    pub fn convolve(&self, lambda: f64, theta: f64) -> f64 {
+        let tau = theta * self.h;
+        let psi = exponential_moments(lambda * tau);
+        let [u0, u1, u2, u3] = self.u;
+        tau * (u0 * psi[0] + theta * (u1 * psi[1] + theta * (u2 * psi[2] + theta * u3 * psi[3])))
+    }
+}
+
+/// Weights of ∫₀^θ f dθ on the values of f at 0 and at the nodes: the Radau weights at θ = 1.
+pub fn quadrature(nodes: Nodes, theta: f64) -> [f64; MAX_NODES + 1] {
+    match nodes {
+        Nodes::One => [theta - 0.5 * theta * theta, 0.5 * theta * theta, 0.0, 0.0],
+        Nodes::Radau if theta == 1.0 => [0.0, RADAU_WEIGHTS[0], RADAU_WEIGHTS[1], RADAU_WEIGHTS[2]],
+        Nodes::Radau => std::array::from_fn(|k| {
+            (0..4).rev().fold(0.0, |sum, p| sum * theta + TABLEAU.rates[p][k] / (p + 1) as f64) * theta
+        }),
+    }
+}
+
+/// p!/Γ(p+2−alpha), p = 0…3: the exact kernel against θ^p.
+pub fn local_factors(alpha: f64) -> [f64; 4] {
+    let mut factors = [1.0 / gamma(2.0 - alpha), 0.0, 0.0, 0.0];
+    for p in 1..4 {
+        factors[p] = factors[p - 1] * p as f64 / (p as f64 + 1.0 - alpha);
+    }
+    factors
+}
+
+/// ψ_p(X) = ∫₀¹ e^{−X(1−θ)} θ^p dθ for p = 0…3 and X ≥ 0.
+///
+/// Upwards by ψ_p = (1 − pψ_{p−1})/X where that is stable; below X = 1 downwards from the series of ψ_3.
+pub fn exponential_moments(x: f64) -> [f64; 4] {
+    if x < 1.0 {
+        // ψ_3 = 1/4 (1 − X/5 (1 − X/6 (…))): 16 factors reach the last bit at X = 1.
+        let mut p3 = 0.0;
+        for m in (0..16).rev() {
+            p3 = (1.0 - x * p3) / (m + 4) as f64;
+        }
+        let p2 = (1.0 - x * p3) / 3.0;
+        let p1 = (1.0 - x * p2) / 2.0;
+        return [1.0 - x * p1, p1, p2, p3];
+    }
+    let p0 = -(-x).exp_m1() / x;
+    let p1 = (1.0 - p0) / x;
+    let p2 = (1.0 - 2.0 * p1) / x;
+    [p0, p1, p2, (1.0 - 3.0 * p2) / x]
+}
+
+/// Inverse Vandermonde matrices of the Radau nodes.
+pub(super) struct Tableau {
+    /// Of (0, c_1, c_2, 1): u_p = Σ_k rates[p][k] x'_k.
+    pub(super) rates: [[f64; 4]; 4],
+    /// Of [c_j^p], p = 1…3: coefficient of θ^{p+1} in x is Σ_j strokes[p][j] (x_j − x_0).
+    pub(super) strokes: [[f64; 3]; 3],
+}
+
+pub(super) static TABLEAU: LazyLock<Tableau> = LazyLock::new(|| {
+    let [c1, c2, _] = RADAU_NODES;
+    let rates = lagrange_coefficients([0.0, c1, c2, 1.0]);
+    let strokes = std::array::from_fn(|p| std::array::from_fn(|j| rates[p + 1][j + 1]));
+    Tableau { rates, strokes }
+});
+
+/// coefficients[p][k] of θ^p in the Lagrange polynomial of node k.
+fn lagrange_coefficients(nodes: [f64; 4]) -> [[f64; 4]; 4] {
+    let mut coefficients = [[0.0; 4]; 4];
+    for k in 0..4 {
+        let mut polynomial = [1.0, 0.0, 0.0, 0.0];
+        let mut denominator = 1.0;
+        for (degree, j) in (0..4).filter(|&j| j != k).enumerate() {
+            for p in (0..=degree).rev() {
+                polynomial[p + 1] += polynomial[p];
+                polynomial[p] *= -nodes[j];
+            }
+            denominator *= nodes[k] - nodes[j];
+        }
+        for p in 0..4 {
+            coefficients[p][k] = polynomial[p] / denominator;
+        }
+    }
+    coefficients
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_reproduce_their_data() {
+        let rate = [0.3, -1.2, 0.7, 2.0];
+        let p = RatePolynomial::through_rates(0.1, Nodes::Radau, &rate);
+        let at = |theta: f64| p.u.iter().rev().fold(0.0, |sum, u| sum * theta + u);
+        for (c, r) in [0.0].iter().chain(&RADAU_NODES).zip(rate) {
+            assert!((at(*c) - r).abs() < 1e-14);
+        }
+        // x = 1 + 2t − t² + 4t³ is reproduced by strokes and by Hermite.
+        let x = |t: f64| 1.0 + 2.0 * t - t * t + 4.0 * t.powi(3);
+        let v = |t: f64| 2.0 - 2.0 * t + 12.0 * t * t;
+        let h = 0.5;
+        let strokes: Vec<f64> = [0.0].iter().chain(&RADAU_NODES).map(|c| x(c * h)).collect();
+        let s = RatePolynomial::through_strokes(h, Nodes::Radau, &strokes);
+        let m = RatePolynomial::hermite(h, [x(0.0), x(h)], [v(0.0), v(h)]);
+        for p in 0..4 {
+            let exact = [2.0, -2.0 * h, 12.0 * h * h, 0.0][p];
+            assert!((s.u[p] - exact).abs() < 1e-13 && (m.u[p] - exact).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn radau_weights_are_exact_to_degree_four() {
+        for p in 0..5 {
+            let sum: f64 = (0..3).map(|i| RADAU_WEIGHTS[i] * RADAU_NODES[i].powi(p)).sum();
+            assert!((sum - 1.0 / (p + 1) as f64).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn exponential_moments_meet_their_integrals() {
+        // Composite Gauss–Legendre (5 points) of the definition.
+        let nodes = [-0.906_179_845_938_664, -0.538_469_310_105_683, 0.0, 0.538_469_310_105_683, 0.906_179_845_938_664];
+        let weights = [
+            0.236_926_885_056_189,
+            0.478_628_670_499_366,
+            0.568_888_888_888_889,
+            0.478_628_670_499_366,
+            0.236_926_885_056_189,
+        ];
+        for x in [0.0, 1e-9, 0.3, 0.999, 1.0, 1.001, 7.0, 60.0] {
+            let psi = exponential_moments(x);
+            for p in 0..4 {
+                let panels = 400;
+                let mut sum = 0.0;
+                for k in 0..panels {
+                    for (z, w) in nodes.iter().zip(&weights) {
+                        let theta = (k as f64 + 0.5 + 0.5 * z) / panels as f64;
+                        sum += 0.5 * w / panels as f64 * (-x * (1.0 - theta)).exp() * theta.powi(p as i32);
+                    }
+                }
+                assert!((psi[p] / sum - 1.0).abs() < 3e-14, "psi_{p}({x}) = {} vs {sum}", psi[p]);
+            }
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Magnetorheological element: a springpot whose coefficient follows the voltage of its coil.
+
+use super::Parallel;
+use super::catalog::{ALPHA, Entry, Input, Param, Range, at_least_one_positive};
+use super::leaf::Coefficient;
+use std::sync::Arc;
+
+/// F = E_c·x + (mu_0 + u·mu)·D^alpha x; the coefficient stands outside the derivative also when u varies.
+///
+/// Passive only while mu_0 + u·mu ≥ 0, which is checked wherever u is evaluated. A varying u supplies ∫ mu·u'·ψ dt, ψ the energy
+/// stored by a springpot of unit coefficient.
+pub(super) const MAGNETORHEOLOGICAL: Entry = Entry {
+    name: "magnetorheological",
+    equation: "F = E_c·x + (mu_0 + u·mu)·D^alpha x",
+    params: &[
+        Param { name: "E_c", unit: "N/m", meaning: "stiffness", range: Range::NOT_NEGATIVE, default: None },
+        Param {
+            name: "mu_0",
+            unit: "N*s^alpha/m",
+            meaning: "coefficient without field",
+            range: Range::NOT_NEGATIVE,
+            default: None,
+        },
+        Param {
+            name: "mu",
+            unit: "N*s^alpha/(m*V)",
+            meaning: "change of the coefficient per volt",
+            range: Range::ANY,
+            default: None,
+        },
+        ALPHA,
+    ],
+    inputs: &[Input { name: "u", unit: "V", meaning: "voltage of the coil", range: Range::ANY }],
+    source: "equations of motion of a robot with piezo-modified and magnetorheological elements (docs/LITERATURE.md)",
+    build: |values, derivative| {
+        let &[e_c, mu_0, mu, alpha] = values else { unreachable!("values follow params") };
+        at_least_one_positive(&[("E_c", e_c), ("mu_0", mu_0), ("mu", mu)])?;
+        let coefficient = Coefficient { constant: mu_0, slope: mu, input: Some(0), rule: "mu_0 + u·mu ≥ 0" };
+        Ok(Arc::new(Parallel::new().spring(e_c).springpot(coefficient, alpha, derivative)))
+    },
+};
