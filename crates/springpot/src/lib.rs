@@ -14,3 +14,4 @@ pub mod model;
 pub mod scenario;
 pub mod signal;
 pub mod spatial;
+pub mod table;

@@ -5,6 +5,7 @@ pub mod kernel;
 pub mod kind;
 pub mod memory;
 pub mod step;
+pub mod stream;
 
 pub use kernel::{Kernel, KernelError};
 pub use kind::Kind;

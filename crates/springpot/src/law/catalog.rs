@@ -85,6 +85,9 @@ pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Resul
     })
 }
 
+/// What a catalog row builds.
+pub type Built = Result<Arc<dyn Law>, RuleError>;
+
 /// One law of the catalog.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
@@ -99,7 +102,7 @@ pub struct Entry {
     /// Where it comes from.
     pub source: &'static str,
     /// Builds the law from parameter values (SI, in the order of `params`, each within its range).
-    pub build: fn(&[f64], Derivative) -> Result<Arc<dyn Law>, RuleError>,
+    pub build: fn(&[f64], Derivative) -> Built,
 }
 
 /// A set of laws; a user's crate can add rows to the standard one.

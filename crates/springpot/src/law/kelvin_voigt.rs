@@ -1,8 +1,8 @@
 //! Plain laws: spring, dashpot, springpot, and their parallel combinations.
 
-use super::catalog::{ALPHA, Entry, Param, Range, at_least_one_positive};
+use super::Parallel;
+use super::catalog::{ALPHA, Built, Entry, Param, Range, at_least_one_positive};
 use super::leaf::Coefficient;
-use super::{Law, Parallel, RuleError};
 use std::sync::Arc;
 
 const STIFFNESS: Param =
@@ -16,8 +16,6 @@ const COEFFICIENT: Param = Param {
     range: Range::NOT_NEGATIVE,
     default: None,
 };
-
-type Built = Result<Arc<dyn Law>, RuleError>;
 
 /// F = k·x.
 pub(super) const SPRING: Entry = Entry {

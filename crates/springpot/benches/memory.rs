@@ -1,0 +1,65 @@
+//! Streaming D^½ of uniform samples, and the price of one step of the memory as the past grows.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use springpot::fractional::stream::derivative_of_samples;
+use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
+use std::hint::black_box;
+
+fn signal(t: f64) -> f64 {
+    0.7 * (8.0 * t).sin() + 0.1 * t
+}
+
+fn rate(t: f64) -> f64 {
+    5.6 * (8.0 * t).cos() + 0.1
+}
+
+/// 10⁶ samples over 10 s: error ≤ 1e-8 of the largest value (asserted against the reference at t = 10).
+fn million_samples(criterion: &mut Criterion) {
+    let count = 1_000_000;
+    let h = 10.0 / (count - 1) as f64;
+    let x: Vec<f64> = (0..count).map(|n| signal(n as f64 * h)).collect();
+    let values = derivative_of_samples(&x, h, 0.5, 1e-9).unwrap();
+    let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let error = (values[count - 1] + 1.189_941_531_700_918).abs() / largest;
+    assert!(error <= 1e-8, "error {error:e}");
+    println!("error at t = 10 s: {error:.1e} of the largest value");
+    let mut group = criterion.benchmark_group("stream");
+    group.sample_size(20).throughput(Throughput::Elements(count as u64));
+    group.bench_function("derivative of 10^6 samples, alpha 0.5, 1e-8", |b| {
+        b.iter(|| derivative_of_samples(black_box(&x), h, 0.5, 1e-9).unwrap());
+    });
+    group.finish();
+}
+
+/// One Radau step (respond, energy, commit) after 10², 10⁴ and 10⁶ steps of past.
+fn step_after(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("memory step");
+    let h = 1e-3;
+    for past in [100usize, 10_000, 1_000_000] {
+        let mut memory = Memory::new(0.5, Kind::Caputo, 0.0, 0.0, 1e-11, RADAU_NODES[0] * h, 4e3).unwrap();
+        let step = |n: usize| {
+            let t = n as f64 * h;
+            let rates: Vec<f64> = [0.0].iter().chain(&RADAU_NODES).map(|c| rate(t + c * h)).collect();
+            (
+                StepStart { t, h, stroke: signal(t), rate: rates[0] },
+                RatePolynomial::through_rates(h, Nodes::Radau, &rates),
+            )
+        };
+        for n in 0..past {
+            memory.commit(&step(n).1);
+        }
+        group.bench_with_input(BenchmarkId::from_parameter(past), &past, |b, &past| {
+            let (start, polynomial) = step(past);
+            b.iter(|| {
+                let response = memory.respond(black_box(&start), Nodes::Radau, Form::Rates);
+                let energy = memory.energy(&polynomial, 1.0, 0.0, polynomial.u[0]);
+                memory.commit(&polynomial);
+                (response, energy)
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, million_samples, step_after);
+criterion_main!(benches);
