@@ -1,1 +1,22 @@
-//! (under construction)
+//! Vectors, rotations and spatial quantities; nothing here knows a robot.
+//!
+//! Every type is a plain `Copy` array over one sealed [`Scalar`], `f64` by default.
+//! A [`Motion`] or [`Force`] is a pair of three-vectors taken at the origin of the frame it is expressed in.
+
+mod force;
+mod inertia;
+mod motion;
+mod placement;
+mod rotation;
+mod scalar;
+mod symmetric;
+mod vector;
+
+pub use force::Force;
+pub use inertia::Inertia;
+pub use motion::Motion;
+pub use placement::Placement;
+pub use rotation::Rotation;
+pub use scalar::Scalar;
+pub use symmetric::Symmetric3;
+pub use vector::Vec3;
