@@ -17,6 +17,8 @@ mod gravity;
 mod jacobian;
 mod joint;
 mod kinematics;
+#[cfg(test)]
+mod lanes_fit;
 mod pair;
 mod rnea;
 mod workspace;

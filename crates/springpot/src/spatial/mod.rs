@@ -6,6 +6,8 @@
 mod force;
 mod inertia;
 mod motion;
+#[cfg(test)]
+mod pair_of_lanes;
 mod placement;
 mod rotation;
 mod scalar;
@@ -15,6 +17,8 @@ mod vector;
 pub use force::Force;
 pub use inertia::Inertia;
 pub use motion::Motion;
+#[cfg(test)]
+pub(crate) use pair_of_lanes::Two;
 pub use placement::Placement;
 pub use rotation::Rotation;
 pub use scalar::Scalar;
