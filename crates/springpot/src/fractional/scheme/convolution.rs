@@ -40,7 +40,7 @@ fn fft_convolution(weights: &[f64], x: &[f64]) -> Result<Vec<f64>, FftError> {
     forward.process_with_scratch(&mut real, &mut spectrum, &mut scratch)?;
 
     for (a, b) in product.iter_mut().zip(&spectrum) {
-        *a = *a * *b;
+        *a *= *b;
     }
     inverse.process(&mut product, &mut real)?;
     real.truncate(x.len());

@@ -207,7 +207,7 @@ fn alternating_reciprocal_factorial(i: usize) -> f64 {
 fn zeta_at_negative(m: usize) -> f64 {
     const BERNOULLI_EVEN: [f64; 9] =
         [1.0, 1.0 / 6.0, -1.0 / 30.0, 1.0 / 42.0, -1.0 / 30.0, 5.0 / 66.0, -691.0 / 2730.0, 7.0 / 6.0, -3617.0 / 510.0];
-    if m % 2 == 0 { 0.0 } else { -BERNOULLI_EVEN[m.div_ceil(2)] / (m + 1) as f64 }
+    if m.is_multiple_of(2) { 0.0 } else { -BERNOULLI_EVEN[m.div_ceil(2)] / (m + 1) as f64 }
 }
 
 #[cfg(test)]

@@ -18,19 +18,23 @@ pub(super) fn caputo(samples: &Samples, alpha: f64) -> Result<Vec<f64>, SchemeEr
     for y in &mut y {
         *y *= scale;
     }
-    y.extend((prefix.rows..samples.t.len()).map(|n| reciprocal_gamma(2.0 - alpha) * row_sum(samples, n, alpha)));
+    if prefix.rows < samples.t.len() {
+        let pieces = pieces(samples, alpha);
+        let row = |n| reciprocal_gamma(2.0 - alpha) * row_sum(samples.t, &pieces, n, alpha);
+        y.extend((prefix.rows..samples.t.len()).map(row));
+    }
     Ok(y)
 }
 
-/// Γ(2−alpha) C(t_n), term by term.
-pub(super) fn row_sum(samples: &Samples, n: usize, alpha: f64) -> f64 {
+/// D_j h_j^{1−alpha}, at index j − 1.
+pub(super) fn pieces(samples: &Samples, alpha: f64) -> Vec<f64> {
     let Samples { t, x, .. } = samples;
-    (1..=n)
-        .map(|j| {
-            let step = t[j] - t[j - 1];
-            (x[j] - x[j - 1]) * step.powf(-alpha) * mean((t[n] - t[j]) / step, alpha)
-        })
-        .sum()
+    (1..t.len()).map(|j| (x[j] - x[j - 1]) * (t[j] - t[j - 1]).powf(-alpha)).collect()
+}
+
+/// Γ(2−alpha) C(t_n), term by term.
+pub(super) fn row_sum(t: &[f64], pieces: &[f64], n: usize, alpha: f64) -> f64 {
+    (1..=n).map(|j| pieces[j - 1] * mean((t[n] - t[j]) / (t[j] - t[j - 1]), alpha)).sum()
 }
 
 /// a(k) = (1−alpha) ∫₀¹ (k+φ)^−alpha dφ = (k+1)^{1−alpha} − k^{1−alpha}, without cancellation; 1 and 0, 0, … at alpha = 1.

@@ -1,7 +1,7 @@
 //! L1-2: the exact Caputo derivative of parabolas through three samples each.
 
 use super::convolution::causal_convolution;
-use super::l1::{check_direct_terms, mean, row_sum};
+use super::l1::{check_direct_terms, mean, pieces, row_sum};
 use super::samples::Samples;
 use super::{SchemeError, grunwald_letnikov::differences};
 use crate::fractional::gamma::reciprocal_gamma;
@@ -23,22 +23,28 @@ pub(super) fn caputo(samples: &Samples, alpha: f64) -> Result<Vec<f64>, SchemeEr
     for n in 1..prefix.rows {
         y[n] = scale * (y[n] - skews[n - 1] * (x[1] - x[0]));
     }
-    y.extend(
-        (prefix.rows..samples.t.len())
-            .map(|n| reciprocal_gamma(2.0 - alpha) * (row_sum(samples, n, alpha) + curvature_sum(samples, n, alpha))),
-    );
+    if prefix.rows < samples.t.len() {
+        let (t, pieces, bends) = (samples.t, pieces(samples, alpha), bends(samples, alpha));
+        let row = |n| row_sum(t, &pieces, n, alpha) + bend_sum(t, &bends, n, alpha);
+        y.extend((prefix.rows..t.len()).map(|n| reciprocal_gamma(2.0 - alpha) * row(n)));
+    }
     Ok(y)
 }
 
-fn curvature_sum(samples: &Samples, n: usize, alpha: f64) -> f64 {
+/// 2 x\[t_{j−2}, t_{j−1}, t_j\] h_j^{2−alpha}, at index j − 2.
+fn bends(samples: &Samples, alpha: f64) -> Vec<f64> {
     let Samples { t, x, .. } = samples;
-    (2..=n)
+    (2..t.len())
         .map(|j| {
             let (step, before) = (t[j] - t[j - 1], t[j - 1] - t[j - 2]);
             let slopes = (x[j] - x[j - 1]) / step - (x[j - 1] - x[j - 2]) / before;
-            2.0 * slopes / (step + before) * step.powf(2.0 - alpha) * skew((t[n] - t[j]) / step, alpha)
+            2.0 * slopes / (step + before) * step.powf(2.0 - alpha)
         })
-        .sum()
+        .collect()
+}
+
+fn bend_sum(t: &[f64], bends: &[f64], n: usize, alpha: f64) -> f64 {
+    (2..=n).map(|j| bends[j - 2] * skew((t[n] - t[j]) / (t[j] - t[j - 1]), alpha)).sum()
 }
 
 /// b(k) = (1−alpha) ∫ −ψ (k+½+ψ)^−alpha dψ over −½ ≤ ψ ≤ ½; α/(2(2−α)) at k = 0.

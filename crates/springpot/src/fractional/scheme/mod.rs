@@ -74,6 +74,20 @@ impl Scheme {
     pub const TERMS_2004: RangeInclusive<u32> = 2..=5000;
     /// Admissible numbers of terms of the expansion without y'.
     pub const TERMS_2008: RangeInclusive<u32> = 1..=5000;
+    /// All names, for lists and suggestions; N stands for a number of terms.
+    pub const NAMES: [&str; 11] = [
+        "grunwald-letnikov",
+        "l1",
+        "l1-2",
+        "fbdf-1",
+        "fbdf-2",
+        "fbdf-3",
+        "fbdf-4",
+        "fbdf-5",
+        "fbdf-6",
+        "expansion-2004(N)",
+        "expansion-2008(N)",
+    ];
     /// Orders of the fractional backward differences.
     pub const FBDF_ORDERS: RangeInclusive<u8> = 1..=6;
 
