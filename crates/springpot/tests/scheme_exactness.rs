@@ -77,7 +77,7 @@ proptest! {
         kinks in prop::collection::vec((1usize..60, -2.0f64..2.0), 1..6),
         start in -1.0f64..1.0,
     ) {
-        // x = x(0) + Σ slope·max(t − kink, 0) on an uneven grid; alpha = 1 excluded at the kinks themselves.
+        // x = x(0) + Σ slope·max(t − kink, 0) on an uneven grid.
         let t = uneven(60);
         let slope = |alpha: f64, t: f64| if t <= 0.0 { 0.0 } else { t.powf(1.0 - alpha) * reciprocal_gamma(2.0 - alpha) };
         let x: Vec<f64> = t.iter().map(|&s| start + kinks.iter().map(|(k, c)| c * (s - t[*k]).max(0.0)).sum::<f64>()).collect();
