@@ -4,6 +4,7 @@ pub mod gamma;
 pub mod kernel;
 pub mod kind;
 pub mod memory;
+pub mod scheme;
 pub mod step;
 pub mod stream;
 
