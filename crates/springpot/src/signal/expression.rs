@@ -13,6 +13,7 @@ mod error;
 mod parse;
 
 pub use error::ExpressionError;
+#[cfg(feature = "scenario")]
 pub(crate) use parse::number_length;
 
 use super::Jet;
