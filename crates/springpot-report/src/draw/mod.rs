@@ -1,0 +1,20 @@
+//! Shapes in pixels, and the two ways of writing them: SVG and PNG.
+
+mod color;
+mod font;
+mod raster;
+mod scene;
+mod svg;
+mod wrap;
+
+pub(crate) use color::{Color, INK, PAPER};
+pub(crate) use font::Font;
+pub(crate) use scene::{Align, Outline, Point, Scene, Stroke, Text};
+pub(crate) use wrap::wrap;
+
+use crate::{Rendered, ReportError};
+
+/// Writes a scene in both formats.
+pub(crate) fn render(scene: &Scene, font: &Font) -> Result<Rendered, ReportError> {
+    Ok(Rendered { svg: svg::write(scene), png: raster::write(scene, font)? })
+}
