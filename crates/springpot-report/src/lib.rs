@@ -29,8 +29,10 @@
 
 mod chart;
 mod draw;
+mod robot;
 
 pub use chart::{Curve, Panel, Plot};
+pub use robot::{ElementMark, JointKind, JointMark, Link, RobotDrawing, WORLD};
 
 /// One figure in both formats.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -78,6 +78,6 @@ impl Plot {
             return Err(ReportError::LengthMismatch { curve: label.clone(), x: x.len(), y: y.len() });
         }
         let font = draw::Font::load()?;
-        draw::render(&layout::scene(self, &font), &font)
+        draw::render(layout::scene(self, &font), &font)
     }
 }

@@ -14,7 +14,9 @@ pub(crate) use wrap::wrap;
 
 use crate::{Rendered, ReportError};
 
-/// Writes a scene in both formats.
-pub(crate) fn render(scene: &Scene, font: &Font) -> Result<Rendered, ReportError> {
-    Ok(Rendered { svg: svg::write(scene), png: raster::write(scene, font)? })
+/// Writes a scene in both formats, on a page of whole, even pixels so that the raster's scale is exact.
+pub(crate) fn render(mut scene: Scene, font: &Font) -> Result<Rendered, ReportError> {
+    let even = |size: f64| 2.0 * (0.5 * size).ceil();
+    (scene.width, scene.height) = (even(scene.width), even(scene.height));
+    Ok(Rendered { svg: svg::write(&scene), png: raster::write(&scene, font)? })
 }

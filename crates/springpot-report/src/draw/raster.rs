@@ -14,7 +14,7 @@ const PIXELS_PER_METRE: u32 = 9449;
 const MOST_PIXELS: f64 = 120e6;
 
 pub(super) fn write(scene: &Scene, font: &Font) -> Result<Vec<u8>, ReportError> {
-    let (width, height) = ((scene.width * SCALE).ceil(), (scene.height * SCALE).ceil());
+    let (width, height) = (scene.width * SCALE, scene.height * SCALE);
     let too_large = ReportError::Canvas { width: width as u32, height: height as u32 };
     if width * height > MOST_PIXELS {
         return Err(too_large);

@@ -99,6 +99,19 @@ impl Scene {
     pub(crate) fn text(&mut self, text: Text) {
         self.shapes.push(Shape::Text(text));
     }
+
+    /// Moves every shape.
+    pub(crate) fn shift(&mut self, [dx, dy]: Point) {
+        let move_by = |point: &mut Point| *point = [point[0] + dx, point[1] + dy];
+        for shape in &mut self.shapes {
+            match shape {
+                Shape::Drawn { outline: Outline::Lines(runs), .. } => runs.iter_mut().flatten().for_each(move_by),
+                Shape::Drawn { outline: Outline::Polygon(points), .. } => points.iter_mut().for_each(move_by),
+                Shape::Drawn { outline: Outline::Circle { center, .. }, .. } => move_by(center),
+                Shape::Text(text) => move_by(&mut text.at),
+            }
+        }
+    }
 }
 
 impl Text {

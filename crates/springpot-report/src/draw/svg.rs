@@ -68,18 +68,24 @@ fn path(svg: &mut String, points: &[Point]) {
 }
 
 fn write_text(svg: &mut String, text: &Text) {
-    let ([x, y], size) = (text.at, Number(text.size));
-    let _ = write!(svg, "<text x=\"{}\" y=\"{}\" font-size=\"{size}\" fill=\"{}\"", Number(x), Number(y), text.color);
+    if text.halo {
+        // A text of its own: not every reader knows `paint-order`.
+        let rim = format!("stroke=\"{PAPER}\" stroke-width=\"3\" aria-hidden=\"true\"");
+        text_element(svg, text, &rim);
+    }
+    text_element(svg, text, &format!("fill=\"{}\"", text.color));
+}
+
+fn text_element(svg: &mut String, text: &Text, paint: &str) {
+    let ([x, y], size) = (text.at.map(Number), Number(text.size));
+    let _ = write!(svg, "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" {paint}");
     match text.align {
         Align::Start => {}
         Align::Middle => svg.push_str(" text-anchor=\"middle\""),
         Align::End => svg.push_str(" text-anchor=\"end\""),
     }
     if text.upwards {
-        let _ = write!(svg, " transform=\"rotate(-90 {} {})\"", Number(x), Number(y));
-    }
-    if text.halo {
-        let _ = write!(svg, " stroke=\"{PAPER}\" stroke-width=\"3\" paint-order=\"stroke\"");
+        let _ = write!(svg, " transform=\"rotate(-90 {x} {y})\"");
     }
     let _ = writeln!(svg, ">{}</text>", Escaped(&text.content));
 }
