@@ -48,7 +48,7 @@ pub struct JointMark {
     pub name: String,
     /// Its origin in world coordinates, metres.
     pub position: [f64; 3],
-    /// Its axis in world coordinates, of any length; the arrow shows the positive sense. A zero axis draws none.
+    /// Its axis in world coordinates, of any length; the curved (straight) arrow shows the positive turn (slide). A zero axis draws none.
     pub axis: [f64; 3],
     /// What it lets its body do.
     pub kind: JointKind,

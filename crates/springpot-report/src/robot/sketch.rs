@@ -18,9 +18,10 @@ const BORDER: f64 = 14.0;
 /// Tones of successive bodies.
 const TONES: [Color; 3] = [Color(0x7d, 0x9c, 0xbc), Color(0xb9, 0xcc, 0xdf), Color(0x5c, 0x7d, 0xa0)];
 const LINK_NAME: Color = Color(0x3d, 0x5a, 0x78);
-/// Reach of a joint's axis before and behind the joint, and the size of the arrow about it.
+/// Reach of a joint's axis before and behind the joint, and place and radius of the arrow about it.
 const AXIS_AHEAD: f64 = 34.0;
 const AXIS_BEHIND: f64 = 16.0;
+const SENSE_AT: f64 = 26.0;
 const SENSE: f64 = 9.0;
 /// Length of the arms of the x-y-z sign.
 const TRIAD: f64 = 30.0;
@@ -72,9 +73,7 @@ pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
     let mut sheet = Sheet::default();
     bodies(robot, &camera, &mut sheet);
     ground(robot, &camera, &mut sheet);
-    for joint in &robot.joints {
-        draw_joint(joint, &camera, &mut sheet);
-    }
+    let tips: Vec<Point> = robot.joints.iter().map(|joint| draw_joint(joint, &camera, &mut sheet)).collect();
     for element in &robot.elements {
         sheet.pin(camera.at(element.from));
         sheet.pin(camera.at(element.to));
@@ -82,7 +81,7 @@ pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
     if let Some(point) = robot.gripper {
         sheet.gripper(camera.at(point), gripper_direction(robot, &camera, point));
     }
-    names(robot, &camera, &mut sheet, font);
+    names(robot, &camera, &tips, &mut sheet, font);
     triad_and_scale(&camera, &mut sheet, font);
     page(robot, sheet, font)
 }
@@ -123,42 +122,47 @@ fn bodies(robot: &RobotDrawing, camera: &Camera, sheet: &mut Sheet) {
     }
 }
 
-fn draw_joint(joint: &JointMark, camera: &Camera, sheet: &mut Sheet) {
+/// Draws a joint with its axis; answers the place its name may stand beside first.
+fn draw_joint(joint: &JointMark, camera: &Camera, sheet: &mut Sheet) -> Point {
     let at = camera.at(joint.position);
     let metre = 1.0 / camera.scale;
     let Some(axis) = unit(joint.axis) else {
-        return match joint.kind {
+        match joint.kind {
             JointKind::Revolute => sheet.revolute(at),
             JointKind::Prismatic => sheet.prismatic(at, [1.0, 0.0]),
-        };
+        }
+        return at;
     };
-    let reach = metre * stretch(axis, camera.view);
-    let ahead = camera.at(along(joint.position, AXIS_AHEAD * reach, axis));
-    let behind = camera.at(along(joint.position, -AXIS_BEHIND * reach, axis));
+    let [x, y] = camera.view.project(axis);
+    // Lengthened, so that foreshortening does not hide the axis behind its joint.
+    let reach = metre * (0.9 / x.hypot(y)).clamp(1.0, 2.0);
+    let on_axis = |pixels: f64| along(joint.position, pixels * reach, axis);
     match joint.kind {
-        JointKind::Revolute => {
-            // Seen along its axis, the joint has its arrow around the circle instead of beyond it.
-            let (center, radius) = if dot(axis, camera.view.into).abs() < 0.9 {
-                sheet.axis_line(&[behind, ahead]);
-                (along(joint.position, 0.75 * AXIS_AHEAD * reach, axis), SENSE)
-            } else {
-                (joint.position, JOINT + 6.0)
-            };
-            sheet.sense(&camera.all(&turn(center, axis, radius * metre, camera.view)));
+        // Seen along its axis, the joint has its arrow around the circle instead of beyond it.
+        JointKind::Revolute if dot(axis, camera.view.into).abs() >= 0.9 => {
+            sheet.sense(&camera.all(&turn(joint.position, axis, (JOINT + 6.0) * metre, camera.view)));
             sheet.revolute(at);
+            at
+        }
+        JointKind::Revolute => {
+            let covered = |side: f64| {
+                let center = camera.at(on_axis(side * SENSE_AT));
+                sheet.obstacles.cost(Frame::sized(center, [SENSE; 2]))
+            };
+            let side = if covered(-1.0) < covered(1.0) { -1.0 } else { 1.0 };
+            sheet.axis_line(&[camera.at(on_axis(-side * AXIS_BEHIND)), camera.at(on_axis(side * AXIS_AHEAD))]);
+            let center = on_axis(side * SENSE_AT);
+            sheet.sense(&camera.all(&turn(center, axis, SENSE * metre, camera.view)));
+            sheet.revolute(at);
+            camera.at(center)
         }
         JointKind::Prismatic => {
-            let (direction, _) = direction(at, ahead);
-            sheet.arrow(&[behind, ahead], INK, 1.2);
-            sheet.prismatic(at, direction);
+            let ahead = camera.at(on_axis(AXIS_AHEAD));
+            sheet.arrow(&[camera.at(on_axis(-AXIS_BEHIND)), ahead], INK, 1.2);
+            sheet.prismatic(at, direction(at, ahead).0);
+            at
         }
     }
-}
-
-/// How much longer than seen a line along `axis` is made, so that foreshortening does not hide it behind its joint.
-fn stretch(axis: Vector, view: View) -> f64 {
-    let [x, y] = view.project(axis);
-    (0.9 / x.hypot(y)).clamp(1.0, 2.0)
 }
 
 /// Three quarters of a circle about an axis, in the positive sense, ending in front.
@@ -188,17 +192,11 @@ fn gripper_direction(robot: &RobotDrawing, camera: &Camera, gripper: Vector) -> 
 }
 
 /// Names, the important ones first.
-fn names(robot: &RobotDrawing, camera: &Camera, sheet: &mut Sheet, font: &Font) {
+fn names(robot: &RobotDrawing, camera: &Camera, tips: &[Point], sheet: &mut Sheet, font: &Font) {
     let mut requests = Vec::new();
-    for joint in &robot.joints {
-        let tip = unit(joint.axis).map(|axis| {
-            let reach = 0.75 * AXIS_AHEAD * stretch(axis, camera.view) / camera.scale;
-            along(joint.position, reach, axis)
-        });
-        let tip = tip.filter(|_| joint.kind == JointKind::Revolute).map(|tip| camera.at(tip));
-        let at = camera.at(joint.position);
+    for (joint, tip) in robot.joints.iter().zip(tips) {
+        let beside = vec![*tip, camera.at(joint.position)];
         let text = subscripted(&joint.name);
-        let beside = [tip, Some(at)].into_iter().flatten().collect();
         requests.push(Request { text, size: NAME_SIZE, color: INK, beside, clear: 9.0, optional: false });
     }
     if let Some(gripper) = robot.gripper {
