@@ -1,1 +1,96 @@
-//! Figures of Springpot results.
+//! Figures of Springpot results: curves ([`Plot`]) and robots with their elements ([`RobotDrawing`]), as SVG and PNG.
+//!
+//! The crate takes plain numbers and text and knows nothing of the engine. Every figure is laid out once, in pixels of 1/96 inch
+//! (y downwards), and written twice: as SVG with text kept as text, and as PNG at 2.5 pixels per unit (240 dpi). A subset of
+//! DejaVu Sans travels with the crate and draws all text (Latin, Greek, Cyrillic, sub- and superscripts, operators), so that no
+//! font of the machine is read; the same input gives the same bytes. A character outside the subset is drawn as an empty box in
+//! the PNG and left to the viewer's fonts in the SVG.
+//!
+//! ```
+//! use springpot_report::{Curve, Panel, Plot};
+//!
+//! let x: Vec<f64> = (0..200).map(|i| 0.05 * f64::from(i)).collect();
+//! let curve = |alpha: f64| Curve {
+//!     label: format!("α = {alpha}"),
+//!     y: x.iter().map(|t| (-alpha * t).exp() * (8.0 * t).sin()).collect(),
+//!     x: x.clone(),
+//! };
+//! let plot = Plot {
+//!     title: Some("Generalized force Q₂ at 25 °C".into()),
+//!     x_label: "t, s".into(),
+//!     y_label: "Q₂ of strut, N·m".into(),
+//!     legend_title: None,
+//!     panels: vec![Panel { title: None, curves: vec![curve(0.1), curve(0.5), curve(0.9)] }],
+//! };
+//! let figure = plot.render()?;
+//! assert!(figure.svg.contains("α = 0.5"));
+//! # Ok::<(), springpot_report::ReportError>(())
+//! ```
+
+mod chart;
+mod draw;
+mod robot;
+
+pub use chart::{Curve, Panel, Plot};
+pub use robot::{ElementMark, JointKind, JointMark, Link, RobotDrawing, WORLD};
+
+/// One figure in both formats.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rendered {
+    /// The figure as an SVG 1.1 document; its size is in pixels of 1/96 inch.
+    pub svg: String,
+    /// The same figure as a PNG file with 2.5 pixels per SVG unit and its physical size recorded (240 dpi).
+    pub png: Vec<u8>,
+}
+
+/// Why a figure could not be drawn.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// A curve's coordinates do not pair up: give as many x as y.
+    #[error("curve `{curve}` has {x} x values and {y} y values; it needs as many of one as of the other")]
+    LengthMismatch {
+        /// The curve's label.
+        curve: String,
+        /// Number of x values.
+        x: usize,
+        /// Number of y values.
+        y: usize,
+    },
+    /// More panels than one page can hold: split the figure.
+    #[error("{panels} panels do not fit into one figure (at most {limit}); draw several figures")]
+    TooManyPanels {
+        /// Panels asked for.
+        panels: usize,
+        /// Panels allowed.
+        limit: usize,
+    },
+    /// More curves than a figure can show: split the figure.
+    #[error("{curves} curves do not fit into one figure (at most {limit}); draw several figures")]
+    TooManyCurves {
+        /// Curves asked for, over all panels.
+        curves: usize,
+        /// Curves allowed.
+        limit: usize,
+    },
+    /// A point of the robot is NaN or infinite.
+    #[error("the position of `{what}` is not finite")]
+    NotFinite {
+        /// Name of the link, joint or element, or `gripper` or `ground`.
+        what: String,
+    },
+    /// The picture is larger than the memory set aside for it.
+    #[error("a picture of {width} by {height} pixels is too large")]
+    Canvas {
+        /// Width, pixels.
+        width: u32,
+        /// Height, pixels.
+        height: u32,
+    },
+    /// The shipped font could not be read.
+    #[error("the shipped font is damaged")]
+    Font(#[from] ttf_parser::FaceParsingError),
+    /// The PNG file could not be written.
+    #[error("the PNG could not be encoded")]
+    Png(#[from] png::EncodingError),
+}

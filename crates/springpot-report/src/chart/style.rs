@@ -1,0 +1,113 @@
+//! Colours and dashes of curves, by label.
+
+use crate::draw::{Color, Stroke};
+
+/// Plasma at 0, 0.1 … 0.9: even in lightness for colour-blind readers and grey prints, and wide in hue, so that neighbours are told
+/// apart where curves cross. Its pale end is left out on white paper.
+const PLASMA: [Color; 10] = [
+    Color(0x0d, 0x08, 0x87),
+    Color(0x41, 0x04, 0x9d),
+    Color(0x6a, 0x00, 0xa8),
+    Color(0x8f, 0x0d, 0xa4),
+    Color(0xb1, 0x2a, 0x90),
+    Color(0xcc, 0x47, 0x78),
+    Color(0xe1, 0x64, 0x62),
+    Color(0xf2, 0x84, 0x4b),
+    Color(0xfc, 0xa6, 0x36),
+    Color(0xfc, 0xce, 0x25),
+];
+/// Where on the table above the last of an ordered set stands.
+const LIGHTEST: f64 = 8.4;
+
+/// Okabe and Ito's colours, told apart by colour-blind readers; black and their yellow, too pale for lines, are left out.
+const OKABE_ITO: [Color; 6] = [
+    Color(0x00, 0x72, 0xb2),
+    Color(0xd5, 0x5e, 0x00),
+    Color(0x00, 0x9e, 0x73),
+    Color(0xcc, 0x79, 0xa7),
+    Color(0xe6, 0x9f, 0x00),
+    Color(0x56, 0xb4, 0xe9),
+];
+
+/// Solid first, then dashes, so that a curve hidden by another still shows through its gaps.
+const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[7.0, 2.5, 1.6, 2.5], &[2.0, 2.2]];
+
+/// One stroke per label. Labels that differ in one number only, rising or falling, form an ordered set: solid lines from dark to
+/// light. Others get distinct colours and dashes.
+pub(super) fn strokes(labels: &[String]) -> Vec<Stroke> {
+    let width = if labels.len() > 8 { 1.4 } else { 1.7 };
+    if is_ordered(labels) {
+        let last = labels.len() - 1;
+        return (0..=last).map(|i| Stroke::new(plasma(i as f64 / last as f64), width)).collect();
+    }
+    let stroke = |i: usize| {
+        // Colours and dashes advance together; after a full turn of colours the dashes shift.
+        let dash = DASHES[(i + i / 12) % DASHES.len()];
+        Stroke::new(OKABE_ITO[i % OKABE_ITO.len()], width).dashed(dash)
+    };
+    (0..labels.len()).map(stroke).collect()
+}
+
+fn plasma(place: f64) -> Color {
+    let at = place * LIGHTEST;
+    let i = (at.floor() as usize).min(PLASMA.len() - 2);
+    let (a, b, t) = (PLASMA[i], PLASMA[i + 1], at - i as f64);
+    let mix = |a: u8, b: u8| (f64::from(a) + t * (f64::from(b) - f64::from(a))).round() as u8;
+    Color(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}
+
+fn is_ordered(labels: &[String]) -> bool {
+    let Some(parts) = labels.iter().map(|label| number(label)).collect::<Option<Vec<_>>>() else { return false };
+    let same_text = parts.windows(2).all(|pair| pair[0].0 == pair[1].0 && pair[0].2 == pair[1].2);
+    let steady = |rises: bool| parts.windows(2).all(|pair| (pair[0].1 < pair[1].1) == rises && pair[0].1 != pair[1].1);
+    parts.len() > 2 && same_text && (steady(true) || steady(false))
+}
+
+/// Splits a label at its last number: text before, value, text after.
+fn number(label: &str) -> Option<(&str, f64, &str)> {
+    let end = label.rfind(|c: char| c.is_ascii_digit())? + 1;
+    let head = &label[..end];
+    let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '-' | '+' | '−');
+    let start = head.char_indices().rev().take_while(|(_, c)| digits(*c)).last().map(|(i, _)| i)?;
+    // "alpha-0.5" and "e1" hold letters and hyphens that are no part of the number: drop them until it reads.
+    head[start..].char_indices().find_map(|(skip, _)| {
+        let at = start + skip;
+        head[at..].replace('−', "-").parse().ok().map(|value| (&label[..at], value, &label[end..]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(list: &[&str]) -> Vec<String> {
+        list.iter().map(|s| (*s).to_owned()).collect()
+    }
+
+    #[test]
+    fn sweeps_are_ordered() {
+        assert!(is_ordered(&labels(&["α = 0.1", "α = 0.5", "α = 1"])));
+        assert!(is_ordered(&labels(&["0 degC", "15 degC", "30 degC"])));
+        assert!(is_ordered(&labels(&["c = 1e-3", "c = 1e-2", "c = 0.1"])));
+        assert!(is_ordered(&labels(&["U = 60 V", "U = 0 V", "U = −60 V"])));
+        assert!(!is_ordered(&labels(&["exact", "expansion-2004(7)", "expansion-2004(30)"])));
+        assert!(!is_ordered(&labels(&["a 1", "b 2", "c 3"])));
+        assert!(!is_ordered(&labels(&["α = 0.1", "α = 0.5"])));
+        assert!(!is_ordered(&labels(&["1", "3", "2"])));
+        assert!(!is_ordered(&labels(&["", "", ""])));
+    }
+
+    #[test]
+    fn strokes_differ() {
+        for count in [2, 6, 24] {
+            let names: Vec<String> = (0..count).map(|i| format!("{}", char::from(b'a' + i))).collect();
+            let strokes = strokes(&names);
+            for (i, a) in strokes.iter().enumerate() {
+                assert!(strokes[..i].iter().all(|b| a != b), "{i} of {count}");
+            }
+        }
+        let sweep: Vec<String> = (0..30).map(|i| format!("T = {i}")).collect();
+        let strokes = strokes(&sweep);
+        assert!(strokes.windows(2).all(|pair| pair[0].color != pair[1].color));
+    }
+}

@@ -1,0 +1,113 @@
+//! A robot as a mechanism sketch: links, joints with their axes, elements, gripper.
+
+mod labels;
+mod sketch;
+mod symbols;
+mod vector;
+mod view;
+
+use crate::{Rendered, ReportError, draw};
+
+/// Name of the link that stands for the ground: its points are drawn with ground hatching.
+pub const WORLD: &str = "world";
+
+/// A robot in one pose, in world coordinates (metres, z upwards).
+///
+/// The picture is an orthographic view from slightly above, turned so that links and elements hide one another least; a robot that
+/// lies in a coordinate plane is seen straight on. The scale bar is true along lines parallel to the paper.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RobotDrawing {
+    /// Stands above the picture.
+    pub title: Option<String>,
+    /// The bodies' centre lines. The first link of a name is drawn thick and named; later links of the same name are thin arms of
+    /// the same body that carry anchors ([`RobotDrawing::bracket`]). Points of a link named [`WORLD`] are marked as fixed.
+    pub links: Vec<Link>,
+    /// The joints with their axes.
+    pub joints: Vec<JointMark>,
+    /// The elements between their two anchors.
+    pub elements: Vec<ElementMark>,
+    /// The gripper's point, labelled H.
+    pub gripper: Option<[f64; 3]>,
+    /// Where the robot stands.
+    pub ground: [f64; 3],
+}
+
+/// The centre line of a body, or a thin arm of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Link {
+    /// The body's name.
+    pub name: String,
+    /// A polyline in world coordinates, metres.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// A joint and its axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointMark {
+    /// The joint's name; a letter with a number, such as `q1`, is written q₁.
+    pub name: String,
+    /// Its origin in world coordinates, metres.
+    pub position: [f64; 3],
+    /// Its axis in world coordinates, of any length; the curved (straight) arrow shows the positive turn (slide). A zero axis draws none.
+    pub axis: [f64; 3],
+    /// What it lets its body do.
+    pub kind: JointKind,
+}
+
+/// Kinds of joints with one degree of freedom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turns about the axis: a circle.
+    Revolute,
+    /// Slides along the axis: a rectangle.
+    Prismatic,
+}
+
+/// An element between two anchors.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ElementMark {
+    /// The element's name.
+    pub name: String,
+    /// Anchor on the first body, world coordinates, metres.
+    pub from: [f64; 3],
+    /// Anchor on the second body.
+    pub to: [f64; 3],
+}
+
+impl RobotDrawing {
+    /// Adds the thin arm that holds an anchor away from its body's centre line: from the nearest point of the link called `link` to
+    /// `anchor`. For [`WORLD`], or a name no link has, the anchor is marked as fixed to the ground. An anchor on the line needs none.
+    pub fn bracket(&mut self, link: &str, anchor: [f64; 3]) {
+        let body = self.links.iter().find(|body| body.name == link && link != WORLD && !body.points.is_empty());
+        let Some(foot) = body.map(|body| vector::nearest(&body.points, anchor)) else {
+            self.links.push(Link { name: WORLD.into(), points: vec![anchor] });
+            return;
+        };
+        if vector::distance(foot, anchor) > 0.0 {
+            self.links.push(Link { name: link.into(), points: vec![foot, anchor] });
+        }
+    }
+
+    /// Draws the robot.
+    ///
+    /// # Errors
+    /// [`ReportError::NotFinite`] when a coordinate is NaN or infinite.
+    pub fn render(&self) -> Result<Rendered, ReportError> {
+        self.check()?;
+        let font = draw::Font::load()?;
+        draw::render(sketch::scene(self, &font), &font)
+    }
+
+    fn check(&self) -> Result<(), ReportError> {
+        let links = self.links.iter().flat_map(|link| link.points.iter().map(|p| (link.name.as_str(), p)));
+        let joints = self.joints.iter().flat_map(|j| [(j.name.as_str(), &j.position), (j.name.as_str(), &j.axis)]);
+        let elements = self.elements.iter().flat_map(|e| [(e.name.as_str(), &e.from), (e.name.as_str(), &e.to)]);
+        let others = self.gripper.iter().map(|p| ("gripper", p)).chain([("ground", &self.ground)]);
+        let mut all = links.chain(joints).chain(elements).chain(others);
+        // Squares of larger numbers would overflow.
+        match all.find(|(_, point)| !point.iter().all(|v| v.abs() < 1e100)) {
+            Some((what, _)) => Err(ReportError::NotFinite { what: what.to_owned() }),
+            None => Ok(()),
+        }
+    }
+}

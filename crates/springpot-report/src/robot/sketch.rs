@@ -1,0 +1,368 @@
+//! The sketch: what is drawn where.
+
+use super::labels::{Frame, Request};
+use super::symbols::{ARM, BODY, ELEMENT, JOINT, Sheet, direction};
+use super::vector::{Vector, along, cross, distance, dot, unit};
+use super::view::View;
+use super::{ElementMark, JointKind, JointMark, RobotDrawing, WORLD};
+use crate::draw::{Align, Color, Font, INK, Point, Scene, Stroke, Text, wrap};
+use std::collections::HashMap;
+
+/// The robot fills this box, pixels.
+const BOX: [f64; 2] = [440.0, 340.0];
+const NAME_SIZE: f64 = 13.0;
+const LINK_SIZE: f64 = 11.5;
+const TITLE_SIZE: f64 = 15.0;
+const TITLE_LINE: f64 = 20.0;
+const BORDER: f64 = 14.0;
+/// Tones of successive bodies.
+const TONES: [Color; 3] = [Color(0x7d, 0x9c, 0xbc), Color(0xb9, 0xcc, 0xdf), Color(0x5c, 0x7d, 0xa0)];
+const LINK_NAME: Color = Color(0x3d, 0x5a, 0x78);
+/// Reach of a joint's axis before and behind the joint, and place and radius of the arrow about it.
+const AXIS_AHEAD: f64 = 34.0;
+const AXIS_BEHIND: f64 = 16.0;
+const SENSE_AT: f64 = 26.0;
+const SENSE: f64 = 9.0;
+/// Length of the arms of the x-y-z sign.
+const TRIAD: f64 = 30.0;
+const AXES: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// Longest scale bar.
+const SCALE_BAR: f64 = 90.0;
+
+/// A view with its scale.
+struct Camera {
+    view: View,
+    /// Pixels per metre.
+    scale: f64,
+}
+
+impl Camera {
+    fn of(robot: &RobotDrawing) -> Self {
+        let view = View::of(robot);
+        let links = robot.links.iter().flat_map(|link| link.points.iter().copied());
+        let elements = robot.elements.iter().flat_map(|element| [element.from, element.to]);
+        let joints = robot.joints.iter().map(|joint| joint.position);
+        let points = links.chain(elements).chain(joints).chain(robot.gripper).chain([robot.ground]);
+        let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+        for point in points {
+            let p = view.project(point);
+            low = [low[0].min(p[0]), low[1].min(p[1])];
+            high = [high[0].max(p[0]), high[1].max(p[1])];
+        }
+        let scale = (BOX[0] / (high[0] - low[0])).min(BOX[1] / (high[1] - low[1]));
+        // A robot of one point has no size to fill the box with.
+        Self { view, scale: if scale.is_finite() { scale } else { BOX[1] } }
+    }
+
+    fn at(&self, point: Vector) -> Point {
+        let [x, y] = self.view.project(point);
+        [x * self.scale, -y * self.scale]
+    }
+
+    fn all(&self, points: &[Vector]) -> Vec<Point> {
+        points.iter().map(|point| self.at(*point)).collect()
+    }
+
+    fn depth(&self, points: &[Vector]) -> f64 {
+        points.iter().map(|point| dot(*point, self.view.into)).sum::<f64>() / points.len().max(1) as f64
+    }
+}
+
+pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
+    let camera = Camera::of(robot);
+    let mut sheet = Sheet::default();
+    bodies(robot, &camera, &mut sheet);
+    ground(robot, &camera, &mut sheet);
+    let tips: Vec<Point> = robot.joints.iter().map(|joint| draw_joint(joint, &camera, &mut sheet)).collect();
+    for element in &robot.elements {
+        sheet.pin(camera.at(element.from));
+        sheet.pin(camera.at(element.to));
+    }
+    if let Some(point) = robot.gripper {
+        sheet.gripper(camera.at(point), gripper_direction(robot, &camera, point));
+    }
+    names(robot, &camera, &tips, &mut sheet, font);
+    triad_and_scale(&camera, &mut sheet, font);
+    page(robot, sheet, font)
+}
+
+fn ground(robot: &RobotDrawing, camera: &Camera, sheet: &mut Sheet) {
+    let heights = robot.links.iter().flat_map(|link| &link.points).map(|point| point[2] - robot.ground[2]);
+    let hangs = heights.sum::<f64>() < 0.0;
+    let down = if hangs { -1.0 } else { 1.0 };
+    sheet.base(camera.at(robot.ground), down);
+    for point in robot.links.iter().filter(|link| link.name == WORLD).flat_map(|link| &link.points) {
+        sheet.fixed(camera.at(*point), down);
+    }
+}
+
+/// Bodies, arms and elements, those behind first.
+fn bodies(robot: &RobotDrawing, camera: &Camera, sheet: &mut Sheet) {
+    enum Piece<'a> {
+        Body(Vec<Point>, Color, f64),
+        Element(&'a ElementMark),
+    }
+    let mut tones: HashMap<&str, Color> = HashMap::new();
+    let mut pieces = Vec::new();
+    for link in robot.links.iter().filter(|link| link.name != WORLD && !link.points.is_empty()) {
+        let tone = TONES[tones.len() % TONES.len()];
+        let width = if tones.contains_key(link.name.as_str()) { ARM } else { BODY };
+        let tone = *tones.entry(&link.name).or_insert(tone);
+        pieces.push((camera.depth(&link.points), Piece::Body(camera.all(&link.points), tone, width)));
+    }
+    for element in &robot.elements {
+        pieces.push((camera.depth(&[element.from, element.to]), Piece::Element(element)));
+    }
+    pieces.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (_, piece) in pieces {
+        match piece {
+            Piece::Body(points, tone, width) => sheet.body(&points, tone, width),
+            Piece::Element(element) => sheet.element(camera.at(element.from), camera.at(element.to)),
+        }
+    }
+}
+
+/// Draws a joint with its axis; answers the place its name may stand beside first.
+fn draw_joint(joint: &JointMark, camera: &Camera, sheet: &mut Sheet) -> Point {
+    let at = camera.at(joint.position);
+    let metre = 1.0 / camera.scale;
+    let Some(axis) = unit(joint.axis) else {
+        match joint.kind {
+            JointKind::Revolute => sheet.revolute(at),
+            JointKind::Prismatic => sheet.prismatic(at, [1.0, 0.0]),
+        }
+        return at;
+    };
+    let [x, y] = camera.view.project(axis);
+    // Lengthened, so that foreshortening does not hide the axis behind its joint.
+    let reach = metre * (0.9 / x.hypot(y)).clamp(1.0, 2.0);
+    let on_axis = |pixels: f64| along(joint.position, pixels * reach, axis);
+    match joint.kind {
+        // Seen along its axis, the joint has its arrow around the circle instead of beyond it.
+        JointKind::Revolute if dot(axis, camera.view.into).abs() >= 0.9 => {
+            sheet.sense(&camera.all(&turn(joint.position, axis, (JOINT + 6.0) * metre, camera.view)));
+            sheet.revolute(at);
+            at
+        }
+        JointKind::Revolute => {
+            let covered = |side: f64| {
+                let center = camera.at(on_axis(side * SENSE_AT));
+                sheet.obstacles.cost(Frame::sized(center, [SENSE; 2]))
+            };
+            let side = if covered(-1.0) < covered(1.0) { -1.0 } else { 1.0 };
+            sheet.axis_line(&[camera.at(on_axis(-side * AXIS_BEHIND)), camera.at(on_axis(side * AXIS_AHEAD))]);
+            let center = on_axis(side * SENSE_AT);
+            sheet.sense(&camera.all(&turn(center, axis, SENSE * metre, camera.view)));
+            sheet.revolute(at);
+            camera.at(center)
+        }
+        JointKind::Prismatic => {
+            let ahead = camera.at(on_axis(AXIS_AHEAD));
+            sheet.arrow(&[camera.at(on_axis(-AXIS_BEHIND)), ahead], INK, 1.2);
+            sheet.prismatic(at, direction(at, ahead).0);
+            at
+        }
+    }
+}
+
+/// Three quarters of a circle about an axis, in the positive sense, ending in front.
+fn turn(center: Vector, axis: Vector, radius: f64, view: View) -> Vec<Vector> {
+    let seen = cross(axis, view.into);
+    let Some(aside) = unit(seen).or_else(|| unit(cross(axis, view.right))) else { return Vec::new() };
+    let front = cross(axis, aside);
+    let point = |i: i32| {
+        let (sin, cos) = (f64::from(i) * 10.0f64).to_radians().sin_cos();
+        along(along(center, radius * cos, aside), radius * sin, front)
+    };
+    (-13..=14).map(point).collect()
+}
+
+/// Along the last piece of the body that ends at the gripper.
+fn gripper_direction(robot: &RobotDrawing, camera: &Camera, gripper: Vector) -> Point {
+    let ends = robot.links.iter().filter(|link| link.name != WORLD).filter_map(|link| match link.points[..] {
+        [.., before, last] => Some((before, last)),
+        _ => None,
+    });
+    let nearer = |a: (Vector, Vector), b: (Vector, Vector)| {
+        if distance(b.1, gripper) < distance(a.1, gripper) { b } else { a }
+    };
+    let Some((before, last)) = ends.reduce(nearer) else { return [1.0, 0.0] };
+    let from = if distance(last, gripper) < distance(before, gripper) { before } else { last };
+    direction(camera.at(from), camera.at(gripper)).0
+}
+
+/// Names, the important ones first.
+fn names(robot: &RobotDrawing, camera: &Camera, tips: &[Point], sheet: &mut Sheet, font: &Font) {
+    let mut requests = Vec::new();
+    for (joint, tip) in robot.joints.iter().zip(tips) {
+        let beside = vec![*tip, camera.at(joint.position)];
+        let text = subscripted(&joint.name);
+        requests.push(Request { text, size: NAME_SIZE, color: INK, beside, clear: 9.0, optional: false });
+    }
+    if let Some(gripper) = robot.gripper {
+        let beside = vec![camera.at(gripper)];
+        requests.push(Request { text: "H".into(), size: NAME_SIZE, color: INK, beside, clear: 10.0, optional: false });
+    }
+    for element in &robot.elements {
+        let beside = middles(&[camera.at(element.from), camera.at(element.to)]);
+        let text = element.name.clone();
+        requests.push(Request { text, size: NAME_SIZE, color: ELEMENT, beside, clear: 9.0, optional: false });
+    }
+    let mut seen = std::collections::HashSet::new();
+    for link in &robot.links {
+        if link.name != WORLD && !link.points.is_empty() && seen.insert(link.name.as_str()) {
+            let beside = middles(&camera.all(longest(&link.points)));
+            let text = link.name.clone();
+            requests.push(Request { text, size: LINK_SIZE, color: LINK_NAME, beside, clear: 7.5, optional: true });
+        }
+    }
+    for request in requests.iter().filter(|request| !request.text.is_empty()) {
+        sheet.obstacles.place(&mut sheet.scene, font, request);
+    }
+}
+
+/// Places to name a line: its middle first.
+fn middles(line: &[Point]) -> Vec<Point> {
+    match line {
+        [a, b] => [0.5, 0.4, 0.6, 0.3, 0.7].map(|t| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]).to_vec(),
+        points => points.to_vec(),
+    }
+}
+
+/// The longest straight piece of a polyline, or its one point.
+fn longest(points: &[Vector]) -> &[Vector] {
+    let longer = |a: &[Vector], b: &[Vector]| distance(b[0], b[1]) > distance(a[0], a[1]);
+    points.windows(2).reduce(|a, b| if longer(a, b) { b } else { a }).unwrap_or(points)
+}
+
+/// "q1" as "q₁"; other names stay.
+fn subscripted(name: &str) -> String {
+    let mut chars = name.chars();
+    let (first, rest) = (chars.next(), chars.as_str().strip_prefix('_').unwrap_or(chars.as_str()));
+    match first {
+        Some(letter) if letter.is_alphabetic() && matches!(rest.len(), 1..=3) => {
+            let subscript = |c: char| c.to_digit(10).and_then(|d| char::from_u32('₀' as u32 + d));
+            rest.chars()
+                .map(subscript)
+                .collect::<Option<String>>()
+                .map_or(name.into(), |rest| format!("{letter}{rest}"))
+        }
+        _ => name.into(),
+    }
+}
+
+/// The sign of the axes and the scale bar, in a free corner or below the robot.
+fn triad_and_scale(camera: &Camera, sheet: &mut Sheet, font: &Font) {
+    let arms = AXES.map(|axis| {
+        let [x, y] = camera.view.project(axis);
+        [TRIAD * x, -TRIAD * y]
+    });
+    let length = nice_length(SCALE_BAR / camera.scale);
+    let bar = length * camera.scale;
+    // The sign with its letters takes a square; the bar stands to its right.
+    let reach = TRIAD + 14.0;
+    let low = |axis: usize| arms.iter().map(|arm| arm[axis]).fold(0.0, f64::min) - 14.0;
+    let high = |axis: usize| arms.iter().map(|arm| arm[axis]).fold(0.0, f64::max) + 14.0;
+    let text = format!("{length} m");
+    let bar_width = bar.max(font.width(&text, LINK_SIZE));
+    let [width, height] = [high(0) - low(0) + 18.0 + bar_width, (high(1) - low(1)).min(2.0 * reach)];
+
+    let Frame([left, top, right, bottom]) = sheet.obstacles.bounds();
+    let half = [0.5 * width, 0.5 * height];
+    let corners = [
+        [right - half[0], bottom - half[1]],
+        [left + half[0], bottom - half[1]],
+        [right - half[0], top + half[1]],
+        [left + half[0], top + half[1]],
+    ];
+    let free = |middle: &&Point| sheet.obstacles.cost(Frame::sized(**middle, [half[0] + 8.0, half[1] + 8.0])) == 0.0;
+    let below = [left + half[0], bottom + 16.0 + half[1]];
+    let middle = corners.iter().find(free).copied().unwrap_or(below);
+    sheet.obstacles.frame(Frame::sized(middle, half));
+
+    let origin = [middle[0] - half[0] - low(0), middle[1] - half[1] - low(1)];
+    let mut end_on = None;
+    for ((arm, axis), name) in arms.iter().zip(AXES).zip(["x", "y", "z"]) {
+        let tip = [origin[0] + arm[0], origin[1] + arm[1]];
+        let long = arm[0].hypot(arm[1]);
+        if long < 4.0 {
+            end_on = Some(dot(axis, camera.view.into) < 0.0);
+            let at = [origin[0] - 10.0, origin[1] + 11.0];
+            sheet.scene.text(Text::new(name, at, LINK_SIZE, Align::Middle));
+            continue;
+        }
+        sheet.arrow(&[origin, tip], INK, 1.3);
+        let out = [tip[0] + 8.0 * arm[0] / long, tip[1] + 8.0 * arm[1] / long];
+        sheet.scene.text(Text::new(name, [out[0], out[1] + Font::middle(LINK_SIZE)], LINK_SIZE, Align::Middle));
+    }
+    if let Some(out) = end_on {
+        sheet.end_on(origin, out);
+    }
+    let start = origin[0] + high(0) + 18.0;
+    let y = origin[1];
+    let scene = &mut sheet.scene;
+    scene.line(&[[start, y], [start + bar, y]], Stroke::new(INK, 1.6).butt());
+    let ends = [start, start + bar].map(|x| vec![[x, y - 4.0], [x, y + 4.0]]);
+    scene.lines(ends.to_vec(), Stroke::new(INK, 1.2).butt());
+    scene.text(Text::new(text, [start + 0.5 * bar, y - 7.0], LINK_SIZE, Align::Middle));
+}
+
+/// The largest of 1, 2, 5 times a power of ten not above `most`.
+fn nice_length(most: f64) -> f64 {
+    let exponent = most.log10().floor() as i32;
+    let candidates = [5, 2, 1].map(|digit| format!("{digit}e{exponent}").parse::<f64>().unwrap_or(most));
+    candidates.into_iter().find(|length| *length <= most).unwrap_or(candidates[2])
+}
+
+/// Moves everything onto a page with the title above.
+fn page(robot: &RobotDrawing, sheet: Sheet, font: &Font) -> Scene {
+    let Frame([left, top, right, bottom]) = sheet.obstacles.bounds();
+    let title = robot.title.as_deref().unwrap_or_default();
+    let width = (right - left).max(300.0);
+    let lines = wrap(font, title, TITLE_SIZE, width, 3);
+    let title_height = if title.is_empty() { 0.0 } else { lines.len() as f64 * TITLE_LINE + 10.0 };
+    let shift = [BORDER + 0.5 * (width - (right - left)) - left, BORDER + title_height - top];
+    let mut scene = sheet.scene;
+    scene.shift(shift);
+    scene.title = title.to_owned();
+    (scene.width, scene.height) = (width + 2.0 * BORDER, bottom - top + title_height + 2.0 * BORDER);
+    for (row, line) in lines.iter().enumerate() {
+        let at = [BORDER + 0.5 * width, BORDER + row as f64 * TITLE_LINE + TITLE_SIZE];
+        scene.text(Text::new(line, at, TITLE_SIZE, Align::Middle));
+    }
+    scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::vector::difference;
+    use super::*;
+
+    #[test]
+    fn numbers_in_names_become_subscripts() {
+        let cases = [("q1", "q₁"), ("q12", "q₁₂"), ("q_3", "q₃"), ("θ2", "θ₂"), ("elbow1", "elbow1"), ("q", "q")];
+        for (name, shown) in cases {
+            assert_eq!(subscripted(name), shown);
+        }
+        for name in ["", "qx", "1", "q1234", "joint_2", "q漢"] {
+            assert_eq!(subscripted(name), name);
+        }
+    }
+
+    #[test]
+    fn scale_bars_are_round() {
+        let lengths = [0.09, 0.2, 0.3, 1.0, 7.0, 4e-9, 1.9e5].map(nice_length);
+        assert_eq!(lengths, [0.05, 0.2, 0.2, 1.0, 5.0, 2e-9, 1e5]);
+    }
+
+    #[test]
+    fn the_arrow_turns_in_the_positive_sense() {
+        let view = View { right: [1.0, 0.0, 0.0], up: [0.0, 0.0, 1.0], into: [0.0, 1.0, 0.0] };
+        for axis in [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.6, 0.0, -0.8]] {
+            let points = turn([0.0; 3], axis, 1.0, view);
+            for pair in points.windows(2) {
+                assert!(dot(cross(pair[0], difference(pair[1], pair[0])), axis) > 0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! What every figure promises, whatever the data.
+
+use proptest::prelude::*;
+use springpot_report::{
+    Curve, ElementMark, JointKind, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing, WORLD,
+};
+
+fn curve(label: &str, x: &[f64], y: &[f64]) -> Curve {
+    Curve { label: label.into(), x: x.into(), y: y.into() }
+}
+
+fn plot(curves: Vec<Curve>) -> Plot {
+    Plot {
+        title: Some("Generalized force Q₂ at 25 °C".into()),
+        x_label: "t, s".into(),
+        y_label: "Q₂ of strut, N·m".into(),
+        legend_title: Some("order".into()),
+        panels: vec![Panel { title: Some("exact".into()), curves }],
+    }
+}
+
+fn waves(count: usize, points: usize) -> Vec<Curve> {
+    let x: Vec<f64> = (0..points).map(|i| 10.0 * i as f64 / points as f64).collect();
+    let wave = |i: usize| x.iter().map(|t| (8.0 * t).sin() * (1.0 + i as f64)).collect();
+    (0..count).map(|i| Curve { label: format!("α = 0.{}", i + 1), x: x.clone(), y: wave(i) }).collect()
+}
+
+/// Width and height that the file's header names.
+fn png_size(png: &[u8]) -> (u32, u32) {
+    assert_eq!(png[..8], [0x89, b'P', b'N', b'G', 0x0d, 0x0a, 0x1a, 0x0a]);
+    assert_eq!(&png[12..16], b"IHDR");
+    let number = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+    (number(16), number(20))
+}
+
+/// A number attribute of the `<svg>` tag.
+fn svg_size(svg: &str, name: &str) -> f64 {
+    let start = svg.find(&format!(" {name}=\"")).unwrap() + name.len() + 3;
+    svg[start..].split('"').next().unwrap().parse().unwrap()
+}
+
+/// Coordinates of all points of the thickest lines: the curves.
+fn curve_points(svg: &str) -> Vec<[f64; 2]> {
+    let curves = svg.lines().filter(|line| line.starts_with("<path") && line.contains("stroke-width=\"1.7\""));
+    let data = curves.map(|line| line.split('"').nth(1).unwrap().replace(['M', 'L'], " "));
+    let numbers: Vec<f64> =
+        data.flat_map(|d| d.split_whitespace().map(|n| n.parse().unwrap()).collect::<Vec<_>>()).collect();
+    numbers.chunks(2).map(|p| [p[0], p[1]]).collect()
+}
+
+/// Both formats are there, agree in size, and the SVG is well formed as far as tags go.
+fn check(figure: &Rendered) {
+    let (width, height) = png_size(&figure.png);
+    assert_eq!(f64::from(width), 2.5 * svg_size(&figure.svg, "width"));
+    assert_eq!(f64::from(height), 2.5 * svg_size(&figure.svg, "height"));
+    assert!(figure.svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && figure.svg.ends_with("</svg>\n"));
+    assert!(!figure.svg.contains("NaN") && !figure.svg.contains("inf"));
+    for line in figure.svg.lines().filter(|line| !line.is_empty()) {
+        assert_eq!(line.matches('<').count(), line.matches('>').count(), "{line}");
+    }
+}
+
+#[test]
+fn drawing_twice_gives_the_same_bytes() {
+    let plot = plot(waves(6, 1000));
+    let first = plot.render().unwrap();
+    check(&first);
+    assert_eq!(first, plot.render().unwrap());
+    assert_eq!(first, std::thread::spawn(move || plot.render().unwrap()).join().unwrap());
+}
+
+#[test]
+fn the_picture_is_not_blank() {
+    let figure = plot(waves(2, 100)).render().unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&figure.png)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!(info.color_type, png::ColorType::Rgb);
+    let near = |target: [u8; 3]| pixels.chunks(3).filter(|p| (0..3).all(|i| p[i].abs_diff(target[i]) < 6)).count();
+    // Paper, ink, and the first two colours of curves.
+    for (color, least) in
+        [([255; 3], 500_000), ([0x22; 3], 3000), ([0x00, 0x72, 0xb2], 3000), ([0xd5, 0x5e, 0x00], 3000)]
+    {
+        assert!(near(color) > least, "{color:?}: {}", near(color));
+    }
+    let dims = reader.info().pixel_dims.unwrap();
+    assert_eq!((dims.xppu, dims.yppu), (9449, 9449));
+}
+
+#[test]
+fn all_texts_are_there_in_order() {
+    let svg = plot(waves(6, 50)).render().unwrap().svg;
+    for text in ["Generalized force Q₂ at 25 °C", "t, s", "Q₂ of strut, N·m", "order", "exact"] {
+        assert!(svg.contains(&format!(">{text}</text>")), "{text}");
+    }
+    let places: Vec<usize> = (1..=6).map(|i| svg.find(&format!(">α = 0.{i}</text>")).unwrap()).collect();
+    assert!(places.is_sorted());
+    assert!(svg.contains("font-family=\"'DejaVu Sans', Verdana, Arial, sans-serif\""));
+    assert!(svg.contains(">−") && !svg.contains(">-"), "minus signs are no hyphens");
+}
+
+#[test]
+fn panels_share_one_legend() {
+    let mut plot = plot(waves(3, 50));
+    plot.panels = vec![plot.panels[0].clone(); 5];
+    plot.panels[4].curves.push(curve("extra", &[0.0, 1.0], &[0.0, 1.0]));
+    let svg = plot.render().unwrap().svg;
+    assert_eq!(svg.matches(">α = 0.2</text>").count(), 1);
+    assert_eq!(svg.matches(">extra</text>").count(), 1);
+    assert_eq!(svg.matches(">exact</text>").count(), 5);
+}
+
+#[test]
+fn xml_specials_are_escaped() {
+    let mut plot = plot(vec![curve("a<b & \"c\"", &[0.0, 1.0], &[0.0, 1.0])]);
+    plot.title = Some("F > 0 & x < 1 \u{0} \u{8}".into());
+    let figure = plot.render().unwrap();
+    check(&figure);
+    assert!(figure.svg.contains(">a&lt;b &amp; &quot;c&quot;</text>"));
+    assert!(figure.svg.contains(">F &gt; 0 &amp; x &lt; 1</text>"));
+    assert!(!figure.svg.contains(['\u{0}', '\u{8}']));
+}
+
+#[test]
+fn degenerate_data_still_make_a_figure() {
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    let cases: Vec<(&str, Vec<Curve>)> = vec![
+        ("no curve", vec![]),
+        ("no point", vec![curve("a", &[], &[])]),
+        ("one point", vec![curve("a", &[3.0], &[4.0])]),
+        ("all NaN", vec![curve("a", &[0.0, 1.0], &[nan, nan])]),
+        ("infinite", vec![curve("a", &[0.0, inf, 1.0, 2.0], &[1.0, 2.0, -inf, nan])]),
+        ("constant", vec![curve("a", &[0.0, 1.0], &[7.0, 7.0])]),
+        ("zero", vec![curve("a", &[0.0, 1.0], &[0.0, 0.0])]),
+        ("same x", vec![curve("a", &[2.0, 2.0], &[0.0, 1.0])]),
+        ("tiny", vec![curve("a", &[0.0, 1e-9], &[-1e-9, 2e-9])]),
+        ("subnormal", vec![curve("a", &[0.0, 5e-324], &[-5e-324, 1e-320])]),
+        ("huge", vec![curve("a", &[0.0, 1e9], &[-1e9, 3e9])]),
+        ("extreme", vec![curve("a", &[-1e300, 1e300], &[-1e300, 1e300])]),
+        ("beyond", vec![curve("a", &[-f64::MAX, f64::MAX], &[-f64::MAX, f64::MAX])]),
+        ("offset", vec![curve("a", &[1e9, 1e9 + 1.0], &[1.0, 1.0 + 1e-9])]),
+        ("rounding", vec![curve("a", &[0.0, 1.0], &[1.0, 1.0 + f64::EPSILON])]),
+        ("mixed", vec![curve("a", &[0.0, 1.0], &[1e-9, 2e-9]), curve("b", &[0.0, 1.0], &[1e9, -1e9])]),
+        ("nameless", vec![curve("", &[0.0, 1.0], &[0.0, 1.0])]),
+        ("foreign", vec![curve("漢字 🤖", &[0.0, 1.0], &[0.0, 1.0])]),
+        ("long label", vec![curve(&"m".repeat(5000), &[0.0, 1.0], &[0.0, 1.0])]),
+    ];
+    for (name, curves) in cases {
+        let empty = curves.iter().all(|c| !c.x.iter().zip(&c.y).any(|(x, y)| x.abs() <= 1e300 && y.abs() <= 1e300));
+        let figure = plot(curves).render().unwrap_or_else(|error| panic!("{name}: {error}"));
+        check(&figure);
+        assert_eq!(figure.svg.contains("no data"), empty, "{name}");
+    }
+    check(&Plot::default().render().unwrap());
+    let mut long = plot(waves(1, 10));
+    (long.title, long.y_label) = (Some("word ".repeat(2000)), "y".repeat(3000));
+    check(&long.render().unwrap());
+    check(&plot(waves(400, 5)).render().unwrap());
+}
+
+#[test]
+fn gaps_break_lines() {
+    let y: Vec<f64> = (0..100).map(|i| if i == 50 { f64::NAN } else { f64::from(i) }).collect();
+    let x: Vec<f64> = (0..100).map(f64::from).collect();
+    let svg = plot(vec![curve("a", &x, &y)]).render().unwrap().svg;
+    let line = svg.lines().find(|line| line.starts_with("<path") && line.contains("stroke-width=\"1.7\"")).unwrap();
+    assert_eq!(line.matches('M').count(), 2);
+    assert_eq!(line.matches('L').count(), 97);
+}
+
+#[test]
+fn long_curves_are_thinned_without_losing_extremes() {
+    let count = 100_000u32;
+    let x: Vec<f64> = (0..count).map(f64::from).collect();
+    let mut y: Vec<f64> = x.iter().map(|t| (0.7 * t).sin()).collect();
+    (y[12_345], y[77_777]) = (3.0, -2.5);
+    let figure = plot(vec![curve("a", &x, &y)]).render().unwrap();
+    let points = curve_points(&figure.svg);
+    assert!(points.len() < 6000, "{}", points.len());
+    // y runs from −2.5 to 3 over 290 pixels less 5 % on either side of the range.
+    let (low, high) = points.iter().fold((f64::MAX, f64::MIN), |(lo, hi), p| (lo.min(p[1]), hi.max(p[1])));
+    assert!((high - low - 290.0 / 1.1).abs() < 0.02, "{}", high - low);
+    let at = |value: f64| points.iter().filter(|p| (p[1] - value).abs() < 0.005).count();
+    assert_eq!((at(low), at(high)), (1, 1));
+
+    for curves in [1, 6, 40] {
+        let curves = (0..curves).map(|i| curve(&format!("noise {i}"), &x, &y)).collect();
+        assert!(plot(curves).render().unwrap().svg.len() < 500_000);
+    }
+    // A scribble that runs to and fro.
+    let wild: Vec<f64> = (0..count).map(|i| f64::from(i * 7919 % 9973)).collect();
+    assert!(plot(vec![curve("a", &wild, &y)]).render().unwrap().svg.len() < 500_000);
+}
+
+#[test]
+fn refusals_name_the_cause() {
+    let error = plot(vec![curve("force", &[0.0, 1.0], &[0.0])]).render().unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "curve `force` has 2 x values and 1 y values; it needs as many of one as of the other"
+    );
+    let mut many = plot(vec![]);
+    many.panels = vec![Panel::default(); 65];
+    assert!(matches!(many.render(), Err(ReportError::TooManyPanels { panels: 65, limit: 64 })));
+    let error = plot(waves(2001, 2)).render().unwrap_err();
+    assert!(matches!(error, ReportError::TooManyCurves { curves: 2001, limit: 2000 }));
+    let robot = RobotDrawing { gripper: Some([0.0, f64::NAN, 0.0]), ..arm() };
+    assert_eq!(robot.render().unwrap_err().to_string(), "the position of `gripper` is not finite");
+    many.panels.truncate(64);
+    check(&many.render().unwrap());
+}
+
+fn arm() -> RobotDrawing {
+    let joint = |name: &str, position, axis, kind| JointMark { name: name.into(), position, axis, kind };
+    let mut robot = RobotDrawing {
+        title: Some("Arm & strut".into()),
+        links: vec![
+            Link { name: "column".into(), points: vec![[0.0; 3], [0.0, 0.0, 0.6]] },
+            Link { name: "arm".into(), points: vec![[0.0, 0.0, 0.6], [0.5, 0.0, 0.6], [0.9, 0.0, 0.5]] },
+        ],
+        joints: vec![
+            joint("q1", [0.0; 3], [0.0, 0.0, 1.0], JointKind::Revolute),
+            joint("slide", [0.0, 0.0, 0.6], [0.0, 2.0, 0.0], JointKind::Prismatic),
+        ],
+        elements: vec![ElementMark { name: "strut".into(), from: [0.14, -0.1, 0.08], to: [0.44, 0.1, 0.68] }],
+        gripper: Some([0.9, 0.0, 0.5]),
+        ground: [0.0; 3],
+    };
+    robot.bracket("column", [0.14, -0.1, 0.08]);
+    robot.bracket("arm", [0.44, 0.1, 0.68]);
+    robot
+}
+
+#[test]
+fn brackets_start_on_their_body() {
+    let mut robot = arm();
+    assert_eq!(robot.links[2], Link { name: "column".into(), points: vec![[0.0, 0.0, 0.08], [0.14, -0.1, 0.08]] });
+    assert_eq!(robot.links[3].points[0], [0.44, 0.0, 0.6]);
+    let count = robot.links.len();
+    robot.bracket("arm", [0.5, 0.0, 0.6]);
+    assert_eq!(robot.links.len(), count);
+    robot.bracket("nobody", [1.0, 0.0, 0.0]);
+    assert_eq!(robot.links[count], Link { name: WORLD.into(), points: vec![[1.0, 0.0, 0.0]] });
+}
+
+#[test]
+fn robots_show_names_and_scale() {
+    let figure = arm().render().unwrap();
+    check(&figure);
+    for text in ["Arm &amp; strut", "q₁", "slide", "strut", "column", "arm", "H", "x", "y", "z"] {
+        assert!(figure.svg.contains(&format!(">{text}</text>")), "{text}");
+    }
+    assert!(figure.svg.contains(" m</text>"));
+    assert_eq!(figure, arm().render().unwrap());
+}
+
+#[test]
+fn degenerate_robots_still_make_a_figure() {
+    check(&RobotDrawing::default().render().unwrap());
+    let mut robot = arm();
+    robot.joints[0].axis = [0.0; 3];
+    robot.links.push(Link::default());
+    robot.links.push(Link { name: "dot".into(), points: vec![[0.1; 3]] });
+    robot.elements.push(ElementMark { name: "<none>".into(), from: [0.2; 3], to: [0.2; 3] });
+    check(&robot.render().unwrap());
+    for scale in [1e-9, 1e9, 1e90] {
+        let mut robot = arm();
+        robot.links.iter_mut().flat_map(|link| &mut link.points).flatten().for_each(|v| *v *= scale);
+        robot.joints.iter_mut().for_each(|joint| joint.position = joint.position.map(|v| v * scale));
+        robot.elements.clear();
+        robot.gripper = None;
+        check(&robot.render().unwrap());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(2), ..ProptestConfig::default() })]
+
+    /// Any numbers and any text give a figure.
+    #[test]
+    fn any_plot_is_drawn(
+        points in proptest::collection::vec((any::<f64>(), any::<f64>()), 0..40),
+        label in any::<String>(), title in any::<Option<String>>(), panels in 0usize..4,
+    ) {
+        let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+        let panel = Panel { title: title.clone(), curves: vec![Curve { label: label.clone(), x, y }] };
+        let plot = Plot { title, x_label: label.clone(), y_label: label, legend_title: None, panels: vec![panel; panels] };
+        check(&plot.render().unwrap());
+    }
+
+    /// Every name that must be shown is shown.
+    #[test]
+    fn any_robot_is_drawn(points in proptest::collection::vec(proptest::array::uniform3(-2.0..2.0f64), 2..9)) {
+        let joint = |(i, position): (usize, &[f64; 3])| JointMark {
+            name: format!("q{}", i + 1), position: *position, axis: [position[1], 1.0, position[0]],
+            kind: if i % 3 == 2 { JointKind::Prismatic } else { JointKind::Revolute },
+        };
+        let robot = RobotDrawing {
+            title: None,
+            links: points.windows(2).map(|pair| Link { name: "body".into(), points: pair.to_vec() }).collect(),
+            joints: points.iter().enumerate().map(joint).collect(),
+            elements: vec![ElementMark { name: "strut".into(), from: points[0], to: points[points.len() - 1] }],
+            gripper: Some(points[1]),
+            ground: points[0],
+        };
+        let figure = robot.render().unwrap();
+        check(&figure);
+        prop_assert!(figure.svg.contains(">strut</text>") && figure.svg.contains(">q₂</text>"));
+    }
+}
