@@ -9,7 +9,9 @@
 use super::gamma::reciprocal_gamma;
 use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
-use super::step::{Form, MAX_NODES, Nodes, RADAU_NODES, RatePolynomial, TABLEAU, exponential_moments, local_factors};
+use super::step::{
+    Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_NODES, RatePolynomial, TABLEAU, exponential_moments, local_factors,
+};
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 
@@ -60,7 +62,7 @@ pub struct Memory {
     jump: f64,
     /// 1/Γ(1−alpha).
     singular_factor: f64,
-    local: [f64; 4],
+    local: [f64; 5],
     modes: Option<Modes>,
 }
 
@@ -194,6 +196,28 @@ impl Memory {
         }
     }
 
+    /// As [`Self::derivative`] for a step of rates at the Radau nodes, with the exact x' at θ as one point more: between the
+    /// nodes this is as accurate as the end of the step.
+    pub fn derivative_between(
+        &self,
+        start: &StepStart,
+        step: &RatePolynomial,
+        theta: f64,
+        stroke: f64,
+        rate: f64,
+    ) -> f64 {
+        let value = self.derivative(start, step, theta, stroke, rate);
+        let at = |coefficients: &[f64; 5]| coefficients.iter().rev().fold(0.0, |sum, c| sum * theta + c);
+        let node_polynomial = at(&NODE_POLYNOMIAL);
+        // Next to a node the point says nothing that the cubic does not know.
+        if self.modes.is_none() || node_polynomial.abs() < 1e-6 {
+            return value;
+        }
+        let miss = (rate - step.rate(theta)) / node_polynomial;
+        let moments: [f64; 5] = std::array::from_fn(|p| NODE_POLYNOMIAL[p] * self.local[p]);
+        value + miss * (theta * step.h).powf(1.0 - self.alpha) * at(&moments)
+    }
+
     /// |D^alpha x| at the end of the step by the step's polynomial less the same by the Hermite form: the embedded error.
     ///
     /// `resolution` is the rounding of the strokes; differences that it explains count as 0.
@@ -216,11 +240,12 @@ impl Memory {
         }
     }
 
-    /// Energy at t = 0, before any step: that of the limits; a memory without past holds nothing.
-    pub fn initial_energy(&self, stroke: f64, rate: f64) -> Energy {
+    /// Energy that a unit springpot stores after the last committed step; `stroke` and `rate` are x and x' there.
+    pub fn stored(&self, stroke: f64, rate: f64) -> f64 {
         match &self.modes {
-            Some(_) => Energy::default(),
-            None => self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate),
+            // Nothing has been stored before the first step.
+            Some(modes) if modes.last.is_none() => 0.0,
+            _ => self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate).stored,
         }
     }
 

@@ -96,6 +96,11 @@ impl RatePolynomial {
         Self { h, u: [v0, 6.0 * slope - 4.0 * v0 - 2.0 * v1, 3.0 * (v0 + v1) - 6.0 * slope, 0.0] }
     }
 
+    /// x' at θ.
+    pub fn rate(&self, theta: f64) -> f64 {
+        self.u.iter().rev().fold(0.0, |sum, u| sum * theta + u)
+    }
+
     /// ∫ e^{−λ(τ − s)} x'(s) ds over 0 ≤ s ≤ τ = θh, in closed form.
     pub fn convolve(&self, lambda: f64, theta: f64) -> f64 {
         let tau = theta * self.h;
@@ -116,10 +121,30 @@ pub fn quadrature(nodes: Nodes, theta: f64) -> [f64; MAX_NODES + 1] {
     }
 }
 
-/// p!/Γ(p+2−alpha), p = 0…3: the exact kernel against θ^p.
-pub fn local_factors(alpha: f64) -> [f64; 4] {
-    let mut factors = [1.0 / gamma(2.0 - alpha), 0.0, 0.0, 0.0];
-    for p in 1..4 {
+/// Coefficients of θ^p, p = 0…3, of the Lagrange polynomial of point `k` of (0, c_1, c_2, 1).
+pub fn lagrange_row(k: usize) -> [f64; 4] {
+    std::array::from_fn(|p| TABLEAU.rates[p][k])
+}
+
+/// Embedded error estimate of the Radau quadrature in units of h, from the values at 0 and at the nodes: γ_0 times the distance
+/// of the value at 0 from the parabola through the nodes (Hairer & Wanner, IV.8). Order 3.
+pub fn quadrature_defect(values: [f64; MAX_NODES + 1]) -> f64 {
+    /// 1/real eigenvalue of A⁻¹ of Radau IIA(5).
+    const GAMMA_0: f64 = 0.274_888_829_595_676_8;
+    let cubic: f64 = (0..4).map(|k| TABLEAU.rates[3][k] * values[k]).sum();
+    (GAMMA_0 * RADAU_NODES[0] * RADAU_NODES[1] * cubic).abs()
+}
+
+/// Coefficients of θ^p, p = 0…4, of θ(θ − c_1)(θ − c_2)(θ − 1), which vanishes where the cubic of the rates is exact.
+pub(super) const NODE_POLYNOMIAL: [f64; 5] = {
+    let [c1, c2, _] = RADAU_NODES;
+    [0.0, -c1 * c2, c1 * c2 + c1 + c2, -(1.0 + c1 + c2), 1.0]
+};
+
+/// p!/Γ(p+2−alpha), p = 0…4: the exact kernel against θ^p.
+pub fn local_factors(alpha: f64) -> [f64; 5] {
+    let mut factors = [1.0 / gamma(2.0 - alpha), 0.0, 0.0, 0.0, 0.0];
+    for p in 1..5 {
         factors[p] = factors[p - 1] * p as f64 / (p as f64 + 1.0 - alpha);
     }
     factors

@@ -79,10 +79,11 @@ pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Resul
         return Ok(());
     }
     let names: Vec<_> = parameters.iter().map(|(name, _)| *name).collect();
-    Err(RuleError {
-        rule: format!("at least one of {} must be positive", names.join(", ")),
-        parameter: parameters[0].0,
-    })
+    let rule = match names[..] {
+        [only] => format!("{only} > 0"),
+        _ => format!("one of {} to be positive", names.join(", ")),
+    };
+    Err(RuleError { rule, parameter: names[0] })
 }
 
 /// What a catalog row builds.

@@ -1,7 +1,7 @@
 //! The leaves of every law: spring, dashpot, springpot, and a force that an input commands.
 
 use super::{Derivative, InputValue, Law, Observation, Point, Power, Powers, Response, RuleError, Start, State, Step};
-use crate::fractional::{Form, KernelError, Memory, RatePolynomial};
+use crate::fractional::{Form, KernelError, Memory, Nodes, RatePolynomial};
 
 /// F = k·x. Stores ½k·x².
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,9 +106,12 @@ impl Law for Spring {
         self.observe_start(at, state)
     }
 
-    fn observe_start(&self, at: &Point, _: &State) -> Observation {
-        let stored = 0.5 * self.stiffness * at.stroke * at.stroke;
-        Observation { derivative: at.stroke, force: self.force(at, at.stroke), stored: Some(stored) }
+    fn observe_start(&self, at: &Point, state: &State) -> Observation {
+        Observation { derivative: at.stroke, force: self.force(at, at.stroke), stored: self.stored(at, state) }
+    }
+
+    fn stored(&self, at: &Point, _: &State) -> Option<f64> {
+        Some(0.5 * self.stiffness * at.stroke * at.stroke)
     }
 
     fn order(&self) -> f64 {
@@ -154,6 +157,10 @@ impl Law for Dashpot {
 
     fn observe_start(&self, at: &Point, _: &State) -> Observation {
         Observation { derivative: at.rate, force: self.force(at, at.rate), stored: Some(0.0) }
+    }
+
+    fn stored(&self, _: &Point, _: &State) -> Option<f64> {
+        Some(0.0)
     }
 
     fn order(&self) -> f64 {
@@ -228,14 +235,15 @@ impl Law for Springpot {
     fn powers(&self, step: &Step, state: &State) -> Powers {
         let memory = Self::memory(state);
         let mut powers = Powers::default();
-        if memory.is_singular() {
-            return powers;
-        }
         let polynomial = self.polynomial(step);
         for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
             let at = step.point(k);
+            if memory.is_singular() {
+                // The stored energy is infinite, and what a varying coefficient makes of it is unknown.
+                power.input = if self.coefficient.at(at.inputs).rate == 0.0 { 0.0 } else { f64::NAN };
+                continue;
+            }
             let energy = match k {
-                0 if step.t == 0.0 => memory.initial_energy(at.stroke, at.rate),
                 0 => memory.energy(&polynomial, 0.0, at.stroke, at.rate),
                 _ => memory.energy(&polynomial, step.nodes.positions()[k - 1], at.stroke, at.rate),
             };
@@ -248,7 +256,12 @@ impl Law for Springpot {
     fn observe(&self, step: &Step, theta: f64, at: &Point, state: &State) -> Observation {
         let memory = Self::memory(state);
         let polynomial = self.polynomial(step);
-        let derivative = memory.derivative(&step.start(), &polynomial, theta, at.stroke, at.rate);
+        let start = step.start();
+        let derivative = if step.form == Form::Rates && step.nodes == Nodes::Radau && theta < 1.0 {
+            memory.derivative_between(&start, &polynomial, theta, at.stroke, at.rate)
+        } else {
+            memory.derivative(&start, &polynomial, theta, at.stroke, at.rate)
+        };
         let stored = (!memory.is_singular()).then(|| {
             self.coefficient.at(at.inputs).value * memory.energy(&polynomial, theta, at.stroke, at.rate).stored
         });
@@ -265,12 +278,21 @@ impl Law for Springpot {
             0.0 if self.derivative == Derivative::RiemannLiouville => at.stroke,
             _ => 0.0,
         };
-        let stored = self.coefficient.at(at.inputs).value * memory.initial_energy(at.stroke, at.rate).stored;
-        Observation { derivative, force: self.force(at, derivative), stored: Some(stored) }
+        Observation { derivative, force: self.force(at, derivative), stored: self.stored(at, state) }
+    }
+
+    fn stored(&self, at: &Point, state: &State) -> Option<f64> {
+        let memory = Self::memory(state);
+        let c = self.coefficient.at(at.inputs).value;
+        (!memory.is_singular()).then(|| c * memory.stored(at.stroke, at.rate))
     }
 
     fn order(&self) -> f64 {
         self.alpha
+    }
+
+    fn singular(&self, t: f64, state: &State) -> f64 {
+        Self::memory(state).singular_part(t)
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
@@ -323,6 +345,10 @@ impl Law for Drive {
 
     fn observe_start(&self, at: &Point, _: &State) -> Observation {
         Observation { derivative: 0.0, force: self.force_at(at), stored: Some(0.0) }
+    }
+
+    fn stored(&self, _: &Point, _: &State) -> Option<f64> {
+        Some(0.0)
     }
 
     fn order(&self) -> f64 {

@@ -109,6 +109,13 @@ pub struct State {
     pub parts: Vec<State>,
 }
 
+impl State {
+    /// Number of exponentials in all memories.
+    pub fn modes(&self) -> usize {
+        self.memory.as_ref().map_or(0, Memory::modes) + self.parts.iter().map(Self::modes).sum::<usize>()
+    }
+}
+
 /// Forces at the nodes of a step and their tangents.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Response {
@@ -172,7 +179,15 @@ pub trait Law: Send + Sync + std::fmt::Debug {
     /// The order alpha of the derivative that the law takes; 0 and 1 are x and x'.
     fn order(&self) -> f64;
 
-    /// F at one point when D^alpha x is known by other means.
+    /// Stored energy after the last committed step, under the stroke, rate and inputs of `at`; `None` where unknown.
+    fn stored(&self, at: &Point, state: &State) -> Option<f64>;
+
+    /// The share x(0) t^−alpha/Γ(1−alpha) of a singular start in D^alpha x; 0 without one.
+    fn singular(&self, _t: f64, _state: &State) -> f64 {
+        0.0
+    }
+
+    /// F at one point when D^alpha x is known by other means; affine in `derivative`.
     fn force(&self, at: &Point, derivative: f64) -> f64;
 
     /// Rules over the inputs, to hold at every time.

@@ -108,6 +108,14 @@ impl Law for Parallel {
         self.reported.map_or(0.0, |part| self.parts[part].order())
     }
 
+    fn stored(&self, at: &Point, state: &State) -> Option<f64> {
+        self.parts.iter().zip(&state.parts).map(|(part, state)| part.stored(at, state)).sum()
+    }
+
+    fn singular(&self, t: f64, state: &State) -> f64 {
+        self.reported.map_or(0.0, |part| self.parts[part].singular(t, &state.parts[part]))
+    }
+
     fn force(&self, at: &Point, derivative: f64) -> f64 {
         self.parts.iter().map(|part| part.force(at, derivative)).sum()
     }
