@@ -7,11 +7,14 @@
 //! Everything inside the library is in SI units, radians and right-handed frames.
 
 pub mod dynamics;
+pub mod element;
 pub mod fractional;
 pub mod law;
 pub mod model;
+pub mod motion;
 #[cfg(feature = "scenario")]
 pub mod scenario;
 pub mod signal;
+pub mod simulate;
 pub mod spatial;
 pub mod table;

@@ -1,0 +1,81 @@
+//! Motions given in advance: q, v, a as functions of time.
+
+pub mod gripper_path;
+mod hermite;
+pub mod kinks;
+mod pseudo_inverse;
+mod task;
+
+pub use gripper_path::{GripperPath, PathError};
+
+use crate::model::Model;
+use crate::signal::{Jet, Signal};
+
+/// Where the gripper should be, for motions that say so.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wanted {
+    /// World position, m.
+    pub position: [f64; 3],
+}
+
+/// A motion given in advance.
+#[derive(Debug, Clone)]
+pub enum Motion {
+    /// Each coordinate is a signal, in joint order; v and a are its exact derivatives.
+    Prescribed(Vec<Signal>),
+    /// The gripper follows a path; the coordinates come from inverse kinematics.
+    GripperPath(Box<GripperPath>),
+}
+
+impl Motion {
+    /// q, v and a (nv values each) at t, and where the gripper should be.
+    ///
+    /// # Errors
+    /// [`PathError`] where the gripper cannot follow its path.
+    pub fn at(
+        &self,
+        model: &Model,
+        t: f64,
+        q: &mut [f64],
+        v: &mut [f64],
+        a: &mut [f64],
+    ) -> Result<Option<Wanted>, PathError> {
+        match self {
+            Self::Prescribed(signals) => {
+                for (j, signal) in signals.iter().enumerate() {
+                    let Jet { value, first, second } = signal.at(t);
+                    (q[j], v[j], a[j]) = (value, first, second);
+                }
+                Ok(None)
+            }
+            Self::GripperPath(path) => path.at(model, t, q, v, a).map(Some),
+        }
+    }
+
+    /// Whether the motion says where the gripper should be.
+    pub fn has_path(&self) -> bool {
+        matches!(self, Self::GripperPath(_))
+    }
+
+    fn signals(&self) -> Vec<&Signal> {
+        match self {
+            Self::Prescribed(signals) => signals.iter().collect(),
+            Self::GripperPath(path) => path.signals().collect(),
+        }
+    }
+
+    /// Signature of the branches that the signals are on at t.
+    pub fn branch(&self, t: f64) -> u64 {
+        kinks::branch(self.signals(), t)
+    }
+
+    /// Whether a signal has kinks.
+    pub fn has_kinks(&self) -> bool {
+        self.signals().iter().any(|signal| signal.has_kinks())
+    }
+
+    /// Break points of sampled signals, s.
+    pub fn break_points(&self) -> Vec<f64> {
+        self.signals().iter().flat_map(|signal| signal.break_points()).copied().collect()
+    }
+}

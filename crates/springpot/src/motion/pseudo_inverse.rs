@@ -1,0 +1,135 @@
+//! Pseudo-inverse of a small Jacobian by its singular values.
+
+/// Singular values below this share of the largest count as 0.
+const RANK_TOLERANCE: f64 = 1e-9;
+
+/// Singular value decomposition of an m × n matrix J with small m: Jᵀ v_k = w_k, the w_k orthogonal with norms σ_k.
+#[derive(Debug, Clone)]
+pub(super) struct PseudoInverse {
+    /// w_k, n values each.
+    w: Vec<Vec<f64>>,
+    /// v_k, m values each, orthonormal.
+    v: Vec<Vec<f64>>,
+    sigma: Vec<f64>,
+}
+
+impl PseudoInverse {
+    /// One-sided Jacobi rotations on the rows of J, given row by row (Hestenes 1958).
+    pub(super) fn new(rows: &[Vec<f64>]) -> Self {
+        let m = rows.len();
+        let mut w = rows.to_vec();
+        let mut v: Vec<Vec<f64>> = (0..m).map(|k| (0..m).map(|i| if i == k { 1.0 } else { 0.0 }).collect()).collect();
+        for _ in 0..40 {
+            let mut turned = false;
+            for p in 0..m {
+                for q in p + 1..m {
+                    let (pp, qq, pq) = (dot(&w[p], &w[p]), dot(&w[q], &w[q]), dot(&w[p], &w[q]));
+                    if pq.abs() <= 1e-16 * (pp * qq).sqrt() {
+                        continue;
+                    }
+                    turned = true;
+                    let zeta = (qq - pp) / (2.0 * pq);
+                    let t = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
+                    let c = 1.0 / t.hypot(1.0);
+                    rotate(&mut w, p, q, c, c * t);
+                    rotate(&mut v, p, q, c, c * t);
+                }
+            }
+            if !turned {
+                break;
+            }
+        }
+        let sigma = w.iter().map(|w| dot(w, w).sqrt()).collect();
+        Self { w, v, sigma }
+    }
+
+    /// Number of singular values that count.
+    pub(super) fn rank(&self) -> usize {
+        self.regular(0.0).count()
+    }
+
+    /// Smallest over largest singular value.
+    pub(super) fn conditioning(&self) -> f64 {
+        self.sigma.iter().copied().fold(f64::INFINITY, f64::min) / self.largest()
+    }
+
+    /// The x of least norm with J x = r as nearly as can be; `damping` (relative to the largest σ) bounds x near singularities.
+    pub(super) fn solve(&self, r: &[f64], damping: f64) -> Vec<f64> {
+        let mut x = vec![0.0; self.w[0].len()];
+        for (k, inverse) in self.regular(damping) {
+            let share = dot(&self.v[k], r) * inverse;
+            x.iter_mut().zip(&self.w[k]).for_each(|(x, w)| *x += share * w);
+        }
+        x
+    }
+
+    /// y with x = Jᵀ y for x in the row space of J.
+    pub(super) fn transpose_solve(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.v[0].len()];
+        for (k, inverse) in self.regular(0.0) {
+            let share = dot(&self.w[k], x) * inverse;
+            y.iter_mut().zip(&self.v[k]).for_each(|(y, v)| *y += share * v);
+        }
+        y
+    }
+
+    /// Takes away from x what J sees of it.
+    pub(super) fn project_to_null_space(&self, x: &mut [f64]) {
+        for (k, inverse) in self.regular(0.0) {
+            let share = dot(&self.w[k], x) * inverse;
+            x.iter_mut().zip(&self.w[k]).for_each(|(x, w)| *x -= share * w);
+        }
+    }
+
+    fn largest(&self) -> f64 {
+        self.sigma.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The singular triples that count, with 1/(σ² + damping²).
+    fn regular(&self, damping: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let largest = self.largest();
+        let floor = RANK_TOLERANCE * largest;
+        let damping = damping * largest;
+        let triples = self.sigma.iter().enumerate().filter(move |(_, s)| **s > floor);
+        triples.map(move |(k, s)| (k, 1.0 / (s * s + damping * damping)))
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn rotate(columns: &mut [Vec<f64>], p: usize, q: usize, c: f64, s: f64) {
+    for i in 0..columns[p].len() {
+        let (x, y) = (columns[p][i], columns[q][i]);
+        columns[p][i] = c * x - s * y;
+        columns[q][i] = s * x + c * y;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_wide_square_and_deficient_systems() {
+        let wide = [vec![1.0, 2.0, 3.0, 0.5], vec![0.0, -1.0, 1.0, 2.0]];
+        let inverse = PseudoInverse::new(&wide);
+        let x = inverse.solve(&[1.0, -2.0], 0.0);
+        assert!((dot(&wide[0], &x) - 1.0).abs() < 1e-14 && (dot(&wide[1], &x) + 2.0).abs() < 1e-14);
+        // Least norm: nothing of x lies in the null space.
+        let mut rest = x.clone();
+        inverse.project_to_null_space(&mut rest);
+        assert!(dot(&rest, &rest).sqrt() < 1e-14);
+        let y = inverse.transpose_solve(&x);
+        for j in 0..4 {
+            assert!((wide[0][j] * y[0] + wide[1][j] * y[1] - x[j]).abs() < 1e-14);
+        }
+        // The third row is the sum of the first two: consistent right-hand sides are met.
+        let deficient = [vec![1.0, 0.0], vec![0.0, 2.0], vec![1.0, 2.0]];
+        let inverse = PseudoInverse::new(&deficient);
+        assert_eq!(inverse.rank(), 2);
+        let x = inverse.solve(&[3.0, 4.0, 7.0], 0.0);
+        assert!((x[0] - 3.0).abs() < 1e-14 && (x[1] - 2.0).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,157 @@
+//! What a gripper path asks of the robot at one time: residual, Jacobian and their rates.
+
+use crate::dynamics::{
+    Kinematics, angular_jacobian_into, angular_jacobian_rate_into, point_jacobian_into, point_jacobian_rate_into,
+};
+use crate::model::{Frame, Model, Site};
+use crate::signal::Signal;
+use crate::spatial::{Rotation, Vec3};
+
+/// A path of the gripper: its position and, if wanted, its orientation as signals of time.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// The gripper point.
+    pub site: Site,
+    /// The gripper's body, whose axes the orientation speaks of.
+    pub frame: Frame,
+    /// World x, y, z, m.
+    pub position: [Signal; 3],
+    /// Roll, pitch, yaw of the body, R = Rz(yaw) Ry(pitch) Rx(roll), rad.
+    pub rpy: Option<[Signal; 3]>,
+}
+
+/// Wanted motion: position and its derivatives; rotation, angular velocity and acceleration (world axes).
+#[derive(Debug, Clone)]
+pub(super) struct Target {
+    pub(super) position: Vec3,
+    rotation: Option<Rotation>,
+    /// First derivative of the task, 3 or 6 values (linear first).
+    pub(super) rate: Vec<f64>,
+    /// Second derivative.
+    pub(super) acceleration: Vec<f64>,
+}
+
+/// Residual of a task in one configuration.
+#[derive(Debug, Clone)]
+pub(super) struct Residual {
+    /// Wanted less actual: linear (m), then a rotation vector (rad).
+    pub(super) error: Vec<f64>,
+    /// Distance to the wanted point, m.
+    pub(super) distance: f64,
+    /// Angle to the wanted orientation, rad; 0 where none is wanted.
+    pub(super) angle: f64,
+}
+
+impl Task {
+    /// Number of task coordinates.
+    pub(super) fn size(&self) -> usize {
+        if self.rpy.is_some() { 6 } else { 3 }
+    }
+
+    pub(super) fn target(&self, t: f64) -> Target {
+        let [x, y, z] = [0, 1, 2].map(|k| self.position[k].at(t));
+        let mut target = Target {
+            position: Vec3([x.value, y.value, z.value]),
+            rotation: None,
+            rate: vec![x.first, y.first, z.first],
+            acceleration: vec![x.second, y.second, z.second],
+        };
+        if let Some(rpy) = &self.rpy {
+            let [roll, pitch, yaw] = [0, 1, 2].map(|k| rpy[k].at(t));
+            // ω = yaw' e_z + pitch' e_y' + roll' e_x'': each axis is carried by the turns before it.
+            let turn = Rotation::from_rpy([0.0, 0.0, yaw.value]);
+            let tilt = Rotation::from_rpy([0.0, pitch.value, yaw.value]);
+            let (ez, ey, ex) = (Vec3([0.0, 0.0, 1.0]), turn * Vec3([0.0, 1.0, 0.0]), tilt * Vec3([1.0, 0.0, 0.0]));
+            let carrier = ez * yaw.first;
+            let tilted = carrier + ey * pitch.first;
+            let omega = tilted + ex * roll.first;
+            let alpha = ez * yaw.second
+                + ey * pitch.second
+                + carrier.cross(ey) * pitch.first
+                + ex * roll.second
+                + tilted.cross(ex) * roll.first;
+            target.rotation = Some(Rotation::from_rpy([roll.value, pitch.value, yaw.value]));
+            target.rate.extend(omega.0);
+            target.acceleration.extend(alpha.0);
+        }
+        target
+    }
+
+    pub(super) fn residual(&self, kinematics: &Kinematics, target: &Target) -> Residual {
+        let miss = target.position - kinematics.position(&self.site);
+        let mut residual = Residual { error: miss.0.to_vec(), distance: miss.norm(), angle: 0.0 };
+        if let Some(wanted) = &target.rotation {
+            let turn = rotation_vector(&(*wanted * kinematics.frame(&self.frame).rotation.transpose()));
+            residual.angle = turn.norm();
+            residual.error.extend(turn.0);
+        }
+        residual
+    }
+
+    /// Rows of the task Jacobian.
+    pub(super) fn jacobian(&self, model: &Model, kinematics: &Kinematics) -> Vec<Vec<f64>> {
+        let n = model.nv();
+        let mut block = vec![0.0; 3 * n];
+        point_jacobian_into(model, kinematics, &self.site, &mut block);
+        let mut rows: Vec<Vec<f64>> = block.chunks(n).map(<[f64]>::to_vec).collect();
+        if self.rpy.is_some() {
+            angular_jacobian_into(model, kinematics, &self.site, &mut block);
+            rows.extend(block.chunks(n).map(<[f64]>::to_vec));
+        }
+        rows
+    }
+
+    /// Rows of its time derivative; needs velocities.
+    pub(super) fn jacobian_rate(&self, model: &Model, kinematics: &Kinematics) -> Vec<Vec<f64>> {
+        let n = model.nv();
+        let mut block = vec![0.0; 3 * n];
+        point_jacobian_rate_into(model, kinematics, &self.site, &mut block);
+        let mut rows: Vec<Vec<f64>> = block.chunks(n).map(<[f64]>::to_vec).collect();
+        if self.rpy.is_some() {
+            angular_jacobian_rate_into(model, kinematics, &self.site, &mut block);
+            rows.extend(block.chunks(n).map(<[f64]>::to_vec));
+        }
+        rows
+    }
+
+    pub(super) fn signals(&self) -> impl Iterator<Item = &Signal> {
+        self.position.iter().chain(self.rpy.iter().flatten())
+    }
+}
+
+/// Axis times angle (0 … π) of a rotation.
+fn rotation_vector(rotation: &Rotation) -> Vec3 {
+    let r = &rotation.0;
+    let twice_sine = Vec3([r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]]);
+    let trace = r[0][0] + r[1][1] + r[2][2];
+    let sine = 0.5 * twice_sine.norm();
+    let angle = sine.atan2(0.5 * (trace - 1.0));
+    if sine > 1e-7 {
+        return twice_sine * (0.5 * angle / sine);
+    }
+    if trace > 0.0 {
+        return twice_sine * 0.5;
+    }
+    // Half a turn: the axis is the longest column of R + I.
+    let column = |k: usize| Vec3([0, 1, 2].map(|i| r[i][k] + if i == k { 1.0 } else { 0.0 }));
+    let longest = (0..3).map(column).max_by(|a, b| a.norm().total_cmp(&b.norm())).expect("three columns");
+    longest * (angle / longest.norm())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotation_vectors_invert_axis_angle() {
+        let axis = Vec3([0.36, -0.48, 0.8]);
+        for angle in [0.0, 1e-9, 0.3, 2.0, std::f64::consts::PI - 1e-6] {
+            let vector = rotation_vector(&Rotation::from_axis_angle(axis, angle));
+            assert!((vector - axis * angle).norm() < 1e-8, "{angle}");
+        }
+        let half = rotation_vector(&Rotation::from_axis_angle(axis, std::f64::consts::PI));
+        assert!(
+            (half.norm() - std::f64::consts::PI).abs() < 1e-12 && (half.dot(axis).abs() - half.norm()).abs() < 1e-9
+        );
+    }
+}

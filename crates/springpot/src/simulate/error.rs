@@ -1,0 +1,115 @@
+//! What can stop a run.
+
+use crate::fractional::KernelError;
+use crate::fractional::scheme::SchemeError;
+
+/// Why a run stopped; every variant but [`RunError::Output`] and [`RunError::Scheme`] names the time.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The points that an element joins met, so that its direction is undefined.
+    #[error("t = {t} s: element \"{element}\" has no direction: its points met (length {length:e} m)")]
+    ZeroLength {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Length, m.
+        length: f64,
+    },
+    /// A signal gave NaN or infinity.
+    #[error("t = {t} s: {what} is {value}, not a finite number")]
+    NotFinite {
+        /// Time, s.
+        t: f64,
+        /// Which signal or result.
+        what: String,
+        /// Its value.
+        value: f64,
+    },
+    /// An input broke a rule of its law.
+    #[error("t = {t} s: element \"{element}\": {rule}")]
+    Rule {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// The rule.
+        rule: String,
+    },
+    /// An input left the range of its law.
+    #[error("t = {t} s: element \"{element}\": input {input} = {value} lies outside {low} … {high}")]
+    InputRange {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Input.
+        input: String,
+        /// Its value, SI.
+        value: f64,
+        /// Smallest admissible value.
+        low: f64,
+        /// Largest admissible value.
+        high: f64,
+    },
+    /// A coordinate jumps.
+    #[error("t = {t} s: joint \"{joint}\" jumps by {jump:e}; a motion must be continuous")]
+    Jump {
+        /// Time, s.
+        t: f64,
+        /// Joint.
+        joint: String,
+        /// Height of the jump, rad or m.
+        jump: f64,
+    },
+    /// No step is small enough.
+    #[error(
+        "t = {t} s: no step meets the tolerance: {h:e} s still errs {error:.1} times too much in {subject}; raise solver.rtol"
+    )]
+    StepTooSmall {
+        /// Time, s.
+        t: f64,
+        /// Step tried, s.
+        h: f64,
+        /// Error in units of the tolerance.
+        error: f64,
+        /// Worst element, or the energy.
+        subject: String,
+    },
+    /// More steps than allowed.
+    #[error("t = {t} s: {limit} steps are used up (solver.max_steps)")]
+    TooManySteps {
+        /// Time, s.
+        t: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// The memory of an element could not be built.
+    #[error("t = 0 s: element \"{element}\": {source}")]
+    Kernel {
+        /// Element.
+        element: String,
+        /// Reason.
+        source: KernelError,
+    },
+    /// A named offline scheme cannot run on this grid.
+    #[error("element \"{element}\": {source}")]
+    Scheme {
+        /// Element.
+        element: String,
+        /// Reason.
+        source: SchemeError,
+    },
+    /// Interrupted by the user.
+    #[error("interrupted at t = {t} s")]
+    Interrupted {
+        /// Time reached, s.
+        t: f64,
+    },
+    /// The motion cannot be followed.
+    #[error("{0}")]
+    Path(#[from] crate::motion::PathError),
+    /// Rows could not be written.
+    #[error("rows could not be written: {0}")]
+    Output(#[from] std::io::Error),
+}

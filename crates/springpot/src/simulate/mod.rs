@@ -1,0 +1,93 @@
+//! The time loop: a system along its motion, row by row.
+
+mod along;
+mod control;
+mod error;
+mod ledger;
+mod moment;
+mod on_grid;
+mod pose;
+mod row;
+mod row_times;
+
+pub use along::along;
+pub use error::RunError;
+pub use moment::FRICTION_SPEED;
+pub use pose::{ElementStart, Pose};
+pub use row_times::RowTimes;
+
+use crate::element::Element;
+use crate::model::{Model, Site};
+use crate::motion::Motion;
+use std::sync::atomic::AtomicBool;
+
+/// A robot, its elements and its motion.
+#[derive(Debug, Clone)]
+pub struct System {
+    /// The robot.
+    pub model: Model,
+    /// The elements.
+    pub elements: Vec<Element>,
+    /// How it moves.
+    pub motion: Motion,
+    /// The gripper, where there is one.
+    pub gripper: Option<Site>,
+}
+
+/// How a run is carried out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// End of the motion, s; it starts at 0.
+    pub end: f64,
+    /// When rows are written.
+    pub rows: RowTimes,
+    /// Relative tolerance of every D^alpha x, in units of its largest value so far.
+    pub rtol: f64,
+    /// Absolute tolerance of D^alpha x; `None`: the relative one alone.
+    pub atol: Option<f64>,
+    /// Relative tolerance of the kernels.
+    pub memory_rtol: f64,
+    /// First inner step, s.
+    pub first_step: Option<f64>,
+    /// Longest inner step, s.
+    pub max_step: Option<f64>,
+    /// Number of inner steps allowed.
+    pub max_steps: Option<u64>,
+}
+
+/// What a run did.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct Report {
+    /// Inner steps taken.
+    pub steps: u64,
+    /// Inner steps tried and not kept.
+    pub rejected_steps: u64,
+    /// Rows written.
+    pub rows: u64,
+    /// Time of the last complete row, s; `None` before the first.
+    pub t_reached: Option<f64>,
+    /// Largest departure of the energy balance from 0, J; `None` where the ledger is not known.
+    pub energy_residual: Option<f64>,
+    /// The energy turned over: largest kinetic, potential (above the start), stored, dissipated, supplied energies, summed, J.
+    pub energy_turned_over: Option<f64>,
+    /// Exponentials of the memories at the end.
+    pub modes: usize,
+}
+
+/// Takes the rows of a run.
+pub trait Rows {
+    /// One complete row, in the order of [`System::columns`]; NaN stands for an empty field.
+    ///
+    /// # Errors
+    /// Whatever keeps the row from being kept; the run stops.
+    fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
+}
+
+impl<F: FnMut(&[f64]) -> std::io::Result<()>> Rows for F {
+    fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
+        self(values)
+    }
+}
+
+/// A flag that interrupts runs from outside.
+pub type Stop = AtomicBool;

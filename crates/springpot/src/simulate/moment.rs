@@ -1,0 +1,203 @@
+//! The robot and its elements at one time, before any law is asked.
+
+use super::{RunError, System};
+use crate::dynamics::{Kinematics, Workspace, kinetic_energy, pair_into, potential_energy, rnea_into};
+use crate::element::Element;
+use crate::law::{InputValue, Point};
+use crate::model::Model;
+use crate::motion::Wanted;
+use crate::spatial::Vec3;
+
+/// Speed at which Coulomb friction has reached 76 % of its value, rad/s or m/s: the width of the smooth sign.
+pub const FRICTION_SPEED: f64 = 1e-3;
+
+/// State of one element at one time.
+#[derive(Debug, Clone)]
+pub(super) struct ElementMoment {
+    pub(super) length: f64,
+    pub(super) stroke: f64,
+    pub(super) rate: f64,
+    /// l_vec/l.
+    pub(super) direction: Vec3,
+    /// ∂l/∂q_b.
+    pub(super) gradient: Vec<f64>,
+    pub(super) inputs: Vec<InputValue>,
+}
+
+/// State of robot and elements at one time.
+#[derive(Debug, Clone)]
+pub(super) struct Moment {
+    pub(super) t: f64,
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
+    pub(super) a: Vec<f64>,
+    /// M a + C v + g and joint friction: the actuator forces were there no elements.
+    pub(super) rigid: Vec<f64>,
+    /// Power lost in the joints' damping and friction, W.
+    pub(super) joint_loss: f64,
+    pub(super) kinetic: f64,
+    pub(super) potential: f64,
+    pub(super) elements: Vec<ElementMoment>,
+    pub(super) gripper: [f64; 3],
+    /// Distance of the gripper from the wanted point, where there is one.
+    pub(super) gripper_error: Option<f64>,
+}
+
+/// Scratch of [`System::evaluate`].
+#[derive(Debug)]
+pub(super) struct Scratch {
+    kinematics: Kinematics,
+    workspace: Workspace,
+}
+
+impl Scratch {
+    pub(super) fn new(model: &Model) -> Self {
+        Self { kinematics: Kinematics::new(model), workspace: Workspace::new(model) }
+    }
+}
+
+impl ElementMoment {
+    pub(super) fn point(&self, t: f64) -> Point<'_> {
+        Point { t, stroke: self.stroke, rate: self.rate, inputs: &self.inputs }
+    }
+}
+
+impl Moment {
+    pub(super) fn new(system: &System) -> Self {
+        let n = system.model.nv();
+        let element = |element: &Element| ElementMoment {
+            length: 0.0,
+            stroke: 0.0,
+            rate: 0.0,
+            direction: Vec3([0.0; 3]),
+            gradient: vec![0.0; n],
+            inputs: vec![InputValue::default(); element.inputs.len()],
+        };
+        Self {
+            t: 0.0,
+            q: vec![0.0; n],
+            v: vec![0.0; n],
+            a: vec![0.0; n],
+            rigid: vec![0.0; n],
+            joint_loss: 0.0,
+            kinetic: 0.0,
+            potential: 0.0,
+            elements: system.elements.iter().map(element).collect(),
+            gripper: [0.0; 3],
+            gripper_error: None,
+        }
+    }
+
+    /// Power of the actuators were there no elements, W.
+    pub(super) fn rigid_power(&self) -> f64 {
+        self.rigid.iter().zip(&self.v).map(|(tau, v)| tau * v).sum()
+    }
+}
+
+impl System {
+    /// Fills `moment` for the time `t`; inputs are taken at `t_inputs`, which differs from `t` by one bit where a break point
+    /// is meant from its left side.
+    ///
+    /// # Errors
+    /// [`RunError`] where the motion cannot be followed, a signal is not finite, or an element has no direction.
+    pub(super) fn evaluate(
+        &self,
+        t: f64,
+        t_inputs: f64,
+        scratch: &mut Scratch,
+        moment: &mut Moment,
+    ) -> Result<(), RunError> {
+        moment.t = t;
+        let wanted = self.motion.at(&self.model, t, &mut moment.q, &mut moment.v, &mut moment.a)?;
+        self.require_finite(t, moment)?;
+        let kinematics = &mut scratch.kinematics;
+        kinematics.update_velocity(&self.model, &moment.q, &moment.v);
+        rnea_into(&self.model, &moment.q, &moment.v, &moment.a, &[], &mut scratch.workspace, &mut moment.rigid);
+        moment.kinetic = kinetic_energy(&self.model, kinematics);
+        moment.potential = potential_energy(&self.model, kinematics);
+        moment.joint_loss = 0.0;
+        for (j, tau) in moment.rigid.iter_mut().enumerate() {
+            let v = moment.v[j];
+            let resistance = self.model.damping()[j] * v + self.model.friction()[j] * (v / FRICTION_SPEED).tanh();
+            *tau += resistance;
+            moment.joint_loss += resistance * v;
+        }
+        for (element, state) in self.elements.iter().zip(&mut moment.elements) {
+            let pair = pair_into(&self.model, kinematics, &element.from, &element.to, &mut state.gradient);
+            if pair.check().is_err() {
+                return Err(RunError::ZeroLength { t, element: element.name.clone(), length: pair.length });
+            }
+            state.length = pair.length;
+            state.stroke = pair.length - element.rest_length;
+            state.rate = pair.rate;
+            state.direction = pair.direction;
+            element.inputs_at(t_inputs, &mut state.inputs);
+            element.check_inputs(t, &state.inputs)?;
+        }
+        if let Some(site) = &self.gripper {
+            moment.gripper = kinematics.position(site).0;
+            moment.gripper_error = wanted.map(|Wanted { position }| {
+                let square = |k: usize| (moment.gripper[k] - position[k]).powi(2);
+                (square(0) + square(1) + square(2)).sqrt()
+            });
+        }
+        Ok(())
+    }
+
+    fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {
+        let names = self.model.joint_names();
+        for (symbol, values) in [("q", &moment.q), ("v", &moment.v), ("a", &moment.a)] {
+            if let Some(j) = values.iter().position(|x| !x.is_finite()) {
+                return Err(RunError::NotFinite { t, what: format!("{symbol}.{}", names[j]), value: values[j] });
+            }
+        }
+        Ok(())
+    }
+
+    /// Signature of the branches that all signals are on at t: it changes at their kinks.
+    pub(super) fn branch(&self, t: f64) -> u64 {
+        let inputs = self.elements.iter().flat_map(|element| &element.inputs);
+        inputs.fold(self.motion.branch(t), |sum, signal| sum.rotate_left(7) ^ signal.branch(t))
+    }
+
+    /// Whether any signal has kinks.
+    pub(super) fn has_kinks(&self) -> bool {
+        self.motion.has_kinks() || self.elements.iter().flat_map(|e| &e.inputs).any(|signal| signal.has_kinks())
+    }
+
+    /// Times inside (0, end) at which steps must end, ascending.
+    pub(super) fn break_points(&self, end: f64) -> Vec<f64> {
+        let inputs = self.elements.iter().flat_map(|e| &e.inputs).flat_map(|signal| signal.break_points());
+        let mut points: Vec<f64> =
+            self.motion.break_points().into_iter().chain(inputs.copied()).filter(|t| 0.0 < *t && *t < end).collect();
+        points.sort_by(f64::total_cmp);
+        points.dedup();
+        points
+    }
+}
+
+impl Element {
+    fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {
+        for (row, input) in self.row.inputs.iter().zip(inputs) {
+            if !input.value.is_finite() {
+                let what = format!("{}.{}", self.name, row.name);
+                return Err(RunError::NotFinite { t, what, value: input.value });
+            }
+            if !row.range.contains(input.value) {
+                return Err(RunError::InputRange {
+                    t,
+                    element: self.name.clone(),
+                    input: row.name.into(),
+                    value: input.value,
+                    low: row.range.low,
+                    high: row.range.high,
+                });
+            }
+        }
+        self.law.check_inputs(inputs).map_err(|broken| RunError::Rule {
+            t,
+            element: self.name.clone(),
+            rule: broken.rule,
+        })
+    }
+}

@@ -1,0 +1,78 @@
+//! Where the robot and its elements are, without running anything.
+
+use super::moment::{Moment, Scratch};
+use super::{RunError, System};
+use crate::dynamics::Kinematics;
+use crate::law::Derivative;
+use crate::model::{Anchor, Model, Parent};
+use crate::spatial::Vec3;
+
+/// An element at t = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementStart {
+    /// l(0), m.
+    pub length: f64,
+    /// x(0), m.
+    pub stroke: f64,
+    /// ∂l/∂q_b, nv values.
+    pub gradient: Vec<f64>,
+    /// Whether its force is infinite at t = 0: a Riemann–Liouville start from x(0) ≠ 0.
+    pub singular: bool,
+}
+
+/// The robot in one configuration.
+#[derive(Debug, Clone)]
+pub struct Pose<'a> {
+    model: &'a Model,
+    kinematics: Kinematics,
+}
+
+impl System {
+    /// Every element at t = 0.
+    ///
+    /// # Errors
+    /// What keeps a run from starting.
+    pub fn element_starts(&self) -> Result<Vec<ElementStart>, RunError> {
+        let mut moment = Moment::new(self);
+        self.evaluate(0.0, 0.0, &mut Scratch::new(&self.model), &mut moment)?;
+        let starts = self.elements.iter().zip(moment.elements).map(|(element, state)| {
+            let fractional = element.law.order() > 0.0 && element.law.order() < 1.0;
+            let jumps = element.derivative == Derivative::RiemannLiouville && element.jump(state.length) != 0.0;
+            ElementStart {
+                length: state.length,
+                stroke: state.stroke,
+                gradient: state.gradient,
+                singular: fractional && jumps,
+            }
+        });
+        Ok(starts.collect())
+    }
+
+    /// The robot at time t.
+    ///
+    /// # Errors
+    /// [`RunError::Path`] where the motion cannot be followed.
+    pub fn pose(&self, t: f64) -> Result<Pose<'_>, RunError> {
+        let n = self.model.nv();
+        let (mut q, mut v, mut a) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        self.motion.at(&self.model, t, &mut q, &mut v, &mut a)?;
+        Ok(Pose { model: &self.model, kinematics: Kinematics::at_position(&self.model, &q) })
+    }
+}
+
+impl Pose<'_> {
+    /// World position of a body's joint frame, m; the origin for a body that does not exist.
+    pub fn origin(&self, body: Parent) -> [f64; 3] {
+        self.point(&Anchor { body, point: [0.0; 3] })
+    }
+
+    /// World position of a point, m; the origin for a body that does not exist.
+    pub fn point(&self, anchor: &Anchor) -> [f64; 3] {
+        self.model.resolve(anchor).map_or([0.0; 3], |site| self.kinematics.position(&site).0)
+    }
+
+    /// World components of a direction given in a body's axes.
+    pub fn direction(&self, body: Parent, direction: [f64; 3]) -> [f64; 3] {
+        self.model.frame(body).map_or(direction, |frame| (self.kinematics.frame(&frame).rotation * Vec3(direction)).0)
+    }
+}

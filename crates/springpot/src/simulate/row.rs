@@ -1,0 +1,151 @@
+//! The columns of the results and how a row is filled.
+
+use super::System;
+use super::ledger::Balance;
+use super::moment::Moment;
+use crate::element::Element;
+use crate::law::Observation;
+use crate::model::JointKind;
+use crate::table::Column;
+
+/// One element in one row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ElementRow {
+    pub(super) observation: Observation,
+    /// Dissipated and supplied since t = 0, J; NaN where unknown.
+    pub(super) dissipated: f64,
+    pub(super) input: f64,
+}
+
+impl System {
+    /// The columns of a run's rows, in order.
+    pub fn columns(&self) -> Vec<Column> {
+        let model = &self.model;
+        let joints = model.joint_names();
+        let mut columns = vec![Column::new("t", "s", "time")];
+        let unit = |joint: usize, angular: &str, linear: &str| match model.joint_kind(joint) {
+            JointKind::Prismatic => linear.to_owned(),
+            _ => angular.to_owned(),
+        };
+        for (prefix, angular, linear, meaning) in [
+            ("q", "rad", "m", "coordinate"),
+            ("v", "rad/s", "m/s", "velocity"),
+            ("a", "rad/s^2", "m/s^2", "acceleration"),
+            ("tau", "N*m", "N", "actuator force"),
+        ] {
+            for (j, joint) in joints.iter().enumerate() {
+                columns.push(Column::new(
+                    format!("{prefix}.{joint}"),
+                    unit(j, angular, linear),
+                    format!("{meaning} of {joint}"),
+                ));
+            }
+        }
+        for element in &self.elements {
+            let name = &element.name;
+            let mut add = |key: &str, unit: &str, meaning: String| {
+                columns.push(Column::new(format!("{name}.{key}"), unit, meaning));
+            };
+            add("length", "m", format!("length of {name}"));
+            add("stroke", "m", format!("length of {name} less its rest length"));
+            add("rate", "m/s", format!("rate of the stroke of {name}"));
+            add("derivative", derivative_unit(element), format!("fractional derivative of the stroke of {name}"));
+            add("force", "N", format!("force of {name}, positive in tension"));
+            for (j, joint) in joints.iter().enumerate() {
+                add(&format!("Q.{joint}"), &unit(j, "N*m", "N"), format!("generalized force of {name} on {joint}"));
+            }
+            add("stored", "J", format!("energy stored in {name}"));
+            add("dissipated", "J", format!("energy dissipated in {name} since t = 0"));
+            add("input", "J", format!("energy supplied by the inputs of {name} since t = 0"));
+            for input in element.row.inputs {
+                add(input.name, input.unit, format!("{} of {name}", input.meaning));
+            }
+        }
+        if self.gripper.is_some() {
+            for axis in ["x", "y", "z"] {
+                columns.push(Column::new(format!("gripper.{axis}"), "m", format!("world {axis} of the gripper")));
+            }
+            if self.motion.has_path() {
+                columns.push(Column::new("gripper.error", "m", "distance of the gripper from the wanted point"));
+            }
+        }
+        columns.push(Column::new("energy.kinetic", "J", "kinetic energy"));
+        columns.push(Column::new(
+            "energy.potential",
+            "J",
+            "potential energy in the field of gravity, 0 at the world origin",
+        ));
+        columns.push(Column::new("energy.actuators", "J", "work of the actuators since t = 0"));
+        if self.has_joint_losses() {
+            columns.push(Column::new("energy.joints", "J", "energy lost in joint damping and friction since t = 0"));
+        }
+        columns.push(Column::new(
+            "energy.residual",
+            "J",
+            "kinetic + potential + stored + dissipated - input - actuators, less its value at t = 0",
+        ));
+        columns
+    }
+
+    /// Whether any joint has damping or friction.
+    pub(super) fn has_joint_losses(&self) -> bool {
+        self.model.damping().iter().chain(self.model.friction()).any(|x| *x != 0.0)
+    }
+
+    /// Fills one row; `balance` holds the work and losses, `residual` the ledger's residual, NaN where unknown.
+    pub(super) fn fill_row(
+        &self,
+        moment: &Moment,
+        elements: &[ElementRow],
+        balance: &Balance,
+        joints: f64,
+        residual: f64,
+        row: &mut Vec<f64>,
+    ) {
+        row.clear();
+        row.push(moment.t);
+        row.extend(&moment.q);
+        row.extend(&moment.v);
+        row.extend(&moment.a);
+        for j in 0..self.model.nv() {
+            let from_elements: f64 = elements
+                .iter()
+                .zip(&moment.elements)
+                .map(|(row, state)| generalized_force(row.observation.force, state.gradient[j]))
+                .sum();
+            row.push(moment.rigid[j] - from_elements);
+        }
+        for (ElementRow { observation, dissipated, input }, state) in elements.iter().zip(&moment.elements) {
+            let known = observation.stored.is_some();
+            row.extend([state.length, state.stroke, state.rate, observation.derivative, observation.force]);
+            row.extend(state.gradient.iter().map(|g| generalized_force(observation.force, *g)));
+            row.push(observation.stored.unwrap_or(f64::NAN));
+            row.push(if known { *dissipated } else { f64::NAN });
+            row.push(*input);
+            row.extend(state.inputs.iter().map(|input| input.value));
+        }
+        if self.gripper.is_some() {
+            row.extend(moment.gripper);
+            row.extend(moment.gripper_error);
+        }
+        row.extend([moment.kinetic, moment.potential, balance.actuators]);
+        if self.has_joint_losses() {
+            row.push(joints);
+        }
+        row.push(residual);
+    }
+}
+
+/// Q_b = −F·∂l/∂q_b, with a plain 0 where the joint does not move the element.
+fn generalized_force(force: f64, gradient: f64) -> f64 {
+    if gradient == 0.0 && force.is_finite() { 0.0 } else { -force * gradient }
+}
+
+/// Unit of D^alpha x, the same for every alpha that a sweep may go through.
+fn derivative_unit(element: &Element) -> &'static str {
+    match element.law.order() {
+        _ if element.row.params.iter().any(|param| param.name == "alpha") => "m/s^alpha",
+        0.0 => "m",
+        _ => "m/s",
+    }
+}
