@@ -190,7 +190,8 @@ pub(crate) mod signal {
         pub(crate) fn spline(times: &[f64], values: &[f64]) -> Result<Self, String> {
             Ok(Self::Samples(times.into(), values.into()))
         }
-        pub(crate) fn at(&self, _t: f64) -> Jet {
+        /// Value and rates.
+        pub fn at(&self, _t: f64) -> Jet {
             match self {
                 Self::Constant(value) => Jet { value: *value, ..Jet::default() },
                 Self::Expression(text) => {
