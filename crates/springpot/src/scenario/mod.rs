@@ -24,11 +24,9 @@ mod resolved;
 mod robot;
 mod scheme;
 mod signals;
-mod standin;
 mod sweep;
 mod time;
-
-use standin::{signal, units};
+pub mod units;
 
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};

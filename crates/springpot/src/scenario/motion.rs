@@ -102,7 +102,7 @@ fn all_names(names: &[&str]) -> String {
 
 fn from_csv(table: &Table<'_>, csv: &Field<'_>, joints: &[&JointSpec], end: Option<f64>) -> Read<Vec<SignalPlan>> {
     let samples = signals::csv_table(csv, end)?;
-    refuse_missing(table, joints, |name| samples.column(name).is_some(), csv)?;
+    refuse_missing(table, joints, |name| samples.headers().iter().any(|header| header == name), csv)?;
     all(joints.iter().map(|joint| {
         let signal = signals::samples_signal(csv, &samples, &joint.name, true)?;
         let written = format!("{{ csv = {}, column = \"{}\" }}", csv.node.written(), joint.name);

@@ -3,9 +3,9 @@
 use super::figures::FigurePlan;
 use super::refusal::Place;
 use super::scheme::Scheme;
-use super::signal::Signal;
 use crate::law::{Derivative, Entry, Law};
 use crate::model::{Anchor, BodySpec, JointKind};
+use crate::signal::Signal;
 use std::sync::Arc;
 
 /// One run, ready to be started.

@@ -5,9 +5,10 @@ use super::names;
 use super::plan::SignalPlan;
 use super::reader::{Field, Read, Refused, unit_help};
 use super::refusal::RefusalKind;
-use super::signal::{CsvTable, Expression, Signal};
 use super::units::{self, Unit};
 use crate::law::Range;
+use crate::signal::csv::{CsvError, CsvTable};
+use crate::signal::{Expression, SampleError, Signal};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,20 +17,45 @@ use std::sync::{Arc, Mutex, PoisonError};
 const PROBES: usize = 31;
 const NO_EXPONENTS: &dyn Fn(&str) -> Option<f64> = &|_| None;
 
-/// CSV files that were read, so that the cases of a sweep share them.
+/// CSV files that were read and the signals made of them, so that the cases of a sweep share them.
 #[derive(Debug, Default)]
-pub(crate) struct CsvCache(Mutex<HashMap<PathBuf, Arc<CsvTable>>>);
+pub(crate) struct CsvCache {
+    tables: Mutex<HashMap<PathBuf, Arc<CsvTable>>>,
+    signals: Mutex<HashMap<(PathBuf, String, bool), Signal>>,
+}
 
 impl CsvCache {
-    fn read(&self, path: &Path) -> Result<Arc<CsvTable>, String> {
-        let mut tables = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+    fn table(&self, path: &Path) -> Result<Arc<CsvTable>, CsvError> {
+        let mut tables = self.tables.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(table) = tables.get(path) {
             return Ok(table.clone());
         }
-        let table = Arc::new(CsvTable::read(path).map_err(|error| error.to_string())?);
+        let table = Arc::new(CsvTable::read(path)?);
         tables.insert(path.to_owned(), table.clone());
         Ok(table)
     }
+
+    /// The signal of a column: a spline where it has to be smooth, else straight lines.
+    fn signal(&self, table: &CsvTable, column: &str, smooth: bool) -> Result<Signal, ColumnError> {
+        let key = (table.file().to_owned(), column.to_owned(), smooth);
+        let mut signals = self.signals.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(signal) = signals.get(&key) {
+            return Ok(signal.clone());
+        }
+        let (times, values) = (table.time(), table.column(column)?);
+        let signal = if smooth { Signal::spline(times, values) } else { Signal::linear(times, values) }?;
+        signals.insert(key, signal.clone());
+        Ok(signal)
+    }
+}
+
+/// Why a column makes no signal.
+#[derive(Debug, thiserror::Error)]
+enum ColumnError {
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    #[error(transparent)]
+    Samples(#[from] SampleError),
 }
 
 /// What a signal's place asks of it.
@@ -145,7 +171,7 @@ fn unit_name_help(unit: &str) -> String {
 pub(crate) fn csv_table(field: &Field<'_>, end: Option<f64>) -> Read<Arc<CsvTable>> {
     let name = field.text()?;
     let path = field.ctx.folder.join(name);
-    let table = field.ctx.tables.read(&path).map_err(|error| {
+    let table = field.ctx.tables.table(&path).map_err(|error| {
         let help = "write the path of a CSV file, relative to the scenario, with a column t in seconds".to_owned();
         field.refuse(RefusalKind::File, format!("cannot be read: {error}"), Some(help))
     })?;
@@ -164,15 +190,14 @@ pub(crate) fn csv_table(field: &Field<'_>, end: Option<f64>) -> Read<Arc<CsvTabl
 
 /// The signal in the column `name`; refusals point at `field`.
 pub(crate) fn samples_signal(field: &Field<'_>, table: &CsvTable, name: &str, smooth: bool) -> Read<Signal> {
-    let Some(values) = table.column(name) else {
-        let columns = table.headers().iter().map(String::as_str);
+    let columns = table.headers().iter().map(String::as_str);
+    if !columns.clone().any(|column| column == name) {
         let message = format!("is {:?}, but the CSV file has no such column", shorten(name));
         return Err(field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, columns))));
-    };
-    let signal = if smooth { Signal::spline(table.time(), values) } else { Signal::linear(table.time(), values) };
-    signal.map_err(|error| {
-        let help = "write samples at increasing times".to_owned();
-        field.refuse(RefusalKind::BadQuantity, format!(": column {:?}: {error}", shorten(name)), Some(help))
+    }
+    field.ctx.tables.signal(table, name, smooth).map_err(|error| {
+        let help = format!("column {:?} needs a finite number in every row", shorten(name));
+        field.refuse(RefusalKind::File, format!("cannot be used: {error}"), Some(help))
     })
 }
 

@@ -1,0 +1,249 @@
+//! Columns of numbers from CSV files: a header row, a time column that increases, UTF-8.
+
+mod error;
+
+pub use error::{CsvError, CsvProblem};
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+/// Most data rows of a file.
+pub const MAX_ROWS: u64 = 20_000_000;
+/// Most numbers (rows × columns) of a file.
+pub const MAX_NUMBERS: u64 = 100_000_000;
+/// Longest line of a file, in bytes.
+pub const MAX_LINE: u64 = 1 << 20;
+/// Name of the time column where none is given.
+pub const TIME: &str = "t";
+
+/// A table read from a CSV file.
+///
+/// The first row names the columns; the time column, `t` wherever it stands, has finite and increasing numbers. Other
+/// columns are judged when they are asked for, so text in a column that nobody uses does no harm. A byte order mark, CRLF,
+/// blank lines, blanks around numbers and quoted cells are fine.
+#[derive(Debug, Clone)]
+pub struct CsvTable {
+    file: std::path::PathBuf,
+    headers: Vec<String>,
+    time: usize,
+    columns: Vec<Column>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Column {
+    numbers: Vec<f64>,
+    /// First cell that is not a finite number: its line and text.
+    flaw: Option<(u64, String)>,
+}
+
+impl CsvTable {
+    /// Reads a file whose time column is `t`.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
+        Self::read_with_time(path, TIME)
+    }
+
+    /// Reads a file whose time column has another name.
+    ///
+    /// The file's lines are counted first: one that is too large is refused before memory is taken for it.
+    pub fn read_with_time(path: impl AsRef<Path>, time: &str) -> Result<Self, CsvError> {
+        let path = path.as_ref();
+        let with_file = |problem: CsvProblem| CsvError { file: path.to_owned(), problem };
+        let open = || File::open(path).map_err(|source| with_file(CsvProblem::Unreadable { source }));
+        let file = open()?;
+        let is_file = file.metadata().map_err(|source| with_file(CsvProblem::Unreadable { source }))?.is_file();
+        if !is_file {
+            return Err(with_file(CsvProblem::NotAFile));
+        }
+        let lines = count_lines(BufReader::with_capacity(1 << 16, file)).map_err(with_file)?;
+        parse(path, BufReader::with_capacity(1 << 16, open()?), time, lines).map_err(with_file)
+    }
+
+    /// Reads a table from memory; `file` is the name that errors give it.
+    pub fn from_bytes(file: impl AsRef<Path>, bytes: &[u8], time: &str) -> Result<Self, CsvError> {
+        let file = file.as_ref();
+        let table = count_lines(bytes).and_then(|lines| parse(file, bytes, time, lines));
+        table.map_err(|problem| CsvError { file: file.to_owned(), problem })
+    }
+
+    /// The file it was read from.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// Names of the columns, in the file's order.
+    pub fn headers(&self) -> &[String] {
+        &self.headers
+    }
+
+    /// Times in the file's unit, increasing; at least two.
+    pub fn time(&self) -> &[f64] {
+        &self.columns[self.time].numbers
+    }
+
+    /// The numbers of a column, as many as there are times; an error if one of them is none or is not finite.
+    pub fn column(&self, name: &str) -> Result<&[f64], CsvError> {
+        let with_file = |problem| CsvError { file: self.file.clone(), problem };
+        let Some(index) = self.headers.iter().position(|header| header == name) else {
+            return Err(with_file(missing(name, &self.headers)));
+        };
+        let column = &self.columns[index];
+        match &column.flaw {
+            None => Ok(&column.numbers),
+            Some((line, text)) => Err(with_file(not_a_number(text, *line, index, name))),
+        }
+    }
+}
+
+/// Lines that are not empty; refuses what no table may have.
+fn count_lines(mut reader: impl BufRead) -> Result<u64, CsvProblem> {
+    let (mut lines, mut length) = (0_u64, 0_u64);
+    loop {
+        let chunk = reader.fill_buf().map_err(|source| CsvProblem::Unreadable { source })?;
+        if chunk.is_empty() {
+            return Ok(lines + u64::from(length > 0));
+        }
+        for &byte in chunk {
+            if byte == b'\n' || byte == b'\r' {
+                lines += u64::from(length > 0);
+                length = 0;
+            } else {
+                length += 1;
+            }
+            if length > MAX_LINE {
+                return Err(CsvProblem::LongLine { limit: MAX_LINE });
+            }
+        }
+        if lines > MAX_ROWS + 1 {
+            return Err(CsvProblem::TooLarge { limit: MAX_ROWS, what: "rows" });
+        }
+        let used = chunk.len();
+        reader.consume(used);
+    }
+}
+
+fn parse(file: &Path, reader: impl Read, time_name: &str, lines: u64) -> Result<CsvTable, CsvProblem> {
+    let mut reader =
+        ::csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(::csv::Trim::All).from_reader(reader);
+    let mut record = ::csv::ByteRecord::new();
+    let mut headers: Option<(Vec<String>, usize)> = None;
+    let mut columns: Vec<Column> = Vec::new();
+    while reader.read_byte_record(&mut record).map_err(unreadable)? {
+        let line = record.position().map_or(0, ::csv::Position::line);
+        let Some((names, time)) = &headers else {
+            if !is_blank(&record) {
+                let (names, time) = read_headers(&record, line, time_name)?;
+                if lines.saturating_mul(names.len() as u64) > MAX_NUMBERS {
+                    return Err(CsvProblem::TooLarge { limit: MAX_NUMBERS, what: "numbers" });
+                }
+                let rows = lines.saturating_sub(1) as usize;
+                columns = names.iter().map(|_| Column { numbers: Vec::with_capacity(rows), flaw: None }).collect();
+                headers = Some((names, time));
+            }
+            continue;
+        };
+        if is_blank(&record) {
+            continue;
+        }
+        if record.len() != names.len() {
+            return Err(CsvProblem::Ragged { line, given: record.len(), wanted: names.len() });
+        }
+        read_row(&record, line, names, *time, &mut columns)?;
+    }
+    let (headers, time) = headers.ok_or(CsvProblem::Empty)?;
+    let rows = columns[time].numbers.len();
+    if rows < 2 {
+        return Err(CsvProblem::TooFewRows { given: rows });
+    }
+    Ok(CsvTable { file: file.to_owned(), headers, time, columns })
+}
+
+fn read_headers(record: &::csv::ByteRecord, line: u64, time_name: &str) -> Result<(Vec<String>, usize), CsvProblem> {
+    let mut names: Vec<String> = Vec::with_capacity(record.len());
+    for (index, cell) in record.iter().enumerate() {
+        let column = index + 1;
+        let name = std::str::from_utf8(cell).map_err(|_| CsvProblem::NotUtf8 { line, column })?;
+        if name.is_empty() && record.len() > 1 {
+            return Err(CsvProblem::NoName { column });
+        }
+        if let Some(first) = names.iter().position(|other| other == name) {
+            return Err(CsvProblem::DuplicateName { name: shorten(name), first: first + 1, second: column });
+        }
+        names.push(name.to_owned());
+    }
+    if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+        return Err(CsvProblem::NoHeader { first: shorten(&names[0]) });
+    }
+    if let [only] = &names[..]
+        && let Some(separator) = only.chars().find(|c| matches!(c, ';' | '\t' | '|'))
+    {
+        return Err(CsvProblem::OtherSeparator { separator });
+    }
+    let Some(time) = names.iter().position(|name| name == time_name) else {
+        return Err(missing(time_name, &names));
+    };
+    Ok((names, time))
+}
+
+fn read_row(
+    record: &::csv::ByteRecord,
+    line: u64,
+    names: &[String],
+    time: usize,
+    columns: &mut [Column],
+) -> Result<(), CsvProblem> {
+    for (index, (cell, column)) in record.iter().zip(columns.iter_mut()).enumerate() {
+        let text = std::str::from_utf8(cell).map_err(|_| CsvProblem::NotUtf8 { line, column: index + 1 })?;
+        let number = text.parse().unwrap_or(f64::NAN);
+        if !number.is_finite() && index == time {
+            return Err(not_a_number(text, line, index, &names[index]));
+        }
+        if !number.is_finite() && column.flaw.is_none() {
+            column.flaw = Some((line, shorten(text)));
+        }
+        column.numbers.push(number);
+    }
+    match columns[time].numbers[..] {
+        [.., before, now] if now <= before => Err(CsvProblem::TimeNotIncreasing { line, time: now, before }),
+        _ => Ok(()),
+    }
+}
+
+fn is_blank(record: &::csv::ByteRecord) -> bool {
+    record.len() == 1 && record[0].is_empty()
+}
+
+fn unreadable(error: ::csv::Error) -> CsvProblem {
+    CsvProblem::Unreadable { source: error.into() }
+}
+
+fn not_a_number(text: &str, line: u64, index: usize, name: &str) -> CsvProblem {
+    let (text, name, column) = (shorten(text), shorten(name), index + 1);
+    // "nan" and "inf" parse, and so does 1e999.
+    if text.parse::<f64>().is_ok() {
+        CsvProblem::NotFinite { text, line, column, name }
+    } else {
+        CsvProblem::NotANumber { text, line, column, name }
+    }
+}
+
+fn missing(name: &str, headers: &[String]) -> CsvProblem {
+    let lower = name.to_lowercase();
+    let short = headers.iter().take(1000).filter(|header| header.len() <= 64);
+    let distance = |header: &str| strsim::damerau_levenshtein(&lower, &header.to_lowercase());
+    let close = short.map(|header| (distance(header), header)).min_by_key(|(distance, _)| *distance);
+    // A third of the letters may be wrong; "time" and "t" are one name.
+    let near = close.filter(|(distance, header)| 3 * distance <= header.len().min(name.len()));
+    let time = headers.iter().find(|header| name == TIME && header.to_lowercase().starts_with("time"));
+    let suggestion = near.map(|(_, header)| header).or(time).map(|header| shorten(header));
+    let listed = headers.iter().take(20).map(|header| shorten(header)).collect();
+    CsvProblem::MissingColumn { name: name.to_owned(), suggestion, headers: listed }
+}
+
+/// At most 40 characters, for messages.
+fn shorten(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}

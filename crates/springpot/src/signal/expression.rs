@@ -1,0 +1,255 @@
+//! Expressions of time: `0.1*sin(8*t)`.
+//!
+//! | | |
+//! |---|---|
+//! | operators, weakest first | `+ −`, `* /` (also `·`), sign, `^` (from the right: `2^3^2` is 2^9; `-2^2` is −4) |
+//! | names | `t`, `pi`, `e` |
+//! | functions | sin cos tan asin acos atan sinh cosh tanh exp log sqrt abs sign step; atan2(y, x); min and max of two or more |
+//!
+//! `log` is the natural logarithm, `step(x)` is 0 for x < 0 and 1 for x ≥ 0, `sign(0)` is 0, 0^0 is 1. Numbers may have an
+//! exponent (`1e-3`). A product is always written out.
+
+mod error;
+mod parse;
+
+pub use error::ExpressionError;
+pub(crate) use parse::number_length;
+
+use super::Jet;
+use super::jet::{Smooth, Value};
+use std::fmt;
+use std::str::FromStr;
+
+/// Longest text of an expression, in bytes.
+pub const MAX_LENGTH: usize = 4096;
+/// Deepest nesting of an expression.
+pub const MAX_DEPTH: usize = 64;
+/// Most functions with a kink (abs, sign, step, min, max, atan2) in one expression.
+pub const MAX_KINKS: usize = 64;
+/// Most intermediate results at a time.
+const MAX_STACK: usize = 32;
+
+/// One instruction; operands come before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Op {
+    Number(f64),
+    Time,
+    Negate,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Smooth(Smooth),
+    Abs,
+    Sign,
+    Step,
+    Min,
+    Max,
+    Atan2,
+}
+
+impl Op {
+    fn operands(self) -> usize {
+        match self {
+            Self::Number(_) | Self::Time => 0,
+            Self::Negate | Self::Smooth(_) | Self::Abs | Self::Sign | Self::Step => 1,
+            Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Power => 2,
+            Self::Min | Self::Max | Self::Atan2 => 2,
+        }
+    }
+
+    fn has_kink(self) -> bool {
+        matches!(self, Self::Abs | Self::Sign | Self::Step | Self::Min | Self::Max | Self::Atan2)
+    }
+}
+
+/// What a name stands for.
+#[derive(Debug, Clone, Copy)]
+enum Name {
+    Operand(Op),
+    Function(Op),
+}
+
+const NAMES: [(&str, Name); 22] = [
+    ("t", Name::Operand(Op::Time)),
+    ("pi", Name::Operand(Op::Number(std::f64::consts::PI))),
+    ("\u{3c0}", Name::Operand(Op::Number(std::f64::consts::PI))),
+    ("e", Name::Operand(Op::Number(std::f64::consts::E))),
+    ("sin", Name::Function(Op::Smooth(Smooth::Sin))),
+    ("cos", Name::Function(Op::Smooth(Smooth::Cos))),
+    ("tan", Name::Function(Op::Smooth(Smooth::Tan))),
+    ("asin", Name::Function(Op::Smooth(Smooth::Asin))),
+    ("acos", Name::Function(Op::Smooth(Smooth::Acos))),
+    ("atan", Name::Function(Op::Smooth(Smooth::Atan))),
+    ("atan2", Name::Function(Op::Atan2)),
+    ("sinh", Name::Function(Op::Smooth(Smooth::Sinh))),
+    ("cosh", Name::Function(Op::Smooth(Smooth::Cosh))),
+    ("tanh", Name::Function(Op::Smooth(Smooth::Tanh))),
+    ("exp", Name::Function(Op::Smooth(Smooth::Exp))),
+    ("log", Name::Function(Op::Smooth(Smooth::Log))),
+    ("sqrt", Name::Function(Op::Smooth(Smooth::Sqrt))),
+    ("abs", Name::Function(Op::Abs)),
+    ("sign", Name::Function(Op::Sign)),
+    ("min", Name::Function(Op::Min)),
+    ("max", Name::Function(Op::Max)),
+    ("step", Name::Function(Op::Step)),
+];
+
+fn lookup(name: &str) -> Option<Name> {
+    NAMES.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
+}
+
+/// Whether an expression knows this name.
+pub fn is_name(name: &str) -> bool {
+    lookup(name).is_some()
+}
+
+/// A function of t, kept as a flat program in postfix order; evaluation neither recurses nor allocates.
+///
+/// ```
+/// use springpot::signal::Expression;
+/// let x: Expression = "0.7*t^2".parse()?;
+/// let jet = x.at(0.0);
+/// assert_eq!((jet.value, jet.first, jet.second), (0.0, 0.0, 1.4));
+/// # Ok::<(), springpot::signal::ExpressionError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expression {
+    source: String,
+    program: Vec<Op>,
+    kinks: usize,
+}
+
+impl Expression {
+    /// Reads an expression.
+    pub fn parse(source: &str) -> Result<Self, ExpressionError> {
+        let program = parse::program(source)?;
+        let kinks = program.iter().filter(|op| op.has_kink()).count();
+        if kinks > MAX_KINKS {
+            return Err(ExpressionError::TooManyKinks { given: kinks, limit: MAX_KINKS });
+        }
+        Ok(Self { source: source.to_owned(), program, kinks })
+    }
+
+    /// The text it was read from.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// The value at `t`: the same number as `at(t).value`. NaN and infinities are returned as they are.
+    pub fn value(&self, t: f64) -> f64 {
+        run(&self.program, t, &mut 0)
+    }
+
+    /// Value and exact first two derivatives at `t`; at a kink or jump the derivatives are those from the right.
+    pub fn at(&self, t: f64) -> Jet {
+        run(&self.program, Jet::time(t), &mut 0)
+    }
+
+    /// One bit for each abs, sign, step (argument below zero), min, max (first argument below the second) and atan2 (below
+    /// the cut along the negative x axis), just after `t`: between two times with the same number none of them has
+    /// switched an odd number of times, and where it changes lies a kink or jump.
+    pub fn branch(&self, t: f64) -> u64 {
+        let mut branch = 0;
+        if self.has_kinks() {
+            run(&self.program, Jet::time(t), &mut branch);
+        }
+        branch
+    }
+
+    /// Whether [`branch`](Self::branch) can change.
+    pub fn has_kinks(&self) -> bool {
+        self.kinks > 0
+    }
+
+    /// The value, if `t` does not occur.
+    pub fn is_constant(&self) -> Option<f64> {
+        match self.program[..] {
+            [Op::Number(value)] => Some(value),
+            _ => None,
+        }
+    }
+}
+
+impl FromStr for Expression {
+    type Err = ExpressionError;
+
+    fn from_str(source: &str) -> Result<Self, ExpressionError> {
+        Self::parse(source)
+    }
+}
+
+/// The text it was read from.
+impl fmt::Display for Expression {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.source)
+    }
+}
+
+/// Runs a program that `parse` has checked: operands present, at most `MAX_STACK` of them.
+fn run<V: Value>(program: &[Op], time: V, branch: &mut u64) -> V {
+    let mut stack = [time; MAX_STACK];
+    let mut top = 0;
+    for &op in program {
+        let result = match op.operands() {
+            0 => match op {
+                Op::Number(value) => V::constant(value),
+                _ => time,
+            },
+            1 => {
+                top -= 1;
+                unary(op, stack[top], branch)
+            }
+            _ => {
+                top -= 2;
+                binary(op, stack[top], stack[top + 1], branch)
+            }
+        };
+        stack[top] = result;
+        top += 1;
+    }
+    stack[0]
+}
+
+fn unary<V: Value>(op: Op, argument: V, branch: &mut u64) -> V {
+    let u = argument.value();
+    match op {
+        Op::Smooth(function) => function.apply(argument),
+        Op::Negate => argument.neg(),
+        _ => {
+            let below = argument.is_below_zero();
+            *branch = *branch << 1 | u64::from(below);
+            match op {
+                Op::Abs => argument.apply(u.abs(), || (if below { -1.0 } else { 1.0 }, 0.0)),
+                _ if u.is_nan() => argument,
+                Op::Sign => V::constant(if u == 0.0 { 0.0 } else { u.signum() }),
+                _ => V::constant(if u >= 0.0 { 1.0 } else { 0.0 }),
+            }
+        }
+    }
+}
+
+fn binary<V: Value>(op: Op, first: V, second: V, branch: &mut u64) -> V {
+    match op {
+        Op::Add => first.add(second),
+        Op::Subtract => first.sub(second),
+        Op::Multiply => first.mul(second),
+        Op::Divide => first.div(second),
+        Op::Power => first.pow(second),
+        Op::Atan2 => {
+            *branch = *branch << 1 | u64::from(second.value() < 0.0 && first.is_below_zero());
+            first.atan2(second)
+        }
+        _ => {
+            let below = first.sub(second).is_below_zero();
+            *branch = *branch << 1 | u64::from(below);
+            // A NaN must not be chosen away.
+            if first.value().is_nan() || (!second.value().is_nan() && below == (op == Op::Min)) {
+                first
+            } else {
+                second
+            }
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Precedence climbing (V. R. Pratt, "Top down operator precedence", POPL 1973) from text to a postfix program.
+
+use super::{ExpressionError, MAX_DEPTH, MAX_LENGTH, MAX_STACK, NAMES, Name, Op, lookup, run};
+use std::ops::Range;
+
+const SIGN: u8 = 5;
+
+pub(super) fn program(text: &str) -> Result<Vec<Op>, ExpressionError> {
+    if text.len() > MAX_LENGTH {
+        return Err(ExpressionError::TooLong { length: text.len(), limit: MAX_LENGTH });
+    }
+    let mut parser = Parser { text, at: 0, depth: 0, height: 0, program: Vec::new() };
+    parser.expression(0)?;
+    match parser.peek() {
+        None => Ok(parser.program),
+        Some(_) => Err(parser.unexpected("an operator")),
+    }
+}
+
+/// Length of the number that `text` starts with: `digits[.digits][e[+-]digits]`, at least one digit before the exponent.
+pub(crate) fn number_length(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+    let whole = digits(0);
+    let (mut end, mut given) = (whole, whole);
+    if bytes.get(end) == Some(&b'.') {
+        let fraction = digits(end + 1);
+        given += fraction;
+        end += 1 + fraction;
+    }
+    if given == 0 {
+        return None;
+    }
+    // An e that no digits follow is not part of the number.
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let from = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        if from < bytes.len() && digits(from) > 0 {
+            end = from + digits(from);
+        }
+    }
+    Some(end)
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    at: usize,
+    depth: usize,
+    /// Intermediate results on the stack after the program so far.
+    height: usize,
+    program: Vec<Op>,
+}
+
+impl Parser<'_> {
+    /// An operand and every operator after it that binds more tightly than `floor`.
+    fn expression(&mut self, floor: u8) -> Result<(), ExpressionError> {
+        if self.depth == MAX_DEPTH {
+            return Err(self.too_deep());
+        }
+        self.depth += 1;
+        self.operand()?;
+        while let Some(c) = self.peek() {
+            let (op, left, right) = match c {
+                '+' => (Op::Add, 1, 2),
+                '-' | '\u{2212}' => (Op::Subtract, 1, 2),
+                '*' | '\u{b7}' | '\u{22c5}' => (Op::Multiply, 3, 4),
+                '/' => (Op::Divide, 3, 4),
+                '^' => (Op::Power, 8, 7),
+                ')' | ',' => break,
+                _ => return Err(self.unexpected("an operator (a product is written with `*`)")),
+            };
+            if left < floor {
+                break;
+            }
+            self.at += c.len_utf8();
+            self.expression(right)?;
+            self.emit(op)?;
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn operand(&mut self) -> Result<(), ExpressionError> {
+        const WANTED: &str = "a number, t, a function or a parenthesis";
+        match self.peek() {
+            Some(c @ ('-' | '\u{2212}')) => {
+                self.at += c.len_utf8();
+                self.expression(SIGN)?;
+                self.emit(Op::Negate)
+            }
+            Some('+') => {
+                self.at += 1;
+                self.expression(SIGN)
+            }
+            Some('(') => {
+                let open = self.at;
+                self.at += 1;
+                self.expression(0)?;
+                self.close(open)
+            }
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_alphabetic() || c == '_' => self.name(),
+            Some('*') if self.text[..self.at].ends_with('*') => {
+                Err(self.unexpected("a factor (a power is written `^`)"))
+            }
+            _ => Err(self.unexpected(WANTED)),
+        }
+    }
+
+    fn number(&mut self) -> Result<(), ExpressionError> {
+        let rest = &self.text[self.at..];
+        let Some(length) = number_length(rest) else {
+            return Err(self.unexpected("a number"));
+        };
+        let at = self.at..self.at + length;
+        self.at = at.end;
+        match rest[..length].parse::<f64>() {
+            Ok(value) if value.is_finite() => self.emit(Op::Number(value)),
+            _ => Err(ExpressionError::NotFinite { number: rest[..length].to_owned(), at }),
+        }
+    }
+
+    fn name(&mut self) -> Result<(), ExpressionError> {
+        let rest = &self.text[self.at..];
+        let name = &rest[..rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len())];
+        let at = self.at..self.at + name.len();
+        self.at = at.end;
+        match lookup(name) {
+            Some(Name::Operand(op)) => self.emit(op),
+            Some(Name::Function(op)) if self.peek() == Some('(') => self.call(name, op, at.start),
+            Some(Name::Function(_)) => Err(ExpressionError::NeedsParentheses { function: name.to_owned(), at }),
+            None => Err(ExpressionError::UnknownName { name: name.to_owned(), suggestion: suggest(name), at }),
+        }
+    }
+
+    fn call(&mut self, name: &str, op: Op, start: usize) -> Result<(), ExpressionError> {
+        let open = self.at;
+        self.at += 1;
+        let any_number = matches!(op, Op::Min | Op::Max);
+        let mut given = 0;
+        if self.peek() != Some(')') {
+            loop {
+                self.expression(0)?;
+                given += 1;
+                if any_number && given > 1 {
+                    self.emit(op)?;
+                }
+                if self.peek() != Some(',') {
+                    break;
+                }
+                self.at += 1;
+            }
+        }
+        self.close(open)?;
+        let wanted = match op.operands() {
+            1 => "one argument",
+            _ if any_number => "two or more arguments",
+            _ => "two arguments",
+        };
+        if given != op.operands() && !(any_number && given > 1) {
+            let (function, at) = (name.to_owned(), start..self.at);
+            return Err(ExpressionError::ArgumentCount { function, wanted, given, at });
+        }
+        if any_number { Ok(()) } else { self.emit(op) }
+    }
+
+    fn close(&mut self, open: usize) -> Result<(), ExpressionError> {
+        match self.peek() {
+            Some(')') => {
+                self.at += 1;
+                Ok(())
+            }
+            None => Err(ExpressionError::Unclosed { at: open..open + 1 }),
+            Some(_) => Err(self.unexpected("`)`")),
+        }
+    }
+
+    /// Appends an instruction; one whose operands are all numbers is carried out at once.
+    fn emit(&mut self, op: Op) -> Result<(), ExpressionError> {
+        self.height = self.height + 1 - op.operands();
+        if self.height > MAX_STACK {
+            return Err(self.too_deep());
+        }
+        self.program.push(op);
+        let start = self.program.len() - 1 - op.operands();
+        let operands = &self.program[start..self.program.len() - 1];
+        if !operands.is_empty() && operands.iter().all(|op| matches!(op, Op::Number(_))) {
+            let value = run(&self.program[start..], 0.0_f64, &mut 0);
+            self.program.truncate(start);
+            self.program.push(Op::Number(value));
+        }
+        Ok(())
+    }
+
+    /// The next character that is not blank.
+    fn peek(&mut self) -> Option<char> {
+        let rest = self.text[self.at..].trim_start();
+        self.at = self.text.len() - rest.len();
+        rest.chars().next()
+    }
+
+    fn here(&self) -> Range<usize> {
+        let width = self.text[self.at..].chars().next().map_or(0, char::len_utf8);
+        self.at..self.at + width
+    }
+
+    fn too_deep(&self) -> ExpressionError {
+        ExpressionError::TooDeep { at: self.here() }
+    }
+
+    fn unexpected(&self, wanted: &'static str) -> ExpressionError {
+        let at = self.here();
+        match &self.text[at.clone()] {
+            "" => ExpressionError::UnexpectedEnd { wanted, at },
+            found => ExpressionError::Unexpected { found: found.to_owned(), wanted, at },
+        }
+    }
+}
+
+/// Spellings that people try, and ours.
+const OTHER_SPELLINGS: [(&str, &str); 12] = [
+    ("ln", "log"),
+    ("arcsin", "asin"),
+    ("arccos", "acos"),
+    ("arctan", "atan"),
+    ("arctan2", "atan2"),
+    ("sgn", "sign"),
+    ("signum", "sign"),
+    ("heaviside", "step"),
+    ("pow", "^"),
+    ("power", "^"),
+    ("time", "t"),
+    ("fabs", "abs"),
+];
+
+fn suggest(name: &str) -> Option<String> {
+    let lower = name.to_lowercase();
+    let spelled = OTHER_SPELLINGS.iter().find(|(other, _)| *other == lower).map(|(_, ours)| *ours);
+    let meant = spelled.or_else(|| NAMES.iter().map(|(known, _)| *known).find(|known| *known == lower));
+    meant.or_else(|| nearest(name)).map(str::to_owned)
+}
+
+#[cfg(feature = "scenario")]
+fn nearest(name: &str) -> Option<&'static str> {
+    // Long names are nobody's slip, and the distance takes quadratic time.
+    if name.len() > 16 || name.chars().count() < 3 {
+        return None;
+    }
+    let known = NAMES.iter().map(|(known, _)| *known).filter(|known| known.len() > 2);
+    let measured = known.map(|known| (strsim::damerau_levenshtein(name, known), known));
+    measured.filter(|(distance, _)| *distance <= 2).min_by_key(|(distance, _)| *distance).map(|(_, known)| known)
+}
+
+#[cfg(not(feature = "scenario"))]
+fn nearest(_: &str) -> Option<&'static str> {
+    None
+}
