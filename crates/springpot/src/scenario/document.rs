@@ -110,7 +110,9 @@ impl Node {
     pub(crate) fn label(&self) -> String {
         match &self.value {
             Value::Text(text) => text.clone(),
-            Value::Number { value, .. } if self.place.text().parse::<f64>() != Ok(*value) => shortest(*value),
+            Value::Number { value, .. } if value.is_finite() && self.place.text().parse::<f64>() != Ok(*value) => {
+                shortest(*value)
+            }
             _ => self.place.text().to_owned(),
         }
     }

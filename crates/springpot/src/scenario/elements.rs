@@ -174,8 +174,8 @@ fn parameters(table: &Table<'_>, law: &Entry) -> Read<Vec<f64>> {
             None => law.params[at].default.filter(|_| law.params[at].unit.is_empty()),
         }
     };
-    // A quantity whose exponent was refused would be refused for the wrong reason.
-    if pure.contains(&Some(Err(Refused))) {
+    // A quantity whose exponent was refused or is missing would be refused for the wrong reason.
+    if pure.contains(&Some(Err(Refused))) || missing.iter().any(|param| param.unit.is_empty()) {
         return Err(Refused);
     }
     let values = law.params.iter().zip(&pure).map(|(param, pure)| match (pure, get(param)) {

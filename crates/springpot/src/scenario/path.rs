@@ -106,6 +106,10 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
         let help = "write keys joined by dots, as in element.strut.alpha or solver.rtol".to_owned();
         return Err(refuse(RefusalKind::BadName, message, help));
     };
+    if keys[0] == "sweep" {
+        let message = format!("{:?} is not a path: a [[sweep]] has no name", shorten(path));
+        return Err(refuse(RefusalKind::BadName, message, "set the parameter in the file's [[sweep]]".to_owned()));
+    }
     let mut node = Some(document);
     let mut steps = Vec::with_capacity(keys.len() + 1);
     for (at, key) in keys.iter().enumerate() {

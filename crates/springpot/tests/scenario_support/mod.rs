@@ -1,11 +1,13 @@
 //! What the tests of scenario files share: the example of the format, a small catalog, edits with marked places.
 
+#![allow(dead_code, reason = "each test uses its share")]
+
 use springpot::law::{Catalog, Derivative, Entry, Input, Law, Param, Range, RuleError};
 use springpot::scenario::{Cases, Refusals, Scenario};
 use std::sync::Arc;
 
 /// The example of the format, as the documentation shows it.
-pub const EXAMPLE: &str = include_str!("thermoviscoelastic.toml");
+pub(crate) const EXAMPLE: &str = include_str!("thermoviscoelastic.toml");
 
 #[derive(Debug)]
 struct Dummy;
@@ -17,7 +19,7 @@ fn param(name: &'static str, unit: &'static str, range: Range) -> Param {
 }
 
 /// Rows like those of the library, whose laws do nothing.
-pub fn catalog() -> Catalog {
+pub(crate) fn catalog() -> Catalog {
     const TEMPERATURE: Range = Range { low: 150.0, high: 1500.0 };
     let params: Vec<Param> = vec![
         param("E_c", "N/m", Range::NOT_NEGATIVE),
@@ -63,23 +65,23 @@ fn build(values: &[f64], _: Derivative) -> Result<Arc<dyn Law>, RuleError> {
     Ok(Arc::new(Dummy))
 }
 
-pub fn parse(text: &str) -> Result<Scenario, Refusals> {
+pub(crate) fn parse(text: &str) -> Result<Scenario, Refusals> {
     Scenario::parse(text, "arm.toml", "")
 }
 
-pub fn cases(text: &str) -> Result<Cases, Refusals> {
+pub(crate) fn cases(text: &str) -> Result<Cases, Refusals> {
     parse(text)?.cases(&catalog())
 }
 
 /// The example without its sweep.
-pub fn single() -> String {
+pub(crate) fn single() -> String {
     let start = EXAMPLE.find("[[sweep]]").unwrap();
     let end = EXAMPLE.find("[[figure]]").unwrap();
     format!("{}{}", &EXAMPLE[..start], &EXAMPLE[end..])
 }
 
 /// The text with every edit made; each must hit exactly once.
-pub fn edited(text: &str, edits: &[(&str, &str)]) -> String {
+pub(crate) fn edited(text: &str, edits: &[(&str, &str)]) -> String {
     edits.iter().fold(text.to_owned(), |text, (from, to)| {
         assert_eq!(text.matches(from).count(), 1, "{from:?} does not stand exactly once");
         text.replacen(from, to, 1)
@@ -87,7 +89,7 @@ pub fn edited(text: &str, edits: &[(&str, &str)]) -> String {
 }
 
 /// Takes the mark `‸` out of a text: the text, line and column (from 1, in characters) of the mark.
-pub fn marked(text: &str) -> (String, usize, usize) {
+pub(crate) fn marked(text: &str) -> (String, usize, usize) {
     assert_eq!(text.matches('‸').count(), 1, "one mark is needed");
     for (i, line) in text.split('\n').enumerate() {
         if let Some(column) = line.chars().position(|c| c == '‸') {
