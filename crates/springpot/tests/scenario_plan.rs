@@ -2,7 +2,7 @@
 
 mod scenario_support;
 
-use scenario_support::{EXAMPLE, cases, catalog, edited, parse, single};
+use scenario_support::{EXAMPLE, cases, catalog, edited, parameter, parse, single};
 use springpot::law::Derivative;
 use springpot::model::{Anchor, JointKind, Parent};
 use springpot::scenario::{FigureKind, MotionPlan, Rows, Scheme, SweptValue};
@@ -16,7 +16,11 @@ fn the_example_is_planned_whole() {
         assert_eq!(cases.values(i), [SweptValue::Number(alpha)]);
         assert_eq!(cases.labels(i), [if alpha == 1.0 { "1.0".to_owned() } else { alpha.to_string() }]);
         let plan = cases.plan(i).unwrap();
-        assert_eq!(plan.elements[0].parameters, [30.0, 20.0, 50.0, alpha, 0.0007, 273.15]);
+        for (name, value) in
+            [("E_c", 30.0), ("E_kv", 20.0), ("E_d", 50.0), ("alpha", alpha), ("a_kv", 0.0007), ("T_ref", 273.15)]
+        {
+            assert_eq!(parameter(&plan, name), value, "{name}");
+        }
     }
 
     let plan = cases.plan(2).unwrap();
@@ -170,7 +174,7 @@ fn exponents_follow_the_law() {
             &single(),
             &[("\"50 N*s^alpha/m\"", &format!("\"{unit}\"")), ("alpha = 0.5, a_kv", &format!("alpha = {alpha}, a_kv"))],
         );
-        cases(&text).and_then(|cases| cases.plan(0)).map(|plan| plan.elements[0].parameters[2])
+        cases(&text).and_then(|cases| cases.plan(0)).map(|plan| parameter(&plan, "E_d"))
     };
     assert_eq!(plan("50 N*s^0.5/m", "0.5"), Ok(50.0));
     assert_eq!(plan("50 N*s/m", "1"), Ok(50.0));

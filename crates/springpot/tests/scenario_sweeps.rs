@@ -2,7 +2,7 @@
 
 mod scenario_support;
 
-use scenario_support::{EXAMPLE, cases, catalog, edited, parse, single};
+use scenario_support::{EXAMPLE, cases, catalog, edited, parameter, parse, single};
 use springpot::law::Catalog;
 use springpot::scenario::{Cases, Plan, Refusals, Rows, Scheme, Selection, SweptValue};
 
@@ -24,7 +24,7 @@ fn numbers(cases: &Cases) -> Vec<f64> {
 }
 
 fn alpha(plan: &Plan) -> f64 {
-    plan.elements[0].parameters[3]
+    parameter(plan, "alpha")
 }
 
 fn temperature(plan: &Plan) -> f64 {
@@ -65,7 +65,7 @@ fn a_list_of_paths_moves_together() {
         grid("[[sweep]]\nparameter = [\"element.strut.E_c\", \"element.strut.E_kv\"]\nvalues = [1, \"2 N/cm\"]");
     assert_eq!(cases.len(), 2);
     let plan = cases.plan(1).unwrap();
-    assert_eq!(plan.elements[0].parameters[..2], [200.0, 200.0]);
+    assert_eq!(["E_c", "E_kv"].map(|name| parameter(&plan, name)), [200.0, 200.0]);
     assert_eq!(cases.values(1), [SweptValue::Number(200.0), SweptValue::Number(200.0)]);
     assert_eq!(cases.labels(1), ["2 N/cm", "2 N/cm"]);
 }
@@ -97,7 +97,7 @@ fn what_the_file_leaves_out_can_be_swept() {
     assert_eq!(cases.plan(1).unwrap().elements[0].from.point, [1.0, 0.0, 0.0]);
     assert_eq!(cases.values(1), [SweptValue::Text("[1, 0, 0]".into())]);
     let cases = grid("[[sweep]]\nparameter = \"element.strut.T_ref\"\nvalues = [\"10 degC\"]");
-    assert_eq!(cases.plan(0).unwrap().elements[0].parameters[5], 283.15);
+    assert_eq!(parameter(&cases.plan(0).unwrap(), "T_ref"), 283.15);
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn long_sweeps_are_made_one_by_one() {
     assert_eq!(cases.values(i), [SweptValue::Number(700.0), SweptValue::Number(0.9)]);
     assert_eq!(cases.labels(i), ["700 N/m", "0.9"]);
     let plan = cases.plan(i).unwrap();
-    assert_eq!((plan.elements[0].parameters[0], alpha(&plan)), (700.0, 0.9));
+    assert_eq!((parameter(&plan, "E_c"), alpha(&plan)), (700.0, 0.9));
 }
 
 #[test]
@@ -167,6 +167,21 @@ fn figures_select_swept_values() {
     let wanted = [Selection { axis: 0, value: 1 }, Selection { axis: 1, value: 1 }];
     assert_eq!(cases.figures()[0].selection, wanted);
     assert_eq!(cases.plan(5).unwrap().figures[0].selection, wanted);
+}
+
+#[test]
+fn figures_select_values_of_spans() {
+    let text = edited(
+        &with_blocks(
+            "[[sweep]]\nparameter = \"element.strut.E_c\"\nvalues = { from = 1, to = 1e6, count = 100001, scale = \"log\" }\n\
+             [[sweep]]\nparameter = \"element.strut.T\"\nvalues = { from = \"0 degC\", to = \"60 degC\", count = 7 }",
+        ),
+        &[("x = \"t\" ", "where = { \"element.strut.E_c\" = 1000, \"element.strut.T\" = \"20 degC\" } ")],
+    );
+    let cases = cases(&text).unwrap();
+    let wanted = [Selection { axis: 0, value: 50_000 }, Selection { axis: 1, value: 2 }];
+    assert_eq!(cases.figures()[0].selection, wanted);
+    assert_eq!(cases.axis_label(0, 50_000), "1000");
 }
 
 fn set(text: &str, assignments: &[&str]) -> Result<Plan, Refusals> {

@@ -10,6 +10,8 @@ use super::signals::CsvCache;
 use super::sweep::{self, Axis};
 use super::{Scenario, elements, motion, robot, time};
 use crate::law::Catalog;
+use std::cell::OnceCell;
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -262,16 +264,19 @@ impl Cases {
     #[allow(clippy::type_complexity)]
     fn read_figures(&self, ctx: &Context<'_>) -> Read<(Arc<[FigurePlan]>, Option<Arc<[String]>>)> {
         let root = Table::open(ctx, &self.document, "the scenario", &ROOT_KEYS)?;
-        let figures = figures::read(&root, &self.axes, &|axis, at, node| self.find(axis, at, node));
+        let labels: Vec<OnceCell<HashMap<String, usize>>> = self.axes.iter().map(|_| OnceCell::new()).collect();
+        let figures = figures::read(&root, &self.axes, &|axis, at, node| {
+            let labels = labels[axis].get_or_init(|| self.axes[axis].labels());
+            labels.get(&node.label()).copied().or_else(|| self.find(axis, at, node))
+        });
         let columns = figures::read_columns(&root);
         Ok((figures?, columns?))
     }
 
-    /// Which value of a sweep equals `node`, written the same way or of the same SI value.
+    /// Which value of a sweep has the number of `node`: that of a span, or one of a list in SI.
     fn find(&self, axis: usize, at: usize, node: &Node) -> Option<usize> {
         let swept = &self.axes[axis];
-        let label = node.label();
-        if let Some(k) = (0..swept.len()).find(|&k| swept.label(k) == label) {
+        if let Some(k) = swept.index_in_span(node) {
             return Some(k);
         }
         let mut document = self.document_at(&vec![0; self.axes.len()]);

@@ -28,6 +28,9 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
     }
     let mut seen = HashMap::new();
     all(items.iter().enumerate().map(|(i, item)| {
+        if item.ctx.full() {
+            return Err(Refused);
+        }
         let name = item.node.get("name").and_then(|node| node.text());
         let what = name.map_or_else(|| format!("element {}", i + 1), |name| format!("element {:?}", shorten(name)));
         let table = Table::open(item.ctx, item.node, what, &KEYS)?;

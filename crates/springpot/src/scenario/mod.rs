@@ -3,11 +3,35 @@
 //!
 //! Everything that is wrong in a scenario is a [`Refusal`] with file, line, column, value and what would be right.
 //!
-//! ```text
-//! let mut scenario = Scenario::read("arm.toml")?;
+//! ```
+//! use springpot::law::Catalog;
+//! use springpot::scenario::Scenario;
+//!
+//! let text = r#"
+//! [[robot.body]]
+//! name = "pendulum"
+//! joint = { name = "q1", kind = "revolute", axis = [0, 1, 0] }
+//! mass = "500 g"
+//! com = [0, 0, -0.3]
+//! [motion]
+//! kind = "prescribed"
+//! joints = { q1 = "0.1*sin(8*t)" }
+//! [time]
+//! end = "10 s"
+//! output_step = "10 ms"
+//! "#;
+//! let mut scenario = Scenario::parse(text, "pendulum.toml", "")?;
 //! scenario.set("solver.rtol=1e-7")?;
 //! let cases = scenario.cases(&Catalog::standard())?;
+//! assert_eq!(cases.len(), 1);
 //! let plan = cases.plan(0)?;
+//! assert_eq!(plan.bodies[0].mass, 0.5);
+//! assert_eq!(plan.time.row_count(), 1001);
+//!
+//! scenario.set("time.end=10 m")?;
+//! let refusals = scenario.cases(&Catalog::standard()).map(|_| ()).unwrap_err();
+//! assert!(refusals.to_string().starts_with("--set:1:13: `end` of [time]"));
+//! # Ok::<(), springpot::scenario::Refusals>(())
 //! ```
 
 mod cases;

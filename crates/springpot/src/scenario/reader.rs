@@ -47,7 +47,7 @@ impl<'a> Context<'a> {
     }
 
     /// Whether nothing more is noted.
-    fn full(&self) -> bool {
+    pub(crate) fn full(&self) -> bool {
         self.refusals.borrow().len() >= MAX_REFUSALS
     }
 
@@ -191,6 +191,9 @@ impl fmt::Display for Field<'_> {
 impl<'a> Field<'a> {
     /// Notes a refusal: `` `key` of owner `` + `message`, pointing at the value.
     pub(crate) fn refuse(&self, kind: RefusalKind, message: impl fmt::Display, help: Option<String>) -> Refused {
+        if self.ctx.full() {
+            return Refused;
+        }
         self.ctx.refuse(self.refusal(kind, message).help_if(help))
     }
 
@@ -200,6 +203,9 @@ impl<'a> Field<'a> {
 
     /// Refuses the kind of value; `right` says what it must be.
     pub(crate) fn wrong_type(&self, right: &str) -> Refused {
+        if self.ctx.full() {
+            return Refused;
+        }
         let message = format!("must be {right}, not {} {}", self.node.kind(), self.node.written());
         self.ctx.refuse(self.refusal(RefusalKind::WrongType, message).label(format!("expected {right}")))
     }
@@ -253,6 +259,9 @@ impl<'a> Field<'a> {
         let value = match &self.node.value {
             Value::Number { value, .. } => *value,
             Value::Text(text) => units::parse_quantity(text, unit, exponents).map_err(|error| {
+                if self.ctx.full() {
+                    return Refused;
+                }
                 let place = self.node.place_in_text(error.span());
                 let refusal = place.refuse(RefusalKind::BadQuantity, format!("{self}: {error}"));
                 self.ctx.refuse(refusal.label(unit_label(unit)).help(unit_help(unit)))

@@ -5,6 +5,7 @@ use super::path::{self, Target};
 use super::reader::{Field, Read, Table, all};
 use super::refusal::{Place, RefusalKind};
 use super::units;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Most values of one sweep, and most cases of a grid.
@@ -65,6 +66,28 @@ impl Axis {
         }
     }
 
+    /// Index of every label of a list, for looking up many.
+    pub(crate) fn labels(&self) -> HashMap<String, usize> {
+        match &self.values {
+            Values::List(list) => list.iter().enumerate().rev().map(|(k, node)| (node.label(), k)).collect(),
+            Values::Span(_) => HashMap::new(),
+        }
+    }
+
+    /// Index of a number or quantity that is written like the ends of a span.
+    pub(crate) fn index_in_span(&self, node: &Node) -> Option<usize> {
+        let Values::Span(span) = &self.values else { return None };
+        match &node.value {
+            Value::Number { value, .. } if span.unit.is_empty() => span.index(*value),
+            Value::Text(text) => {
+                let (number, unit) = units::split_quantity(text)?;
+                let number = units::parse_quantity(number, "", &|_| None).ok()?;
+                (unit == span.unit).then(|| span.index(number)).flatten()
+            }
+            _ => None,
+        }
+    }
+
     /// Value `k` for a legend, as written.
     pub(crate) fn label(&self, k: usize) -> String {
         match &self.values {
@@ -76,6 +99,19 @@ impl Axis {
 }
 
 impl Span {
+    /// Index of the value that is `number`.
+    fn index(&self, number: f64) -> Option<usize> {
+        let part = if self.logarithmic {
+            (number / self.from).ln() / (self.to / self.from).ln()
+        } else {
+            (number - self.from) / (self.to - self.from)
+        };
+        let k = (part * (self.count - 1) as f64).round();
+        let inside = k >= 0.0 && k < self.count as f64;
+        let near = |k: usize| (self.number(k) - number).abs() <= 1e-12 * number.abs();
+        inside.then_some(k as usize).filter(|&k| near(k))
+    }
+
     /// Number `k`; the ends are exact, what lies between is rounded to 15 digits so that 0.3 is 0.3.
     fn number(&self, k: usize) -> f64 {
         let last = self.count - 1;

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test uses its share")]
 
 use springpot::law::{Catalog, Derivative, Entry, Input, Law, Param, Range, RuleError};
-use springpot::scenario::{Cases, Refusals, Scenario};
+use springpot::scenario::{Cases, Plan, RefusalKind, Refusals, Scenario};
 use std::sync::Arc;
 
 /// The example of the format, as the documentation shows it.
@@ -97,4 +97,38 @@ pub(crate) fn marked(text: &str) -> (String, usize, usize) {
         }
     }
     unreachable!()
+}
+
+/// What is edited, what sort of refusal is wanted, and what its message or help must hold.
+pub(crate) type Case<'a> = (&'a [(&'a str, &'a str)], RefusalKind, &'a str);
+
+pub(crate) fn refusals(text: &str) -> Refusals {
+    cases(text).map(|cases| cases.len()).expect_err("this text must be refused")
+}
+
+/// Asserts that one refusal points at the mark and says what it should.
+pub(crate) fn assert_refused(base: &str, (edits, kind, words): &Case<'_>) {
+    let (text, line, column) = marked(&edited(base, edits));
+    let refusals = refusals(&text);
+    let shown = refusals.to_string();
+    let found = refusals.iter().find(|refusal| (refusal.line, refusal.column) == (line, column));
+    let refusal = found.unwrap_or_else(|| panic!("{edits:?}: nothing at {line}:{column} but\n{shown}"));
+    assert_eq!(refusal.kind, *kind, "{edits:?}:\n{shown}");
+    assert!(refusal.to_string().contains(words), "{edits:?}: no {words:?} in\n{shown}");
+    assert!(refusal.to_string().starts_with(&format!("arm.toml:{line}:{column}: ")), "{shown}");
+    assert!(text.get(refusal.span.clone()).is_some(), "{edits:?}: the span splits a character");
+    assert_eq!(&*refusal.text, text.as_str());
+}
+
+pub(crate) fn assert_all_refused(base: &str, cases: &[Case<'_>]) {
+    for case in cases {
+        assert_refused(base, case);
+    }
+}
+
+/// A parameter of the first element by name, SI.
+pub(crate) fn parameter(plan: &Plan, name: &str) -> f64 {
+    let element = &plan.elements[0];
+    let at = element.law.params.iter().position(|param| param.name == name).expect("a parameter of the law");
+    element.parameters[at]
 }
