@@ -123,13 +123,19 @@ fn count_lines(mut reader: impl BufRead) -> Result<u64, CsvProblem> {
 }
 
 fn parse(file: &Path, reader: impl Read, time_name: &str, lines: u64) -> Result<CsvTable, CsvProblem> {
-    let mut reader =
-        ::csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(::csv::Trim::All).from_reader(reader);
+    // Lines end with a line feed only (a carriage return before it is trimmed), the last one too: so the line that a record
+    // ends on is known, which the crate's own record position does not tell behind blank lines and CRLF.
+    let mut reader = ::csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(::csv::Trim::All)
+        .terminator(::csv::Terminator::Any(b'\n'))
+        .from_reader(reader.chain(&b"\n"[..]));
     let mut record = ::csv::ByteRecord::new();
     let mut headers: Option<(Vec<String>, usize)> = None;
     let mut columns: Vec<Column> = Vec::new();
     while reader.read_byte_record(&mut record).map_err(unreadable)? {
-        let line = record.position().map_or(0, ::csv::Position::line);
+        let line = reader.position().line() - 1;
         let Some((names, time)) = &headers else {
             if !is_blank(&record) {
                 let (names, time) = read_headers(&record, line, time_name)?;
@@ -232,8 +238,11 @@ fn missing(name: &str, headers: &[String]) -> CsvProblem {
     let short = headers.iter().take(1000).filter(|header| header.len() <= 64);
     let distance = |header: &str| strsim::damerau_levenshtein(&lower, &header.to_lowercase());
     let close = short.map(|header| (distance(header), header)).min_by_key(|(distance, _)| *distance);
-    // A third of the letters may be wrong; "time" and "t" are one name.
-    let near = close.filter(|(distance, header)| 3 * distance <= header.len().min(name.len()));
+    // One letter of two, a third of many may be wrong.
+    let near = close.filter(|(distance, header)| {
+        let length = header.len().min(name.len());
+        *distance == 0 || (length > 1 && *distance <= (length / 3).max(1))
+    });
     let time = headers.iter().find(|header| name == TIME && header.to_lowercase().starts_with("time"));
     let suggestion = near.map(|(_, header)| header).or(time).map(|header| shorten(header));
     let listed = headers.iter().take(20).map(|header| shorten(header)).collect();

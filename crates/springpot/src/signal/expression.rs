@@ -13,6 +13,7 @@ mod error;
 mod parse;
 
 pub use error::ExpressionError;
+#[cfg(feature = "scenario")]
 pub(crate) use parse::number_length;
 
 use super::Jet;
@@ -244,12 +245,11 @@ fn binary<V: Value>(op: Op, first: V, second: V, branch: &mut u64) -> V {
         _ => {
             let below = first.sub(second).is_below_zero();
             *branch = *branch << 1 | u64::from(below);
+            let (u, v) = (first.value(), second.value());
             // A NaN must not be chosen away.
-            if first.value().is_nan() || (!second.value().is_nan() && below == (op == Op::Min)) {
-                first
-            } else {
-                second
-            }
+            let chosen = if u.is_nan() || (!v.is_nan() && below == (op == Op::Min)) { first } else { second };
+            // Of two zeros the sign must not depend on where the derivatives are taken from.
+            if u == v { chosen.apply(u, || (1.0, 0.0)) } else { chosen }
         }
     }
 }

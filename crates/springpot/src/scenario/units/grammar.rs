@@ -40,10 +40,10 @@ impl Product {
         let dimension = self.dimension.pow(exponent);
         let (above, below) = if exponent < 0.0 { (self.down, self.up) } else { (self.up, self.down) };
         let size = exponent.abs();
-        // A power of ten stays one as long as its exponent is an integer up to the rounding of 3·(1/3).
+        // 3·(1/3) is 1 in floating point too, and so for 6, 9 and 12: a root that is a power of ten stays one.
         let ten = f64::from(self.decimal) * exponent;
         let whole = ten.round();
-        let left = if (ten - whole).abs() <= 1e-14 * whole.abs().max(1.0) { 0.0 } else { ten - whole };
+        let left = ten - whole;
         let (up, down) = if size.fract() == 0.0 {
             (above.powi(size as u32), below.powi(size as u32))
         } else {
