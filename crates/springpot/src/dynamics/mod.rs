@@ -1,1 +1,39 @@
-//! (under construction)
+//! Rigid-body algorithms, one a file.
+//!
+//! The equations of motion are M(q) a + C(q, v) v + g(q) = τ + ΣQ with the mass matrix (basic metric tensor) M, the
+//! Coriolis and centrifugal forces (C v)_c = Γ_ab,c v^a v^b, the gravity vector g = ∂V/∂q and the generalized forces Q of
+//! the elements. All results are in SI units and world axes, all matrices row-major.
+//!
+//! A [`Kinematics`] holds where the links are (and how they move) and is shared by all algorithms that only read it; a
+//! [`Workspace`] is scratch, one per thread, with nothing worth reading. `foo_into` writes into the caller's slice and does
+//! not allocate; `foo` allocates its result and its scratch. Slices of a wrong length panic.
+//!
+//! Every algorithm is generic over one [`Scalar`](crate::spatial::Scalar) and never branches on its values.
+
+mod christoffel;
+mod crba;
+mod energy;
+mod gravity;
+mod jacobian;
+mod joint;
+mod kinematics;
+#[cfg(test)]
+mod lanes_fit;
+mod pair;
+mod rnea;
+mod workspace;
+
+pub use christoffel::{christoffel, christoffel_into};
+pub use crba::{crba, crba_into};
+pub use energy::{kinetic_energy, potential_energy};
+pub use gravity::{gravity, gravity_into};
+pub use jacobian::{
+    angular_jacobian, angular_jacobian_into, angular_jacobian_rate, angular_jacobian_rate_into, point_jacobian,
+    point_jacobian_into, point_jacobian_rate, point_jacobian_rate_into,
+};
+pub use kinematics::Kinematics;
+pub use pair::{
+    CoincidentAnchors, Pair, PairForce, add_generalized_force, pair, pair_hessian, pair_hessian_into, pair_into,
+};
+pub use rnea::{rnea, rnea_into};
+pub use workspace::Workspace;

@@ -1,66 +1,34 @@
 //! The robot: bodies, joints, anchors.
+//!
+//! A robot is described body by body ([`BodySpec`]) and built once into a constant [`Model`], which threads share.
+//!
+//! ```
+//! use springpot::model::{BodySpec, JointSpec, ModelBuilder, Parent};
+//!
+//! let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
+//! builder.push(BodySpec {
+//!     name: "rod".into(),
+//!     parent: Parent::World,
+//!     joint: JointSpec::revolute("q1", [0.0, 1.0, 0.0], [0.0; 3]),
+//!     mass: 2.0,
+//!     com: [0.5, 0.0, 0.0],
+//!     inertia: [[0.001, 0.0, 0.0], [0.0, 0.17, 0.0], [0.0, 0.0, 0.17]],
+//! })?;
+//! let model = builder.finish()?;
+//! assert_eq!(model.nv(), 1);
+//! # Ok::<(), springpot::model::ModelError>(())
+//! ```
 
-/// Where a body hangs: on the world or on an earlier body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Parent {
-    /// The inertial frame.
-    World,
-    /// Index of an earlier body of the builder.
-    Body(usize),
-}
+mod builder;
+mod error;
+mod mass_check;
+mod principal;
+mod robot;
+mod spec;
+mod validate;
 
-/// The kinds of joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JointKind {
-    /// No coordinate.
-    Fixed,
-    /// One angle about the axis.
-    Revolute,
-    /// One displacement along the axis.
-    Prismatic,
-}
-
-/// A joint as it is described: pose of the joint frame in the parent's joint frame, then motion about or along `axis`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct JointSpec {
-    /// Unique name.
-    pub name: String,
-    /// Kind of motion.
-    pub kind: JointKind,
-    /// Axis in the joint frame (any length but zero).
-    pub axis: [f64; 3],
-    /// Origin of the joint frame in the parent's joint frame, m.
-    pub origin: [f64; 3],
-    /// Roll, pitch, yaw of the joint frame in the parent's (R = Rz(yaw) Ry(pitch) Rx(roll)), rad.
-    pub rpy: [f64; 3],
-    /// Viscous damping, N·m·s/rad or N·s/m.
-    pub damping: f64,
-    /// Coulomb friction, N·m or N.
-    pub friction: f64,
-}
-
-/// A body as it is described.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BodySpec {
-    /// Unique name.
-    pub name: String,
-    /// What the joint hangs on.
-    pub parent: Parent,
-    /// The joint that carries the body.
-    pub joint: JointSpec,
-    /// Mass, kg.
-    pub mass: f64,
-    /// Centre of mass in the joint frame, m.
-    pub com: [f64; 3],
-    /// Inertia tensor about the centre of mass in the joint frame's axes, kg·m² (off-diagonals are tensor components).
-    pub inertia: [[f64; 3]; 3],
-}
-
-/// A point fixed in a body (or in the world).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Anchor {
-    /// The body that carries the point.
-    pub body: Parent,
-    /// The point in the body's joint frame (world frame for the world), m.
-    pub point: [f64; 3],
-}
+pub use builder::ModelBuilder;
+pub use error::{Field, ModelError, Subject};
+pub(crate) use robot::JointMotion;
+pub use robot::{Frame, Model, Site};
+pub use spec::{Anchor, BodySpec, JointKind, JointSpec, Parent};

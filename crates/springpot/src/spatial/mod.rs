@@ -1,1 +1,26 @@
-//! (under construction)
+//! Vectors, rotations and spatial quantities; nothing here knows a robot.
+//!
+//! Every type is a plain `Copy` array over one sealed [`Scalar`], `f64` by default.
+//! A [`Motion`] or [`Force`] is a pair of three-vectors taken at the origin of the frame it is expressed in.
+
+mod force;
+mod inertia;
+mod motion;
+#[cfg(test)]
+mod pair_of_lanes;
+mod placement;
+mod rotation;
+mod scalar;
+mod symmetric;
+mod vector;
+
+pub use force::Force;
+pub use inertia::Inertia;
+pub use motion::Motion;
+#[cfg(test)]
+pub(crate) use pair_of_lanes::Two;
+pub use placement::Placement;
+pub use rotation::Rotation;
+pub use scalar::Scalar;
+pub use symmetric::Symmetric3;
+pub use vector::Vec3;

@@ -1,0 +1,40 @@
+//! The gravity vector.
+
+use super::{Kinematics, Workspace};
+use crate::model::{JointMotion, Model};
+use crate::spatial::{Scalar, Vec3};
+
+/// Gravity vector g(q) = ∂V/∂q = −Σ_i m_i g·T_c(C_i), N·m or N, on the side of the inertia forces: the generalized force of
+/// gravity is Q = −g(q).
+///
+/// `out` is nv; needs positions. A joint feels the weight of all it carries: −Om·(H × g) or −m e·g, with the first moments H
+/// about the joint's origin.
+pub fn gravity_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace: &mut Workspace<T>, out: &mut [T]) {
+    let n = model.nv();
+    let out = &mut out[..n];
+    let field = Vec3::from_f64(model.gravity().into());
+    let first = &mut workspace.columns[..n];
+    for j in 0..n {
+        first[j] = kinematics.link(j + 1).rotation * Vec3::from_f64(model.link_inertia(j).first_moment);
+    }
+    for j in (0..n).rev() {
+        let link = kinematics.link(j + 1);
+        let (axis, mass) = (link.rotation.z_axis(), T::from_f64(model.subtree_mass(j)));
+        out[j] = -match model.motion(j) {
+            JointMotion::Revolute => axis.dot(first[j].cross(field)),
+            JointMotion::Prismatic => axis.dot(field) * mass,
+        };
+        if let Some(parent) = model.parent_link(j).checked_sub(1) {
+            let arm = link.translation - kinematics.link(parent + 1).translation;
+            let carried = arm.times_plus(mass, first[j]);
+            first[parent] += carried;
+        }
+    }
+}
+
+/// [`gravity_into`], allocating.
+pub fn gravity<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec<T> {
+    let mut out = vec![T::ZERO; model.nv()];
+    gravity_into(model, kinematics, &mut Workspace::new(model), &mut out);
+    out
+}

@@ -1,0 +1,104 @@
+//! Jacobians of points and of the angular velocity, and their time derivatives.
+
+use super::{Kinematics, joint};
+use crate::model::{JointMotion, Model, Site};
+use crate::spatial::{Scalar, Vec3};
+
+/// Jacobian of a point, dr_P/dt = J v: column b is T_b(P) = e_b × (r_P − O_b) (revolute) or e_b (prismatic), and 0 for the
+/// joints that do not carry P. World axes, m/rad or 1.
+///
+/// `jacobian` is 3 × nv, row-major; needs positions.
+pub fn point_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, jacobian: &mut [T]) {
+    let n = clear(model, jacobian);
+    let point = kinematics.position(site);
+    for j in joint::path_to_world(model, site.link()) {
+        set_column(jacobian, n, j, joint::point_column(model, j, kinematics.link(j + 1), point));
+    }
+}
+
+/// [`point_jacobian_into`], allocating.
+pub fn point_jacobian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site) -> Vec<T> {
+    let mut jacobian = vec![T::ZERO; 3 * model.nv()];
+    point_jacobian_into(model, kinematics, site, &mut jacobian);
+    jacobian
+}
+
+/// Time derivative of [`point_jacobian_into`], so that d²r_P/dt² = J a + J̇ v: column b is ė_b × (r_P − O_b) +
+/// e_b × (ṙ_P − Ȯ_b) (revolute) or ė_b (prismatic), with ė_b = ω_b × e_b.
+///
+/// `rate` is 3 × nv, row-major; needs velocities.
+pub fn point_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, rate: &mut [T]) {
+    let n = clear(model, rate);
+    let (position, velocity) = (kinematics.position(site), kinematics.velocity(site));
+    for j in joint::path_to_world(model, site.link()) {
+        let (link, motion) = (kinematics.link(j + 1), kinematics.link_velocity(j + 1));
+        let axis = link.rotation.z_axis();
+        let axis_rate = motion.angular.cross(axis);
+        let column = match model.motion(j) {
+            JointMotion::Revolute => {
+                axis_rate.cross(position - link.translation) + axis.cross(velocity - motion.linear)
+            }
+            JointMotion::Prismatic => axis_rate,
+        };
+        set_column(rate, n, j, column);
+    }
+}
+
+/// [`point_jacobian_rate_into`], allocating.
+pub fn point_jacobian_rate<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site) -> Vec<T> {
+    let mut rate = vec![T::ZERO; 3 * model.nv()];
+    point_jacobian_rate_into(model, kinematics, site, &mut rate);
+    rate
+}
+
+/// Jacobian of the angular velocity of the body that carries `site`, ω = J v: column b is Om_b = e_b (revolute) or 0.
+/// World axes.
+///
+/// `jacobian` is 3 × nv, row-major; needs positions. The point of the site has no influence.
+pub fn angular_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, jacobian: &mut [T]) {
+    let n = clear(model, jacobian);
+    for j in joint::path_to_world(model, site.link()) {
+        set_column(jacobian, n, j, joint::angular_column(model, j, kinematics.link(j + 1)));
+    }
+}
+
+/// [`angular_jacobian_into`], allocating.
+pub fn angular_jacobian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site) -> Vec<T> {
+    let mut jacobian = vec![T::ZERO; 3 * model.nv()];
+    angular_jacobian_into(model, kinematics, site, &mut jacobian);
+    jacobian
+}
+
+/// Time derivative of [`angular_jacobian_into`], so that dω/dt = J a + J̇ v: column b is ω_b × e_b (revolute) or 0.
+///
+/// `rate` is 3 × nv, row-major; needs velocities.
+pub fn angular_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, rate: &mut [T]) {
+    let n = clear(model, rate);
+    for j in joint::path_to_world(model, site.link()) {
+        let axis = joint::angular_column(model, j, kinematics.link(j + 1));
+        set_column(rate, n, j, kinematics.link_velocity(j + 1).angular.cross(axis));
+    }
+}
+
+/// [`angular_jacobian_rate_into`], allocating.
+pub fn angular_jacobian_rate<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site) -> Vec<T> {
+    let mut rate = vec![T::ZERO; 3 * model.nv()];
+    angular_jacobian_rate_into(model, kinematics, site, &mut rate);
+    rate
+}
+
+#[inline]
+fn clear<T: Scalar>(model: &Model, matrix: &mut [T]) -> usize {
+    let n = model.nv();
+    assert_eq!(matrix.len(), 3 * n, "the Jacobian is 3 x nv");
+    matrix.fill(T::ZERO);
+    n
+}
+
+#[inline]
+fn set_column<T: Scalar>(matrix: &mut [T], n: usize, column: usize, v: Vec3<T>) {
+    let [x, y, z] = v.0;
+    matrix[column] = x;
+    matrix[n + column] = y;
+    matrix[2 * n + column] = z;
+}

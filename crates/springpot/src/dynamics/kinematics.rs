@@ -1,0 +1,194 @@
+//! Forward kinematics: where the links are and how they move.
+
+use super::joint;
+use crate::model::{Frame, JointMotion, Model, Site};
+use crate::spatial::{Motion, Placement, Scalar, Vec3};
+
+/// How far the last update went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Position,
+    Velocity,
+    Acceleration,
+}
+
+/// Placements, velocities and accelerations of all links in one state, in world axes.
+///
+/// Velocities are needed by point velocities, Jacobian rates, pairs and the kinetic energy, accelerations by point
+/// accelerations alone. Reading further than the last update went is a programming error (a debug assertion).
+#[derive(Debug, Clone)]
+pub struct Kinematics<T = f64> {
+    level: Level,
+    // Indexed by link; 0 is the world and never moves.
+    placements: Vec<Placement<T>>,
+    /// ω, and the velocity of the link's origin.
+    velocities: Vec<Motion<T>>,
+    /// dω/dt, and the acceleration of the link's origin (the second derivative of its position).
+    accelerations: Vec<Motion<T>>,
+    joint_velocities: Vec<T>,
+}
+
+impl<T: Scalar> Kinematics<T> {
+    /// The robot at q = 0, positions only.
+    pub fn new(model: &Model) -> Self {
+        let n = model.nv();
+        let mut kinematics = Self {
+            level: Level::Position,
+            placements: vec![Placement::IDENTITY; n + 1],
+            velocities: vec![Motion::ZERO; n + 1],
+            accelerations: vec![Motion::ZERO; n + 1],
+            joint_velocities: vec![T::ZERO; n],
+        };
+        kinematics.update_position(model, &vec![T::ZERO; n]);
+        kinematics
+    }
+
+    /// The robot at `q` (nq).
+    pub fn at_position(model: &Model, q: &[T]) -> Self {
+        let mut kinematics = Self::new(model);
+        kinematics.update_position(model, q);
+        kinematics
+    }
+
+    /// The robot at `q` (nq) with velocities `v` (nv).
+    pub fn at_velocity(model: &Model, q: &[T], v: &[T]) -> Self {
+        let mut kinematics = Self::new(model);
+        kinematics.update_velocity(model, q, v);
+        kinematics
+    }
+
+    /// The robot at `q` (nq) with velocities `v` (nv) and accelerations `a` (nv).
+    pub fn at_acceleration(model: &Model, q: &[T], v: &[T], a: &[T]) -> Self {
+        let mut kinematics = Self::new(model);
+        kinematics.update_acceleration(model, q, v, a);
+        kinematics
+    }
+
+    /// Moves to `q` (nq): placements alone. Does not allocate.
+    pub fn update_position(&mut self, model: &Model, q: &[T]) {
+        self.level = Level::Position;
+        let n = model.nv();
+        let q = &q[..n];
+        assert_eq!(self.placements.len(), n + 1, "the kinematics are of another model");
+        for j in 0..n {
+            let local = joint::placement(model, j, q[j]);
+            self.placements[j + 1] = self.placements[model.parent_link(j)] * local;
+        }
+    }
+
+    /// Moves to `q` (nq) with velocities `v` (nv). Does not allocate.
+    ///
+    /// With r from the parent link's origin to the joint's: ω = ω_p + e q̇, ṗ = ṗ_p + ω_p × r (revolute); ω = ω_p,
+    /// ṗ = ṗ_p + ω_p × r + e q̇ (prismatic).
+    pub fn update_velocity(&mut self, model: &Model, q: &[T], v: &[T]) {
+        self.update_position(model, q);
+        self.level = Level::Velocity;
+        let n = model.nv();
+        self.joint_velocities.copy_from_slice(&v[..n]);
+        for j in 0..n {
+            let parent = model.parent_link(j);
+            let link = &self.placements[j + 1];
+            let (axis, arm) = (link.rotation.z_axis(), link.translation - self.placements[parent].translation);
+            let Motion { angular, linear } = self.velocities[parent];
+            let carried = linear + angular.cross(arm);
+            self.velocities[j + 1] = match model.motion(j) {
+                JointMotion::Revolute => Motion { angular: axis.times_plus(v[j], angular), linear: carried },
+                JointMotion::Prismatic => Motion { angular, linear: axis.times_plus(v[j], carried) },
+            };
+        }
+    }
+
+    /// Moves to `q` (nq) with velocities `v` (nv) and accelerations `a` (nv). Does not allocate.
+    ///
+    /// ω̇ = ω̇_p + ω_p × e q̇ + e q̈, p̈ = p̈_p + ω̇_p × r + ω_p × (ω_p × r) (revolute); ω̇ = ω̇_p, p̈ the same
+    /// + 2 ω_p × e q̇ + e q̈ (prismatic).
+    pub fn update_acceleration(&mut self, model: &Model, q: &[T], v: &[T], a: &[T]) {
+        self.update_velocity(model, q, v);
+        self.level = Level::Acceleration;
+        let n = model.nv();
+        let a = &a[..n];
+        let two = T::from_f64(2.0);
+        for j in 0..n {
+            let parent = model.parent_link(j);
+            let link = &self.placements[j + 1];
+            let (axis, arm) = (link.rotation.z_axis(), link.translation - self.placements[parent].translation);
+            let omega = self.velocities[parent].angular;
+            let Motion { angular, linear } = self.accelerations[parent];
+            let carried = linear + angular.cross(arm) + omega.cross(omega.cross(arm));
+            let gyration = omega.cross(axis);
+            self.accelerations[j + 1] = match model.motion(j) {
+                JointMotion::Revolute => {
+                    Motion { angular: axis.times_plus(a[j], gyration.times_plus(v[j], angular)), linear: carried }
+                }
+                JointMotion::Prismatic => {
+                    Motion { angular, linear: axis.times_plus(a[j], gyration.times_plus(two * v[j], carried)) }
+                }
+            };
+        }
+    }
+
+    /// World placement of `link` (0 is the world, joint j moves link j + 1).
+    #[inline]
+    pub fn link(&self, link: usize) -> &Placement<T> {
+        &self.placements[link]
+    }
+
+    /// World placement of a body's joint frame; its `rotation` takes body components to world components.
+    #[inline]
+    pub fn frame(&self, frame: &Frame) -> Placement<T> {
+        self.placements[frame.link()] * Placement::from_f64(frame.placement())
+    }
+
+    /// World position r_P of a point, m.
+    #[inline]
+    pub fn position(&self, site: &Site) -> Vec3<T> {
+        self.placements[site.link()].point(Vec3::from_f64(site.point()))
+    }
+
+    /// World velocity dr_P/dt of a point, m/s.
+    #[inline]
+    pub fn velocity(&self, site: &Site) -> Vec3<T> {
+        self.velocity_at(site.link(), self.arm(site))
+    }
+
+    /// World acceleration d²r_P/dt² of a point, m/s² (gravity is no part of it).
+    #[inline]
+    pub fn acceleration(&self, site: &Site) -> Vec3<T> {
+        let Motion { angular, linear } = self.link_acceleration(site.link());
+        let (omega, arm) = (self.velocities[site.link()].angular, self.arm(site));
+        linear + angular.cross(arm) + omega.cross(omega.cross(arm))
+    }
+
+    /// ω, rad/s, and velocity of the origin, m/s, of `link` in world axes.
+    #[inline]
+    pub fn link_velocity(&self, link: usize) -> Motion<T> {
+        debug_assert!(self.level >= Level::Velocity, "the kinematics hold positions only");
+        self.velocities[link]
+    }
+
+    /// dω/dt, rad/s², and acceleration of the origin, m/s², of `link` in world axes.
+    #[inline]
+    pub fn link_acceleration(&self, link: usize) -> Motion<T> {
+        debug_assert!(self.level >= Level::Acceleration, "the kinematics hold no accelerations");
+        self.accelerations[link]
+    }
+
+    /// The joint velocities of the last update.
+    #[inline]
+    pub fn joint_velocities(&self) -> &[T] {
+        debug_assert!(self.level >= Level::Velocity, "the kinematics hold positions only");
+        &self.joint_velocities
+    }
+
+    /// From the origin of the point's link to the point, world axes.
+    #[inline]
+    pub(super) fn arm(&self, site: &Site) -> Vec3<T> {
+        self.placements[site.link()].rotation * Vec3::from_f64(site.point())
+    }
+
+    #[inline]
+    fn velocity_at(&self, link: usize, arm: Vec3<T>) -> Vec3<T> {
+        let Motion { angular, linear } = self.link_velocity(link);
+        linear + angular.cross(arm)
+    }
+}

@@ -1,0 +1,65 @@
+//! Two states side by side give, lane by lane, the very bits that each gives alone.
+
+use super::*;
+use crate::model::{Anchor, BodySpec, JointSpec, Model, ModelBuilder, Parent};
+use crate::spatial::{Scalar, Two};
+
+/// Five joints of both kinds on two branches.
+fn model() -> Model {
+    let mut builder = ModelBuilder::new([0.1, -0.2, -9.81]);
+    for k in 0..5usize {
+        let joint = if k % 3 == 1 { JointSpec::prismatic } else { JointSpec::revolute };
+        builder
+            .push(BodySpec {
+                name: format!("b{k}"),
+                parent: if k == 3 { Parent::Body(0) } else { k.checked_sub(1).map_or(Parent::World, Parent::Body) },
+                joint: joint(format!("q{k}"), [0.3, k as f64, 1.0], [0.2, 0.1, 0.4]),
+                mass: 1.0 + k as f64,
+                com: [0.1, 0.2, -0.1],
+                inertia: [[0.2, 0.01, 0.0], [0.01, 0.25, 0.02], [0.0, 0.02, 0.3]],
+            })
+            .unwrap();
+    }
+    builder.finish().unwrap()
+}
+
+/// Everything the algorithms say about one state (or two), in a row.
+fn everything<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T]) -> Vec<T> {
+    let [from, to, base] = [(Parent::Body(2), 0.3), (Parent::Body(4), -0.2), (Parent::World, 1.0)]
+        .map(|(body, x)| model.resolve(&Anchor { body, point: [x, 0.1, 0.2] }).unwrap());
+    let kinematics = Kinematics::at_acceleration(model, q, v, a);
+    let (here, gradient) = pair(model, &kinematics, &from, &to);
+    let force = |from, to| PairForce { from, to, force: here.length, d_length: T::ONE, d_rate: T::ZERO };
+    let mut all =
+        vec![here.length, here.rate, kinetic_energy(model, &kinematics), potential_energy(model, &kinematics)];
+    all.extend(here.direction.0);
+    all.extend(kinematics.acceleration(&to).0);
+    all.extend(rnea(model, q, v, a, &[force(from, to), force(base, to)]));
+    all.extend(crba(model, &kinematics));
+    all.extend(christoffel(model, &kinematics));
+    all.extend(gravity(model, &kinematics));
+    all.extend(point_jacobian(model, &kinematics, &from));
+    all.extend(point_jacobian_rate(model, &kinematics, &from));
+    all.extend(angular_jacobian(model, &kinematics, &to));
+    all.extend(angular_jacobian_rate(model, &kinematics, &to));
+    all.extend(pair_hessian(model, &kinematics, &from, &to, &here));
+    all.extend(gradient);
+    all
+}
+
+#[test]
+fn lanes_do_not_meet() {
+    let model = model();
+    let n = model.nv();
+    let single = |seed: f64| -> Vec<f64> { (0..n).map(|j| (seed + 1.3 * j as f64).sin()).collect() };
+    let (first, second) = ([0.1, 0.2, 0.3].map(single), [5.4, 2.5, -7.6].map(single));
+    let joined: [Vec<Two>; 3] =
+        [0, 1, 2].map(|k| first[k].iter().zip(&second[k]).map(|(&x, &y)| Two([x, y])).collect());
+    let alone = [&first, &second].map(|[q, v, a]| everything(&model, q, v, a));
+    let together = everything(&model, &joined[0], &joined[1], &joined[2]);
+    assert_eq!(together.len(), alone[0].len());
+    for (k, both) in together.iter().enumerate() {
+        assert_eq!(both.0, [alone[0][k], alone[1][k]], "entry {k}");
+    }
+    assert_ne!(alone[0], alone[1]);
+}

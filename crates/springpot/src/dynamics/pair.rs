@@ -1,0 +1,166 @@
+//! Two points of two bodies: their distance, its derivatives, and a force along the line that joins them.
+
+use super::{Kinematics, Workspace, joint};
+use crate::model::{Model, Site};
+use crate::spatial::{Scalar, Vec3};
+
+/// Multiples of the rounding unit of the positions below which a distance has no direction.
+const DIRECTION_TOLERANCE: f64 = 16.0 * f64::EPSILON;
+
+/// Distance of two points in one state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair<T = f64> {
+    /// l = |l_vec| with l_vec = r_to − r_from, m.
+    pub length: T,
+    /// dl/dt = Σ_b ∂l/∂q_b v_b, m/s.
+    pub rate: T,
+    /// l_vec/l, world axes. NaN where the length is 0.
+    pub direction: Vec3<T>,
+    /// |r_from|² + |r_to|², the measure of the rounding in l_vec.
+    scale_squared: T,
+}
+
+/// Two anchors coincide, so that the line between them has no direction and the force no line to act along.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("the two anchors coincide (length {length} m): there is no direction for the force")]
+pub struct CoincidentAnchors {
+    /// The length, m.
+    pub length: f64,
+}
+
+impl Pair<f64> {
+    /// Whether the line has a direction.
+    ///
+    /// # Errors
+    /// [`CoincidentAnchors`] where the length is below 16 rounding units of the anchors' positions (or not a number): rate,
+    /// direction and derivatives are then NaN or noise.
+    pub fn check(&self) -> Result<(), CoincidentAnchors> {
+        let smallest = DIRECTION_TOLERANCE * self.scale_squared.sqrt();
+        if self.length > smallest { Ok(()) } else { Err(CoincidentAnchors { length: self.length }) }
+    }
+}
+
+/// A force between two anchors, and how it answers to their distance; plain numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairForce<T = f64> {
+    /// The first anchor.
+    pub from: Site,
+    /// The second anchor.
+    pub to: Site,
+    /// F, N, positive in tension: it pulls the two points together.
+    pub force: T,
+    /// ∂F/∂l, N/m.
+    pub d_length: T,
+    /// ∂F/∂(dl/dt), N·s/m.
+    pub d_rate: T,
+}
+
+/// Length, rate and direction from `from` to `to`, and ∂l/∂q_b = (l_vec/l)·(T_b(to) − T_b(from)).
+///
+/// `gradient` is nv, m/rad or 1, and exactly 0 for joints that carry both points or neither; needs velocities. Where the
+/// points coincide, rate, direction and gradient are NaN: call [`Pair::check`].
+pub fn pair_into<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    from: &Site,
+    to: &Site,
+    gradient: &mut [T],
+) -> Pair<T> {
+    let gradient = &mut gradient[..model.nv()];
+    let v = kinematics.joint_velocities();
+    let (start, end) = (kinematics.position(from), kinematics.position(to));
+    let line = end - start;
+    let length = line.norm();
+    let direction = line * (T::ONE / length);
+    let common = joint::common_link(model, from.link(), to.link());
+    gradient.fill(T::ZERO);
+    let mut rate = T::ZERO;
+    for j in joint::path_to(model, to.link(), common) {
+        gradient[j] = direction.dot(joint::point_column(model, j, kinematics.link(j + 1), end));
+        rate = gradient[j].times_plus(v[j], rate);
+    }
+    for j in joint::path_to(model, from.link(), common) {
+        gradient[j] = -direction.dot(joint::point_column(model, j, kinematics.link(j + 1), start));
+        rate = gradient[j].times_plus(v[j], rate);
+    }
+    Pair { length, rate, direction, scale_squared: start.dot(start) + end.dot(end) }
+}
+
+/// [`pair_into`], allocating: the pair and its gradient.
+pub fn pair<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, from: &Site, to: &Site) -> (Pair<T>, Vec<T>) {
+    let mut gradient = vec![T::ZERO; model.nv()];
+    let pair = pair_into(model, kinematics, from, to, &mut gradient);
+    (pair, gradient)
+}
+
+/// Second derivatives ∂²l/∂q_a∂q_b of the pair's length, from `pair` as [`pair_into`] gave it.
+///
+/// With u = l_vec/l and t_b = ∂l_vec/∂q_b,
+///
+/// ∂²l/∂q_a∂q_b = (t_a·t_b − ∂_a l ∂_b l)/l + u·∂t_hi/∂q_lo,
+///
+/// where the last term stands for two joints that carry the same end alone, lo the inner one: ±u·(Om_lo × T_hi). `hessian`
+/// is nv × nv, row-major, symmetric (all entries are written); needs positions. NaN where the points coincide.
+pub fn pair_hessian_into<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    from: &Site,
+    to: &Site,
+    pair: &Pair<T>,
+    workspace: &mut Workspace<T>,
+    hessian: &mut [T],
+) {
+    let n = model.nv();
+    assert_eq!(hessian.len(), n * n, "the Hessian is nv x nv");
+    hessian.fill(T::ZERO);
+    let columns = &mut workspace.columns[..n];
+    let common = joint::common_link(model, from.link(), to.link());
+    let (start, end) = (kinematics.position(from), kinematics.position(to));
+    for j in joint::path_to(model, from.link(), common) {
+        columns[j] = -joint::point_column(model, j, kinematics.link(j + 1), start);
+    }
+    for j in joint::path_to(model, to.link(), common) {
+        columns[j] = joint::point_column(model, j, kinematics.link(j + 1), end);
+    }
+    let (direction, inverse) = (pair.direction, T::ONE / pair.length);
+    let mut set = |a: usize, b: usize, turned: T| {
+        let along = direction.dot(columns[a]) * direction.dot(columns[b]);
+        let entry = (columns[a].dot(columns[b]) - along).times_plus(inverse, turned);
+        hessian[a * n + b] = entry;
+        hessian[b * n + a] = entry;
+    };
+    for site in [from, to] {
+        for hi in joint::path_to(model, site.link(), common) {
+            for lo in joint::path_to(model, hi + 1, common) {
+                let spin = joint::angular_column(model, lo, kinematics.link(lo + 1));
+                set(lo, hi, direction.dot(spin.cross(columns[hi])));
+            }
+        }
+    }
+    for a in joint::path_to(model, from.link(), common) {
+        for b in joint::path_to(model, to.link(), common) {
+            set(a, b, T::ZERO);
+        }
+    }
+}
+
+/// [`pair_hessian_into`], allocating.
+pub fn pair_hessian<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    from: &Site,
+    to: &Site,
+    pair: &Pair<T>,
+) -> Vec<T> {
+    let n = model.nv();
+    let mut hessian = vec![T::ZERO; n * n];
+    pair_hessian_into(model, kinematics, from, to, pair, &mut Workspace::new(model), &mut hessian);
+    hessian
+}
+
+/// Adds the generalized force Q_b = −F ∂l/∂q_b of a tension F to `q_force` (nv), N·m or N.
+pub fn add_generalized_force<T: Scalar>(force: T, gradient: &[T], q_force: &mut [T]) {
+    for (q, &d) in q_force.iter_mut().zip(gradient) {
+        *q -= force * d;
+    }
+}

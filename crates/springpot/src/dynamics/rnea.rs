@@ -1,0 +1,88 @@
+//! Inverse dynamics by the recursive Newton–Euler algorithm.
+
+use super::{PairForce, Workspace, joint};
+use crate::model::{JointMotion, Model};
+use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Vec3};
+
+/// Actuator forces τ = M(q) a + C(q, v) v + g(q) − ΣQ, N·m or N, with Q_b = −F ∂l/∂q_b of every pair force.
+///
+/// `q` (nq), `v`, `a`, `tau` (nv). Joint damping and friction are no part of it. A pair of length 0 gives NaN; see
+/// [`Pair::check`](super::Pair::check). Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, table 5.1.
+pub fn rnea_into<T: Scalar>(
+    model: &Model,
+    q: &[T],
+    v: &[T],
+    a: &[T],
+    pairs: &[PairForce<T>],
+    workspace: &mut Workspace<T>,
+    tau: &mut [T],
+) {
+    let n = model.nv();
+    let (q, v, a, tau) = (&q[..n], &v[..n], &a[..n], &mut tau[..n]);
+    let ws = workspace;
+    ws.velocity[0] = Motion::ZERO;
+    // A frame that accelerates upwards feels gravity.
+    ws.acceleration[0] = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(model.gravity().into()) };
+    ws.force[0] = Force::ZERO;
+    for j in 0..n {
+        let parent = model.parent_link(j);
+        let local = joint::placement(model, j, q[j]);
+        let mut velocity = local.motion_to_child(ws.velocity[parent]);
+        let mut acceleration = local.motion_to_child(ws.acceleration[parent]);
+        // With S along z: v += S q̇, a += S q̈ + v × S q̇.
+        match model.motion(j) {
+            JointMotion::Revolute => {
+                let ([wx, wy, _], [ux, uy, _]) = (velocity.angular.0, velocity.linear.0);
+                velocity.angular.0[2] += v[j];
+                acceleration.angular += Vec3([wy * v[j], -(wx * v[j]), a[j]]);
+                acceleration.linear += Vec3([uy * v[j], -(ux * v[j]), T::ZERO]);
+            }
+            JointMotion::Prismatic => {
+                let [wx, wy, _] = velocity.angular.0;
+                velocity.linear.0[2] += v[j];
+                acceleration.linear += Vec3([wy * v[j], -(wx * v[j]), a[j]]);
+            }
+        }
+        let inertia = Inertia::from_f64(model.link_inertia(j));
+        ws.force[j + 1] = inertia * acceleration + velocity.cross_force(inertia * velocity);
+        ws.velocity[j + 1] = velocity;
+        ws.acceleration[j + 1] = acceleration;
+        ws.local[j] = local;
+    }
+    if !pairs.is_empty() {
+        subtract_pair_forces(model, pairs, ws);
+    }
+    for j in (0..n).rev() {
+        let force = ws.force[j + 1];
+        tau[j] = match model.motion(j) {
+            JointMotion::Revolute => force.angular.0[2],
+            JointMotion::Prismatic => force.linear.0[2],
+        };
+        let on_parent = ws.local[j].force_to_parent(force);
+        ws.force[model.parent_link(j)] += on_parent;
+    }
+}
+
+/// [`rnea_into`], allocating.
+pub fn rnea<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T], pairs: &[PairForce<T>]) -> Vec<T> {
+    let mut tau = vec![T::ZERO; model.nv()];
+    rnea_into(model, q, v, a, pairs, &mut Workspace::new(model), &mut tau);
+    tau
+}
+
+/// Takes what the pairs do off the forces that the joints must supply, so that one backward pass serves any number of pairs.
+fn subtract_pair_forces<T: Scalar>(model: &Model, pairs: &[PairForce<T>], ws: &mut Workspace<T>) {
+    ws.world[0] = Placement::IDENTITY;
+    for j in 0..model.nv() {
+        ws.world[j + 1] = ws.world[model.parent_link(j)] * ws.local[j];
+    }
+    for pair in pairs {
+        let (from, to) = (pair.from.link(), pair.to.link());
+        let (from_point, to_point) = (Vec3::from_f64(pair.from.point()), Vec3::from_f64(pair.to.point()));
+        let line = ws.world[to].point(to_point) - ws.world[from].point(from_point);
+        // Tension pulls `from` towards `to`.
+        let pull = line * (pair.force / line.norm());
+        ws.force[from] -= Force::at_point(ws.world[from].rotation.unrotate(pull), from_point);
+        ws.force[to] += Force::at_point(ws.world[to].rotation.unrotate(pull), to_point);
+    }
+}

@@ -1,0 +1,134 @@
+//! Whether the mass matrix is positive definite.
+
+use super::error::ModelError;
+use super::robot::{JointMotion, Model};
+use crate::spatial::{Inertia, Placement, Vec3};
+
+/// A pivot below this share of what it was computed from is rounding.
+const PIVOT_TOLERANCE: f64 = 1e-14;
+
+type Vec6 = [f64; 6];
+type Matrix6 = [Vec6; 6];
+
+/// Refuses a robot whose mass matrix is singular in every configuration.
+///
+/// The pivots of M = Lᵀ D L are the inertias D_j that joint j feels when all joints beyond it are free (Featherstone, Rigid
+/// Body Dynamics Algorithms, 2008, §7.3). det M is analytic in q: if it vanishes at one generic q, it does so everywhere. A
+/// singularity of single configurations (point masses on massless rods) is not seen here.
+pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
+    let n = model.nv();
+    let length = length_scale(model);
+    let mut articulated: Vec<Matrix6> = model.inertias.iter().map(matrix).collect();
+    // What the diagonal blocks would be without the subtraction, the measure of their rounding error.
+    let mut gross: Vec<[f64; 2]> = articulated.iter().map(block_traces).collect();
+    for j in (0..n).rev() {
+        let axis = match model.motions[j] {
+            JointMotion::Revolute => 2,
+            JointMotion::Prismatic => 5,
+        };
+        let inertia = articulated[j];
+        let column = inertia.map(|row| row[axis]);
+        let pivot = column[axis];
+        let body = model.bodies_of_joints[j];
+        let name = || model.body_names[body].clone();
+        if !gross[j].iter().all(|x| x.is_finite()) || !pivot.is_finite() {
+            return Err(ModelError::Overflow { body, name: name() });
+        }
+        if pivot <= PIVOT_TOLERANCE * gross[j][axis / 3] {
+            return Err(ModelError::SingularMassMatrix { body, name: name(), joint: model.joint_names[j].clone() });
+        }
+        let Some(parent) = model.parents[j].checked_sub(1) else { continue };
+        let mut reduced = inertia;
+        for r in 0..6 {
+            for c in 0..6 {
+                reduced[r][c] -= column[r] * column[c] / pivot;
+            }
+        }
+        let transform = force_transform(&generic_placement(model, j, length));
+        let moved = congruence(&transform, &reduced);
+        let lost = transform.map(|row| (0..6).map(|k| row[k] * column[k]).sum::<f64>());
+        let traces = block_traces(&moved);
+        for block in 0..2 {
+            let lost_here: f64 = lost[3 * block..3 * block + 3].iter().map(|x| x * x / pivot).sum();
+            gross[parent][block] += traces[block] + lost_here;
+        }
+        for r in 0..6 {
+            for c in 0..6 {
+                articulated[parent][r][c] += moved[r][c];
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A length of the robot's own size, m.
+fn length_scale(model: &Model) -> f64 {
+    let offsets = model.placements.iter().map(|p| p.translation.norm());
+    let centres = model.inertias.iter().filter(|i| i.mass > 0.0).map(|i| i.first_moment.norm() / i.mass);
+    let largest = offsets.chain(centres).filter(|x| x.is_finite()).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+/// The placement of joint j at a coordinate without special angles or distances.
+fn generic_placement(model: &Model, j: usize, length: f64) -> Placement {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let generic = 0.37 + ((j + 1) as f64 * GOLDEN).fract();
+    let at_zero = model.placements[j];
+    match model.motions[j] {
+        JointMotion::Revolute => {
+            let (sin, cos) = generic.sin_cos();
+            Placement { rotation: at_zero.rotation.turned_about_z(sin, cos), ..at_zero }
+        }
+        JointMotion::Prismatic => {
+            let translation = at_zero.rotation.z_axis().times_plus(generic * length, at_zero.translation);
+            Placement { translation, ..at_zero }
+        }
+    }
+}
+
+/// \[v\]× as rows.
+fn cross_matrix(v: Vec3) -> [[f64; 3]; 3] {
+    let [x, y, z] = v.0;
+    [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
+}
+
+/// The 6 × 6 inertia, angular rows first: [[I, h×], [−h×, m 1]].
+fn matrix(inertia: &Inertia) -> Matrix6 {
+    let (rotational, h) = (inertia.rotational.to_matrix(), cross_matrix(inertia.first_moment));
+    let mut m = [[0.0; 6]; 6];
+    for r in 0..3 {
+        m[3 + r][3 + r] = inertia.mass;
+        for c in 0..3 {
+            m[r][c] = rotational[r][c];
+            m[r][3 + c] = h[r][c];
+            m[3 + r][c] = -h[r][c];
+        }
+    }
+    m
+}
+
+/// The matrix that takes (moment, force) from child to parent: [[R, p× R], [0, R]].
+fn force_transform(placement: &Placement) -> Matrix6 {
+    let r = placement.rotation.0;
+    let p = cross_matrix(placement.translation);
+    let mut m = [[0.0; 6]; 6];
+    for i in 0..3 {
+        for k in 0..3 {
+            m[i][k] = r[i][k];
+            m[3 + i][3 + k] = r[i][k];
+            m[i][3 + k] = (0..3).map(|l| p[i][l] * r[l][k]).sum();
+        }
+    }
+    m
+}
+
+/// X A Xᵀ.
+fn congruence(x: &Matrix6, a: &Matrix6) -> Matrix6 {
+    let product = x.map(|row| [0, 1, 2, 3, 4, 5].map(|c| (0..6).map(|k| row[k] * a[k][c]).sum::<f64>()));
+    product.map(|row| [0, 1, 2, 3, 4, 5].map(|c| (0..6).map(|k| row[k] * x[c][k]).sum()))
+}
+
+/// Traces of the angular and of the linear diagonal block.
+fn block_traces(m: &Matrix6) -> [f64; 2] {
+    [m[0][0] + m[1][1] + m[2][2], m[3][3] + m[4][4] + m[5][5]]
+}

@@ -1,0 +1,93 @@
+//! Whether a described body makes physical sense.
+
+use super::error::{Field, ModelError};
+use super::principal::principal_moments;
+use super::spec::{BodySpec, JointKind, Parent};
+
+/// Refuses a principal moment below minus this share of the largest one.
+const POSITIVE_TOLERANCE: f64 = 1e-12;
+/// Refuses a largest principal moment that exceeds the sum of the others by more than this share of itself.
+const TRIANGLE_TOLERANCE: f64 = 1e-9;
+/// Refuses off-diagonals that differ by more than this share of the largest entry.
+const SYMMETRY_TOLERANCE: f64 = 1e-12;
+
+/// Checks all that concerns the body numbered `body` alone (names against other bodies are the builder's business).
+pub(super) fn body(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
+    names(body, spec)?;
+    if let Parent::Body(parent) = spec.parent
+        && parent >= body
+    {
+        return Err(ModelError::ParentNotEarlier { body, name: spec.name.clone(), parent });
+    }
+    numbers(body, spec)?;
+    if spec.joint.kind != JointKind::Fixed && spec.joint.axis == [0.0; 3] {
+        return Err(ModelError::ZeroAxis { body, joint: spec.joint.name.clone() });
+    }
+    inertia(body, spec)
+}
+
+/// Whether `name` matches `[A-Za-z_][A-Za-z0-9_-]*`.
+fn is_identifier(name: &str) -> bool {
+    let mut bytes = name.bytes();
+    bytes.next().is_some_and(|b| b.is_ascii_alphabetic() || b == b'_')
+        && bytes.all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
+}
+
+fn names(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
+    for (field, name) in [(Field::Name, &spec.name), (Field::JointName, &spec.joint.name)] {
+        if !is_identifier(name) {
+            return Err(ModelError::InvalidName { body, field, name: name.clone() });
+        }
+    }
+    if spec.name == "world" {
+        return Err(ModelError::ReservedName { body });
+    }
+    Ok(())
+}
+
+fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
+    let joint = &spec.joint;
+    let fields: [(Field, &[f64]); 8] = [
+        (Field::Axis, &joint.axis),
+        (Field::Origin, &joint.origin),
+        (Field::Rpy, &joint.rpy),
+        (Field::Damping, &[joint.damping]),
+        (Field::Friction, &[joint.friction]),
+        (Field::Mass, &[spec.mass]),
+        (Field::Com, &spec.com),
+        (Field::Inertia, spec.inertia.as_flattened()),
+    ];
+    for (field, values) in fields {
+        if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+            return Err(ModelError::NotFinite { body, name: spec.name.clone(), field, value });
+        }
+    }
+    for (field, value) in [(Field::Damping, joint.damping), (Field::Friction, joint.friction), (Field::Mass, spec.mass)]
+    {
+        if value < 0.0 {
+            return Err(ModelError::Negative { body, name: spec.name.clone(), field, value });
+        }
+    }
+    Ok(())
+}
+
+fn inertia(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
+    let m = spec.inertia;
+    let name = || spec.name.clone();
+    let scale = m.iter().flatten().fold(0.0, |s: f64, x| s.max(x.abs()));
+    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+        let (upper, lower) = (m[row][column], m[column][row]);
+        if (upper - lower).abs() > SYMMETRY_TOLERANCE * scale {
+            return Err(ModelError::AsymmetricInertia { body, name: name(), row, column, upper, lower });
+        }
+    }
+    let [smallest, middle, largest] = principal_moments(m);
+    if smallest < -POSITIVE_TOLERANCE * largest.abs() {
+        return Err(ModelError::InertiaNotPositive { body, name: name(), smallest });
+    }
+    let others = smallest + middle;
+    if largest - others > TRIANGLE_TOLERANCE * largest {
+        return Err(ModelError::TriangleInequality { body, name: name(), largest, others });
+    }
+    Ok(())
+}

@@ -1,0 +1,48 @@
+//! Spatial forces: wrenches and momenta.
+
+use std::ops::{Add, AddAssign, SubAssign};
+
+use super::{Scalar, Vec3};
+
+/// A wrench (or a momentum): linear part, and moment about the origin of the frame in which it is expressed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Force<T = f64> {
+    /// Force, N (or linear momentum, kg·m/s).
+    pub linear: Vec3<T>,
+    /// Moment about the origin, N·m (or angular momentum, kg·m²/s).
+    pub angular: Vec3<T>,
+}
+
+impl<T: Scalar> Force<T> {
+    /// No force.
+    pub const ZERO: Self = Self { linear: Vec3::ZERO, angular: Vec3::ZERO };
+
+    /// The wrench of a force that acts at `point`.
+    #[inline]
+    pub fn at_point(force: Vec3<T>, point: Vec3<T>) -> Self {
+        Self { linear: force, angular: point.cross(force) }
+    }
+}
+
+impl<T: Scalar> Add for Force<T> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self { linear: self.linear + other.linear, angular: self.angular + other.angular }
+    }
+}
+
+impl<T: Scalar> AddAssign for Force<T> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Scalar> SubAssign for Force<T> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        self.linear -= other.linear;
+        self.angular -= other.angular;
+    }
+}

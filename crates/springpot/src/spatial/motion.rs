@@ -1,0 +1,42 @@
+//! Spatial motions: velocities and accelerations of a frame.
+
+use std::ops::Add;
+
+use super::{Force, Scalar, Vec3};
+
+/// Angular part and linear part at the origin of the frame in which it is expressed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Motion<T = f64> {
+    /// Angular velocity (rad/s) or acceleration (rad/s²).
+    pub angular: Vec3<T>,
+    /// Linear velocity (m/s) or acceleration (m/s²) of the origin.
+    pub linear: Vec3<T>,
+}
+
+impl<T: Scalar> Motion<T> {
+    /// No motion.
+    pub const ZERO: Self = Self { angular: Vec3::ZERO, linear: Vec3::ZERO };
+
+    /// The cross product with a force, v ×* f = (ω × f, ω × n + v × f) in the order (linear, angular).
+    #[inline]
+    pub fn cross_force(self, f: Force<T>) -> Force<T> {
+        Force {
+            linear: self.angular.cross(f.linear),
+            angular: self.angular.cross(f.angular) + self.linear.cross(f.linear),
+        }
+    }
+
+    /// Power f · v, W, of a force at the same origin.
+    #[inline]
+    pub fn dot(self, f: Force<T>) -> T {
+        self.angular.dot(f.angular) + self.linear.dot(f.linear)
+    }
+}
+
+impl<T: Scalar> Add for Motion<T> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self { angular: self.angular + other.angular, linear: self.linear + other.linear }
+    }
+}

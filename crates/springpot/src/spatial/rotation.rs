@@ -1,0 +1,117 @@
+//! Rotation matrices.
+
+use std::ops::Mul;
+
+use super::{Scalar, Vec3};
+
+/// A rotation matrix R, row-major: it takes components in the child frame to components in the parent frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotation<T = f64>(pub [[T; 3]; 3]);
+
+impl<T: Scalar> Rotation<T> {
+    /// No rotation.
+    pub const IDENTITY: Self =
+        Self([[T::ONE, T::ZERO, T::ZERO], [T::ZERO, T::ONE, T::ZERO], [T::ZERO, T::ZERO, T::ONE]]);
+
+    /// A constant rotation (the same in every state).
+    #[inline]
+    pub fn from_f64(r: &Rotation<f64>) -> Self {
+        Self(r.0.map(|row| row.map(T::from_f64)))
+    }
+
+    /// Rodrigues' formula R = I + sin q \[e\]× + (1 − cos q) \[e\]×² for a unit vector `axis` and an angle in rad.
+    #[inline]
+    pub fn from_axis_angle(axis: Vec3<T>, angle: T) -> Self {
+        let (s, c) = angle.sin_cos();
+        let [x, y, z] = axis.0;
+        let k = T::ONE - c;
+        // [e]×² = e eᵀ − I for a unit vector, so that the diagonal is e_i² (1 − c) + c.
+        Self([
+            [k * x * x + c, k * x * y - s * z, k * x * z + s * y],
+            [k * x * y + s * z, k * y * y + c, k * y * z - s * x],
+            [k * x * z - s * y, k * y * z + s * x, k * z * z + c],
+        ])
+    }
+
+    /// R · Rz(angle) from the sine and cosine of the angle; the third column stays.
+    #[inline]
+    pub fn turned_about_z(&self, sin: T, cos: T) -> Self {
+        Self(self.0.map(|[a, b, c]| [a.times_plus(cos, b * sin), b.times_plus(cos, -(a * sin)), c]))
+    }
+
+    /// The rows, as vectors.
+    #[inline]
+    pub fn rows(&self) -> [Vec3<T>; 3] {
+        self.0.map(Vec3)
+    }
+
+    /// The third column: the z axis of the child frame in the parent frame.
+    #[inline]
+    pub fn z_axis(&self) -> Vec3<T> {
+        Vec3([self.0[0][2], self.0[1][2], self.0[2][2]])
+    }
+
+    /// Rᵀ, the inverse.
+    #[inline]
+    pub fn transpose(&self) -> Self {
+        let m = &self.0;
+        Self([[m[0][0], m[1][0], m[2][0]], [m[0][1], m[1][1], m[2][1]], [m[0][2], m[1][2], m[2][2]]])
+    }
+
+    /// Rᵀ v: from parent components to child components.
+    #[inline]
+    pub fn unrotate(&self, v: Vec3<T>) -> Vec3<T> {
+        let ([x, y, z], m) = (v.0, &self.0);
+        Vec3([
+            m[2][0].times_plus(z, m[1][0].times_plus(y, m[0][0] * x)),
+            m[2][1].times_plus(z, m[1][1].times_plus(y, m[0][1] * x)),
+            m[2][2].times_plus(z, m[1][2].times_plus(y, m[0][2] * x)),
+        ])
+    }
+}
+
+impl Rotation<f64> {
+    /// R = Rz(yaw) Ry(pitch) Rx(roll), angles in rad.
+    pub fn from_rpy([roll, pitch, yaw]: [f64; 3]) -> Self {
+        let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
+        Self([
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ])
+    }
+
+    /// A rotation whose third column is the unit vector `axis`; it is exact for the six coordinate directions.
+    ///
+    /// Source: Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017.
+    pub fn with_z_axis(axis: Vec3<f64>) -> Self {
+        let [x, y, z] = axis.0;
+        let sign = 1f64.copysign(z);
+        let a = -1.0 / (sign + z);
+        let b = x * y * a;
+        Self([[1.0 + sign * x * x * a, b, x], [sign * b, sign + y * y * a, y], [-sign * x, -y, z]])
+    }
+}
+
+impl<T: Scalar> Default for Rotation<T> {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl<T: Scalar> Mul<Vec3<T>> for Rotation<T> {
+    type Output = Vec3<T>;
+    #[inline]
+    fn mul(self, v: Vec3<T>) -> Vec3<T> {
+        Vec3(self.rows().map(|row| row.dot(v)))
+    }
+}
+
+impl<T: Scalar> Mul for Rotation<T> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let o = &other.0;
+        Self(self.0.map(|[a, b, c]| [0, 1, 2].map(|k| c.times_plus(o[2][k], b.times_plus(o[1][k], a * o[0][k])))))
+    }
+}

@@ -1,0 +1,71 @@
+//! The one scalar generic of the workspace.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+pub(super) mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f64 {}
+}
+
+/// A number of the rigid-body algorithms: one state's `f64`, or several states side by side.
+///
+/// There is no ordering on purpose: an algorithm that never branches on a scalar's value runs unchanged on several
+/// states at once. The trait is sealed.
+pub trait Scalar:
+    sealed::Sealed
+    + Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+
+    /// The constant `x` (the same in every state).
+    fn from_f64(x: f64) -> Self;
+
+    /// Square root; NaN below zero.
+    fn sqrt(self) -> Self;
+
+    /// (sin, cos) of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// self · factor + term, in one rounding or two as suits the type.
+    #[inline]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
+}
+
+impl Scalar for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+
+    #[inline]
+    fn from_f64(x: f64) -> Self {
+        x
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        f64::sin_cos(self)
+    }
+}

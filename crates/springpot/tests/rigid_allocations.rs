@@ -1,0 +1,102 @@
+//! The `_into` algorithms do not allocate.
+
+#![allow(unsafe_code, reason = "a global allocator that counts")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use springpot::dynamics::{
+    Kinematics, PairForce, Workspace, angular_jacobian_into, angular_jacobian_rate_into, christoffel_into, crba_into,
+    gravity_into, kinetic_energy, pair_hessian_into, pair_into, point_jacobian_into, point_jacobian_rate_into,
+    potential_energy, rnea_into,
+};
+use springpot::model::{Anchor, BodySpec, JointSpec, Model, ModelBuilder, Parent};
+
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: every call is handed to the system allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|count| count.set(count.get() + 1));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        COUNT.with(|count| count.set(count.get() + 1));
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn allocations(work: impl FnOnce()) -> usize {
+    let before = COUNT.with(Cell::get);
+    work();
+    COUNT.with(Cell::get) - before
+}
+
+/// Seven joints on two branches, revolute and prismatic.
+fn model() -> Model {
+    let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
+    for k in 0..7usize {
+        let (name, axis) = (format!("q{k}"), [1.0, k as f64, 0.5]);
+        let joint = if k % 3 == 2 { JointSpec::prismatic } else { JointSpec::revolute };
+        let spec = BodySpec {
+            name: format!("b{k}"),
+            parent: match k {
+                0 => Parent::World,
+                4 => Parent::Body(1),
+                _ => Parent::Body(k - 1),
+            },
+            joint: joint(name, axis, [0.3, 0.1, 0.2]),
+            mass: 1.0,
+            com: [0.1, 0.0, 0.05],
+            inertia: [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]],
+        };
+        builder.push(spec).unwrap();
+    }
+    builder.finish().unwrap()
+}
+
+#[test]
+fn algorithms_do_not_allocate() {
+    let model = model();
+    let n = model.nv();
+    let (q, v, a) = (vec![0.3; n], vec![-0.4; n], vec![0.5; n]);
+    let site = |body, point| model.resolve(&Anchor { body: Parent::Body(body), point }).unwrap();
+    let (from, to) = (site(3, [0.1, 0.2, 0.3]), site(6, [0.0, -0.1, 0.2]));
+    let pairs = [PairForce { from, to, force: 10.0, d_length: 0.0, d_rate: 0.0 }];
+    let (mut kinematics, mut workspace) = (Kinematics::new(&model), Workspace::new(&model));
+    let (mut vector, mut jacobian) = (vec![0.0; n], vec![0.0; 3 * n]);
+    let (mut matrix, mut gamma) = (vec![0.0; n * n], vec![0.0; n * n * n]);
+    let mut energy = 0.0;
+
+    assert!(allocations(|| drop(std::hint::black_box(vec![1u8; 9]))) > 0, "the counter counts");
+    let count = allocations(|| {
+        kinematics.update_position(&model, &q);
+        kinematics.update_velocity(&model, &q, &v);
+        kinematics.update_acceleration(&model, &q, &v, &a);
+        point_jacobian_into(&model, &kinematics, &to, &mut jacobian);
+        point_jacobian_rate_into(&model, &kinematics, &to, &mut jacobian);
+        angular_jacobian_into(&model, &kinematics, &to, &mut jacobian);
+        angular_jacobian_rate_into(&model, &kinematics, &to, &mut jacobian);
+        crba_into(&model, &kinematics, &mut workspace, &mut matrix);
+        christoffel_into(&model, &kinematics, &mut workspace, &mut gamma);
+        gravity_into(&model, &kinematics, &mut workspace, &mut vector);
+        let pair = pair_into(&model, &kinematics, &from, &to, &mut vector);
+        pair_hessian_into(&model, &kinematics, &from, &to, &pair, &mut workspace, &mut matrix);
+        rnea_into(&model, &q, &v, &a, &pairs, &mut workspace, &mut vector);
+        energy = kinetic_energy(&model, &kinematics) + potential_energy(&model, &kinematics);
+    });
+    assert_eq!(count, 0);
+    assert!(energy.is_finite() && vector.iter().chain(&gamma).chain(&matrix).all(|x| x.is_finite()));
+}
