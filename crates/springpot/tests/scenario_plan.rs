@@ -28,6 +28,7 @@ fn the_example_is_planned_whole() {
     assert_eq!(plan.gravity, [0.0, 0.0, -9.81]);
 
     assert_eq!(plan.bodies.len(), 3);
+    assert_eq!((plan.model.nq(), plan.model.body_names().len()), (3, 3));
     let names: Vec<&str> = plan.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names, ["column", "upper_arm", "forearm"]);
     assert_eq!(plan.joint_names().collect::<Vec<_>>(), ["q1", "q2", "q3"]);

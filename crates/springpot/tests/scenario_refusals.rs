@@ -547,3 +547,33 @@ fn a_million_mistakes_are_answered_at_once() {
     let elements = "[[element]]\nfrom = { body = \"nowhere\", point = [0, 0, nan] }\n".repeat(9_000);
     assert_eq!(scenario_support::refusals(&format!("{}\n{elements}", single())).len(), 50);
 }
+
+#[test]
+fn robots_that_are_not_physical_are_refused() {
+    assert_all_refused(
+        &single(),
+        &[
+            (&[("mass = 6.0", "mass = ‸-6.0")], Rule, "mass of body \"column\" is -6"),
+            (
+                &[("origin = [0.5, 0, 0] }", "origin = [0.5, 0, 0], damping = ‸-1 }")],
+                Rule,
+                "joint.damping of body \"forearm\" is -1",
+            ),
+            (&[("inertia = { xx = 0.01,", "inertia = ‸{ xx = -0.01,")], Rule, "inertia of body \"upper_arm\""),
+            (
+                &[("inertia = { xx = 0.20, yy = 0.20,", "inertia = ‸{ xx = 0.20, yy = 2,")],
+                Rule,
+                "inertia of body \"column\"",
+            ),
+            (
+                &[
+                    ("mass = 2.0", "mass = ‸0"),
+                    ("com = [0.18, -0.01, 0.01]", ""),
+                    ("inertia = { xx = 0.006, yy = 0.03, zz = 0.03, xz = -0.001, yz = 0.0004 }", ""),
+                ],
+                Rule,
+                "the mass matrix is singular at joint \"q3\"",
+            ),
+        ],
+    );
+}

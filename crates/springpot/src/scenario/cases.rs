@@ -320,6 +320,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         title: title?,
         gravity: robot.gravity,
         bodies: robot.bodies,
+        model: robot.model,
         body_places: robot.places,
         gripper: robot.gripper,
         elements: elements?,

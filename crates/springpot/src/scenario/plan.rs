@@ -4,7 +4,7 @@ use super::figures::FigurePlan;
 use super::refusal::Place;
 use super::scheme::Scheme;
 use crate::law::{Derivative, Entry, Law};
-use crate::model::{Anchor, BodySpec, JointKind};
+use crate::model::{Anchor, BodySpec, Model};
 use crate::signal::Signal;
 use std::sync::Arc;
 
@@ -17,6 +17,8 @@ pub struct Plan {
     pub gravity: [f64; 3],
     /// The bodies, parents before children.
     pub bodies: Vec<BodySpec>,
+    /// The robot built of them.
+    pub model: Arc<Model>,
     /// Where each body stands in the scenario.
     pub body_places: Vec<BodyPlaces>,
     /// The gripper, if there is one.
@@ -38,12 +40,7 @@ pub struct Plan {
 impl Plan {
     /// Names of the moving joints, in the order of q.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> {
-        self.moving_joints().map(|body| body.joint.name.as_str())
-    }
-
-    /// Bodies whose joint moves, in the order of q.
-    pub(crate) fn moving_joints(&self) -> impl Iterator<Item = &BodySpec> {
-        self.bodies.iter().filter(|body| body.joint.kind != JointKind::Fixed)
+        self.model.joint_names().iter().map(String::as_str)
     }
 }
 

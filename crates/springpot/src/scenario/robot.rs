@@ -4,9 +4,10 @@ use super::names;
 use super::plan::{BodyPlaces, Gripper};
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::{Place, RefusalKind};
-use crate::model::{Anchor, BodySpec, JointKind, JointSpec, Parent};
+use crate::model::{Anchor, BodySpec, JointKind, JointSpec, Model, ModelBuilder, ModelError, Parent};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::sync::Arc;
 
 /// Most bodies of a robot.
 const MAX_BODIES: usize = 1_000;
@@ -21,6 +22,7 @@ pub(crate) struct Robot {
     pub(crate) gravity: [f64; 3],
     pub(crate) bodies: Vec<BodySpec>,
     pub(crate) places: Vec<BodyPlaces>,
+    pub(crate) model: Arc<Model>,
     pub(crate) gripper: Option<Gripper>,
     index: HashMap<String, usize>,
 }
@@ -58,11 +60,29 @@ pub(crate) fn read(root: &Table<'_>) -> Read<Robot> {
         let refusal = table.node.place.refuse(RefusalKind::Missing, message);
         return Err(root.ctx.refuse(refusal.help("give a body a revolute or prismatic joint")));
     }
-    let mut robot = Robot { gravity: gravity?, bodies, places, gripper: None, index };
+    let gravity = gravity?;
+    let model = build(gravity, &bodies).map_err(|error| {
+        let place = match error.subject() {
+            Some(subject) => places.get(subject.body).map(|places| places.at(subject.field.key())),
+            None => None,
+        };
+        let refusal = place.unwrap_or(&table.node.place).refuse(RefusalKind::Rule, error.to_string());
+        root.ctx.refuse(refusal.label("not physical"))
+    })?;
+    let mut robot = Robot { gravity, bodies, places, model: Arc::new(model), gripper: None, index };
     if let Some(field) = table.get("gripper") {
         robot.gripper = Some(gripper(&field, &robot)?);
     }
     Ok(robot)
+}
+
+/// Builds the model; what makes no physical sense is an error.
+fn build(gravity: [f64; 3], bodies: &[BodySpec]) -> Result<Model, ModelError> {
+    let mut builder = ModelBuilder::new(gravity);
+    for body in bodies {
+        builder.push(body.clone())?;
+    }
+    builder.finish()
 }
 
 impl Robot {
