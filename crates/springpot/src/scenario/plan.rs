@@ -1,0 +1,169 @@
+//! The plan: a scenario validated and resolved, in SI units, with every default filled in.
+
+use super::figures::{ColumnGlob, FigurePlan};
+use super::refusal::Place;
+use crate::fractional::scheme::Scheme;
+use crate::law::{Derivative, Entry, Law};
+use crate::model::{Anchor, BodySpec, Model};
+use crate::signal::Signal;
+use crate::simulate::RowTimes;
+use std::sync::Arc;
+
+/// One run, ready to be started.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Title of the scenario.
+    pub title: Option<String>,
+    /// Gravity in the world frame, m/s².
+    pub gravity: [f64; 3],
+    /// The bodies, parents before children.
+    pub bodies: Vec<BodySpec>,
+    /// The robot built of them.
+    pub model: Arc<Model>,
+    /// Where each body stands in the scenario.
+    pub body_places: Vec<BodyPlaces>,
+    /// The gripper, if there is one.
+    pub gripper: Option<Gripper>,
+    /// The elements, in the order of the scenario.
+    pub elements: Vec<ElementPlan>,
+    /// What moves the robot.
+    pub motion: MotionPlan,
+    /// Duration and rows.
+    pub time: TimePlan,
+    /// Accuracy and steps.
+    pub solver: SolverPlan,
+    /// The figures; the same in every case.
+    pub figures: Arc<[FigurePlan]>,
+    /// Globs of the columns to write; `None`: all.
+    pub columns: Option<Arc<[ColumnGlob]>>,
+}
+
+impl Plan {
+    /// Names of the moving joints, in the order of q.
+    pub fn joint_names(&self) -> impl Iterator<Item = &str> {
+        self.model.joint_names().iter().map(String::as_str)
+    }
+}
+
+/// Where the fields of a body stand in the scenario.
+#[derive(Debug, Clone)]
+pub struct BodyPlaces {
+    /// The body's table.
+    pub table: Place,
+    /// The fields that were written, by dotted key: `mass`, `joint.axis`, …
+    pub fields: Vec<(String, Place)>,
+}
+
+impl BodyPlaces {
+    /// Place of the field with the dotted key `key`; the body's table where the field was left out.
+    pub fn at(&self, key: &str) -> &Place {
+        self.fields.iter().find(|(field, _)| field == key).map_or(&self.table, |(_, place)| place)
+    }
+}
+
+/// The point that a gripper path is about, and whose coordinates are columns.
+#[derive(Debug, Clone)]
+pub struct Gripper {
+    /// Name of the body that carries it.
+    pub body: String,
+    /// The point.
+    pub anchor: Anchor,
+}
+
+/// A signal and the text it was read from.
+#[derive(Debug, Clone)]
+pub struct SignalPlan {
+    /// The function of time, SI.
+    pub signal: Signal,
+    /// Its value where it is a plain number or a quantity, SI.
+    pub constant: Option<f64>,
+    /// As written in the scenario.
+    pub written: String,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// One element.
+#[derive(Debug, Clone)]
+pub struct ElementPlan {
+    /// Unique name.
+    pub name: String,
+    /// First end.
+    pub from: Anchor,
+    /// Second end.
+    pub to: Anchor,
+    /// Length at which the stroke is zero, m.
+    pub rest_length: f64,
+    /// The law's row of the catalog.
+    pub law: Entry,
+    /// The law with its parameters.
+    pub object: Arc<dyn Law>,
+    /// Parameters in the order of the catalog, SI.
+    pub parameters: Vec<f64>,
+    /// Inputs in the order of the catalog.
+    pub inputs: Vec<SignalPlan>,
+    /// Where the memory starts.
+    pub derivative: Derivative,
+    /// A named offline scheme for D^alpha; `None`: exact.
+    pub scheme: Option<Scheme>,
+    /// Where its parameters stand in the scenario (the element itself where it has none).
+    pub place: Place,
+}
+
+/// What moves the robot.
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "one per run")]
+pub enum MotionPlan {
+    /// Every coordinate is a function of time.
+    Prescribed {
+        /// One signal per moving joint, in the order of q, rad or m.
+        joints: Vec<SignalPlan>,
+    },
+    /// The gripper follows a path.
+    GripperPath {
+        /// x, y, z in the world frame, m.
+        position: [SignalPlan; 3],
+        /// Roll, pitch, yaw of the gripper's body, rad.
+        rpy: Option<[SignalPlan; 3]>,
+        /// Coordinates near the start of the path, in the order of q, rad or m.
+        guess: Vec<f64>,
+        /// Where the motion stands in the scenario.
+        place: Place,
+    },
+}
+
+impl MotionPlan {
+    /// Its kind as the scenario names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Prescribed { .. } => "prescribed",
+            Self::GripperPath { .. } => "gripper-path",
+        }
+    }
+}
+
+/// Duration and rows of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimePlan {
+    /// Duration, s.
+    pub end: f64,
+    /// When rows are written.
+    pub rows: RowTimes,
+}
+
+/// Accuracy and steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolverPlan {
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Absolute tolerance, in the unit of what it is compared with; `None`: the relative one.
+    pub atol: Option<f64>,
+    /// Relative error of the memory's kernel.
+    pub memory_rtol: f64,
+    /// First inner step, s; `None`: chosen by the run.
+    pub first_step: Option<f64>,
+    /// Largest inner step, s; `None`: a five-hundredth of the motion.
+    pub max_step: Option<f64>,
+    /// Most inner steps of a run.
+    pub max_steps: u64,
+}

@@ -1,0 +1,207 @@
+//! Refusals: what is wrong in a scenario, where it stands, and what would be right.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A text that was read: the scenario file or one `--set` argument.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Source {
+    /// The file's path as it was given, or `--set`.
+    pub name: String,
+    /// The whole text.
+    pub text: Arc<str>,
+}
+
+/// A stretch of a source.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// Where it stands.
+    pub source: Arc<Source>,
+    /// Bytes of the source's text.
+    pub span: Range<usize>,
+}
+
+impl Place {
+    /// A refusal that points here.
+    pub fn refuse(&self, kind: RefusalKind, message: impl Into<String>) -> Refusal {
+        Refusal::new(self, kind, message.into())
+    }
+
+    /// Line and column (both from 1, columns in characters).
+    pub fn position(&self) -> (usize, usize) {
+        let text = &self.source.text;
+        let mut start = self.span.start.min(text.len());
+        while !text.is_char_boundary(start) {
+            start -= 1;
+        }
+        let before = &text[..start];
+        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+        let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
+        (line, before[line_start..].chars().count() + 1)
+    }
+
+    /// The text that stands here.
+    pub fn text(&self) -> &str {
+        self.source.text.get(self.span.clone()).unwrap_or("")
+    }
+}
+
+/// What sort of mistake it is: what its author can do about it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RefusalKind {
+    /// A file cannot be read.
+    File,
+    /// The text is not TOML.
+    Syntax,
+    /// A key that does not exist here.
+    UnknownKey,
+    /// A name (law, body, joint, input, function, unit, parameter path) that does not exist.
+    UnknownName,
+    /// A name that breaks the rules of names or is taken.
+    BadName,
+    /// Something needed is not there.
+    Missing,
+    /// A text where a number is needed, and the like.
+    WrongType,
+    /// A quantity or expression that cannot be read or has another dimension.
+    BadQuantity,
+    /// A number outside its admissible range, NaN or infinite.
+    OutOfRange,
+    /// A rule between values is broken.
+    Rule,
+    /// More than this program takes on.
+    TooLarge,
+    /// Part of the format that this version does not run.
+    NotYet,
+}
+
+/// One mistake in a scenario: message, place, label under the place, and what would be right.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub struct Refusal {
+    /// What sort of mistake it is.
+    pub kind: RefusalKind,
+    /// What is wrong, with the value.
+    pub message: String,
+    /// The file's path as it was given, or `--set`.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Bytes of `text` to underline.
+    pub span: Range<usize>,
+    /// The whole source.
+    pub text: Arc<str>,
+    /// A few words to stand under the place.
+    pub label: String,
+    /// What would be right.
+    pub help: Option<String>,
+}
+
+impl Refusal {
+    fn new(place: &Place, kind: RefusalKind, message: String) -> Self {
+        let (line, column) = place.position();
+        let end = place.source.text.len();
+        Self {
+            kind,
+            message,
+            file: place.source.name.clone(),
+            line,
+            column,
+            span: place.span.start.min(end)..place.span.end.min(end),
+            text: place.source.text.clone(),
+            label: "here".to_owned(),
+            help: None,
+        }
+    }
+
+    /// With these words under the place.
+    pub fn label(mut self, label: impl Into<String>) -> Self {
+        self.label = label.into();
+        self
+    }
+
+    /// With what would be right.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// With what would be right, where that is known.
+    pub fn help_if(mut self, help: Option<String>) -> Self {
+        self.help = help.or(self.help);
+        self
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.message)?;
+        match &self.help {
+            Some(help) => write!(f, "\n  help: {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Why a scenario is refused: at least one refusal, in the order of the text.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub struct Refusals(Vec<Refusal>);
+
+impl Refusals {
+    pub(crate) fn of(mut list: Vec<Refusal>) -> Self {
+        debug_assert!(!list.is_empty());
+        list.sort_by(|a, b| (&a.file, a.span.start).cmp(&(&b.file, b.span.start)));
+        list.dedup();
+        Self(list)
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> std::slice::Iter<'_, Refusal> {
+        self.0.iter()
+    }
+
+    /// The first in the order of the text.
+    pub fn first(&self) -> Option<&Refusal> {
+        self.0.first()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Always false.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl From<Refusal> for Refusals {
+    fn from(refusal: Refusal) -> Self {
+        Self(vec![refusal])
+    }
+}
+
+impl IntoIterator for Refusals {
+    type Item = Refusal;
+    type IntoIter = std::vec::IntoIter<Refusal>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
+
+impl fmt::Display for Refusals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, refusal) in self.0.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n")?;
+            }
+            write!(f, "{refusal}")?;
+        }
+        Ok(())
+    }
+}

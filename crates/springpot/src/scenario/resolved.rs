@@ -1,0 +1,138 @@
+//! The plan as JSON, for the record of a run.
+
+use super::figures::{FigureKind, FigurePlan};
+use super::plan::{ElementPlan, MotionPlan, Plan, SignalPlan};
+use crate::model::{Anchor, BodySpec, JointKind, Parent};
+use crate::simulate::RowTimes;
+use serde_json::{Map, Value, json};
+
+/// Most output times that are listed one by one.
+const LISTED_TIMES: usize = 10_000;
+
+impl Plan {
+    /// Everything the run depends on, defaults filled in: numbers in SI, signals that vary as they were written.
+    pub fn resolved(&self) -> Value {
+        let mut time = json!({ "end": self.time.end, "rows": self.time.rows.count() });
+        match &self.time.rows {
+            RowTimes::Step { step, .. } => time["output_step"] = json!(step),
+            RowTimes::Times(times) if times.len() <= LISTED_TIMES => time["output_times"] = json!(times[..]),
+            RowTimes::Times(times) => {
+                time["output_times"] = json!(format!("{} times", times.len()));
+            }
+        }
+        json!({
+            "title": self.title,
+            "gravity": self.gravity,
+            "bodies": self.bodies.iter().map(|body| self.body(body)).collect::<Vec<_>>(),
+            "gripper": self.gripper.as_ref().map(|gripper| self.anchor(&gripper.anchor)),
+            "elements": self.elements.iter().map(|element| self.element(element)).collect::<Vec<_>>(),
+            "motion": self.motion(),
+            "time": time,
+            "solver": {
+                "rtol": self.solver.rtol,
+                "atol": self.solver.atol.unwrap_or(self.solver.rtol),
+                "memory_rtol": self.solver.memory_rtol,
+                "first_step": self.solver.first_step,
+                "max_step": self.solver.max_step,
+                "max_steps": self.solver.max_steps,
+            },
+            "figures": self.figures.iter().map(figure).collect::<Vec<_>>(),
+            "columns": self.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
+        })
+    }
+
+    fn body_name(&self, body: Parent) -> &str {
+        match body {
+            Parent::World => "world",
+            Parent::Body(index) => self.bodies.get(index).map_or("", |body| body.name.as_str()),
+        }
+    }
+
+    fn anchor(&self, anchor: &Anchor) -> Value {
+        json!({ "body": self.body_name(anchor.body), "point": anchor.point })
+    }
+
+    fn body(&self, body: &BodySpec) -> Value {
+        let joint = &body.joint;
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = body.inertia;
+        json!({
+            "name": body.name,
+            "parent": self.body_name(body.parent),
+            "joint": {
+                "name": joint.name,
+                "kind": match joint.kind {
+                    JointKind::Fixed => "fixed",
+                    JointKind::Revolute => "revolute",
+                    JointKind::Prismatic => "prismatic",
+                },
+                "axis": joint.axis,
+                "origin": joint.origin,
+                "rpy": joint.rpy,
+                "damping": joint.damping,
+                "friction": joint.friction,
+            },
+            "mass": body.mass,
+            "com": body.com,
+            "inertia": { "xx": xx, "yy": yy, "zz": zz, "xy": xy, "xz": xz, "yz": yz },
+        })
+    }
+
+    fn element(&self, element: &ElementPlan) -> Value {
+        let parameters: Map<String, Value> =
+            element.law.params.iter().zip(&element.parameters).map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
+        let inputs: Map<String, Value> =
+            element.law.inputs.iter().zip(&element.inputs).map(|(i, s)| (i.name.to_owned(), signal(s))).collect();
+        json!({
+            "name": element.name,
+            "from": self.anchor(&element.from),
+            "to": self.anchor(&element.to),
+            "rest_length": element.rest_length,
+            "law": element.law.name,
+            "parameters": parameters,
+            "inputs": inputs,
+            "derivative": element.derivative.name(),
+            "scheme": element.scheme.map_or_else(|| "exact".into(), |scheme| scheme.to_string()),
+        })
+    }
+
+    fn motion(&self) -> Value {
+        match &self.motion {
+            MotionPlan::Prescribed { joints } => {
+                let joints: Map<String, Value> =
+                    self.joint_names().zip(joints).map(|(name, joint)| (name.to_owned(), signal(joint))).collect();
+                json!({ "kind": "prescribed", "joints": joints })
+            }
+            MotionPlan::GripperPath { position: [x, y, z], rpy, guess, .. } => {
+                let guess: Map<String, Value> =
+                    self.joint_names().zip(guess).map(|(name, guess)| (name.to_owned(), json!(guess))).collect();
+                json!({
+                    "kind": "gripper-path",
+                    "x": signal(x),
+                    "y": signal(y),
+                    "z": signal(z),
+                    "rpy": rpy.as_ref().map(|rpy| rpy.each_ref().map(signal)),
+                    "guess": guess,
+                })
+            }
+        }
+    }
+}
+
+fn signal(signal: &SignalPlan) -> Value {
+    signal.constant.map_or_else(|| json!(signal.written), |value| json!(value))
+}
+
+fn figure(figure: &FigurePlan) -> Value {
+    let units: Map<String, Value> =
+        figure.units.iter().map(|unit| (unit.column.text.clone(), json!(unit.unit))).collect();
+    let mut json = json!({ "name": figure.name, "title": figure.title, "units": units });
+    match &figure.kind {
+        FigureKind::Robot => json["kind"] = json!("robot"),
+        FigureKind::Curves { x, y } => {
+            json["kind"] = json!("curves");
+            json["x"] = json!(x.text);
+            json["y"] = y.iter().map(|glob| glob.text.clone()).collect();
+        }
+    }
+    json
+}

@@ -1,0 +1,72 @@
+//! From a plan to what the time loop runs.
+
+use super::plan::{ElementPlan, MotionPlan, Plan, SignalPlan};
+use crate::element::Element;
+use crate::model::{Anchor, Model, Site};
+use crate::motion::{GripperPath, Motion, gripper_path::Task};
+use crate::signal::Signal;
+use crate::simulate::{Settings, System};
+
+impl Plan {
+    /// The robot, its elements and its motion. A gripper path is solved here, as far as it can be followed.
+    pub fn system(&self) -> System {
+        System {
+            elements: self.elements.iter().map(|element| self.built_element(element)).collect(),
+            motion: self.solved_motion(),
+            gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
+            model: Model::clone(&self.model),
+        }
+    }
+
+    /// How the run is carried out.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            end: self.time.end,
+            rows: self.time.rows.clone(),
+            rtol: self.solver.rtol,
+            atol: self.solver.atol,
+            memory_rtol: self.solver.memory_rtol,
+            first_step: self.solver.first_step,
+            max_step: self.solver.max_step,
+            max_steps: Some(self.solver.max_steps),
+        }
+    }
+
+    fn built_element(&self, plan: &ElementPlan) -> Element {
+        Element {
+            name: plan.name.clone(),
+            from: self.site(&plan.from),
+            to: self.site(&plan.to),
+            rest_length: plan.rest_length,
+            law: plan.object.clone(),
+            row: plan.law,
+            inputs: plan.inputs.iter().map(signal).collect(),
+            derivative: plan.derivative,
+            scheme: plan.scheme,
+        }
+    }
+
+    fn solved_motion(&self) -> Motion {
+        match &self.motion {
+            MotionPlan::Prescribed { joints } => Motion::Prescribed(joints.iter().map(signal).collect()),
+            MotionPlan::GripperPath { position, rpy, guess, .. } => {
+                let gripper = self.gripper.as_ref().expect("a gripper path was read with its gripper");
+                let task = Task {
+                    site: self.site(&gripper.anchor),
+                    frame: self.model.frame(gripper.anchor.body).expect("a body that was read"),
+                    position: position.each_ref().map(signal),
+                    rpy: rpy.as_ref().map(|rpy| rpy.each_ref().map(signal)),
+                };
+                Motion::GripperPath(Box::new(GripperPath::new(&self.model, task, guess, self.time.end)))
+            }
+        }
+    }
+
+    fn site(&self, anchor: &Anchor) -> Site {
+        self.model.resolve(anchor).expect("an anchor that was read")
+    }
+}
+
+fn signal(plan: &SignalPlan) -> Signal {
+    plan.signal.clone()
+}
