@@ -17,4 +17,6 @@ pub mod scenario;
 pub mod signal;
 pub mod simulate;
 pub mod spatial;
+#[cfg(feature = "scenario")]
+pub mod sweep;
 pub mod table;

@@ -1,6 +1,9 @@
 //! Results: columns with units, numbers as text, statistics.
 
+#[cfg(feature = "scenario")]
+pub mod folder;
 pub mod number;
+pub mod ordered;
 pub mod statistics;
 
 pub use number::push_number;

@@ -1,0 +1,117 @@
+//! One case of a sweep.
+
+use super::layout::Layout;
+use super::{Options, Writers, push_field, push_fields};
+use crate::scenario::{Cases, SweptValue};
+use crate::simulate::{Report, RunError, along};
+use crate::table::{Statistics, push_number};
+use std::io;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// Text is handed over at this size, or after this time.
+const CHUNK: usize = 1 << 15;
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// What one case did.
+#[derive(Debug)]
+pub struct CaseResult {
+    /// Index in the grid.
+    pub index: usize,
+    /// Steps, rows, energy.
+    pub report: Report,
+    /// Why it stopped early.
+    pub error: Option<String>,
+    /// Whether it stopped because it was interrupted.
+    pub interrupted: bool,
+    /// Wall time.
+    pub wall: Duration,
+    /// The columns that figures need, where this case is drawn.
+    pub kept: Option<Vec<Vec<f64>>>,
+}
+
+/// Runs case `index`.
+///
+/// # Errors
+/// What keeps rows from being written; that of the case itself is in the result.
+pub(super) fn run(
+    cases: &Cases,
+    index: usize,
+    layout: &Layout,
+    writers: &Writers,
+    options: &Options,
+) -> io::Result<CaseResult> {
+    let begun = Instant::now();
+    let mut lead = String::new();
+    for value in cases.values(index) {
+        match value {
+            SweptValue::Number(number) => push_number(&mut lead, number),
+            SweptValue::Text(text) => push_field(&mut lead, &text),
+        }
+        lead.push(',');
+    }
+    let selected: Vec<usize> = layout.selected().map(|(k, _)| k).collect();
+    let mut statistics = vec![Statistics::default(); selected.len()];
+    let kept_columns = layout.kept(index);
+    let mut kept = kept_columns.map(|columns| vec![Vec::new(); columns.len()]);
+    let (mut text, mut handed_over) = (String::with_capacity(2 * CHUNK), Instant::now());
+
+    let (report, outcome) = match cases.plan(index) {
+        Err(refusals) => (Report::default(), Err(CaseError::Refused(refusals.to_string()))),
+        Ok(plan) => {
+            let system = plan.system();
+            let mut rows = |row: &[f64]| -> io::Result<()> {
+                text.push_str(&lead);
+                let mut values = selected.iter().map(|&k| row[k]);
+                push_number(&mut text, values.next().unwrap_or(f64::NAN));
+                push_fields(&mut text, values);
+                text.push('\n');
+                for (statistics, &k) in statistics.iter_mut().zip(&selected) {
+                    statistics.add(row[k]);
+                }
+                for (kept, &k) in kept.iter_mut().flatten().zip(kept_columns.into_iter().flatten()) {
+                    kept.push(row[k]);
+                }
+                options.rows.fetch_add(1, Ordering::Relaxed);
+                if text.len() >= CHUNK || handed_over.elapsed() > PATIENCE {
+                    writers.rows.write(index, text.as_bytes())?;
+                    text.clear();
+                    handed_over = Instant::now();
+                }
+                Ok(())
+            };
+            let (report, outcome) = along(&system, &plan.settings(), &mut rows, options.stop);
+            (report, outcome.map_err(CaseError::Run))
+        }
+    };
+    writers.rows.write(index, text.as_bytes())?;
+    writers.rows.finish(index)?;
+    let mut summary = String::new();
+    for ((_, column), statistics) in layout.selected().zip(&statistics) {
+        summary.push_str(&lead);
+        push_field(&mut summary, &column.name);
+        summary.push(',');
+        push_field(&mut summary, &column.unit);
+        push_fields(&mut summary, [statistics.min, statistics.max, statistics.rms()].into_iter());
+        summary.push('\n');
+    }
+    writers.summary.write(index, summary.as_bytes())?;
+    writers.summary.finish(index)?;
+    if let Err(CaseError::Run(RunError::Output(error))) = outcome {
+        return Err(error);
+    }
+    let interrupted = matches!(outcome, Err(CaseError::Run(RunError::Interrupted { .. })));
+    let error = outcome.err().map(|error| error.to_string());
+    Ok(CaseResult { index, report, error, interrupted, wall: begun.elapsed(), kept })
+}
+
+/// Why a case has no complete run.
+#[derive(Debug, thiserror::Error)]
+enum CaseError {
+    /// Its combination of values is not admissible.
+    #[error("{0}")]
+    Refused(String),
+    /// The run stopped.
+    #[error(transparent)]
+    Run(RunError),
+}

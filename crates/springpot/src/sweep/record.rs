@@ -1,0 +1,68 @@
+//! The record of a run: run.json.
+
+use super::layout::Layout;
+use super::{CaseResult, MAX_LISTED, Outcome};
+use crate::scenario::{Cases, Plan, SweptValue};
+use serde_json::{Map, Value, json};
+
+impl Outcome {
+    /// run.json: how it ended, what was run (the first case, as resolved), what the columns are, what every case did.
+    pub fn record(&self, cases: &Cases, plan: &Plan, layout: &Layout) -> Map<String, Value> {
+        let (residual, turned_over) = self.energy_residual.unzip();
+        let listed: Vec<Value> = self.cases.iter().take(MAX_LISTED).map(|case| one(cases, case)).collect();
+        let record = json!({
+            "status": self.status,
+            "t_reached": self.t_reached,
+            "title": plan.title,
+            "versions": { "springpot": env!("CARGO_PKG_VERSION") },
+            "wall_time": self.wall.as_secs_f64(),
+            "cases_total": cases.len(),
+            "cases_done": self.done,
+            "cases_failed": self.failed,
+            "steps": self.steps,
+            "rejected_steps": self.rejected_steps,
+            "energy_residual": residual,
+            "energy_turned_over": turned_over,
+            "ledger": if residual.is_none() { Value::from(why_no_ledger(plan)) } else { Value::Null },
+            "plan": plan.resolved(),
+            "columns": layout.written(),
+            "cases": listed,
+        });
+        match record {
+            Value::Object(map) => map,
+            _ => unreachable!("the literal above is an object"),
+        }
+    }
+}
+
+fn one(cases: &Cases, case: &CaseResult) -> Value {
+    let values = cases.values(case.index).into_iter().map(|value| match value {
+        SweptValue::Number(number) => json!(number),
+        SweptValue::Text(text) => json!(text),
+    });
+    let parameters: Map<String, Value> = cases.parameters().iter().cloned().zip(values).collect();
+    let status = match (&case.error, case.interrupted) {
+        (None, _) => "done",
+        (_, true) => "interrupted",
+        _ => "failed",
+    };
+    let mut record = json!({
+        "index": case.index,
+        "parameters": parameters,
+        "status": status,
+        "error": case.error,
+        "wall_time": case.wall.as_secs_f64(),
+    });
+    if let (Value::Object(record), Ok(Value::Object(report))) = (&mut record, serde_json::to_value(case.report)) {
+        record.extend(report);
+    }
+    record
+}
+
+/// Why no case knows its energies.
+fn why_no_ledger(plan: &Plan) -> String {
+    if plan.elements.iter().any(|element| element.scheme.is_some()) {
+        return "unknown: a named scheme keeps no account of energy".into();
+    }
+    "unknown: a Riemann-Liouville start with x(0) != 0 takes infinite work (or no row was written)".into()
+}
