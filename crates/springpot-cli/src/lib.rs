@@ -1,1 +1,53 @@
-//! The command line of Springpot as a library.
+//! The command line of Springpot as a library: [`main_from`] takes the arguments and returns the exit code.
+//!
+//! Exit codes: 0 done; 1 a run failed; 2 the input was refused; 130 interrupted.
+
+mod arguments;
+mod check;
+mod figures;
+mod labels;
+mod progress;
+mod refusals;
+mod run;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// How a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ending {
+    Done,
+    Failed,
+    Refused,
+    Interrupted,
+}
+
+impl From<Ending> for ExitCode {
+    fn from(ending: Ending) -> Self {
+        Self::from(match ending {
+            Ending::Done => 0,
+            Ending::Failed => 1,
+            Ending::Refused => 2,
+            Ending::Interrupted => 130,
+        })
+    }
+}
+
+/// Runs the command that `arguments` ask for; the first of them is the program's name.
+pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version go to stdout and are no error; a closed pipe is none either.
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+        }
+    };
+    let ending = match arguments.command {
+        Command::Run(options) => run::run(&options),
+        Command::Check(options) => check::check(&options),
+    };
+    ending.into()
+}

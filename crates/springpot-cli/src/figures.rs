@@ -1,0 +1,162 @@
+//! The scenario's figures from the columns that the run kept.
+
+use crate::labels;
+use springpot::model::{JointKind, Parent};
+use springpot::scenario::{Cases, FigureKind, FigurePlan, Plan};
+use springpot::simulate::System;
+use springpot::sweep::{CaseResult, FigureColumn, FigureData, Layout, MAX_CURVES, Outcome};
+use springpot::table::folder::Folder;
+use springpot_report::{Curve, ElementMark, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing, WORLD};
+use std::io;
+
+/// Draws every figure into the folder; returns what could not be drawn and why.
+pub(crate) fn draw(
+    cases: &Cases,
+    system: &System,
+    plan: &Plan,
+    layout: &Layout,
+    outcome: &Outcome,
+    folder: &mut Folder,
+) -> io::Result<Vec<String>> {
+    let mut warnings = Vec::new();
+    for (figure, data) in cases.figures().iter().zip(layout.figures()) {
+        let rendered = match figure.kind {
+            FigureKind::Robot => robot(figure, system, plan).and_then(|drawing| render(drawing.render())),
+            FigureKind::Curves { .. } => curves(cases, figure, data, outcome).and_then(|plot| render(plot.render())),
+        };
+        match rendered {
+            Ok(Rendered { svg, png }) => {
+                folder.write_figure(&format!("{}.svg", figure.name), svg.as_bytes())?;
+                folder.write_figure(&format!("{}.png", figure.name), &png)?;
+            }
+            Err(why) => warnings.push(format!("figure \"{}\" is not drawn: {why}", figure.name)),
+        }
+    }
+    Ok(warnings)
+}
+
+fn render(result: Result<Rendered, ReportError>) -> Result<Rendered, String> {
+    result.map_err(|error| error.to_string())
+}
+
+/// One curve per swept value and column; a second sweep makes one panel per value.
+fn curves(cases: &Cases, figure: &FigurePlan, data: &FigureData, outcome: &Outcome) -> Result<Plot, String> {
+    if data.curves > MAX_CURVES {
+        return Err(format!("it would hold {} curves; choose some with `where` (at most {MAX_CURVES})", data.curves));
+    }
+    // Sweeps that the figure does not fix: the first makes the curves, the others the panels.
+    let free: Vec<usize> =
+        (0..cases.axis_count()).filter(|axis| figure.selection.iter().all(|s| s.axis != *axis)).collect();
+    let mut panels: Vec<(Vec<usize>, Panel)> = Vec::new();
+    for &index in &data.cases {
+        let Ok(found) = outcome.cases.binary_search_by_key(&index, |case| case.index) else { continue };
+        let case = &outcome.cases[found];
+        let position = cases.position(index);
+        let key: Vec<usize> = free.iter().skip(1).map(|axis| position[*axis]).collect();
+        let at = panels.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
+            let named = free.iter().skip(1).map(|axis| axis_label(cases, *axis, position[*axis], true));
+            let title = named.collect::<Vec<_>>().join(", ");
+            panels.push((key, Panel { title: (!title.is_empty()).then_some(title), curves: Vec::new() }));
+            panels.len() - 1
+        });
+        let swept = free.first().map(|axis| axis_label(cases, *axis, position[*axis], false));
+        for column in &data.y {
+            let own = (data.y.len() > 1).then(|| labels::quantity(&column.column.name));
+            let label = own.into_iter().chain(swept.clone()).collect::<Vec<_>>().join(", ");
+            panels[at].1.curves.push(curve(label, &data.x, column, case));
+        }
+    }
+    let mut panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
+    if let [only] = &mut panels[..]
+        && let [curve] = &mut only.curves[..]
+    {
+        // The ordinate's label says all about a single curve.
+        curve.label.clear();
+    }
+    let legend_title = free.first().filter(|_| data.y.len() == 1).map(|axis| axis_title(cases, *axis));
+    Ok(Plot { title: figure.title.clone(), x_label: axis(&data.x), y_label: ordinate(&data.y), legend_title, panels })
+}
+
+fn curve(label: String, x: &FigureColumn, y: &FigureColumn, case: &CaseResult) -> Curve {
+    Curve { label, x: values(x, case), y: values(y, case) }
+}
+
+fn values(column: &FigureColumn, case: &CaseResult) -> Vec<f64> {
+    let kept = case.kept.as_ref().map_or(&[][..], |kept| &kept[column.kept]);
+    match &column.unit {
+        Some((_, unit)) => kept.iter().map(|value| unit.from_si(*value)).collect(),
+        None => kept.to_vec(),
+    }
+}
+
+fn axis(column: &FigureColumn) -> String {
+    labels::axis(&column.column, column.unit.as_ref().map(|(text, _)| text.as_str()))
+}
+
+/// One label for all ordinates: the column's own, or what several have in common.
+fn ordinate(columns: &[FigureColumn]) -> String {
+    match columns {
+        [only] => axis(only),
+        [first, rest @ ..] => {
+            let unit = |column: &FigureColumn| {
+                column.unit.as_ref().map_or_else(|| column.column.unit.clone(), |(text, _)| text.clone())
+            };
+            let common = unit(first);
+            if rest.iter().all(|column| unit(column) == common) { labels::written_unit(&common) } else { String::new() }
+        }
+        [] => String::new(),
+    }
+}
+
+/// The swept value as written; with the parameter's name where nothing else says it.
+fn axis_label(cases: &Cases, axis: usize, k: usize, named: bool) -> String {
+    let value = labels::written_unit(&cases.axis_label(axis, k));
+    if named { format!("{} = {value}", axis_title(cases, axis)) } else { value }
+}
+
+fn axis_title(cases: &Cases, axis: usize) -> String {
+    cases.axis_parameters(axis).map(labels::parameter).collect::<Vec<_>>().join(", ")
+}
+
+/// The robot at t = 0 with its joints, elements and gripper.
+fn robot(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDrawing, String> {
+    let pose = system.pose(0.0).map_err(|error| error.to_string())?;
+    let mut drawing = RobotDrawing { title: figure.title.clone(), ..RobotDrawing::default() };
+    let name = |body: Parent| match body {
+        Parent::World => WORLD,
+        Parent::Body(index) => plan.bodies[index].name.as_str(),
+    };
+    for (index, body) in plan.bodies.iter().enumerate() {
+        let origin = pose.origin(Parent::Body(index));
+        // A body reaches from its joint to the joints that it carries, or to the gripper, or to its centre of mass.
+        let children: Vec<[f64; 3]> = (0..plan.bodies.len())
+            .filter(|child| plan.bodies[*child].parent == Parent::Body(index))
+            .map(|child| pose.origin(Parent::Body(child)))
+            .collect();
+        let gripper = plan.gripper.as_ref().filter(|gripper| gripper.anchor.body == Parent::Body(index));
+        let mut ends: Vec<[f64; 3]> = children;
+        ends.extend(gripper.map(|gripper| pose.point(&gripper.anchor)));
+        if ends.is_empty() {
+            ends.push(pose.point(&springpot::model::Anchor { body: Parent::Body(index), point: body.com }));
+        }
+        for end in ends {
+            drawing.links.push(Link { name: body.name.clone(), points: vec![origin, end] });
+        }
+        let kind = match body.joint.kind {
+            JointKind::Revolute => springpot_report::JointKind::Revolute,
+            JointKind::Prismatic => springpot_report::JointKind::Prismatic,
+            JointKind::Fixed => continue,
+        };
+        let axis = pose.direction(Parent::Body(index), body.joint.axis);
+        drawing.joints.push(JointMark { name: body.joint.name.clone(), position: origin, axis, kind });
+    }
+    for element in &plan.elements {
+        let (from, to) = (pose.point(&element.from), pose.point(&element.to));
+        drawing.elements.push(ElementMark { name: element.name.clone(), from, to });
+        drawing.bracket(name(element.from.body), from);
+        drawing.bracket(name(element.to.body), to);
+    }
+    drawing.gripper = plan.gripper.as_ref().map(|gripper| pose.point(&gripper.anchor));
+    drawing.ground = plan.bodies.first().map_or([0.0; 3], |_| pose.origin(Parent::Body(0)));
+    Ok(drawing)
+}

@@ -1,0 +1,95 @@
+//! Column names as a reader of a figure wants them.
+
+use springpot::table::Column;
+
+/// What stands at an axis: symbol or words, then the unit.
+pub(crate) fn axis(column: &Column, unit: Option<&str>) -> String {
+    let unit = unit.map_or_else(|| written_unit(&column.unit), written_unit);
+    let name = quantity(&column.name);
+    if unit.is_empty() { name } else { format!("{name}, {unit}") }
+}
+
+/// The quantity alone: `strut.Q.q2` becomes "Q₂ of strut".
+pub(crate) fn quantity(name: &str) -> String {
+    let mut parts = name.splitn(3, '.');
+    let (first, second, third) = (parts.next().unwrap_or(""), parts.next(), parts.next());
+    match (first, second, third) {
+        ("t", None, None) => "time t".into(),
+        ("q" | "v" | "a", Some(joint), None) => {
+            let dots = match first {
+                "q" => "",
+                "v" => "\u{307}",
+                _ => "\u{308}",
+            };
+            match joint.strip_prefix('q').filter(|rest| rest.chars().all(|c| c.is_ascii_digit())) {
+                Some(index) => format!("q{dots}{}", subscript(index)),
+                None => format!("q{dots} of {joint}"),
+            }
+        }
+        ("tau", Some(joint), None) => format!("actuator τ{}", joint_suffix(joint)),
+        ("gripper", Some("error"), None) => "distance of the gripper from its path".into(),
+        ("gripper", Some(axis), None) => format!("{axis} of the gripper"),
+        ("energy", Some("residual"), None) => "energy residual".into(),
+        ("energy", Some(kind), None) => format!("{kind} energy"),
+        (element, Some("Q"), Some(joint)) => format!("Q{} of {element}", joint_suffix(joint)),
+        (element, Some("length"), None) => format!("length l of {element}"),
+        (element, Some("stroke"), None) => format!("stroke x of {element}"),
+        (element, Some("rate"), None) => format!("stroke rate of {element}"),
+        (element, Some("derivative"), None) => format!("D^α x of {element}"),
+        (element, Some("force"), None) => format!("force F of {element}"),
+        (element, Some("stored"), None) => format!("energy stored in {element}"),
+        (element, Some("dissipated"), None) => format!("energy dissipated in {element}"),
+        (element, Some("input"), None) => format!("energy supplied to {element}"),
+        (element, Some(input), None) => format!("{input} of {element}"),
+        _ => name.into(),
+    }
+}
+
+/// `alpha` becomes α; other names stay.
+pub(crate) fn parameter(path: &str) -> String {
+    let last = path.rsplit('.').next().unwrap_or(path);
+    match last {
+        "alpha" => "α".into(),
+        other => other.into(),
+    }
+}
+
+/// Text as a reader writes it: "25 degC" becomes "25 °C", "N*m" becomes "N·m".
+pub(crate) fn written_unit(unit: &str) -> String {
+    let text = unit.replace("degC", "°C").replace("degF", "°F").replace("alpha", "α").replace('*', "·");
+    raise(&text.replace("deg", "°"))
+}
+
+/// `q2` becomes ₂, other names " of NAME".
+fn joint_suffix(joint: &str) -> String {
+    match joint.strip_prefix('q').filter(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit())) {
+        Some(index) => subscript(index),
+        None => format!(" at {joint}"),
+    }
+}
+
+fn subscript(digits: &str) -> String {
+    digits.chars().map(|c| char::from_u32('₀' as u32 + c.to_digit(10).unwrap_or(0)).unwrap_or(c)).collect()
+}
+
+/// `^2` becomes ², `^alpha` ᵅ; other exponents stay.
+fn raise(unit: &str) -> String {
+    unit.replace("^2", "²").replace("^3", "³").replace("^α", "ᵅ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes() {
+        let column = |name: &str, unit: &str| Column::new(name, unit, "");
+        assert_eq!(axis(&column("strut.Q.q2", "N*m"), None), "Q₂ of strut, N·m");
+        assert_eq!(axis(&column("strut.stroke", "m"), Some("cm")), "stroke x of strut, cm");
+        assert_eq!(axis(&column("t", "s"), None), "time t, s");
+        assert_eq!(axis(&column("a.q12", "rad/s^2"), None), "q\u{308}₁₂, rad/s²");
+        assert_eq!(axis(&column("arm.derivative", "m/s^alpha"), None), "D^α x of arm, m/sᵅ");
+        assert_eq!(axis(&column("strut.Q.elbow", "N*m"), None), "Q at elbow of strut, N·m");
+        assert_eq!(written_unit("25 degC"), "25 °C");
+    }
+}
