@@ -231,13 +231,14 @@ impl<'a> Run<'a> {
             let mut across = None;
             if has_kinks && let Some(node) = self.first_other_branch(t, to) {
                 let (before, after) = locate(|t| self.system.branch(t), t, node);
-                across = Some(after);
-                to = before;
+                let sides = self.look_across(before.max(t), after)?;
                 if before <= t {
-                    self.cross(t, after)?;
+                    self.cross(sides);
                     t = after;
                     continue;
                 }
+                across = Some(sides);
+                to = before;
             }
             let size = to - t;
             let on_break = to == stop && to < end;
@@ -250,15 +251,16 @@ impl<'a> Run<'a> {
                 }
                 continue;
             }
-            self.emit_rows(t, across.unwrap_or(to), on_break)?;
+            let until = across.as_ref().map_or(to, |[_, right]| right.t);
+            self.emit_rows(t, until, on_break)?;
             self.commit(size);
             self.report.steps += 1;
             // A step cut short by a stop says nothing against the size chosen before.
             h = (size * error.factor()).max(if size < h { h } else { 0.0 }).min(self.longest_step());
             t = to;
-            if let Some(after) = across {
-                self.cross(t, after)?;
-                t = after;
+            if let Some(sides) = across {
+                self.cross(sides);
+                t = until;
             } else if on_break {
                 let [moment, ..] = &mut self.moments;
                 self.system.evaluate(t, t, &mut self.scratch, moment)?;
@@ -513,32 +515,35 @@ impl<'a> Run<'a> {
         self.moments.swap(0, MAX_NODES);
     }
 
-    /// Goes from the last time before a kink to the first one after it and books what jumps there.
-    fn cross(&mut self, before: f64, after: f64) -> Result<(), RunError> {
-        let (mut left, mut right) = (self.moments[0].clone(), self.moments[0].clone());
+    /// The last moment before a kink and the first one after it.
+    fn look_across(&mut self, before: f64, after: f64) -> Result<[Moment; 2], RunError> {
+        let [mut left, mut right] = std::array::from_fn(|_| self.moments[0].clone());
         self.system.evaluate(before, before, &mut self.scratch, &mut left)?;
         self.system.evaluate(after, after, &mut self.scratch, &mut right)?;
-        let slack = after - before;
         for (j, joint) in self.system.model.joint_names().iter().enumerate() {
             let jump = right.q[j] - left.q[j];
-            let reach = slack * (left.v[j].abs() + right.v[j].abs());
+            let reach = (after - before) * (left.v[j].abs() + right.v[j].abs());
             if jump.abs() > 1e-9 * (1.0 + left.q[j].abs()) + reach {
                 return Err(RunError::Jump { t: after, joint: joint.clone(), jump });
             }
         }
+        Ok([left, right])
+    }
+
+    /// Goes on from the far side of a kink and books what jumps there.
+    fn cross(&mut self, [left, right]: [Moment; 2]) {
         // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
         self.actuators += right.kinetic - left.kinetic;
         for (e, element) in self.system.elements.iter().enumerate() {
             let account = &mut self.accounts[e];
             let Some(state) = &account.law else { continue };
-            let was = left.elements[e].point(before);
+            let was = left.elements[e].point(left.t);
             let is = Point { inputs: &right.elements[e].inputs, ..was };
             if let Some((was, is)) = element.law.stored(&was, state).zip(element.law.stored(&is, state)) {
                 account.input += is - was;
             }
         }
         self.moments[0] = right;
-        Ok(())
     }
 
     fn step_too_small(&self, t: f64, h: f64, error: &StepError) -> RunError {
