@@ -28,15 +28,17 @@ Examples:
   springpot run scenarios/thermoviscoelastic_order.toml
   springpot run arm.toml --set element.strut.alpha=0.3 --set 'element.strut.T=\"40 degC\"' --out warm
 
-Writes results.csv, summary.csv, figures/ and run.json. A rerun replaces the last run's files and nothing else.")]
+Writes results.csv, summary.csv, figures/ and run.json. A rerun replaces the last run's files and nothing else. \
+Ctrl-C ends a run early; the rows so far are kept, all of them complete.")]
     Run(RunOptions),
     /// Read and check a scenario without running it.
     #[command(after_help = "\
 Example:
   springpot check scenarios/magnetorheological_order.toml
 
-Prints, per element, the length l(0), the stroke x(0) and dl/dq at t = 0, and warns of a large initial stroke or a
-singular Riemann-Liouville start.")]
+Prints, per element, the length l(0), the stroke x(0) and dl/dq at t = 0, and warns of a large initial stroke and of a \
+singular Riemann-Liouville start, in any case of a sweep. Exit code 1 where a run is known to fail, as on a gripper path \
+out of reach.")]
     Check(CheckOptions),
 }
 

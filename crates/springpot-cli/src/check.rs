@@ -1,101 +1,179 @@
 //! `springpot check`.
 
-use crate::arguments::CheckOptions;
-use crate::{Ending, refusals};
-use springpot::scenario::{Cases, Plan, Refusals};
-use springpot::simulate::{ElementStart, RunError};
-use springpot::sweep::Layout;
+mod warnings;
 
-/// A stroke at t = 0 beyond this share of the rest length is worth a warning.
-const LARGE_STROKE: f64 = 0.2;
+use crate::arguments::CheckOptions;
+use crate::numbers::{count, short};
+use crate::run::in_case;
+use crate::{Ending, diagnostic, terminal};
+use springpot::law::Entry;
+use springpot::scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan};
+use springpot::simulate::{ElementStart, RowTimes, RunError, System};
+use springpot::sweep::Layout;
+use std::ops::RangeInclusive;
+use warnings::Warnings;
+
+/// Values of each sweep that are looked at; fewer where a gripper path must be followed for each.
+const LOOKED_AT: usize = 1_000;
+const PATHS_FOLLOWED: usize = 50;
+
+/// Values of a sweep that are printed.
+const PRINTED: usize = 12;
 
 pub(crate) fn check(options: &CheckOptions) -> Ending {
-    let opened = refusals::open(&options.scenario).and_then(|cases| {
-        let plan = cases.plan(0)?;
-        Ok((cases, plan))
-    });
-    let (cases, plan) = match opened {
-        Ok(opened) => opened,
+    match describe(options) {
+        Ok(ending) => ending,
         Err(refused) => {
-            refusals::print(&refused);
-            return Ending::Refused;
-        }
-    };
-    match describe(&cases, &plan, options.quiet) {
-        Ok(Ok(())) => Ending::Done,
-        Ok(Err(error)) => {
-            eprintln!("error: {error}");
-            Ending::Failed
-        }
-        Err(refused) => {
-            refusals::print(&refused);
+            diagnostic::refused(&refused);
             Ending::Refused
         }
     }
 }
 
-/// Prints the plan of the first case and what deserves a warning in it.
-fn describe(cases: &Cases, plan: &Plan, quiet: bool) -> Result<Result<(), RunError>, Refusals> {
+/// Prints the plan of the first case, and what is known to fail or deserves a warning in any.
+fn describe(options: &CheckOptions) -> Result<Ending, Refusals> {
+    let cases = diagnostic::open(&options.scenario)?;
+    let plan = cases.plan(0)?;
     let system = plan.system();
-    Layout::new(cases, &system)?;
-    let starts = match system.element_starts() {
-        Ok(starts) => starts,
-        Err(error) => return Ok(Err(error)),
+    Layout::new(&cases, &system)?;
+
+    let mut warnings = Warnings::new(&plan);
+    let mut failures: Vec<(usize, RunError)> = Vec::new();
+    let mut first: Option<Vec<ElementStart>> = None;
+    for index in looked_at(&cases, &plan) {
+        let case = if index == 0 { None } else { Some(cases.plan(index)?) };
+        let case_system = case.as_ref().map(Plan::system);
+        let (plan, system) = (case.as_ref().unwrap_or(&plan), case_system.as_ref().unwrap_or(&system));
+        warnings.looked_at += 1;
+        match system.element_starts() {
+            Ok(starts) => {
+                warnings.take(index, plan, &starts);
+                failures.extend(path_failure(plan, system).map(|failure| (index, failure)));
+                if index == 0 {
+                    first = Some(starts);
+                }
+            }
+            Err(error) => failures.push((index, error)),
+        }
+    }
+    if !options.quiet {
+        terminal::print(&text(&cases, &plan, first.as_deref(), &warnings));
+    }
+    warnings.print(&cases);
+    if let Some((index, failure)) = failures.first() {
+        diagnostic::error(in_case(&cases, *index, &failure.to_string()));
+    }
+    if failures.len() > 1 {
+        diagnostic::error(format!("{} of the {} cases looked at cannot run", failures.len(), warnings.looked_at));
+    }
+    Ok(if failures.is_empty() { Ending::Done } else { Ending::Failed })
+}
+
+/// The first case, and each other value of each sweep with the rest at their first values.
+fn looked_at(cases: &Cases, plan: &Plan) -> Vec<usize> {
+    let most = match plan.motion {
+        MotionPlan::Prescribed { .. } => LOOKED_AT,
+        MotionPlan::GripperPath { .. } => PATHS_FOLLOWED,
     };
-    if !quiet {
-        if let Some(title) = &plan.title {
-            println!("{title}");
-        }
-        let joints: Vec<&str> = plan.joint_names().collect();
-        println!("robot     {} bodies, joints {}", plan.bodies.len(), joints.join(", "));
-        println!("motion    {} to {} s, {} rows", plan.motion.kind(), plan.time.end, plan.time.rows.count());
-        let solver = &plan.solver;
-        println!("solver    rtol {:e}, memory_rtol {:e}", solver.rtol, solver.memory_rtol);
-        if cases.parameters().is_empty() {
-            println!("cases     1");
-        } else {
-            println!("cases     {} over {}", cases.len(), cases.parameters().join(", "));
-        }
+    let mut indices = vec![0];
+    let mut stride = cases.len();
+    for axis in 0..cases.axis_count() {
+        let count = cases.axis_len(axis);
+        stride /= count;
+        indices.extend((1..count.min(most)).map(|k| k * stride));
     }
-    for (element, start) in plan.elements.iter().zip(&starts) {
-        if !quiet {
-            println!("element   {}: {}", element.name, element.law.name);
-            println!("          {}", element.law.equation);
-            println!("          l(0) = {} m, x(0) = {} m", short(start.length), short(start.stroke));
-            let gradient = plan.joint_names().zip(&start.gradient);
-            let gradient: Vec<String> = gradient.map(|(joint, g)| format!("{joint}: {}", short(*g))).collect();
-            println!("          dl/dq  {}", gradient.join(", "));
-        }
-        for warning in warnings(&element.name, element.rest_length, start) {
-            eprintln!("warning: {warning}");
-        }
-    }
-    Ok(Ok(()))
+    indices
 }
 
-fn warnings(name: &str, rest_length: f64, start: &ElementStart) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let ElementStart { length, stroke, .. } = start;
-    if stroke.abs() > LARGE_STROKE * rest_length {
-        warnings.push(format!(
-            "element \"{name}\" starts with a stroke of {} m, more than 20 % of its rest length {} m: l(0) = {} m",
-            short(*stroke),
-            short(rest_length),
-            short(*length)
-        ));
-    }
-    if start.singular {
-        warnings.push(format!(
-            "element \"{name}\" starts with x(0) = {} m and the Riemann-Liouville derivative: its force is infinite at \
-             t = 0 and its energy unknown; derivative = \"caputo\" means that it was held at x(0) before",
-            short(*stroke)
-        ));
-    }
-    warnings
+/// Why and where a gripper path ends early.
+fn path_failure(plan: &Plan, system: &System) -> Option<RunError> {
+    system.motion.has_path().then(|| system.pose(plan.time.end).err()).flatten()
 }
 
-/// Six significant digits, without trailing zeros.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+/// The description of a scenario.
+fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, warnings: &Warnings) -> String {
+    let width = terminal::stdout_width().or(Some(80));
+    let mut text = String::new();
+    let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, width));
+    if let Some(title) = &plan.title {
+        line("title", title);
+    }
+    let joints: Vec<&str> = plan.joint_names().collect();
+    let bodies = count(plan.bodies.len(), "body", "bodies");
+    line("robot", &format!("{bodies}; {}: {}", count(joints.len(), "joint", "joints"), joints.join(", ")));
+    line("motion", &format!("{}, 0 to {} s", plan.motion.kind(), short(plan.time.end)));
+    line("rows", &rows(&plan.time.rows));
+    line("accuracy", &format!("rtol {}, memory_rtol {}", short(plan.solver.rtol), short(plan.solver.memory_rtol)));
+    if cases.axis_count() > 0 {
+        line("cases", &cases.len().to_string());
+    }
+    for axis in 0..cases.axis_count() {
+        let parameters: Vec<&str> = cases.axis_parameters(axis).collect();
+        line("", &format!("{} = {}", parameters.join(" = "), values(cases, axis)));
+    }
+    let figures: Vec<&str> = cases.figures().iter().map(|figure| figure.name.as_str()).collect();
+    if !figures.is_empty() {
+        line("figures", &figures.join(", "));
+    }
+    for (e, element) in plan.elements.iter().enumerate() {
+        line("element", &format!("{}: {}, {}", element.name, element.law.name, memory(element)));
+        line("", element.law.equation);
+        line("", &parameters(element));
+        let Some(start) = start.map(|start| &start[e]) else { continue };
+        let (length, stroke) = (range(start.length, warnings.lengths(e)), range(start.stroke, warnings.strokes(e)));
+        line("", &format!("l(0) = {length}, l0 = {} m", short(element.rest_length)));
+        line("", &format!("x(0) = {stroke}"));
+        let gradient: Vec<String> =
+            plan.joint_names().zip(&start.gradient).map(|(joint, g)| format!("{joint}: {}", short(*g))).collect();
+        line("", &format!("dl/dq = {}", gradient.join(", ")));
+    }
+    text
+}
+
+fn rows(rows: &RowTimes) -> String {
+    match rows {
+        RowTimes::Step { step, .. } => format!("{}, every {} s", rows.count(), short(*step)),
+        RowTimes::Times(_) => format!("{}, at given times", rows.count()),
+    }
+}
+
+/// The values of a sweep as written; of many the first ones and the last.
+fn values(cases: &Cases, axis: usize) -> String {
+    let len = cases.axis_len(axis);
+    if len <= PRINTED {
+        return (0..len).map(|k| cases.axis_label(axis, k)).collect::<Vec<_>>().join(", ");
+    }
+    let first: Vec<String> = (0..3).map(|k| cases.axis_label(axis, k)).collect();
+    format!("{}, …, {} ({len} values)", first.join(", "), cases.axis_label(axis, len - 1))
+}
+
+/// Which derivative, and by which scheme.
+fn memory(element: &ElementPlan) -> String {
+    match element.scheme {
+        None => element.derivative.name().to_owned(),
+        Some(scheme) => format!("{} by {scheme}", element.derivative.name()),
+    }
+}
+
+/// Parameters in SI, then inputs as written.
+fn parameters(element: &ElementPlan) -> String {
+    let Entry { params, inputs, .. } = &element.law;
+    let with_unit = |value: String, unit: &str| if unit.is_empty() { value } else { format!("{value} {unit}") };
+    let parameter = |(param, value): (&springpot::law::Param, &f64)| {
+        format!("{} = {}", param.name, with_unit(short(*value), param.unit)).replace(' ', terminal::NO_BREAK)
+    };
+    let input = |(input, signal): (&springpot::law::Input, &SignalPlan)| match signal.constant {
+        Some(value) => {
+            format!("{} = {}", input.name, with_unit(short(value), input.unit)).replace(' ', terminal::NO_BREAK)
+        }
+        None => format!("{} = {}", input.name, signal.written),
+    };
+    let parameters = params.iter().zip(&element.parameters).map(parameter);
+    parameters.chain(inputs.iter().zip(&element.inputs).map(input)).collect::<Vec<_>>().join(", ")
+}
+
+/// A length, and the range it has over the cases where that is wider.
+fn range(first: f64, all: RangeInclusive<f64>) -> String {
+    let (first, low, high) = (short(first), short(*all.start()), short(*all.end()));
+    if low == high { format!("{first} m") } else { format!("{first} m ({low} to {high} m over the cases)") }
 }

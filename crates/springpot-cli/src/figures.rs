@@ -4,7 +4,7 @@ use crate::labels;
 use springpot::model::{JointKind, Parent};
 use springpot::scenario::{Cases, FigureKind, FigurePlan, Plan};
 use springpot::simulate::System;
-use springpot::sweep::{CaseResult, FigureColumn, FigureData, Layout, MAX_CURVES, Outcome};
+use springpot::sweep::{CaseResult, FigureColumn, FigureData, Layout, MAX_CURVES, MAX_POINTS, Outcome};
 use springpot::table::folder::Folder;
 use springpot_report::{Curve, ElementMark, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing, WORLD};
 use std::io;
@@ -43,6 +43,10 @@ fn render(result: Result<Rendered, ReportError>) -> Result<Rendered, String> {
 fn curves(cases: &Cases, figure: &FigurePlan, data: &FigureData, outcome: &Outcome) -> Result<Plot, String> {
     if data.curves > MAX_CURVES {
         return Err(format!("it would hold {} curves; choose some with `where` (at most {MAX_CURVES})", data.curves));
+    }
+    if data.points > MAX_POINTS {
+        let points = data.points;
+        return Err(format!("it would hold {points} values (at most {MAX_POINTS}); write a larger output_step"));
     }
     // Sweeps that the figure does not fix: the first makes the curves, the others the panels.
     let free: Vec<usize> =

@@ -4,11 +4,14 @@
 
 mod arguments;
 mod check;
+mod diagnostic;
+mod excerpt;
 mod figures;
 mod labels;
+mod numbers;
 mod progress;
-mod refusals;
 mod run;
+mod terminal;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

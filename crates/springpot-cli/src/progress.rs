@@ -1,11 +1,16 @@
 //! The progress bar on stderr, when it is a terminal, and the interrupt.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use springpot::simulate::Stop;
+use std::fmt::Write;
 use std::io::IsTerminal;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
+
+/// Runs shorter than this show no bar.
+const PATIENCE: Duration = Duration::from_millis(300);
+const REFRESH: Duration = Duration::from_millis(100);
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -25,26 +30,48 @@ pub(crate) fn interrupt_flag() -> &'static Stop {
 }
 
 /// Shows rows written of rows wanted while `work` runs.
-pub(crate) fn show_while<T: Send>(wanted: u64, rows: &AtomicU64, quiet: bool, work: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn show_while<T>(wanted: u64, rows: &AtomicU64, quiet: bool, work: impl FnOnce() -> T) -> T {
     if quiet || !std::io::stderr().is_terminal() {
         return work();
     }
-    let bar = ProgressBar::with_draw_target(Some(wanted), ProgressDrawTarget::stderr_with_hz(10));
-    let style =
-        ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left").unwrap_or(ProgressStyle::default_bar());
-    bar.set_style(style);
     let finished = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        let watcher = scope.spawn(|| {
-            while !finished.load(Ordering::Relaxed) {
-                bar.set_position(rows.load(Ordering::Relaxed));
-                std::thread::park_timeout(Duration::from_millis(100));
-            }
-        });
+        // Without a thread to show it, the work still goes on.
+        let watcher = std::thread::Builder::new().spawn_scoped(scope, || watch(wanted, rows, &finished)).ok();
         let result = work();
         finished.store(true, Ordering::Relaxed);
-        watcher.thread().unpark();
-        bar.finish_and_clear();
+        if let Some(watcher) = watcher {
+            watcher.thread().unpark();
+        }
         result
     })
+}
+
+fn watch(wanted: u64, rows: &AtomicU64, finished: &AtomicBool) {
+    std::thread::park_timeout(PATIENCE);
+    if finished.load(Ordering::Relaxed) {
+        return;
+    }
+    let bar = ProgressBar::with_draw_target(Some(wanted), ProgressDrawTarget::stderr_with_hz(10));
+    bar.set_style(style());
+    while !finished.load(Ordering::Relaxed) {
+        // Cases of a sweep over the end or the output step have other numbers of rows than the first.
+        bar.set_position(rows.load(Ordering::Relaxed).min(wanted));
+        if INTERRUPTED.load(Ordering::Relaxed) {
+            bar.set_message(", stopping");
+        }
+        std::thread::park_timeout(REFRESH);
+    }
+    bar.finish_and_clear();
+}
+
+fn style() -> ProgressStyle {
+    let left = |state: &ProgressState, text: &mut dyn Write| {
+        // An estimate from nothing would say 0 s.
+        if state.pos() > 0 && state.pos() < state.len().unwrap_or(0) {
+            let _ = write!(text, ", {} left", indicatif::HumanDuration(state.eta()));
+        }
+    };
+    let template = "{bar:30} {percent:>3} %, row {human_pos} of {human_len}{left}{msg}";
+    ProgressStyle::with_template(template).unwrap_or(ProgressStyle::default_bar()).with_key("left", left)
 }

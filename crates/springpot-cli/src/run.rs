@@ -1,46 +1,61 @@
 //! `springpot run`.
 
 use crate::arguments::RunOptions;
-use crate::{Ending, figures, progress, refusals};
+use crate::numbers::{count, rough, short};
+use crate::{Ending, diagnostic, figures, progress, terminal};
 use springpot::scenario::{Cases, Plan, Refusals};
 use springpot::simulate::System;
-use springpot::sweep::{self, Layout, Options, Outcome, Status, SweepError};
+use springpot::sweep::{self, CaseResult, Layout, Options, Outcome, Status, SweepError};
 use springpot::table::folder::Folder;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// Failed cases that are named one by one.
 const NAMED: usize = 5;
 
+/// What a run that came to an end left behind.
+struct Finished {
+    cases: Cases,
+    outcome: Outcome,
+    folder: Folder,
+    rows: u64,
+    /// End of the first case, s.
+    end: f64,
+}
+
 pub(crate) fn run(options: &RunOptions) -> Ending {
-    let begun = std::time::Instant::now();
-    match execute(options) {
-        Ok((outcome, folder)) => {
-            report(options, &outcome, &folder, begun.elapsed().as_secs_f64());
-            match outcome.status {
+    let begun = Instant::now();
+    let out = options.out.clone().unwrap_or_else(|| default_folder(&options.scenario.file));
+    match execute(options, &out) {
+        Ok(finished) => {
+            finished.complain();
+            if !options.quiet {
+                terminal::print(&finished.summary(begun.elapsed()));
+            }
+            match finished.outcome.status {
                 Status::Done => Ending::Done,
                 Status::Failed => Ending::Failed,
                 Status::Interrupted => Ending::Interrupted,
             }
         }
         Err(SweepError::Refused(refused)) => {
-            refusals::print(&refused);
+            diagnostic::refused(&refused);
             Ending::Refused
         }
         Err(SweepError::Output(error)) => {
-            eprintln!("error: the results cannot be written: {error}");
+            diagnostic::error(format!("the results cannot be written to {}: {error}", out.display()));
             Ending::Failed
         }
     }
 }
 
-fn execute(options: &RunOptions) -> Result<(Outcome, PathBuf), SweepError> {
+fn execute(options: &RunOptions, out: &Path) -> Result<Finished, SweepError> {
     let stop = progress::interrupt_flag();
-    let cases = refusals::open(&options.scenario)?;
+    let cases = diagnostic::open(&options.scenario)?;
     let (plan, system) = first_case(&cases)?;
     let layout = Layout::new(&cases, &system)?;
-    let out = options.out.clone().unwrap_or_else(|| default_folder(&options.scenario.file));
-    let mut folder = Folder::prepare(&out)?;
+    let mut folder = Folder::prepare(out)?;
 
     let rows = AtomicU64::new(0);
     let wanted = (cases.len() as u64).saturating_mul(plan.time.rows.count() as u64);
@@ -52,11 +67,11 @@ fn execute(options: &RunOptions) -> Result<(Outcome, PathBuf), SweepError> {
 
     if !options.no_figures && outcome.status != Status::Interrupted {
         for warning in figures::draw(&cases, &system, &plan, &layout, &outcome, &mut folder)? {
-            eprintln!("warning: {warning}");
+            diagnostic::warning(warning, None);
         }
     }
     folder.write_run(outcome.record(&cases, &plan, &layout))?;
-    Ok((outcome, folder.path().to_owned()))
+    Ok(Finished { cases, outcome, folder, rows: rows.load(Ordering::Relaxed), end: plan.time.end })
 }
 
 fn first_case(cases: &Cases) -> Result<(Plan, System), Refusals> {
@@ -70,48 +85,105 @@ fn default_folder(file: &Path) -> PathBuf {
     Path::new("results").join(file.file_stem().unwrap_or("run".as_ref()))
 }
 
-/// The lines after a run: what failed on stderr, what was done on stdout.
-fn report(options: &RunOptions, outcome: &Outcome, folder: &Path, wall: f64) {
-    let failed: Vec<_> = outcome.cases.iter().filter(|case| case.error.is_some() && !case.interrupted).collect();
-    for case in failed.iter().take(NAMED) {
-        let error = case.error.as_deref().unwrap_or_default();
-        if outcome.done + outcome.failed > 1 {
-            eprintln!("error: case {}: {error}", case.index);
-        } else {
-            eprintln!("error: {error}");
+impl Finished {
+    /// What failed, and how far an interrupted run came.
+    fn complain(&self) {
+        let Self { cases, outcome, .. } = self;
+        let failed: Vec<&CaseResult> = outcome.cases.iter().filter(|c| c.error.is_some() && !c.interrupted).collect();
+        for case in failed.iter().take(NAMED) {
+            let error = case.error.as_deref().unwrap_or_default();
+            diagnostic::error(in_case(cases, case.index, error));
+        }
+        if outcome.failed > NAMED {
+            let more = count(outcome.failed - NAMED, "more case", "more cases");
+            diagnostic::error(format!("{more} failed; run.json says which and why"));
+        }
+        match outcome.status {
+            Status::Done => {}
+            Status::Failed => terminal::print_error(&format!("failed{}\n", self.how_far())),
+            Status::Interrupted => terminal::print_error(&format!("interrupted{}\n", self.how_far())),
         }
     }
-    if failed.len() > NAMED {
-        eprintln!("error: … and {} more cases (run.json lists them)", failed.len() - NAMED);
-    }
-    let reached = outcome.t_reached.map_or("before the first row".into(), |t| format!("t = {t} s"));
-    match outcome.status {
-        Status::Done => {}
-        Status::Failed => {
-            eprintln!("failed: {} of {} cases; earliest end {reached}", outcome.failed, outcome.done + outcome.failed)
+
+    /// How far a run came that did not come to its end; goes on after "failed" or "interrupted".
+    fn how_far(&self) -> String {
+        let Self { cases, outcome, end, .. } = self;
+        let stopped = outcome.cases.iter().filter(|case| case.error.is_some());
+        let reached = stopped.clone().map(|case| case.report.t_reached.unwrap_or(-1.0)).fold(f64::INFINITY, f64::min);
+        let rows = match reached {
+            t if t < 0.0 => "before the first row".to_owned(),
+            t => format!("after the row at t = {} s", short(t)),
+        };
+        if cases.len() == 1 {
+            return match outcome.cases.len() {
+                0 => " before anything was run".to_owned(),
+                _ => format!(" {rows} of {} s; all rows are complete", short(*end)),
+            };
         }
-        Status::Interrupted => {
-            eprintln!(
-                "interrupted: {} cases done, the others reached {reached}; all rows written are complete",
-                outcome.done
-            );
+        let interrupted = stopped.filter(|case| case.interrupted).count();
+        let mut parts = vec![format!("{} of {} done", outcome.done, count(cases.len(), "case", "cases"))];
+        if outcome.failed > 0 {
+            parts.push(format!("{} failed", outcome.failed));
+        }
+        if interrupted > 0 {
+            parts.push(format!("{interrupted} stopped"));
+        }
+        if outcome.failed + interrupted > 0 {
+            parts.push(format!("the earliest {rows}"));
+        }
+        format!(": {}; all rows are complete", parts.join(", "))
+    }
+
+    /// The lines after a run: how much was done, how well the energy balance closes, where the results are.
+    fn summary(&self, wall: Duration) -> String {
+        let Self { cases, outcome, folder, rows, .. } = self;
+        let mut work = Vec::new();
+        if cases.len() > 1 {
+            work.push(count(outcome.done + outcome.failed, "case", "cases"));
+        }
+        work.extend([count(*rows, "row", "rows"), count(outcome.steps, "step", "steps")]);
+        let work = format!("{} in {:.2} s", work.join(", "), wall.as_secs_f64());
+        let width = terminal::stdout_width();
+        let mut lines = terminal::hanging("", &work, width);
+        lines.push_str(&terminal::hanging("energy   ", &self.balance(), width));
+        let figures = folder.files().iter().filter(|name| name.ends_with(".svg")).count();
+        let mut files = "results.csv, summary.csv, run.json".to_owned();
+        if figures > 0 {
+            files.push_str(&format!(", {} (SVG and PNG)", count(figures, "figure", "figures")));
+        }
+        lines.push_str(&terminal::hanging("results  ", &format!("{}: {files}", folder.path().display()), width));
+        lines
+    }
+
+    /// How well the energy balance closes, and where it is not known.
+    fn balance(&self) -> String {
+        let outcome = &self.outcome;
+        let known = match outcome.energy_residual {
+            Some((residual, turned_over)) if turned_over > 0.0 => {
+                format!("balance closes to {} of {} J turned over", rough(residual / turned_over), rough(turned_over))
+            }
+            Some(_) => "no energy was turned over".into(),
+            None => String::new(),
+        };
+        match &outcome.no_ledger {
+            None if known.is_empty() => "balance unknown: nothing was run".into(),
+            None => known,
+            Some((_, why)) if known.is_empty() => format!("balance unknown: {why}"),
+            Some((1, why)) => format!("{known}; unknown in 1 case: {why}"),
+            Some((unknown, why)) => format!("{known}; unknown in {unknown} cases: {why}"),
         }
     }
-    if options.quiet {
-        return;
-    }
-    let residual = match outcome.energy_residual {
-        Some((residual, turned_over)) if turned_over > 0.0 => {
-            format!("energy residual {:.1e} of {turned_over:.3} J", residual / turned_over)
-        }
-        Some(_) => "no energy turned over".into(),
-        None => "energy ledger unknown".into(),
-    };
-    let cases = if outcome.cases.len() > 1 { format!("{} cases, ", outcome.done) } else { String::new() };
-    println!(
-        "{cases}{} steps ({} rejected), {residual}, {wall:.2} s\n{}",
-        outcome.steps,
-        outcome.rejected_steps,
-        folder.display()
-    );
+}
+
+/// `message` with the swept values of its case in front, where anything is swept.
+pub(crate) fn in_case(cases: &Cases, index: usize, message: &str) -> String {
+    let name = case_name(cases, index);
+    if name.is_empty() { message.to_owned() } else { format!("{name}: {message}") }
+}
+
+/// The swept values of a case; empty where nothing is swept.
+pub(crate) fn case_name(cases: &Cases, index: usize) -> String {
+    let labels = cases.labels(index);
+    let named = cases.parameters().iter().zip(labels).map(|(parameter, label)| format!("{parameter} = {label}"));
+    named.collect::<Vec<_>>().join(", ")
 }

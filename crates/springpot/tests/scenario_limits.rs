@@ -20,8 +20,8 @@ fn sweeps_are_refused() {
             (&[(parameter, "parameter = ‸\"element.strutt.alpha\"")], UnknownName, "did you mean `strut`?"),
             (
                 &[(parameter, "parameter = ‸\"element.strut.alfa\"")],
-                UnknownKey,
-                "unknown key `alfa` in element \"strut\"",
+                UnknownName,
+                "`element.strut` has no `alfa`\n  help: did you mean `alpha`?",
             ),
             (&[(parameter, "parameter = ‸\"solver.rtoll\"")], UnknownKey, "did you mean `rtol`?"),
             (&[(parameter, "parameter = ‸\"solvr.rtol\"")], UnknownKey, "did you mean `solver`?"),
@@ -103,6 +103,18 @@ fn sweeps_are_refused() {
             (&[("x = \"t\" ", "where = { ‸\"element.strut.E_d\" = 50 } ")], UnknownName, "not swept"),
         ],
     );
+}
+
+#[test]
+fn a_byte_order_mark_and_other_line_ends_change_nothing() {
+    let text = edited(EXAMPLE, &[("title =", "titel =")]);
+    let plain = refusals(&text);
+    let windows = refusals(&format!("\u{feff}{}", text.replace('\n', "\r\n")));
+    let places = |refusals: &springpot::scenario::Refusals| -> Vec<(usize, usize, String)> {
+        refusals.iter().map(|refusal| (refusal.line, refusal.column, refusal.message.clone())).collect()
+    };
+    assert_eq!(places(&windows), places(&plain));
+    assert_eq!(places(&plain)[0].1, 1);
 }
 
 #[test]

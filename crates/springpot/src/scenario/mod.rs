@@ -121,6 +121,8 @@ impl Scenario {
         if text.len() as u64 > MAX_BYTES {
             return Err(too_large(&name).into());
         }
+        // Editors of one system begin their files with a byte order mark; it is no part of line 1.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let source = Arc::new(Source { name, text: text.into() });
         let document = Node::document(&source)?;
         Ok(Self { document, source, folder: folder.into(), overrides: Vec::new() })

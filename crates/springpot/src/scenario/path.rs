@@ -126,6 +126,13 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
                 {
                     steps.push(Step::Key(section.to_owned()));
                     node = here.get(section).map(|node| &**node).and_then(|node| node.get(key)).map(|node| &**node);
+                } else if let [Step::Key(root), Step::Index(_)] = &steps[..]
+                    && root == "element"
+                    && let Some(names) = names_of_element(ctx, here)
+                    && !names.contains(&key.as_str())
+                {
+                    let message = format!("path {:?}: `{}` has no `{}`", shorten(path), walked(), shorten(key));
+                    return Err(refuse(RefusalKind::UnknownName, message, names::suggest(key, names.iter().copied())));
                 } else {
                     node = entries.iter().find(|entry| entry.key == *key).map(|entry| &*entry.node);
                 }
@@ -189,6 +196,14 @@ fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static s
     } else {
         None
     }
+}
+
+/// Everything that a path into an element can name; `None` where its law is not known.
+fn names_of_element(ctx: &Context<'_>, element: &Node) -> Option<Vec<&'static str>> {
+    let law: &law::Entry = ctx.catalog.get(element.get("law")?.text()?)?;
+    let parameters = law.params.iter().map(|param| param.name);
+    let inputs = law.inputs.iter().map(|input| input.name);
+    Some(parameters.chain(inputs).chain(elements::KEYS).collect())
 }
 
 /// Puts `value` where `target` leads; tables on the way are made where they lack.

@@ -25,9 +25,6 @@ const FIRST_STEP: f64 = 1.0 / 64.0;
 /// Shortest step as a share of the motion.
 const SHORTEST_STEP: f64 = 1e-13;
 
-/// A row this near the start of its step, as a share of the step, counts as its start.
-const SMALLEST_THETA: f64 = 1e-12;
-
 /// Share of rtol^⅔ that the energy ledger may err in one step, in units of the energy turned over.
 const ENERGY_SHARE: f64 = 0.01;
 
@@ -179,7 +176,10 @@ impl<'a> Run<'a> {
             account.derivative = if observation.derivative.is_finite() { observation.derivative } else { 0.0 };
             rows.push(ElementRow { observation, dissipated: 0.0, input: 0.0 });
         }
-        self.origin = self.balance(&self.moments[0], &rows, 0.0, 0.0).total();
+        let balance = self.balance(&self.moments[0], &rows, 0.0, 0.0);
+        self.origin = balance.total();
+        // Taken here and at the ends of steps, never from rows: they must not change the steps.
+        self.turnover.take(&balance);
         if settings.rows.count() > 0 && settings.rows.at(0) == 0.0 {
             let moment = self.moments[0].clone();
             self.write_row(&moment, &rows, 0.0, 0.0)?;
@@ -233,8 +233,7 @@ impl<'a> Run<'a> {
                 let (before, after) = locate(|t| self.system.branch(t), t, node);
                 let sides = self.look_across(before.max(t), after)?;
                 if before <= t {
-                    self.cross(sides);
-                    t = after;
+                    t = self.cross(sides)?;
                     continue;
                 }
                 across = Some(sides);
@@ -251,16 +250,14 @@ impl<'a> Run<'a> {
                 }
                 continue;
             }
-            let until = across.as_ref().map_or(to, |[_, right]| right.t);
-            self.emit_rows(t, until, on_break)?;
+            self.emit_rows(t, to, on_break)?;
             self.commit(size);
             self.report.steps += 1;
             // A step cut short by a stop says nothing against the size chosen before.
             h = (size * error.factor()).max(if size < h { h } else { 0.0 }).min(self.longest_step());
             t = to;
             if let Some(sides) = across {
-                self.cross(sides);
-                t = until;
+                t = self.cross(sides)?;
             } else if on_break {
                 let [moment, ..] = &mut self.moments;
                 self.system.evaluate(t, t, &mut self.scratch, moment)?;
@@ -408,22 +405,22 @@ impl<'a> Run<'a> {
         (actuators, work(&self.powers.joints, h, theta))
     }
 
-    /// The rows in (t, until], where `until` is the end of the step or the far side of the kink that ends it.
-    fn emit_rows(&mut self, t: f64, until: f64, on_break: bool) -> Result<(), RunError> {
-        let to = self.moments[MAX_NODES].t;
-        while self.next_row < self.settings.rows.count() {
-            let at = self.settings.rows.at(self.next_row);
-            if at > until {
-                break;
-            }
+    /// The time of the next row, unless it is later than `until`.
+    fn next_row_until(&self, until: f64) -> Option<f64> {
+        let rows = &self.settings.rows;
+        (self.next_row < rows.count()).then(|| rows.at(self.next_row)).filter(|at| *at <= until)
+    }
+
+    /// The rows in (t, to], the step just attempted.
+    fn emit_rows(&mut self, t: f64, to: f64, on_break: bool) -> Result<(), RunError> {
+        while let Some(at) = self.next_row_until(to) {
             let mut moment = self.spare.take().unwrap_or_else(|| Moment::new(self.system));
             if at == to && !on_break {
                 moment.clone_from(&self.moments[MAX_NODES]);
             } else {
                 self.system.evaluate(at, at, &mut self.scratch, &mut moment)?;
             }
-            // A row on a kink may lie one bit before the step that starts there.
-            let theta = if at >= to { 1.0 } else { ((at - t) / (to - t)).max(SMALLEST_THETA) };
+            let theta = if at == to { 1.0 } else { (at - t) / (to - t) };
             let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.element_row(e, theta, &moment)).collect();
             let (actuators, joints) = self.work_until(theta);
             self.write_row(&moment, &rows, actuators, joints)?;
@@ -437,14 +434,16 @@ impl<'a> Run<'a> {
         let element = &self.system.elements[e];
         let point = moment.elements[e].point(moment.t);
         let [from, .., to] = &self.moments;
-        let observation = match (&self.accounts[e].law, &self.grid[e]) {
-            (Some(law), _) => element.law.observe(&self.steps[e].law_step(from.t, to.t - from.t), theta, &point, law),
-            (None, values) => {
-                let value = values.as_ref().and_then(|values| values.get(self.next_row)).copied();
-                on_grid_observation(element, &point, value.unwrap_or(f64::NAN))
-            }
-        };
+        let Some(law) = &self.accounts[e].law else { return self.grid_row(e, &point) };
+        let observation = element.law.observe(&self.steps[e].law_step(from.t, to.t - from.t), theta, &point, law);
         self.with_ledger(e, theta, observation)
+    }
+
+    /// The next row of an element with a named scheme.
+    fn grid_row(&self, e: usize, point: &Point) -> ElementRow {
+        let value = self.grid[e].as_ref().and_then(|values| values.get(self.next_row)).copied();
+        let observation = on_grid_observation(&self.system.elements[e], point, value.unwrap_or(f64::NAN));
+        ElementRow { observation, dissipated: f64::NAN, input: f64::NAN }
     }
 
     /// An observation at θ with what the element has dissipated and taken in until then.
@@ -479,7 +478,6 @@ impl<'a> Run<'a> {
         let balance = self.balance(moment, rows, actuators, joints);
         let residual = balance.total() - self.origin;
         self.residual = if residual.is_nan() { f64::NAN } else { self.residual.max(residual.abs()) };
-        self.turnover.take(&balance);
         let mut row = std::mem::take(&mut self.row);
         self.system.fill_row(moment, rows, &balance, self.joints + joints, residual, &mut row);
         self.rows.row(&row)?;
@@ -530,8 +528,45 @@ impl<'a> Run<'a> {
         Ok([left, right])
     }
 
+    /// Goes from a kink to where the next step starts: one bit behind it, since a sign is 0 while it turns.
+    fn cross(&mut self, sides: [Moment; 2]) -> Result<f64, RunError> {
+        let [_, Moment { t: after, .. }] = sides;
+        self.book_jumps(sides);
+        self.emit_rows_between_steps(after)?;
+        let start = after.next_up();
+        let sides = self.look_across(after, start)?;
+        self.book_jumps(sides);
+        self.emit_rows_between_steps(start)?;
+        Ok(start)
+    }
+
+    /// The rows up to `until`, when no step is under way.
+    fn emit_rows_between_steps(&mut self, until: f64) -> Result<(), RunError> {
+        while self.next_row_until(until).is_some() {
+            let moment = self.moments[0].clone();
+            let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.row_between_steps(e, &moment)).collect();
+            self.write_row(&moment, &rows, 0.0, 0.0)?;
+        }
+        Ok(())
+    }
+
+    /// An element between two steps.
+    fn row_between_steps(&self, e: usize, moment: &Moment) -> ElementRow {
+        let (element, account) = (&self.system.elements[e], &self.accounts[e]);
+        let point = moment.elements[e].point(moment.t);
+        let Some(state) = &account.law else { return self.grid_row(e, &point) };
+        // D^alpha x itself does not jump, but for alpha = 1.
+        let derivative = if element.law.order() == 1.0 { point.rate } else { account.derivative };
+        let observation = Observation {
+            derivative,
+            force: element.law.force(&point, derivative),
+            stored: element.law.stored(&point, state),
+        };
+        ElementRow { observation, dissipated: account.dissipated, input: account.input }
+    }
+
     /// Goes on from the far side of a kink and books what jumps there.
-    fn cross(&mut self, [left, right]: [Moment; 2]) {
+    fn book_jumps(&mut self, [left, right]: [Moment; 2]) {
         // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
         self.actuators += right.kinetic - left.kinetic;
         for (e, element) in self.system.elements.iter().enumerate() {

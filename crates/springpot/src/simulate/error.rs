@@ -7,7 +7,7 @@ use crate::fractional::scheme::SchemeError;
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The points that an element joins met, so that its direction is undefined.
-    #[error("t = {t} s: element \"{element}\" has no direction: its points met (length {length:e} m)")]
+    #[error("t = {t} s: element \"{element}\" has no direction: its points met (length {length:.1e} m)")]
     ZeroLength {
         /// Time, s.
         t: f64,

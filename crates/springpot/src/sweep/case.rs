@@ -3,7 +3,7 @@
 use super::layout::Layout;
 use super::{Options, Writers, push_field, push_fields};
 use crate::scenario::{Cases, SweptValue};
-use crate::simulate::{Report, RunError, along};
+use crate::simulate::{Report, RunError, System, along};
 use crate::table::{Statistics, push_number};
 use std::io;
 use std::sync::atomic::Ordering;
@@ -26,6 +26,8 @@ pub struct CaseResult {
     pub interrupted: bool,
     /// Wall time.
     pub wall: Duration,
+    /// Why its energy ledger is not known; `None` where it is.
+    pub no_ledger: Option<String>,
     /// The columns that figures need, where this case is drawn.
     pub kept: Option<Vec<Vec<f64>>>,
 }
@@ -38,7 +40,7 @@ pub(super) fn run(
     cases: &Cases,
     index: usize,
     layout: &Layout,
-    writers: &Writers,
+    writers: Writers,
     options: &Options,
 ) -> io::Result<CaseResult> {
     let begun = Instant::now();
@@ -56,8 +58,10 @@ pub(super) fn run(
     let mut kept = kept_columns.map(|columns| vec![Vec::new(); columns.len()]);
     let (mut text, mut handed_over) = (String::with_capacity(2 * CHUNK), Instant::now());
 
-    let (report, outcome) = match cases.plan(index) {
-        Err(refusals) => (Report::default(), Err(CaseError::Refused(refusals.to_string()))),
+    let (report, no_ledger, outcome) = match cases.plan(index) {
+        Err(refusals) => {
+            (Report::default(), Some("no row was written".into()), Err(CaseError::Refused(refusals.to_string())))
+        }
         Ok(plan) => {
             let system = plan.system();
             let mut rows = |row: &[f64]| -> io::Result<()> {
@@ -74,18 +78,18 @@ pub(super) fn run(
                 }
                 options.rows.fetch_add(1, Ordering::Relaxed);
                 if text.len() >= CHUNK || handed_over.elapsed() > PATIENCE {
-                    writers.rows.write(index, text.as_bytes())?;
+                    writers.rows.write(text.as_bytes())?;
                     text.clear();
                     handed_over = Instant::now();
                 }
                 Ok(())
             };
             let (report, outcome) = along(&system, &plan.settings(), &mut rows, options.stop);
-            (report, outcome.map_err(CaseError::Run))
+            (report, why_no_ledger(&system, &report), outcome.map_err(CaseError::Run))
         }
     };
-    writers.rows.write(index, text.as_bytes())?;
-    writers.rows.finish(index)?;
+    writers.rows.write(text.as_bytes())?;
+    writers.rows.finish()?;
     let mut summary = String::new();
     for ((_, column), statistics) in layout.selected().zip(&statistics) {
         summary.push_str(&lead);
@@ -95,14 +99,32 @@ pub(super) fn run(
         push_fields(&mut summary, [statistics.min, statistics.max, statistics.rms()].into_iter());
         summary.push('\n');
     }
-    writers.summary.write(index, summary.as_bytes())?;
-    writers.summary.finish(index)?;
+    writers.summary.write(summary.as_bytes())?;
+    writers.summary.finish()?;
     if let Err(CaseError::Run(RunError::Output(error))) = outcome {
         return Err(error);
     }
     let interrupted = matches!(outcome, Err(CaseError::Run(RunError::Interrupted { .. })));
     let error = outcome.err().map(|error| error.to_string());
-    Ok(CaseResult { index, report, error, interrupted, wall: begun.elapsed(), kept })
+    Ok(CaseResult { index, report, error, interrupted, wall: begun.elapsed(), no_ledger, kept })
+}
+
+/// Why a case does not know its energies; `None` where it does.
+fn why_no_ledger(system: &System, report: &Report) -> Option<String> {
+    if report.energy_residual.is_some() {
+        return None;
+    }
+    if report.rows == 0 {
+        return Some("no row was written".into());
+    }
+    if let Some(element) = system.elements.iter().find(|element| element.scheme.is_some()) {
+        return Some(format!("element \"{}\" has a named scheme, which keeps no account of energy", element.name));
+    }
+    let starts = system.element_starts().unwrap_or_default();
+    let singular = system.elements.iter().zip(&starts).find(|(_, start)| start.singular);
+    Some(singular.map_or("an energy is not finite".into(), |(element, _)| {
+        format!("element \"{}\" starts with x(0) != 0 and the Riemann-Liouville derivative", element.name)
+    }))
 }
 
 /// Why a case has no complete run.

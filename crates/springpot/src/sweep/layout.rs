@@ -8,6 +8,9 @@ use crate::table::{Column, matches};
 /// Most curves of one figure; a figure of more is left out with a word.
 pub const MAX_CURVES: usize = 64;
 
+/// Most values that a figure keeps in memory; a figure of more is left out with a word.
+pub const MAX_POINTS: usize = 100_000_000;
+
 /// The columns of a sweep.
 #[derive(Debug, Clone)]
 pub struct Layout {
@@ -34,6 +37,8 @@ pub struct FigureData {
     pub y: Vec<FigureColumn>,
     /// Curves it would have; where that is more than [`MAX_CURVES`], it has no cases.
     pub curves: usize,
+    /// Values that it would keep; where that is more than [`MAX_POINTS`], it has no cases.
+    pub points: usize,
 }
 
 /// A column of a figure.
@@ -107,7 +112,7 @@ impl Layout {
     fn figure(&mut self, cases: &Cases, figure: &FigurePlan) -> Result<FigureData, Refusals> {
         let FigureKind::Curves { x, y } = &figure.kind else {
             let x = FigureColumn { column: self.columns[0].clone(), kept: 0, unit: None };
-            return Ok(FigureData { cases: Vec::new(), x, y: Vec::new(), curves: 0 });
+            return Ok(FigureData { cases: Vec::new(), x, y: Vec::new(), curves: 0, points: 0 });
         };
         let abscissa = match found(x, &self.columns)?[..] {
             [only] => only,
@@ -129,8 +134,11 @@ impl Layout {
         let fixed = |axis: usize| figure.selection.iter().find(|s| s.axis == axis).map(|s| s.value);
         let counts = (0..cases.axis_count()).map(|axis| if fixed(axis).is_some() { 1 } else { cases.axis_len(axis) });
         let curves = counts.product::<usize>() * y.len();
-        let drawn = if curves > MAX_CURVES { Vec::new() } else { selected_cases(cases, &fixed) };
-        Ok(FigureData { cases: drawn, x, y, curves })
+        let rows = cases.plan(0)?.time.rows.count();
+        let points = curves.saturating_add(curves / y.len().max(1)).saturating_mul(rows);
+        let too_large = curves > MAX_CURVES || points > MAX_POINTS;
+        let drawn = if too_large { Vec::new() } else { selected_cases(cases, &fixed) };
+        Ok(FigureData { cases: drawn, x, y, curves, points })
     }
 
     fn figure_column(&mut self, figure: &FigurePlan, index: usize) -> Result<FigureColumn, Refusals> {

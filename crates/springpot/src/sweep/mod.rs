@@ -5,15 +5,16 @@ mod layout;
 mod record;
 
 pub use case::CaseResult;
-pub use layout::{FigureColumn, FigureData, Layout, MAX_CURVES};
+pub use layout::{FigureColumn, FigureData, Layout, MAX_CURVES, MAX_POINTS};
 
 use crate::scenario::{Cases, Refusals};
 use crate::simulate::Stop;
 use crate::table::folder::Folder;
-use crate::table::ordered::Ordered;
+use crate::table::ordered::{Ordered, Section};
 use crate::table::{Column, push_number};
 use std::fs::File;
-use std::io;
+use std::io::{self, Write as _};
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -46,7 +47,8 @@ pub enum Status {
 pub struct Outcome {
     /// How it ended.
     pub status: Status,
-    /// The cases that were begun, in order; successful ones beyond [`MAX_LISTED`] are counted only.
+    /// The cases that were begun, in order; beyond [`MAX_LISTED`] that ended well, and as many that did not, they are
+    /// counted only, unless a figure draws them.
     pub cases: Vec<CaseResult>,
     /// Cases that reached their end.
     pub done: usize,
@@ -61,11 +63,13 @@ pub struct Outcome {
     /// The energy residual of the case in which it is largest beside the energy turned over, and that energy, J; `None`
     /// where no case knows its ledger.
     pub energy_residual: Option<(f64, f64)>,
+    /// Number of cases that do not know their ledger, and why the first of them does not.
+    pub no_ledger: Option<(usize, String)>,
     /// Wall time.
     pub wall: Duration,
 }
 
-/// Successful cases that are listed one by one.
+/// Cases that are listed one by one, of those that ended well and of those that did not.
 pub const MAX_LISTED: usize = 10_000;
 
 /// Why a sweep could not be carried out at all.
@@ -84,43 +88,53 @@ pub enum SweepError {
 /// A case that fails does not stop the others; its rows up to the failure are written.
 ///
 /// # Errors
-/// [`SweepError::Output`] where the folder cannot be written.
+/// [`SweepError::Output`] where the folder cannot be written; the complete rows that were written stay there.
 pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options) -> Result<Outcome, SweepError> {
     let begun = Instant::now();
     let jobs = options.jobs.clamp(1, cases.len().max(1));
-    let writers = Writers {
-        rows: Ordered::new(folder.open_rows()?, 4 * jobs + 16),
-        summary: Ordered::new(folder.open_summary()?, usize::MAX / 2),
-    };
-    writers.rows.write(0, header(layout.written()).as_bytes())?;
-    writers.summary.write(0, header(&layout.summary_columns()).as_bytes())?;
+    let (mut rows, mut summary) = (folder.open_rows()?, folder.open_summary()?);
+    rows.write_all(header(layout.written()).as_bytes())?;
+    summary.write_all(header(&layout.summary_columns()).as_bytes())?;
+    let (rows, summary) = (Ordered::new(rows, 4 * jobs + 16), Ordered::new(summary, usize::MAX));
 
     let next = AtomicUsize::new(0);
     let tally = Mutex::new(Tally::default());
+    let stopped = || options.stop.load(Ordering::Relaxed);
     let work = || -> io::Result<()> {
-        loop {
+        while !stopped() {
             let index = next.fetch_add(1, Ordering::Relaxed);
-            if index >= cases.len() || options.stop.load(Ordering::Relaxed) {
-                return Ok(());
+            if index >= cases.len() {
+                break;
             }
-            writers.rows.wait_for_turn(index);
-            let result = case::run(cases, index, layout, &writers, &options)?;
+            let writers = Writers { rows: rows.section(index), summary: summary.section(index) };
+            // The section may have been long in coming.
+            if stopped() {
+                break;
+            }
+            let result = case::run(cases, index, layout, writers, &options)?;
             tally.lock().unwrap_or_else(PoisonError::into_inner).take(result);
         }
+        Ok(())
     };
-    std::thread::scope(|scope| -> io::Result<()> {
-        let others: Vec<_> = (1..jobs).map(|_| scope.spawn(work)).collect();
+    let ended = std::thread::scope(|scope| {
+        // Where the system gives fewer threads, fewer do the work.
+        let spawn = |_| std::thread::Builder::new().spawn_scoped(scope, work).ok();
+        let others: Vec<_> = (1..jobs).map_while(spawn).collect();
         let own = work();
-        let joined =
-            others.into_iter().map(|other| other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-        own.and(joined.collect())
-    })?;
+        let joined = others.into_iter().map(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        first_error(std::iter::once(own).chain(joined))
+    });
+    if let Err(error) = ended {
+        // What keeps rows from being written may keep them from being renamed too; the first error is the one to tell.
+        let _ = folder.rescue_rows();
+        return Err(error.into());
+    }
     folder.close_rows()?;
     folder.close_summary();
 
     let mut tally = tally.into_inner().unwrap_or_else(PoisonError::into_inner);
     tally.cases.sort_by_key(|case| case.index);
-    let status = if options.stop.load(Ordering::Relaxed) && tally.done < cases.len() {
+    let status = if stopped() && tally.done + tally.failed < cases.len() {
         Status::Interrupted
     } else if tally.failed > 0 {
         Status::Failed
@@ -136,15 +150,22 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         rejected_steps: tally.rejected_steps,
         t_reached: tally.t_reached.flatten(),
         energy_residual: tally.energy_residual,
+        no_ledger: tally.no_ledger.map(|(count, _, why)| (count, why)),
         wall: begun.elapsed(),
     })
 }
 
-/// The two files that all cases write.
+/// What one case writes of the two files that all cases share.
 #[derive(Debug)]
-struct Writers {
-    rows: Ordered<File>,
-    summary: Ordered<File>,
+struct Writers<'a> {
+    rows: Section<'a, File>,
+    summary: Section<'a, File>,
+}
+
+/// The error with the system's own words, or else any: a case that others kept from writing knows its kind alone.
+fn first_error(results: impl Iterator<Item = io::Result<()>>) -> io::Result<()> {
+    let errors = results.filter_map(Result::err);
+    errors.max_by_key(|error| error.raw_os_error().is_some()).map_or(Ok(()), Err)
 }
 
 /// What is added up over the cases.
@@ -158,6 +179,9 @@ struct Tally {
     /// `None` before the first case.
     t_reached: Option<Option<f64>>,
     energy_residual: Option<(f64, f64)>,
+    /// How many, index of the first, and its reason.
+    no_ledger: Option<(usize, usize, String)>,
+    listed: [usize; 2],
 }
 
 impl Tally {
@@ -182,7 +206,16 @@ impl Tally {
                 self.energy_residual = Some(new);
             }
         }
-        if case.error.is_some() || case.kept.is_some() || self.cases.len() < MAX_LISTED {
+        if let Some(why) = &case.no_ledger {
+            let (count, first, reason) = self.no_ledger.get_or_insert_with(|| (0, case.index, why.clone()));
+            *count += 1;
+            if case.index < *first {
+                (*first, *reason) = (case.index, why.clone());
+            }
+        }
+        let listed = &mut self.listed[usize::from(case.error.is_some())];
+        if case.kept.is_some() || *listed < MAX_LISTED {
+            *listed += 1;
             self.cases.push(case);
         }
     }

@@ -9,7 +9,10 @@ impl Outcome {
     /// run.json: how it ended, what was run (the first case, as resolved), what the columns are, what every case did.
     pub fn record(&self, cases: &Cases, plan: &Plan, layout: &Layout) -> Map<String, Value> {
         let (residual, turned_over) = self.energy_residual.unzip();
-        let listed: Vec<Value> = self.cases.iter().take(MAX_LISTED).map(|case| one(cases, case)).collect();
+        let listed: Vec<Value> = self.cases.iter().take(2 * MAX_LISTED).map(|case| one(cases, case)).collect();
+        let ledger = self.no_ledger.as_ref().map(|(count, why)| {
+            if cases.len() == 1 { format!("unknown: {why}") } else { format!("unknown in {count} cases: {why}") }
+        });
         let record = json!({
             "status": self.status,
             "t_reached": self.t_reached,
@@ -23,7 +26,7 @@ impl Outcome {
             "rejected_steps": self.rejected_steps,
             "energy_residual": residual,
             "energy_turned_over": turned_over,
-            "ledger": if residual.is_none() { Value::from(why_no_ledger(plan)) } else { Value::Null },
+            "ledger": ledger,
             "plan": plan.resolved(),
             "columns": layout.written(),
             "cases": listed,
@@ -51,18 +54,11 @@ fn one(cases: &Cases, case: &CaseResult) -> Value {
         "parameters": parameters,
         "status": status,
         "error": case.error,
+        "ledger": case.no_ledger.as_ref().map(|why| format!("unknown: {why}")),
         "wall_time": case.wall.as_secs_f64(),
     });
     if let (Value::Object(record), Ok(Value::Object(report))) = (&mut record, serde_json::to_value(case.report)) {
         record.extend(report);
     }
     record
-}
-
-/// Why no case knows its energies.
-fn why_no_ledger(plan: &Plan) -> String {
-    if plan.elements.iter().any(|element| element.scheme.is_some()) {
-        return "unknown: a named scheme keeps no account of energy".into();
-    }
-    "unknown: a Riemann-Liouville start with x(0) != 0 takes infinite work (or no row was written)".into()
 }

@@ -1,8 +1,8 @@
 //! The folder of a run's results.
 
 use std::fs::{self, File};
-use std::io;
-use std::path::{Path, PathBuf};
+use std::io::{self, Read as _, Seek as _};
+use std::path::{Component, Path, PathBuf};
 
 /// The rows while they are written, and at the end.
 const PART: &str = "results.csv.part";
@@ -11,6 +11,9 @@ const RESULTS: &str = "results.csv";
 const SUMMARY: &str = "summary.csv";
 /// What was run and how it went.
 const RUN: &str = "run.json";
+/// The folder of the figures, and what their names end with.
+const FIGURES: &str = "figures";
+const FIGURE_ENDINGS: [&str; 2] = ["svg", "png"];
 
 /// A folder into which one run writes; a new run replaces the last run's files and nothing else.
 #[derive(Debug)]
@@ -30,8 +33,7 @@ impl Folder {
         let listed = listed.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
         let listed = listed.as_ref().and_then(|run| run["files"].as_array());
         let listed = listed.into_iter().flatten().filter_map(|name| name.as_str());
-        // Only figures are listed by name; nothing outside the folder is ever touched.
-        let figures = listed.filter(|name| name.starts_with("figures/") && !name.contains(".."));
+        let figures = listed.filter(|name| is_figure(name));
         for name in figures.chain([PART, RESULTS, SUMMARY, RUN]) {
             match fs::remove_file(path.join(name)) {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
@@ -39,6 +41,11 @@ impl Folder {
             }
         }
         Ok(Self { path: path.to_owned(), files: Vec::new() })
+    }
+
+    /// The files written so far, as names in the folder.
+    pub fn files(&self) -> &[String] {
+        &self.files
     }
 
     /// The folder.
@@ -64,6 +71,29 @@ impl Folder {
         Ok(())
     }
 
+    /// Gives the rows their name after an error: what stands behind the last complete row is cut off.
+    ///
+    /// # Errors
+    /// The file system's.
+    pub fn rescue_rows(&mut self) -> io::Result<()> {
+        let mut file = File::options().read(true).write(true).open(self.path.join(PART))?;
+        let mut end = file.seek(io::SeekFrom::End(0))?;
+        let mut piece = [0; 1 << 14];
+        while end > 0 {
+            let from = end.saturating_sub(piece.len() as u64);
+            let piece = &mut piece[..(end - from) as usize];
+            file.seek(io::SeekFrom::Start(from))?;
+            file.read_exact(piece)?;
+            if let Some(newline) = piece.iter().rposition(|byte| *byte == b'\n') {
+                end = from + newline as u64 + 1;
+                break;
+            }
+            end = from;
+        }
+        file.set_len(end)?;
+        self.close_rows()
+    }
+
     /// Opens the file of the statistics.
     ///
     /// # Errors
@@ -82,8 +112,8 @@ impl Folder {
     /// # Errors
     /// The file system's.
     pub fn write_figure(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
-        fs::create_dir_all(self.path.join("figures"))?;
-        self.write(&format!("figures/{name}"), bytes)
+        fs::create_dir_all(self.path.join(FIGURES))?;
+        self.write(&format!("{FIGURES}/{name}"), bytes)
     }
 
     /// Writes run.json, with the list of all files.
@@ -103,6 +133,17 @@ impl Folder {
         self.files.push(name.into());
         Ok(())
     }
+}
+
+/// Whether a name listed in run.json is that of a figure: a file right in `figures/`. Nothing else is taken away by name.
+fn is_figure(name: &str) -> bool {
+    let path = Path::new(name);
+    let mut components = path.components();
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    components.next() == Some(Component::Normal(FIGURES.as_ref()))
+        && matches!(components.next(), Some(Component::Normal(_)))
+        && components.next().is_none()
+        && ending.is_some_and(|ending| FIGURE_ENDINGS.contains(&ending))
 }
 
 #[cfg(test)]
@@ -125,6 +166,68 @@ mod tests {
         assert!(path.join("notes.txt").exists() && path.join("figures/mine.svg").exists());
         for gone in ["results.csv", "run.json", "figures/old.svg"] {
             assert!(!path.join(gone).exists(), "{gone}");
+        }
+    }
+
+    #[test]
+    fn only_figures_are_taken_away_by_name() {
+        for good in ["figures/order.svg", "figures/a.b.png", "figures/figure-1.svg"] {
+            assert!(is_figure(good), "{good}");
+        }
+        for bad in [
+            "figures",
+            "figures/",
+            "figures/notes.txt",
+            "figures/.svg",
+            "figures/../a.svg",
+            "figures/sub/a.svg",
+            "figures/../../a.svg",
+            "../figures/a.svg",
+            "/figures/a.svg",
+            "/etc/a.svg",
+            "./figures/a.svg",
+            "a.svg",
+            "",
+        ] {
+            assert!(!is_figure(bad), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_record_from_elsewhere_harms_nothing() {
+        let temporary = tempfile::tempdir().unwrap();
+        let path = temporary.path().join("results");
+        fs::create_dir_all(path.join("figures/sub")).unwrap();
+        let outside = temporary.path().join("keep.svg");
+        let kept = [outside.clone(), path.join("figures/notes.txt"), path.join("figures/sub/a.svg")];
+        for file in &kept {
+            fs::write(file, "mine").unwrap();
+        }
+        for record in [
+            format!(r#"{{"files": ["figures/../../keep.svg", "../keep.svg", {outside:?}, "figures/notes.txt", 3]}}"#),
+            r#"{"files": ["figures/sub/a.svg", "figures/sub", "figures"]}"#.into(),
+            r#"{"files": "figures/notes.txt"}"#.into(),
+            "[]".into(),
+            "not JSON".into(),
+        ] {
+            fs::write(path.join(RUN), record).unwrap();
+            Folder::prepare(&path).unwrap();
+            assert!(kept.iter().all(|file| file.exists()));
+        }
+    }
+
+    #[test]
+    fn half_a_row_is_cut_off() {
+        let temporary = tempfile::tempdir().unwrap();
+        let long = "x".repeat(40_000);
+        for (written, kept) in
+            [("a\nb\nhal", "a\nb\n"), ("a\n", "a\n"), ("hal", ""), ("", ""), (&*format!("a\n{long}"), "a\n")]
+        {
+            let mut folder = Folder::prepare(temporary.path()).unwrap();
+            fs::write(temporary.path().join(PART), written).unwrap();
+            folder.rescue_rows().unwrap();
+            assert_eq!(fs::read_to_string(temporary.path().join(RESULTS)).unwrap(), kept);
+            assert!(!temporary.path().join(PART).exists());
         }
     }
 }

@@ -4,15 +4,19 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
+/// Most bytes that wait in memory for their turn, but for one piece per case.
+const MOST_HELD: usize = 256 << 20;
+
 /// Writes the text of many cases to one file in their order, whoever is first.
 ///
-/// The case whose turn it is writes through; later ones wait in memory. [`Self::wait_for_turn`] keeps the number of waiting
-/// cases small.
+/// The case whose turn it is writes through. Later ones wait in memory, as far as it is given to them; beyond that they
+/// wait for their turn. So no two cases ever wait for each other.
 #[derive(Debug)]
 pub struct Ordered<W> {
     state: Mutex<State<W>>,
-    advanced: Condvar,
+    changed: Condvar,
     window: usize,
+    most_held: usize,
 }
 
 #[derive(Debug)]
@@ -20,6 +24,8 @@ struct State<W> {
     out: W,
     turn: usize,
     waiting: BTreeMap<usize, Waiting>,
+    /// Bytes in `waiting`.
+    held: usize,
     error: Option<io::ErrorKind>,
 }
 
@@ -29,86 +35,150 @@ struct Waiting {
     finished: bool,
 }
 
+/// The part of the file that belongs to one case; it ends with [`Section::finish`], or when it is dropped.
+///
+/// Every case up to the last that is begun must be begun, or those after it are never written.
+#[derive(Debug)]
+pub struct Section<'a, W: Write> {
+    file: &'a Ordered<W>,
+    case: usize,
+    finished: bool,
+}
+
 impl<W: Write> Ordered<W> {
     /// A writer that lets at most `window` cases be under way or waiting.
     pub fn new(out: W, window: usize) -> Self {
-        let state = State { out, turn: 0, waiting: BTreeMap::new(), error: None };
-        Self { state: Mutex::new(state), advanced: Condvar::new(), window: window.max(1) }
+        let state = State { out, turn: 0, waiting: BTreeMap::new(), held: 0, error: None };
+        Self { state: Mutex::new(state), changed: Condvar::new(), window: window.max(1), most_held: MOST_HELD }
     }
 
-    /// Blocks until `case` is within the window.
-    pub fn wait_for_turn(&self, case: usize) {
+    /// Begins `case`, once it is within the window.
+    pub fn section(&self, case: usize) -> Section<'_, W> {
         let mut state = self.lock();
-        while case >= state.turn + self.window && state.error.is_none() {
-            state = self.advanced.wait(state).unwrap_or_else(PoisonError::into_inner);
+        while case.saturating_sub(state.turn) >= self.window && state.error.is_none() {
+            state = self.wait(state);
         }
+        Section { file: self, case, finished: false }
     }
 
-    /// Adds whole lines of `case`.
-    ///
-    /// # Errors
-    /// The file's, also where another case met it first.
-    pub fn write(&self, case: usize, text: &[u8]) -> io::Result<()> {
+    fn write(&self, case: usize, text: &[u8]) -> io::Result<()> {
         let mut state = self.lock();
+        while case != state.turn && state.held > self.most_held && state.error.is_none() {
+            state = self.wait(state);
+        }
+        if let Some(kind) = state.error {
+            return Err(kind.into());
+        }
         if case == state.turn {
             let written = state.out.write_all(text);
-            return state.note(written);
+            return self.note(&mut state, written);
         }
         state.waiting.entry(case).or_default().text.extend_from_slice(text);
-        state.note(Ok(()))
+        state.held += text.len();
+        Ok(())
     }
 
     /// Ends `case` and lets the next ones through.
-    ///
-    /// # Errors
-    /// As [`Self::write`].
-    pub fn finish(&self, case: usize) -> io::Result<()> {
+    fn finish(&self, case: usize) -> io::Result<()> {
         let mut state = self.lock();
         state.waiting.entry(case).or_default().finished = true;
-        let mut written = Ok(());
-        while written.is_ok() {
+        loop {
             let turn = state.turn;
             let Some(waiting) = state.waiting.get_mut(&turn) else { break };
-            let text = std::mem::take(&mut waiting.text);
-            let finished = waiting.finished;
-            written = state.out.write_all(&text);
+            let (text, finished) = (std::mem::take(&mut waiting.text), waiting.finished);
+            state.held -= text.len();
+            if state.error.is_none() {
+                let written = state.out.write_all(&text);
+                self.note(&mut state, written)?;
+            }
             if !finished {
                 break;
             }
             state.waiting.remove(&turn);
             state.turn += 1;
         }
-        let noted = state.note(written);
-        drop(state);
-        self.advanced.notify_all();
-        noted
+        self.changed.notify_all();
+        state.error.map_or(Ok(()), |kind| Err(kind.into()))
     }
 
-    /// Flushes what was written.
-    ///
-    /// # Errors
-    /// The file's.
-    pub fn flush(&self) -> io::Result<()> {
-        self.lock().out.flush()
+    /// Keeps the first error, which every later call meets, and wakes those who wait for their turn.
+    fn note(&self, state: &mut State<W>, result: io::Result<()>) -> io::Result<()> {
+        if let Err(error) = &result {
+            state.error = Some(error.kind());
+            self.changed.notify_all();
+        }
+        result
     }
 
     fn lock(&self) -> MutexGuard<'_, State<W>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
+    fn wait<'a>(&self, state: MutexGuard<'a, State<W>>) -> MutexGuard<'a, State<W>> {
+        self.changed.wait(state).unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
-impl<W> State<W> {
-    fn note(&mut self, result: io::Result<()>) -> io::Result<()> {
-        if let Err(error) = &result {
-            self.error = Some(error.kind());
+impl<W: Write> Section<'_, W> {
+    /// Adds whole lines.
+    ///
+    /// # Errors
+    /// The file's; where another case met one first, its kind.
+    pub fn write(&self, text: &[u8]) -> io::Result<()> {
+        self.file.write(self.case, text)
+    }
+
+    /// Ends the case.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn finish(mut self) -> io::Result<()> {
+        self.finished = true;
+        self.file.finish(self.case)
+    }
+}
+
+impl<W: Write> Drop for Section<'_, W> {
+    /// A case that stops on an error, or panics, keeps nobody waiting.
+    fn drop(&mut self) {
+        if !self.finished {
+            // Whoever writes next meets the same error.
+            let _ = self.file.finish(self.case);
         }
-        self.error.map_or(result, |kind| Err(kind.into()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    fn line(case: usize, line: usize) -> String {
+        format!("{case} {line}\n")
+    }
+
+    fn expected(cases: usize, lines: usize) -> String {
+        (0..cases).flat_map(|case| (0..lines).map(move |k| line(case, k))).collect()
+    }
+
+    fn text(ordered: Ordered<Vec<u8>>) -> String {
+        String::from_utf8(ordered.state.into_inner().unwrap().out).unwrap()
+    }
+
+    /// Writes through a file that takes `room` bytes and is full after that.
+    struct Full(usize);
+
+    impl Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let taken = bytes.len().min(self.0);
+            self.0 -= taken;
+            if taken == 0 { Err(io::ErrorKind::StorageFull.into()) } else { Ok(taken) }
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
 
     #[test]
     fn text_comes_out_in_case_order() {
@@ -117,32 +187,75 @@ mod tests {
             for case in (0..8).rev() {
                 let ordered = &ordered;
                 scope.spawn(move || {
-                    ordered.wait_for_turn(case);
-                    for line in 0..50 {
-                        ordered.write(case, format!("{case} {line}\n").as_bytes()).unwrap();
-                    }
-                    ordered.finish(case).unwrap();
+                    let section = ordered.section(case);
+                    (0..50).for_each(|k| section.write(line(case, k).as_bytes()).unwrap());
+                    section.finish().unwrap();
                 });
             }
         });
-        let text = String::from_utf8(ordered.state.into_inner().unwrap().out).unwrap();
-        let expected: String = (0..8).flat_map(|case| (0..50).map(move |line| format!("{case} {line}\n"))).collect();
-        assert_eq!(text, expected);
+        assert_eq!(text(ordered), expected(8, 50));
     }
 
     #[test]
-    fn a_full_disk_reaches_every_case() {
-        struct Full;
-        impl Write for Full {
-            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
-                Err(io::ErrorKind::StorageFull.into())
-            }
-            fn flush(&mut self) -> io::Result<()> {
-                Ok(())
-            }
+    fn little_memory_and_a_small_window_only_make_it_wait() {
+        for (window, most_held) in [(1, usize::MAX), (3, 0), (100, 0), (100, 20)] {
+            let ordered = Ordered { most_held, ..Ordered::new(Vec::new(), window) };
+            let next = AtomicUsize::new(0);
+            let work = || {
+                loop {
+                    let case = next.fetch_add(1, Ordering::Relaxed);
+                    if case >= 40 {
+                        return;
+                    }
+                    let section = ordered.section(case);
+                    for k in 0..20 {
+                        section.write(line(case, k).as_bytes()).unwrap();
+                        // At most one piece of each thread beyond what may be held.
+                        assert!(ordered.lock().held <= most_held.saturating_add(4 * line(40, 20).len()));
+                    }
+                    section.finish().unwrap();
+                }
+            };
+            std::thread::scope(|scope| (0..4).for_each(|_| drop(scope.spawn(work))));
+            assert_eq!(text(ordered), expected(40, 20));
         }
-        let ordered = Ordered::new(Full, 2);
-        assert_eq!(ordered.write(0, b"a").unwrap_err().kind(), io::ErrorKind::StorageFull);
-        assert_eq!(ordered.write(1, b"b").unwrap_err().kind(), io::ErrorKind::StorageFull);
+    }
+
+    #[test]
+    fn a_full_disk_reaches_every_case_and_stops_none_from_ending() {
+        // Threads wait for the window, for memory and for each other when the disk is full.
+        for window in [1, 2, 100] {
+            let ordered = Ordered { most_held: 0, ..Ordered::new(Full(100), window) };
+            let (next, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
+            let work = || -> io::Result<()> {
+                loop {
+                    let case = next.fetch_add(1, Ordering::Relaxed);
+                    let section = ordered.section(case);
+                    for k in 0..20 {
+                        section.write(line(case, k).as_bytes())?;
+                    }
+                    section.finish()?;
+                }
+            };
+            std::thread::scope(|scope| {
+                for _ in 0..4 {
+                    scope.spawn(|| {
+                        assert_eq!(work().unwrap_err().kind(), io::ErrorKind::StorageFull);
+                        failed.fetch_add(1, Ordering::Relaxed);
+                    });
+                }
+            });
+            assert_eq!(failed.into_inner(), 4);
+        }
+    }
+
+    #[test]
+    fn a_case_that_is_dropped_keeps_nobody_waiting() {
+        let ordered = Ordered::new(Vec::new(), 1);
+        ordered.section(0).write(b"half\n").unwrap();
+        let section = ordered.section(1);
+        section.write(b"whole\n").unwrap();
+        section.finish().unwrap();
+        assert_eq!(text(ordered), "half\nwhole\n");
     }
 }

@@ -1,0 +1,80 @@
+//! Text on stdout and stderr: as wide as the terminal, coloured where that is wanted, and never a panic.
+
+use std::io::{self, IsTerminal, Write};
+use terminal_size::{Width, terminal_size_of};
+
+/// Narrower terminals are taken for this wide.
+const NARROWEST: usize = 40;
+
+/// Widest lines of running text.
+const WIDEST: usize = 100;
+
+/// A blank at which [`hanging`] does not break.
+pub(crate) const NO_BREAK: &str = "\u{a0}";
+
+/// Prints on stdout. A closed pipe is no error: whoever reads has read enough.
+pub(crate) fn print(text: &str) {
+    let mut stdout = io::stdout().lock();
+    let _ = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+}
+
+/// Prints on stderr.
+pub(crate) fn print_error(text: &str) {
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Whether stderr takes colours.
+pub(crate) fn is_coloured() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// Columns for running text on stdout; `None` where it is no terminal.
+pub(crate) fn stdout_width() -> Option<usize> {
+    width(io::stdout().is_terminal().then(|| terminal_size_of(io::stdout())))
+}
+
+/// Columns for running text on stderr; `None` where it is no terminal.
+pub(crate) fn stderr_width() -> Option<usize> {
+    width(io::stderr().is_terminal().then(|| terminal_size_of(io::stderr())))
+}
+
+fn width(size: Option<Option<(Width, terminal_size::Height)>>) -> Option<usize> {
+    size.map(|size| size.map_or(80, |(Width(columns), _)| usize::from(columns)).clamp(NARROWEST, WIDEST))
+}
+
+/// `text` behind `lead`, broken between words where it passes `width`, later lines indented by as much as `lead` is long.
+pub(crate) fn hanging(lead: &str, text: &str, width: Option<usize>) -> String {
+    let indent = lead.chars().count();
+    let mut lines = lead.to_owned();
+    let mut column = indent;
+    for (k, word) in text.split(' ').enumerate() {
+        let length = word.chars().count();
+        if k > 0 && width.is_some_and(|width| column + 1 + length > width) {
+            lines.truncate(lines.trim_end().len());
+            lines.push('\n');
+            lines.push_str(&" ".repeat(indent));
+            column = indent;
+        } else if k > 0 {
+            lines.push(' ');
+            column += 1;
+        }
+        lines.push_str(&word.replace(NO_BREAK, " "));
+        column += length;
+    }
+    lines.push('\n');
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::hanging;
+
+    #[test]
+    fn text_hangs_behind_its_lead() {
+        assert_eq!(hanging("ab  ", "one two three", Some(11)), "ab  one two\n    three\n");
+        assert_eq!(hanging("ab  ", "one two three", None), "ab  one two three\n");
+        assert_eq!(hanging("ab  ", "unbreakable x", Some(8)), "ab  unbreakable\n    x\n");
+        assert_eq!(hanging("", "a b\u{a0}=\u{a0}1", Some(6)), "a\nb = 1\n");
+        assert_eq!(hanging("", "", Some(8)), "\n");
+    }
+}
