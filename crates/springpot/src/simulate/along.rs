@@ -3,6 +3,8 @@
 //! Inner steps are chosen for the memories and for the energy ledger, never for the rows; a row between two steps' ends is
 //! evaluated with the step's own polynomial. Steps end on break points and kinks of the signals.
 
+mod kink;
+
 use super::control::StepError;
 use super::ledger::{Balance, NodePower, Turnover, singular_work, work, work_defect};
 use super::moment::{Moment, Scratch};
@@ -25,8 +27,9 @@ const FIRST_STEP: f64 = 1.0 / 64.0;
 /// Shortest step as a share of the motion.
 const SHORTEST_STEP: f64 = 1e-13;
 
-/// A row this near the start of its step, as a share of the step, counts as its start.
-const SMALLEST_THETA: f64 = 1e-12;
+/// A step this short, as a share of the motion, is kept whatever it does to the energy ledger: behind a kink of the rates the
+/// powers rise like t^{1−alpha}, which no step resolves, and such a step turns over next to nothing.
+const SHORTEST_LEDGER_STEP: f64 = 1e-11;
 
 /// Share of rtol^⅔ that the energy ledger may err in one step, in units of the energy turned over.
 const ENERGY_SHARE: f64 = 0.01;
@@ -233,7 +236,7 @@ impl<'a> Run<'a> {
                 let (before, after) = locate(|t| self.system.branch(t), t, node);
                 let sides = self.look_across(before.max(t), after)?;
                 if before <= t {
-                    self.cross(sides);
+                    self.cross(sides)?;
                     t = after;
                     continue;
                 }
@@ -251,16 +254,15 @@ impl<'a> Run<'a> {
                 }
                 continue;
             }
-            let until = across.as_ref().map_or(to, |[_, right]| right.t);
-            self.emit_rows(t, until, on_break)?;
+            self.emit_rows(t, on_break)?;
             self.commit(size);
             self.report.steps += 1;
             // A step cut short by a stop says nothing against the size chosen before.
             h = (size * error.factor()).max(if size < h { h } else { 0.0 }).min(self.longest_step());
             t = to;
             if let Some(sides) = across {
-                self.cross(sides);
-                t = until;
+                t = sides[1].t;
+                self.cross(sides)?;
             } else if on_break {
                 let [moment, ..] = &mut self.moments;
                 self.system.evaluate(t, t, &mut self.scratch, moment)?;
@@ -304,7 +306,9 @@ impl<'a> Run<'a> {
                 error = StepError { memory: share, alpha, element: Some(e), ..error };
             }
         }
-        error.energy = self.energy_error(h);
+        if h > SHORTEST_LEDGER_STEP * self.settings.end {
+            error.energy = self.energy_error(h);
+        }
         Ok(error)
     }
 
@@ -408,12 +412,12 @@ impl<'a> Run<'a> {
         (actuators, work(&self.powers.joints, h, theta))
     }
 
-    /// The rows in (t, until], where `until` is the end of the step or the far side of the kink that ends it.
-    fn emit_rows(&mut self, t: f64, until: f64, on_break: bool) -> Result<(), RunError> {
+    /// The rows from t to the end of the step.
+    fn emit_rows(&mut self, t: f64, on_break: bool) -> Result<(), RunError> {
         let to = self.moments[MAX_NODES].t;
         while self.next_row < self.settings.rows.count() {
             let at = self.settings.rows.at(self.next_row);
-            if at > until {
+            if at > to {
                 break;
             }
             let mut moment = self.spare.take().unwrap_or_else(|| Moment::new(self.system));
@@ -422,8 +426,7 @@ impl<'a> Run<'a> {
             } else {
                 self.system.evaluate(at, at, &mut self.scratch, &mut moment)?;
             }
-            // A row on a kink may lie one bit before the step that starts there.
-            let theta = if at >= to { 1.0 } else { ((at - t) / (to - t)).max(SMALLEST_THETA) };
+            let theta = if at == to { 1.0 } else { (at - t) / (to - t) };
             let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.element_row(e, theta, &moment)).collect();
             let (actuators, joints) = self.work_until(theta);
             self.write_row(&moment, &rows, actuators, joints)?;
@@ -437,14 +440,16 @@ impl<'a> Run<'a> {
         let element = &self.system.elements[e];
         let point = moment.elements[e].point(moment.t);
         let [from, .., to] = &self.moments;
-        let observation = match (&self.accounts[e].law, &self.grid[e]) {
-            (Some(law), _) => element.law.observe(&self.steps[e].law_step(from.t, to.t - from.t), theta, &point, law),
-            (None, values) => {
-                let value = values.as_ref().and_then(|values| values.get(self.next_row)).copied();
-                on_grid_observation(element, &point, value.unwrap_or(f64::NAN))
-            }
-        };
-        self.with_ledger(e, theta, observation)
+        let Some(law) = &self.accounts[e].law else { return self.row_on_grid(e, &point) };
+        let step = self.steps[e].law_step(from.t, to.t - from.t);
+        self.with_ledger(e, theta, element.law.observe(&step, theta, &point, law))
+    }
+
+    /// The next row of an element with a named scheme: its energies are unknown.
+    fn row_on_grid(&self, e: usize, at: &Point) -> ElementRow {
+        let value = self.grid[e].as_ref().and_then(|values| values.get(self.next_row)).copied();
+        let observation = on_grid_observation(&self.system.elements[e], at, value.unwrap_or(f64::NAN));
+        ElementRow { observation, dissipated: f64::NAN, input: f64::NAN }
     }
 
     /// An observation at θ with what the element has dissipated and taken in until then.
@@ -513,37 +518,6 @@ impl<'a> Run<'a> {
             }
         }
         self.moments.swap(0, MAX_NODES);
-    }
-
-    /// The last moment before a kink and the first one after it.
-    fn look_across(&mut self, before: f64, after: f64) -> Result<[Moment; 2], RunError> {
-        let [mut left, mut right] = std::array::from_fn(|_| self.moments[0].clone());
-        self.system.evaluate(before, before, &mut self.scratch, &mut left)?;
-        self.system.evaluate(after, after, &mut self.scratch, &mut right)?;
-        for (j, joint) in self.system.model.joint_names().iter().enumerate() {
-            let jump = right.q[j] - left.q[j];
-            let reach = (after - before) * (left.v[j].abs() + right.v[j].abs());
-            if jump.abs() > 1e-9 * (1.0 + left.q[j].abs()) + reach {
-                return Err(RunError::Jump { t: after, joint: joint.clone(), jump });
-            }
-        }
-        Ok([left, right])
-    }
-
-    /// Goes on from the far side of a kink and books what jumps there.
-    fn cross(&mut self, [left, right]: [Moment; 2]) {
-        // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
-        self.actuators += right.kinetic - left.kinetic;
-        for (e, element) in self.system.elements.iter().enumerate() {
-            let account = &mut self.accounts[e];
-            let Some(state) = &account.law else { continue };
-            let was = left.elements[e].point(left.t);
-            let is = Point { inputs: &right.elements[e].inputs, ..was };
-            if let Some((was, is)) = element.law.stored(&was, state).zip(element.law.stored(&is, state)) {
-                account.input += is - was;
-            }
-        }
-        self.moments[0] = right;
     }
 
     fn step_too_small(&self, t: f64, h: f64, error: &StepError) -> RunError {
