@@ -107,7 +107,7 @@ fn sweeps_are_refused() {
 
 #[test]
 fn a_byte_order_mark_and_other_line_ends_change_nothing() {
-    let text = edited(EXAMPLE, &[("title =", "titel =")]);
+    let text = edited(EXAMPLE, &[("title = \"Thermo", "titel = \"Thermo")]);
     let plain = refusals(&text);
     let windows = refusals(&format!("\u{feff}{}", text.replace('\n', "\r\n")));
     let places = |refusals: &springpot::scenario::Refusals| -> Vec<(usize, usize, String)> {
