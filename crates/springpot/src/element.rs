@@ -24,7 +24,7 @@ pub struct Element {
     pub law: Arc<dyn Law>,
     /// Its row of the catalog.
     pub row: Entry,
-    /// Their signals, in the same order, SI.
+    /// Signals of its inputs, in the order of the row, SI.
     pub inputs: Vec<Signal>,
     /// Which fractional derivative the law takes.
     pub derivative: Derivative,

@@ -134,10 +134,7 @@ impl Kernel {
     /// Under a smooth rate x' those lags store ½·d2·x'² and dissipate d1·x'².
     pub fn fast_tail(&self) -> (f64, f64) {
         let scale = strength(self.alpha) * self.eta;
-        let sum = |power: f64| {
-            let ratio = (-self.eta * power).exp();
-            scale * self.lambda[0].powf(-power) * ratio / (1.0 - ratio)
-        };
+        let sum = |power: f64| scale * self.lambda[0].powf(-power) / (self.eta * power).exp_m1();
         (sum(1.0 - self.alpha), sum(2.0 - self.alpha))
     }
 }

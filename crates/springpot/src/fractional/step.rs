@@ -22,7 +22,7 @@ pub const MAX_NODES: usize = 3;
 /// Where a step is evaluated, 0 < c_1 < … < c_s ≤ 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Nodes {
-    /// s = 1, c = [1].
+    /// s = 1, at the end.
     One,
     /// s = 3, Radau IIA.
     Radau,

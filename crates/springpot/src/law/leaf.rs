@@ -300,10 +300,8 @@ impl Law for Springpot {
         if c >= 0.0 {
             return Ok(());
         }
-        Err(RuleError {
-            rule: format!("the coefficient of D^alpha x must not be negative, but is {c}"),
-            parameter: "mu",
-        })
+        let rule = format!("{} is broken: the coefficient of D^alpha x is {c}", self.coefficient.rule);
+        Err(RuleError { rule, parameter: "mu" })
     }
 
     fn force(&self, at: &Point, derivative: f64) -> f64 {

@@ -39,3 +39,18 @@ pub(super) const MAGNETORHEOLOGICAL: Entry = Entry {
         Ok(Arc::new(Parallel::new().spring(e_c).springpot(coefficient, alpha, derivative)))
     },
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::{Derivative, InputValue};
+
+    #[test]
+    fn a_negative_coefficient_names_the_rule() {
+        let law = (MAGNETORHEOLOGICAL.build)(&[10.0, 50.0, 10.0, 0.5], Derivative::Caputo).unwrap();
+        let at = |u: f64| law.check_inputs(&[InputValue { value: u, rate: 0.0 }]);
+        assert!(at(-5.0).is_ok());
+        let broken = at(-7.0).unwrap_err().to_string();
+        assert_eq!(broken, "mu_0 + u·mu ≥ 0 is broken: the coefficient of D^alpha x is -20");
+    }
+}

@@ -5,6 +5,21 @@
 //! [`Law::commit`] is the only mutation, on accepted steps. The state is a plain serialisable value outside the law.
 //!
 //! Signs: stroke x = l − l0, force F > 0 in tension. Power: F·x' = d(stored)/dt + dissipation − input.
+//!
+//! A law is a row of the [`Catalog`], an [`Entry`] with name, equation, parameters, inputs and how to build it; whoever must know
+//! all laws reads the catalog. Most rows are sums of [`leaf`] laws ([`Parallel`]).
+//!
+//! ```
+//! use springpot::law::{Catalog, Derivative, Point};
+//!
+//! let catalog = Catalog::standard();
+//! let row = catalog.get("fractional-kelvin-voigt").expect("a law that comes with Springpot");
+//! assert_eq!(row.equation, "F = k·x + c·D^alpha x");
+//! let law = (row.build)(&[100.0, 50.0, 0.5], Derivative::Caputo)?;
+//! let at = Point { t: 1.0, stroke: 0.02, rate: 0.1, inputs: &[] };
+//! assert_eq!(law.force(&at, 0.04), 100.0 * 0.02 + 50.0 * 0.04); // D^½ x = 0.04
+//! # Ok::<(), springpot::law::RuleError>(())
+//! ```
 
 pub mod catalog;
 pub mod leaf;

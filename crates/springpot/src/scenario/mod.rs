@@ -26,7 +26,7 @@
 //! assert_eq!(cases.len(), 1);
 //! let plan = cases.plan(0)?;
 //! assert_eq!(plan.bodies[0].mass, 0.5);
-//! assert_eq!(plan.time.row_count(), 1001);
+//! assert_eq!(plan.time.rows.count(), 1001);
 //!
 //! scenario.set("time.end=10 m")?;
 //! let refusals = scenario.cases(&Catalog::standard()).map(|_| ()).unwrap_err();

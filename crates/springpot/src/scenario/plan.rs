@@ -156,7 +156,7 @@ pub struct TimePlan {
 pub struct SolverPlan {
     /// Relative tolerance.
     pub rtol: f64,
-    /// Absolute tolerance, in the unit of what it is compared with; `None`: the relative one.
+    /// Absolute tolerance, in the unit of D^alpha x; `None`: the relative one stands alone.
     pub atol: Option<f64>,
     /// Relative error of the memory's kernel.
     pub memory_rtol: f64,

@@ -25,6 +25,10 @@ const FIRST_STEP: f64 = 1.0 / 64.0;
 /// Shortest step as a share of the motion.
 const SHORTEST_STEP: f64 = 1e-13;
 
+/// A step this short, as a share of the motion, is kept whatever it does to the energy ledger: behind a kink of the rates the
+/// powers rise like t^{1−alpha}, which no step resolves, and such a step turns over next to nothing.
+const SHORTEST_LEDGER_STEP: f64 = 1e-11;
+
 /// Share of rtol^⅔ that the energy ledger may err in one step, in units of the energy turned over.
 const ENERGY_SHARE: f64 = 0.01;
 
@@ -78,7 +82,8 @@ struct Run<'a> {
     scratch: Scratch,
     /// At the start of the step and at its nodes.
     moments: [Moment; MAX_NODES + 1],
-    row_moment: Moment,
+    /// A moment to write rows from.
+    spare: Option<Moment>,
     accounts: Vec<Account>,
     steps: Vec<ElementStep>,
     powers: StepPowers,
@@ -115,7 +120,7 @@ impl<'a> Run<'a> {
             stop,
             scratch: Scratch::new(&system.model),
             moments: std::array::from_fn(|_| moment.clone()),
-            row_moment: moment,
+            spare: None,
             accounts: system.elements.iter().map(|_| Account::default()).collect(),
             steps: system.elements.iter().map(element_step).collect(),
             powers: StepPowers::default(),
@@ -175,7 +180,10 @@ impl<'a> Run<'a> {
             account.derivative = if observation.derivative.is_finite() { observation.derivative } else { 0.0 };
             rows.push(ElementRow { observation, dissipated: 0.0, input: 0.0 });
         }
-        self.origin = self.balance(&self.moments[0], &rows, 0.0, 0.0).total();
+        let balance = self.balance(&self.moments[0], &rows, 0.0, 0.0);
+        self.origin = balance.total();
+        // Taken here and at the ends of steps, never from rows: they must not change the steps.
+        self.turnover.take(&balance);
         if settings.rows.count() > 0 && settings.rows.at(0) == 0.0 {
             let moment = self.moments[0].clone();
             self.write_row(&moment, &rows, 0.0, 0.0)?;
@@ -185,13 +193,13 @@ impl<'a> Run<'a> {
 
     /// A lower bound of the energy that the motion turns over, from 65 glances at it.
     fn glance(&mut self) -> f64 {
+        let mut moment = Moment::new(self.system);
         let (mut potential, mut kinetic) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0f64);
         let mut strokes = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.system.elements.len()];
         let mut forces = vec![0.0f64; self.system.elements.len()];
         for k in 0..=64 {
             let t = self.settings.end * k as f64 / 64.0;
-            let moment = &mut self.row_moment;
-            if self.system.evaluate(t, t, &mut self.scratch, moment).is_err() {
+            if self.system.evaluate(t, t, &mut self.scratch, &mut moment).is_err() {
                 break;
             }
             let widen = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
@@ -227,13 +235,13 @@ impl<'a> Run<'a> {
             let mut across = None;
             if has_kinks && let Some(node) = self.first_other_branch(t, to) {
                 let (before, after) = locate(|t| self.system.branch(t), t, node);
-                across = Some(after);
-                to = before;
+                let sides = self.look_across(before.max(t), after)?;
                 if before <= t {
-                    self.cross(t, after)?;
-                    t = after;
+                    t = self.cross(sides)?;
                     continue;
                 }
+                across = Some(sides);
+                to = before;
             }
             let size = to - t;
             let on_break = to == stop && to < end;
@@ -246,15 +254,14 @@ impl<'a> Run<'a> {
                 }
                 continue;
             }
-            self.emit_rows(t, to)?;
+            self.emit_rows(t, to, on_break)?;
             self.commit(size);
             self.report.steps += 1;
             // A step cut short by a stop says nothing against the size chosen before.
             h = (size * error.factor()).max(if size < h { h } else { 0.0 }).min(self.longest_step());
             t = to;
-            if let Some(after) = across {
-                self.cross(t, after)?;
-                t = after;
+            if let Some(sides) = across {
+                t = self.cross(sides)?;
             } else if on_break {
                 let [moment, ..] = &mut self.moments;
                 self.system.evaluate(t, t, &mut self.scratch, moment)?;
@@ -298,7 +305,9 @@ impl<'a> Run<'a> {
                 error = StepError { memory: share, alpha, element: Some(e), ..error };
             }
         }
-        error.energy = self.energy_error(h);
+        if h > SHORTEST_LEDGER_STEP * self.settings.end {
+            error.energy = self.energy_error(h);
+        }
         Ok(error)
     }
 
@@ -402,44 +411,55 @@ impl<'a> Run<'a> {
         (actuators, work(&self.powers.joints, h, theta))
     }
 
-    /// The rows in (t, to].
-    fn emit_rows(&mut self, t: f64, to: f64) -> Result<(), RunError> {
-        let h = to - t;
-        while self.next_row < self.settings.rows.count() {
-            let at = self.settings.rows.at(self.next_row);
-            if at > to {
-                break;
-            }
-            let theta = if at == to { 1.0 } else { (at - t) / h };
-            let mut moment = std::mem::replace(&mut self.row_moment, self.moments[MAX_NODES].clone());
-            if theta < 1.0 {
-                self.system.evaluate(at, at, &mut self.scratch, &mut moment)?;
-            } else {
+    /// The time of the next row, unless it is later than `until`.
+    fn next_row_until(&self, until: f64) -> Option<f64> {
+        let rows = &self.settings.rows;
+        (self.next_row < rows.count()).then(|| rows.at(self.next_row)).filter(|at| *at <= until)
+    }
+
+    /// The rows in (t, to], the step just attempted.
+    fn emit_rows(&mut self, t: f64, to: f64, on_break: bool) -> Result<(), RunError> {
+        while let Some(at) = self.next_row_until(to) {
+            let mut moment = self.spare.take().unwrap_or_else(|| Moment::new(self.system));
+            if at == to && !on_break {
                 moment.clone_from(&self.moments[MAX_NODES]);
+            } else {
+                self.system.evaluate(at, at, &mut self.scratch, &mut moment)?;
             }
+            let theta = if at == to { 1.0 } else { (at - t) / (to - t) };
             let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.element_row(e, theta, &moment)).collect();
             let (actuators, joints) = self.work_until(theta);
-            let written = self.write_row(&moment, &rows, actuators, joints);
-            self.row_moment = moment;
-            written?;
+            self.write_row(&moment, &rows, actuators, joints)?;
+            self.spare = Some(moment);
         }
         Ok(())
     }
 
+    /// Element `e` in a row at θ, whose moment is `moment`.
     fn element_row(&self, e: usize, theta: f64, moment: &Moment) -> ElementRow {
-        let (element, account) = (&self.system.elements[e], &self.accounts[e]);
-        let state = &moment.elements[e];
-        let point = state.point(moment.t);
-        let Some(law) = &account.law else {
-            let values = self.grid[e].as_ref().expect("an element without memory has a scheme");
-            let observation =
-                on_grid_observation(element, &point, values.get(self.next_row).copied().unwrap_or(f64::NAN));
-            return ElementRow { observation, dissipated: f64::NAN, input: f64::NAN };
-        };
+        let element = &self.system.elements[e];
+        let point = moment.elements[e].point(moment.t);
         let [from, .., to] = &self.moments;
-        let step = self.steps[e].law_step(from.t, to.t - from.t);
-        let observation = if theta == 1.0 { self.steps[e].end } else { element.law.observe(&step, theta, &point, law) };
-        let energy = Power::integrate(&self.steps[e].powers, Nodes::Radau, step.h, theta);
+        let Some(law) = &self.accounts[e].law else { return self.grid_row(e, &point) };
+        let observation = element.law.observe(&self.steps[e].law_step(from.t, to.t - from.t), theta, &point, law);
+        self.with_ledger(e, theta, observation)
+    }
+
+    /// The next row of an element with a named scheme.
+    fn grid_row(&self, e: usize, point: &Point) -> ElementRow {
+        let value = self.grid[e].as_ref().and_then(|values| values.get(self.next_row)).copied();
+        let observation = on_grid_observation(&self.system.elements[e], point, value.unwrap_or(f64::NAN));
+        ElementRow { observation, dissipated: f64::NAN, input: f64::NAN }
+    }
+
+    /// An observation at θ with what the element has dissipated and taken in until then.
+    fn with_ledger(&self, e: usize, theta: f64, observation: Observation) -> ElementRow {
+        let account = &self.accounts[e];
+        if account.law.is_none() {
+            return ElementRow { observation, dissipated: f64::NAN, input: f64::NAN };
+        }
+        let [from, .., to] = &self.moments;
+        let energy = Power::integrate(&self.steps[e].powers, Nodes::Radau, to.t - from.t, theta);
         ElementRow {
             observation,
             dissipated: account.dissipated + energy.dissipation,
@@ -464,7 +484,6 @@ impl<'a> Run<'a> {
         let balance = self.balance(moment, rows, actuators, joints);
         let residual = balance.total() - self.origin;
         self.residual = if residual.is_nan() { f64::NAN } else { self.residual.max(residual.abs()) };
-        self.turnover.take(&balance);
         let mut row = std::mem::take(&mut self.row);
         self.system.fill_row(moment, rows, &balance, self.joints + joints, residual, &mut row);
         self.rows.row(&row)?;
@@ -479,7 +498,7 @@ impl<'a> Run<'a> {
     fn commit(&mut self, h: f64) {
         let (actuators, joints) = self.work_until(1.0);
         let rows: Vec<ElementRow> =
-            (0..self.steps.len()).map(|e| self.element_row(e, 1.0, &self.moments[MAX_NODES])).collect();
+            (0..self.steps.len()).map(|e| self.with_ledger(e, 1.0, self.steps[e].end)).collect();
         let balance = self.balance(&self.moments[MAX_NODES], &rows, actuators, joints);
         self.turnover.take(&balance);
         self.actuators += actuators;
@@ -500,32 +519,72 @@ impl<'a> Run<'a> {
         self.moments.swap(0, MAX_NODES);
     }
 
-    /// Goes from the last time before a kink to the first one after it and books what jumps there.
-    fn cross(&mut self, before: f64, after: f64) -> Result<(), RunError> {
-        let (mut left, mut right) = (self.moments[0].clone(), self.row_moment.clone());
+    /// The last moment before a kink and the first one after it.
+    fn look_across(&mut self, before: f64, after: f64) -> Result<[Moment; 2], RunError> {
+        let [mut left, mut right] = std::array::from_fn(|_| self.moments[0].clone());
         self.system.evaluate(before, before, &mut self.scratch, &mut left)?;
         self.system.evaluate(after, after, &mut self.scratch, &mut right)?;
-        let slack = after - before;
         for (j, joint) in self.system.model.joint_names().iter().enumerate() {
             let jump = right.q[j] - left.q[j];
-            let reach = slack * (left.v[j].abs() + right.v[j].abs());
+            let reach = (after - before) * (left.v[j].abs() + right.v[j].abs());
             if jump.abs() > 1e-9 * (1.0 + left.q[j].abs()) + reach {
                 return Err(RunError::Jump { t: after, joint: joint.clone(), jump });
             }
         }
+        Ok([left, right])
+    }
+
+    /// Goes from a kink to where the next step starts: one bit behind it, since a sign is 0 while it turns.
+    fn cross(&mut self, sides: [Moment; 2]) -> Result<f64, RunError> {
+        let [_, Moment { t: after, .. }] = sides;
+        self.book_jumps(sides);
+        self.emit_rows_between_steps(after)?;
+        let start = after.next_up();
+        let sides = self.look_across(after, start)?;
+        self.book_jumps(sides);
+        self.emit_rows_between_steps(start)?;
+        Ok(start)
+    }
+
+    /// The rows up to `until`, when no step is under way.
+    fn emit_rows_between_steps(&mut self, until: f64) -> Result<(), RunError> {
+        while self.next_row_until(until).is_some() {
+            let moment = self.moments[0].clone();
+            let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.row_between_steps(e, &moment)).collect();
+            self.write_row(&moment, &rows, 0.0, 0.0)?;
+        }
+        Ok(())
+    }
+
+    /// An element between two steps.
+    fn row_between_steps(&self, e: usize, moment: &Moment) -> ElementRow {
+        let (element, account) = (&self.system.elements[e], &self.accounts[e]);
+        let point = moment.elements[e].point(moment.t);
+        let Some(state) = &account.law else { return self.grid_row(e, &point) };
+        // D^alpha x itself does not jump, but for alpha = 1.
+        let derivative = if element.law.order() == 1.0 { point.rate } else { account.derivative };
+        let observation = Observation {
+            derivative,
+            force: element.law.force(&point, derivative),
+            stored: element.law.stored(&point, state),
+        };
+        ElementRow { observation, dissipated: account.dissipated, input: account.input }
+    }
+
+    /// Goes on from the far side of a kink and books what jumps there.
+    fn book_jumps(&mut self, [left, right]: [Moment; 2]) {
         // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
         self.actuators += right.kinetic - left.kinetic;
         for (e, element) in self.system.elements.iter().enumerate() {
             let account = &mut self.accounts[e];
             let Some(state) = &account.law else { continue };
-            let was = left.elements[e].point(before);
+            let was = left.elements[e].point(left.t);
             let is = Point { inputs: &right.elements[e].inputs, ..was };
             if let Some((was, is)) = element.law.stored(&was, state).zip(element.law.stored(&is, state)) {
                 account.input += is - was;
             }
         }
         self.moments[0] = right;
-        Ok(())
     }
 
     fn step_too_small(&self, t: f64, h: f64, error: &StepError) -> RunError {

@@ -120,8 +120,8 @@ mod tests {
         // ∫ s^−alpha s^p ds = s^{p+1−alpha}/(p+1−alpha), with g(s) = s³ in absolute time.
         for alpha in [0.1, 0.5, 0.9] {
             for (t, h) in [(0.0, 0.3), (0.1, 0.5), (4.0, 0.01)] {
-                let g: NodePower =
-                    std::array::from_fn(|k| (t + if k == 0 { 0.0 } else { RADAU_NODES[k - 1] } * h as f64).powi(3));
+                let position = |k: usize| if k == 0 { 0.0 } else { RADAU_NODES[k - 1] };
+                let g: NodePower = std::array::from_fn(|k| f64::powi(t + position(k) * h, 3));
                 let exact = |s: f64| s.powf(4.0 - alpha) / (4.0 - alpha);
                 for theta in [0.4, 1.0] {
                     let value = singular_work(&g, t, h, theta, alpha);

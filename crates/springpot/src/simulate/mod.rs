@@ -1,4 +1,9 @@
 //! The time loop: a system along its motion, row by row.
+//!
+//! [`along`] takes a [`System`] (robot, elements, motion) and [`Settings`], chooses inner steps for the tolerance, and hands over one row
+//! per output time, whose columns are [`System::columns`]. A step has the Radau IIA nodes; its error estimate is the difference of
+//! two interpolations of the stroke, in units of atol + rtol·max|D^alpha x| so far, the worst of the elements. Rows never change the
+//! steps. The [`Report`] tells steps, rows, the time reached, and the residual of the energy balance.
 
 mod along;
 mod control;

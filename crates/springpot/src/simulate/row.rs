@@ -133,12 +133,14 @@ impl System {
             row.push(joints);
         }
         row.push(residual);
+        // No field says -0.
+        row.iter_mut().for_each(|value| *value += 0.0);
     }
 }
 
-/// Q_b = −F·∂l/∂q_b, with a plain 0 where the joint does not move the element.
+/// Q_b = −F·∂l/∂q_b.
 fn generalized_force(force: f64, gradient: f64) -> f64 {
-    if gradient == 0.0 && force.is_finite() { 0.0 } else { -force * gradient }
+    -force * gradient
 }
 
 /// Unit of D^alpha x, the same for every alpha that a sweep may go through.

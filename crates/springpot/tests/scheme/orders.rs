@@ -1,8 +1,6 @@
 //! Measured orders of convergence of the grid schemes against independent reference values and closed forms.
 
-mod scheme_support;
-
-use scheme_support::{file, number, references};
+use crate::support::{file, number, references};
 use springpot::fractional::Kind;
 use springpot::fractional::gamma::{gamma, reciprocal_gamma};
 use springpot::fractional::scheme::{Samples, Scheme};

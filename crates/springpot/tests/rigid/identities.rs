@@ -1,9 +1,7 @@
 //! Identities of rigid-body dynamics on random trees.
 
-mod rigid_support;
-
+use crate::support::{Case, GRAVITY, build, case, close, config, difference, largest, time_difference};
 use proptest::prelude::*;
-use rigid_support::{Case, GRAVITY, build, case, close, config, difference, largest, time_difference};
 use springpot::dynamics::{
     Kinematics, angular_jacobian, angular_jacobian_rate, christoffel, crba, gravity, kinetic_energy, point_jacobian,
     point_jacobian_rate, potential_energy, rnea,

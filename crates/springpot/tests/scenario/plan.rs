@@ -1,8 +1,6 @@
 //! The example of the format, whole: what its plan holds.
 
-mod scenario_support;
-
-use scenario_support::{EXAMPLE, cases, catalog, edited, parameter, parse, single};
+use crate::support::{EXAMPLE, cases, catalog, edited, parameter, parse, single};
 use springpot::law::Derivative;
 use springpot::model::{Anchor, JointKind, Parent};
 use springpot::scenario::{FigureKind, MotionPlan, SweptValue};

@@ -1,8 +1,6 @@
 //! Every refusal of the format: message, line and column. The mark ‸ in an edit is where the refusal must point.
 
-mod scenario_support;
-
-use scenario_support::{assert_all_refused, assert_refused, edited, marked, refusals, single};
+use crate::support::{assert_all_refused, assert_refused, edited, marked, refusals, single};
 use springpot::scenario::RefusalKind::*;
 
 const JOINTS: &str = "joints = { q1 = 0, q2 = \"0.1*sin(8*t)\", q3 = \"0.1*t\" }";
@@ -553,7 +551,7 @@ fn a_million_mistakes_are_answered_at_once() {
     let refusals = refusals(&edited(&single(), &[("y = [\"strut.Q.q2\"]", &format!("y = [{list}]"))]));
     assert_eq!(refusals.len(), 50);
     let elements = "[[element]]\nfrom = { body = \"nowhere\", point = [0, 0, nan] }\n".repeat(9_000);
-    assert_eq!(scenario_support::refusals(&format!("{}\n{elements}", single())).len(), 50);
+    assert_eq!(crate::support::refusals(&format!("{}\n{elements}", single())).len(), 50);
 }
 
 #[test]

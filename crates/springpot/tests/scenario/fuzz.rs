@@ -1,10 +1,8 @@
 //! Broken scenarios: never a panic, never a hang, and a refusal always has its place.
 
-mod scenario_support;
-
+use crate::support::{EXAMPLE, catalog};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use scenario_support::{EXAMPLE, catalog};
 use springpot::scenario::{Refusals, Scenario};
 
 /// What a mutation writes into the text.

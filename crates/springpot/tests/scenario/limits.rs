@@ -1,8 +1,6 @@
 //! Refusals of sweeps, files, broken texts and absurd sizes. The mark ‸ in an edit is where the refusal must point.
 
-mod scenario_support;
-
-use scenario_support::{EXAMPLE, assert_all_refused, edited, marked, refusals, single};
+use crate::support::{EXAMPLE, assert_all_refused, edited, marked, refusals, single};
 use springpot::scenario::RefusalKind::*;
 use springpot::scenario::Scenario;
 
@@ -138,7 +136,7 @@ fn csv_signals_are_checked() {
     let plan = |edits: &[(&str, &str)]| {
         let (text, line, column) = marked(&edited(&single(), edits));
         let scenario = Scenario::parse(&text, "arm.toml", folder.path()).unwrap();
-        let refusals = scenario.cases(&scenario_support::catalog()).map(|cases| cases.len()).unwrap_err();
+        let refusals = scenario.cases(&crate::support::catalog()).map(|cases| cases.len()).unwrap_err();
         let refusal = refusals.first().unwrap();
         assert_eq!((refusal.line, refusal.column), (line, column), "{refusals}");
         refusals.to_string()
@@ -158,7 +156,7 @@ fn csv_signals_are_checked() {
 
 #[test]
 fn broken_texts_are_refused_where_they_break() {
-    let refuse = |text: &str| scenario_support::parse(text).map(|_| ()).unwrap_err();
+    let refuse = |text: &str| crate::support::parse(text).map(|_| ()).unwrap_err();
     for (text, words) in [
         ("title = \"a\"\ntitle ‸= \"b\"", ""),
         ("a = ‸", "not TOML"),
@@ -177,7 +175,7 @@ fn broken_texts_are_refused_where_they_break() {
 
 #[test]
 fn deep_and_huge_texts_are_refused() {
-    let refuse = |text: &str| scenario_support::parse(text).map(|_| ()).unwrap_err().to_string();
+    let refuse = |text: &str| crate::support::parse(text).map(|_| ()).unwrap_err().to_string();
     assert!(refuse(&format!("a = {}{}", "[".repeat(100_000), "]".repeat(100_000))).contains("recursion"));
     assert!(refuse(&format!("a = {}1{}", "[".repeat(60), "]".repeat(60))).contains("more than 24 levels deep"));
     assert!(refuse(&format!("{}a = 1", "a.".repeat(100_000))).contains("recursion"));

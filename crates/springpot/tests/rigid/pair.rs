@@ -1,9 +1,7 @@
 //! Pairs of anchors: distance, derivatives and forces, on random trees.
 
-mod rigid_support;
-
+use crate::support::{Case, build, case, close, config, difference, largest, time_difference};
 use proptest::prelude::*;
-use rigid_support::{Case, build, case, close, config, difference, largest, time_difference};
 use springpot::dynamics::{Kinematics, PairForce, add_generalized_force, pair, pair_hessian, rnea};
 use springpot::model::{Anchor, BodySpec, JointSpec, Model, Parent};
 

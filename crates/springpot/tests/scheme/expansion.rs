@@ -1,8 +1,6 @@
 //! The Atanacković–Stanković expansions against their known errors and rates of convergence.
 
-mod scheme_support;
-
-use scheme_support::{file, references};
+use crate::support::{file, references};
 use springpot::fractional::Kind;
 use springpot::fractional::gamma::gamma;
 use springpot::fractional::scheme::{Samples, Scheme};

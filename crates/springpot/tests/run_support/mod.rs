@@ -1,0 +1,105 @@
+//! What the tests of whole runs share: scenarios from texts and files, their rows by column name, and an independent truth.
+
+#![allow(dead_code, reason = "each test uses its share")]
+
+pub(crate) mod oracle;
+pub(crate) mod robots;
+pub(crate) mod truth;
+
+use springpot::law::Catalog;
+use springpot::scenario::{Cases, Scenario};
+use springpot::simulate::{Report, RunError, Stop, System, along};
+use std::path::PathBuf;
+
+/// Rows of one run, by column.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) names: Vec<String>,
+    pub(crate) rows: Vec<Vec<f64>>,
+    pub(crate) report: Report,
+    pub(crate) error: Option<RunError>,
+}
+
+impl Run {
+    fn index(&self, name: &str) -> usize {
+        let found = self.names.iter().position(|n| n == name);
+        found.unwrap_or_else(|| panic!("no column {name} among {:?}", self.names))
+    }
+
+    pub(crate) fn column(&self, name: &str) -> Vec<f64> {
+        let index = self.index(name);
+        self.rows.iter().map(|row| row[index]).collect()
+    }
+
+    pub(crate) fn t(&self) -> Vec<f64> {
+        self.column("t")
+    }
+
+    /// Columns `PREFIX.JOINT` of the robot's joints, in order.
+    pub(crate) fn joints(&self) -> Vec<String> {
+        self.names.iter().filter_map(|name| name.strip_prefix("q.")).map(str::to_owned).collect()
+    }
+
+    /// Inner steps tried.
+    pub(crate) fn effort(&self) -> u64 {
+        self.report.steps + self.report.rejected_steps
+    }
+}
+
+/// The cases of a scenario text.
+pub(crate) fn cases(text: &str) -> Cases {
+    let scenario = Scenario::parse(text, "test.toml", "").and_then(|scenario| scenario.cases(&Catalog::standard()));
+    scenario.unwrap_or_else(|refusals| panic!("{refusals}\n{text}"))
+}
+
+/// The system of a scenario with one case.
+pub(crate) fn system(text: &str) -> System {
+    cases(text).plan(0).expect("a valid plan").system()
+}
+
+/// Runs one case.
+pub(crate) fn run_case(cases: &Cases, index: usize) -> Run {
+    let plan = cases.plan(index).expect("a valid plan");
+    let system = plan.system();
+    let mut rows = Vec::new();
+    let mut keep = |row: &[f64]| -> std::io::Result<()> {
+        rows.push(row.to_vec());
+        Ok(())
+    };
+    let (report, outcome) = along(&system, &plan.settings(), &mut keep, &Stop::new(false));
+    let names = system.columns().into_iter().map(|column| column.name).collect();
+    Run { names, rows, report, error: outcome.err() }
+}
+
+/// Runs a scenario with one case to its end.
+pub(crate) fn run(text: &str) -> Run {
+    let run = run_case(&cases(text), 0);
+    assert!(run.error.is_none(), "{:?}\n{text}", run.error);
+    run
+}
+
+/// The folder of the shipped scenarios.
+pub(crate) fn scenarios() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
+}
+
+/// A shipped scenario with `--set` overrides.
+pub(crate) fn shipped(name: &str, overrides: &[&str]) -> Cases {
+    let mut scenario = Scenario::read(scenarios().join(name)).unwrap_or_else(|refusals| panic!("{refusals}"));
+    for assignment in overrides {
+        scenario.set(assignment).unwrap_or_else(|refusals| panic!("{refusals}"));
+    }
+    scenario.cases(&Catalog::standard()).unwrap_or_else(|refusals| panic!("{refusals}"))
+}
+
+/// Largest magnitude; NaN entries are skipped.
+pub(crate) fn largest(values: &[f64]) -> f64 {
+    values.iter().filter(|x| !x.is_nan()).fold(0.0, |m, x| m.max(x.abs()))
+}
+
+/// Largest difference of two curves in units of the largest magnitude of the first.
+pub(crate) fn relative_difference(reference: &[f64], values: &[f64]) -> f64 {
+    assert_eq!(reference.len(), values.len());
+    let error = reference.iter().zip(values).map(|(a, b)| (a - b).abs());
+    error.fold(0.0, |m: f64, e| if e.is_nan() { f64::INFINITY } else { m.max(e) }) / largest(reference)
+}
