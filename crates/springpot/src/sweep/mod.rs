@@ -130,7 +130,7 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         return Err(error.into());
     }
     folder.close_rows()?;
-    folder.close_summary();
+    folder.close_summary()?;
 
     let mut tally = tally.into_inner().unwrap_or_else(PoisonError::into_inner);
     tally.cases.sort_by_key(|case| case.index);

@@ -7,7 +7,8 @@ use std::path::{Component, Path, PathBuf};
 /// The rows while they are written, and at the end.
 const PART: &str = "results.csv.part";
 const RESULTS: &str = "results.csv";
-/// Statistics per case and column.
+/// Statistics per case and column, while they are written and at the end.
+const SUMMARY_PART: &str = "summary.csv.part";
 const SUMMARY: &str = "summary.csv";
 /// What was run and how it went.
 const RUN: &str = "run.json";
@@ -34,7 +35,7 @@ impl Folder {
         let listed = listed.as_ref().and_then(|run| run["files"].as_array());
         let listed = listed.into_iter().flatten().filter_map(|name| name.as_str());
         let figures = listed.filter(|name| is_figure(name));
-        for name in figures.chain([PART, RESULTS, SUMMARY, RUN]) {
+        for name in figures.chain([PART, SUMMARY_PART, RESULTS, SUMMARY, RUN]) {
             match fs::remove_file(path.join(name)) {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
                 _ => {}
@@ -99,12 +100,17 @@ impl Folder {
     /// # Errors
     /// The file system's.
     pub fn open_summary(&self) -> io::Result<File> {
-        File::create(self.path.join(SUMMARY))
+        File::create(self.path.join(SUMMARY_PART))
     }
 
-    /// Lists the statistics among the run's files.
-    pub fn close_summary(&mut self) {
+    /// Gives the statistics their name.
+    ///
+    /// # Errors
+    /// The file system's.
+    pub fn close_summary(&mut self) -> io::Result<()> {
+        fs::rename(self.path.join(SUMMARY_PART), self.path.join(SUMMARY))?;
         self.files.push(SUMMARY.into());
+        Ok(())
     }
 
     /// Writes a figure's file into `figures/`.

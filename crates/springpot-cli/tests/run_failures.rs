@@ -1,0 +1,304 @@
+//! Runs that fail, and input that is refused: exit codes, messages, and what is left behind.
+
+mod command;
+
+use command::{ARM, Csv, Ended, Place};
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+/// A file with one edit, which must hit exactly once.
+fn edited(from: &str, to: &str) -> String {
+    assert_eq!(ARM.matches(from).count(), 1, "{from:?}");
+    ARM.replace(from, to)
+}
+
+#[test]
+fn a_failing_case_does_not_stop_the_others() {
+    // Below -2.5 the coefficient mu_0 + u·mu is negative; the second case gets there on the way, the third never starts.
+    let sweep = "[[sweep]]\nparameter = \"element.damper.u\"\nvalues = [\"1 V\", \"1 - 20*t\", \"-3 V\", \"2 V\"]\n";
+    let place = Place::with(&format!("{ARM}{sweep}"));
+    for jobs in ["1", "3"] {
+        let ended = place.springpot(&["run", "arm.toml", "--jobs", jobs]);
+        assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+        let errors: Vec<&str> = ended.stderr.lines().collect();
+        assert!(
+            errors[0].starts_with("error: element.damper.u = 1 - 20*t: t = 0.17") && errors[0].contains("mu_0 + u·mu"),
+            "{errors:?}"
+        );
+        assert!(errors[1].starts_with("error: element.damper.u = -3 V: t = 0 s: "), "{errors:?}");
+        assert_eq!(
+            errors[2..],
+            ["failed: 2 of 4 cases done, 2 failed, the earliest before the first row; all rows are complete"]
+        );
+        assert!(ended.stdout.starts_with("4 cases, 12 rows, "), "{}", ended.stdout);
+
+        let results = place.table("results/arm/results.csv");
+        let of = |u: &str| results.texts("element.damper.u").iter().filter(|text| **text == u).count();
+        assert_eq!((of("1"), of("1 - 20*t"), of("-3"), of("2")), (5, 2, 0, 5));
+        let record = place.record("results/arm");
+        assert_eq!((&record["status"], record["t_reached"].is_null()), (&"failed".into(), true));
+        assert_eq!((&record["cases_done"], &record["cases_failed"]), (&2.into(), &2.into()));
+        let statuses: Vec<&str> =
+            record["cases"].as_array().unwrap().iter().map(|c| c["status"].as_str().unwrap()).collect();
+        assert_eq!(statuses, ["done", "failed", "failed", "done"]);
+        let second = &record["cases"][1];
+        assert_eq!(second["t_reached"], 0.1);
+        assert!(second["error"].as_str().unwrap().contains("t = 0.17"), "{second}");
+    }
+}
+
+#[test]
+fn a_single_run_that_fails_keeps_its_rows() {
+    // The two points meet at t = 0.25 s.
+    let text = ARM
+        .replace("point = [-0.4, 0.3, 0]", "point = [-0.4, 0, 0]")
+        .replace("point = [0, 0.3, 0]", "point = [0, 0, 0.5]")
+        .replace("x = \"0.05 - 0.05*cos(6*t)\"", "x = \"0.25 - t\"");
+    let place = Place::with(&text);
+    let ended = place.springpot(&["run", "arm.toml"]);
+    assert_eq!(ended.code, Some(1));
+    let [error, how_far] = ended.stderr.lines().collect::<Vec<_>>()[..] else { panic!("{}", ended.stderr) };
+    assert!(error.starts_with("error: t = 0.2") && error.contains("element \"damper\" has no direction"), "{error}");
+    assert_eq!(how_far, "failed after the row at t = 0.2 s of 0.35 s; all rows are complete");
+    assert_eq!(place.table("results/arm/results.csv").numbers("t"), [0.0, 0.1, 0.2]);
+    assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
+    let record = place.record("results/arm");
+    assert_eq!((&record["status"], &record["t_reached"]), (&"failed".into(), &0.2.into()));
+}
+
+/// The arm with its gripper on a path that it cannot follow to the end.
+fn unreachable() -> String {
+    let at = ARM.find("[motion]").unwrap();
+    let path = "[motion]\nkind = \"gripper-path\"\nx = \"0.4 + 2*t\"\ny = \"step(t - 0.25)*(t - 0.25)\"\nz = 0.5\nguess = { x = 0.1 }\n";
+    format!("{}{path}\n[time]\nend = 1\noutput_step = 0.1\n", &ARM[..at])
+}
+
+#[test]
+fn a_path_out_of_reach_is_named_with_time_and_distance() {
+    let place = Place::with(&unreachable());
+    let ended = place.springpot(&["run", "arm.toml"]);
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.stderr.contains("error: the gripper cannot reach its path at t = 0.25"), "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains(" m and ") && ended.stderr.contains("after the row at t = 0.2 s of 1 s"),
+        "{}",
+        ended.stderr
+    );
+    assert_eq!(place.table("results/arm/results.csv").numbers("t"), [0.0, 0.1, 0.2]);
+    let check = place.springpot(&["check", "arm.toml"]);
+    assert_eq!(check.code, Some(1));
+    assert!(check.stderr.contains("error: the gripper cannot reach its path at t = 0.25"), "{}", check.stderr);
+}
+
+/// One of each class of refusals: edit, place, and words of the message.
+#[test]
+fn refusals_name_file_line_and_column_and_mark_the_place() {
+    let cases: &[(&str, &str, &str, &str)] = &[
+        ("rest_length = ", "rest_lenght = ", "23:1", "unknown key `rest_lenght`"),
+        ("law = \"magnetorheological\"", "law = \"magnetorheologic\"", "24:7", "did you mean `magnetorheological`?"),
+        ("to = { body = \"slide\"", "to = { body = \"sled\"", "22:15", "did you mean `slide`?"),
+        ("joints = { q1", "joints = { q7 = 0, q1", "30:12", "unknown key `q7`"),
+        ("inputs = { u =", "inputs = { w = 1, u =", "26:12", "unknown key `w`"),
+        ("20*t)\" }", "20*t) + sine(t)\" }", "26:37", "unknown function `sine`"),
+        ("mass = 2\n", "mass = \"2 m\"\n", "10:11", "`mass` of body \"arm\""),
+        ("mass = 2\n", "mass = true\n", "10:8", "not the boolean true"),
+        (
+            "joints = { q1 = \"0.3*sin(4*t)\", x = \"0.05 - 0.05*cos(6*t)\" }",
+            "joints = {}",
+            "30:10",
+            "leaves out the joints q1, x",
+        ),
+        ("alpha = 0.5", "alpha = 1.5", "25:60", "is 1.5, outside 0 … 1"),
+        ("axis = [0, 1, 0]", "axis = [0, 0, 0]", "9:49", "has no direction"),
+        ("end = 0.35", "end = 0", "33:7", "must be positive"),
+        ("output_step = \"100 ms\"", "output_step = -1", "34:15", "must be positive"),
+        ("com = [0.2, 0, 0]", "com = [nan, 0, 0]", "11:8", "is nan, not a finite number"),
+        ("com = [0.2, 0, 0]", "com = [inf, 0, 0]", "11:8", "is inf, not a finite number"),
+        ("mass = 2\n", "mass = -2\n", "10:8", "-2"),
+        ("name = \"damper\"", "name = \"energy\"", "20:8", "energy"),
+        ("end = 0.35", "end = = 0.35", "33:7", "not TOML"),
+        ("output_step = \"100 ms\"", "output_step = 1e-12", "34:15", "at most 20000000"),
+        ("kind = \"prescribed\"", "kind = \"forward\"", "29:8", "does not run yet"),
+    ];
+    for (from, to, position, words) in cases {
+        let place = Place::with(&edited(from, to));
+        for command in ["run", "check"] {
+            let Ended { code, stdout, stderr } = place.springpot(&[command, "arm.toml"]);
+            assert_eq!((code, stdout.as_str()), (Some(2), ""), "{to}: {stderr}");
+            assert!(stderr.contains(&format!("error: arm.toml:{position}: ")), "{to}: {stderr}");
+            assert!(stderr.contains(words), "{to}: {stderr}");
+            // The offending line stands under its number, and the mark under the line.
+            let (line, _) = position.split_once(':').unwrap();
+            let shown = stderr.lines().position(|shown| shown.trim_start().starts_with(&format!("{line} │"))).unwrap();
+            assert!(stderr.lines().nth(shown + 1).unwrap().contains(['┬', '─', '▲']), "{to}: {stderr}");
+        }
+        assert!(!place.path("results").exists(), "{to}: nothing may be written");
+    }
+}
+
+#[test]
+fn overrides_are_refused_where_they_stand() {
+    let place = Place::new();
+    for (set, words) in [
+        ("element.damper.alfa=0.5", "--set:1:1: path \"element.damper.alfa\": `element.damper` has no `alfa`\n"),
+        ("element.damper.alfa=0.5", "did you mean `alpha`?"),
+        ("element.dumper.alpha=0.5", "did you mean `damper`?"),
+        ("element.damper.alpha=2", "--set:1:22: `alpha` of `parameters` of element \"damper\""),
+        ("element.damper.alpha", "has no `=`"),
+        ("element.damper.alpha=", "has no value"),
+        ("=3", "has no path"),
+        ("time.end=1 m", "--set:1:12: "),
+        ("motion.joints.q1=t/(t - 0.2)", "is not finite at t = 0.2 s"),
+    ] {
+        let ended = place.springpot(&["run", "arm.toml", "--set", set]);
+        assert_eq!(ended.code, Some(2), "{set}");
+        assert!(ended.stderr.contains(words), "{set}: {}", ended.stderr);
+    }
+}
+
+#[test]
+fn files_that_are_none_are_refused() {
+    let place = Place::new();
+    place.write("empty.toml", "");
+    place.write("binary.toml", (0..4000u32).map(|k| (k * k % 251) as u8).collect::<Vec<_>>());
+    place.write("latin.toml", b"title = \"Gr\xf6\xdfe\"\n");
+    place.write("large.toml", vec![b' '; (4 << 20) + 1]);
+    std::fs::create_dir(place.path("folder.toml")).unwrap();
+    for (file, words) in [
+        ("none.toml", "error: none.toml: cannot be opened: "),
+        ("folder.toml", "error: folder.toml: cannot be "),
+        ("empty.toml", "error: empty.toml:1:1: the scenario has no `robot`"),
+        ("binary.toml", "error: binary.toml:1:"),
+        ("latin.toml", "error: latin.toml:1:12: not UTF-8"),
+        ("large.toml", "error: large.toml: larger than 4 MiB"),
+    ] {
+        for command in ["run", "check"] {
+            let ended = place.springpot(&[command, file]);
+            assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{file}: {}", ended.stderr);
+            assert!(ended.stderr.starts_with(words), "{file}: {}", ended.stderr);
+            assert!(ended.stderr.len() < 4_000, "{file}: {} bytes of complaint", ended.stderr.len());
+            assert!(
+                ended.stderr.chars().all(|c| c == '\n' || c == '\t' || !c.is_control()),
+                "{file}: {:?}",
+                ended.stderr
+            );
+        }
+    }
+    assert!(!place.path("results").exists());
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_said() {
+    let place = Place::new();
+    place.write("file", "in the way");
+    std::fs::create_dir_all(place.path("taken/results.csv")).unwrap();
+    for (out, named) in [("file", "file"), ("file/below", "file"), ("taken", "taken")] {
+        let ended = place.springpot(&["run", "arm.toml", "--out", out]);
+        assert_eq!(ended.code, Some(1), "{out}");
+        assert!(
+            ended.stderr.starts_with("error: the results cannot be written to ") && ended.stderr.contains(named),
+            "{}",
+            ended.stderr
+        );
+    }
+    assert_eq!(place.read("file"), "in the way");
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let place = Place::new();
+    for arguments in [&["run", "arm.toml"][..], &["check", "arm.toml"], &["--help"], &["run", "--help"], &["--version"]]
+    {
+        let mut child = place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // Nobody reads: every write finds the pipe closed.
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!((output.status.code(), stderr.as_ref()), (Some(0), ""), "{arguments:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn full_terminals_are_no_panic() {
+    let place = Place::new();
+    let full = || std::fs::File::options().write(true).open("/dev/full").unwrap();
+    for (file, code) in [("arm.toml", 0), ("none.toml", 2)] {
+        let status = place.command(&["run", file]).stdout(full()).stderr(full()).status().unwrap();
+        assert_eq!(status.code(), Some(code));
+    }
+}
+
+#[test]
+fn absurd_counts_are_refused_at_once() {
+    let sweep = |count: &str| {
+        format!("{ARM}[[sweep]]\nparameter = \"element.damper.mu\"\nvalues = {{ from = 1, to = 2, count = {count} }}\n")
+    };
+    let twice = format!(
+        "{}[[sweep]]\nparameter = \"element.damper.mu_0\"\nvalues = {{ from = 1, to = 2, count = 100000 }}\n",
+        sweep("100000")
+    );
+    let cases = [
+        (sweep("1000000000"), "is 1000000000, outside 2 … 10000000"),
+        (sweep("9223372036854775807"), "outside 2 … 10000000"),
+        (twice, "a grid of 10000000000 cases; at most 10000000 are run"),
+        (edited("\"100 ms\"", "1e-12"), "makes 350000000000 rows; at most 20000000 are written"),
+        (edited("\"100 ms\"", "1e-300"), "rows; at most 20000000 are written"),
+        (edited("end = 0.35", "end = 1e300"), "rows; at most 20000000 are written"),
+    ];
+    for (text, words) in cases {
+        let place = Place::with(&text);
+        for command in ["run", "check"] {
+            let begun = Instant::now();
+            let ended = Ended::from(with_little_memory(&place, command).output().unwrap());
+            assert_eq!(ended.code, Some(2), "{words}: {}", ended.stderr);
+            assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+            assert!(begun.elapsed() < Duration::from_secs(5), "{words}: {:?}", begun.elapsed());
+        }
+    }
+}
+
+/// The program with 400 MB of address space, most of which are the stacks of its threads.
+#[cfg(unix)]
+fn with_little_memory(place: &Place, command: &str) -> std::process::Command {
+    let mut shell = std::process::Command::new("sh");
+    shell.current_dir(place.path("")).args(["-c", "ulimit -v 400000 2>/dev/null; exec \"$0\" \"$@\""]);
+    shell.args([env!("CARGO_BIN_EXE_springpot"), command, "arm.toml"]);
+    shell
+}
+
+#[cfg(not(unix))]
+fn with_little_memory(place: &Place, command: &str) -> std::process::Command {
+    place.command(&[command, "arm.toml"])
+}
+
+/// A file system that takes no more: rows that stand there stay, whole ones alone.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_complete_rows() {
+    let sweep = "[[sweep]]\nparameter = \"element.damper.mu\"\nvalues = { from = 1, to = 2, count = 60 }\n";
+    let place = Place::with(&format!("{ARM}{sweep}"));
+    let mut shell = std::process::Command::new("sh");
+    shell.current_dir(place.path("")).args(["-c", "trap '' XFSZ; ulimit -f 64; exec \"$0\" \"$@\""]).args([
+        env!("CARGO_BIN_EXE_springpot"),
+        "run",
+        "arm.toml",
+        "--jobs",
+        "4",
+        "--set",
+        "time.output_step=0.01",
+    ]);
+    let ended = Ended::from(shell.output().unwrap());
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    assert!(
+        ended.stderr.starts_with("error: the results cannot be written to ") && ended.stderr.contains("os error"),
+        "{}",
+        ended.stderr
+    );
+    let results = Csv::new(&place.read("results/arm/results.csv"));
+    assert!(results.rows.len() > 20);
+    // A run with room replaces what the failed one left.
+    place.write("arm.toml", ARM);
+    place.done(&["run", "arm.toml"]);
+    assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
+}
