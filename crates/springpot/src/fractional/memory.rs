@@ -45,7 +45,7 @@ pub struct Affine {
 pub struct Energy {
     /// ½(Σ w_k z_k² + d2·x'²), stored.
     pub stored: f64,
-    /// Σ w_k λ_k z_k² + d1·x'², the rate of dissipation.
+    /// Σ w_k λ_k z_k² + d1·x'² − 2·d2·x'·x'' + d3·x''², the rate of dissipation.
     pub dissipation: f64,
 }
 
@@ -337,8 +337,12 @@ impl Modes {
             stored += square;
             dissipation += self.kernel.lambda[k] * square;
         }
-        let (d1, d2) = self.kernel.fast_tail();
-        Energy { stored: 0.5 * (stored + d2 * rate * rate), dissipation: dissipation + d1 * rate * rate }
+        let [d1, d2, d3] = self.kernel.fast_tail();
+        let bend = step.bend(theta);
+        Energy {
+            stored: 0.5 * (stored + d2 * rate * rate),
+            dissipation: dissipation + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
+        }
     }
 
     fn commit(&mut self, step: &RatePolynomial) {
