@@ -1,21 +1,21 @@
 //! Runs of the smallest robot with one element.
 
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each test uses its share")]
 
 use springpot::law::Catalog;
 use springpot::scenario::Scenario;
 use springpot::simulate::{Report, RunError, Stop, along};
 
 /// Rows of a slider of 1 kg on the x axis, drawn by the element `e` from the world: its stroke is q.
-pub struct Run {
+pub(crate) struct Run {
     columns: Vec<String>,
-    pub rows: Vec<Vec<f64>>,
-    pub report: Report,
-    pub outcome: Result<(), RunError>,
+    pub(crate) rows: Vec<Vec<f64>>,
+    pub(crate) report: Report,
+    pub(crate) outcome: Result<(), RunError>,
 }
 
 impl Run {
-    pub fn new(element: &str, q: &str, end: f64, step: f64) -> Self {
+    pub(crate) fn new(element: &str, q: &str, end: f64, step: f64) -> Self {
         let text = format!(
             r#"
 [[robot.body]]
@@ -49,19 +49,19 @@ output_step = {step}
         Self { columns, rows, report, outcome }
     }
 
-    pub fn springpot(alpha: f64, q: &str, end: f64, step: f64) -> Self {
+    pub(crate) fn springpot(alpha: f64, q: &str, end: f64, step: f64) -> Self {
         let run = Self::new(&format!("law = \"springpot\"\nparameters = {{ c = 3.0, alpha = {alpha} }}"), q, end, step);
         assert!(run.outcome.is_ok(), "alpha {alpha}, {q}: {:?}", run.outcome);
         run
     }
 
-    pub fn column(&self, name: &str) -> Vec<f64> {
+    pub(crate) fn column(&self, name: &str) -> Vec<f64> {
         let k = self.columns.iter().position(|column| column == name).unwrap();
         self.rows.iter().map(|row| row[k]).collect()
     }
 
     /// Largest |D^alpha x − exact(t)|; every row must be there and filled.
-    pub fn largest_error(&self, end: f64, step: f64, exact: impl Fn(f64) -> f64) -> f64 {
+    pub(crate) fn largest_error(&self, end: f64, step: f64, exact: impl Fn(f64) -> f64) -> f64 {
         let (t, derivative) = (self.column("t"), self.column("e.derivative"));
         assert_eq!(t.len(), (end / step).round() as usize + 1);
         t.iter()
