@@ -236,17 +236,15 @@ impl Memory {
         match &self.modes {
             None if self.alpha == 0.0 => Energy { stored: 0.5 * (stroke - self.held()).powi(2), dissipation: 0.0 },
             None => Energy { stored: 0.0, dissipation: rate * rate },
+            // At t = 0 the fast lags have not settled yet: nothing is stored and nothing flows.
+            Some(modes) if theta == 0.0 && modes.last.is_none() => Energy::default(),
             Some(modes) => modes.energy(step, theta, rate),
         }
     }
 
     /// Energy that a unit springpot stores after the last committed step; `stroke` and `rate` are x and x' there.
     pub fn stored(&self, stroke: f64, rate: f64) -> f64 {
-        match &self.modes {
-            // Nothing has been stored before the first step.
-            Some(modes) if modes.last.is_none() => 0.0,
-            _ => self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate).stored,
-        }
+        self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate).stored
     }
 
     /// Takes an accepted step into the past: z_k ← e^{−λ_k h} z_k + ∫ e^{−λ_k(h−s)} x'(s) ds, exact for the polynomial.

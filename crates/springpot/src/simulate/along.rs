@@ -29,6 +29,9 @@ const SHORTEST_STEP: f64 = 1e-13;
 /// powers rise like t^{1−alpha}, which no step resolves, and such a step turns over next to nothing.
 const SHORTEST_LEDGER_STEP: f64 = 1e-11;
 
+/// Steps that shrink to nothing this near the end of what the gripper can reach shrink because of it; share of the motion.
+const NEAR: f64 = 1e-3;
+
 /// Share of rtol^⅔ that the energy ledger may err in one step, in units of the energy turned over.
 const ENERGY_SHARE: f64 = 0.01;
 
@@ -588,6 +591,10 @@ impl<'a> Run<'a> {
     }
 
     fn step_too_small(&self, t: f64, h: f64, error: &StepError) -> RunError {
+        // At the limit of its reach the robot's rates are infinite, so that the steps shrink before the path ends.
+        if let Some(failure) = self.system.motion.failure().filter(|failure| failure.t - t < NEAR * self.settings.end) {
+            return failure.into();
+        }
         let subject = match error.element {
             Some(e) if error.memory >= error.energy => format!("element \"{}\"", self.system.elements[e].name),
             _ => "the energy ledger".into(),
