@@ -1,0 +1,5 @@
+//! The program as a user types it.
+
+mod failures;
+mod results;
+mod support;
