@@ -212,7 +212,7 @@ fn refusals_say_where_and_what_would_be_right() {
         ("5 m\u{b2}", "m^2", "m\u{b2}", "did you mean `m^2`?"),
         ("25 \u{b0}C", "K", "\u{b0}C", "did you mean `degC`?"),
         ("25 kn", "N", "kn", "did you mean `kN`?"),
-        ("5 s", "N", "s", "`s` is a unit of s, but this place takes `N`"),
+        ("5 s", "N", "s", "`s` does not fit: this place takes `N`"),
         ("5 N*s/m", "N*s^alpha/m", "N*s/m", "`N*s^alpha/m` (that is N*s^0.3/m)"),
         ("5 m", "", "m", "takes a pure number"),
         ("5 t", "m", "t", "`t` is no unit; in an expression write every product out, as in `2*t`"),

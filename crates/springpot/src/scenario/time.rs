@@ -28,7 +28,8 @@ pub(crate) fn read(root: &Table<'_>) -> Read<TimePlan> {
             let end = end?;
             let rows = end / step_size;
             if rows > MAX_ROWS {
-                let message = format!("makes {rows:.0} rows; at most {MAX_ROWS:.0} are written");
+                let rows = if rows < 1e15 { format!("{rows:.0}") } else { format!("{rows:.1e}") };
+                let message = format!("makes {rows} rows; at most {MAX_ROWS:.0} are written");
                 let help = "write a larger output_step or a smaller end".to_owned();
                 return Err(step.refuse(RefusalKind::TooLarge, message, Some(help)));
             }

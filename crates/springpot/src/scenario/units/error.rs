@@ -43,7 +43,7 @@ pub enum UnitError {
         at: Range<usize>,
     },
     /// The unit is one of another dimension.
-    #[error("`{unit}` is a unit of {given}, but this place takes {}", wanted(expected, expected_dimension))]
+    #[error("{} does not fit: this place takes {}", written(unit, given), wanted(expected, expected_dimension))]
     WrongDimension {
         /// The unit as written.
         unit: String,
@@ -132,6 +132,12 @@ fn hint(symbol: &str, suggestion: &Option<String>) -> String {
         None if symbol.len() <= 40 => format!("; units are {}, most with a prefix p n u m c k M G", symbols::LIST),
         None => String::new(),
     }
+}
+
+/// The unit as written, and its dimension where that says more.
+fn written(unit: &str, dimension: &Dimension) -> String {
+    let plain = dimension.to_string();
+    if plain == unit { format!("`{unit}`") } else { format!("`{unit}` (that is {plain})") }
 }
 
 fn wanted(expected: &str, dimension: &Dimension) -> String {

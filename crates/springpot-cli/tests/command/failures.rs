@@ -1,8 +1,6 @@
 //! Runs that fail, and input that is refused: exit codes, messages, and what is left behind.
 
-mod command;
-
-use command::{ARM, Csv, Ended, Place};
+use crate::support::{ARM, Csv, Ended, Place};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -94,31 +92,31 @@ fn a_path_out_of_reach_is_named_with_time_and_distance() {
 #[test]
 fn refusals_name_file_line_and_column_and_mark_the_place() {
     let cases: &[(&str, &str, &str, &str)] = &[
-        ("rest_length = ", "rest_lenght = ", "23:1", "unknown key `rest_lenght`"),
-        ("law = \"magnetorheological\"", "law = \"magnetorheologic\"", "24:7", "did you mean `magnetorheological`?"),
-        ("to = { body = \"slide\"", "to = { body = \"sled\"", "22:15", "did you mean `slide`?"),
-        ("joints = { q1", "joints = { q7 = 0, q1", "30:12", "unknown key `q7`"),
-        ("inputs = { u =", "inputs = { w = 1, u =", "26:12", "unknown key `w`"),
-        ("20*t)\" }", "20*t) + sine(t)\" }", "26:37", "unknown function `sine`"),
-        ("mass = 2\n", "mass = \"2 m\"\n", "10:11", "`mass` of body \"arm\""),
+        ("rest_length = ", "rest_lenght = ", "24:1", "unknown key `rest_lenght`"),
+        ("law = \"magnetorheological\"", "law = \"magnetorheologic\"", "25:7", "did you mean `magnetorheological`?"),
+        ("to = { body = \"slide\"", "to = { body = \"sled\"", "23:15", "did you mean `slide`?"),
+        ("joints = { q1", "joints = { q7 = 0, q1", "31:12", "unknown key `q7`"),
+        ("inputs = { u =", "inputs = { w = 1, u =", "27:12", "unknown key `w`"),
+        ("20*t)\" }", "20*t) + sine(t)\" }", "27:37", "unknown name `sine`; did you mean `sin`?"),
+        ("mass = 2\n", "mass = \"2 m\"\n", "10:11", "`mass` of body \"arm\": `m` does not fit: this place takes `kg`"),
         ("mass = 2\n", "mass = true\n", "10:8", "not the boolean true"),
         (
             "joints = { q1 = \"0.3*sin(4*t)\", x = \"0.05 - 0.05*cos(6*t)\" }",
             "joints = {}",
-            "30:10",
+            "31:10",
             "leaves out the joints q1, x",
         ),
-        ("alpha = 0.5", "alpha = 1.5", "25:60", "is 1.5, outside 0 … 1"),
-        ("axis = [0, 1, 0]", "axis = [0, 0, 0]", "9:49", "has no direction"),
-        ("end = 0.35", "end = 0", "33:7", "must be positive"),
-        ("output_step = \"100 ms\"", "output_step = -1", "34:15", "must be positive"),
+        ("alpha = 0.5", "alpha = 1.5", "26:59", "is 1.5, outside 0 … 1"),
+        ("axis = [0, 1, 0]", "axis = [0, 0, 0]", "9:50", "has no direction"),
+        ("end = 0.35", "end = 0", "34:7", "must be positive"),
+        ("output_step = \"100 ms\"", "output_step = -1", "35:15", "must be positive"),
         ("com = [0.2, 0, 0]", "com = [nan, 0, 0]", "11:8", "is nan, not a finite number"),
         ("com = [0.2, 0, 0]", "com = [inf, 0, 0]", "11:8", "is inf, not a finite number"),
-        ("mass = 2\n", "mass = -2\n", "10:8", "-2"),
-        ("name = \"damper\"", "name = \"energy\"", "20:8", "energy"),
-        ("end = 0.35", "end = = 0.35", "33:7", "not TOML"),
-        ("output_step = \"100 ms\"", "output_step = 1e-12", "34:15", "at most 20000000"),
-        ("kind = \"prescribed\"", "kind = \"forward\"", "29:8", "does not run yet"),
+        ("mass = 2\n", "mass = -2\n", "10:8", "mass of body \"arm\" is -2; it must be 0 or more"),
+        ("name = \"damper\"", "name = \"energy\"", "21:8", "which the columns of the results use"),
+        ("end = 0.35", "end = = 0.35", "34:7", "not TOML"),
+        ("output_step = \"100 ms\"", "output_step = 1e-12", "35:15", "at most 20000000"),
+        ("kind = \"prescribed\"", "kind = \"forward\"", "30:8", "does not run yet"),
     ];
     for (from, to, position, words) in cases {
         let place = Place::with(&edited(from, to));
@@ -148,7 +146,7 @@ fn overrides_are_refused_where_they_stand() {
         ("element.damper.alpha=", "has no value"),
         ("=3", "has no path"),
         ("time.end=1 m", "--set:1:12: "),
-        ("motion.joints.q1=t/(t - 0.2)", "is not finite at t = 0.2 s"),
+        ("motion.joints.q1=log(0.1 - t)", "is not finite at t = 0.1"),
     ] {
         let ended = place.springpot(&["run", "arm.toml", "--set", set]);
         assert_eq!(ended.code, Some(2), "{set}");
@@ -175,7 +173,7 @@ fn files_that_are_none_are_refused() {
         for command in ["run", "check"] {
             let ended = place.springpot(&[command, file]);
             assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{file}: {}", ended.stderr);
-            assert!(ended.stderr.starts_with(words), "{file}: {}", ended.stderr);
+            assert!(ended.stderr.contains(words), "{file}: {}", ended.stderr);
             assert!(ended.stderr.len() < 4_000, "{file}: {} bytes of complaint", ended.stderr.len());
             assert!(
                 ended.stderr.chars().all(|c| c == '\n' || c == '\t' || !c.is_control()),

@@ -1,8 +1,6 @@
 //! `springpot run` as a user types it: its files, columns, rows and numbers.
 
-mod command;
-
-use command::{Csv, Place};
+use crate::support::{Csv, Place};
 use springpot::table::push_number;
 use std::path::Path;
 
@@ -47,7 +45,7 @@ values = { from = 1, to = 3, count = 3 }
 
 #[test]
 fn a_run_writes_its_files_and_says_so() {
-    let place = Place::with(&format!("{}\n[[figure]]\ny = [\"damper.Q.*\"]\n", command::ARM));
+    let place = Place::with(&format!("{}\n[[figure]]\ny = [\"damper.Q.*\"]\n", crate::support::ARM));
     let ended = place.done(&["run", "arm.toml"]);
     let files = ["figures/figure-1.png", "figures/figure-1.svg", "results.csv", "run.json", "summary.csv"];
     assert_eq!(place.files("results/arm"), files);
@@ -105,7 +103,10 @@ fn rows_stand_at_multiples_of_the_step_and_at_the_end() {
     // The last multiple is the end but for rounding.
     assert_eq!(times(&["--set", "time.end=0.3"]), [0.0, 0.1, 0.2, 0.3]);
     assert_eq!(times(&["--set", "time.output_step=10"]), [0.0, 0.35]);
-    place.write("at.toml", command::ARM.replace("output_step = \"100 ms\"", "output_times = [\"50 ms\", 0.1, 0.35]"));
+    place.write(
+        "at.toml",
+        crate::support::ARM.replace("output_step = \"100 ms\"", "output_times = [\"50 ms\", 0.1, 0.35]"),
+    );
     place.done(&["run", "at.toml"]);
     assert_eq!(place.table("results/at/results.csv").numbers("t"), [0.05, 0.1, 0.35]);
 }
@@ -202,7 +203,7 @@ fn empty_columns_of_scheme(csv: &Csv) -> Vec<&str> {
 
 #[test]
 fn sweeps_come_in_grid_order_for_any_number_of_jobs() {
-    let place = Place::with(&format!("{}{SWEEP}", command::ARM));
+    let place = Place::with(&format!("{}{SWEEP}", crate::support::ARM));
     let run = |jobs: &str| {
         let ended = place.done(&["run", "arm.toml", "--jobs", jobs, "--out", jobs]);
         assert!(ended.stdout.starts_with("6 cases, 30 rows, "), "{}", ended.stdout);
@@ -234,8 +235,8 @@ fn sweeps_come_in_grid_order_for_any_number_of_jobs() {
 
 #[test]
 fn a_case_of_a_sweep_is_the_run_alone() {
-    let place = Place::with(&format!("{}{SWEEP}", command::ARM));
-    place.write("one.toml", command::ARM);
+    let place = Place::with(&format!("{}{SWEEP}", crate::support::ARM));
+    place.write("one.toml", crate::support::ARM);
     place.done(&["run", "arm.toml"]);
     let set = ["alpha=0.5", "mu=2", "mu_0=2"].map(|value| format!("element.damper.{value}"));
     let arguments = set.iter().flat_map(|set| ["--set", set.as_str()]);
@@ -249,7 +250,7 @@ fn swept_quantities_are_si_numbers_and_texts_stay() {
     let sweep = "[[sweep]]\nparameter = \"element.damper.rest_length\"\nvalues = [\"50 cm\", \"600 mm\"]\n\
                  [[sweep]]\nparameter = \"element.damper.scheme\"\nvalues = [\"exact\", \"l1\"]\n\
                  [[sweep]]\nparameter = \"element.damper.u\"\nvalues = [\"1.5 V\", \"sin(t)^2\"]\n";
-    let place = Place::with(&format!("{}{sweep}", command::ARM));
+    let place = Place::with(&format!("{}{sweep}", crate::support::ARM));
     let ended = place.done(&["run", "arm.toml"]);
     let results = place.table("results/arm/results.csv");
     let cases: Vec<String> = results.rows.chunks(5).map(|case| case[0][..3].join(" ")).collect();
@@ -271,13 +272,13 @@ fn swept_quantities_are_si_numbers_and_texts_stay() {
 fn output_chooses_columns() {
     let place = Place::with(&format!(
         "{}\n[output]\ncolumns = [\"*.Q.x\", \"t\", \"q.*\", \"energy.r?sidual\"]\n",
-        command::ARM
+        crate::support::ARM
     ));
     place.done(&["run", "arm.toml"]);
     let results = place.table("results/arm/results.csv");
     assert_eq!(results.header, ["t", "q.q1", "q.x", "damper.Q.x", "energy.residual"]);
     assert_eq!(place.table("results/arm/summary.csv").texts("column"), results.header);
-    place.write("arm.toml", command::ARM);
+    place.write("arm.toml", crate::support::ARM);
     place.done(&["run", "arm.toml", "--out", "all"]);
     let all = place.table("all/results.csv");
     for column in &results.header {
@@ -287,14 +288,17 @@ fn output_chooses_columns() {
 
 #[test]
 fn a_rerun_replaces_its_own_files_and_no_others() {
-    let place = Place::with(&format!("{}\n[[figure]]\nname = \"old\"\ny = \"damper.force\"\n", command::ARM));
+    let place = Place::with(&format!("{}\n[[figure]]\nname = \"old\"\ny = \"damper.force\"\n", crate::support::ARM));
     let out = Path::new("here").join("and there");
     let out = out.to_str().unwrap();
     place.done(&["run", "arm.toml", "--out", out]);
     place.write("here/and there/notes.txt", "mine");
     place.write("here/and there/figures/mine.svg", "mine");
     place.write("here/and there/results.csv.part", "of a killed run");
-    place.write("arm.toml", command::ARM.replace("\n[motion]", "\n[[figure]]\nname = \"new\"\ny = \"t\"\n[motion]"));
+    place.write(
+        "arm.toml",
+        crate::support::ARM.replace("\n[motion]", "\n[[figure]]\nname = \"new\"\ny = \"t\"\n[motion]"),
+    );
     place.done(&["run", "arm.toml", "--out", out]);
     let files = [
         "figures/mine.svg",
@@ -313,7 +317,7 @@ fn a_rerun_replaces_its_own_files_and_no_others() {
 
 #[test]
 fn quiet_says_nothing() {
-    let place = Place::with(&format!("{}\n[[figure]]\ny = \"damper.force\"\n", command::ARM));
+    let place = Place::with(&format!("{}\n[[figure]]\ny = \"damper.force\"\n", crate::support::ARM));
     for arguments in [&["run", "arm.toml", "--quiet"][..], &["run", "-q", "arm.toml"], &["check", "-q", "arm.toml"]] {
         let ended = place.done(arguments);
         assert_eq!((ended.stdout.as_str(), ended.stderr.as_str()), ("", ""));
@@ -335,8 +339,8 @@ fn overrides_reach_the_record() {
 
 #[test]
 fn windows_files_run_as_well() {
-    let place = Place::with(&format!("\u{feff}{}", command::ARM.replace('\n', "\r\n")));
-    place.write("plain.toml", command::ARM);
+    let place = Place::with(&format!("\u{feff}{}", crate::support::ARM.replace('\n', "\r\n")));
+    place.write("plain.toml", crate::support::ARM);
     place.done(&["run", "arm.toml"]);
     place.done(&["run", "plain.toml"]);
     assert_eq!(place.read("results/arm/results.csv"), place.read("results/plain/results.csv"));
@@ -349,7 +353,10 @@ fn files_named_in_a_scenario_are_relative_to_it() {
     let samples: String =
         (0..=40).map(|k| format!("{},{}\r\n", 0.01 * f64::from(k), 0.3 * f64::from(k) * 0.01)).collect();
     place.write("sub/u.csv", format!("\u{feff}t,u\r\n{samples}"));
-    place.write("sub/arm.toml", command::ARM.replace("\"1 + 0.5*sin(20*t)\"", "{ csv = \"u.csv\", column = \"u\" }"));
+    place.write(
+        "sub/arm.toml",
+        crate::support::ARM.replace("\"1 + 0.5*sin(20*t)\"", "{ csv = \"u.csv\", column = \"u\" }"),
+    );
     place.done(&["run", "sub/arm.toml"]);
     let results = place.table("results/arm/results.csv");
     for (t, u) in results.numbers("t").iter().zip(results.numbers("damper.u")) {

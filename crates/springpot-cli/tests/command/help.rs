@@ -1,0 +1,50 @@
+//! Help, version, and mistyped commands.
+
+use crate::support::Place;
+
+#[test]
+fn help_is_where_it_is_looked_for() {
+    let place = Place::new();
+    let help = place.done(&["--help"]).stdout;
+    assert_eq!(place.done(&["help"]).stdout, help);
+    for line in
+        ["Usage: springpot <COMMAND>", "  run    Run a scenario", "  check  Read and check", "Exit codes: 0 done"]
+    {
+        assert!(help.contains(line), "{help}");
+    }
+    let nothing = place.springpot(&[]);
+    assert_eq!((nothing.code, nothing.stdout.as_str()), (Some(2), ""));
+    assert!(nothing.stderr.contains("Usage: springpot <COMMAND>"));
+
+    for (command, options) in [
+        ("run", &["--set <PATH=VALUE>", "--out <DIR>", "--jobs <N>", "--no-figures", "--quiet"][..]),
+        ("check", &["--set <PATH=VALUE>", "--quiet"]),
+    ] {
+        let help = place.done(&[command, "--help"]).stdout;
+        assert_eq!(place.done(&["help", command]).stdout, help);
+        assert!(options.iter().all(|option| help.contains(option)) && help.contains("Example"), "{help}");
+    }
+    let version = format!("springpot {}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(place.done(&["--version"]).stdout, version);
+    assert_eq!(place.done(&["-V"]).stdout, version);
+}
+
+#[test]
+fn mistyped_commands_get_a_suggestion() {
+    let place = Place::new();
+    for (arguments, words) in [
+        (&["rum", "arm.toml"][..], "a similar subcommand exists: 'run'"),
+        (&["chek", "arm.toml"], "a similar subcommand exists: 'check'"),
+        (&["run", "arm.toml", "--job", "2"], "a similar argument exists: '--jobs'"),
+        (&["run"], "<SCENARIO>"),
+        (&["run", "arm.toml", "--jobs", "0"], "invalid value '0' for '--jobs <N>'"),
+        (&["run", "arm.toml", "--jobs", "many"], "invalid value 'many' for '--jobs <N>'"),
+        (&["run", "arm.toml", "--out", ""], "a value is required for '--out <DIR>'"),
+        (&["run", "arm.toml", "other.toml"], "unexpected argument 'other.toml'"),
+    ] {
+        let ended = place.springpot(arguments);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{arguments:?}");
+        assert!(ended.stderr.contains(words), "{arguments:?}: {}", ended.stderr);
+    }
+    assert!(!place.path("results").exists());
+}

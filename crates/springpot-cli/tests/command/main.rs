@@ -1,0 +1,10 @@
+//! The program as a user types it.
+
+mod check;
+mod failures;
+mod figures;
+mod help;
+#[cfg(unix)]
+mod interrupted;
+mod results;
+mod support;
