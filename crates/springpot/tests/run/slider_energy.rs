@@ -1,10 +1,6 @@
 //! The energy ledger of smooth motions.
 
-#![cfg(feature = "scenario")]
-
-mod slider_support;
-
-use slider_support::Run;
+use crate::slider_support::Run;
 
 #[test]
 fn the_ledger_closes_on_smooth_motions() {

@@ -1,12 +1,11 @@
 //! The energy ledger: it closes in every run that knows it, and only because every mode of the memory is there.
 
-mod memory_support;
-mod run_support;
-
-use memory_support::graded;
-use run_support::robots::{ARM, PATH, SWING, every, magnetorheological, prescribed, springpot, thermoviscoelastic};
-use run_support::truth::{Truth, gauss_jacobi};
-use run_support::{Run, cases, largest, run, run_case, scenarios, shipped};
+use crate::memory_support::graded;
+use crate::run_support::robots::{
+    ARM, PATH, SWING, every, magnetorheological, prescribed, springpot, thermoviscoelastic,
+};
+use crate::run_support::truth::{Truth, gauss_jacobi};
+use crate::run_support::{Run, cases, largest, run, run_case, scenarios, shipped};
 use serde_json::Value;
 use springpot::fractional::step::RADAU_NODES;
 use springpot::fractional::{Form, Kind, Nodes};

@@ -1,10 +1,6 @@
 //! Runs whose rows lie on the kinks of motions and inputs, against closed forms.
 
-#![cfg(feature = "scenario")]
-
-mod slider_support;
-
-use slider_support::Run;
+use crate::slider_support::Run;
 use springpot::fractional::gamma::reciprocal_gamma;
 
 /// D^alpha of p!·(t − k)^p₊/p!·slope, p = 1 or 2.

@@ -1,12 +1,10 @@
 //! Accuracy is the run's business: every D^alpha x within rtol of the largest of its curve against an independent quadrature,
 //! whatever the motion, the order and the rows.
 
-mod run_support;
-
-use run_support::oracle::{file, number};
-use run_support::robots::{ARM, SWING, at, every, prescribed, springpot};
-use run_support::truth::{Truth, derivatives};
-use run_support::{Run, cases, largest, relative_difference, run, run_case};
+use crate::run_support::oracle::{file, number};
+use crate::run_support::robots::{ARM, SWING, at, every, prescribed, springpot};
+use crate::run_support::truth::{Truth, derivatives};
+use crate::run_support::{Run, cases, largest, relative_difference, run, run_case};
 use springpot::fractional::gamma::{gamma, reciprocal_gamma};
 
 /// The default of [solver].
