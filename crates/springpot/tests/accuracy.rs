@@ -1,6 +1,8 @@
 //! Accuracy is the run's business: every D^alpha x within rtol of the largest of its curve against an independent quadrature,
 //! whatever the motion, the order and the rows.
 
+#![cfg(feature = "scenario")]
+
 mod run_support;
 
 use run_support::oracle::{file, number};

@@ -1,6 +1,8 @@
 //! Every law on robots that are not the papers': sliding joints, branches, elements to the world, random smooth motions. Every
 //! D^alpha x, force and generalized force within 1e-9 of the largest of its curve against quadrature and the law's equation.
 
+#![cfg(feature = "scenario")]
+
 mod run_support;
 
 use run_support::robots::every;

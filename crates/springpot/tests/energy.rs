@@ -1,5 +1,7 @@
 //! The energy ledger: it closes in every run that knows it, and only because every mode of the memory is there.
 
+#![cfg(feature = "scenario")]
+
 mod memory_support;
 mod run_support;
 

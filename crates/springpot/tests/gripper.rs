@@ -1,5 +1,7 @@
 //! Gripper paths: the robot follows, its rates are the path's, the answer is unique, and what cannot be followed is said.
 
+#![cfg(feature = "scenario")]
+
 mod run_support;
 
 use run_support::robots::{ARM, every, springpot};

@@ -1,5 +1,7 @@
 //! Kinks in motions and inputs, sampled motions and inputs: the same accuracy as where all is smooth, because steps end there.
 
+#![cfg(feature = "scenario")]
+
 mod run_support;
 
 use run_support::robots::{ARM, at, every, magnetorheological, prescribed, springpot, strut};

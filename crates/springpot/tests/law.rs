@@ -1,5 +1,7 @@
 //! Laws on their own: tangents, sums, the catalog, and the rules that keep an element passive.
 
+#![cfg(feature = "scenario")]
+
 mod memory_support;
 
 use memory_support::random_steps;

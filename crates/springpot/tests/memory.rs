@@ -1,5 +1,7 @@
 //! The memory against reference derivatives, its orders of convergence, and the identities it must keep.
 
+#![cfg(feature = "scenario")]
+
 mod memory_support;
 mod run_support;
 

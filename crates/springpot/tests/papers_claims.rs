@@ -1,5 +1,7 @@
 //! What the papers say about their results, shown with the shipped scenarios.
 
+#![cfg(feature = "scenario")]
+
 mod run_support;
 
 use run_support::truth::pair_at;
