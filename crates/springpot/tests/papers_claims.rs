@@ -1,5 +1,7 @@
 //! What the papers say about their results, shown with the shipped scenarios.
 
+#![cfg(feature = "scenario")]
+
 #[path = "run/run_support/mod.rs"]
 mod run_support;
 
