@@ -51,6 +51,7 @@ fn curves(cases: &Cases, figure: &FigurePlan, data: &FigureData, outcome: &Outco
     // Sweeps that the figure does not fix: the first makes the curves, the others the panels.
     let free: Vec<usize> =
         (0..cases.axis_count()).filter(|axis| figure.selection.iter().all(|s| s.axis != *axis)).collect();
+    let alike = common_unit(&data.y).is_some();
     let mut panels: Vec<(Vec<usize>, Panel)> = Vec::new();
     for &index in &data.cases {
         let Ok(found) = outcome.cases.binary_search_by_key(&index, |case| case.index) else { continue };
@@ -63,9 +64,11 @@ fn curves(cases: &Cases, figure: &FigurePlan, data: &FigureData, outcome: &Outco
             panels.push((key, Panel { title: (!title.is_empty()).then_some(title), curves: Vec::new() }));
             panels.len() - 1
         });
-        let swept = free.first().map(|axis| axis_label(cases, *axis, position[*axis], false));
+        // Beside a column's name the value alone would not say what it is of.
+        let several = data.y.len() > 1;
+        let swept = free.first().map(|axis| axis_label(cases, *axis, position[*axis], several));
         for column in &data.y {
-            let own = (data.y.len() > 1).then(|| labels::quantity(&column.column.name));
+            let own = several.then(|| if alike { labels::quantity(&column.column.name) } else { axis(column) });
             let label = own.into_iter().chain(swept.clone()).collect::<Vec<_>>().join(", ");
             panels[at].1.curves.push(curve(label, &data.x, column, case));
         }
@@ -97,19 +100,21 @@ fn axis(column: &FigureColumn) -> String {
     labels::axis(&column.column, column.unit.as_ref().map(|(text, _)| text.as_str()))
 }
 
-/// One label for all ordinates: the column's own, or what several have in common.
+/// One label for all ordinates: the column's own, or the unit that several have in common.
 fn ordinate(columns: &[FigureColumn]) -> String {
     match columns {
         [only] => axis(only),
-        [first, rest @ ..] => {
-            let unit = |column: &FigureColumn| {
-                column.unit.as_ref().map_or_else(|| column.column.unit.clone(), |(text, _)| text.clone())
-            };
-            let common = unit(first);
-            if rest.iter().all(|column| unit(column) == common) { labels::written_unit(&common) } else { String::new() }
-        }
-        [] => String::new(),
+        several => common_unit(several).map_or(String::new(), |unit| labels::written_unit(&unit)),
     }
+}
+
+/// The unit that all columns are drawn in; `None` where they differ.
+fn common_unit(columns: &[FigureColumn]) -> Option<String> {
+    let unit = |column: &FigureColumn| {
+        column.unit.as_ref().map_or_else(|| column.column.unit.clone(), |(text, _)| text.clone())
+    };
+    let first = unit(columns.first()?);
+    columns.iter().all(|column| unit(column) == first).then_some(first)
 }
 
 /// The swept value as written; with the parameter's name where nothing else says it.

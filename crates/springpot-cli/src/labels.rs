@@ -45,12 +45,19 @@ pub(crate) fn quantity(name: &str) -> String {
     }
 }
 
-/// `alpha` becomes α; other names stay.
+/// Last name of a path as a symbol: `alpha` becomes α, `mu_0` μ₀; other names stay.
 pub(crate) fn parameter(path: &str) -> String {
     let last = path.rsplit('.').next().unwrap_or(path);
-    match last {
-        "alpha" => "α".into(),
-        other => other.into(),
+    let (root, index) = last.split_once('_').map_or((last, None), |(root, index)| (root, Some(index)));
+    let root = match root {
+        "alpha" => "α",
+        "mu" => "μ",
+        other => other,
+    };
+    match index {
+        None => root.into(),
+        Some(digits) if digits.bytes().all(|b| b.is_ascii_digit()) => format!("{root}{}", subscript(digits)),
+        Some(index) => format!("{root}_{index}"),
     }
 }
 
@@ -91,5 +98,7 @@ mod tests {
         assert_eq!(axis(&column("arm.derivative", "m/s^alpha"), None), "D^α x of arm, m/sᵅ");
         assert_eq!(axis(&column("strut.Q.elbow", "N*m"), None), "Q at elbow of strut, N·m");
         assert_eq!(written_unit("25 degC"), "25 °C");
+        let symbols = ["element.strut.alpha", "e.mu_0", "e.mu", "e.E_kv", "e.alpha_pz", "solver.rtol", "T"];
+        assert_eq!(symbols.map(parameter), ["α", "μ₀", "μ", "E_kv", "α_pz", "rtol", "T"]);
     }
 }

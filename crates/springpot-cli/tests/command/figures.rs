@@ -81,10 +81,22 @@ fn several_columns_of_one_case_are_told_apart() {
 }
 
 #[test]
+fn curves_of_several_columns_and_cases_say_which_is_which() {
+    let figure = "y = [\"damper.Q.*\", \"damper.stroke\"]\nwhere = { \"element.damper.u\" = \"2 V\" }";
+    let words = words(&drawn(figure).1);
+    for alpha in ["0.2", "0.5", "1.0"] {
+        for curve in ["Q₁ of damper, N·m", "Q at x of damper, N", "stroke x of damper, m"] {
+            assert!(words.contains(&format!("{curve}, α = {alpha}")), "no {curve} at {alpha} in {words}");
+        }
+    }
+}
+
+#[test]
 fn the_robot_is_drawn_with_its_names() {
-    let words = words(&drawn("kind = \"robot\"\ntitle = \"The arm\"").1);
-    for text in ["The arm", "damper", "q₁"] {
-        assert!(words.contains(text) || words.contains("q1"), "no {text:?} in {words}");
+    let (_, svg) = drawn("kind = \"robot\"\ntitle = \"The arm\"");
+    let words = words(&svg);
+    for text in ["The arm", "damper", "q₁", "arm", "slide", "H", "0.1 m"] {
+        assert!(words.contains(text), "no {text:?} in {words}");
     }
 }
 
