@@ -290,7 +290,7 @@ mod tests {
 
     #[test]
     fn builds_at_extreme_orders_and_spans() {
-        for alpha in [1e-3, 0.01, 0.99, 0.9999] {
+        for alpha in [1e-300, 1e-12, 1e-3, 0.01, 0.99, 0.9999, 1.0 - f64::EPSILON] {
             for (delta, horizon) in [(1e-3, 1e4), (1e-12, 3600.0), (0.9, 1.0)] {
                 for tolerance in [1e-4, 1e-12] {
                     let kernel = Kernel::new(alpha, tolerance, delta, horizon).unwrap();
