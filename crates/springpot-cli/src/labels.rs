@@ -35,7 +35,7 @@ pub(crate) fn quantity(name: &str) -> String {
         (element, Some("length"), None) => format!("length l of {element}"),
         (element, Some("stroke"), None) => format!("stroke x of {element}"),
         (element, Some("rate"), None) => format!("stroke rate of {element}"),
-        (element, Some("derivative"), None) => format!("D^α x of {element}"),
+        (element, Some("derivative"), None) => format!("Dᵅ x of {element}"),
         (element, Some("force"), None) => format!("force F of {element}"),
         (element, Some("stored"), None) => format!("energy stored in {element}"),
         (element, Some("dissipated"), None) => format!("energy dissipated in {element}"),
@@ -95,7 +95,7 @@ mod tests {
         assert_eq!(axis(&column("strut.stroke", "m"), Some("cm")), "stroke x of strut, cm");
         assert_eq!(axis(&column("t", "s"), None), "time t, s");
         assert_eq!(axis(&column("a.q12", "rad/s^2"), None), "q\u{308}₁₂, rad/s²");
-        assert_eq!(axis(&column("arm.derivative", "m/s^alpha"), None), "D^α x of arm, m/sᵅ");
+        assert_eq!(axis(&column("arm.derivative", "m/s^alpha"), None), "Dᵅ x of arm, m/sᵅ");
         assert_eq!(axis(&column("strut.Q.elbow", "N*m"), None), "Q at elbow of strut, N·m");
         assert_eq!(written_unit("25 degC"), "25 °C");
         let symbols = ["element.strut.alpha", "e.mu_0", "e.mu", "e.E_kv", "e.alpha_pz", "solver.rtol", "T"];

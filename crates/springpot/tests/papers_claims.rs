@@ -1,5 +1,8 @@
 //! What the papers say about their results, shown with the shipped scenarios.
 
+#![cfg(feature = "scenario")]
+
+#[path = "run/run_support/mod.rs"]
 mod run_support;
 
 use run_support::truth::pair_at;

@@ -113,7 +113,8 @@ pub fn upper_gamma_ratio_inverse(a: f64, ratio: f64) -> f64 {
         low = high;
         high *= 2.0;
     }
-    while high - low > 1e-12 * high {
+    // As a → 0 the answer goes to 0 and takes the width of the interval with it.
+    while high - low > 1e-12 * high && high > f64::MIN_POSITIVE {
         let middle = 0.5 * (low + high);
         if upper_gamma_ratio(a, middle) > ratio { low = middle } else { high = middle }
     }

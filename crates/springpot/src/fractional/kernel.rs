@@ -129,13 +129,16 @@ impl Kernel {
         (lambda, strength(self.alpha) * self.eta * lambda.powf(self.alpha))
     }
 
-    /// Dashpot and inertia of all that is faster than the modes: Σ w/λ and Σ w/λ² over the geometric series above λ_0.
+    /// Σ w/λ^n, n = 1, 2, 3, over the geometric series of modes above λ_0: d1, d2, d3.
     ///
-    /// Under a smooth rate x' those lags store ½·d2·x'² and dissipate d1·x'².
-    pub fn fast_tail(&self) -> (f64, f64) {
+    /// Under a smooth rate x' the lag of such a mode is x'/λ − x''/λ² + …, so that together they store ½·d2·x'² and dissipate
+    /// d1·x'² − 2·d2·x'·x'' + d3·x''², which is never negative.
+    pub fn fast_tail(&self) -> [f64; 3] {
         let scale = strength(self.alpha) * self.eta;
-        let sum = |power: f64| scale * self.lambda[0].powf(-power) / (self.eta * power).exp_m1();
-        (sum(1.0 - self.alpha), sum(2.0 - self.alpha))
+        [1.0, 2.0, 3.0].map(|n| {
+            let power = n - self.alpha;
+            scale * self.lambda[0].powf(-power) / (self.eta * power).exp_m1()
+        })
     }
 }
 
@@ -287,7 +290,7 @@ mod tests {
 
     #[test]
     fn builds_at_extreme_orders_and_spans() {
-        for alpha in [1e-3, 0.01, 0.99, 0.9999] {
+        for alpha in [1e-300, 1e-12, 1e-3, 0.01, 0.99, 0.9999, 1.0 - f64::EPSILON] {
             for (delta, horizon) in [(1e-3, 1e4), (1e-12, 3600.0), (0.9, 1.0)] {
                 for tolerance in [1e-4, 1e-12] {
                     let kernel = Kernel::new(alpha, tolerance, delta, horizon).unwrap();

@@ -45,7 +45,7 @@ pub struct Affine {
 pub struct Energy {
     /// ½(Σ w_k z_k² + d2·x'²), stored.
     pub stored: f64,
-    /// Σ w_k λ_k z_k² + d1·x'², the rate of dissipation.
+    /// Σ w_k λ_k z_k² + d1·x'² − 2·d2·x'·x'' + d3·x''², the rate of dissipation.
     pub dissipation: f64,
 }
 
@@ -236,17 +236,15 @@ impl Memory {
         match &self.modes {
             None if self.alpha == 0.0 => Energy { stored: 0.5 * (stroke - self.held()).powi(2), dissipation: 0.0 },
             None => Energy { stored: 0.0, dissipation: rate * rate },
+            // At t = 0 the fast lags have not settled yet: nothing is stored and nothing flows.
+            Some(modes) if theta == 0.0 && modes.last.is_none() => Energy::default(),
             Some(modes) => modes.energy(step, theta, rate),
         }
     }
 
     /// Energy that a unit springpot stores after the last committed step; `stroke` and `rate` are x and x' there.
     pub fn stored(&self, stroke: f64, rate: f64) -> f64 {
-        match &self.modes {
-            // Nothing has been stored before the first step.
-            Some(modes) if modes.last.is_none() => 0.0,
-            _ => self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate).stored,
-        }
+        self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate).stored
     }
 
     /// Takes an accepted step into the past: z_k ← e^{−λ_k h} z_k + ∫ e^{−λ_k(h−s)} x'(s) ds, exact for the polynomial.
@@ -337,8 +335,12 @@ impl Modes {
             stored += square;
             dissipation += self.kernel.lambda[k] * square;
         }
-        let (d1, d2) = self.kernel.fast_tail();
-        Energy { stored: 0.5 * (stored + d2 * rate * rate), dissipation: dissipation + d1 * rate * rate }
+        let [d1, d2, d3] = self.kernel.fast_tail();
+        let bend = step.bend(theta);
+        Energy {
+            stored: 0.5 * (stored + d2 * rate * rate),
+            dissipation: dissipation + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
+        }
     }
 
     fn commit(&mut self, step: &RatePolynomial) {

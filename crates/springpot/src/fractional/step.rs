@@ -101,6 +101,12 @@ impl RatePolynomial {
         self.u.iter().rev().fold(0.0, |sum, u| sum * theta + u)
     }
 
+    /// x'' at θ; 0 for a step without length.
+    pub fn bend(&self, theta: f64) -> f64 {
+        let [_, u1, u2, u3] = self.u;
+        if self.h == 0.0 { 0.0 } else { (u1 + theta * (2.0 * u2 + theta * 3.0 * u3)) / self.h }
+    }
+
     /// ∫ e^{−λ(τ − s)} x'(s) ds over 0 ≤ s ≤ τ = θh, in closed form.
     pub fn convolve(&self, lambda: f64, theta: f64) -> f64 {
         let tau = theta * self.h;

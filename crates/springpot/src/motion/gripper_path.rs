@@ -81,6 +81,11 @@ impl GripperPath {
         Ok(Wanted { position: target.position.0 })
     }
 
+    /// Where and why the path ends early.
+    pub fn failure(&self) -> Option<PathError> {
+        self.failure
+    }
+
     /// The signals of the path.
     pub fn signals(&self) -> impl Iterator<Item = &Signal> {
         self.task.signals()

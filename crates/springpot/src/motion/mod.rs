@@ -57,6 +57,14 @@ impl Motion {
         matches!(self, Self::GripperPath(_))
     }
 
+    /// Where and why the motion ends early, if it does.
+    pub fn failure(&self) -> Option<PathError> {
+        match self {
+            Self::Prescribed(_) => None,
+            Self::GripperPath(path) => path.failure(),
+        }
+    }
+
     fn signals(&self) -> Vec<&Signal> {
         match self {
             Self::Prescribed(signals) => signals.iter().collect(),

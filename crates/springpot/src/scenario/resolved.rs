@@ -30,7 +30,7 @@ impl Plan {
             "time": time,
             "solver": {
                 "rtol": self.solver.rtol,
-                "atol": self.solver.atol.unwrap_or(self.solver.rtol),
+                "atol": self.solver.atol,
                 "memory_rtol": self.solver.memory_rtol,
                 "first_step": self.solver.first_step,
                 "max_step": self.solver.max_step,

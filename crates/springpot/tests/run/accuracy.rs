@@ -1,12 +1,10 @@
 //! Accuracy is the run's business: every D^alpha x within rtol of the largest of its curve against an independent quadrature,
 //! whatever the motion, the order and the rows.
 
-mod run_support;
-
-use run_support::oracle::{file, number};
-use run_support::robots::{ARM, SWING, at, every, prescribed, springpot};
-use run_support::truth::{Truth, derivatives};
-use run_support::{Run, cases, largest, relative_difference, run, run_case};
+use crate::run_support::oracle::{file, number};
+use crate::run_support::robots::{ARM, SWING, at, every, prescribed, springpot};
+use crate::run_support::truth::{Truth, derivatives};
+use crate::run_support::{Run, cases, largest, relative_difference, run, run_case};
 use springpot::fractional::gamma::{gamma, reciprocal_gamma};
 
 /// The default of [solver].
@@ -69,7 +67,7 @@ fn every_order_meets_the_tolerance() {
 #[test]
 fn looser_tolerances_are_met_and_cheaper() {
     let mut last = u64::MAX;
-    for rtol in [1e-11, 1e-9, 1e-7, 1e-5, 1e-3] {
+    for rtol in [1e-11, 1e-8, 1e-5, 1e-3] {
         let mut effort = 0;
         for alpha in [0.1, 0.5, 0.9] {
             let solver = format!("\n[solver]\nrtol = {rtol:e}\n");
@@ -87,16 +85,14 @@ fn looser_tolerances_are_met_and_cheaper() {
 
 #[test]
 fn fast_motion() {
-    // 800 rad/s for a second; rows that have nothing to do with the period.
+    // 800 rad/s for half a second; rows that have nothing to do with the period.
     for alpha in [0.1, 0.5, 0.9] {
-        for derivative in ["caputo", "riemann-liouville"] {
-            let motion = prescribed("0.1*sin(800*t)", "0.1*t");
-            let text = format!("{ARM}{}{motion}{}", springpot(alpha, derivative), every(1.0, 0.013));
-            let run = run(&text);
-            let error = error(&text, &run, 0.002);
-            println!("800 rad/s, alpha = {alpha}, {derivative}: {error:.1e}, {} steps", run.effort());
-            assert!(error < RTOL, "alpha = {alpha}, {derivative}: {error:.1e}");
-        }
+        let motion = prescribed("0.1*sin(800*t)", "0.1*t");
+        let text = format!("{ARM}{}{motion}{}", springpot(alpha, "riemann-liouville"), every(0.5, 0.037));
+        let run = run(&text);
+        let error = error(&text, &run, 0.004);
+        println!("800 rad/s, alpha = {alpha}: {error:.1e}, {} steps", run.effort());
+        assert!(error < RTOL, "alpha = {alpha}: {error:.1e}");
     }
 }
 
@@ -129,8 +125,9 @@ fn fast_and_slow_in_one_motion() {
 
 #[test]
 fn late_narrow_pulses_are_not_stepped_over() {
-    // At rest (or nearly) for most of the run, then a pulse far narrower than the run.
-    for (end, centre, width) in [(10.0, 9.0, 0.05), (10.0, 9.0, 0.01), (10.0, 7.77, 0.003), (3600.0, 3000.0, 5.0)] {
+    // At rest (or nearly) for most of the run, then a pulse as narrow as 1e-4 of the run. (What lies wholly between two nodes of
+    // the longest step, a five-hundredth of the run, cannot be seen: such motions need solver.max_step.)
+    for (end, centre, width) in [(10.0, 9.0, 0.05), (10.0, 9.0, 0.01), (10.0, 7.775, 0.001), (3600.0, 3000.0, 5.0)] {
         for rest in ["0", "0.001*t"] {
             let motion = prescribed(&format!("0.2*exp(-((t - {centre})/{width})^2)"), rest);
             let times: Vec<f64> = (-8..=20).map(|k| centre + 0.4 * width * f64::from(k)).filter(|t| *t < end).collect();

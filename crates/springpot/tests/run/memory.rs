@@ -1,11 +1,8 @@
 //! The memory against reference derivatives, its orders of convergence, and the identities it must keep.
 
-mod memory_support;
-mod run_support;
-
-use memory_support::{Interpolation, march, random_steps, uniform};
-use run_support::oracle::{file, number};
-use run_support::{largest, truth::Truth};
+use crate::memory_support::{Interpolation, march, random_steps, uniform};
+use crate::run_support::oracle::{file, number};
+use crate::run_support::{largest, truth::Truth};
 use springpot::fractional::gamma::gamma;
 use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
 

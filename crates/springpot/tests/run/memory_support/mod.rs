@@ -1,5 +1,7 @@
 //! Marching a memory along a function.
 
+#![allow(dead_code, reason = "each test uses its share")]
+
 use springpot::fractional::{Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
 
 /// How a step's polynomial is made.
@@ -38,6 +40,11 @@ pub(crate) fn march(memory: &mut Memory, kind: Interpolation, grid: &[f64], x: F
 /// `count` equal steps to `end`.
 pub(crate) fn uniform(end: f64, count: usize) -> Vec<f64> {
     (0..=count).map(|k| end * k as f64 / count as f64).collect()
+}
+
+/// `count` steps to `end` that grow from the start: t_k = end·(k/count)³.
+pub(crate) fn graded(end: f64, count: usize) -> Vec<f64> {
+    (0..=count).map(|k| end * (k as f64 / count as f64).powi(3)).collect()
 }
 
 /// Starts and sizes of `count` steps, sizes spread evenly in their logarithm.

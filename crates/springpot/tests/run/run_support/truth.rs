@@ -62,6 +62,8 @@ pub(crate) struct Truth {
     jacobi: Rule,
     /// Panel boundaries from 0 to the end, kinks among them.
     panels: Vec<f64>,
+    /// The rate at the Gauss–Legendre nodes of the panels, where it was sampled beforehand.
+    sampled: Vec<Vec<f64>>,
 }
 
 impl Truth {
@@ -77,7 +79,14 @@ impl Truth {
             panels.extend((1..count).map(|k| from + (stop - from) * k as f64 / count as f64));
             panels.push(stop);
         }
-        Self { alpha, legendre: gauss_jacobi(20, 0.0), jacobi: gauss_jacobi(24, -alpha), panels }
+        Self { alpha, legendre: gauss_jacobi(20, 0.0), jacobi: gauss_jacobi(24, -alpha), panels, sampled: Vec::new() }
+    }
+
+    /// Evaluates the rate once at the nodes of every panel; from now on no other rate may be given.
+    pub(crate) fn sample(&mut self, rate: &dyn Fn(f64) -> f64) {
+        let nodes =
+            |w: &[f64]| self.legendre.iter().map(|(x, _)| rate(w[0] + 0.5 * (w[1] - w[0]) * (1.0 + x))).collect();
+        self.sampled = self.panels.windows(2).map(nodes).collect();
     }
 
     /// Caputo derivative at t of the function with rate `rate`; for alpha = 0 the increment, for alpha = 1 the rate.
@@ -89,26 +98,40 @@ impl Truth {
         let last = self.panels.partition_point(|p| *p < t * (1.0 - 1e-12)).max(1) - 1;
         let mut sum = 0.0;
         for k in 0..last {
-            sum += self.far(self.panels[k], self.panels[k + 1], t, rate);
+            let (from, to) = (self.panels[k], self.panels[k + 1]);
+            sum += match self.sampled.get(k) {
+                Some(rates) if is_far(from, to, t) => self.far(from, to, t, |node, _| rates[node]),
+                _ => self.near(from, to, t, rate),
+            };
         }
         let (from, half) = (self.panels[last], 0.5 * (t - self.panels[last]));
         let near: f64 = self.jacobi.iter().map(|(x, w)| w * rate(from + half * (1.0 + x))).sum();
         (sum + near * half.powf(1.0 - self.alpha)) / gamma(1.0 - self.alpha)
     }
 
-    /// A panel that does not touch t, halved until it is far enough away.
-    fn far(&self, from: f64, to: f64, t: f64, rate: &dyn Fn(f64) -> f64) -> f64 {
-        if t - to < 0.5 * (to - from) {
-            let middle = if t - to > 1e-3 * (to - from) { 0.5 * (from + to) } else { to - 0.1 * (to - from) };
-            return self.far(from, middle, t, rate) + self.far(middle, to, t, rate);
+    /// A panel that does not touch t, cut until it is far enough away.
+    fn near(&self, from: f64, to: f64, t: f64, rate: &dyn Fn(f64) -> f64) -> f64 {
+        if is_far(from, to, t) {
+            return self.far(from, to, t, |_, s| rate(s));
         }
-        let half = 0.5 * (to - from);
-        let term = |(x, w): &(f64, f64)| {
-            let s = from + half * (1.0 + x);
-            w * (t - s).powf(-self.alpha) * rate(s)
-        };
-        half * self.legendre.iter().map(term).sum::<f64>()
+        let middle = if t - to > 1e-3 * (to - from) { 0.5 * (from + to) } else { to - 0.1 * (to - from) };
+        self.near(from, middle, t, rate) + self.near(middle, to, t, rate)
     }
+
+    /// A panel far from t; `rate` takes the index of the node and its time.
+    fn far(&self, from: f64, to: f64, t: f64, rate: impl Fn(usize, f64) -> f64) -> f64 {
+        let half = 0.5 * (to - from);
+        let term = |(node, (x, w)): (usize, &(f64, f64))| {
+            let s = from + half * (1.0 + x);
+            w * (t - s).powf(-self.alpha) * rate(node, s)
+        };
+        half * self.legendre.iter().enumerate().map(term).sum::<f64>()
+    }
+}
+
+/// Whether t is at least half the panel's width away from it.
+fn is_far(from: f64, to: f64, t: f64) -> bool {
+    t - to >= 0.5 * (to - from)
 }
 
 /// Length, rate and gradient of an element along the motion of its system, by the rigid bodies alone.
@@ -126,8 +149,9 @@ pub(crate) fn derivatives(system: &System, index: usize, times: &[f64], width: f
     let element = &system.elements[index];
     let alpha = element.law.order();
     let end = times.last().copied().unwrap_or(1.0);
-    let truth = Truth::new(alpha, end, width, cuts);
     let rate = |s: f64| pair_at(system, element, s).1;
+    let mut truth = Truth::new(alpha, end, width, cuts);
+    truth.sample(&rate);
     let start = pair_at(system, element, 0.0).0;
     let jump = if element.derivative == Kind::RiemannLiouville { element.jump(start) } else { 0.0 };
     let value = |t: f64| match alpha {

@@ -1,0 +1,129 @@
+//! Rows, and the balance of energies in them.
+
+use super::Run;
+use super::attempt::singular_force;
+use crate::element::Element;
+use crate::fractional::Nodes;
+use crate::fractional::step::MAX_NODES;
+use crate::law::{Observation, Point, Power};
+use crate::simulate::RunError;
+use crate::simulate::ledger::{Balance, NodePower, singular_work, work};
+use crate::simulate::moment::Moment;
+use crate::simulate::row::ElementRow;
+
+impl Run<'_> {
+    /// Work of the actuators and losses of the joints from the start of the step to θ.
+    pub(super) fn work_until(&self, theta: f64) -> (f64, f64) {
+        let [from, .., to] = &self.moments;
+        let (t, h) = (from.t, to.t - from.t);
+        let mut actuators = work(&self.powers.actuators, h, theta);
+        for (e, element) in self.system.elements.iter().enumerate() {
+            let Some(state) = &self.accounts[e].law else { continue };
+            if element.law.singular(1.0, state) == 0.0 {
+                continue;
+            }
+            let step = self.steps[e].law_step(t, h);
+            // Without its power of t, which singular_work integrates exactly.
+            let g: NodePower = std::array::from_fn(|k| {
+                let at = step.point(k);
+                singular_force(element, &at, state, 1.0) * at.rate
+            });
+            actuators += singular_work(&g, t, h, theta, element.law.order());
+        }
+        (actuators, work(&self.powers.joints, h, theta))
+    }
+
+    /// The time of the next row, unless it is later than `until`.
+    pub(super) fn next_row_until(&self, until: f64) -> Option<f64> {
+        let rows = &self.settings.rows;
+        (self.next_row < rows.count()).then(|| rows.at(self.next_row)).filter(|at| *at <= until)
+    }
+
+    /// The rows in (t, to], the step just attempted.
+    pub(super) fn emit_rows(&mut self, t: f64, to: f64, on_break: bool) -> Result<(), RunError> {
+        while let Some(at) = self.next_row_until(to) {
+            let mut moment = self.spare.take().unwrap_or_else(|| Moment::new(self.system));
+            if at == to && !on_break {
+                moment.clone_from(&self.moments[MAX_NODES]);
+            } else {
+                self.system.evaluate(at, at, &mut self.scratch, &mut moment)?;
+            }
+            let theta = if at == to { 1.0 } else { (at - t) / (to - t) };
+            let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.element_row(e, theta, &moment)).collect();
+            let (actuators, joints) = self.work_until(theta);
+            self.write_row(&moment, &rows, actuators, joints)?;
+            self.spare = Some(moment);
+        }
+        Ok(())
+    }
+
+    /// Element `e` in a row at θ, whose moment is `moment`.
+    pub(super) fn element_row(&self, e: usize, theta: f64, moment: &Moment) -> ElementRow {
+        let element = &self.system.elements[e];
+        let point = moment.elements[e].point(moment.t);
+        let [from, .., to] = &self.moments;
+        let Some(law) = &self.accounts[e].law else { return self.grid_row(e, &point) };
+        let observation = element.law.observe(&self.steps[e].law_step(from.t, to.t - from.t), theta, &point, law);
+        self.with_ledger(e, theta, observation)
+    }
+
+    /// The next row of an element with a named scheme.
+    pub(super) fn grid_row(&self, e: usize, point: &Point) -> ElementRow {
+        let value = self.grid[e].as_ref().and_then(|values| values.get(self.next_row)).copied();
+        let observation = on_grid_observation(&self.system.elements[e], point, value.unwrap_or(f64::NAN));
+        ElementRow { observation, dissipated: f64::NAN, input: f64::NAN }
+    }
+
+    /// An observation at θ with what the element has dissipated and taken in until then.
+    pub(super) fn with_ledger(&self, e: usize, theta: f64, observation: Observation) -> ElementRow {
+        let account = &self.accounts[e];
+        if account.law.is_none() {
+            return ElementRow { observation, dissipated: f64::NAN, input: f64::NAN };
+        }
+        let [from, .., to] = &self.moments;
+        let energy = Power::integrate(&self.steps[e].powers, Nodes::Radau, to.t - from.t, theta);
+        ElementRow {
+            observation,
+            dissipated: account.dissipated + energy.dissipation,
+            input: account.input + energy.input,
+        }
+    }
+
+    /// The balance at a moment, `actuators` and `joints` being the work since the start of the step.
+    pub(super) fn balance(&self, moment: &Moment, rows: &[ElementRow], actuators: f64, joints: f64) -> Balance {
+        let joints = self.joints + joints;
+        Balance {
+            kinetic: moment.kinetic,
+            potential: moment.potential - self.potential_origin,
+            stored: rows.iter().map(|row| row.observation.stored.unwrap_or(f64::NAN)).sum(),
+            dissipated: rows.iter().map(|row| row.dissipated).sum::<f64>() + joints,
+            input: rows.iter().map(|row| row.input).sum(),
+            actuators: if self.actuators_unknown() { f64::NAN } else { self.actuators + actuators },
+        }
+    }
+
+    pub(super) fn write_row(
+        &mut self,
+        moment: &Moment,
+        rows: &[ElementRow],
+        actuators: f64,
+        joints: f64,
+    ) -> Result<(), RunError> {
+        let balance = self.balance(moment, rows, actuators, joints);
+        let residual = balance.total() - self.origin;
+        self.residual = if residual.is_nan() { f64::NAN } else { self.residual.max(residual.abs()) };
+        let mut row = std::mem::take(&mut self.row);
+        self.system.fill_row(moment, rows, &balance, self.joints + joints, residual, &mut row);
+        self.rows.row(&row)?;
+        self.row = row;
+        self.next_row += 1;
+        self.report.rows += 1;
+        self.report.t_reached = Some(moment.t);
+        Ok(())
+    }
+}
+
+/// An element whose derivative comes from a named scheme: its energies are unknown.
+pub(super) fn on_grid_observation(element: &Element, at: &Point, derivative: f64) -> Observation {
+    Observation { derivative, force: element.law.force(at, derivative), stored: None }
+}

@@ -1,0 +1,16 @@
+//! Memories, laws and whole runs: accuracy against quadrature, orders of convergence, energy, kinks, gripper paths.
+
+#![cfg(feature = "scenario")]
+
+mod accuracy;
+mod accuracy_laws;
+mod energy;
+mod gripper;
+mod kinks;
+mod law;
+mod memory;
+mod memory_support;
+mod run_support;
+mod slider_energy;
+mod slider_kinks;
+mod slider_support;
