@@ -5,7 +5,7 @@
 //! function says that nothing is lost for t ≥ delta; the slow end, a geometric measure, is replaced by its own Gauss rule.
 //! Every weight is positive, so that each term is a Maxwell branch and the whole is passive.
 
-use super::gamma::{gamma, ln_abs_gamma, ln_gamma, upper_gamma_ratio_inverse};
+use super::gamma::{gamma, ln_abs_gamma, ln_gamma, upper_gamma_ratio, upper_gamma_ratio_inverse};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -60,6 +60,13 @@ pub struct Kernel {
 /// Number of lags at which a new kernel is compared with the power law.
 const SAMPLES: usize = 600;
 
+/// Orders below are taken for this one: t^−alpha is then 1 to rounding for any lag there is.
+const SMALLEST_ORDER: f64 = f64::EPSILON;
+
+/// Rate of the fastest mode times delta, at least: what is faster must follow the shortest step, also where alpha is so small
+/// that the bound needs no fast modes.
+const SLOWEST_TOP: f64 = 2.0;
+
 impl Kernel {
     /// Builds the kernel and samples its error.
     ///
@@ -76,9 +83,12 @@ impl Kernel {
         if !(delta > 0.0 && delta < horizon && horizon.is_finite()) {
             return Err(KernelError::Interval { delta, horizon });
         }
+        let alpha = alpha.max(SMALLEST_ORDER);
         let eta = trapezoid_step(alpha, tolerance);
         let scale = strength(alpha) * eta;
-        let top = upper_gamma_ratio_inverse(alpha, 0.25 * tolerance) / delta;
+        let cut = 0.25 * tolerance;
+        let slow = upper_gamma_ratio(alpha, SLOWEST_TOP) <= cut;
+        let top = if slow { SLOWEST_TOP } else { upper_gamma_ratio_inverse(alpha, cut) } / delta;
         let (count, tail) = Tail::cheapest(alpha, eta, 0.3 * tolerance, top * horizon);
 
         let mut lambda: Vec<f64> = (0..count).map(|k| top * (-(k as f64) * eta).exp()).collect();
@@ -90,7 +100,7 @@ impl Kernel {
         }
         let kernel = Self { alpha, lambda, weight, eta, delta, horizon, tolerance };
         let error = kernel.sampled_error(SAMPLES);
-        if error > tolerance {
+        if error.is_nan() || error > tolerance {
             return Err(KernelError::Bound { alpha, error, tolerance });
         }
         Ok(kernel)
@@ -115,7 +125,7 @@ impl Kernel {
                 let t = self.delta * (ratio * k as f64 / count as f64).exp();
                 (self.value(t) / (inverse * t.powf(-self.alpha)) - 1.0).abs()
             })
-            .fold(0.0, f64::max)
+            .fold(0.0, |largest: f64, error| if error > largest || error.is_nan() { error } else { largest })
     }
 
     /// How many modes must be put in front so that the bound holds from `lag` on; 0 when it already does.
@@ -290,11 +300,14 @@ mod tests {
 
     #[test]
     fn builds_at_extreme_orders_and_spans() {
-        for alpha in [1e-300, 1e-12, 1e-3, 0.01, 0.99, 0.9999, 1.0 - f64::EPSILON] {
+        for alpha in [5e-324, 1e-300, 1e-15, 3e-14, 1e-12, 1e-3, 0.01, 0.99, 0.9999, 1.0 - f64::EPSILON] {
             for (delta, horizon) in [(1e-3, 1e4), (1e-12, 3600.0), (0.9, 1.0)] {
                 for tolerance in [1e-4, 1e-12] {
                     let kernel = Kernel::new(alpha, tolerance, delta, horizon).unwrap();
                     assert!(kernel.sampled_error(3000) <= tolerance, "{alpha} {delta} {tolerance:e}");
+                    // What is faster than the modes is as little as what a step of delta misses.
+                    let [damping, inertia, _] = kernel.fast_tail();
+                    assert!(damping < delta.powf(1.0 - alpha) && inertia < delta.powf(2.0 - alpha), "{alpha} {delta}");
                 }
             }
         }
