@@ -44,6 +44,15 @@ fn everything<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T]) -> Vec<T> {
     all.extend(angular_jacobian_rate(model, &kinematics, &to));
     all.extend(pair_hessian(model, &kinematics, &from, &to, &here));
     all.extend(gradient);
+    all.extend(aba(model, q, v, a, &[force(from, to), force(base, to)]));
+    all.extend(nonlinear_effects(model, q, v, &[]));
+    all.extend(mass_inverse(model, &kinematics));
+    all.extend(coriolis(model, &kinematics));
+    all.extend(com(model, &kinematics).0);
+    all.extend(com_jacobian(model, &kinematics));
+    let end = model.frame(Parent::Body(4)).unwrap();
+    all.extend(frame_jacobian(model, &kinematics, &end));
+    all.extend(frame_jacobian_rate(model, &kinematics, &end));
     all
 }
 

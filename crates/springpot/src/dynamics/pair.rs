@@ -158,6 +158,13 @@ pub fn pair_hessian<T: Scalar>(
     hessian
 }
 
+/// The force on the first anchor of a pair, world axes: tension pulls `from` towards `to`. NaN where the points coincide.
+#[inline]
+pub(super) fn pull<T: Scalar>(pair: &PairForce<T>, position: impl Fn(&Site) -> Vec3<T>) -> Vec3<T> {
+    let line = position(&pair.to) - position(&pair.from);
+    line * (pair.force / line.norm())
+}
+
 /// Adds the generalized force Q_b = −F ∂l/∂q_b of a tension F to `q_force` (nv), N·m or N.
 pub fn add_generalized_force<T: Scalar>(force: T, gradient: &[T], q_force: &mut [T]) {
     for (q, &d) in q_force.iter_mut().zip(gradient) {

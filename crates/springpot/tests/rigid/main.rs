@@ -4,5 +4,7 @@ mod identities;
 mod long_chain;
 mod oracle;
 mod pair;
+mod recursions;
 mod refusals;
+mod robots_oracle;
 mod support;
