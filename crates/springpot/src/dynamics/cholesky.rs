@@ -34,6 +34,11 @@ pub fn cholesky_solve_into<T: Scalar>(model: &Model, factor: &[T], x: &mut [T]) 
     solve_rows(model, factor, 1, x);
 }
 
+/// Solves M X = Y for the columns of an nv × nv matrix, in place.
+pub(super) fn solve_matrix<T: Scalar>(model: &Model, factor: &[T], x: &mut [T]) {
+    solve_rows(model, factor, model.nv(), x);
+}
+
 fn solve_rows<T: Scalar>(model: &Model, factor: &[T], width: usize, x: &mut [T]) {
     let n = model.nv();
     assert_eq!(factor.len(), n * n, "the factors are nv x nv");

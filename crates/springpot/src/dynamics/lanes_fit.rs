@@ -50,6 +50,11 @@ fn everything<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T]) -> Vec<T> {
     all.extend(coriolis(model, &kinematics));
     all.extend(com(model, &kinematics).0);
     all.extend(com_jacobian(model, &kinematics));
+    let soft = [PairForce { d_rate: here.rate, ..force(from, to) }, force(base, to)];
+    let inverse_slopes = rnea_derivatives(model, q, v, a, &soft);
+    all.extend([inverse_slopes.d_q, inverse_slopes.d_v, inverse_slopes.d_a].concat());
+    let forward_slopes = aba_derivatives(model, q, v, a, &soft);
+    all.extend([forward_slopes.a, forward_slopes.d_q, forward_slopes.d_v, forward_slopes.d_tau].concat());
     let end = model.frame(Parent::Body(4)).unwrap();
     all.extend(frame_jacobian(model, &kinematics, &end));
     all.extend(frame_jacobian_rate(model, &kinematics, &end));

@@ -33,7 +33,11 @@ pub struct Workspace<T = f64> {
     // Columns of joint j at the reference point and their rates.
     pub(super) unit: Vec<Motion<T>>,
     pub(super) unit_rate: Vec<Motion<T>>,
+    pub(super) unit_second_rate: Vec<Motion<T>>,
     pub(super) sway: Vec<Sway<T>>,
+    /// ∂l/∂q and ∂l'/∂q of a pair.
+    pub(super) gradient: Vec<T>,
+    pub(super) rate_gradient: Vec<T>,
 }
 
 impl<T: Scalar> Workspace<T> {
@@ -55,7 +59,10 @@ impl<T: Scalar> Workspace<T> {
             effort: vec![T::ZERO; n],
             unit: vec![Motion::ZERO; n],
             unit_rate: vec![Motion::ZERO; n],
+            unit_second_rate: vec![Motion::ZERO; n],
             sway: vec![Sway::ZERO; n],
+            gradient: vec![T::ZERO; n],
+            rate_gradient: vec![T::ZERO; n],
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Rigid bodies: identities on random trees, reference values, refusals.
 
+mod derivatives;
 mod identities;
 mod long_chain;
 mod oracle;
