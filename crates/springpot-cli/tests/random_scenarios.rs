@@ -155,8 +155,11 @@ fn text(bodies: &[Body], elements: &[Element]) -> String {
     text
 }
 
-/// Runs the first case of a text; what the rows hold beside the report.
-fn run(text: &str, limit: Option<u64>) -> Result<(Vec<String>, Vec<Vec<f64>>, Report, Result<(), RunError>), String> {
+/// Names of the columns, rows, report and end of a run.
+type Ran = (Vec<String>, Vec<Vec<f64>>, Report, Result<(), RunError>);
+
+/// Runs the first case of a text; a refusal is an error in words.
+fn run(text: &str, limit: Option<u64>) -> Result<Ran, String> {
     let cases = Scenario::parse(text, "random.toml", "").and_then(|scenario| scenario.cases(&Catalog::standard()));
     let plan = cases.and_then(|cases| cases.plan(0)).map_err(|refusals| refusals.to_string())?;
     if plan.time.rows.count() > 1_000 {
