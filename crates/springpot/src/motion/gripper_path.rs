@@ -70,8 +70,14 @@ impl GripperPath {
         if let (true, Some(failure)) = (t > last, self.failure) {
             return Err(failure);
         }
-        let next = self.knots.partition_point(|knot| knot.t < t).clamp(1, self.knots.len() - 1);
-        quintic_into(&self.knots[next - 1], &self.knots[next], t, q);
+        match &self.knots[..] {
+            // A path that cannot be followed at all still has its start.
+            [only] => q.copy_from_slice(&only.q),
+            knots => {
+                let next = knots.partition_point(|knot| knot.t < t).clamp(1, knots.len() - 1);
+                quintic_into(&knots[next - 1], &knots[next], t, q);
+            }
+        }
         let mut solver = Solver { model, task: &self.task, kinematics: Kinematics::new(model) };
         let target = self.task.target(t);
         solver.newton(&target, t, q, ITERATIONS)?;
