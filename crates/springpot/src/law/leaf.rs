@@ -187,7 +187,11 @@ impl Law for Springpot {
 
     fn commit(&self, step: &Step, state: &mut State) {
         let polynomial = self.polynomial(step);
-        state.memory.as_mut().expect("begin made the memory").commit(&polynomial);
+        let memory = state.memory.as_mut().expect("begin made the memory");
+        match step.form {
+            Form::Rates => memory.commit_rates(&polynomial, step.stroke[step.nodes.count()], step.resolution),
+            Form::Strokes => memory.commit(&polynomial),
+        }
     }
 
     fn defect(&self, step: &Step, state: &State) -> f64 {
