@@ -88,6 +88,20 @@ fn a_path_out_of_reach_is_named_with_time_and_distance() {
     assert!(check.stderr.contains("error: the gripper cannot reach its path at t = 0.25"), "{}", check.stderr);
 }
 
+#[test]
+fn a_path_that_is_lost_at_once_keeps_its_start() {
+    let place = Place::with(&unreachable().replace("\"step(t - 0.25)*(t - 0.25)\"", "\"1e9*t\""));
+    for command in ["run", "check"] {
+        let ended = place.springpot(&[command, "arm.toml"]);
+        assert_eq!(ended.code, Some(1));
+        assert!(ended.stderr.contains("error: the gripper cannot reach its path at t = "), "{}", ended.stderr);
+    }
+    assert_eq!(place.table("results/arm/results.csv").numbers("t"), [0.0]);
+    // Lengths beyond all numbers lead nowhere, and not for ever.
+    let ended = place.springpot(&["check", "arm.toml", "--set", "robot.body.arm.joint.origin=[0, 1.7e308, 0]"]);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+}
+
 /// One of each class of refusals: edit, place, and words of the message.
 #[test]
 fn refusals_name_file_line_and_column_and_mark_the_place() {
