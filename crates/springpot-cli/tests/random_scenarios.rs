@@ -155,8 +155,16 @@ fn text(bodies: &[Body], elements: &[Element]) -> String {
     text
 }
 
-/// Runs the first case of a text; what the rows hold beside the report.
-fn run(text: &str, limit: Option<u64>) -> Result<(Vec<String>, Vec<Vec<f64>>, Report, Result<(), RunError>), String> {
+/// What a run gave.
+struct Ran {
+    columns: Vec<String>,
+    rows: Vec<Vec<f64>>,
+    report: Report,
+    outcome: Result<(), RunError>,
+}
+
+/// Runs the first case of a text, in no more steps than `limit`; the text of the refusals where it has any.
+fn run(text: &str, limit: Option<u64>) -> Result<Ran, String> {
     let cases = Scenario::parse(text, "random.toml", "").and_then(|scenario| scenario.cases(&Catalog::standard()));
     let plan = cases.and_then(|cases| cases.plan(0)).map_err(|refusals| refusals.to_string())?;
     if plan.time.rows.count() > 1_000 {
@@ -170,7 +178,8 @@ fn run(text: &str, limit: Option<u64>) -> Result<(Vec<String>, Vec<Vec<f64>>, Re
         Ok(())
     };
     let (report, outcome) = along(&system, &settings, &mut keep, &AtomicBool::new(false));
-    Ok((system.columns().into_iter().map(|column| column.name).collect(), rows, report, outcome))
+    let columns = system.columns().into_iter().map(|column| column.name).collect();
+    Ok(Ran { columns, rows, report, outcome })
 }
 
 /// What a singular start leaves empty: in the first row, and in all.
@@ -192,7 +201,7 @@ fn valid_scenarios(cases: u32) {
         bodies[0].kind = bodies[0].kind.min(2);
         let text = text(&bodies, &elements);
         let fail = |why: String| TestCaseError::fail(format!("{why}\n{text}"));
-        let (columns, rows, report, outcome) = run(&text, None).map_err(fail)?;
+        let Ran { columns, rows, report, outcome } = run(&text, None).map_err(fail)?;
         outcome.map_err(|error| fail(error.to_string()))?;
         prop_assert_eq!(rows.len(), 8);
         let singular = report.energy_residual.is_none();
@@ -299,7 +308,7 @@ fn absurd_scenarios(cases: u32) {
             let numbers = numbers(&text);
             text.replace_range(numbers[(at * numbers.len() as f64) as usize].clone(), ABSURD[piece]);
         }
-        if let Ok((_, rows, report, _)) = run(&text, Some(300)) {
+        if let Ok(Ran { rows, report, .. }) = run(&text, Some(300)) {
             ran.set(ran.get() + 1);
             prop_assert_eq!(rows.len() as u64, report.rows);
             prop_assert_eq!(rows.last().map(|row| row[0]), report.t_reached);
