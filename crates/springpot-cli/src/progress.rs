@@ -72,6 +72,6 @@ fn style() -> ProgressStyle {
             let _ = write!(text, ", {} left", indicatif::HumanDuration(state.eta()));
         }
     };
-    let template = "{bar:30} {percent:>3} %, row {human_pos} of {human_len}{left}{msg}";
+    let template = "{wide_bar} {percent:>3} %, row {human_pos} of {human_len}{left}{msg}";
     ProgressStyle::with_template(template).unwrap_or(ProgressStyle::default_bar()).with_key("left", left)
 }

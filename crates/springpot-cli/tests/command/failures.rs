@@ -97,6 +97,9 @@ fn a_path_that_is_lost_at_once_keeps_its_start() {
         assert!(ended.stderr.contains("error: the gripper cannot reach its path at t = "), "{}", ended.stderr);
     }
     assert_eq!(place.table("results/arm/results.csv").numbers("t"), [0.0]);
+    // Lengths beyond all numbers lead nowhere, and not for ever.
+    let ended = place.springpot(&["check", "arm.toml", "--set", "robot.body.arm.joint.origin=[0, 1.7e308, 0]"]);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
 }
 
 /// One of each class of refusals: edit, place, and words of the message.

@@ -8,3 +8,5 @@ mod help;
 mod interrupted;
 mod results;
 mod support;
+#[cfg(target_os = "linux")]
+mod terminal;

@@ -126,13 +126,13 @@ impl Solver<'_> {
             loop {
                 q.iter_mut().zip(&before).zip(&step).for_each(|((q, q0), s)| *q = q0 + scale * s);
                 residual = self.residual(target, q);
-                if norm(&residual.error) < error || scale * longest < STEP_TOLERANCE {
+                if norm(&residual.error) < error || is_settled(scale * longest) {
                     break;
                 }
                 scale *= 0.5;
             }
             step.iter_mut().for_each(|s| *s *= scale);
-            if scale * longest < STEP_TOLERANCE {
+            if is_settled(scale * longest) {
                 break;
             }
         }
@@ -291,6 +291,11 @@ impl Solver<'_> {
         self.kinematics.update_position(self.model, q);
         PseudoInverse::new(&self.task.jacobian(self.model, &self.kinematics)).solve(&self.task.target(t).rate, 0.0)
     }
+}
+
+/// Whether a Newton step changes nothing any more; one that is no number leads nowhere either.
+fn is_settled(step: f64) -> bool {
+    step.is_nan() || step < STEP_TOLERANCE
 }
 
 fn taylor(knot: &Knot, h: f64) -> Vec<f64> {
