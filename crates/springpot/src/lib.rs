@@ -11,7 +11,7 @@
 //! |---|---|---|
 //! | [`spatial`] | vectors, rotations, spatial quantities, over one scalar | nothing |
 //! | [`model`] | the robot: bodies, joints, anchors; constant once built | `spatial` |
-//! | [`dynamics`] | kinematics, RNEA, CRBA, Christoffel symbols, pairs of anchors | `model` |
+//! | [`dynamics`] | kinematics, RNEA, CRBA, ABA and their derivatives, Coriolis terms, pairs of anchors | `model` |
 //! | [`fractional`] | D^alpha: kernel, memory, streaming, named schemes | nothing |
 //! | [`law`] | stroke history → force; the catalog of laws | `fractional` |
 //! | [`signal`] | functions of time with exact derivatives | nothing |

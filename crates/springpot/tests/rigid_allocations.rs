@@ -6,11 +6,15 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use springpot::dynamics::{
-    Kinematics, PairForce, Workspace, angular_jacobian_into, angular_jacobian_rate_into, christoffel_into, crba_into,
-    gravity_into, kinetic_energy, pair_hessian_into, pair_into, point_jacobian_into, point_jacobian_rate_into,
-    potential_energy, rnea_into,
+    AbaDerivatives, Kinematics, PairForce, RneaDerivatives, Workspace, aba_derivatives_into, aba_into, add_wrench,
+    add_wrench_derivative, angular_jacobian_into, angular_jacobian_rate_into, cholesky_into, cholesky_solve_into,
+    christoffel_into, com, com_jacobian_into, coriolis_into, crba_into, frame_jacobian_into, frame_jacobian_rate_into,
+    gravity_into, inverse_from_cholesky_into, kinetic_energy, mass_inverse_into, nonlinear_effects_into,
+    pair_hessian_into, pair_into, point_jacobian_into, point_jacobian_rate_into, potential_energy,
+    rnea_derivatives_into, rnea_into,
 };
 use springpot::model::{Anchor, BodySpec, JointSpec, Model, ModelBuilder, Parent};
+use springpot::spatial::{Force, Vec3};
 
 struct Counting;
 
@@ -74,11 +78,15 @@ fn algorithms_do_not_allocate() {
     let (q, v, a) = (vec![0.3; n], vec![-0.4; n], vec![0.5; n]);
     let site = |body, point| model.resolve(&Anchor { body: Parent::Body(body), point }).unwrap();
     let (from, to) = (site(3, [0.1, 0.2, 0.3]), site(6, [0.0, -0.1, 0.2]));
-    let pairs = [PairForce { from, to, force: 10.0, d_length: 0.0, d_rate: 0.0 }];
+    let pairs = [PairForce { from, to, force: 10.0, d_length: 3.0, d_rate: 2.0 }];
     let (mut kinematics, mut workspace) = (Kinematics::new(&model), Workspace::new(&model));
     let (mut vector, mut jacobian) = (vec![0.0; n], vec![0.0; 3 * n]);
     let (mut matrix, mut gamma) = (vec![0.0; n * n], vec![0.0; n * n * n]);
-    let mut energy = 0.0;
+    let (mut factor, mut frame_jacobian) = (vec![0.0; n * n], vec![0.0; 6 * n]);
+    let frame = model.frame(Parent::Body(6)).unwrap();
+    let wrench = Force { linear: Vec3([1.0, 2.0, 3.0]), angular: Vec3([0.1, 0.2, 0.3]) };
+    let (mut inverse_slopes, mut forward_slopes) = (RneaDerivatives::new(&model), AbaDerivatives::new(&model));
+    let (mut energy, mut centre) = (0.0, Vec3([0.0; 3]));
 
     assert!(allocations(|| drop(std::hint::black_box(vec![1u8; 9]))) > 0, "the counter counts");
     let count = allocations(|| {
@@ -95,8 +103,33 @@ fn algorithms_do_not_allocate() {
         let pair = pair_into(&model, &kinematics, &from, &to, &mut vector);
         pair_hessian_into(&model, &kinematics, &from, &to, &pair, &mut workspace, &mut matrix);
         rnea_into(&model, &q, &v, &a, &pairs, &mut workspace, &mut vector);
+        nonlinear_effects_into(&model, &q, &v, &pairs, &mut workspace, &mut vector);
+        aba_into(&model, &kinematics, &a, &pairs, &mut workspace, &mut vector);
+        coriolis_into(&model, &kinematics, &mut workspace, &mut matrix);
+        com_jacobian_into(&model, &kinematics, &mut workspace, &mut jacobian);
+        frame_jacobian_into(&model, &kinematics, &frame, &mut frame_jacobian);
+        frame_jacobian_rate_into(&model, &kinematics, &frame, &mut frame_jacobian);
+        crba_into(&model, &kinematics, &mut workspace, &mut factor);
+        cholesky_into(&model, &mut factor);
+        cholesky_solve_into(&model, &factor, &mut vector);
+        inverse_from_cholesky_into(&model, &factor, &mut matrix);
+        mass_inverse_into(&model, &kinematics, &mut workspace, &mut factor, &mut matrix);
+        add_wrench(&model, &kinematics, &to, wrench, &mut vector);
+        add_wrench_derivative(&model, &kinematics, &to, wrench, &mut matrix);
+        rnea_derivatives_into(&model, &kinematics, &a, &pairs, &mut workspace, &mut inverse_slopes);
+        aba_derivatives_into(&model, &kinematics, &a, &pairs, &mut workspace, &mut forward_slopes);
+        centre = com(&model, &kinematics);
         energy = kinetic_energy(&model, &kinematics) + potential_energy(&model, &kinematics);
     });
     assert_eq!(count, 0);
-    assert!(energy.is_finite() && vector.iter().chain(&gamma).chain(&matrix).all(|x| x.is_finite()));
+    assert!(energy.is_finite() && centre.is_finite() && frame_jacobian.iter().all(|x| x.is_finite()));
+    assert!(
+        vector
+            .iter()
+            .chain(&gamma)
+            .chain(&inverse_slopes.d_q)
+            .chain(&forward_slopes.d_q)
+            .chain(&matrix)
+            .all(|x| x.is_finite())
+    );
 }

@@ -14,21 +14,13 @@ pub fn gravity_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, worksp
     let out = &mut out[..n];
     let field = Vec3::from_f64(model.gravity().into());
     let first = &mut workspace.columns[..n];
+    first_moments_beyond(model, kinematics, first);
     for j in 0..n {
-        first[j] = kinematics.link(j + 1).rotation * Vec3::from_f64(model.link_inertia(j).first_moment);
-    }
-    for j in (0..n).rev() {
-        let link = kinematics.link(j + 1);
-        let (axis, mass) = (link.rotation.z_axis(), T::from_f64(model.subtree_mass(j)));
+        let axis = kinematics.link(j + 1).rotation.z_axis();
         out[j] = -match model.motion(j) {
             JointMotion::Revolute => axis.dot(first[j].cross(field)),
-            JointMotion::Prismatic => axis.dot(field) * mass,
+            JointMotion::Prismatic => axis.dot(field) * T::from_f64(model.subtree_mass(j)),
         };
-        if let Some(parent) = model.parent_link(j).checked_sub(1) {
-            let arm = link.translation - kinematics.link(parent + 1).translation;
-            let carried = arm.times_plus(mass, first[j]);
-            first[parent] += carried;
-        }
     }
 }
 
@@ -37,4 +29,20 @@ pub fn gravity<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec<T> {
     let mut out = vec![T::ZERO; model.nv()];
     gravity_into(model, kinematics, &mut Workspace::new(model), &mut out);
     out
+}
+
+/// First moments of all that each joint carries, about the joint's own origin, in world axes, kg·m.
+pub(super) fn first_moments_beyond<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, first: &mut [Vec3<T>]) {
+    let n = model.nv();
+    let first = &mut first[..n];
+    for j in 0..n {
+        first[j] = kinematics.link(j + 1).rotation * Vec3::from_f64(model.link_inertia(j).first_moment);
+    }
+    for j in (0..n).rev() {
+        if let Some(parent) = model.parent_link(j).checked_sub(1) {
+            let arm = kinematics.link(j + 1).translation - kinematics.link(parent + 1).translation;
+            let carried = arm.times_plus(T::from_f64(model.subtree_mass(j)), first[j]);
+            first[parent] += carried;
+        }
+    }
 }

@@ -44,6 +44,20 @@ fn everything<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T]) -> Vec<T> {
     all.extend(angular_jacobian_rate(model, &kinematics, &to));
     all.extend(pair_hessian(model, &kinematics, &from, &to, &here));
     all.extend(gradient);
+    all.extend(aba(model, q, v, a, &[force(from, to), force(base, to)]));
+    all.extend(nonlinear_effects(model, q, v, &[]));
+    all.extend(mass_inverse(model, &kinematics));
+    all.extend(coriolis(model, &kinematics));
+    all.extend(com(model, &kinematics).0);
+    all.extend(com_jacobian(model, &kinematics));
+    let soft = [PairForce { d_rate: here.rate, ..force(from, to) }, force(base, to)];
+    let inverse_slopes = rnea_derivatives(model, q, v, a, &soft);
+    all.extend([inverse_slopes.d_q, inverse_slopes.d_v, inverse_slopes.d_a].concat());
+    let forward_slopes = aba_derivatives(model, q, v, a, &soft);
+    all.extend([forward_slopes.a, forward_slopes.d_q, forward_slopes.d_v, forward_slopes.d_tau].concat());
+    let end = model.frame(Parent::Body(4)).unwrap();
+    all.extend(frame_jacobian(model, &kinematics, &end));
+    all.extend(frame_jacobian_rate(model, &kinematics, &end));
     all
 }
 

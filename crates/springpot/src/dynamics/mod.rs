@@ -10,22 +10,38 @@
 //!
 //! Every algorithm is generic over one [`Scalar`](crate::spatial::Scalar) and never branches on its values.
 
+mod aba;
+mod aba_derivatives;
+mod cholesky;
 mod christoffel;
+mod com;
+mod coriolis;
 mod crba;
 mod energy;
+mod frame_jacobian;
 mod gravity;
 mod jacobian;
 mod joint;
 mod kinematics;
 #[cfg(test)]
 mod lanes_fit;
+mod moments;
 mod pair;
+mod pair_stiffness;
 mod rnea;
+mod rnea_derivatives;
 mod workspace;
+mod wrench;
 
+pub use aba::{aba, aba_into};
+pub use aba_derivatives::{AbaDerivatives, aba_derivatives, aba_derivatives_into};
+pub use cholesky::{cholesky_into, cholesky_solve_into, inverse_from_cholesky_into, mass_inverse, mass_inverse_into};
 pub use christoffel::{christoffel, christoffel_into};
+pub use com::{com, com_jacobian, com_jacobian_into};
+pub use coriolis::{coriolis, coriolis_into};
 pub use crba::{crba, crba_into};
 pub use energy::{kinetic_energy, potential_energy};
+pub use frame_jacobian::{frame_jacobian, frame_jacobian_into, frame_jacobian_rate, frame_jacobian_rate_into};
 pub use gravity::{gravity, gravity_into};
 pub use jacobian::{
     angular_jacobian, angular_jacobian_into, angular_jacobian_rate, angular_jacobian_rate_into, point_jacobian,
@@ -35,5 +51,7 @@ pub use kinematics::Kinematics;
 pub use pair::{
     CoincidentAnchors, Pair, PairForce, add_generalized_force, pair, pair_hessian, pair_hessian_into, pair_into,
 };
-pub use rnea::{rnea, rnea_into};
+pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_into};
+pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};
 pub use workspace::Workspace;
+pub use wrench::{add_wrench, add_wrench_derivative};

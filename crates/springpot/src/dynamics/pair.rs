@@ -113,7 +113,23 @@ pub fn pair_hessian_into<T: Scalar>(
     let n = model.nv();
     assert_eq!(hessian.len(), n * n, "the Hessian is nv x nv");
     hessian.fill(T::ZERO);
-    let columns = &mut workspace.columns[..n];
+    second_derivatives(model, kinematics, from, to, pair, &mut workspace.columns[..n], |a, b, entry| {
+        hessian[a * n + b] = entry;
+        hessian[b * n + a] = entry;
+    });
+}
+
+/// Hands ∂²l/∂q_a∂q_b to `visit` for every two joints between the ends, each two once; all others are 0.
+#[inline]
+pub(super) fn second_derivatives<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    from: &Site,
+    to: &Site,
+    pair: &Pair<T>,
+    columns: &mut [Vec3<T>],
+    mut visit: impl FnMut(usize, usize, T),
+) {
     let common = joint::common_link(model, from.link(), to.link());
     let (start, end) = (kinematics.position(from), kinematics.position(to));
     for j in joint::path_to(model, from.link(), common) {
@@ -125,9 +141,7 @@ pub fn pair_hessian_into<T: Scalar>(
     let (direction, inverse) = (pair.direction, T::ONE / pair.length);
     let mut set = |a: usize, b: usize, turned: T| {
         let along = direction.dot(columns[a]) * direction.dot(columns[b]);
-        let entry = (columns[a].dot(columns[b]) - along).times_plus(inverse, turned);
-        hessian[a * n + b] = entry;
-        hessian[b * n + a] = entry;
+        visit(a, b, (columns[a].dot(columns[b]) - along).times_plus(inverse, turned));
     };
     for site in [from, to] {
         for hi in joint::path_to(model, site.link(), common) {
@@ -156,6 +170,13 @@ pub fn pair_hessian<T: Scalar>(
     let mut hessian = vec![T::ZERO; n * n];
     pair_hessian_into(model, kinematics, from, to, pair, &mut Workspace::new(model), &mut hessian);
     hessian
+}
+
+/// The force on the first anchor of a pair, world axes: tension pulls `from` towards `to`. NaN where the points coincide.
+#[inline]
+pub(super) fn pull<T: Scalar>(pair: &PairForce<T>, position: impl Fn(&Site) -> Vec3<T>) -> Vec3<T> {
+    let line = position(&pair.to) - position(&pair.from);
+    line * (pair.force / line.norm())
 }
 
 /// Adds the generalized force Q_b = −F ∂l/∂q_b of a tension F to `q_force` (nv), N·m or N.

@@ -1,6 +1,6 @@
 //! Inverse dynamics by the recursive Newton–Euler algorithm.
 
-use super::{PairForce, Workspace, joint};
+use super::{PairForce, Workspace, joint, pair};
 use crate::model::{JointMotion, Model};
 use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Vec3};
 
@@ -17,9 +17,41 @@ pub fn rnea_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     tau: &mut [T],
 ) {
+    let a = &a[..model.nv()];
+    inverse_dynamics(model, q, v, |j| a[j], pairs, workspace, tau);
+}
+
+/// Nonlinear effects C(q, v) v + g(q) − ΣQ, N·m or N: what the actuators hold without acceleration, [`rnea_into`] at a = 0.
+pub fn nonlinear_effects_into<T: Scalar>(
+    model: &Model,
+    q: &[T],
+    v: &[T],
+    pairs: &[PairForce<T>],
+    workspace: &mut Workspace<T>,
+    tau: &mut [T],
+) {
+    inverse_dynamics(model, q, v, |_| T::ZERO, pairs, workspace, tau);
+}
+
+/// [`nonlinear_effects_into`], allocating.
+pub fn nonlinear_effects<T: Scalar>(model: &Model, q: &[T], v: &[T], pairs: &[PairForce<T>]) -> Vec<T> {
+    let mut tau = vec![T::ZERO; model.nv()];
+    nonlinear_effects_into(model, q, v, pairs, &mut Workspace::new(model), &mut tau);
+    tau
+}
+
+#[inline]
+fn inverse_dynamics<T: Scalar>(
+    model: &Model,
+    q: &[T],
+    v: &[T],
+    acceleration_of: impl Fn(usize) -> T,
+    pairs: &[PairForce<T>],
+    ws: &mut Workspace<T>,
+    tau: &mut [T],
+) {
     let n = model.nv();
-    let (q, v, a, tau) = (&q[..n], &v[..n], &a[..n], &mut tau[..n]);
-    let ws = workspace;
+    let (q, v, tau) = (&q[..n], &v[..n], &mut tau[..n]);
     ws.velocity[0] = Motion::ZERO;
     // A frame that accelerates upwards feels gravity.
     ws.acceleration[0] = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(model.gravity().into()) };
@@ -27,6 +59,7 @@ pub fn rnea_into<T: Scalar>(
     for j in 0..n {
         let parent = model.parent_link(j);
         let local = joint::placement(model, j, q[j]);
+        let along = acceleration_of(j);
         let mut velocity = local.motion_to_child(ws.velocity[parent]);
         let mut acceleration = local.motion_to_child(ws.acceleration[parent]);
         // With S along z: v += S q̇, a += S q̈ + v × S q̇.
@@ -34,13 +67,13 @@ pub fn rnea_into<T: Scalar>(
             JointMotion::Revolute => {
                 let ([wx, wy, _], [ux, uy, _]) = (velocity.angular.0, velocity.linear.0);
                 velocity.angular.0[2] += v[j];
-                acceleration.angular += Vec3([wy * v[j], -(wx * v[j]), a[j]]);
+                acceleration.angular += Vec3([wy * v[j], -(wx * v[j]), along]);
                 acceleration.linear += Vec3([uy * v[j], -(ux * v[j]), T::ZERO]);
             }
             JointMotion::Prismatic => {
                 let [wx, wy, _] = velocity.angular.0;
                 velocity.linear.0[2] += v[j];
-                acceleration.linear += Vec3([wy * v[j], -(wx * v[j]), a[j]]);
+                acceleration.linear += Vec3([wy * v[j], -(wx * v[j]), along]);
             }
         }
         let inertia = Inertia::from_f64(model.link_inertia(j));
@@ -78,11 +111,8 @@ fn subtract_pair_forces<T: Scalar>(model: &Model, pairs: &[PairForce<T>], ws: &m
     }
     for pair in pairs {
         let (from, to) = (pair.from.link(), pair.to.link());
-        let (from_point, to_point) = (Vec3::from_f64(pair.from.point()), Vec3::from_f64(pair.to.point()));
-        let line = ws.world[to].point(to_point) - ws.world[from].point(from_point);
-        // Tension pulls `from` towards `to`.
-        let pull = line * (pair.force / line.norm());
-        ws.force[from] -= Force::at_point(ws.world[from].rotation.unrotate(pull), from_point);
-        ws.force[to] += Force::at_point(ws.world[to].rotation.unrotate(pull), to_point);
+        let pull = pair::pull(pair, |site| ws.world[site.link()].point(Vec3::from_f64(site.point())));
+        ws.force[from] -= Force::at_point(ws.world[from].rotation.unrotate(pull), Vec3::from_f64(pair.from.point()));
+        ws.force[to] += Force::at_point(ws.world[to].rotation.unrotate(pull), Vec3::from_f64(pair.to.point()));
     }
 }

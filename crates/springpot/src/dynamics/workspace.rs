@@ -1,7 +1,8 @@
 //! Scratch memory of the algorithms.
 
+use super::moments::Sway;
 use crate::model::Model;
-use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Vec3};
+use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scalar, Vec3};
 
 /// Scratch for the `_into` algorithms on one [`Model`]; one per thread, reused from call to call.
 ///
@@ -12,13 +13,31 @@ pub struct Workspace<T = f64> {
     pub(super) local: Vec<Placement<T>>,
     /// Links in the world (index 0 is the world); written only where pair forces act.
     pub(super) world: Vec<Placement<T>>,
-    /// Links, in link axes (index 0 is the world).
+    /// Links (index 0 is the world): in link axes, or in world axes about the origin or the reference point.
     pub(super) velocity: Vec<Motion<T>>,
     pub(super) acceleration: Vec<Motion<T>>,
     pub(super) force: Vec<Force<T>>,
-    /// All that joint j carries, about the joint's origin in world axes.
+    /// All that joint j carries, about the joint's origin or the reference point in world axes.
     pub(super) composite: Vec<Inertia<T>>,
     pub(super) columns: Vec<Vec3<T>>,
+    // Articulated bodies: what joint j carries when all joints beyond it are free.
+    pub(super) articulated: Vec<ArticulatedInertia<T>>,
+    /// v × S q̇.
+    pub(super) bias: Vec<Motion<T>>,
+    /// U = I S.
+    pub(super) column: Vec<Force<T>>,
+    /// 1/(S·U).
+    pub(super) inverse_pivot: Vec<T>,
+    /// What is left of τ for the articulated body.
+    pub(super) effort: Vec<T>,
+    // Columns of joint j at the reference point and their rates.
+    pub(super) unit: Vec<Motion<T>>,
+    pub(super) unit_rate: Vec<Motion<T>>,
+    pub(super) unit_second_rate: Vec<Motion<T>>,
+    pub(super) sway: Vec<Sway<T>>,
+    /// ∂l/∂q and ∂l'/∂q of a pair.
+    pub(super) gradient: Vec<T>,
+    pub(super) rate_gradient: Vec<T>,
 }
 
 impl<T: Scalar> Workspace<T> {
@@ -33,6 +52,17 @@ impl<T: Scalar> Workspace<T> {
             force: vec![Force::ZERO; n + 1],
             composite: vec![Inertia::ZERO; n],
             columns: vec![Vec3::ZERO; n],
+            articulated: vec![ArticulatedInertia::ZERO; n],
+            bias: vec![Motion::ZERO; n],
+            column: vec![Force::ZERO; n],
+            inverse_pivot: vec![T::ZERO; n],
+            effort: vec![T::ZERO; n],
+            unit: vec![Motion::ZERO; n],
+            unit_rate: vec![Motion::ZERO; n],
+            unit_second_rate: vec![Motion::ZERO; n],
+            sway: vec![Sway::ZERO; n],
+            gradient: vec![T::ZERO; n],
+            rate_gradient: vec![T::ZERO; n],
         }
     }
 }

@@ -63,6 +63,8 @@ pub struct Memory {
     /// 1/Γ(1−alpha).
     singular_factor: f64,
     local: [f64; 5],
+    /// ∫ of all rates committed: what the modes have seen of the stroke.
+    travelled: f64,
     modes: Option<Modes>,
 }
 
@@ -130,6 +132,7 @@ impl Memory {
             jump: if singular { jump } else { 0.0 },
             singular_factor: reciprocal_gamma(1.0 - alpha),
             local: local_factors(alpha),
+            travelled: 0.0,
             modes,
         })
     }
@@ -250,8 +253,26 @@ impl Memory {
     /// Takes an accepted step into the past: z_k ← e^{−λ_k h} z_k + ∫ e^{−λ_k(h−s)} x'(s) ds, exact for the polynomial.
     pub fn commit(&mut self, step: &RatePolynomial) {
         if let Some(modes) = &mut self.modes {
+            self.travelled += step.travel();
             modes.commit(step);
         }
+    }
+
+    /// As [`Self::commit`] for a step of rates that ends at `stroke`, which is known to `resolution`, above 0.
+    ///
+    /// Integrals of rates drift from the strokes, in a step by less than any tolerance; over 10⁵ steps the slowest modes, which
+    /// are D^alpha x at small alpha, would be off by 10⁻⁷. What is owed is paid back as a rate, the faster the more it is.
+    pub fn commit_rates(&mut self, step: &RatePolynomial, stroke: f64, resolution: f64) {
+        let Some(modes) = &self.modes else { return };
+        let owed = (stroke - self.origin) - (self.travelled + step.travel());
+        let mut step = *step;
+        if owed.abs() > resolution {
+            let largest = step.rate(0.0).abs().max(step.rate(1.0).abs());
+            // Of a debt that may be rounding, no more than the kernel errs: a short step would make much of it.
+            let bearable = 10.0 * modes.kernel.tolerance * (owed.abs() / resolution) * largest;
+            step.u[0] += (owed.abs() / step.h).min(bearable).copysign(owed);
+        }
+        self.commit(&step);
     }
 
     /// The stroke that counts as unloaded at alpha = 0.

@@ -101,6 +101,12 @@ impl RatePolynomial {
         self.u.iter().rev().fold(0.0, |sum, u| sum * theta + u)
     }
 
+    /// ∫ x' over the whole step.
+    pub fn travel(&self) -> f64 {
+        let [u0, u1, u2, u3] = self.u;
+        self.h * (u0 + u1 / 2.0 + u2 / 3.0 + u3 / 4.0)
+    }
+
     /// x'' at θ; 0 for a step without length.
     pub fn bend(&self, theta: f64) -> f64 {
         let [_, u1, u2, u3] = self.u;

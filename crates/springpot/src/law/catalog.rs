@@ -73,6 +73,19 @@ pub(super) const ALPHA: Param = Param {
     default: None,
 };
 
+/// The stiffness of the carrier in the laws of the papers.
+pub(super) const CARRIER: Param =
+    Param { name: "E_c", unit: "N/m", meaning: "stiffness of the carrier", range: Range::NOT_NEGATIVE, default: None };
+
+/// The coefficient of D^alpha x in the laws of the papers.
+pub(super) const DAMPING: Param = Param {
+    name: "E_d",
+    unit: "N*s^alpha/m",
+    meaning: "coefficient of the fractional derivative",
+    range: Range::NOT_NEGATIVE,
+    default: None,
+};
+
 /// A law without any positive coefficient is no material.
 pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Result<(), RuleError> {
     if parameters.iter().any(|(_, value)| *value > 0.0) {

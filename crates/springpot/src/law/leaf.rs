@@ -79,10 +79,6 @@ impl Drive {
 }
 
 impl Law for Spring {
-    fn begin(&self, _: &Start) -> Result<State, KernelError> {
-        Ok(State::default())
-    }
-
     fn respond(&self, step: &Step, _: &State) -> Response {
         let mut response = Response::default();
         for i in 0..step.nodes.count() {
@@ -90,20 +86,6 @@ impl Law for Spring {
             response.d_stroke[i][i] = self.stiffness;
         }
         response
-    }
-
-    fn commit(&self, _: &Step, _: &mut State) {}
-
-    fn defect(&self, _: &Step, _: &State) -> f64 {
-        0.0
-    }
-
-    fn powers(&self, _: &Step, _: &State) -> Powers {
-        Powers::default()
-    }
-
-    fn observe(&self, _: &Step, _: f64, at: &Point, state: &State) -> Observation {
-        self.observe_start(at, state)
     }
 
     fn observe_start(&self, at: &Point, state: &State) -> Observation {
@@ -124,10 +106,6 @@ impl Law for Spring {
 }
 
 impl Law for Dashpot {
-    fn begin(&self, _: &Start) -> Result<State, KernelError> {
-        Ok(State::default())
-    }
-
     fn respond(&self, step: &Step, _: &State) -> Response {
         let mut response = Response::default();
         for i in 0..step.nodes.count() {
@@ -137,22 +115,12 @@ impl Law for Dashpot {
         response
     }
 
-    fn commit(&self, _: &Step, _: &mut State) {}
-
-    fn defect(&self, _: &Step, _: &State) -> f64 {
-        0.0
-    }
-
     fn powers(&self, step: &Step, _: &State) -> Powers {
         let mut powers = Powers::default();
         for (power, rate) in powers.iter_mut().zip(step.rate) {
             power.dissipation = self.viscosity * rate * rate;
         }
         powers
-    }
-
-    fn observe(&self, _: &Step, _: f64, at: &Point, state: &State) -> Observation {
-        self.observe_start(at, state)
     }
 
     fn observe_start(&self, at: &Point, _: &State) -> Observation {
@@ -219,7 +187,11 @@ impl Law for Springpot {
 
     fn commit(&self, step: &Step, state: &mut State) {
         let polynomial = self.polynomial(step);
-        state.memory.as_mut().expect("begin made the memory").commit(&polynomial);
+        let memory = state.memory.as_mut().expect("begin made the memory");
+        match step.form {
+            Form::Rates => memory.commit_rates(&polynomial, step.stroke[step.nodes.count()], step.resolution),
+            Form::Strokes => memory.commit(&polynomial),
+        }
     }
 
     fn defect(&self, step: &Step, state: &State) -> f64 {
@@ -310,22 +282,12 @@ impl Law for Springpot {
 }
 
 impl Law for Drive {
-    fn begin(&self, _: &Start) -> Result<State, KernelError> {
-        Ok(State::default())
-    }
-
     fn respond(&self, step: &Step, _: &State) -> Response {
         let mut response = Response::default();
         for i in 0..step.nodes.count() {
             response.force[i] = self.force_at(&step.point(i + 1));
         }
         response
-    }
-
-    fn commit(&self, _: &Step, _: &mut State) {}
-
-    fn defect(&self, _: &Step, _: &State) -> f64 {
-        0.0
     }
 
     fn powers(&self, step: &Step, _: &State) -> Powers {
@@ -335,10 +297,6 @@ impl Law for Drive {
             power.input = -self.force_at(&at) * at.rate;
         }
         powers
-    }
-
-    fn observe(&self, _: &Step, _: f64, at: &Point, state: &State) -> Observation {
-        self.observe_start(at, state)
     }
 
     fn observe_start(&self, at: &Point, _: &State) -> Observation {

@@ -1,7 +1,7 @@
 //! Magnetorheological element: a springpot whose coefficient follows the voltage of its coil.
 
 use super::Parallel;
-use super::catalog::{ALPHA, Entry, Input, Param, Range, at_least_one_positive};
+use super::catalog::{ALPHA, CARRIER, Entry, Input, Param, Range, at_least_one_positive};
 use super::leaf::Coefficient;
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ pub(super) const MAGNETORHEOLOGICAL: Entry = Entry {
     name: "magnetorheological",
     equation: "F = E_c·x + (mu_0 + u·mu)·D^alpha x",
     params: &[
-        Param { name: "E_c", unit: "N/m", meaning: "stiffness", range: Range::NOT_NEGATIVE, default: None },
+        CARRIER,
         Param {
             name: "mu_0",
             unit: "N*s^alpha/m",

@@ -165,28 +165,36 @@ pub struct Observation {
     pub stored: Option<f64>,
 }
 
-/// A material law.
+/// A material law; what is provided is that of a law without memory.
 pub trait Law: Send + Sync + std::fmt::Debug {
     /// The state at t = 0.
     ///
     /// # Errors
     /// [`KernelError`] where the memory's kernel cannot be built.
-    fn begin(&self, start: &Start) -> Result<State, KernelError>;
+    fn begin(&self, _start: &Start) -> Result<State, KernelError> {
+        Ok(State::default())
+    }
 
     /// Forces at the nodes of `step` and their tangents.
     fn respond(&self, step: &Step, state: &State) -> Response;
 
     /// Takes an accepted step into the state.
-    fn commit(&self, step: &Step, state: &mut State);
+    fn commit(&self, _step: &Step, _state: &mut State) {}
 
     /// Embedded error estimate of D^alpha x at the end of the step; 0 for a law without memory.
-    fn defect(&self, step: &Step, state: &State) -> f64;
+    fn defect(&self, _step: &Step, _state: &State) -> f64 {
+        0.0
+    }
 
     /// Energy flows at the start and at the nodes of the step; zeros after a singular start.
-    fn powers(&self, step: &Step, state: &State) -> Powers;
+    fn powers(&self, _step: &Step, _state: &State) -> Powers {
+        Powers::default()
+    }
 
     /// The element at t_n + theta·h, 0 < theta ≤ 1, where its exact kinematics are those of `at`.
-    fn observe(&self, step: &Step, theta: f64, at: &Point, state: &State) -> Observation;
+    fn observe(&self, _step: &Step, _theta: f64, at: &Point, state: &State) -> Observation {
+        self.observe_start(at, state)
+    }
 
     /// The element at t = 0.
     fn observe_start(&self, at: &Point, state: &State) -> Observation;

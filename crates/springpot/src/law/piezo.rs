@@ -1,7 +1,7 @@
 //! Fractional Kelvin–Voigt element with a piezo stack in it.
 
 use super::Parallel;
-use super::catalog::{ALPHA, Entry, Input, Param, Range, at_least_one_positive};
+use super::catalog::{ALPHA, CARRIER, DAMPING, Entry, Input, Param, Range, at_least_one_positive};
 use super::leaf::Coefficient;
 use std::sync::Arc;
 
@@ -12,13 +12,7 @@ pub(super) const PIEZO_KELVIN_VOIGT: Entry = Entry {
     name: "piezo-kelvin-voigt",
     equation: "F = (E_c + E_pz)·x + E_d·D^alpha x − alpha_pz·E_pz·U",
     params: &[
-        Param {
-            name: "E_c",
-            unit: "N/m",
-            meaning: "stiffness of the carrier",
-            range: Range::NOT_NEGATIVE,
-            default: None,
-        },
+        CARRIER,
         Param {
             name: "E_pz",
             unit: "N/m",
@@ -26,13 +20,7 @@ pub(super) const PIEZO_KELVIN_VOIGT: Entry = Entry {
             range: Range::NOT_NEGATIVE,
             default: None,
         },
-        Param {
-            name: "E_d",
-            unit: "N*s^alpha/m",
-            meaning: "coefficient of the fractional derivative",
-            range: Range::NOT_NEGATIVE,
-            default: None,
-        },
+        DAMPING,
         ALPHA,
         Param { name: "alpha_pz", unit: "m/V", meaning: "free stroke per volt", range: Range::ANY, default: None },
     ],

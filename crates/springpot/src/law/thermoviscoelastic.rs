@@ -1,7 +1,7 @@
 //! Fractional Kelvin–Voigt element that expands with temperature.
 
 use super::Parallel;
-use super::catalog::{ALPHA, Entry, Input, Param, Range, at_least_one_positive};
+use super::catalog::{ALPHA, CARRIER, DAMPING, Entry, Input, Param, Range, at_least_one_positive};
 use super::leaf::Coefficient;
 use std::sync::Arc;
 
@@ -14,13 +14,7 @@ pub(super) const THERMOVISCOELASTIC: Entry = Entry {
     name: "thermoviscoelastic",
     equation: "F = (E_c + E_kv)·x + E_d·D^alpha x − a_kv·E_kv·(T − T_ref)",
     params: &[
-        Param {
-            name: "E_c",
-            unit: "N/m",
-            meaning: "stiffness of the carrier",
-            range: Range::NOT_NEGATIVE,
-            default: None,
-        },
+        CARRIER,
         Param {
             name: "E_kv",
             unit: "N/m",
@@ -28,13 +22,7 @@ pub(super) const THERMOVISCOELASTIC: Entry = Entry {
             range: Range::NOT_NEGATIVE,
             default: None,
         },
-        Param {
-            name: "E_d",
-            unit: "N*s^alpha/m",
-            meaning: "coefficient of the fractional derivative",
-            range: Range::NOT_NEGATIVE,
-            default: None,
-        },
+        DAMPING,
         ALPHA,
         Param {
             name: "a_kv",

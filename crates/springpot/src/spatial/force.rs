@@ -1,6 +1,6 @@
 //! Spatial forces: wrenches and momenta.
 
-use std::ops::{Add, AddAssign, SubAssign};
+use std::ops::{Add, AddAssign, Mul, SubAssign};
 
 use super::{Scalar, Vec3};
 
@@ -21,6 +21,12 @@ impl<T: Scalar> Force<T> {
     #[inline]
     pub fn at_point(force: Vec3<T>, point: Vec3<T>) -> Self {
         Self { linear: force, angular: point.cross(force) }
+    }
+
+    /// The same wrench about another point, from which the present origin is seen at `arm`; the axes stay: (f, n + arm × f).
+    #[inline]
+    pub fn shifted(self, arm: Vec3<T>) -> Self {
+        Self { linear: self.linear, angular: self.angular + arm.cross(self.linear) }
     }
 }
 
@@ -44,5 +50,13 @@ impl<T: Scalar> SubAssign for Force<T> {
     fn sub_assign(&mut self, other: Self) {
         self.linear -= other.linear;
         self.angular -= other.angular;
+    }
+}
+
+impl<T: Scalar> Mul<T> for Force<T> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: T) -> Self {
+        Self { linear: self.linear * factor, angular: self.angular * factor }
     }
 }

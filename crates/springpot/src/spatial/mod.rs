@@ -3,6 +3,7 @@
 //! Every type is a plain `Copy` array over one sealed [`Scalar`], `f64` by default.
 //! A [`Motion`] or [`Force`] is a pair of three-vectors taken at the origin of the frame it is expressed in.
 
+mod articulated;
 mod force;
 mod inertia;
 mod motion;
@@ -11,9 +12,11 @@ mod pair_of_lanes;
 mod placement;
 mod rotation;
 mod scalar;
+mod sincos;
 mod symmetric;
 mod vector;
 
+pub use articulated::ArticulatedInertia;
 pub use force::Force;
 pub use inertia::Inertia;
 pub use motion::Motion;

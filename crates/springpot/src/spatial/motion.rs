@@ -1,6 +1,6 @@
 //! Spatial motions: velocities and accelerations of a frame.
 
-use std::ops::Add;
+use std::ops::{Add, AddAssign, Mul};
 
 use super::{Force, Scalar, Vec3};
 
@@ -16,6 +16,22 @@ pub struct Motion<T = f64> {
 impl<T: Scalar> Motion<T> {
     /// No motion.
     pub const ZERO: Self = Self { angular: Vec3::ZERO, linear: Vec3::ZERO };
+
+    /// The same motion at another point, which is seen at `arm` from the present origin; the axes stay: (ω, v + ω × arm).
+    #[inline]
+    pub fn shifted(self, arm: Vec3<T>) -> Self {
+        Self { angular: self.angular, linear: self.linear + self.angular.cross(arm) }
+    }
+
+    /// The cross product with a motion, v × m = (ω × ω_m, ω × v_m + v × ω_m): how `m`, fixed in a frame that moves with v,
+    /// changes.
+    #[inline]
+    pub fn cross(self, m: Self) -> Self {
+        Self {
+            angular: self.angular.cross(m.angular),
+            linear: self.angular.cross(m.linear) + self.linear.cross(m.angular),
+        }
+    }
 
     /// The cross product with a force, v ×* f = (ω × f, ω × n + v × f) in the order (linear, angular).
     #[inline]
@@ -38,5 +54,20 @@ impl<T: Scalar> Add for Motion<T> {
     #[inline]
     fn add(self, other: Self) -> Self {
         Self { angular: self.angular + other.angular, linear: self.linear + other.linear }
+    }
+}
+
+impl<T: Scalar> AddAssign for Motion<T> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Scalar> Mul<T> for Motion<T> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: T) -> Self {
+        Self { angular: self.angular * factor, linear: self.linear * factor }
     }
 }

@@ -54,7 +54,11 @@ impl Scalar for Two {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        let [a, b] = self.0.map(f64::sin_cos);
+        let [a, b] = self.0.map(<f64 as Scalar>::sin_cos);
         (Self([a.0, b.0]), Self([a.1, b.1]))
+    }
+
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        Self([0, 1].map(|k| Scalar::times_plus(self.0[k], factor.0[k], term.0[k])))
     }
 }

@@ -3,6 +3,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use super::sincos;
+
 pub(super) mod sealed {
     pub trait Sealed {}
     impl Sealed for f64 {}
@@ -66,6 +68,11 @@ impl Scalar for f64 {
 
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        if self.abs() <= sincos::LARGEST { sincos::sin_cos(self) } else { f64::sin_cos(self) }
+    }
+
+    #[inline]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        if cfg!(target_feature = "fma") { self.mul_add(factor, term) } else { self * factor + term }
     }
 }

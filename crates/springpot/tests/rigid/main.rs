@@ -1,8 +1,11 @@
 //! Rigid bodies: identities on random trees, reference values, refusals.
 
+mod derivatives;
 mod identities;
 mod long_chain;
 mod oracle;
 mod pair;
+mod recursions;
 mod refusals;
+mod robots_oracle;
 mod support;

@@ -11,6 +11,7 @@ mod law;
 mod memory;
 mod memory_support;
 mod run_support;
+mod slider_drift;
 mod slider_energy;
 mod slider_kinks;
 mod slider_support;

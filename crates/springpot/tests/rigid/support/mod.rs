@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "every test file uses its own share")]
 
+pub(crate) mod robots;
+
 use proptest::collection::vec;
 use proptest::prelude::*;
 use springpot::model::{Anchor, BodySpec, JointKind, JointSpec, Model, ModelBuilder, Parent, Site};

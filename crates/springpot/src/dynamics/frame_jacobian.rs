@@ -1,0 +1,70 @@
+//! Jacobian of a frame and its time derivative: six rows, world-aligned at the frame.
+
+use super::{Kinematics, joint};
+use crate::model::{Frame, JointMotion, Model};
+use crate::spatial::{Scalar, Vec3};
+
+/// Jacobian of a frame, (dr_O/dt, ω) = J v: linear rows of the frame's origin O first, then angular ones, both in world axes.
+///
+/// Column b is (T_b(O), Om_b). `jacobian` is 6 × nv, row-major (all entries are written); needs positions.
+pub fn frame_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, frame: &Frame, jacobian: &mut [T]) {
+    let n = clear(model, jacobian);
+    let origin = kinematics.frame(frame).translation;
+    for j in joint::path_to_world(model, frame.link()) {
+        let link = kinematics.link(j + 1);
+        let (linear, angular) = (joint::point_column(model, j, link, origin), joint::angular_column(model, j, link));
+        set_column(jacobian, n, j, linear, angular);
+    }
+}
+
+/// [`frame_jacobian_into`], allocating.
+pub fn frame_jacobian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, frame: &Frame) -> Vec<T> {
+    let mut jacobian = vec![T::ZERO; 6 * model.nv()];
+    frame_jacobian_into(model, kinematics, frame, &mut jacobian);
+    jacobian
+}
+
+/// Time derivative of [`frame_jacobian_into`], so that (d²r_O/dt², dω/dt) = J a + J̇ v.
+///
+/// Column b is (ė_b × (r_O − O_b) + e_b × (ṙ_O − Ȯ_b), ė_b) (revolute) or (ė_b, 0) (prismatic), with ė_b = ω_b × e_b. `rate` is
+/// 6 × nv, row-major (all entries are written); needs velocities.
+pub fn frame_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, frame: &Frame, rate: &mut [T]) {
+    let n = clear(model, rate);
+    let carrier = kinematics.link(frame.link());
+    let arm = carrier.rotation * Vec3::from_f64(frame.placement().translation);
+    let (origin, velocity) = (carrier.translation + arm, kinematics.link_velocity(frame.link()).shifted(arm).linear);
+    for j in joint::path_to_world(model, frame.link()) {
+        let (link, motion) = (kinematics.link(j + 1), kinematics.link_velocity(j + 1));
+        let axis = link.rotation.z_axis();
+        let axis_rate = motion.angular.cross(axis);
+        let (linear, angular) = match model.motion(j) {
+            JointMotion::Revolute => {
+                (axis_rate.cross(origin - link.translation) + axis.cross(velocity - motion.linear), axis_rate)
+            }
+            JointMotion::Prismatic => (axis_rate, Vec3::ZERO),
+        };
+        set_column(rate, n, j, linear, angular);
+    }
+}
+
+/// [`frame_jacobian_rate_into`], allocating.
+pub fn frame_jacobian_rate<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, frame: &Frame) -> Vec<T> {
+    let mut rate = vec![T::ZERO; 6 * model.nv()];
+    frame_jacobian_rate_into(model, kinematics, frame, &mut rate);
+    rate
+}
+
+#[inline]
+fn clear<T: Scalar>(model: &Model, matrix: &mut [T]) -> usize {
+    let n = model.nv();
+    assert_eq!(matrix.len(), 6 * n, "the Jacobian is 6 x nv");
+    matrix.fill(T::ZERO);
+    n
+}
+
+#[inline]
+fn set_column<T: Scalar>(matrix: &mut [T], n: usize, column: usize, linear: Vec3<T>, angular: Vec3<T>) {
+    for (row, entry) in linear.0.into_iter().chain(angular.0).enumerate() {
+        matrix[row * n + column] = entry;
+    }
+}

@@ -1,0 +1,54 @@
+//! Loads from outside: a force and a moment on a body.
+
+use super::{Kinematics, joint};
+use crate::model::{Model, Site};
+use crate::spatial::{Force, Scalar};
+
+/// Adds the generalized force of a wrench on the body that carries `site` to `q_force` (nv), N·m or N:
+/// Q_b = f·T_b(P) + n·Om_b.
+///
+/// The force f, N, acts at the site's point P; f and the moment n, N·m, have world axes. Needs positions. Add it to τ for
+/// forward dynamics; inverse dynamics gives what actuators and loads must supply together, so take it off there.
+pub fn add_wrench<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    site: &Site,
+    wrench: Force<T>,
+    q_force: &mut [T],
+) {
+    let q_force = &mut q_force[..model.nv()];
+    let point = kinematics.position(site);
+    for j in joint::path_to_world(model, site.link()) {
+        let link = kinematics.link(j + 1);
+        q_force[j] += joint::point_column(model, j, link, point).dot(wrench.linear)
+            + joint::angular_column(model, j, link).dot(wrench.angular);
+    }
+}
+
+/// Adds ∂Q_b/∂q_c of a wrench that keeps its world components while the body moves to `d_q` (nv × nv, row-major, b the row).
+///
+/// With lo the inner and hi the outer of joints b and c: f·(Om_lo × T_hi(P)), and n·(Om_c × Om_b) where c carries b. Needs
+/// positions.
+pub fn add_wrench_derivative<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    site: &Site,
+    wrench: Force<T>,
+    d_q: &mut [T],
+) {
+    let n = model.nv();
+    assert_eq!(d_q.len(), n * n, "the derivative is nv x nv");
+    let point = kinematics.position(site);
+    for hi in joint::path_to_world(model, site.link()) {
+        let link = kinematics.link(hi + 1);
+        let (column, spin) = (joint::point_column(model, hi, link, point), joint::angular_column(model, hi, link));
+        for lo in joint::path_to_world(model, hi + 1) {
+            let carrier = joint::angular_column(model, lo, kinematics.link(lo + 1));
+            let entry = carrier.cross(column).dot(wrench.linear);
+            d_q[hi * n + lo] += entry + carrier.cross(spin).dot(wrench.angular);
+            if lo != hi {
+                d_q[lo * n + hi] += entry;
+            }
+        }
+    }
+}
