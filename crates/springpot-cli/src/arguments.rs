@@ -26,7 +26,7 @@ pub(crate) enum Command {
     #[command(after_help = "\
 Examples:
   springpot run scenarios/thermoviscoelastic_order.toml
-  springpot run arm.toml --set element.strut.alpha=0.3 --set 'element.strut.T=\"40 degC\"' --out warm
+  springpot run arm.toml --set element.strut.alpha=0.3 --set 'element.strut.T=40 degC' --out warm
 
 Writes results.csv, summary.csv, figures/ and run.json. A rerun replaces the last run's files and nothing else. \
 Ctrl-C ends a run early; the rows so far are kept, all of them complete.")]

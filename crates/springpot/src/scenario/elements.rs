@@ -6,7 +6,7 @@ use super::plan::{ElementPlan, SignalPlan};
 use super::reader::{Field, Read, Refused, Table, all, unit_help};
 use super::refusal::RefusalKind;
 use super::robot::{Robot, checked_name, unique};
-use super::signals::{self, Wanted, celsius, interval};
+use super::signals::{self, Wanted, celsius, how_outside, interval};
 use super::time::Duration;
 use crate::fractional::scheme::{Scheme, SchemeNameError};
 use crate::law::{Derivative, Entry, Param};
@@ -221,9 +221,10 @@ fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f6
         return Ok(value);
     }
     let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
-    let message = format!("is {value}{unit}, outside {}", interval(param.range));
-    let help = celsius(param.unit, param.range, value)
-        .unwrap_or_else(|| format!("{}: {} must lie in {}{unit}", param.name, param.meaning, interval(param.range)));
+    let message = format!("is {value}{unit}, {}", how_outside(param.range));
+    let of = if param.unit.is_empty() { "a number" } else { param.unit };
+    let right = || format!("{}: {} ({of}, {})", param.name, param.meaning, interval(param.range));
+    let help = celsius(param.unit, param.range, value).unwrap_or_else(right);
     Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)))
 }
 

@@ -227,7 +227,7 @@ fn probe(field: &Field<'_>, wanted: Wanted<'_>, plan: &SignalPlan) -> Read<()> {
 
 fn outside(field: &Field<'_>, wanted: Wanted<'_>, value: f64, t: Option<f64>) -> Refused {
     let when = t.map(|t| format!(" at t = {t} s")).unwrap_or_default();
-    let message = format!("is {value} {}{when}, outside {}", wanted.unit, interval(wanted.range));
+    let message = format!("is {value} {}{when}, {}", wanted.unit, how_outside(wanted.range));
     let right = match (&field.node.value, celsius(wanted.unit, wanted.range, value)) {
         (_, None) => unit_help(wanted.unit),
         (Value::Text(text), Some(_)) if t.is_some() => {
@@ -252,5 +252,14 @@ pub(crate) fn interval(range: Range) -> String {
         (true, false) => format!("{} and above", range.low),
         (false, true) => format!("{} and below", range.high),
         (false, false) => "the finite numbers".to_owned(),
+    }
+}
+
+/// Says that a value is not in `range`.
+pub(crate) fn how_outside(range: Range) -> String {
+    match (range.low > f64::MIN, range.high < f64::MAX) {
+        (true, false) => format!("less than {}", range.low),
+        (false, true) => format!("more than {}", range.high),
+        _ => format!("outside {}", interval(range)),
     }
 }
