@@ -52,7 +52,7 @@ impl Run<'_> {
     }
 
     /// An element whose direction turned by more than a right angle between two nodes: its points passed each other.
-    pub(super) fn reversed(&self, t: f64, h: f64) -> Result<Option<usize>, RunError> {
+    fn reversed(&self, t: f64, h: f64) -> Result<Option<usize>, RunError> {
         for pair in self.moments.windows(2) {
             for (e, (a, b)) in pair[0].elements.iter().zip(&pair[1].elements).enumerate() {
                 if a.direction.dot(b.direction) > 0.0 {
@@ -69,7 +69,7 @@ impl Run<'_> {
         Ok(None)
     }
 
-    pub(super) fn fill_element_step(&mut self, e: usize) {
+    fn fill_element_step(&mut self, e: usize) {
         let step = &mut self.steps[e];
         let inputs = self.system.elements[e].inputs.len();
         for (k, moment) in self.moments.iter().enumerate() {
@@ -83,7 +83,7 @@ impl Run<'_> {
 
     /// Asks the law for the step: its powers, its state at the end, the regular power it takes from the actuators.
     /// Returns the embedded error; `None` for an element with a named scheme.
-    pub(super) fn evaluate_element(&mut self, e: usize, t: f64, h: f64) -> Option<f64> {
+    fn evaluate_element(&mut self, e: usize, t: f64, h: f64) -> Option<f64> {
         let element = &self.system.elements[e];
         let account = &self.accounts[e];
         let state = account.law.as_ref()?;
@@ -112,7 +112,7 @@ impl Run<'_> {
     }
 
     /// Estimate of what the step adds to the error of the energy ledger, in units of its tolerance.
-    pub(super) fn energy_error(&self, h: f64) -> f64 {
+    fn energy_error(&self, h: f64) -> f64 {
         let turned_over = self.energy_floor.max(self.turnover.total());
         if self.actuators_unknown() || turned_over == 0.0 {
             return 0.0;
@@ -143,7 +143,7 @@ impl ElementStep {
 
 impl Element {
     /// F at the start of a step, where D^alpha x is what the step before ended with; at alpha = 1 it follows the rate.
-    pub(super) fn force_at_start(&self, at: &Point, derivative: f64) -> f64 {
+    fn force_at_start(&self, at: &Point, derivative: f64) -> f64 {
         self.law.force(at, if self.law.order() == 1.0 { at.rate } else { derivative })
     }
 }

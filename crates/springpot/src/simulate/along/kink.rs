@@ -35,7 +35,7 @@ impl Run<'_> {
     }
 
     /// The rows up to `until`, when no step is under way.
-    pub(super) fn emit_rows_between_steps(&mut self, until: f64) -> Result<(), RunError> {
+    fn emit_rows_between_steps(&mut self, until: f64) -> Result<(), RunError> {
         while self.next_row_until(until).is_some() {
             let moment = self.moments[0].clone();
             let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.row_between_steps(e, &moment)).collect();
@@ -45,7 +45,7 @@ impl Run<'_> {
     }
 
     /// An element between two steps.
-    pub(super) fn row_between_steps(&self, e: usize, moment: &Moment) -> ElementRow {
+    fn row_between_steps(&self, e: usize, moment: &Moment) -> ElementRow {
         let (element, account) = (&self.system.elements[e], &self.accounts[e]);
         let point = moment.elements[e].point(moment.t);
         let Some(state) = &account.law else { return self.grid_row(e, &point) };
@@ -60,7 +60,7 @@ impl Run<'_> {
     }
 
     /// Goes on from the far side of a kink and books what jumps there.
-    pub(super) fn book_jumps(&mut self, [left, right]: [Moment; 2]) {
+    fn book_jumps(&mut self, [left, right]: [Moment; 2]) {
         // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
         self.actuators += right.kinetic - left.kinetic;
         for (e, element) in self.system.elements.iter().enumerate() {

@@ -232,15 +232,15 @@ impl<'a> Run<'a> {
             let stop = breaks.peek().copied().unwrap_or(end);
             let mut to = target(t, h, stop);
             // Only one side of a kink belongs to the step.
-            let mut across = None;
+            let mut far_side = None;
             if has_kinks && let Some(node) = self.first_other_branch(t, to) {
                 let (before, after) = locate(|t| self.system.branch(t), t, node);
-                let sides = self.look_across(before.max(t), after)?;
                 if before <= t {
+                    let sides = self.look_across(t, after)?;
                     t = self.cross(sides)?;
                     continue;
                 }
-                across = Some(sides);
+                far_side = Some(after);
                 to = before;
             }
             let size = to - t;
@@ -254,13 +254,15 @@ impl<'a> Run<'a> {
                 }
                 continue;
             }
+            // Before any row is written, since a jump must leave none behind.
+            let sides = far_side.map(|after| self.look_across(to, after)).transpose()?;
             self.emit_rows(t, to, on_break)?;
             self.commit(size);
             self.report.steps += 1;
             // A step cut short by a stop says nothing against the size chosen before.
             h = (size * error.factor()).max(if size < h { h } else { 0.0 }).min(self.longest_step());
             t = to;
-            if let Some(sides) = across {
+            if let Some(sides) = sides {
                 t = self.cross(sides)?;
             } else if on_break {
                 let [moment, ..] = &mut self.moments;

@@ -58,7 +58,7 @@ impl Run<'_> {
     }
 
     /// Element `e` in a row at θ, whose moment is `moment`.
-    pub(super) fn element_row(&self, e: usize, theta: f64, moment: &Moment) -> ElementRow {
+    fn element_row(&self, e: usize, theta: f64, moment: &Moment) -> ElementRow {
         let element = &self.system.elements[e];
         let point = moment.elements[e].point(moment.t);
         let [from, .., to] = &self.moments;
