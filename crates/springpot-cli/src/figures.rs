@@ -152,9 +152,9 @@ fn robot(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDrawi
             drawing.links.push(Link { name: body.name.clone(), points: vec![origin, end] });
         }
         let kind = match body.joint.kind {
-            JointKind::Revolute => springpot_report::JointKind::Revolute,
+            JointKind::Revolute | JointKind::Continuous => springpot_report::JointKind::Revolute,
             JointKind::Prismatic => springpot_report::JointKind::Prismatic,
-            JointKind::Fixed => continue,
+            JointKind::Fixed | JointKind::Floating => continue,
         };
         let axis = pose.direction(Parent::Body(index), body.joint.axis);
         drawing.joints.push(JointMark { name: body.joint.name.clone(), position: origin, axis, kind });

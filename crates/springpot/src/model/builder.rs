@@ -55,10 +55,13 @@ impl ModelBuilder {
         let in_parent_link = parent.placement * offset;
         let frame = match joint.kind {
             JointKind::Fixed => Frame { link: parent.link, placement: in_parent_link },
-            JointKind::Revolute => self.add_link(parent.link, in_parent_link, JointMotion::Revolute, joint.axis, body),
+            JointKind::Revolute | JointKind::Continuous => {
+                self.add_link(parent.link, in_parent_link, JointMotion::Revolute, joint.axis, body)
+            }
             JointKind::Prismatic => {
                 self.add_link(parent.link, in_parent_link, JointMotion::Prismatic, joint.axis, body)
             }
+            JointKind::Floating => unreachable!("not read yet"),
         };
         let model = &mut self.model;
         if joint.kind != JointKind::Fixed {

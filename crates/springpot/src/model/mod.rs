@@ -31,4 +31,4 @@ pub use builder::ModelBuilder;
 pub use error::{Field, ModelError, Subject};
 pub(crate) use robot::JointMotion;
 pub use robot::{Frame, Model, Site};
-pub use spec::{Anchor, BodySpec, JointKind, JointSpec, Parent};
+pub use spec::{Anchor, BodySpec, JointKind, JointSpec, Limits, Mimic, Parent};

@@ -10,14 +10,88 @@ pub enum Parent {
 }
 
 /// The kinds of joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum JointKind {
     /// No coordinate.
     Fixed,
     /// One angle about the axis.
     Revolute,
+    /// One angle about the axis, without limits: angles a full turn apart are the same configuration.
+    Continuous,
     /// One displacement along the axis.
     Prismatic,
+    /// Free in all six directions. Seven coordinates: the origin x, y, z in the parent's frame, then a quaternion qx, qy, qz,
+    /// qw; six velocities: linear, then angular, both in the body's own axes.
+    Floating,
+}
+
+impl JointKind {
+    /// Every kind.
+    pub const ALL: [Self; 5] = [Self::Fixed, Self::Revolute, Self::Continuous, Self::Prismatic, Self::Floating];
+
+    /// Its name in scenario files and in URDF.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Revolute => "revolute",
+            Self::Continuous => "continuous",
+            Self::Prismatic => "prismatic",
+            Self::Floating => "floating",
+        }
+    }
+
+    /// Number of coordinates.
+    pub const fn nq(self) -> usize {
+        match self {
+            Self::Fixed => 0,
+            Self::Revolute | Self::Continuous | Self::Prismatic => 1,
+            Self::Floating => 7,
+        }
+    }
+
+    /// Number of velocities.
+    pub const fn nv(self) -> usize {
+        match self {
+            Self::Fixed => 0,
+            Self::Revolute | Self::Continuous | Self::Prismatic => 1,
+            Self::Floating => 6,
+        }
+    }
+
+    /// Whether the joint turns about, or shifts along, an axis that the description must give.
+    pub const fn has_axis(self) -> bool {
+        self.nv() == 1
+    }
+}
+
+/// What a joint is built for; the algorithms do not enforce it. Infinite where there is no limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Smallest coordinate, rad or m.
+    pub lower: f64,
+    /// Largest coordinate, rad or m.
+    pub upper: f64,
+    /// Largest speed, rad/s or m/s.
+    pub velocity: f64,
+    /// Largest actuator force, N·m or N.
+    pub effort: f64,
+}
+
+impl Limits {
+    /// No limits.
+    pub const NONE: Self =
+        Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: f64::INFINITY, effort: f64::INFINITY };
+}
+
+/// A joint of one degree that follows another one: coordinate = multiplier · coordinate of `joint` + offset.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mimic {
+    /// Name of the joint that it follows.
+    pub joint: String,
+    /// Ratio of the two speeds.
+    pub multiplier: f64,
+    /// Its coordinate where the other one's is 0, rad or m.
+    pub offset: f64,
 }
 
 /// A joint as it is described: pose of the joint frame in the parent's joint frame, then motion about or along `axis`.
@@ -27,7 +101,7 @@ pub struct JointSpec {
     pub name: String,
     /// Kind of motion.
     pub kind: JointKind,
-    /// Axis in the joint frame (any length but zero; without meaning for a fixed joint).
+    /// Axis in the joint frame (any length but zero; without meaning where [`JointKind::has_axis`] says no).
     pub axis: [f64; 3],
     /// Origin of the joint frame in the parent's joint frame, m.
     pub origin: [f64; 3],
@@ -37,15 +111,19 @@ pub struct JointSpec {
     pub damping: f64,
     /// Coulomb friction, N·m or N, 0 or more.
     pub friction: f64,
+    /// What it is built for.
+    pub limits: Limits,
+    /// The joint that it follows, if it has no coordinate of its own.
+    pub mimic: Option<Mimic>,
 }
 
 impl JointSpec {
-    /// A revolute joint without rpy, damping and friction.
+    /// A revolute joint without rpy, damping, friction and limits.
     pub fn revolute(name: impl Into<String>, axis: [f64; 3], origin: [f64; 3]) -> Self {
         Self::plain(name.into(), JointKind::Revolute, axis, origin)
     }
 
-    /// A prismatic joint without rpy, damping and friction.
+    /// A prismatic joint without rpy, damping, friction and limits.
     pub fn prismatic(name: impl Into<String>, axis: [f64; 3], origin: [f64; 3]) -> Self {
         Self::plain(name.into(), JointKind::Prismatic, axis, origin)
     }
@@ -55,8 +133,13 @@ impl JointSpec {
         Self::plain(name.into(), JointKind::Fixed, [0.0, 0.0, 1.0], origin)
     }
 
+    /// A floating joint without rpy.
+    pub fn floating(name: impl Into<String>, origin: [f64; 3]) -> Self {
+        Self::plain(name.into(), JointKind::Floating, [0.0, 0.0, 1.0], origin)
+    }
+
     fn plain(name: String, kind: JointKind, axis: [f64; 3], origin: [f64; 3]) -> Self {
-        Self { name, kind, axis, origin, rpy: [0.0; 3], damping: 0.0, friction: 0.0 }
+        Self { name, kind, axis, origin, rpy: [0.0; 3], damping: 0.0, friction: 0.0, limits: Limits::NONE, mimic: None }
     }
 }
 

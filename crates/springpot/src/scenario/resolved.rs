@@ -2,7 +2,7 @@
 
 use super::figures::{FigureKind, FigurePlan};
 use super::plan::{ElementPlan, MotionPlan, Plan, SignalPlan};
-use crate::model::{Anchor, BodySpec, JointKind, Parent};
+use crate::model::{Anchor, BodySpec, Parent};
 use crate::simulate::RowTimes;
 use serde_json::{Map, Value, json};
 
@@ -60,11 +60,7 @@ impl Plan {
             "parent": self.body_name(body.parent),
             "joint": {
                 "name": joint.name,
-                "kind": match joint.kind {
-                    JointKind::Fixed => "fixed",
-                    JointKind::Revolute => "revolute",
-                    JointKind::Prismatic => "prismatic",
-                },
+                "kind": joint.kind.name(),
                 "axis": joint.axis,
                 "origin": joint.origin,
                 "rpy": joint.rpy,

@@ -4,7 +4,7 @@ use super::names;
 use super::plan::{BodyPlaces, Gripper};
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::{Place, RefusalKind};
-use crate::model::{Anchor, BodySpec, JointKind, JointSpec, Model, ModelBuilder, ModelError, Parent};
+use crate::model::{Anchor, BodySpec, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
@@ -281,6 +281,8 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
         rpy: rpy?,
         damping: damping?,
         friction: friction?,
+        limits: Limits::NONE,
+        mimic: None,
     })
 }
 
