@@ -31,8 +31,9 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
         }
         let mut reduced = articulated[j];
         let mut lost = Vec::with_capacity(6);
-        // What a joint that follows another one takes up is that one's affair.
-        let degrees = if model.followed[j].is_some() { &[] } else { model.motions[j].degrees() };
+        // Joints that follow one another share their inertia: a singularity of theirs is not looked for.
+        let shares = model.followed[j].is_some() || model.followed.contains(&Some(j));
+        let degrees = if shares { &[] } else { model.motions[j].degrees() };
         for degree in degrees.iter().rev() {
             let axis = match degree {
                 DegreeMotion::Turn(axis) => *axis as usize,
