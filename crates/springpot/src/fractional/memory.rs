@@ -10,7 +10,7 @@ use super::gamma::reciprocal_gamma;
 use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
 use super::step::{
-    Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_NODES, RatePolynomial, TABLEAU, exponential_moments, local_factors,
+    Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_INVERSE, RADAU_NODES, RatePolynomial, TABLEAU, exponential_moments, local_factors,
 };
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
@@ -155,6 +155,27 @@ impl Memory {
     /// x(0) t^−alpha/Γ(1−alpha) of a singular start, else 0; infinite at t = 0.
     pub fn singular_part(&self, t: f64) -> f64 {
         if self.jump == 0.0 { 0.0 } else { self.jump * t.powf(-self.alpha) * self.singular_factor }
+    }
+
+    /// The singular part at the Radau nodes of a step, such that h Σ_j A_ij σ_j is its exact integral up to every node:
+    /// σ = x(0)/(h Γ(2−alpha)) A⁻¹ (t_j^{1−alpha} − t_n^{1−alpha}).
+    ///
+    /// Collocation that takes the point values instead loses its order at a singular start; far from the start both agree.
+    pub fn singular_moments(&self, start: &StepStart) -> [f64; MAX_NODES] {
+        if self.jump == 0.0 {
+            return [0.0; MAX_NODES];
+        }
+        let power = 1.0 - self.alpha;
+        let impulse = RADAU_NODES.map(|c| {
+            let lag = c * start.h;
+            let grown = if start.t == 0.0 {
+                lag.powf(power)
+            } else {
+                start.t.powf(power) * (power * (lag / start.t).ln_1p()).exp_m1()
+            };
+            self.jump * self.singular_factor / power * grown / start.h
+        });
+        RADAU_INVERSE.map(|row| row.iter().zip(impulse).map(|(a, i)| a * i).sum())
     }
 
     /// D^alpha x at the nodes of a step as an affine map of the step's strokes and rates.

@@ -16,6 +16,13 @@ pub const RADAU_NODES: [f64; 3] = [(4.0 - SQRT6) / 10.0, (4.0 + SQRT6) / 10.0, 1
 /// Weights of Radau IIA: ∫₀¹ f ≈ Σ b_i f(c_i), exact for degree 4.
 pub const RADAU_WEIGHTS: [f64; 3] = [(16.0 - SQRT6) / 36.0, (16.0 + SQRT6) / 36.0, 1.0 / 9.0];
 
+/// The inverse of the Radau IIA matrix A.
+pub(super) const RADAU_INVERSE: [[f64; 3]; 3] = [
+    [3.224_744_871_391_589, 1.167_840_084_690_405_5, -0.253_197_264_742_180_83],
+    [-3.567_840_084_690_405_5, 0.775_255_128_608_411, 1.053_197_264_742_180_8],
+    [5.531_972_647_421_808, -7.531_972_647_421_808, 5.0],
+];
+
 /// The largest number of nodes of a step.
 pub const MAX_NODES: usize = 3;
 

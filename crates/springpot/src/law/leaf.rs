@@ -1,6 +1,9 @@
 //! The leaves of every law: spring, dashpot, springpot, and a force that an input commands.
 
-use super::{Derivative, InputValue, Law, Observation, Point, Power, Powers, Response, RuleError, Start, State, Step};
+use super::{
+    Derivative, InputValue, Law, Observation, Point, Power, Powers, Response, RuleError, Singular, Start, State, Step,
+};
+use crate::fractional::step::MAX_NODES;
 use crate::fractional::{Form, KernelError, Memory, Nodes, RatePolynomial};
 
 /// F = k·x. Stores ½k·x².
@@ -168,12 +171,24 @@ impl Law for Springpot {
     }
 
     fn respond(&self, step: &Step, state: &State) -> Response {
-        let affine = Self::memory(state).respond(&step.start(), step.nodes, step.form);
+        let memory = Self::memory(state);
+        let start = step.start();
+        let affine = memory.respond(&start, step.nodes, step.form);
+        let moments = match step.singular {
+            Singular::Moments if memory.is_singular() => memory.singular_moments(&start),
+            _ => [0.0; MAX_NODES],
+        };
         let mut response = Response::default();
         let count = step.nodes.count();
         for i in 0..count {
             let c = self.coefficient.at(step.point(i + 1).inputs).value;
             let mut derivative = affine.history[i];
+            if memory.is_singular() {
+                let value = memory.singular_part(step.t + step.nodes.positions()[i] * step.h);
+                let share = if step.singular == Singular::Moments { moments[i] } else { value };
+                derivative += share - value;
+                response.singular[i] = c * share;
+            }
             for j in 0..count {
                 derivative += affine.stroke[i][j] * (step.stroke[j + 1] - step.stroke[0]);
                 derivative += affine.rate[i][j] * step.rate[j + 1];

@@ -79,6 +79,17 @@ pub struct Step<'a> {
     pub inputs: &'a [InputValue],
     /// Rounding of the strokes, m: differences below it mean nothing.
     pub resolution: f64,
+    /// How a singular start enters the forces at the nodes.
+    pub singular: Singular,
+}
+
+/// How the singular part x(0) t^−alpha/Γ(1−alpha) of a Riemann–Liouville start enters the forces at the nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Singular {
+    /// By its value there.
+    Value,
+    /// By its moments over the step, so that impulses are exact ([`crate::fractional::Memory::singular_moments`]).
+    Moments,
 }
 
 impl<'a> Step<'a> {
@@ -140,6 +151,8 @@ pub struct Response {
     pub d_stroke: [[f64; MAX_NODES]; MAX_NODES],
     /// ∂F_i/∂x'_j, N·s/m.
     pub d_rate: [[f64; MAX_NODES]; MAX_NODES],
+    /// The share of a singular start in F_i, N.
+    pub singular: [f64; MAX_NODES],
 }
 
 /// Energy flows at one time, W.
@@ -194,6 +207,15 @@ pub trait Law: Send + Sync + std::fmt::Debug {
     /// The element at t_n + theta·h, 0 < theta ≤ 1, where its exact kinematics are those of `at`.
     fn observe(&self, _step: &Step, _theta: f64, at: &Point, state: &State) -> Observation {
         self.observe_start(at, state)
+    }
+
+    /// D^alpha x at t = 0 without the share of a singular start.
+    fn start_derivative(&self, at: &Point, derivative: Derivative) -> f64 {
+        match self.order() {
+            1.0 => at.rate,
+            0.0 if derivative == Derivative::RiemannLiouville => at.stroke,
+            _ => 0.0,
+        }
     }
 
     /// The element at t = 0.

@@ -65,6 +65,7 @@ impl Law for Parallel {
             let response = part.respond(step, state);
             for i in 0..step.nodes.count() {
                 sum.force[i] += response.force[i];
+                sum.singular[i] += response.singular[i];
                 for j in 0..step.nodes.count() {
                     sum.d_stroke[i][j] += response.d_stroke[i][j];
                     sum.d_rate[i][j] += response.d_rate[i][j];

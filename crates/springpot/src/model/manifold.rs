@@ -2,7 +2,7 @@
 
 use super::robot::Model;
 use super::spec::{JointKind, Limits};
-use crate::spatial::{Quaternion, Rotation, Vec3};
+use crate::spatial::{Motion, Quaternion, Rotation, Vec3};
 use std::f64::consts::{PI, TAU};
 
 /// Configurations q and the tangent vectors v between them. Joint by joint; slices of a wrong length panic.
@@ -10,7 +10,7 @@ impl Model {
     /// The configuration in which every joint stands at 0: floating joints at their origin, unturned.
     pub fn neutral(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.nq()];
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             match kind {
                 JointKind::Fixed | JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => {}
                 JointKind::Floating => q[self.q_range(j).end - 1] = 1.0,
@@ -25,7 +25,7 @@ impl Model {
     /// Source: Blanco-Claraco, A tutorial on SE(3) transformation parameterizations and on-manifold optimization, 2010.
     pub fn integrate_into(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
         out[..self.nq()].copy_from_slice(&q[..self.nq()]);
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             let (q, v) = (&mut out[self.q_range(j)], &v[self.v_range(j)]);
             match kind {
                 JointKind::Fixed => {}
@@ -54,7 +54,7 @@ impl Model {
     ///
     /// The shorter way round where there are two: the turn of a continuous or floating joint is at most π.
     pub fn difference_into(&self, from: &[f64], to: &[f64], v: &mut [f64]) {
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             let (from, to, v) = (&from[self.q_range(j)], &to[self.q_range(j)], &mut v[self.v_range(j)]);
             match kind {
                 JointKind::Fixed => {}
@@ -83,7 +83,7 @@ impl Model {
     /// Brings `q` back to the manifold, where it already is but for rounding: quaternions to length 1 (with qw ≥ 0), angles
     /// of continuous joints into (−π, π]. A quaternion of length 0 becomes NaN.
     pub fn normalise(&self, q: &mut [f64]) {
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             let q = &mut q[self.q_range(j)];
             match kind {
                 JointKind::Fixed | JointKind::Revolute | JointKind::Prismatic => {}
@@ -103,7 +103,7 @@ impl Model {
         let mut state = seed;
         let mut uniform = || splitmix(&mut state);
         let mut q = self.neutral();
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             let q = &mut q[self.q_range(j)];
             let Limits { lower, upper, .. } = *self.limits(j);
             let mut within = |reach: f64| {
@@ -127,9 +127,40 @@ impl Model {
         q
     }
 
+    /// How fast the tangent vector `xi` of q(t) = q_0 ⊕ ξ(t) changes while the robot has the velocities `v`: v itself for joints
+    /// of one degree; for a floating joint v + ½ \[ξ, v\] + A \[ξ, \[ξ, v\]\] + B \[ξ, … \[ξ, v\]\] (four brackets), singular at turns
+    /// of 2π. All slices are nv.
+    ///
+    /// Source: Bullo and Murray, Proportional derivative (PD) control on the Euclidean group, 1995 (the inverse of the
+    /// exponential's differential).
+    pub fn tangent_rate_into(&self, xi: &[f64], v: &[f64], rate: &mut [f64]) {
+        for (j, kind) in self.own_joints_and_kinds() {
+            let range = self.v_range(j);
+            let (xi, v, rate) = (&xi[range.clone()], &v[range.clone()], &mut rate[range]);
+            match kind {
+                JointKind::Fixed => {}
+                JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => rate[0] = v[0],
+                JointKind::Floating => {
+                    let twist = |v: &[f64]| Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) };
+                    let (xi, v) = (twist(xi), twist(v));
+                    let (second, fourth) = bracket_factors(xi.angular.norm());
+                    let once = xi.cross(v);
+                    let twice = xi.cross(once);
+                    let sum = v + once * 0.5 + twice * second + xi.cross(xi.cross(twice)) * fourth;
+                    rate[..3].copy_from_slice(&sum.linear.0);
+                    rate[3..].copy_from_slice(&sum.angular.0);
+                }
+            }
+        }
+    }
+
     /// The joints that have coordinates of their own.
-    fn own_joints(&self) -> impl Iterator<Item = (usize, JointKind)> + '_ {
-        (0..self.joint_count()).filter(|&j| self.followed(j).is_none()).map(|j| (j, self.joint_kind(j)))
+    pub fn own_joints(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.joint_count()).filter(|&j| self.followed(j).is_none())
+    }
+
+    fn own_joints_and_kinds(&self) -> impl Iterator<Item = (usize, JointKind)> + '_ {
+        self.own_joints().map(|j| (j, self.joint_kind(j)))
     }
 }
 
@@ -166,6 +197,22 @@ fn inverse_left_jacobian(omega: Vec3, u: Vec3) -> Vec3 {
     };
     let once = omega.cross(u);
     omega.cross(once).times_plus(second, once.times_plus(-0.5, u))
+}
+
+/// A and B of [`Model::tangent_rate_into`] for a turn of θ: with α = (θ/2) cot(θ/2) and β = (θ/2)²/sin²(θ/2),
+/// A = (2 (1 − α) + (α − β)/2)/θ², B = (1 − α + (α − β)/2)/θ⁴.
+fn bracket_factors(theta: f64) -> (f64, f64) {
+    let square = theta * theta;
+    if theta < 0.3 {
+        // 1/12 + O(θ⁴) and −1/720 + O(θ²), from the series of α and β.
+        let second = 1.0 / 12.0 - square * square * (1.0 / 30_240.0 + square * (1.0 / 604_800.0 + square / 15_966_720.0));
+        let fourth = -1.0 / 720.0 - square * (1.0 / 15_120.0 + square * (1.0 / 403_200.0 + square / 11_975_040.0));
+        return (second, fourth);
+    }
+    let half = 0.5 * theta;
+    let (alpha, beta) = (half / half.tan(), (half / half.sin()).powi(2));
+    let spread = 0.5 * (alpha - beta);
+    ((2.0 * (1.0 - alpha) + spread) / square, (1.0 - alpha + spread) / (square * square))
 }
 
 /// The next number in [0, 1) of Steele, Lea and Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.

@@ -1,6 +1,7 @@
 //! Motions given in advance: q, v, a as functions of time.
 
 mod attitude;
+mod forward;
 pub mod gripper_path;
 mod hermite;
 pub mod kinks;
@@ -8,6 +9,7 @@ mod prescribed;
 mod pseudo_inverse;
 mod task;
 
+pub use forward::{Drive, Forward};
 pub use gripper_path::{GripperPath, PathError};
 pub use prescribed::{JointPath, PosePath};
 
@@ -28,10 +30,13 @@ pub enum Motion {
     Prescribed(Vec<JointPath>),
     /// The gripper follows a path; the coordinates come from inverse kinematics.
     GripperPath(Box<GripperPath>),
+    /// The robot moves by itself.
+    Forward(Box<Forward>),
 }
 
 impl Motion {
-    /// q (nq values), v and a (nv values each) at t, and where the gripper should be.
+    /// q (nq values), v and a (nv values each) at t, and where the gripper should be. Of a robot that moves by itself: where it
+    /// starts, without acceleration.
     ///
     /// # Errors
     /// [`PathError`] where the gripper cannot follow its path.
@@ -49,6 +54,12 @@ impl Motion {
                 Ok(None)
             }
             Self::GripperPath(path) => path.at(model, t, q, v, a).map(Some),
+            Self::Forward(forward) => {
+                q.copy_from_slice(&forward.q);
+                v.copy_from_slice(&forward.v);
+                a.fill(0.0);
+                Ok(None)
+            }
         }
     }
 
@@ -60,7 +71,7 @@ impl Motion {
     /// Where and why the motion ends early, if it does.
     pub fn failure(&self) -> Option<PathError> {
         match self {
-            Self::Prescribed(_) => None,
+            Self::Prescribed(_) | Self::Forward(_) => None,
             Self::GripperPath(path) => path.failure(),
         }
     }
@@ -69,6 +80,7 @@ impl Motion {
         match self {
             Self::Prescribed(joints) => joints.iter().flat_map(JointPath::signals).collect(),
             Self::GripperPath(path) => path.signals().collect(),
+            Self::Forward(forward) => forward.drives.iter().flat_map(Drive::signals).collect(),
         }
     }
 

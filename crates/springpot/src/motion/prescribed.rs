@@ -34,15 +34,20 @@ impl JointPath {
 
 /// q (nq), v and a (nv) at t; `joints` are the joints that have coordinates of their own, in their order.
 pub(super) fn at(model: &Model, joints: &[JointPath], t: f64, q: &mut [f64], v: &mut [f64], a: &mut [f64]) {
-    let own = (0..model.joint_count()).filter(|&j| model.followed(j).is_none());
-    for (j, joint) in own.zip(joints) {
-        let (q, v, a) = (&mut q[model.q_range(j)], &mut v[model.v_range(j)], &mut a[model.v_range(j)]);
-        match joint {
-            JointPath::Coordinate(signal) => {
+    for (j, joint) in model.own_joints().zip(joints) {
+        joint.at(t, &mut q[model.q_range(j)], &mut v[model.v_range(j)], &mut a[model.v_range(j)]);
+    }
+}
+
+impl JointPath {
+    /// The joint's own coordinates, velocities and accelerations at t.
+    pub(crate) fn at(&self, t: f64, q: &mut [f64], v: &mut [f64], a: &mut [f64]) {
+        match self {
+            Self::Coordinate(signal) => {
                 let Jet { value, first, second } = signal.at(t);
                 (q[0], v[0], a[0]) = (value, first, second);
             }
-            JointPath::Pose(pose) => {
+            Self::Pose(pose) => {
                 let jets = [0, 1, 2].map(|k| pose.position[k].at(t));
                 let Attitude { rotation, quaternion, omega, alpha } = Attitude::at(&pose.rpy, t);
                 // Components in the body's axes: d(Rᵀ u)/dt = Rᵀ u̇ − Rᵀ ω × Rᵀ u.

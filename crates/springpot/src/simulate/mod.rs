@@ -8,7 +8,9 @@
 mod along;
 mod control;
 mod error;
+pub mod forward;
 mod ledger;
+mod lu;
 mod moment;
 mod on_grid;
 mod pose;

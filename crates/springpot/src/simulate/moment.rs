@@ -182,7 +182,7 @@ impl System {
 }
 
 impl Element {
-    fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {
+    pub(super) fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {
         for (row, input) in self.row.inputs.iter().zip(inputs) {
             if !input.value.is_finite() {
                 let what = format!("{}.{}", self.name, row.name);

@@ -4,7 +4,7 @@ use super::{ElementStep, Run, StepPowers};
 use crate::element::Element;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::fractional::{Form, Nodes};
-use crate::law::{Point, State, Step};
+use crate::law::{Point, Singular, State, Step};
 use crate::simulate::RunError;
 use crate::simulate::control::StepError;
 use crate::simulate::ledger::work_defect;
@@ -137,6 +137,7 @@ impl ElementStep {
             rate: &self.rate,
             inputs: &self.inputs,
             resolution: self.resolution,
+            singular: Singular::Value,
         }
     }
 }

@@ -1,0 +1,36 @@
+//! Robots that move by themselves: what they start from, and what drives their joints.
+
+use super::prescribed::JointPath;
+use crate::signal::Signal;
+
+/// A motion that follows from the equations of motion.
+#[derive(Debug, Clone)]
+pub struct Forward {
+    /// q(0), nq values.
+    pub q: Vec<f64>,
+    /// v(0), nv values.
+    pub v: Vec<f64>,
+    /// One for each joint that has coordinates of its own, in their order.
+    pub drives: Vec<Drive>,
+}
+
+/// What drives one joint.
+#[derive(Debug, Clone)]
+pub enum Drive {
+    /// An actuator force for each of its velocities, N·m or N.
+    Force(Vec<Signal>),
+    /// The joint moves as signals say, whatever force that takes.
+    Prescribed(JointPath),
+    /// The joint stays where it starts, whatever force that takes.
+    Locked,
+}
+
+impl Drive {
+    pub(super) fn signals(&self) -> Vec<&Signal> {
+        match self {
+            Self::Force(signals) => signals.iter().collect(),
+            Self::Prescribed(path) => path.signals(),
+            Self::Locked => Vec::new(),
+        }
+    }
+}

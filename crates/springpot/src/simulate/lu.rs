@@ -1,0 +1,87 @@
+//! Dense linear systems.
+
+/// An n × n matrix factorised by rows with partial pivoting.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lu {
+    n: usize,
+    entries: Vec<f64>,
+    order: Vec<usize>,
+    scratch: Vec<f64>,
+}
+
+impl Lu {
+    /// Factors the n × n matrix that `fill` writes row by row into zeros; `false` where it is singular or not finite.
+    pub(super) fn factor(&mut self, n: usize, fill: impl FnOnce(&mut [f64])) -> bool {
+        self.n = n;
+        self.entries.clear();
+        self.entries.resize(n * n, 0.0);
+        self.scratch.resize(n, 0.0);
+        self.order.clear();
+        self.order.extend(0..n);
+        fill(&mut self.entries);
+        let m = &mut self.entries;
+        for k in 0..n {
+            let size = |row: usize, m: &[f64]| m[row * n + k].abs();
+            let best = (k + 1..n).fold(k, |best, row| if size(row, m) > size(best, m) { row } else { best });
+            if !(size(best, m) > 0.0 && size(best, m).is_finite()) {
+                return false;
+            }
+            if best != k {
+                let (upper, lower) = m.split_at_mut(best * n);
+                upper[k * n..k * n + n].swap_with_slice(&mut lower[..n]);
+                self.order.swap(k, best);
+            }
+            let (upper, lower) = m.split_at_mut((k + 1) * n);
+            let pivot_row = &upper[k * n..];
+            let inverse = 1.0 / pivot_row[k];
+            for row in lower.chunks_exact_mut(n) {
+                let factor = row[k] * inverse;
+                row[k] = factor;
+                if factor != 0.0 {
+                    for (entry, pivot) in row[k + 1..].iter_mut().zip(&pivot_row[k + 1..]) {
+                        *entry -= factor * pivot;
+                    }
+                }
+            }
+        }
+        true
+    }
+
+    /// Solves in place: `x` holds the right-hand side before and the solution after.
+    pub(super) fn solve(&mut self, x: &mut [f64]) {
+        let n = self.n;
+        for (slot, &source) in self.scratch.iter_mut().zip(&self.order) {
+            *slot = x[source];
+        }
+        let y = &mut self.scratch;
+        for k in 0..n {
+            let sum: f64 = self.entries[k * n..k * n + k].iter().zip(y.iter()).map(|(l, y)| l * y).sum();
+            y[k] -= sum;
+        }
+        for k in (0..n).rev() {
+            let row = &self.entries[k * n..(k + 1) * n];
+            let sum: f64 = row[k + 1..].iter().zip(&y[k + 1..]).map(|(u, y)| u * y).sum();
+            y[k] = (y[k] - sum) / row[k];
+        }
+        x.copy_from_slice(y);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Lu;
+
+    #[test]
+    fn solves_and_tells_singular_matrices() {
+        let n = 7;
+        let entry = |r: usize, c: usize| ((3 * r + 5 * c * c) as f64).sin() + if r == (c + 3) % n { 4.0 } else { 0.0 };
+        let x: Vec<f64> = (0..n).map(|k| (k as f64).cos()).collect();
+        let mut y: Vec<f64> = (0..n).map(|r| (0..n).map(|c| entry(r, c) * x[c]).sum()).collect();
+        let mut lu = Lu::default();
+        assert!(lu.factor(n, |m| (0..n * n).for_each(|k| m[k] = entry(k / n, k % n))));
+        lu.solve(&mut y);
+        assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-14), "{y:?}");
+        assert!(!lu.factor(2, |m| m.copy_from_slice(&[1.0, 2.0, 2.0, 4.0])));
+        assert!(!lu.factor(1, |m| m[0] = f64::NAN));
+    }
+}
