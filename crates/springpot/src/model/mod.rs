@@ -25,6 +25,8 @@ mod mass_check;
 mod principal;
 mod robot;
 mod spec;
+#[cfg(feature = "urdf")]
+pub mod urdf;
 mod validate;
 
 pub use builder::ModelBuilder;
