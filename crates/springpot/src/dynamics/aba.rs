@@ -1,7 +1,9 @@
 //! Forward dynamics by the articulated-body algorithm.
 
-use super::{Kinematics, PairForce, Workspace, pair};
-use crate::model::{JointMotion, Model};
+use super::cholesky::{cholesky_into, cholesky_solve_into};
+use super::moments::motions_at_rest;
+use super::{Kinematics, PairForce, Workspace, add_wrench, crba_into, joint, pair};
+use crate::model::{DegreeMotion, JointMotion, Model};
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Scalar, Vec3};
 
 /// Accelerations a = M(q)⁻¹ (τ + ΣQ − C(q, v) v − g(q)), rad/s² or m/s², with Q_b = −F ∂l/∂q_b of every pair force.
@@ -18,12 +20,15 @@ pub fn aba_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     a: &mut [T],
 ) {
-    let n = model.nv();
-    let (v, tau, a) = (&kinematics.joint_velocities()[..n], &tau[..n], &mut a[..n]);
+    let (v, tau, a) = (kinematics.joint_velocities(), &tau[..model.nv()], &mut a[..model.nv()]);
+    if !model.is_free_of_followers() {
+        return coupled(model, kinematics, tau, pairs, workspace, a);
+    }
+    let (n, degrees) = (model.joint_count(), model.degrees());
     let ws = workspace;
     let (force, articulated) = (&mut ws.force[..=n], &mut ws.articulated[..n]);
-    let (bias, column) = (&mut ws.bias[..n], &mut ws.column[..n]);
-    let (inverse_pivot, effort) = (&mut ws.inverse_pivot[..n], &mut ws.effort[..n]);
+    let (bias, column) = (&mut ws.bias[..n], &mut ws.column[..degrees.len()]);
+    let (inverse_pivot, effort) = (&mut ws.inverse_pivot[..degrees.len()], &mut ws.effort[..degrees.len()]);
     force[0] = Force::ZERO;
     for j in 0..n {
         let (link, velocity) = (kinematics.link(j + 1), kinematics.link_velocity(j + 1));
@@ -31,12 +36,16 @@ pub fn aba_into<T: Scalar>(
         force[j + 1] = velocity.cross_force(inertia * velocity);
         articulated[j] = ArticulatedInertia::from_rigid(&inertia);
         // v × S q̇
-        let turning = link.rotation.z_axis() * v[j];
         bias[j] = match model.motion(j) {
             JointMotion::Revolute => {
+                let turning = link.rotation.z_axis() * joint::speed(model, j, v);
                 Motion { angular: velocity.angular.cross(turning), linear: velocity.linear.cross(turning) }
             }
-            JointMotion::Prismatic => Motion { angular: Vec3::ZERO, linear: velocity.angular.cross(turning) },
+            JointMotion::Prismatic => {
+                let sliding = link.rotation.z_axis() * joint::speed(model, j, v);
+                Motion { angular: Vec3::ZERO, linear: velocity.angular.cross(sliding) }
+            }
+            JointMotion::Floating => velocity.cross(joint::twist(model, j, v).rotated(&link.rotation)),
         };
     }
     for pair in pairs {
@@ -46,24 +55,26 @@ pub fn aba_into<T: Scalar>(
     }
     for j in (0..n).rev() {
         let link = kinematics.link(j + 1);
-        let (axis, inertia, load) = (link.rotation.z_axis(), articulated[j], force[j + 1]);
-        let (u, pivot, felt) = match model.motion(j) {
-            JointMotion::Revolute => {
-                let u = inertia.times_angular(axis);
-                (u, axis.dot(u.angular), axis.dot(load.angular))
+        let (mut inertia, mut load) = (articulated[j], force[j + 1]);
+        let own = model.degrees_of(j);
+        for k in own.clone().rev() {
+            let unit = joint::unit_motion(&degrees[k], link, Vec3::ZERO);
+            let u = match degrees[k].motion {
+                DegreeMotion::Turn(_) => inertia.times_angular(unit.angular),
+                DegreeMotion::Shift(_) => inertia.times_linear(unit.linear),
+            };
+            (column[k], inverse_pivot[k]) = (u, T::ONE / unit.dot(u));
+            effort[k] = tau[k] - unit.dot(load);
+            if k > own.start || model.parent_link(j) > 0 {
+                inertia = inertia.minus_outer(u, inverse_pivot[k]);
+                load += u * (effort[k] * inverse_pivot[k]);
             }
-            JointMotion::Prismatic => {
-                let u = inertia.times_linear(axis);
-                (u, axis.dot(u.linear), axis.dot(load.linear))
-            }
-        };
-        (column[j], inverse_pivot[j], effort[j]) = (u, T::ONE / pivot, tau[j] - felt);
+        }
         if let Some(parent) = model.parent_link(j).checked_sub(1) {
             let arm = link.translation - kinematics.link(parent + 1).translation;
-            let yielding = inertia.minus_outer(u, inverse_pivot[j]);
-            let carried = load + yielding.times(bias[j]) + u * (effort[j] * inverse_pivot[j]);
+            let carried = load + inertia.times(bias[j]);
             force[parent + 1] += carried.shifted(arm);
-            articulated[parent] += yielding.shifted(arm);
+            articulated[parent] += inertia.shifted(arm);
         }
     }
     let acceleration = &mut ws.acceleration[..=n];
@@ -72,14 +83,44 @@ pub fn aba_into<T: Scalar>(
         let (link, parent) = (kinematics.link(j + 1), model.parent_link(j));
         let arm = link.translation - kinematics.link(parent).translation;
         let mut here = acceleration[parent].shifted(arm) + bias[j];
-        a[j] = (effort[j] - here.dot(column[j])) * inverse_pivot[j];
-        let along = link.rotation.z_axis() * a[j];
-        match model.motion(j) {
-            JointMotion::Revolute => here.angular += along,
-            JointMotion::Prismatic => here.linear += along,
+        for k in model.degrees_of(j) {
+            a[k] = (effort[k] - here.dot(column[k])) * inverse_pivot[k];
+            here += joint::unit_motion(&degrees[k], link, Vec3::ZERO) * a[k];
         }
         acceleration[j + 1] = here;
     }
+}
+
+/// Where joints follow one another, the forces of several branches meet in one coordinate: M a = τ − (C v + g − ΣQ), with M
+/// factorised.
+fn coupled<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    tau: &[T],
+    pairs: &[PairForce<T>],
+    workspace: &mut Workspace<T>,
+    a: &mut [T],
+) {
+    motions_at_rest(model, kinematics, workspace);
+    a.copy_from_slice(tau);
+    for j in (0..model.joint_count()).rev() {
+        let load = workspace.force[j + 1];
+        for k in model.degrees_of(j) {
+            a[model.degrees()[k].index] -= workspace.unit[k].dot(load);
+        }
+        workspace.force[model.parent_link(j)] += load;
+    }
+    for pair in pairs {
+        let pull = pair::pull(pair, |site| kinematics.position(site));
+        for (site, force) in [(&pair.from, pull), (&pair.to, -pull)] {
+            add_wrench(model, kinematics, site, Force { linear: force, angular: Vec3::ZERO }, a);
+        }
+    }
+    let mut mass = std::mem::take(&mut workspace.mass);
+    crba_into(model, kinematics, workspace, &mut mass);
+    cholesky_into(model, &mut mass);
+    cholesky_solve_into(model, &mass, a);
+    workspace.mass = mass;
 }
 
 /// [`aba_into`] at `q` (nq), `v`, `tau` (nv), allocating.

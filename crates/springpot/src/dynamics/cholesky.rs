@@ -1,6 +1,6 @@
 //! The mass matrix factorised along the tree, and what follows from it.
 
-use super::{Kinematics, Workspace, crba_into, joint};
+use super::{Kinematics, Workspace, crba_into};
 use crate::model::Model;
 use crate::spatial::Scalar;
 
@@ -19,9 +19,9 @@ pub fn cholesky_into<T: Scalar>(model: &Model, mass: &mut [T]) {
         let row = &mut rest[..n];
         let inverse = T::ONE / row[k];
         // Entries of row k inwards of i are still unscaled when i takes its turn.
-        for i in joint::path_to_world(model, model.parent_link(k)) {
+        for i in pivots(model, model.pivot(k)) {
             let factor = row[i] * inverse;
-            for j in joint::path_to_world(model, i + 1) {
+            for j in pivots(model, i + 1) {
                 above[i * n + j] -= factor * row[j];
             }
             row[i] = factor;
@@ -46,7 +46,7 @@ fn solve_rows<T: Scalar>(model: &Model, factor: &[T], width: usize, x: &mut [T])
     for k in (0..n).rev() {
         let (before, rest) = x.split_at_mut(k * width);
         let row = &mut rest[..width];
-        for j in joint::path_to_world(model, model.parent_link(k)) {
+        for j in pivots(model, model.pivot(k)) {
             subtract(&mut before[j * width..][..width], factor[k * n + j], row);
         }
         let inverse = T::ONE / factor[k * n + k];
@@ -57,7 +57,7 @@ fn solve_rows<T: Scalar>(model: &Model, factor: &[T], width: usize, x: &mut [T])
     for k in 0..n {
         let (before, rest) = x.split_at_mut(k * width);
         let row = &mut rest[..width];
-        for j in joint::path_to_world(model, model.parent_link(k)) {
+        for j in pivots(model, model.pivot(k)) {
             subtract(row, factor[k * n + j], &before[j * width..][..width]);
         }
     }
@@ -76,7 +76,7 @@ pub fn inverse_from_cholesky_into<T: Scalar>(model: &Model, factor: &[T], invers
         let (before, rest) = inverse.split_at_mut(k * n);
         let row = &mut rest[k..n];
         row[0] = T::ONE;
-        for j in joint::path_to_world(model, model.parent_link(k)) {
+        for j in pivots(model, model.pivot(k)) {
             subtract(&mut before[j * n + k..][..n - k], factor[k * n + j], row);
         }
         let pivot = T::ONE / factor[k * n + k];
@@ -87,7 +87,7 @@ pub fn inverse_from_cholesky_into<T: Scalar>(model: &Model, factor: &[T], invers
     for k in 0..n {
         let (before, rest) = inverse.split_at_mut(k * n);
         let row = &mut rest[k..n];
-        for j in joint::path_to_world(model, model.parent_link(k)) {
+        for j in pivots(model, model.pivot(k)) {
             subtract(row, factor[k * n + j], &before[j * n + k..][..n - k]);
         }
     }
@@ -119,6 +119,12 @@ pub fn mass_inverse<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec
     let (mut factor, mut inverse) = (vec![T::ZERO; n * n], vec![T::ZERO; n * n]);
     mass_inverse_into(model, kinematics, &mut Workspace::new(model), &mut factor, &mut inverse);
     inverse
+}
+
+/// The velocities that the elimination touches, from the one before `start` on.
+#[inline]
+fn pivots(model: &Model, start: usize) -> impl Iterator<Item = usize> + '_ {
+    std::iter::successors(start.checked_sub(1), |&i| model.pivot(i).checked_sub(1))
 }
 
 /// row −= factor · other.

@@ -1,8 +1,8 @@
 //! The centre of mass.
 
 use super::gravity::first_moments_beyond;
-use super::{Kinematics, Workspace};
-use crate::model::{JointMotion, Model};
+use super::{Kinematics, Workspace, joint};
+use crate::model::Model;
 use crate::spatial::{Scalar, Vec3};
 
 /// World position of the centre of mass of all that moves, m; needs positions. Does not allocate.
@@ -10,7 +10,7 @@ use crate::spatial::{Scalar, Vec3};
 /// Bodies fixed to the world are left out. NaN for a robot without mass (one that has inertia tensors only).
 pub fn com<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec3<T> {
     let (mut first, mut mass) = (Vec3::ZERO, 0.0);
-    for j in 0..model.nv() {
+    for j in 0..model.joint_count() {
         let (link, inertia) = (kinematics.link(j + 1), model.link_inertia(j));
         let own = link.rotation * Vec3::from_f64(inertia.first_moment);
         first += link.translation.times_plus(T::from_f64(inertia.mass), own);
@@ -31,18 +31,17 @@ pub fn com_jacobian_into<T: Scalar>(
 ) {
     let n = model.nv();
     assert_eq!(jacobian.len(), 3 * n, "the Jacobian is 3 x nv");
-    let first = &mut workspace.columns[..n];
+    let joints = model.joint_count();
+    let first = &mut workspace.columns[..joints];
     first_moments_beyond(model, kinematics, first);
-    let total: f64 = (0..n).filter(|&j| model.parent_link(j) == 0).map(|j| model.subtree_mass(j)).sum();
+    let total: f64 = (0..joints).filter(|&j| model.parent_link(j) == 0).map(|j| model.subtree_mass(j)).sum();
     let inverse = T::ONE / T::from_f64(total);
-    for j in 0..n {
-        let axis = kinematics.link(j + 1).rotation.z_axis();
-        let column = match model.motion(j) {
-            JointMotion::Revolute => axis.cross(first[j]) * inverse,
-            JointMotion::Prismatic => axis * (T::from_f64(model.subtree_mass(j)) * inverse),
-        };
-        let [x, y, z] = column.0;
-        (jacobian[j], jacobian[n + j], jacobian[2 * n + j]) = (x, y, z);
+    jacobian.fill(T::ZERO);
+    for degree in model.degrees() {
+        let moved = joint::first_moment_column(model, degree, kinematics.link(degree.link), first[degree.link - 1]);
+        for (row, entry) in (moved * inverse).0.into_iter().enumerate() {
+            jacobian[row * n + degree.index] += entry;
+        }
     }
 }
 

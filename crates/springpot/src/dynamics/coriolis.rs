@@ -1,12 +1,12 @@
 //! The Coriolis matrix.
 
-use super::moments::{Sway, reference, unit_motion};
+use super::moments::motions_at_rest;
 use super::{Kinematics, Workspace, joint};
 use crate::model::Model;
-use crate::spatial::{Inertia, Motion, Scalar};
+use crate::spatial::Scalar;
 
 /// Coriolis matrix C(q, v), so that C v are the Coriolis and centrifugal forces and Ṁ − 2 C is antisymmetric: the one that
-/// belongs to the Christoffel symbols, C_ca = Γ_ab,c v^b.
+/// belongs to the Christoffel symbols, C_ca = Γ_ab,c v^b, where all joints have one degree.
 ///
 /// C = Σ_i J_iᵀ (I_i J̇_i + B_i J_i) with B_i = ½((v_i×*) I_i − I_i (v_i×) + (I_i v_i)×̄*) and (f×̄*) w = w ×* f, world axes.
 /// `coriolis` is nv × nv, row-major (all entries are written); needs velocities. Source: Echeandia and Wensing, Numerical
@@ -17,35 +17,27 @@ pub fn coriolis_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     coriolis: &mut [T],
 ) {
-    let n = model.nv();
+    let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(coriolis.len(), n * n, "the Coriolis matrix is nv x nv");
     coriolis.fill(T::ZERO);
     if n == 0 {
         return;
     }
-    let origin = reference(kinematics);
-    let v = kinematics.joint_velocities();
+    motions_at_rest(model, kinematics, workspace);
     let ws = workspace;
-    ws.velocity[0] = Motion::ZERO;
-    for j in 0..n {
-        let (link, parent) = (kinematics.link(j + 1), model.parent_link(j));
-        let arm = link.translation - origin;
-        let unit = unit_motion(model, j, link, arm);
-        // A joint's axis is fixed in its parent too, so that J̇ = v_parent × J.
-        ws.unit_rate[j] = ws.velocity[parent].cross(unit);
-        let velocity = ws.velocity[parent] + unit * v[j];
-        let inertia = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation).shifted(arm);
-        ws.sway[j] = Sway::new(&inertia, velocity, inertia * velocity);
-        (ws.unit[j], ws.velocity[j + 1], ws.composite[j]) = (unit, velocity, inertia);
-    }
-    for j in (0..n).rev() {
-        let (unit, rate, composite, sway) = (ws.unit[j], ws.unit_rate[j], ws.composite[j], ws.sway[j]);
-        let column = composite * rate + sway.times(unit.angular);
-        let (momentum, transposed) = (composite * unit, sway.transposed_times(unit));
-        coriolis[j * n + j] = unit.dot(column);
-        for k in joint::path_to_world(model, model.parent_link(j)) {
-            coriolis[k * n + j] = ws.unit[k].dot(column);
-            coriolis[j * n + k] = ws.unit_rate[k].dot(momentum) + ws.unit[k].angular.dot(transposed);
+    for j in (0..model.joint_count()).rev() {
+        let (composite, sway) = (ws.composite[j], ws.sway[j]);
+        for k in model.degrees_of(j) {
+            let (unit, rate) = (ws.unit[k], ws.unit_own_rate[k]);
+            let column = composite * rate + sway.times(unit.angular);
+            let (momentum, transposed) = (composite * unit, sway.transposed_times(unit));
+            let own = degrees[k].index;
+            coriolis[own * n + own] += unit.dot(column);
+            for c in joint::carriers(model, k) {
+                let carrier = degrees[c].index;
+                coriolis[carrier * n + own] += ws.unit[c].dot(column);
+                coriolis[own * n + carrier] += ws.unit_own_rate[c].dot(momentum) + ws.unit[c].angular.dot(transposed);
+            }
         }
         if let Some(parent) = model.parent_link(j).checked_sub(1) {
             ws.composite[parent] += composite;

@@ -1,8 +1,8 @@
 //! The mass matrix by composite inertias.
 
 use super::{Kinematics, Workspace, joint};
-use crate::model::{JointMotion, Model};
-use crate::spatial::{Force, Inertia, Scalar, Vec3};
+use crate::model::{DegreeMotion, Model};
+use crate::spatial::{Inertia, Scalar, Vec3};
 
 /// Mass matrix M(q), the basic metric tensor a_ab = Σ_i m_i T_a(C_i)·T_b(C_i) + Om_a·J_i Om_b.
 ///
@@ -10,25 +10,28 @@ use crate::spatial::{Force, Inertia, Scalar, Vec3};
 /// a, column b is the momentum of all that joint b carries when it moves at unit speed, and a_ab is what joint a feels of it;
 /// joints on different branches do not couple.
 pub fn crba_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace: &mut Workspace<T>, mass: &mut [T]) {
-    let n = model.nv();
+    let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(mass.len(), n * n, "the mass matrix is nv x nv");
     composites(model, kinematics, &mut workspace.composite);
     mass.fill(T::ZERO);
-    for b in 0..n {
-        let link = kinematics.link(b + 1);
-        let momentum = unit_momentum(model, b, link.rotation.z_axis(), &workspace.composite[b]);
-        for a in joint::path_to_world(model, b + 1) {
-            let carrier = kinematics.link(a + 1);
-            let axis = carrier.rotation.z_axis();
-            let entry = match model.motion(a) {
-                JointMotion::Revolute => {
+    for (k, degree) in degrees.iter().enumerate() {
+        let link = kinematics.link(degree.link);
+        let momentum = workspace.composite[degree.link - 1] * joint::unit_motion(degree, link, Vec3::ZERO);
+        for c in joint::inwards(model, k + 1, 0) {
+            let carrier = kinematics.link(degrees[c].link);
+            let unit = joint::unit_motion(&degrees[c], carrier, Vec3::ZERO);
+            let entry = match degrees[c].motion {
+                DegreeMotion::Turn(_) => {
                     let arm = link.translation - carrier.translation;
-                    axis.dot(momentum.angular + arm.cross(momentum.linear))
+                    unit.angular.dot(momentum.angular + arm.cross(momentum.linear))
                 }
-                JointMotion::Prismatic => axis.dot(momentum.linear),
+                DegreeMotion::Shift(_) => unit.linear.dot(momentum.linear),
             };
-            mass[a * n + b] = entry;
-            mass[b * n + a] = entry;
+            let (row, column) = (degrees[c].index, degree.index);
+            mass[row * n + column] += entry;
+            if c != k {
+                mass[column * n + row] += entry;
+            }
         }
     }
 }
@@ -43,7 +46,7 @@ pub fn crba<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec<T> {
 
 /// The inertia of all that each joint carries, about the joint's own origin, in world axes.
 pub(super) fn composites<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, composite: &mut [Inertia<T>]) {
-    let n = model.nv();
+    let n = model.joint_count();
     let composite = &mut composite[..n];
     for j in 0..n {
         composite[j] = Inertia::from_f64(model.link_inertia(j)).rotated(&kinematics.link(j + 1).rotation);
@@ -54,14 +57,5 @@ pub(super) fn composites<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, c
             let carried = composite[j].shifted(arm);
             composite[parent] += carried;
         }
-    }
-}
-
-/// Momentum, about the joint's origin, of a body that the joint moves at unit speed along or about `axis`.
-#[inline]
-fn unit_momentum<T: Scalar>(model: &Model, j: usize, axis: Vec3<T>, inertia: &Inertia<T>) -> Force<T> {
-    match model.motion(j) {
-        JointMotion::Revolute => Force { linear: axis.cross(inertia.first_moment), angular: inertia.rotational * axis },
-        JointMotion::Prismatic => Force { linear: axis * inertia.mass, angular: inertia.first_moment.cross(axis) },
     }
 }

@@ -7,7 +7,7 @@ use crate::spatial::{Inertia, Motion, Scalar, Vec3};
 /// Kinetic energy T = ½ vᵀ M v, J; needs velocities. Does not allocate.
 pub fn kinetic_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T {
     let mut twice = T::ZERO;
-    for j in 0..model.nv() {
+    for j in 0..model.joint_count() {
         let rotation = &kinematics.link(j + 1).rotation;
         let Motion { angular, linear } = kinematics.link_velocity(j + 1);
         let velocity = Motion { angular: rotation.unrotate(angular), linear: rotation.unrotate(linear) };
@@ -21,7 +21,7 @@ pub fn kinetic_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T
 /// Bodies fixed to the world add a constant, which is left out.
 pub fn potential_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T {
     let mut first = Vec3::ZERO;
-    for j in 0..model.nv() {
+    for j in 0..model.joint_count() {
         let (link, inertia) = (kinematics.link(j + 1), Inertia::<T>::from_f64(model.link_inertia(j)));
         first += link.translation.times_plus(inertia.mass, link.rotation * inertia.first_moment);
     }

@@ -1,7 +1,7 @@
 //! Jacobian of a frame and its time derivative: six rows, world-aligned at the frame.
 
 use super::{Kinematics, joint};
-use crate::model::{Frame, JointMotion, Model};
+use crate::model::{Frame, Model};
 use crate::spatial::{Scalar, Vec3};
 
 /// Jacobian of a frame, (dr_O/dt, ω) = J v: linear rows of the frame's origin O first, then angular ones, both in world axes.
@@ -10,10 +10,11 @@ use crate::spatial::{Scalar, Vec3};
 pub fn frame_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, frame: &Frame, jacobian: &mut [T]) {
     let n = clear(model, jacobian);
     let origin = kinematics.frame(frame).translation;
-    for j in joint::path_to_world(model, frame.link()) {
-        let link = kinematics.link(j + 1);
-        let (linear, angular) = (joint::point_column(model, j, link, origin), joint::angular_column(model, j, link));
-        set_column(jacobian, n, j, linear, angular);
+    for k in joint::path_to_world(model, frame.link()) {
+        let degree = &model.degrees()[k];
+        let link = kinematics.link(degree.link);
+        let (linear, angular) = (joint::point_column(degree, link, origin), joint::angular_column(degree, link));
+        add_column(jacobian, n, degree.index, linear, angular);
     }
 }
 
@@ -33,17 +34,12 @@ pub fn frame_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematic
     let carrier = kinematics.link(frame.link());
     let arm = carrier.rotation * Vec3::from_f64(frame.placement().translation);
     let (origin, velocity) = (carrier.translation + arm, kinematics.link_velocity(frame.link()).shifted(arm).linear);
-    for j in joint::path_to_world(model, frame.link()) {
-        let (link, motion) = (kinematics.link(j + 1), kinematics.link_velocity(j + 1));
-        let axis = link.rotation.z_axis();
-        let axis_rate = motion.angular.cross(axis);
-        let (linear, angular) = match model.motion(j) {
-            JointMotion::Revolute => {
-                (axis_rate.cross(origin - link.translation) + axis.cross(velocity - motion.linear), axis_rate)
-            }
-            JointMotion::Prismatic => (axis_rate, Vec3::ZERO),
-        };
-        set_column(rate, n, j, linear, angular);
+    for k in joint::path_to_world(model, frame.link()) {
+        let degree = &model.degrees()[k];
+        let (link, motion) = (kinematics.link(degree.link), kinematics.link_velocity(degree.link));
+        let linear = joint::point_column_rate(degree, link, motion, origin, velocity);
+        let angular = motion.angular.cross(joint::angular_column(degree, link));
+        add_column(rate, n, degree.index, linear, angular);
     }
 }
 
@@ -63,8 +59,8 @@ fn clear<T: Scalar>(model: &Model, matrix: &mut [T]) -> usize {
 }
 
 #[inline]
-fn set_column<T: Scalar>(matrix: &mut [T], n: usize, column: usize, linear: Vec3<T>, angular: Vec3<T>) {
+fn add_column<T: Scalar>(matrix: &mut [T], n: usize, column: usize, linear: Vec3<T>, angular: Vec3<T>) {
     for (row, entry) in linear.0.into_iter().chain(angular.0).enumerate() {
-        matrix[row * n + column] = entry;
+        matrix[row * n + column] += entry;
     }
 }

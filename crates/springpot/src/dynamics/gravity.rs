@@ -1,7 +1,7 @@
 //! The gravity vector.
 
-use super::{Kinematics, Workspace};
-use crate::model::{JointMotion, Model};
+use super::{Kinematics, Workspace, joint};
+use crate::model::Model;
 use crate::spatial::{Scalar, Vec3};
 
 /// Gravity vector g(q) = ∂V/∂q = −Σ_i m_i g·T_c(C_i), N·m or N, on the side of the inertia forces: the generalized force of
@@ -10,17 +10,14 @@ use crate::spatial::{Scalar, Vec3};
 /// `out` is nv; needs positions. A joint feels the weight of all it carries: −Om·(H × g) or −m e·g, with the first moments H
 /// about the joint's origin.
 pub fn gravity_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace: &mut Workspace<T>, out: &mut [T]) {
-    let n = model.nv();
-    let out = &mut out[..n];
+    let out = &mut out[..model.nv()];
     let field = Vec3::from_f64(model.gravity().into());
-    let first = &mut workspace.columns[..n];
+    let first = &mut workspace.columns[..model.joint_count()];
     first_moments_beyond(model, kinematics, first);
-    for j in 0..n {
-        let axis = kinematics.link(j + 1).rotation.z_axis();
-        out[j] = -match model.motion(j) {
-            JointMotion::Revolute => axis.dot(first[j].cross(field)),
-            JointMotion::Prismatic => axis.dot(field) * T::from_f64(model.subtree_mass(j)),
-        };
+    out.fill(T::ZERO);
+    for degree in model.degrees() {
+        let moved = joint::first_moment_column(model, degree, kinematics.link(degree.link), first[degree.link - 1]);
+        out[degree.index] -= moved.dot(field);
     }
 }
 
@@ -33,7 +30,7 @@ pub fn gravity<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec<T> {
 
 /// First moments of all that each joint carries, about the joint's own origin, in world axes, kg·m.
 pub(super) fn first_moments_beyond<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, first: &mut [Vec3<T>]) {
-    let n = model.nv();
+    let n = model.joint_count();
     let first = &mut first[..n];
     for j in 0..n {
         first[j] = kinematics.link(j + 1).rotation * Vec3::from_f64(model.link_inertia(j).first_moment);

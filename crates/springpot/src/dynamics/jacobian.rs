@@ -1,7 +1,7 @@
 //! Jacobians of points and of the angular velocity, and their time derivatives.
 
 use super::{Kinematics, joint};
-use crate::model::{JointMotion, Model, Site};
+use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
 
 /// Jacobian of a point, dr_P/dt = J v: column b is T_b(P) = e_b × (r_P − O_b) (revolute) or e_b (prismatic), and 0 for the
@@ -11,8 +11,9 @@ use crate::spatial::{Scalar, Vec3};
 pub fn point_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, jacobian: &mut [T]) {
     let n = clear(model, jacobian);
     let point = kinematics.position(site);
-    for j in joint::path_to_world(model, site.link()) {
-        set_column(jacobian, n, j, joint::point_column(model, j, kinematics.link(j + 1), point));
+    for k in joint::path_to_world(model, site.link()) {
+        let degree = &model.degrees()[k];
+        add_column(jacobian, n, degree.index, joint::point_column(degree, kinematics.link(degree.link), point));
     }
 }
 
@@ -30,17 +31,10 @@ pub fn point_jacobian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site
 pub fn point_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, rate: &mut [T]) {
     let n = clear(model, rate);
     let (position, velocity) = (kinematics.position(site), kinematics.velocity(site));
-    for j in joint::path_to_world(model, site.link()) {
-        let (link, motion) = (kinematics.link(j + 1), kinematics.link_velocity(j + 1));
-        let axis = link.rotation.z_axis();
-        let axis_rate = motion.angular.cross(axis);
-        let column = match model.motion(j) {
-            JointMotion::Revolute => {
-                axis_rate.cross(position - link.translation) + axis.cross(velocity - motion.linear)
-            }
-            JointMotion::Prismatic => axis_rate,
-        };
-        set_column(rate, n, j, column);
+    for k in joint::path_to_world(model, site.link()) {
+        let degree = &model.degrees()[k];
+        let (link, motion) = (kinematics.link(degree.link), kinematics.link_velocity(degree.link));
+        add_column(rate, n, degree.index, joint::point_column_rate(degree, link, motion, position, velocity));
     }
 }
 
@@ -57,8 +51,9 @@ pub fn point_jacobian_rate<T: Scalar>(model: &Model, kinematics: &Kinematics<T>,
 /// `jacobian` is 3 × nv, row-major; needs positions. The point of the site has no influence.
 pub fn angular_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, jacobian: &mut [T]) {
     let n = clear(model, jacobian);
-    for j in joint::path_to_world(model, site.link()) {
-        set_column(jacobian, n, j, joint::angular_column(model, j, kinematics.link(j + 1)));
+    for k in joint::path_to_world(model, site.link()) {
+        let degree = &model.degrees()[k];
+        add_column(jacobian, n, degree.index, joint::angular_column(degree, kinematics.link(degree.link)));
     }
 }
 
@@ -74,9 +69,10 @@ pub fn angular_jacobian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, si
 /// `rate` is 3 × nv, row-major; needs velocities.
 pub fn angular_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, rate: &mut [T]) {
     let n = clear(model, rate);
-    for j in joint::path_to_world(model, site.link()) {
-        let axis = joint::angular_column(model, j, kinematics.link(j + 1));
-        set_column(rate, n, j, kinematics.link_velocity(j + 1).angular.cross(axis));
+    for k in joint::path_to_world(model, site.link()) {
+        let degree = &model.degrees()[k];
+        let axis = joint::angular_column(degree, kinematics.link(degree.link));
+        add_column(rate, n, degree.index, kinematics.link_velocity(degree.link).angular.cross(axis));
     }
 }
 
@@ -96,9 +92,9 @@ fn clear<T: Scalar>(model: &Model, matrix: &mut [T]) -> usize {
 }
 
 #[inline]
-fn set_column<T: Scalar>(matrix: &mut [T], n: usize, column: usize, v: Vec3<T>) {
+fn add_column<T: Scalar>(matrix: &mut [T], n: usize, column: usize, v: Vec3<T>) {
     let [x, y, z] = v.0;
-    matrix[column] = x;
-    matrix[n + column] = y;
-    matrix[2 * n + column] = z;
+    matrix[column] += x;
+    matrix[n + column] += y;
+    matrix[2 * n + column] += z;
 }

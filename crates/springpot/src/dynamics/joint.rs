@@ -1,59 +1,160 @@
-//! What a joint does, in the z-aligned frame of its link: the only place besides the recursions that tells joints apart.
+//! What a joint does: the only place besides the recursions that tells joints apart.
 
-use crate::model::{JointMotion, Model};
-use crate::spatial::{Placement, Scalar, Vec3};
+use crate::model::{Axis, Degree, DegreeMotion, JointMotion, Model};
+use crate::spatial::{Motion, Placement, Rotation, Scalar, Vec3};
 
-/// The link frame of joint `j` at coordinate `q` in the frame of its parent link.
+/// The coordinate of a joint of one degree.
 #[inline]
-pub(super) fn placement<T: Scalar>(model: &Model, j: usize, q: T) -> Placement<T> {
+pub(super) fn coordinate<T: Scalar>(model: &Model, j: usize, q: &[T]) -> T {
+    let own = model.coordinates(j);
+    q[own.q].times_plus(T::from_f64(own.ratio), T::from_f64(own.offset))
+}
+
+/// The velocity (or acceleration) of a joint of one degree.
+#[inline]
+pub(super) fn speed<T: Scalar>(model: &Model, j: usize, v: &[T]) -> T {
+    let own = model.coordinates(j);
+    v[own.v] * T::from_f64(own.ratio)
+}
+
+/// The velocity (or acceleration) of a floating joint, in the axes of its link.
+#[inline]
+pub(super) fn twist<T: Scalar>(model: &Model, j: usize, v: &[T]) -> Motion<T> {
+    let first = model.coordinates(j).v;
+    let v = &v[first..first + 6];
+    Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) }
+}
+
+/// The link frame of joint `j` at `q` in the frame of its parent link.
+#[inline]
+pub(super) fn placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placement<T> {
     let at_zero = Placement::from_f64(model.joint_placement(j));
     match model.motion(j) {
         JointMotion::Revolute => {
-            let (sin, cos) = q.sin_cos();
+            let (sin, cos) = coordinate(model, j, q).sin_cos();
             Placement { rotation: at_zero.rotation.turned_about_z(sin, cos), ..at_zero }
         }
         JointMotion::Prismatic => {
-            Placement { translation: at_zero.rotation.z_axis().times_plus(q, at_zero.translation), ..at_zero }
+            let shift = coordinate(model, j, q);
+            Placement { translation: at_zero.rotation.z_axis().times_plus(shift, at_zero.translation), ..at_zero }
         }
+        JointMotion::Floating => at_zero * floating_placement(model, j, q),
     }
 }
 
-/// ∂r_P/∂q_j = T_j(P) for a point P that the joint carries: e × (r_P − O) or e, with the joint's axis e and origin O.
+fn floating_placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placement<T> {
+    let first = model.coordinates(j).q;
+    let q = &q[first..first + 7];
+    Placement {
+        rotation: Rotation::from_quaternion_components([q[3], q[4], q[5], q[6]]),
+        translation: Vec3([q[0], q[1], q[2]]),
+    }
+}
+
+/// The axis of a degree of freedom in world axes, as long as its ratio, and whether it turns about it.
 #[inline]
-pub(super) fn point_column<T: Scalar>(model: &Model, j: usize, link: &Placement<T>, point: Vec3<T>) -> Vec3<T> {
-    let axis = link.rotation.z_axis();
-    match model.motion(j) {
-        JointMotion::Revolute => axis.cross(point - link.translation),
-        JointMotion::Prismatic => axis,
-    }
+fn axis<T: Scalar>(degree: &Degree, link: &Placement<T>) -> (Vec3<T>, bool) {
+    let (axis, turns) = match degree.motion {
+        DegreeMotion::Turn(axis) => (axis, true),
+        DegreeMotion::Shift(axis) => (axis, false),
+    };
+    let axis = match axis {
+        Axis::Z => link.rotation.z_axis(),
+        Axis::Y => link.rotation.column(1),
+        Axis::X => link.rotation.column(0),
+    };
+    (axis * T::from_f64(degree.ratio), turns)
 }
 
-/// ∂ω/∂v_j = Om_j of a link that the joint carries: e for a revolute joint, else 0.
+/// The motion of the degree's link at unit velocity, at a point from which the link's origin is seen at `arm`; world axes.
 #[inline]
-pub(super) fn angular_column<T: Scalar>(model: &Model, j: usize, link: &Placement<T>) -> Vec3<T> {
-    match model.motion(j) {
-        JointMotion::Revolute => link.rotation.z_axis(),
-        JointMotion::Prismatic => Vec3::ZERO,
+pub(super) fn unit_motion<T: Scalar>(degree: &Degree, link: &Placement<T>, arm: Vec3<T>) -> Motion<T> {
+    match axis(degree, link) {
+        (axis, true) => Motion { angular: axis, linear: arm.cross(axis) },
+        (axis, false) => Motion { angular: Vec3::ZERO, linear: axis },
     }
 }
 
-/// The joints that carry `link`, from the link to the world.
+/// ∂r_P/∂q_k = T_k(P) for a point P that degree k carries: e × (r_P − O) or e, with its axis e and the link's origin O.
+#[inline]
+pub(super) fn point_column<T: Scalar>(degree: &Degree, link: &Placement<T>, point: Vec3<T>) -> Vec3<T> {
+    match axis(degree, link) {
+        (axis, true) => axis.cross(point - link.translation),
+        (axis, false) => axis,
+    }
+}
+
+/// dT_k(P)/dt, where the link turns with `motion.angular` and its origin moves with `motion.linear`, and P moves with
+/// `velocity`.
+#[inline]
+pub(super) fn point_column_rate<T: Scalar>(
+    degree: &Degree,
+    link: &Placement<T>,
+    motion: Motion<T>,
+    point: Vec3<T>,
+    velocity: Vec3<T>,
+) -> Vec3<T> {
+    match axis(degree, link) {
+        (axis, true) => {
+            let rate = motion.angular.cross(axis);
+            rate.cross(point - link.translation) + axis.cross(velocity - motion.linear)
+        }
+        (axis, false) => motion.angular.cross(axis),
+    }
+}
+
+/// ∂ω/∂v_k = Om_k of a link that degree k carries: its axis e if it turns, else 0.
+#[inline]
+pub(super) fn angular_column<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
+    match axis(degree, link) {
+        (axis, true) => axis,
+        (_, false) => Vec3::ZERO,
+    }
+}
+
+/// ∂(m r_C)/∂q_k of all that degree k carries, whose first moments about the link's origin are `first`: e × H or m e.
+#[inline]
+pub(super) fn first_moment_column<T: Scalar>(
+    model: &Model,
+    degree: &Degree,
+    link: &Placement<T>,
+    first: Vec3<T>,
+) -> Vec3<T> {
+    match axis(degree, link) {
+        (axis, true) => axis.cross(first),
+        (axis, false) => axis * T::from_f64(model.subtree_mass(degree.link - 1)),
+    }
+}
+
+/// The degrees of freedom that carry `link`, from the link to the world.
 #[inline]
 pub(super) fn path_to_world(model: &Model, link: usize) -> impl Iterator<Item = usize> + '_ {
-    path_to(model, link, 0)
+    inwards(model, model.last_degree(link), 0)
 }
 
-/// The joints that carry `link` but not its ancestor `end`, from the link inwards.
+/// The degrees of freedom that carry `link` but not its ancestor `end`, from the link inwards.
 #[inline]
 pub(super) fn path_to(model: &Model, link: usize, end: usize) -> impl Iterator<Item = usize> + '_ {
-    let mut link = link;
+    inwards(model, model.last_degree(link), model.last_degree(end))
+}
+
+/// The degrees of freedom that carry degree `k`, from the next one to the world.
+#[inline]
+pub(super) fn carriers(model: &Model, k: usize) -> impl Iterator<Item = usize> + '_ {
+    inwards(model, model.carrier(k), 0)
+}
+
+/// From the degree before `start` to the one behind `end`.
+#[inline]
+pub(super) fn inwards(model: &Model, start: usize, end: usize) -> impl Iterator<Item = usize> + '_ {
+    let mut at = start;
     std::iter::from_fn(move || {
-        if link == end {
+        if at == end {
             return None;
         }
-        let j = link - 1;
-        link = model.parent_link(j);
-        Some(j)
+        let k = at - 1;
+        at = model.carrier(k);
+        Some(k)
     })
 }
 

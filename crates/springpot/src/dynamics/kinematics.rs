@@ -29,17 +29,18 @@ pub struct Kinematics<T = f64> {
 }
 
 impl<T: Scalar> Kinematics<T> {
-    /// The robot at q = 0, positions only.
+    /// The robot in its neutral configuration, positions only.
     pub fn new(model: &Model) -> Self {
-        let n = model.nv();
+        let n = model.joint_count();
         let mut kinematics = Self {
             level: Level::Position,
             placements: vec![Placement::IDENTITY; n + 1],
             velocities: vec![Motion::ZERO; n + 1],
             accelerations: vec![Motion::ZERO; n + 1],
-            joint_velocities: vec![T::ZERO; n],
+            joint_velocities: vec![T::ZERO; model.nv()],
         };
-        kinematics.update_position(model, &vec![T::ZERO; n]);
+        let neutral: Vec<T> = model.neutral().into_iter().map(T::from_f64).collect();
+        kinematics.update_position(model, &neutral);
         kinematics
     }
 
@@ -67,11 +68,10 @@ impl<T: Scalar> Kinematics<T> {
     /// Moves to `q` (nq): placements alone. Does not allocate.
     pub fn update_position(&mut self, model: &Model, q: &[T]) {
         self.level = Level::Position;
-        let n = model.nv();
-        let q = &q[..n];
+        let (n, q) = (model.joint_count(), &q[..model.nq()]);
         assert_eq!(self.placements.len(), n + 1, "the kinematics are of another model");
         for j in 0..n {
-            let local = joint::placement(model, j, q[j]);
+            let local = joint::placement(model, j, q);
             self.placements[j + 1] = self.placements[model.parent_link(j)] * local;
         }
     }
@@ -79,21 +79,29 @@ impl<T: Scalar> Kinematics<T> {
     /// Moves to `q` (nq) with velocities `v` (nv). Does not allocate.
     ///
     /// With r from the parent link's origin to the joint's: ω = ω_p + e q̇, ṗ = ṗ_p + ω_p × r (revolute); ω = ω_p,
-    /// ṗ = ṗ_p + ω_p × r + e q̇ (prismatic).
+    /// ṗ = ṗ_p + ω_p × r + e q̇ (prismatic); ω = ω_p + R ω_J, ṗ = ṗ_p + ω_p × r + R u_J (floating, with its twist (u_J, ω_J) in
+    /// the link's axes).
     pub fn update_velocity(&mut self, model: &Model, q: &[T], v: &[T]) {
         self.update_position(model, q);
         self.level = Level::Velocity;
-        let n = model.nv();
-        self.joint_velocities.copy_from_slice(&v[..n]);
-        for j in 0..n {
+        let v = &v[..model.nv()];
+        self.joint_velocities.copy_from_slice(v);
+        for j in 0..model.joint_count() {
             let parent = model.parent_link(j);
             let link = &self.placements[j + 1];
             let (axis, arm) = (link.rotation.z_axis(), link.translation - self.placements[parent].translation);
             let Motion { angular, linear } = self.velocities[parent];
             let carried = linear + angular.cross(arm);
             self.velocities[j + 1] = match model.motion(j) {
-                JointMotion::Revolute => Motion { angular: axis.times_plus(v[j], angular), linear: carried },
-                JointMotion::Prismatic => Motion { angular, linear: axis.times_plus(v[j], carried) },
+                JointMotion::Revolute => {
+                    Motion { angular: axis.times_plus(joint::speed(model, j, v), angular), linear: carried }
+                }
+                JointMotion::Prismatic => {
+                    Motion { angular, linear: axis.times_plus(joint::speed(model, j, v), carried) }
+                }
+                JointMotion::Floating => {
+                    Motion { angular, linear: carried } + joint::twist(model, j, v).rotated(&link.rotation)
+                }
             };
         }
     }
@@ -101,14 +109,13 @@ impl<T: Scalar> Kinematics<T> {
     /// Moves to `q` (nq) with velocities `v` (nv) and accelerations `a` (nv). Does not allocate.
     ///
     /// ω̇ = ω̇_p + ω_p × e q̇ + e q̈, p̈ = p̈_p + ω̇_p × r + ω_p × (ω_p × r) (revolute); ω̇ = ω̇_p, p̈ the same
-    /// + 2 ω_p × e q̇ + e q̈ (prismatic).
+    /// + 2 ω_p × e q̇ + e q̈ (prismatic); ω̇ = ω̇_p + ω_p × R ω_J + R ω̇_J, p̈ the same + (ω_p + ω) × R u_J + R u̇_J (floating).
     pub fn update_acceleration(&mut self, model: &Model, q: &[T], v: &[T], a: &[T]) {
         self.update_velocity(model, q, v);
         self.level = Level::Acceleration;
-        let n = model.nv();
-        let a = &a[..n];
+        let (v, a) = (&v[..model.nv()], &a[..model.nv()]);
         let two = T::from_f64(2.0);
-        for j in 0..n {
+        for j in 0..model.joint_count() {
             let parent = model.parent_link(j);
             let link = &self.placements[j + 1];
             let (axis, arm) = (link.rotation.z_axis(), link.translation - self.placements[parent].translation);
@@ -118,10 +125,21 @@ impl<T: Scalar> Kinematics<T> {
             let gyration = omega.cross(axis);
             self.accelerations[j + 1] = match model.motion(j) {
                 JointMotion::Revolute => {
-                    Motion { angular: axis.times_plus(a[j], gyration.times_plus(v[j], angular)), linear: carried }
+                    let (speed, push) = (joint::speed(model, j, v), joint::speed(model, j, a));
+                    Motion { angular: axis.times_plus(push, gyration.times_plus(speed, angular)), linear: carried }
                 }
                 JointMotion::Prismatic => {
-                    Motion { angular, linear: axis.times_plus(a[j], gyration.times_plus(two * v[j], carried)) }
+                    let (speed, push) = (joint::speed(model, j, v), joint::speed(model, j, a));
+                    Motion { angular, linear: axis.times_plus(push, gyration.times_plus(two * speed, carried)) }
+                }
+                JointMotion::Floating => {
+                    let own = joint::twist(model, j, v).rotated(&link.rotation);
+                    let push = joint::twist(model, j, a).rotated(&link.rotation);
+                    let both = omega + omega + own.angular;
+                    Motion {
+                        angular: angular + omega.cross(own.angular) + push.angular,
+                        linear: carried + both.cross(own.linear) + push.linear,
+                    }
                 }
             };
         }

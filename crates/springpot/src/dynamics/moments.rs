@@ -1,9 +1,9 @@
 //! Columns and moments of moving bodies about one point for the whole robot: the common ground of the Coriolis matrix and of
 //! the derivatives.
 
-use super::Kinematics;
+use super::{Kinematics, Workspace, joint};
 use crate::model::{JointMotion, Model};
-use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Symmetric3, Vec3};
+use crate::spatial::{Force, Inertia, Motion, Scalar, Symmetric3, Vec3};
 
 /// The point, at rest, about which all of the robot is taken: where the first joint is, so that a robot far from the world's
 /// origin keeps its digits.
@@ -12,13 +12,46 @@ pub(super) fn reference<T: Scalar>(kinematics: &Kinematics<T>) -> Vec3<T> {
     kinematics.link(1).translation
 }
 
-/// The unit motion J_j of joint `j` at the reference point, of which the link's origin is seen at `arm`.
-#[inline]
-pub(super) fn unit_motion<T: Scalar>(model: &Model, j: usize, link: &Placement<T>, arm: Vec3<T>) -> Motion<T> {
-    let axis = link.rotation.z_axis();
-    match model.motion(j) {
-        JointMotion::Revolute => Motion { angular: axis, linear: arm.cross(axis) },
-        JointMotion::Prismatic => Motion { angular: Vec3::ZERO, linear: axis },
+/// Velocities, accelerations (less gravity) where a = 0, columns and inertia forces of all links at the reference point.
+pub(super) fn motions_at_rest<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, ws: &mut Workspace<T>) {
+    motions(model, kinematics, None, ws);
+}
+
+/// Velocities, accelerations (less gravity) at the accelerations `a`, columns and their rates, inertias and inertia forces of
+/// all links at the reference point.
+///
+/// With v_λ, a_λ of the parent link: ψ̇ = v_λ × J (`unit_rate`), ψ̈ = a_λ × J + v_λ × ψ̇ (`unit_second_rate`), J̇ = v × J of the
+/// link itself (`unit_own_rate`), which is ψ̇ for a joint of one degree.
+pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: Option<&[T]>, ws: &mut Workspace<T>) {
+    let (origin, v) = (reference(kinematics), kinematics.joint_velocities());
+    ws.velocity[0] = Motion::ZERO;
+    ws.acceleration[0] = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(model.gravity().into()) };
+    ws.force[0] = Force::ZERO;
+    for j in 0..model.joint_count() {
+        let (link, parent) = (kinematics.link(j + 1), model.parent_link(j));
+        let arm = link.translation - origin;
+        let (carrier, pushed) = (ws.velocity[parent], ws.acceleration[parent]);
+        let (mut velocity, mut acceleration) = (carrier, pushed);
+        for k in model.degrees_of(j) {
+            let degree = &model.degrees()[k];
+            let unit = joint::unit_motion(degree, link, arm);
+            let rate = carrier.cross(unit);
+            velocity += unit * v[degree.index];
+            acceleration += rate * v[degree.index];
+            acceleration += a.map_or(Motion::ZERO, |a| unit * a[degree.index]);
+            (ws.unit[k], ws.unit_rate[k], ws.unit_own_rate[k]) = (unit, rate, rate);
+            ws.unit_second_rate[k] = pushed.cross(unit) + carrier.cross(rate);
+        }
+        if model.motion(j) == JointMotion::Floating {
+            for k in model.degrees_of(j) {
+                ws.unit_own_rate[k] = velocity.cross(ws.unit[k]);
+            }
+        }
+        let inertia = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation).shifted(arm);
+        let momentum = inertia * velocity;
+        ws.force[j + 1] = inertia * acceleration + velocity.cross_force(momentum);
+        ws.sway[j] = Sway::new(&inertia, velocity, momentum);
+        (ws.composite[j], ws.velocity[j + 1], ws.acceleration[j + 1]) = (inertia, velocity, acceleration);
     }
 }
 

@@ -75,13 +75,13 @@ pub fn pair_into<T: Scalar>(
     let common = joint::common_link(model, from.link(), to.link());
     gradient.fill(T::ZERO);
     let mut rate = T::ZERO;
-    for j in joint::path_to(model, to.link(), common) {
-        gradient[j] = direction.dot(joint::point_column(model, j, kinematics.link(j + 1), end));
-        rate = gradient[j].times_plus(v[j], rate);
-    }
-    for j in joint::path_to(model, from.link(), common) {
-        gradient[j] = -direction.dot(joint::point_column(model, j, kinematics.link(j + 1), start));
-        rate = gradient[j].times_plus(v[j], rate);
+    for (site, point, towards) in [(to, end, direction), (from, start, -direction)] {
+        for k in joint::path_to(model, site.link(), common) {
+            let degree = &model.degrees()[k];
+            let slope = towards.dot(joint::point_column(degree, kinematics.link(degree.link), point));
+            gradient[degree.index] += slope;
+            rate = slope.times_plus(v[degree.index], rate);
+        }
     }
     Pair { length, rate, direction, scale_squared: start.dot(start) + end.dot(end) }
 }
@@ -93,14 +93,15 @@ pub fn pair<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, from: &Site, t
     (pair, gradient)
 }
 
-/// Second derivatives ∂²l/∂q_a∂q_b of the pair's length, from `pair` as [`pair_into`] gave it.
+/// Second derivatives of the pair's length: entry (a, b) is ∂(∂l/∂q_a)/∂q_b, from `pair` as [`pair_into`] gave it.
 ///
-/// With u = l_vec/l and t_b = ∂l_vec/∂q_b,
+/// With u = l_vec/l and t_b = ∂l_vec/∂q_b it is
 ///
-/// ∂²l/∂q_a∂q_b = (t_a·t_b − ∂_a l ∂_b l)/l + u·∂t_hi/∂q_lo,
+/// (t_a·t_b − ∂_a l ∂_b l)/l + u·∂t_a/∂q_b,
 ///
-/// where the last term stands for two joints that carry the same end alone, lo the inner one: ±u·(Om_lo × T_hi). `hessian`
-/// is nv × nv, row-major, symmetric (all entries are written); needs positions. NaN where the points coincide.
+/// where the last term stands for two degrees that carry the same end alone: ±u·(Om_lo × T_hi), lo the inner one, or
+/// ±u·(Om_b × T_a) where both belong to one joint. `hessian` is nv × nv, row-major (all entries are written), and symmetric but
+/// for the degrees of one floating joint, whose tangent vectors do not commute; needs positions. NaN where the points coincide.
 pub fn pair_hessian_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -110,50 +111,79 @@ pub fn pair_hessian_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     hessian: &mut [T],
 ) {
-    let n = model.nv();
+    let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(hessian.len(), n * n, "the Hessian is nv x nv");
     hessian.fill(T::ZERO);
-    second_derivatives(model, kinematics, from, to, pair, &mut workspace.columns[..n], |a, b, entry| {
-        hessian[a * n + b] = entry;
-        hessian[b * n + a] = entry;
+    let columns = &mut workspace.columns[..degrees.len()];
+    line_columns(model, kinematics, from, to, columns);
+    let (length, direction) = (pair.length, pair.direction);
+    second_derivatives(model, kinematics, from, to, length, direction, columns, |a, b, entry| {
+        hessian[degrees[a].index * n + degrees[b].index] += entry;
     });
 }
 
-/// Hands ∂²l/∂q_a∂q_b to `visit` for every two joints between the ends, each two once; all others are 0.
+/// Fills t_k = ∂l_vec/∂q_k of all degrees between the ends; other columns stay as they are.
+#[inline]
+pub(super) fn line_columns<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    from: &Site,
+    to: &Site,
+    columns: &mut [Vec3<T>],
+) {
+    let common = joint::common_link(model, from.link(), to.link());
+    let (start, end) = (kinematics.position(from), kinematics.position(to));
+    for k in joint::path_to(model, from.link(), common) {
+        let degree = &model.degrees()[k];
+        columns[k] = -joint::point_column(degree, kinematics.link(degree.link), start);
+    }
+    for k in joint::path_to(model, to.link(), common) {
+        let degree = &model.degrees()[k];
+        columns[k] = joint::point_column(degree, kinematics.link(degree.link), end);
+    }
+}
+
+/// Hands ∂(∂l/∂q_a)/∂q_b to `visit` for every ordered two degrees between the ends; all others are 0.
 #[inline]
 pub(super) fn second_derivatives<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
     from: &Site,
     to: &Site,
-    pair: &Pair<T>,
-    columns: &mut [Vec3<T>],
+    length: T,
+    direction: Vec3<T>,
+    columns: &[Vec3<T>],
     mut visit: impl FnMut(usize, usize, T),
 ) {
+    let degrees = model.degrees();
     let common = joint::common_link(model, from.link(), to.link());
-    let (start, end) = (kinematics.position(from), kinematics.position(to));
-    for j in joint::path_to(model, from.link(), common) {
-        columns[j] = -joint::point_column(model, j, kinematics.link(j + 1), start);
-    }
-    for j in joint::path_to(model, to.link(), common) {
-        columns[j] = joint::point_column(model, j, kinematics.link(j + 1), end);
-    }
-    let (direction, inverse) = (pair.direction, T::ONE / pair.length);
-    let mut set = |a: usize, b: usize, turned: T| {
+    let inverse = T::ONE / length;
+    let stretched = |a: usize, b: usize| {
         let along = direction.dot(columns[a]) * direction.dot(columns[b]);
-        visit(a, b, (columns[a].dot(columns[b]) - along).times_plus(inverse, turned));
+        (columns[a].dot(columns[b]) - along) * inverse
     };
+    let turn = |k: usize| joint::angular_column(&degrees[k], kinematics.link(degrees[k].link));
     for site in [from, to] {
         for hi in joint::path_to(model, site.link(), common) {
-            for lo in joint::path_to(model, hi + 1, common) {
-                let spin = joint::angular_column(model, lo, kinematics.link(lo + 1));
-                set(lo, hi, direction.dot(spin.cross(columns[hi])));
+            for lo in joint::inwards(model, hi + 1, model.last_degree(common)) {
+                let both = stretched(lo, hi);
+                let turned = direction.dot(turn(lo).cross(columns[hi]));
+                visit(hi, lo, both + turned);
+                if lo == hi {
+                    continue;
+                }
+                // Degrees of one joint move with one another.
+                let one_joint = degrees[lo].link == degrees[hi].link;
+                let turned = if one_joint { direction.dot(turn(hi).cross(columns[lo])) } else { turned };
+                visit(lo, hi, both + turned);
             }
         }
     }
     for a in joint::path_to(model, from.link(), common) {
         for b in joint::path_to(model, to.link(), common) {
-            set(a, b, T::ZERO);
+            let both = stretched(a, b);
+            visit(a, b, both);
+            visit(b, a, both);
         }
     }
 }

@@ -18,7 +18,7 @@ pub fn rnea_into<T: Scalar>(
     tau: &mut [T],
 ) {
     let a = &a[..model.nv()];
-    inverse_dynamics(model, q, v, |j| a[j], pairs, workspace, tau);
+    inverse_dynamics(model, q, v, Some(a), pairs, workspace, tau);
 }
 
 /// Nonlinear effects C(q, v) v + g(q) − ΣQ, N·m or N: what the actuators hold without acceleration, [`rnea_into`] at a = 0.
@@ -30,7 +30,7 @@ pub fn nonlinear_effects_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     tau: &mut [T],
 ) {
-    inverse_dynamics(model, q, v, |_| T::ZERO, pairs, workspace, tau);
+    inverse_dynamics(model, q, v, None, pairs, workspace, tau);
 }
 
 /// [`nonlinear_effects_into`], allocating.
@@ -45,35 +45,44 @@ fn inverse_dynamics<T: Scalar>(
     model: &Model,
     q: &[T],
     v: &[T],
-    acceleration_of: impl Fn(usize) -> T,
+    a: Option<&[T]>,
     pairs: &[PairForce<T>],
     ws: &mut Workspace<T>,
     tau: &mut [T],
 ) {
-    let n = model.nv();
-    let (q, v, tau) = (&q[..n], &v[..n], &mut tau[..n]);
+    let n = model.joint_count();
+    let (q, v, tau) = (&q[..model.nq()], &v[..model.nv()], &mut tau[..model.nv()]);
     ws.velocity[0] = Motion::ZERO;
     // A frame that accelerates upwards feels gravity.
     ws.acceleration[0] = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(model.gravity().into()) };
     ws.force[0] = Force::ZERO;
     for j in 0..n {
         let parent = model.parent_link(j);
-        let local = joint::placement(model, j, q[j]);
-        let along = acceleration_of(j);
+        let local = joint::placement(model, j, q);
         let mut velocity = local.motion_to_child(ws.velocity[parent]);
         let mut acceleration = local.motion_to_child(ws.acceleration[parent]);
         // With S along z: v += S q̇, a += S q̈ + v × S q̇.
         match model.motion(j) {
             JointMotion::Revolute => {
+                let speed = joint::speed(model, j, v);
+                let push = a.map_or(T::ZERO, |a| joint::speed(model, j, a));
                 let ([wx, wy, _], [ux, uy, _]) = (velocity.angular.0, velocity.linear.0);
-                velocity.angular.0[2] += v[j];
-                acceleration.angular += Vec3([wy * v[j], -(wx * v[j]), along]);
-                acceleration.linear += Vec3([uy * v[j], -(ux * v[j]), T::ZERO]);
+                velocity.angular.0[2] += speed;
+                acceleration.angular += Vec3([wy * speed, -(wx * speed), push]);
+                acceleration.linear += Vec3([uy * speed, -(ux * speed), T::ZERO]);
             }
             JointMotion::Prismatic => {
+                let speed = joint::speed(model, j, v);
+                let push = a.map_or(T::ZERO, |a| joint::speed(model, j, a));
                 let [wx, wy, _] = velocity.angular.0;
-                velocity.linear.0[2] += v[j];
-                acceleration.linear += Vec3([wy * v[j], -(wx * v[j]), along]);
+                velocity.linear.0[2] += speed;
+                acceleration.linear += Vec3([wy * speed, -(wx * speed), push]);
+            }
+            JointMotion::Floating => {
+                let own = joint::twist(model, j, v);
+                acceleration += velocity.cross(own);
+                acceleration += a.map_or(Motion::ZERO, |a| joint::twist(model, j, a));
+                velocity += own;
             }
         }
         let inertia = Inertia::from_f64(model.link_inertia(j));
@@ -85,12 +94,18 @@ fn inverse_dynamics<T: Scalar>(
     if !pairs.is_empty() {
         subtract_pair_forces(model, pairs, ws);
     }
+    tau.fill(T::ZERO);
     for j in (0..n).rev() {
         let force = ws.force[j + 1];
-        tau[j] = match model.motion(j) {
-            JointMotion::Revolute => force.angular.0[2],
-            JointMotion::Prismatic => force.linear.0[2],
-        };
+        let own = model.coordinates(j);
+        match model.motion(j) {
+            JointMotion::Revolute => tau[own.v] += force.angular.0[2] * T::from_f64(own.ratio),
+            JointMotion::Prismatic => tau[own.v] += force.linear.0[2] * T::from_f64(own.ratio),
+            JointMotion::Floating => {
+                tau[own.v..own.v + 3].copy_from_slice(&force.linear.0);
+                tau[own.v + 3..own.v + 6].copy_from_slice(&force.angular.0);
+            }
+        }
         let on_parent = ws.local[j].force_to_parent(force);
         ws.force[model.parent_link(j)] += on_parent;
     }
@@ -106,7 +121,7 @@ pub fn rnea<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T], pairs: &[PairFo
 /// Takes what the pairs do off the forces that the joints must supply, so that one backward pass serves any number of pairs.
 fn subtract_pair_forces<T: Scalar>(model: &Model, pairs: &[PairForce<T>], ws: &mut Workspace<T>) {
     ws.world[0] = Placement::IDENTITY;
-    for j in 0..model.nv() {
+    for j in 0..model.joint_count() {
         ws.world[j + 1] = ws.world[model.parent_link(j)] * ws.local[j];
     }
     for pair in pairs {

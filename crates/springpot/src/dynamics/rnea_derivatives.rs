@@ -1,10 +1,10 @@
 //! Derivatives of the inverse dynamics.
 
-use super::moments::{Sway, reference, unit_motion};
+use super::moments::motions;
 use super::pair_stiffness::add_pair_stiffness;
 use super::{Kinematics, PairForce, Workspace, joint};
 use crate::model::Model;
-use crate::spatial::{Force, Inertia, Motion, Scalar, Vec3};
+use crate::spatial::Scalar;
 
 /// Derivatives of τ = RNEA(q, v, a), each nv × nv, row-major: row b belongs to τ_b, column c to the variable with index c.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,37 +58,46 @@ pub fn rnea_derivatives_into<T: Scalar>(
     if n == 0 {
         return;
     }
-    outward(model, kinematics, &a[..n], workspace);
-    let ws = &mut *workspace;
-    let (two, force) = (T::from_f64(2.0), &mut ws.force[..=n]);
-    let (unit, rate, second_rate) = (&ws.unit[..n], &ws.unit_rate[..n], &ws.unit_second_rate[..n]);
-    let (composite, sway) = (&mut ws.composite[..n], &mut ws.sway[..n]);
-    for c in (0..n).rev() {
-        let (inertia, moving, load) = (composite[c], sway[c], force[c + 1]);
-        let own = unit[c];
-        let by_position = inertia * second_rate[c] + moving.times(rate[c].angular) * two + own.cross_force(load);
-        let by_velocity = (inertia * rate[c] + moving.times(own.angular)) * two;
-        let momentum = inertia * own;
-        let swaying = moving.transposed_times(own) * two;
-        d_q[c * n + c] = own.dot(by_position);
-        d_v[c * n + c] = own.dot(by_velocity);
-        d_a[c * n + c] = own.dot(momentum);
-        for b in joint::path_to_world(model, model.parent_link(c)) {
-            let (upper, lower) = (b * n + c, c * n + b);
-            let carrier = unit[b];
-            d_q[upper] = carrier.dot(by_position);
-            d_v[upper] = carrier.dot(by_velocity);
-            d_a[upper] = carrier.dot(momentum);
-            d_a[lower] = d_a[upper];
-            // The outer joint feels that the inner one moves.
-            d_q[lower] = second_rate[b].dot(momentum) + rate[b].angular.dot(swaying);
-            d_v[lower] = two * rate[b].dot(momentum) + carrier.angular.dot(swaying);
+    motions(model, kinematics, Some(&a[..n]), workspace);
+    let (ws, degrees) = (&mut *workspace, model.degrees());
+    let two = T::from_f64(2.0);
+    for j in (0..model.joint_count()).rev() {
+        let (inertia, moving, load) = (ws.composite[j], ws.sway[j], ws.force[j + 1]);
+        for k in model.degrees_of(j) {
+            let own = ws.unit[k];
+            let at_rest = inertia * ws.unit_second_rate[k] + moving.times(ws.unit_rate[k].angular) * two;
+            let by_position = at_rest + own.cross_force(load);
+            let own_rate = ws.unit_rate[k] + ws.unit_own_rate[k];
+            let by_velocity = inertia * own_rate + moving.times(own.angular) * two;
+            let momentum = inertia * own;
+            let swaying = moving.transposed_times(own) * two;
+            let column = degrees[k].index;
+            let diagonal = column * n + column;
+            d_q[diagonal] += own.dot(at_rest);
+            d_v[diagonal] += own.dot(by_velocity);
+            d_a[diagonal] += own.dot(momentum);
+            for c in joint::carriers(model, k) {
+                let row = degrees[c].index;
+                let (upper, lower) = (row * n + column, column * n + row);
+                let carrier = ws.unit[c];
+                // Degrees of one joint move with one another.
+                let turned = if degrees[c].link == j + 1 { at_rest } else { by_position };
+                d_q[upper] += carrier.dot(turned);
+                d_v[upper] += carrier.dot(by_velocity);
+                let coupling = carrier.dot(momentum);
+                d_a[upper] += coupling;
+                d_a[lower] += coupling;
+                // The outer joint feels that the inner one moves.
+                d_q[lower] += ws.unit_second_rate[c].dot(momentum) + ws.unit_rate[c].angular.dot(swaying);
+                let carrier_rate = ws.unit_rate[c] + ws.unit_own_rate[c];
+                d_v[lower] += carrier_rate.dot(momentum) + carrier.angular.dot(swaying);
+            }
         }
-        let parent = model.parent_link(c);
+        let parent = model.parent_link(j);
         if parent > 0 {
-            composite[parent - 1] += inertia;
-            sway[parent - 1] += moving;
-            force[parent] += load;
+            ws.composite[parent - 1] += inertia;
+            ws.sway[parent - 1] += moving;
+            ws.force[parent] += load;
         }
     }
     for pair in pairs {
@@ -108,29 +117,4 @@ pub fn rnea_derivatives<T: Scalar>(
     let kinematics = Kinematics::at_velocity(model, q, v);
     rnea_derivatives_into(model, &kinematics, a, pairs, &mut Workspace::new(model), &mut derivatives);
     derivatives
-}
-
-/// Columns, inertias and forces of all links at the reference point.
-fn outward<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: &[T], ws: &mut Workspace<T>) {
-    let n = model.nv();
-    let (origin, v) = (reference(kinematics), &kinematics.joint_velocities()[..n]);
-    ws.velocity[0] = Motion::ZERO;
-    ws.acceleration[0] = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(model.gravity().into()) };
-    ws.force[0] = Force::ZERO;
-    for j in 0..n {
-        let (link, parent) = (kinematics.link(j + 1), model.parent_link(j));
-        let arm = link.translation - origin;
-        let unit = unit_motion(model, j, link, arm);
-        let (carrier, pushed) = (ws.velocity[parent], ws.acceleration[parent]);
-        let rate = carrier.cross(unit);
-        let velocity = carrier + unit * v[j];
-        let acceleration = pushed + unit * a[j] + rate * v[j];
-        let inertia = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation).shifted(arm);
-        let momentum = inertia * velocity;
-        ws.force[j + 1] = inertia * acceleration + velocity.cross_force(momentum);
-        ws.sway[j] = Sway::new(&inertia, velocity, momentum);
-        ws.unit_second_rate[j] = pushed.cross(unit) + carrier.cross(rate);
-        (ws.unit[j], ws.unit_rate[j], ws.composite[j]) = (unit, rate, inertia);
-        (ws.velocity[j + 1], ws.acceleration[j + 1]) = (velocity, acceleration);
-    }
 }

@@ -33,17 +33,21 @@ pub struct Workspace<T = f64> {
     // Columns of joint j at the reference point and their rates.
     pub(super) unit: Vec<Motion<T>>,
     pub(super) unit_rate: Vec<Motion<T>>,
+    pub(super) unit_own_rate: Vec<Motion<T>>,
     pub(super) unit_second_rate: Vec<Motion<T>>,
     pub(super) sway: Vec<Sway<T>>,
     /// ∂l/∂q and ∂l'/∂q of a pair.
     pub(super) gradient: Vec<T>,
     pub(super) rate_gradient: Vec<T>,
+    /// The mass matrix, where joints follow one another.
+    pub(super) mass: Vec<T>,
 }
 
 impl<T: Scalar> Workspace<T> {
     /// Scratch for `model`.
     pub fn new(model: &Model) -> Self {
-        let n = model.nv();
+        let (n, d) = (model.joint_count(), model.degrees().len());
+        let dense = if model.is_free_of_followers() { 0 } else { model.nv() };
         Self {
             local: vec![Placement::IDENTITY; n],
             world: vec![Placement::IDENTITY; n + 1],
@@ -51,18 +55,20 @@ impl<T: Scalar> Workspace<T> {
             acceleration: vec![Motion::ZERO; n + 1],
             force: vec![Force::ZERO; n + 1],
             composite: vec![Inertia::ZERO; n],
-            columns: vec![Vec3::ZERO; n],
+            columns: vec![Vec3::ZERO; d],
             articulated: vec![ArticulatedInertia::ZERO; n],
             bias: vec![Motion::ZERO; n],
-            column: vec![Force::ZERO; n],
-            inverse_pivot: vec![T::ZERO; n],
-            effort: vec![T::ZERO; n],
-            unit: vec![Motion::ZERO; n],
-            unit_rate: vec![Motion::ZERO; n],
-            unit_second_rate: vec![Motion::ZERO; n],
+            column: vec![Force::ZERO; d],
+            inverse_pivot: vec![T::ZERO; d],
+            effort: vec![T::ZERO; d],
+            unit: vec![Motion::ZERO; d],
+            unit_rate: vec![Motion::ZERO; d],
+            unit_own_rate: vec![Motion::ZERO; d],
+            unit_second_rate: vec![Motion::ZERO; d],
             sway: vec![Sway::ZERO; n],
-            gradient: vec![T::ZERO; n],
-            rate_gradient: vec![T::ZERO; n],
+            gradient: vec![T::ZERO; d],
+            rate_gradient: vec![T::ZERO; d],
+            mass: vec![T::ZERO; dense * dense],
         }
     }
 }

@@ -18,10 +18,11 @@ pub fn add_wrench<T: Scalar>(
 ) {
     let q_force = &mut q_force[..model.nv()];
     let point = kinematics.position(site);
-    for j in joint::path_to_world(model, site.link()) {
-        let link = kinematics.link(j + 1);
-        q_force[j] += joint::point_column(model, j, link, point).dot(wrench.linear)
-            + joint::angular_column(model, j, link).dot(wrench.angular);
+    for k in joint::path_to_world(model, site.link()) {
+        let degree = &model.degrees()[k];
+        let link = kinematics.link(degree.link);
+        q_force[degree.index] += joint::point_column(degree, link, point).dot(wrench.linear)
+            + joint::angular_column(degree, link).dot(wrench.angular);
     }
 }
 
@@ -36,19 +37,29 @@ pub fn add_wrench_derivative<T: Scalar>(
     wrench: Force<T>,
     d_q: &mut [T],
 ) {
-    let n = model.nv();
+    let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(d_q.len(), n * n, "the derivative is nv x nv");
     let point = kinematics.position(site);
     for hi in joint::path_to_world(model, site.link()) {
-        let link = kinematics.link(hi + 1);
-        let (column, spin) = (joint::point_column(model, hi, link, point), joint::angular_column(model, hi, link));
-        for lo in joint::path_to_world(model, hi + 1) {
-            let carrier = joint::angular_column(model, lo, kinematics.link(lo + 1));
-            let entry = carrier.cross(column).dot(wrench.linear);
-            d_q[hi * n + lo] += entry + carrier.cross(spin).dot(wrench.angular);
-            if lo != hi {
-                d_q[lo * n + hi] += entry;
+        let (degree, link) = (&degrees[hi], kinematics.link(degrees[hi].link));
+        let (column, spin) = (joint::point_column(degree, link, point), joint::angular_column(degree, link));
+        for lo in joint::inwards(model, hi + 1, 0) {
+            let inner = &degrees[lo];
+            let carrier_link = kinematics.link(inner.link);
+            let turn = joint::angular_column(inner, carrier_link);
+            let (row, other) = (degree.index, inner.index);
+            let by_turn = turn.cross(column).dot(wrench.linear);
+            d_q[row * n + other] += by_turn + turn.cross(spin).dot(wrench.angular);
+            if lo == hi {
+                continue;
             }
+            d_q[other * n + row] += if inner.link == degree.link {
+                // Degrees of one joint move with one another.
+                let moved = spin.cross(joint::point_column(inner, carrier_link, point));
+                moved.dot(wrench.linear) + spin.cross(turn).dot(wrench.angular)
+            } else {
+                by_turn
+            };
         }
     }
 }

@@ -3,10 +3,13 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
+use super::degree::JointMotion;
 use super::error::{Field, ModelError};
-use super::robot::{Frame, JointMotion, Model};
-use super::spec::{BodySpec, JointKind, Parent};
-use super::{mass_check, validate};
+use super::frame::Frame;
+use super::robot::Model;
+use super::spec::{BodySpec, JointKind, JointSpec, Mimic, Parent};
+use super::validate::Rules;
+use super::{mass_check, numbering, validate};
 use crate::spatial::{Inertia, Placement, Rotation, Symmetric3, Vec3};
 
 /// Builds a [`Model`] body by body, parents first.
@@ -16,14 +19,32 @@ use crate::spatial::{Inertia, Placement, Rotation, Symmetric3, Vec3};
 #[derive(Debug, Clone)]
 pub struct ModelBuilder {
     model: Model,
+    rules: Rules,
     /// Body of each joint name, fixed joints included.
     joint_lookup: HashMap<String, usize>,
+    /// What each moving joint follows.
+    mimics: Vec<Option<Mimic>>,
 }
 
 impl ModelBuilder {
     /// A robot without bodies, in the uniform field `gravity`, m/s², world axes.
     pub fn new(gravity: [f64; 3]) -> Self {
-        Self { model: Model::empty(gravity), joint_lookup: HashMap::new() }
+        Self::with_rules(gravity, Rules::Body)
+    }
+
+    /// As [`ModelBuilder::new`], for links of a URDF: names may be any text, and a link may have a principal moment above the
+    /// sum of the others, as long as each moving link together with what is fixed to it has not.
+    pub fn of_urdf(gravity: [f64; 3]) -> Self {
+        Self::with_rules(gravity, Rules::UrdfLink)
+    }
+
+    fn with_rules(gravity: [f64; 3], rules: Rules) -> Self {
+        Self { model: Model::empty(gravity), rules, joint_lookup: HashMap::new(), mimics: Vec::new() }
+    }
+
+    /// Gives the world another name besides "world": that of the root link of a robot on a fixed base.
+    pub fn name_world(&mut self, name: impl Into<String>) {
+        self.model.world_names.push(name.into());
     }
 
     /// Adds a body and returns its index.
@@ -34,7 +55,7 @@ impl ModelBuilder {
     /// largest, or the largest above the sum of the others by more than 1e-9 of itself. The builder is then as it was.
     pub fn push(&mut self, spec: BodySpec) -> Result<usize, ModelError> {
         let body = self.model.body_names.len();
-        validate::body(body, &spec)?;
+        validate::body(body, &spec, self.rules)?;
         if let Some(&first) = self.model.body_lookup.get(&spec.name) {
             return Err(ModelError::DuplicateName { body, field: Field::Name, name: spec.name, first });
         }
@@ -53,22 +74,17 @@ impl ModelBuilder {
         let joint = spec.joint;
         let offset = Placement { rotation: Rotation::from_rpy(joint.rpy), translation: joint.origin.into() };
         let in_parent_link = parent.placement * offset;
-        let frame = match joint.kind {
-            JointKind::Fixed => Frame { link: parent.link, placement: in_parent_link },
-            JointKind::Revolute | JointKind::Continuous => {
-                self.add_link(parent.link, in_parent_link, JointMotion::Revolute, joint.axis, body)
-            }
-            JointKind::Prismatic => {
-                self.add_link(parent.link, in_parent_link, JointMotion::Prismatic, joint.axis, body)
-            }
-            JointKind::Floating => unreachable!("not read yet"),
+        let motion = match joint.kind {
+            JointKind::Fixed => None,
+            JointKind::Revolute | JointKind::Continuous => Some(JointMotion::Revolute),
+            JointKind::Prismatic => Some(JointMotion::Prismatic),
+            JointKind::Floating => Some(JointMotion::Floating),
+        };
+        let frame = match motion {
+            None => Frame { link: parent.link, placement: in_parent_link },
+            Some(motion) => self.add_link(parent.link, in_parent_link, motion, joint, body),
         };
         let model = &mut self.model;
-        if joint.kind != JointKind::Fixed {
-            model.joint_names.push(joint.name);
-            model.damping.push(joint.damping);
-            model.friction.push(joint.friction);
-        }
         // What is fixed to the world has no part in the dynamics.
         if frame.link > 0 {
             let central = Symmetric3::from_upper(spec.inertia);
@@ -87,16 +103,22 @@ impl ModelBuilder {
         parent_link: usize,
         in_parent_link: Placement,
         motion: JointMotion,
-        axis: [f64; 3],
+        joint: JointSpec,
         body: usize,
     ) -> Frame {
-        let to_z = Rotation::with_z_axis(unit(axis));
+        let to_z = if joint.kind.has_axis() { Rotation::with_z_axis(unit(joint.axis)) } else { Rotation::IDENTITY };
         let model = &mut self.model;
         model.motions.push(motion);
+        model.kinds.push(joint.kind);
         model.parents.push(parent_link);
         model.placements.push(in_parent_link * Placement { rotation: to_z, translation: Vec3::ZERO });
         model.inertias.push(Inertia::ZERO);
         model.bodies_of_joints.push(body);
+        model.joint_names.push(joint.name);
+        model.damping.push(joint.damping);
+        model.friction.push(joint.friction);
+        model.limits.push(joint.limits);
+        self.mimics.push(joint.mimic);
         Frame {
             link: model.motions.len(),
             placement: Placement { rotation: to_z.transpose(), translation: Vec3::ZERO },
@@ -106,8 +128,10 @@ impl ModelBuilder {
     /// The finished robot.
     ///
     /// # Errors
-    /// No bodies; gravity not finite; a mass matrix that is singular in every configuration (a joint that can move without
-    /// moving mass is named); overflow of the combined inertias.
+    /// No bodies; gravity not finite; a joint that follows one that does not exist, follows itself in a circle, or has (or
+    /// follows a joint that has) more or less than one degree of freedom; of a URDF, a moving link that, with all that is
+    /// fixed to it, has an inertia that no mass distribution has; a mass matrix that is singular in every configuration (a
+    /// joint that can move without moving mass is named); overflow of the combined inertias.
     pub fn finish(self) -> Result<Model, ModelError> {
         let mut model = self.model;
         if model.body_names.is_empty() {
@@ -115,6 +139,10 @@ impl ModelBuilder {
         }
         if let Some(component) = model.gravity.iter().position(|g| !g.is_finite()) {
             return Err(ModelError::GravityNotFinite { component, value: model.gravity[component] });
+        }
+        numbering::number(&mut model, &self.mimics)?;
+        if self.rules == Rules::UrdfLink {
+            mass_check::links(&model)?;
         }
         mass_check::positive_definite(&model)?;
         model.collect_subtree_masses();

@@ -1,5 +1,6 @@
 //! What can be wrong with the description of a robot.
 
+use super::spec::JointKind;
 use std::fmt;
 
 /// Why a description is not a robot; every message names the place, the value and what would be right.
@@ -167,6 +168,39 @@ pub enum ModelError {
         joint: String,
     },
 
+    /// A joint follows a joint that does not exist or does not move by one degree of freedom.
+    #[error("joint \"{joint}\" follows joint \"{followed}\", which {}", if *.exists { "has not exactly one degree of freedom" } else { "does not exist" })]
+    MimicTarget {
+        /// Index of the body that the joint carries.
+        body: usize,
+        /// Name of the joint.
+        joint: String,
+        /// What it follows.
+        followed: String,
+        /// Whether there is such a joint.
+        exists: bool,
+    },
+
+    /// A joint of several degrees of freedom follows another one.
+    #[error("joint \"{joint}\" is {}, so it cannot follow another joint; only joints of one degree of freedom can", kind.name())]
+    MimicKind {
+        /// Index of the body that the joint carries.
+        body: usize,
+        /// Name of the joint.
+        joint: String,
+        /// What it is.
+        kind: JointKind,
+    },
+
+    /// Joints follow one another in a circle.
+    #[error("joint \"{joint}\" follows itself, directly or through other joints")]
+    MimicCycle {
+        /// Index of the body that the joint carries.
+        body: usize,
+        /// Name of the joint.
+        joint: String,
+    },
+
     /// An anchor names a body that the robot does not have.
     #[error("the anchor is on body {body}, but the robot has only {count} bodies")]
     NoSuchBody {
@@ -209,6 +243,8 @@ pub enum Field {
     Damping,
     /// `joint.friction`
     Friction,
+    /// `joint.mimic`
+    Mimic,
     /// `mass`
     Mass,
     /// `com`
@@ -229,6 +265,7 @@ impl Field {
             Self::Rpy => "joint.rpy",
             Self::Damping => "joint.damping",
             Self::Friction => "joint.friction",
+            Self::Mimic => "joint.mimic",
             Self::Mass => "mass",
             Self::Com => "com",
             Self::Inertia => "inertia",
@@ -262,6 +299,9 @@ impl ModelError {
             | Self::DuplicateName { body, field, .. }
             | Self::NotFinite { body, field, .. }
             | Self::Negative { body, field, .. } => (body, field),
+            Self::MimicTarget { body, .. } | Self::MimicKind { body, .. } | Self::MimicCycle { body, .. } => {
+                (body, Field::Mimic)
+            }
             Self::ReservedName { body } => (body, Field::Name),
             Self::ParentNotEarlier { body, .. } => (body, Field::Parent),
             Self::ZeroAxis { body, .. } => (body, Field::Axis),

@@ -1,7 +1,9 @@
 //! Whether the mass matrix is positive definite.
 
+use super::degree::{DegreeMotion, JointMotion};
 use super::error::ModelError;
-use super::robot::{JointMotion, Model};
+use super::robot::Model;
+use super::validate;
 use crate::spatial::{Inertia, Placement, Vec3};
 
 /// A pivot below this share of what it was computed from is rounding.
@@ -16,47 +18,72 @@ type Matrix6 = [Vec6; 6];
 /// Body Dynamics Algorithms, 2008, §7.3). det M is analytic in q: if it vanishes at one generic q, it does so everywhere. A
 /// singularity of single configurations (point masses on massless rods) is not seen here.
 pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
-    let n = model.nv();
+    let n = model.joint_count();
     let length = length_scale(model);
     let mut articulated: Vec<Matrix6> = model.inertias.iter().map(matrix).collect();
     // What the diagonal blocks would be without the subtraction, the measure of their rounding error.
     let mut gross: Vec<[f64; 2]> = articulated.iter().map(block_traces).collect();
     for j in (0..n).rev() {
-        let axis = match model.motions[j] {
-            JointMotion::Revolute => 2,
-            JointMotion::Prismatic => 5,
-        };
-        let inertia = articulated[j];
-        let column = inertia.map(|row| row[axis]);
-        let pivot = column[axis];
         let body = model.bodies_of_joints[j];
         let name = || model.body_names[body].clone();
-        if !gross[j].iter().all(|x| x.is_finite()) || !pivot.is_finite() {
+        if !gross[j].iter().all(|x| x.is_finite()) {
             return Err(ModelError::Overflow { body, name: name() });
         }
-        if pivot <= PIVOT_TOLERANCE * gross[j][axis / 3] {
-            return Err(ModelError::SingularMassMatrix { body, name: name(), joint: model.joint_names[j].clone() });
+        let mut reduced = articulated[j];
+        let mut lost = Vec::with_capacity(6);
+        // What a joint that follows another one takes up is that one's affair.
+        let degrees = if model.followed[j].is_some() { &[] } else { model.motions[j].degrees() };
+        for degree in degrees.iter().rev() {
+            let axis = match degree {
+                DegreeMotion::Turn(axis) => *axis as usize,
+                DegreeMotion::Shift(axis) => 3 + *axis as usize,
+            };
+            let column = reduced.map(|row| row[axis]);
+            let pivot = column[axis];
+            if !pivot.is_finite() {
+                return Err(ModelError::Overflow { body, name: name() });
+            }
+            if pivot <= PIVOT_TOLERANCE * gross[j][axis / 3] {
+                return Err(ModelError::SingularMassMatrix { body, name: name(), joint: model.joint_names[j].clone() });
+            }
+            for r in 0..6 {
+                for c in 0..6 {
+                    reduced[r][c] -= column[r] * column[c] / pivot;
+                }
+            }
+            lost.push((column, pivot));
         }
         let Some(parent) = model.parents[j].checked_sub(1) else { continue };
-        let mut reduced = inertia;
-        for r in 0..6 {
-            for c in 0..6 {
-                reduced[r][c] -= column[r] * column[c] / pivot;
-            }
-        }
         let transform = force_transform(&generic_placement(model, j, length));
         let moved = congruence(&transform, &reduced);
-        let lost = transform.map(|row| (0..6).map(|k| row[k] * column[k]).sum::<f64>());
         let traces = block_traces(&moved);
         for block in 0..2 {
-            let lost_here: f64 = lost[3 * block..3 * block + 3].iter().map(|x| x * x / pivot).sum();
-            gross[parent][block] += traces[block] + lost_here;
+            gross[parent][block] += traces[block];
+        }
+        for (column, pivot) in lost {
+            let turned = transform.map(|row| (0..6).map(|k| row[k] * column[k]).sum::<f64>());
+            for block in 0..2 {
+                gross[parent][block] += turned[3 * block..3 * block + 3].iter().map(|x| x * x / pivot).sum::<f64>();
+            }
         }
         for r in 0..6 {
             for c in 0..6 {
                 articulated[parent][r][c] += moved[r][c];
             }
         }
+    }
+    Ok(())
+}
+
+/// Refuses a link whose inertia, with all that is fixed to it, no mass distribution has.
+pub(super) fn links(model: &Model) -> Result<(), ModelError> {
+    for (inertia, &body) in model.inertias.iter().zip(&model.bodies_of_joints) {
+        let central = inertia.about_com().to_matrix();
+        let name = &model.body_names[body];
+        if central.iter().flatten().any(|x| !x.is_finite()) {
+            return Err(ModelError::Overflow { body, name: name.clone() });
+        }
+        validate::inertia(body, name, central, true)?;
     }
     Ok(())
 }
@@ -79,6 +106,8 @@ fn generic_placement(model: &Model, j: usize, length: f64) -> Placement {
             let (sin, cos) = generic.sin_cos();
             Placement { rotation: at_zero.rotation.turned_about_z(sin, cos), ..at_zero }
         }
+        // Wherever a floating joint stands, it takes up all that it carries.
+        JointMotion::Floating => at_zero,
         JointMotion::Prismatic => {
             let translation = at_zero.rotation.z_axis().times_plus(generic * length, at_zero.translation);
             Placement { translation, ..at_zero }

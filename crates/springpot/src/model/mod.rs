@@ -20,8 +20,12 @@
 //! ```
 
 mod builder;
+mod degree;
 mod error;
+mod frame;
+mod manifold;
 mod mass_check;
+mod numbering;
 mod principal;
 mod robot;
 mod spec;
@@ -30,7 +34,8 @@ pub mod urdf;
 mod validate;
 
 pub use builder::ModelBuilder;
+pub(crate) use degree::{Axis, Degree, DegreeMotion, JointMotion};
 pub use error::{Field, ModelError, Subject};
-pub(crate) use robot::JointMotion;
-pub use robot::{Frame, Model, Site};
+pub use frame::{Frame, Site};
+pub use robot::Model;
 pub use spec::{Anchor, BodySpec, JointKind, JointSpec, Limits, Mimic, Parent};

@@ -2,20 +2,32 @@
 
 use std::collections::HashMap;
 
+use super::degree::{Coordinates, Degree, JointMotion};
 use super::error::ModelError;
-use super::spec::{Anchor, JointKind, Parent};
-use crate::spatial::{Inertia, Placement, Rotation, Vec3};
+use super::frame::{Frame, Site};
+use super::spec::{Anchor, JointKind, Limits, Parent};
+use crate::spatial::{Inertia, Placement, Vec3};
+use std::ops::Range;
 
 /// The robot: a tree of links, each moved by one joint; constant, shared by threads.
 ///
-/// *Link* 0 is the world, and joint j moves link j + 1 by turning it about, or shifting it along, the z axis of the link's
-/// own frame. Links come in the order of their joints, parents first. Bodies on fixed joints are part of the link that
-/// carries them. Joint j has the coordinate q_j and the velocity v_j.
+/// *Link* 0 is the world, and joint j moves link j + 1: it turns it about, or shifts it along, the z axis of the link's own
+/// frame, or (a floating joint) all three axes of it. Links come in the order of their joints, parents first. Bodies on fixed
+/// joints are part of the link that carries them.
+///
+/// The coordinates q and the velocities v stand in the order of the joints, [`JointKind::nq`] and [`JointKind::nv`] of them
+/// for each joint but those that follow another one ([`Model::followed`]): these have none of their own.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(super) gravity: [f64; 3],
+    pub(super) nq: usize,
+    pub(super) nv: usize,
     // One entry per joint, indexed by j.
     pub(super) motions: Vec<JointMotion>,
+    pub(super) kinds: Vec<JointKind>,
+    pub(super) coordinates: Vec<Coordinates>,
+    pub(super) followed: Vec<Option<usize>>,
+    pub(super) limits: Vec<Limits>,
     pub(super) parents: Vec<usize>,
     pub(super) placements: Vec<Placement>,
     pub(super) inertias: Vec<Inertia>,
@@ -24,72 +36,33 @@ pub struct Model {
     pub(super) joint_names: Vec<String>,
     pub(super) damping: Vec<f64>,
     pub(super) friction: Vec<f64>,
+    // One entry per degree of freedom, indexed by k; those of joint j follow those of joint j − 1.
+    pub(super) degrees: Vec<Degree>,
+    /// One more than the degree that carries degree k, or 0 where the world does.
+    pub(super) carriers: Vec<usize>,
+    /// One more than the last degree of each link, with the world's 0 first; where a link has none, its carrier's.
+    pub(super) last_degrees: Vec<usize>,
+    /// One more than the velocity that the elimination of velocity i touches next, or 0.
+    pub(super) pivots: Vec<usize>,
     // One entry per described body.
     pub(super) frames: Vec<Frame>,
     pub(super) body_names: Vec<String>,
     pub(super) body_lookup: HashMap<String, usize>,
-}
-
-/// What a joint does in its z-aligned frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum JointMotion {
-    /// Turns about z.
-    Revolute,
-    /// Shifts along z.
-    Prismatic,
-}
-
-/// Where a described body is: its link, and its joint frame in the link's frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
-    pub(super) link: usize,
-    pub(super) placement: Placement,
-}
-
-impl Frame {
-    /// The inertial frame.
-    pub const WORLD: Self =
-        Self { link: 0, placement: Placement { rotation: Rotation::IDENTITY, translation: Vec3::ZERO } };
-
-    /// The link that carries the body; 0 is the world.
-    pub fn link(&self) -> usize {
-        self.link
-    }
-
-    /// The body's joint frame in the frame of its link.
-    pub fn placement(&self) -> &Placement {
-        &self.placement
-    }
-}
-
-/// An [`Anchor`] as the algorithms want it: the link that carries the point, and the point in the link's frame.
-///
-/// It belongs to the [`Model`] that resolved it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Site {
-    link: usize,
-    point: Vec3,
-}
-
-impl Site {
-    /// The link that carries the point; 0 is the world.
-    #[inline]
-    pub fn link(&self) -> usize {
-        self.link
-    }
-
-    /// The point in the link's frame, m.
-    #[inline]
-    pub fn point(&self) -> Vec3 {
-        self.point
-    }
+    /// What the world is called besides "world".
+    pub(super) world_names: Vec<String>,
 }
 
 impl Model {
     pub(super) fn empty(gravity: [f64; 3]) -> Self {
         Self {
             gravity,
+            nq: 0,
+            nv: 0,
             motions: Vec::new(),
+            kinds: Vec::new(),
+            coordinates: Vec::new(),
+            followed: Vec::new(),
+            limits: Vec::new(),
             parents: Vec::new(),
             placements: Vec::new(),
             inertias: Vec::new(),
@@ -98,6 +71,11 @@ impl Model {
             joint_names: Vec::new(),
             damping: Vec::new(),
             friction: Vec::new(),
+            degrees: Vec::new(),
+            carriers: Vec::new(),
+            last_degrees: vec![0],
+            pivots: Vec::new(),
+            world_names: Vec::new(),
             frames: Vec::new(),
             body_names: Vec::new(),
             body_lookup: HashMap::new(),
@@ -106,7 +84,7 @@ impl Model {
 
     pub(super) fn collect_subtree_masses(&mut self) {
         self.subtree_masses = self.inertias.iter().map(|inertia| inertia.mass).collect();
-        for j in (0..self.nv()).rev() {
+        for j in (0..self.joint_count()).rev() {
             if let Some(parent) = self.parents[j].checked_sub(1) {
                 self.subtree_masses[parent] += self.subtree_masses[j];
             }
@@ -116,12 +94,18 @@ impl Model {
     /// Number of coordinates q.
     #[inline]
     pub fn nq(&self) -> usize {
-        self.motions.len()
+        self.nq
     }
 
-    /// Number of velocities v; joint j has velocity j.
+    /// Number of velocities v.
     #[inline]
     pub fn nv(&self) -> usize {
+        self.nv
+    }
+
+    /// Number of moving joints, those that follow another one included; joint j moves link j + 1.
+    #[inline]
+    pub fn joint_count(&self) -> usize {
         self.motions.len()
     }
 
@@ -130,22 +114,53 @@ impl Model {
         self.gravity
     }
 
-    /// Names of the moving joints, in the order of q.
+    /// Names of the moving joints.
     pub fn joint_names(&self) -> &[String] {
         &self.joint_names
     }
 
-    /// Index in q of the moving joint called `name`.
+    /// Index of the moving joint called `name`.
     pub fn joint_index(&self, name: &str) -> Option<usize> {
         self.joint_names.iter().position(|other| other == name)
     }
 
-    /// [`JointKind::Revolute`] (coordinate in rad) or [`JointKind::Prismatic`] (coordinate in m) of moving joint `joint`.
+    /// What moving joint `joint` is; never [`JointKind::Fixed`].
     pub fn joint_kind(&self, joint: usize) -> JointKind {
-        match self.motions[joint] {
-            JointMotion::Revolute => JointKind::Revolute,
-            JointMotion::Prismatic => JointKind::Prismatic,
-        }
+        self.kinds[joint]
+    }
+
+    /// Where moving joint `joint` finds its coordinates in q: those of the joint that it follows, if it follows one.
+    pub fn q_range(&self, joint: usize) -> Range<usize> {
+        let first = self.coordinates[joint].q;
+        first..first + self.kinds[joint].nq()
+    }
+
+    /// Where moving joint `joint` finds its velocities in v: those of the joint that it follows, if it follows one.
+    pub fn v_range(&self, joint: usize) -> Range<usize> {
+        let first = self.coordinates[joint].v;
+        first..first + self.kinds[joint].nv()
+    }
+
+    /// The joint with coordinates of its own that moving joint `joint` follows, and the ratio and offset of
+    /// coordinate = ratio · its coordinate + offset; `None` for a joint with coordinates of its own.
+    pub fn followed(&self, joint: usize) -> Option<(usize, f64, f64)> {
+        let Coordinates { ratio, offset, .. } = self.coordinates[joint];
+        self.followed[joint].map(|leader| (leader, ratio, offset))
+    }
+
+    /// Whether every joint has coordinates of its own.
+    pub fn is_free_of_followers(&self) -> bool {
+        self.followed.iter().all(Option::is_none)
+    }
+
+    /// Whether every joint has one degree of freedom, so that v = dq/dt and Christoffel symbols exist.
+    pub fn is_one_degree(&self) -> bool {
+        self.kinds.iter().all(|kind| kind.nv() == 1)
+    }
+
+    /// What moving joint `joint` is built for.
+    pub fn limits(&self, joint: usize) -> &Limits {
+        &self.limits[joint]
     }
 
     /// The described body on moving joint `joint`.
@@ -171,6 +186,12 @@ impl Model {
     /// Index of the body called `name`.
     pub fn body_index(&self, name: &str) -> Option<usize> {
         self.body_lookup.get(name).copied()
+    }
+
+    /// The body called `name`, or the world: "world", or the root link of a robot on a fixed base.
+    pub fn find_body(&self, name: &str) -> Option<Parent> {
+        let world = name == "world" || self.world_names.iter().any(|other| other == name);
+        self.body_index(name).map(Parent::Body).or(world.then_some(Parent::World))
     }
 
     /// Where a body (or the world) is in its link.
@@ -217,7 +238,8 @@ impl Model {
         self.subtree_masses[joint]
     }
 
-    /// The link frame of `joint` at q_joint = 0 in the frame of its parent link.
+    /// The link frame of `joint` in the frame of its parent link where the joint stands at 0 (a floating one: at the origin,
+    /// unturned).
     #[inline]
     pub fn joint_placement(&self, joint: usize) -> &Placement {
         &self.placements[joint]
@@ -226,5 +248,40 @@ impl Model {
     #[inline]
     pub(crate) fn motion(&self, joint: usize) -> JointMotion {
         self.motions[joint]
+    }
+
+    #[inline]
+    pub(crate) fn coordinates(&self, joint: usize) -> &Coordinates {
+        &self.coordinates[joint]
+    }
+
+    #[inline]
+    pub(crate) fn degrees(&self) -> &[Degree] {
+        &self.degrees
+    }
+
+    /// The degrees of moving joint `joint`.
+    #[inline]
+    pub(crate) fn degrees_of(&self, joint: usize) -> Range<usize> {
+        let end = self.last_degrees[joint + 1];
+        end - self.motions[joint].degrees().len()..end
+    }
+
+    /// One more than the degree that carries degree `k`, or 0.
+    #[inline]
+    pub(crate) fn carrier(&self, k: usize) -> usize {
+        self.carriers[k]
+    }
+
+    /// One more than the last degree on the way to `link`, or 0.
+    #[inline]
+    pub(crate) fn last_degree(&self, link: usize) -> usize {
+        self.last_degrees[link]
+    }
+
+    /// One more than the velocity that the elimination of velocity `i` touches next, or 0.
+    #[inline]
+    pub(crate) fn pivot(&self, i: usize) -> usize {
+        self.pivots[i]
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::{Field, ModelError};
 use super::principal::principal_moments;
-use super::spec::{BodySpec, JointKind, Parent};
+use super::spec::{BodySpec, Parent};
 
 /// Refuses a principal moment below minus this share of the largest one.
 const POSITIVE_TOLERANCE: f64 = 1e-12;
@@ -11,19 +11,30 @@ const TRIANGLE_TOLERANCE: f64 = 1e-9;
 /// Refuses off-diagonals that differ by more than this share of the largest entry.
 const SYMMETRY_TOLERANCE: f64 = 1e-12;
 
+/// What kind of description is checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rules {
+    /// Bodies with identifiers for names, each physical by itself.
+    Body,
+    /// Links of a URDF: any names; a link is physical together with what is fixed to it.
+    UrdfLink,
+}
+
 /// Checks all that concerns the body numbered `body` alone (names against other bodies are the builder's business).
-pub(super) fn body(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
-    names(body, spec)?;
+pub(super) fn body(body: usize, spec: &BodySpec, rules: Rules) -> Result<(), ModelError> {
+    if rules == Rules::Body {
+        names(body, spec)?;
+    }
     if let Parent::Body(parent) = spec.parent
         && parent >= body
     {
         return Err(ModelError::ParentNotEarlier { body, name: spec.name.clone(), parent });
     }
     numbers(body, spec)?;
-    if spec.joint.kind != JointKind::Fixed && spec.joint.axis == [0.0; 3] {
+    if spec.joint.kind.has_axis() && spec.joint.axis == [0.0; 3] {
         return Err(ModelError::ZeroAxis { body, joint: spec.joint.name.clone() });
     }
-    inertia(body, spec)
+    inertia(body, &spec.name, spec.inertia, rules == Rules::Body)
 }
 
 /// Whether `name` matches `[A-Za-z_][A-Za-z0-9_-]*`.
@@ -47,12 +58,14 @@ fn names(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
 
 fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
     let joint = &spec.joint;
-    let fields: [(Field, &[f64]); 8] = [
+    let mimic = joint.mimic.as_ref().map_or([1.0, 0.0], |mimic| [mimic.multiplier, mimic.offset]);
+    let fields: [(Field, &[f64]); 9] = [
         (Field::Axis, &joint.axis),
         (Field::Origin, &joint.origin),
         (Field::Rpy, &joint.rpy),
         (Field::Damping, &[joint.damping]),
         (Field::Friction, &[joint.friction]),
+        (Field::Mimic, &mimic),
         (Field::Mass, &[spec.mass]),
         (Field::Com, &spec.com),
         (Field::Inertia, spec.inertia.as_flattened()),
@@ -71,9 +84,9 @@ fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
     Ok(())
 }
 
-fn inertia(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
-    let m = spec.inertia;
-    let name = || spec.name.clone();
+/// Checks an inertia tensor about a centre of mass; the triangle inequality only where it is asked for.
+pub(super) fn inertia(body: usize, name: &str, m: [[f64; 3]; 3], triangle: bool) -> Result<(), ModelError> {
+    let name = || name.to_owned();
     let scale = m.iter().flatten().fold(0.0, |s: f64, x| s.max(x.abs()));
     for (row, column) in [(0, 1), (0, 2), (1, 2)] {
         let (upper, lower) = (m[row][column], m[column][row]);
@@ -86,7 +99,7 @@ fn inertia(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
         return Err(ModelError::InertiaNotPositive { body, name: name(), smallest });
     }
     let others = smallest + middle;
-    if largest - others > TRIANGLE_TOLERANCE * largest {
+    if triangle && largest - others > TRIANGLE_TOLERANCE * largest {
         return Err(ModelError::TriangleInequality { body, name: name(), largest, others });
     }
     Ok(())

@@ -70,6 +70,19 @@ impl<T: Scalar> Inertia<T> {
     }
 }
 
+impl Inertia<f64> {
+    /// The tensor about the centre of mass, I − m (c·c 1 − c cᵀ); where there is no mass, the tensor itself.
+    pub fn about_com(&self) -> Symmetric3 {
+        if self.mass == 0.0 {
+            return self.rotational;
+        }
+        // Adding the mass −m about the centre of mass undoes the shift.
+        let com = self.first_moment * (1.0 / self.mass);
+        let steiner = Self::from_central(-self.mass, com, Symmetric3::ZERO);
+        self.rotational + steiner.rotational
+    }
+}
+
 /// Momentum of the body that moves with a velocity.
 impl<T: Scalar> Mul<Motion<T>> for Inertia<T> {
     type Output = Force<T>;

@@ -10,6 +10,7 @@ mod motion;
 #[cfg(test)]
 mod pair_of_lanes;
 mod placement;
+mod quaternion;
 mod rotation;
 mod scalar;
 mod sincos;
@@ -23,6 +24,7 @@ pub use motion::Motion;
 #[cfg(test)]
 pub(crate) use pair_of_lanes::Two;
 pub use placement::Placement;
+pub use quaternion::Quaternion;
 pub use rotation::Rotation;
 pub use scalar::Scalar;
 pub use symmetric::Symmetric3;

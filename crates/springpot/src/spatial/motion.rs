@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Mul};
 
-use super::{Force, Scalar, Vec3};
+use super::{Force, Rotation, Scalar, Vec3};
 
 /// Angular part and linear part at the origin of the frame in which it is expressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,6 +21,12 @@ impl<T: Scalar> Motion<T> {
     #[inline]
     pub fn shifted(self, arm: Vec3<T>) -> Self {
         Self { angular: self.angular, linear: self.linear + self.angular.cross(arm) }
+    }
+
+    /// The same motion in the axes into which `r` leads; the origin stays.
+    #[inline]
+    pub fn rotated(self, r: &Rotation<T>) -> Self {
+        Self { angular: *r * self.angular, linear: *r * self.linear }
     }
 
     /// The cross product with a motion, v × m = (ω × ω_m, ω × v_m + v × ω_m): how `m`, fixed in a frame that moves with v,

@@ -2,7 +2,7 @@
 
 use std::ops::Mul;
 
-use super::{Scalar, Vec3};
+use super::{Quaternion, Scalar, Vec3};
 
 /// A rotation matrix R, row-major: it takes components in the child frame to components in the parent frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +33,23 @@ impl<T: Scalar> Rotation<T> {
         ])
     }
 
+    /// R = 1 + 2 w \[u\]× + 2 \[u\]×² for the quaternion (u, w) = `components`/|`components`|, in the order x, y, z, w: any length but
+    /// 0 gives a rotation, length 0 gives NaN.
+    #[inline]
+    pub fn from_quaternion_components([x, y, z, w]: [T; 4]) -> Self {
+        let square = w.times_plus(w, z.times_plus(z, y.times_plus(y, x * x)));
+        let scale = T::from_f64(2.0) / square;
+        let (sx, sy, sz) = (x * scale, y * scale, z * scale);
+        let (xx, yy, zz) = (x * sx, y * sy, z * sz);
+        let (xy, xz, yz) = (x * sy, x * sz, y * sz);
+        let (wx, wy, wz) = (w * sx, w * sy, w * sz);
+        Self([
+            [T::ONE - (yy + zz), xy - wz, xz + wy],
+            [xy + wz, T::ONE - (xx + zz), yz - wx],
+            [xz - wy, yz + wx, T::ONE - (xx + yy)],
+        ])
+    }
+
     /// R · Rz(angle) from the sine and cosine of the angle; the third column stays.
     #[inline]
     pub fn turned_about_z(&self, sin: T, cos: T) -> Self {
@@ -49,6 +66,12 @@ impl<T: Scalar> Rotation<T> {
     #[inline]
     pub fn z_axis(&self) -> Vec3<T> {
         Vec3([self.0[0][2], self.0[1][2], self.0[2][2]])
+    }
+
+    /// Column `k`: axis `k` of the child frame in the parent frame.
+    #[inline]
+    pub fn column(&self, k: usize) -> Vec3<T> {
+        Vec3([self.0[0][k], self.0[1][k], self.0[2][k]])
     }
 
     /// Rᵀ, the inverse.
@@ -71,6 +94,11 @@ impl<T: Scalar> Rotation<T> {
 }
 
 impl Rotation<f64> {
+    /// The attitude of a quaternion (of any length but 0).
+    pub fn from_quaternion(quaternion: Quaternion) -> Self {
+        Self::from_quaternion_components(quaternion.0)
+    }
+
     /// R = Rz(yaw) Ry(pitch) Rx(roll), angles in rad.
     pub fn from_rpy([roll, pitch, yaw]: [f64; 3]) -> Self {
         let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());

@@ -1,6 +1,8 @@
 //! Identities of rigid-body dynamics on random trees.
 
-use crate::support::{Case, GRAVITY, build, case, close, config, difference, largest, time_difference};
+use crate::support::{
+    Case, GRAVITY, build, case, close, config, difference, largest, one_degree_case, time_difference,
+};
 use proptest::prelude::*;
 use springpot::dynamics::{
     Kinematics, angular_jacobian, angular_jacobian_rate, christoffel, crba, gravity, kinetic_energy, point_jacobian,
@@ -43,6 +45,10 @@ fn rodrigues(case: &Case) -> Rodrigues {
     let mut carriers: Vec<Vec<usize>> = Vec::new();
     // Axis in the world, origin, and 1 for revolute joints (0 for prismatic ones), per moving joint.
     let mut joints: Vec<(Vec3, Vec3, f64)> = Vec::new();
+    let model = case.model();
+    // A joint that follows another one moves with its coordinate, `ratio` times as fast.
+    let own =
+        |j: usize| (model.q_range(j).start, model.followed(j).map_or((1.0, 0.0), |(_, ratio, offset)| (ratio, offset)));
     for body in &case.bodies {
         let (parent, mut carrier) = match body.parent {
             Parent::World => (Placement::IDENTITY, Vec::new()),
@@ -52,15 +58,21 @@ fn rodrigues(case: &Case) -> Rodrigues {
             parent * Placement { rotation: Rotation::from_rpy(body.joint.rpy), translation: Vec3(body.joint.origin) };
         let local_axis = Vec3(body.joint.axis) * (1.0 / Vec3(body.joint.axis).norm());
         let axis = frame.rotation * local_axis;
-        let q = case.q.get(joints.len()).copied().unwrap_or(0.0);
+        let coordinate = |j: usize| {
+            let (index, (ratio, offset)) = own(j);
+            ratio * case.q[index] + offset
+        };
         match body.joint.kind {
             JointKind::Fixed => {}
-            JointKind::Revolute => {
+            JointKind::Floating => unreachable!("these trees have joints of one degree"),
+            JointKind::Revolute | JointKind::Continuous => {
+                let q = coordinate(joints.len());
                 carrier.push(joints.len());
                 joints.push((axis, frame.translation, 1.0));
                 frame.rotation = frame.rotation * Rotation::from_axis_angle(local_axis, q);
             }
             JointKind::Prismatic => {
+                let q = coordinate(joints.len());
                 carrier.push(joints.len());
                 joints.push((axis, frame.translation, 0.0));
                 frame.translation += axis * q;
@@ -70,24 +82,25 @@ fn rodrigues(case: &Case) -> Rodrigues {
         carriers.push(carrier);
     }
 
-    let n = joints.len();
+    let n = model.nv();
     let mut out = Rodrigues { mass: vec![0.0; n * n], gamma: vec![0.0; n * n * n], gravity: vec![0.0; n] };
+    let at = |j: usize| own(j).0;
     for (body, (frame, carrier)) in case.bodies.iter().zip(frames.iter().zip(&carriers)) {
         let m = body.mass;
         let centre = frame.point(Vec3(body.com));
         let inertia = Symmetric3::from_upper(body.inertia).rotated(&frame.rotation);
         let t = |j: usize| {
             let (e, origin, revolute) = joints[j];
-            e * (1.0 - revolute) + e.cross(centre - origin) * revolute
+            (e * (1.0 - revolute) + e.cross(centre - origin) * revolute) * own(j).1.0
         };
-        let om = |j: usize| joints[j].0 * joints[j].2;
+        let om = |j: usize| joints[j].0 * (joints[j].2 * own(j).1.0);
         for &a in carrier {
-            out.gravity[a] -= m * Vec3(GRAVITY).dot(t(a));
+            out.gravity[at(a)] -= m * Vec3(GRAVITY).dot(t(a));
             for &b in carrier {
-                out.mass[a * n + b] += m * t(a).dot(t(b)) + om(a).dot(inertia * om(b));
+                out.mass[at(a) * n + at(b)] += m * t(a).dot(t(b)) + om(a).dot(inertia * om(b));
                 let (lo, hi) = (a.min(b), a.max(b));
                 for &c in carrier {
-                    out.gamma[(a * n + b) * n + c] +=
+                    out.gamma[(at(a) * n + at(b)) * n + at(c)] +=
                         m * om(lo).cross(t(hi)).dot(t(c)) + om(lo).dot(inertia.second_moments() * om(hi).cross(om(c)));
                 }
             }
@@ -104,7 +117,7 @@ proptest! {
     #![proptest_config(config(0x5eed_0001))]
 
     #[test]
-    fn equations_of_motion_equal_rnea(case in case()) {
+    fn equations_of_motion_equal_rnea(case in one_degree_case()) {
         let model = case.model();
         let kinematics = Kinematics::at_position(&model, &case.q);
         let inertial = times(&crba(&model, &kinematics), &case.a);
@@ -116,7 +129,7 @@ proptest! {
     }
 
     #[test]
-    fn closed_forms_equal_the_sums_over_bodies(case in case()) {
+    fn closed_forms_equal_the_sums_over_bodies(case in one_degree_case()) {
         let model = case.model();
         let kinematics = Kinematics::at_position(&model, &case.q);
         let direct = rodrigues(&case);
@@ -128,11 +141,11 @@ proptest! {
     }
 
     #[test]
-    fn christoffel_symbols_are_derivatives_of_the_mass_matrix(case in case()) {
+    fn christoffel_symbols_are_derivatives_of_the_mass_matrix(case in one_degree_case()) {
         let model = case.model();
         let n = model.nv();
         let gamma = christoffel(&model, &Kinematics::at_position(&model, &case.q));
-        let slopes: Vec<Vec<f64>> = (0..n).map(|j| difference(&case.q, j, |q| mass_at(&model, q))).collect();
+        let slopes: Vec<Vec<f64>> = (0..n).map(|j| difference(&model, &case.q, j, |q| mass_at(&model, q))).collect();
         let mut expected = vec![0.0; n * n * n];
         for a in 0..n {
             for b in 0..n {
@@ -155,7 +168,7 @@ proptest! {
         close("T", &[kinetic], &[from_matrix], 1e-12, kinetic);
 
         let potential = |q: &[f64]| vec![potential_energy(&model, &Kinematics::at_position(&model, q))];
-        let slope: Vec<f64> = (0..model.nv()).map(|j| difference(&case.q, j, potential)[0]).collect();
+        let slope: Vec<f64> = (0..model.nv()).map(|j| difference(&model, &case.q, j, potential)[0]).collect();
         let weight = gravity(&model, &kinematics);
         close("g", &weight, &slope, 1e-10, largest(&weight).max(potential(&case.q)[0].abs()).max(1.0));
         close("g", &weight, &rnea(&model, &case.q, &vec![0.0; model.nv()], &vec![0.0; model.nv()], &[]), 1e-12,
@@ -190,11 +203,11 @@ proptest! {
             close("J a + Jdot v", &sum, &acceleration, 1e-12, largest(&acceleration).max(1.0));
 
             let place = |q: &[f64], _: &[f64]| Kinematics::at_position(&model, q).position(&site).0.to_vec();
-            close("dr/dt", &velocity, &time_difference(&case, place), 1e-7, largest(&velocity).max(1.0));
+            close("dr/dt", &velocity, &time_difference(&model, &case, place), 1e-7, largest(&velocity).max(1.0));
             let jacobian_at = |q: &[f64], _: &[f64]| point_jacobian(&model, &Kinematics::at_position(&model, q), &site);
-            close("dJ/dt", &rate, &time_difference(&case, jacobian_at), 1e-7, largest(&rate).max(1.0));
+            close("dJ/dt", &rate, &time_difference(&model, &case, jacobian_at), 1e-7, largest(&rate).max(1.0));
             let velocity_at = |q: &[f64], v: &[f64]| Kinematics::at_velocity(&model, q, v).velocity(&site).0.to_vec();
-            close("dv/dt", &acceleration, &time_difference(&case, velocity_at), 1e-6, largest(&acceleration).max(1.0));
+            close("dv/dt", &acceleration, &time_difference(&model, &case, velocity_at), 1e-6, largest(&acceleration).max(1.0));
         }
     }
 
@@ -211,7 +224,7 @@ proptest! {
             close("alpha", &sum(&times(&jacobian, &case.a), &times(&rate, &case.v)), &alpha, 1e-12, largest(&alpha).max(1.0));
             let jacobian_at =
                 |q: &[f64], _: &[f64]| angular_jacobian(&model, &Kinematics::at_position(&model, q), &site);
-            close("dJ/dt", &rate, &time_difference(&case, jacobian_at), 1e-7, largest(&rate).max(1.0));
+            close("dJ/dt", &rate, &time_difference(&model, &case, jacobian_at), 1e-7, largest(&rate).max(1.0));
 
             // dR/dt = ω × R, column by column.
             let frame = model.frame(anchor.body).unwrap();
@@ -220,7 +233,7 @@ proptest! {
             };
             let columns = kinematics.frame(&frame).rotation.transpose().rows();
             let turned: Vec<f64> = columns.iter().flat_map(|&column| omega.cross(column).0).collect();
-            close("dR/dt", &turned, &time_difference(&case, rotation_at), 1e-7, largest(&omega.0).max(1.0));
+            close("dR/dt", &turned, &time_difference(&model, &case, rotation_at), 1e-7, largest(&omega.0).max(1.0));
         }
     }
 
@@ -272,7 +285,7 @@ proptest! {
 fn the_random_trees_are_worth_their_name() {
     use proptest::strategy::ValueTree;
     let mut runner = proptest::test_runner::TestRunner::new(config(0x5eed_0001));
-    let (mut branches, mut prismatic, mut fixed, mut long) = (0, 0, 0, 0);
+    let (mut branches, mut prismatic, mut fixed, mut long, mut floating) = (0, 0, 0, 0, 0);
     for _ in 0..256 {
         let case = case().new_tree(&mut runner).unwrap().current();
         let parents: Vec<Parent> = case.bodies.iter().map(|body| body.parent).collect();
@@ -281,6 +294,14 @@ fn the_random_trees_are_worth_their_name() {
         prismatic += usize::from(is_kind(JointKind::Prismatic));
         fixed += usize::from(is_kind(JointKind::Fixed));
         long += usize::from(case.q.len() >= 6);
+        floating += usize::from(is_kind(JointKind::Floating));
     }
     assert!(branches > 50 && prismatic > 100 && fixed > 60 && long > 25, "{branches} {prismatic} {fixed} {long}");
+    assert!(floating > 80, "{floating}");
+    let mut followers = 0;
+    for _ in 0..256 {
+        let case = one_degree_case().new_tree(&mut runner).unwrap().current();
+        followers += usize::from(case.bodies.iter().any(|body| body.joint.mimic.is_some()));
+    }
+    assert!(followers > 60, "{followers}");
 }

@@ -6,7 +6,7 @@ pub(crate) mod robots;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use springpot::model::{Anchor, BodySpec, JointKind, JointSpec, Model, ModelBuilder, Parent, Site};
+use springpot::model::{Anchor, BodySpec, JointKind, JointSpec, Mimic, Model, ModelBuilder, Parent, Site};
 use springpot::spatial::{Rotation, Symmetric3};
 
 pub(crate) const GRAVITY: [f64; 3] = [0.3, -0.7, -9.81];
@@ -32,8 +32,25 @@ fn inertia() -> impl Strategy<Value = [[f64; 3]; 3]> {
     })
 }
 
-fn kind() -> impl Strategy<Value = JointKind> {
-    prop_oneof![4 => Just(JointKind::Revolute), 2 => Just(JointKind::Prismatic), 1 => Just(JointKind::Fixed)]
+/// Which joints a random tree may have.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+enum Joints {
+    /// Fixed, revolute, continuous and prismatic ones.
+    Plain,
+    /// And such that follow others.
+    OneDegree,
+    /// And floating ones.
+    All,
+}
+
+fn kind(joints: Joints) -> impl Strategy<Value = JointKind> {
+    let floating = if joints == Joints::All { JointKind::Floating } else { JointKind::Continuous };
+    prop_oneof![
+        4 => Just(JointKind::Revolute),
+        2 => Just(JointKind::Prismatic),
+        1 => Just(JointKind::Fixed),
+        2 => Just(floating),
+    ]
 }
 
 /// Any direction, the six coordinate directions included.
@@ -47,12 +64,12 @@ fn axis() -> impl Strategy<Value = [f64; 3]> {
     prop_oneof![1 => coordinate, 3 => any_axis]
 }
 
-fn body() -> impl Strategy<Value = BodySpec> {
-    (kind(), axis(), vector(0.8), vector(3.0), 0.1..5.0, vector(0.4), inertia()).prop_map(
+fn body(joints: Joints) -> impl Strategy<Value = BodySpec> {
+    (kind(joints), axis(), vector(0.8), vector(3.0), 0.1..5.0, vector(0.4), inertia()).prop_map(
         |(kind, axis, origin, rpy, mass, com, inertia)| BodySpec {
             name: String::new(),
             parent: Parent::World,
-            joint: JointSpec { name: String::new(), kind, axis, origin, rpy, damping: 0.0, friction: 0.0 },
+            joint: JointSpec { kind, rpy, ..JointSpec::revolute("", axis, origin) },
             mass,
             com,
             inertia,
@@ -88,12 +105,27 @@ pub(crate) fn build(bodies: &[BodySpec]) -> Model {
     builder.finish().unwrap()
 }
 
-/// Trees of 1 to 8 bodies, half of them single chains, with at least one moving joint.
+/// Trees of 1 to 8 bodies with all kinds of joints, half of them single chains, with at least one moving joint.
 pub(crate) fn case() -> impl Strategy<Value = Case> {
-    let state = (vec(-3.0..3.0, 8), vec(-2.0..2.0, 8), vec(-4.0..4.0, 8));
+    case_of(Joints::All)
+}
+
+/// The same with joints of one degree, some of which follow others.
+pub(crate) fn one_degree_case() -> impl Strategy<Value = Case> {
+    case_of(Joints::OneDegree)
+}
+
+/// The same with joints of one degree, each with its own coordinate.
+pub(crate) fn plain_case() -> impl Strategy<Value = Case> {
+    case_of(Joints::Plain)
+}
+
+fn case_of(joints: Joints) -> impl Strategy<Value = Case> {
+    let state = (vec(-3.0..3.0, 56), vec(-2.0..2.0, 48), vec(-4.0..4.0, 48));
     let anchors = proptest::array::uniform2((0usize..9, vector(0.5)));
-    (vec((body(), 0usize..8), 1..=8), any::<bool>(), state, anchors).prop_map(
-        |(mut bodies, chain, (q, v, a), anchors)| {
+    let follows = vec((0usize..24, -1.5..1.5f64, -0.5..0.5), 8);
+    (vec((body(joints), 0usize..8), 1..=8), any::<bool>(), state, anchors, follows).prop_map(
+        move |(mut bodies, chain, (q, v, a), anchors, follows)| {
             bodies[0].0.joint.kind = match bodies[0].0.joint.kind {
                 JointKind::Fixed => JointKind::Revolute,
                 kind => kind,
@@ -103,7 +135,7 @@ pub(crate) fn case() -> impl Strategy<Value = Case> {
                 number => Parent::Body(number - 1),
             };
             let count = bodies.len();
-            let bodies: Vec<BodySpec> = bodies
+            let mut bodies: Vec<BodySpec> = bodies
                 .into_iter()
                 .enumerate()
                 .map(|(k, (body, drawn))| BodySpec {
@@ -113,11 +145,33 @@ pub(crate) fn case() -> impl Strategy<Value = Case> {
                     ..body
                 })
                 .collect();
-            let moving = bodies.iter().filter(|body| body.joint.kind != JointKind::Fixed).count();
+            if joints > Joints::Plain {
+                for (k, &(target, multiplier, offset)) in follows.iter().enumerate().take(count) {
+                    let moves = |k: usize| bodies[k].joint.kind.nv() == 1;
+                    // Only a joint without followers of its own may follow, so that there is no circle.
+                    let leads = |k: usize| {
+                        bodies.iter().any(|b| b.joint.mimic.as_ref().is_some_and(|m| m.joint == format!("j{k}")))
+                    };
+                    if target < count
+                        && target != k
+                        && moves(k)
+                        && moves(target)
+                        && !leads(k)
+                        && bodies[target].joint.mimic.is_none()
+                    {
+                        let joint = format!("j{target}");
+                        bodies[k].joint.mimic = Some(Mimic { joint, multiplier, offset });
+                    }
+                }
+            }
+            let model = build(&bodies);
+            let mut q = q[..model.nq()].to_vec();
+            model.normalise(&mut q);
+            let (v, a) = (v[..model.nv()].to_vec(), a[..model.nv()].to_vec());
             Case {
-                q: q[..moving].to_vec(),
-                v: v[..moving].to_vec(),
-                a: a[..moving].to_vec(),
+                q,
+                v,
+                a,
                 anchors: anchors.map(|(drawn, point)| Anchor { body: parent(count, drawn), point }),
                 bodies,
             }
@@ -138,26 +192,35 @@ pub(crate) fn close(what: &str, x: &[f64], y: &[f64], tolerance: f64, scale: f64
     }
 }
 
-/// Central difference of fourth order of a vector function along one coordinate.
-pub(crate) fn difference(q: &[f64], j: usize, f: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
-    const STEP: f64 = 1e-3;
-    let at = |shift: f64| {
-        let mut moved = q.to_vec();
-        moved[j] += shift;
-        f(&moved)
-    };
-    let (pp, p, m, mm) = (at(2.0 * STEP), at(STEP), at(-STEP), at(-2.0 * STEP));
-    (0..p.len()).map(|k| (8.0 * (p[k] - m[k]) - (pp[k] - mm[k])) / (12.0 * STEP)).collect()
+/// Central difference of fourth order of a vector function along velocity `j` of the configuration manifold.
+pub(crate) fn difference(model: &Model, q: &[f64], j: usize, f: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    central(|shift| {
+        let mut step = vec![0.0; model.nv()];
+        step[j] = shift;
+        f(&model.integrate(q, &step))
+    })
 }
 
-/// Central difference of fourth order along the motion q(s) = q + s v + ½ s² a, v(s) = v + s a at s = 0.
-pub(crate) fn time_difference(case: &Case, f: impl Fn(&[f64], &[f64]) -> Vec<f64>) -> Vec<f64> {
+/// The same along one entry of a vector.
+pub(crate) fn plain_difference(at: &[f64], j: usize, f: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    central(|shift| {
+        let mut moved = at.to_vec();
+        moved[j] += shift;
+        f(&moved)
+    })
+}
+
+/// The same along the motion q(s) = q ⊕ (s v + ½ s² a), v(s) = v + s a.
+pub(crate) fn time_difference(model: &Model, case: &Case, f: impl Fn(&[f64], &[f64]) -> Vec<f64>) -> Vec<f64> {
+    central(|s| {
+        let step: Vec<f64> = case.v.iter().zip(&case.a).map(|(v, a)| s * v + 0.5 * s * s * a).collect();
+        let v: Vec<f64> = case.v.iter().zip(&case.a).map(|(v, a)| v + s * a).collect();
+        f(&model.integrate(&case.q, &step), &v)
+    })
+}
+
+fn central(at: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     const STEP: f64 = 1e-3;
-    let at = |s: f64| {
-        let q: Vec<f64> = (0..case.q.len()).map(|k| case.q[k] + s * case.v[k] + 0.5 * s * s * case.a[k]).collect();
-        let v: Vec<f64> = (0..case.q.len()).map(|k| case.v[k] + s * case.a[k]).collect();
-        f(&q, &v)
-    };
     let (pp, p, m, mm) = (at(2.0 * STEP), at(STEP), at(-STEP), at(-2.0 * STEP));
     (0..p.len()).map(|k| (8.0 * (p[k] - m[k]) - (pp[k] - mm[k])) / (12.0 * STEP)).collect()
 }

@@ -1,0 +1,66 @@
+//! Degrees of freedom: what the columns of Jacobians and mass matrices stand for.
+
+/// What a joint does in the frame of the link that it moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum JointMotion {
+    /// Turns about z.
+    Revolute,
+    /// Shifts along z.
+    Prismatic,
+    /// Shifts along, and turns about, x, y and z.
+    Floating,
+}
+
+/// An axis of a link's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// The motion that one degree of freedom gives to its link, through the origin of the link's frame and fixed in that frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum DegreeMotion {
+    /// A turn about the axis.
+    Turn(Axis),
+    /// A shift along the axis.
+    Shift(Axis),
+}
+
+/// One degree of freedom of a joint.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Degree {
+    /// The link that it moves.
+    pub(crate) link: usize,
+    pub(crate) motion: DegreeMotion,
+    /// Its velocity is ratio · v\[index\]; several degrees share an index where joints follow one another.
+    pub(crate) index: usize,
+    pub(crate) ratio: f64,
+}
+
+/// Where a joint finds its coordinates in q and its velocities in v.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coordinates {
+    /// First of its coordinates in q.
+    pub(crate) q: usize,
+    /// First of its velocities in v.
+    pub(crate) v: usize,
+    /// A joint of one degree stands at ratio · q + offset.
+    pub(crate) ratio: f64,
+    pub(crate) offset: f64,
+}
+
+impl JointMotion {
+    /// The degrees of freedom in the order of v.
+    pub(crate) const fn degrees(self) -> &'static [DegreeMotion] {
+        use DegreeMotion::{Shift, Turn};
+        match self {
+            Self::Revolute => &[Turn(Axis::Z)],
+            Self::Prismatic => &[Shift(Axis::Z)],
+            Self::Floating => {
+                &[Shift(Axis::X), Shift(Axis::Y), Shift(Axis::Z), Turn(Axis::X), Turn(Axis::Y), Turn(Axis::Z)]
+            }
+        }
+    }
+}

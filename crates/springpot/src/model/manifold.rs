@@ -1,0 +1,178 @@
+//! The configuration manifold: steps between configurations and what a configuration may be.
+
+use super::robot::Model;
+use super::spec::{JointKind, Limits};
+use crate::spatial::{Quaternion, Rotation, Vec3};
+use std::f64::consts::{PI, TAU};
+
+/// Configurations q and the tangent vectors v between them. Joint by joint; slices of a wrong length panic.
+impl Model {
+    /// The configuration in which every joint stands at 0: floating joints at their origin, unturned.
+    pub fn neutral(&self) -> Vec<f64> {
+        let mut q = vec![0.0; self.nq()];
+        for (j, kind) in self.own_joints() {
+            match kind {
+                JointKind::Fixed | JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => {}
+                JointKind::Floating => q[self.q_range(j).end - 1] = 1.0,
+            }
+        }
+        q
+    }
+
+    /// q ⊕ v: the configuration after one second at the constant velocities `v`, which for a floating joint are a twist in
+    /// its own axes (p + R V ω-dependent shift, R exp \[ω\]×). All slices are nq, but `v`, which is nv.
+    ///
+    /// Source: Blanco-Claraco, A tutorial on SE(3) transformation parameterizations and on-manifold optimization, 2010.
+    pub fn integrate_into(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
+        out[..self.nq()].copy_from_slice(&q[..self.nq()]);
+        for (j, kind) in self.own_joints() {
+            let (q, v) = (&mut out[self.q_range(j)], &v[self.v_range(j)]);
+            match kind {
+                JointKind::Fixed => {}
+                JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => q[0] += v[0],
+                JointKind::Floating => {
+                    let (shift, turn) = (Vec3([v[0], v[1], v[2]]), Vec3([v[3], v[4], v[5]]));
+                    let attitude = Quaternion::new([q[3], q[4], q[5], q[6]]).normalised();
+                    let moved = Rotation::from_quaternion(attitude) * left_jacobian(turn, shift);
+                    for k in 0..3 {
+                        q[k] += moved.0[k];
+                    }
+                    q[3..].copy_from_slice(&(attitude * Quaternion::from_rotation_vector(turn)).normalised().0);
+                }
+            }
+        }
+    }
+
+    /// [`Model::integrate_into`], allocating.
+    pub fn integrate(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.nq()];
+        self.integrate_into(q, v, &mut out);
+        out
+    }
+
+    /// to ⊖ from: the velocities `v` (nv) that lead from one configuration to the other in one second, `from` ⊕ v = `to`.
+    ///
+    /// The shorter way round where there are two: the turn of a continuous or floating joint is at most π.
+    pub fn difference_into(&self, from: &[f64], to: &[f64], v: &mut [f64]) {
+        for (j, kind) in self.own_joints() {
+            let (from, to, v) = (&from[self.q_range(j)], &to[self.q_range(j)], &mut v[self.v_range(j)]);
+            match kind {
+                JointKind::Fixed => {}
+                JointKind::Revolute | JointKind::Prismatic => v[0] = to[0] - from[0],
+                JointKind::Continuous => v[0] = wrapped(to[0] - from[0]),
+                JointKind::Floating => {
+                    let attitude = |q: &[f64]| Quaternion::new([q[3], q[4], q[5], q[6]]).normalised();
+                    let (start, end) = (attitude(from), attitude(to));
+                    let turn = (start.conjugate() * end).rotation_vector();
+                    let line = Vec3([to[0] - from[0], to[1] - from[1], to[2] - from[2]]);
+                    let shift = inverse_left_jacobian(turn, Rotation::from_quaternion(start).unrotate(line));
+                    v[..3].copy_from_slice(&shift.0);
+                    v[3..].copy_from_slice(&turn.0);
+                }
+            }
+        }
+    }
+
+    /// [`Model::difference_into`], allocating.
+    pub fn difference(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
+        let mut v = vec![0.0; self.nv()];
+        self.difference_into(from, to, &mut v);
+        v
+    }
+
+    /// Brings `q` back to the manifold, where it already is but for rounding: quaternions to length 1 (with qw ≥ 0), angles
+    /// of continuous joints into (−π, π]. A quaternion of length 0 becomes NaN.
+    pub fn normalise(&self, q: &mut [f64]) {
+        for (j, kind) in self.own_joints() {
+            let q = &mut q[self.q_range(j)];
+            match kind {
+                JointKind::Fixed | JointKind::Revolute | JointKind::Prismatic => {}
+                JointKind::Continuous => q[0] = wrapped(q[0]),
+                JointKind::Floating => {
+                    let unit = Quaternion::new([q[3], q[4], q[5], q[6]]).normalised().0;
+                    let sign = if unit[3] < 0.0 { -1.0 } else { 1.0 };
+                    q[3..].copy_from_slice(&unit.map(|x| sign * x));
+                }
+            }
+        }
+    }
+
+    /// A random configuration, the same for the same `seed`: within finite limits; else angles in (−π, π), shifts within one
+    /// metre, all attitudes equally likely.
+    pub fn random(&self, seed: u64) -> Vec<f64> {
+        let mut state = seed;
+        let mut uniform = || splitmix(&mut state);
+        let mut q = self.neutral();
+        for (j, kind) in self.own_joints() {
+            let q = &mut q[self.q_range(j)];
+            let Limits { lower, upper, .. } = *self.limits(j);
+            let mut within = |reach: f64| {
+                let (low, high) = if lower.is_finite() && upper.is_finite() { (lower, upper) } else { (-reach, reach) };
+                low + (high - low) * uniform()
+            };
+            match kind {
+                JointKind::Fixed => {}
+                JointKind::Revolute => q[0] = within(PI),
+                JointKind::Continuous => q[0] = PI * (2.0 * uniform() - 1.0),
+                JointKind::Prismatic => q[0] = within(1.0),
+                JointKind::Floating => {
+                    q[..3].fill_with(|| 2.0 * uniform() - 1.0);
+                    // Shoemake, Uniform random rotations, Graphics Gems III, 1992.
+                    let (share, first, second) = (uniform(), TAU * uniform(), TAU * uniform());
+                    let (a, b) = ((1.0 - share).sqrt(), share.sqrt());
+                    q[3..].copy_from_slice(&[a * first.sin(), a * first.cos(), b * second.sin(), b * second.cos()]);
+                }
+            }
+        }
+        q
+    }
+
+    /// The joints that have coordinates of their own.
+    fn own_joints(&self) -> impl Iterator<Item = (usize, JointKind)> + '_ {
+        (0..self.joint_count()).filter(|&j| self.followed(j).is_none()).map(|j| (j, self.joint_kind(j)))
+    }
+}
+
+/// The angle in (−π, π] that differs from `angle` by full turns.
+fn wrapped(angle: f64) -> f64 {
+    let rest = angle.rem_euclid(TAU);
+    if rest > PI { rest - TAU } else { rest }
+}
+
+/// V(ω) u with V = 1 + (1 − cos θ)/θ² \[ω\]× + (θ − sin θ)/θ³ \[ω\]×²: how far a constant twist (u, ω) leads in one second.
+fn left_jacobian(omega: Vec3, u: Vec3) -> Vec3 {
+    let square = omega.dot(omega);
+    let theta = square.sqrt();
+    let (first, second) = if theta < 1e-2 {
+        // Both series, to 1e-17.
+        let first = 0.5 - square / 24.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0));
+        (first, (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0))) / 6.0)
+    } else {
+        let half = (0.5 * theta).sin();
+        (2.0 * half * half / square, (theta - theta.sin()) / (square * theta))
+    };
+    let once = omega.cross(u);
+    omega.cross(once).times_plus(second, once.times_plus(first, u))
+}
+
+/// V(ω)⁻¹ u with V⁻¹ = 1 − ½ \[ω\]× + (1 − (θ/2) cot(θ/2))/θ² \[ω\]×².
+fn inverse_left_jacobian(omega: Vec3, u: Vec3) -> Vec3 {
+    let square = omega.dot(omega);
+    let half = 0.5 * square.sqrt();
+    let second = if half < 5e-2 {
+        1.0 / 12.0 + square / 720.0 * (1.0 + square / 42.0 * (1.0 + square / 40.0))
+    } else {
+        (1.0 - half / half.tan()) / square
+    };
+    let once = omega.cross(u);
+    omega.cross(once).times_plus(second, once.times_plus(-0.5, u))
+}
+
+/// The next number in [0, 1) of Steele, Lea and Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
+fn splitmix(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
