@@ -1,15 +1,18 @@
 //! Motions given in advance: q, v, a as functions of time.
 
+mod attitude;
 pub mod gripper_path;
 mod hermite;
 pub mod kinks;
+mod prescribed;
 mod pseudo_inverse;
 mod task;
 
 pub use gripper_path::{GripperPath, PathError};
+pub use prescribed::{JointPath, PosePath};
 
 use crate::model::Model;
-use crate::signal::{Jet, Signal};
+use crate::signal::Signal;
 
 /// Where the gripper should be, for motions that say so.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,14 +24,14 @@ pub struct Wanted {
 /// A motion given in advance.
 #[derive(Debug, Clone)]
 pub enum Motion {
-    /// Each coordinate is a signal, in joint order; v and a are its exact derivatives.
-    Prescribed(Vec<Signal>),
+    /// Each joint that has coordinates of its own moves as signals say, in joint order.
+    Prescribed(Vec<JointPath>),
     /// The gripper follows a path; the coordinates come from inverse kinematics.
     GripperPath(Box<GripperPath>),
 }
 
 impl Motion {
-    /// q, v and a (nv values each) at t, and where the gripper should be.
+    /// q (nq values), v and a (nv values each) at t, and where the gripper should be.
     ///
     /// # Errors
     /// [`PathError`] where the gripper cannot follow its path.
@@ -41,11 +44,8 @@ impl Motion {
         a: &mut [f64],
     ) -> Result<Option<Wanted>, PathError> {
         match self {
-            Self::Prescribed(signals) => {
-                for (j, signal) in signals.iter().enumerate() {
-                    let Jet { value, first, second } = signal.at(t);
-                    (q[j], v[j], a[j]) = (value, first, second);
-                }
+            Self::Prescribed(joints) => {
+                prescribed::at(model, joints, t, q, v, a);
                 Ok(None)
             }
             Self::GripperPath(path) => path.at(model, t, q, v, a).map(Some),
@@ -67,7 +67,7 @@ impl Motion {
 
     fn signals(&self) -> Vec<&Signal> {
         match self {
-            Self::Prescribed(signals) => signals.iter().collect(),
+            Self::Prescribed(joints) => joints.iter().flat_map(JointPath::signals).collect(),
             Self::GripperPath(path) => path.signals().collect(),
         }
     }

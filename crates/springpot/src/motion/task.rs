@@ -1,5 +1,6 @@
 //! What a gripper path asks of the robot at one time: residual, Jacobian and their rates.
 
+use super::attitude::Attitude;
 use crate::dynamics::{
     Kinematics, angular_jacobian_into, angular_jacobian_rate_into, point_jacobian_into, point_jacobian_rate_into,
 };
@@ -57,20 +58,8 @@ impl Task {
             acceleration: vec![x.second, y.second, z.second],
         };
         if let Some(rpy) = &self.rpy {
-            let [roll, pitch, yaw] = [0, 1, 2].map(|k| rpy[k].at(t));
-            // ω = yaw' e_z + pitch' e_y' + roll' e_x'': each axis is carried by the turns before it.
-            let turn = Rotation::from_rpy([0.0, 0.0, yaw.value]);
-            let tilt = Rotation::from_rpy([0.0, pitch.value, yaw.value]);
-            let (ez, ey, ex) = (Vec3([0.0, 0.0, 1.0]), turn * Vec3([0.0, 1.0, 0.0]), tilt * Vec3([1.0, 0.0, 0.0]));
-            let carrier = ez * yaw.first;
-            let tilted = carrier + ey * pitch.first;
-            let omega = tilted + ex * roll.first;
-            let alpha = ez * yaw.second
-                + ey * pitch.second
-                + carrier.cross(ey) * pitch.first
-                + ex * roll.second
-                + tilted.cross(ex) * roll.first;
-            target.rotation = Some(Rotation::from_rpy([roll.value, pitch.value, yaw.value]));
+            let Attitude { rotation, omega, alpha, .. } = Attitude::at(rpy, t);
+            target.rotation = Some(rotation);
             target.rate.extend(omega.0);
             target.acceleration.extend(alpha.0);
         }

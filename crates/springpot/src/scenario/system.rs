@@ -3,7 +3,7 @@
 use super::plan::{ElementPlan, MotionPlan, Plan, SignalPlan};
 use crate::element::Element;
 use crate::model::{Anchor, Model, Site};
-use crate::motion::{GripperPath, Motion, gripper_path::Task};
+use crate::motion::{GripperPath, JointPath, Motion, gripper_path::Task};
 use crate::signal::Signal;
 use crate::simulate::{Settings, System};
 
@@ -48,7 +48,9 @@ impl Plan {
 
     fn solved_motion(&self) -> Motion {
         match &self.motion {
-            MotionPlan::Prescribed { joints } => Motion::Prescribed(joints.iter().map(signal).collect()),
+            MotionPlan::Prescribed { joints } => {
+                Motion::Prescribed(joints.iter().map(|joint| JointPath::Coordinate(signal(joint))).collect())
+            }
             MotionPlan::GripperPath { position, rpy, guess, .. } => {
                 let gripper = self.gripper.as_ref().expect("a gripper path was read with its gripper");
                 let task = Task {

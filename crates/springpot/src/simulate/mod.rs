@@ -18,7 +18,7 @@ mod row_times;
 pub use along::along;
 pub use error::RunError;
 pub use moment::FRICTION_SPEED;
-pub use pose::{ElementStart, Pose};
+pub use pose::{ElementStart, Pose, State};
 pub use row_times::RowTimes;
 
 use crate::element::Element;

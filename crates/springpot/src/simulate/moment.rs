@@ -75,7 +75,7 @@ impl Moment {
         };
         Self {
             t: 0.0,
-            q: vec![0.0; n],
+            q: vec![0.0; system.model.nq()],
             v: vec![0.0; n],
             a: vec![0.0; n],
             rigid: vec![0.0; n],
@@ -116,10 +116,15 @@ impl System {
         moment.kinetic = kinetic_energy(&self.model, kinematics);
         moment.potential = potential_energy(&self.model, kinematics);
         moment.joint_loss = 0.0;
-        for (j, tau) in moment.rigid.iter_mut().enumerate() {
-            let v = moment.v[j];
+        for j in 0..self.model.joint_count() {
+            if self.model.joint_kind(j).nv() != 1 {
+                continue;
+            }
+            let (index, ratio) =
+                (self.model.v_range(j).start, self.model.followed(j).map_or(1.0, |(_, ratio, _)| ratio));
+            let v = ratio * moment.v[index];
             let resistance = self.model.damping()[j] * v + self.model.friction()[j] * (v / FRICTION_SPEED).tanh();
-            *tau += resistance;
+            moment.rigid[index] += ratio * resistance;
             moment.joint_loss += resistance * v;
         }
         for (element, state) in self.elements.iter().zip(&mut moment.elements) {
@@ -145,10 +150,10 @@ impl System {
     }
 
     fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {
-        let names = self.model.joint_names();
         for (symbol, values) in [("q", &moment.q), ("v", &moment.v), ("a", &moment.a)] {
-            if let Some(j) = values.iter().position(|x| !x.is_finite()) {
-                return Err(RunError::NotFinite { t, what: format!("{symbol}.{}", names[j]), value: values[j] });
+            if let Some(k) = values.iter().position(|x| !x.is_finite()) {
+                let labels = if symbol == "q" { self.model.q_labels() } else { self.model.v_labels() };
+                return Err(RunError::NotFinite { t, what: format!("{symbol}.{}", labels[k].name), value: values[k] });
             }
         }
         Ok(())

@@ -20,6 +20,17 @@ pub struct ElementStart {
     pub singular: bool,
 }
 
+/// The motion at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Coordinates, nq values.
+    pub q: Vec<f64>,
+    /// Velocities, nv values.
+    pub v: Vec<f64>,
+    /// Accelerations, nv values.
+    pub a: Vec<f64>,
+}
+
 /// The robot in one configuration.
 #[derive(Debug, Clone)]
 pub struct Pose<'a> {
@@ -53,10 +64,19 @@ impl System {
     /// # Errors
     /// [`RunError::Path`] where the motion cannot be followed.
     pub fn pose(&self, t: f64) -> Result<Pose<'_>, RunError> {
-        let n = self.model.nv();
-        let (mut q, mut v, mut a) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        self.motion.at(&self.model, t, &mut q, &mut v, &mut a)?;
-        Ok(Pose { model: &self.model, kinematics: Kinematics::at_position(&self.model, &q) })
+        let state = self.state(t)?;
+        Ok(Pose { model: &self.model, kinematics: Kinematics::at_position(&self.model, &state.q) })
+    }
+
+    /// Coordinates, velocities and accelerations at time t.
+    ///
+    /// # Errors
+    /// [`RunError::Path`] where the motion cannot be followed.
+    pub fn state(&self, t: f64) -> Result<State, RunError> {
+        let (nq, nv) = (self.model.nq(), self.model.nv());
+        let mut state = State { q: vec![0.0; nq], v: vec![0.0; nv], a: vec![0.0; nv] };
+        self.motion.at(&self.model, t, &mut state.q, &mut state.v, &mut state.a)?;
+        Ok(state)
     }
 }
 

@@ -5,8 +5,11 @@ use super::ledger::Balance;
 use super::moment::Moment;
 use crate::element::Element;
 use crate::law::Observation;
-use crate::model::JointKind;
+use crate::model::{Label, Measure};
 use crate::table::Column;
+
+/// Units of generalized forces, by [`Measure`].
+const FORCES: [&str; 3] = ["N*m", "N", ""];
 
 /// One element in one row.
 #[derive(Debug, Clone, Copy)]
@@ -21,24 +24,17 @@ impl System {
     /// The columns of a run's rows, in order.
     pub fn columns(&self) -> Vec<Column> {
         let model = &self.model;
-        let joints = model.joint_names();
+        let (coordinates, velocities) = (model.q_labels(), model.v_labels());
         let mut columns = vec![Column::new("t", "s", "time")];
-        let unit = |joint: usize, angular: &str, linear: &str| match model.joint_kind(joint) {
-            JointKind::Prismatic => linear.to_owned(),
-            _ => angular.to_owned(),
-        };
-        for (prefix, angular, linear, meaning) in [
-            ("q", "rad", "m", "coordinate"),
-            ("v", "rad/s", "m/s", "velocity"),
-            ("a", "rad/s^2", "m/s^2", "acceleration"),
-            ("tau", "N*m", "N", "actuator force"),
+        for (prefix, labels, units, meaning) in [
+            ("q", &coordinates, ["rad", "m", "1"], "coordinate"),
+            ("v", &velocities, ["rad/s", "m/s", ""], "velocity"),
+            ("a", &velocities, ["rad/s^2", "m/s^2", ""], "acceleration"),
+            ("tau", &velocities, FORCES, "actuator force"),
         ] {
-            for (j, joint) in joints.iter().enumerate() {
-                columns.push(Column::new(
-                    format!("{prefix}.{joint}"),
-                    unit(j, angular, linear),
-                    format!("{meaning} of {joint}"),
-                ));
+            for label in labels {
+                let name = format!("{prefix}.{}", label.name);
+                columns.push(Column::new(name, unit(label, units), format!("{meaning} of {}", label.name)));
             }
         }
         for element in &self.elements {
@@ -51,8 +47,9 @@ impl System {
             add("rate", "m/s", format!("rate of the stroke of {name}"));
             add("derivative", derivative_unit(element), format!("fractional derivative of the stroke of {name}"));
             add("force", "N", format!("force of {name}, positive in tension"));
-            for (j, joint) in joints.iter().enumerate() {
-                add(&format!("Q.{joint}"), &unit(j, "N*m", "N"), format!("generalized force of {name} on {joint}"));
+            for label in &velocities {
+                let joint = &label.name;
+                add(&format!("Q.{joint}"), unit(label, FORCES), format!("generalized force of {name} on {joint}"));
             }
             add("stored", "J", format!("energy stored in {name}"));
             add("dissipated", "J", format!("energy dissipated in {name} since t = 0"));
@@ -135,6 +132,15 @@ impl System {
         row.push(residual);
         // No field says -0.
         row.iter_mut().for_each(|value| *value += 0.0);
+    }
+}
+
+/// The unit of a number, from those for angles, lengths and quaternions.
+fn unit<'a>(label: &Label, [angle, length, quaternion]: [&'a str; 3]) -> &'a str {
+    match label.measure {
+        Measure::Angle => angle,
+        Measure::Length => length,
+        Measure::Quaternion => quaternion,
     }
 }
 

@@ -12,11 +12,15 @@ impl Run<'_> {
         let [mut left, mut right] = std::array::from_fn(|_| self.moments[0].clone());
         self.system.evaluate(before, before, &mut self.scratch, &mut left)?;
         self.system.evaluate(after, after, &mut self.scratch, &mut right)?;
-        for (j, joint) in self.system.model.joint_names().iter().enumerate() {
-            let jump = right.q[j] - left.q[j];
-            let reach = (after - before) * (left.v[j].abs() + right.v[j].abs());
-            if jump.abs() > 1e-9 * (1.0 + left.q[j].abs()) + reach {
-                return Err(RunError::Jump { t: after, joint: joint.clone(), jump });
+        let model = &self.system.model;
+        let jumps = model.difference(&left.q, &right.q);
+        for (j, joint) in model.joint_names().iter().enumerate() {
+            let size = left.q[model.q_range(j)].iter().fold(1.0, |largest: f64, q| largest.max(q.abs()));
+            for k in model.v_range(j) {
+                let reach = (after - before) * (left.v[k].abs() + right.v[k].abs());
+                if jumps[k].abs() > 2e-9 * size + reach {
+                    return Err(RunError::Jump { t: after, joint: joint.clone(), jump: jumps[k] });
+                }
             }
         }
         Ok([left, right])

@@ -1,0 +1,61 @@
+//! Joints that move as signals say.
+
+use super::attitude::Attitude;
+use crate::model::Model;
+use crate::signal::{Jet, Signal};
+use crate::spatial::Vec3;
+
+/// How one joint moves; v and a are exact derivatives.
+#[derive(Debug, Clone)]
+pub enum JointPath {
+    /// A joint of one degree: its coordinate, rad or m.
+    Coordinate(Signal),
+    /// A floating joint: the pose of the body in the joint's frame.
+    Pose(Box<PosePath>),
+}
+
+/// The pose of a floating joint in time.
+#[derive(Debug, Clone)]
+pub struct PosePath {
+    /// x, y, z, m.
+    pub position: [Signal; 3],
+    /// Roll, pitch, yaw, R = Rz(yaw) Ry(pitch) Rx(roll), rad.
+    pub rpy: [Signal; 3],
+}
+
+impl JointPath {
+    pub(super) fn signals(&self) -> Vec<&Signal> {
+        match self {
+            Self::Coordinate(signal) => vec![signal],
+            Self::Pose(pose) => pose.position.iter().chain(&pose.rpy).collect(),
+        }
+    }
+}
+
+/// q (nq), v and a (nv) at t; `joints` are the joints that have coordinates of their own, in their order.
+pub(super) fn at(model: &Model, joints: &[JointPath], t: f64, q: &mut [f64], v: &mut [f64], a: &mut [f64]) {
+    let own = (0..model.joint_count()).filter(|&j| model.followed(j).is_none());
+    for (j, joint) in own.zip(joints) {
+        let (q, v, a) = (&mut q[model.q_range(j)], &mut v[model.v_range(j)], &mut a[model.v_range(j)]);
+        match joint {
+            JointPath::Coordinate(signal) => {
+                let Jet { value, first, second } = signal.at(t);
+                (q[0], v[0], a[0]) = (value, first, second);
+            }
+            JointPath::Pose(pose) => {
+                let jets = [0, 1, 2].map(|k| pose.position[k].at(t));
+                let Attitude { rotation, quaternion, omega, alpha } = Attitude::at(&pose.rpy, t);
+                // Components in the body's axes: d(Rᵀ u)/dt = Rᵀ u̇ − Rᵀ ω × Rᵀ u.
+                let linear = rotation.unrotate(Vec3(jets.map(|jet| jet.first)));
+                let angular = rotation.unrotate(omega);
+                let push = rotation.unrotate(Vec3(jets.map(|jet| jet.second))) - angular.cross(linear);
+                q[..3].copy_from_slice(&jets.map(|jet| jet.value));
+                q[3..].copy_from_slice(&quaternion.0);
+                v[..3].copy_from_slice(&linear.0);
+                v[3..].copy_from_slice(&angular.0);
+                a[..3].copy_from_slice(&push.0);
+                a[3..].copy_from_slice(&rotation.unrotate(alpha).0);
+            }
+        }
+    }
+}
