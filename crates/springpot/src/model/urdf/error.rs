@@ -1,0 +1,77 @@
+//! Where something is wrong with a URDF file, and whose it is.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use super::problem::UrdfProblem;
+
+/// Why a URDF file is no robot; `Display` is `file:line:column: what is wrong and what would be right`.
+#[derive(Debug)]
+pub struct UrdfError {
+    /// The file, as it was given; `None` for text that came without one.
+    pub file: Option<PathBuf>,
+    /// Line and column, from 1; the column counts characters.
+    pub place: Option<(usize, usize)>,
+    /// What is wrong.
+    pub problem: Box<UrdfProblem>,
+}
+
+impl UrdfError {
+    pub(super) fn new(file: Option<&Path>, place: Option<(usize, usize)>, problem: UrdfProblem) -> Self {
+        Self { file: file.map(Path::to_path_buf), place, problem: Box::new(problem) }
+    }
+
+    /// The line it is about, from 1; `None` where the whole file is meant.
+    pub fn line(&self) -> Option<usize> {
+        self.place.map(|(line, _)| line)
+    }
+}
+
+impl fmt::Display for UrdfError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.file, self.place) {
+            (Some(file), Some((line, column))) => write!(f, "{}:{line}:{column}: ", file.display())?,
+            (Some(file), None) => write!(f, "{}: ", file.display())?,
+            (None, Some((line, column))) => write!(f, "line {line}, column {column}: ")?,
+            (None, None) => {}
+        }
+        self.problem.fmt(f)
+    }
+}
+
+impl std::error::Error for UrdfError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.problem.source()
+    }
+}
+
+/// Whose element it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Owner {
+    /// The `<robot>` itself.
+    Robot,
+    /// The link of that name.
+    Link(String),
+    /// The joint of that name.
+    Joint(String),
+}
+
+impl Owner {
+    /// The name of the link or joint.
+    pub fn name(&self) -> Option<&str> {
+        match self {
+            Self::Robot => None,
+            Self::Link(name) | Self::Joint(name) => Some(name),
+        }
+    }
+}
+
+impl fmt::Display for Owner {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Robot => f.write_str("<robot>"),
+            Self::Link(name) => write!(f, "link {name:?}"),
+            Self::Joint(name) => write!(f, "joint {name:?}"),
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! What stands in `<robot>`.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use super::error::{Owner, UrdfError};
+use super::joint::JointEntry;
+use super::link::{Inertial, LinkEntry, Physical};
+use super::package::Packages;
+use super::problem::{UrdfProblem, brief};
+use super::reader::{Node, Reader};
+use super::source::Source;
+use super::tree::Tree;
+use super::warning::UrdfWarningKind;
+use super::{BodyLines, FLOATING_BASE, RootLink, Urdf, UrdfOptions, joint, link, mimic};
+use crate::model::{BodySpec, JointKind, JointSpec, Parent};
+
+/// Elements of `<robot>` that have no part in the dynamics.
+const UNUSED: [&str; 6] = ["transmission", "gazebo", "ros2_control", "sensor", "mujoco", "model_state"];
+/// Elements of other programs that join links or drive them, for which there is no place in a tree.
+const UNSUPPORTED: [&str; 4] = ["loop_joint", "linear_spring_damper", "linear_bushing_rpy", "ball_constraint"];
+
+/// Reads a whole file.
+pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Result<Urdf, UrdfError> {
+    let source = Source::new(text, file);
+    let document = source.parse()?;
+    let robot = document.root_element();
+    let mut reader = Reader::new(&source, robot);
+    if robot.tag_name().name() != "robot" {
+        let root = robot.tag_name().name().chars().take(40).collect();
+        return Err(reader.fail(robot, UrdfProblem::NotUrdf { root }));
+    }
+    let (links, mut joints) = entries(&mut reader, robot, options)?;
+    if links.is_empty() {
+        return Err(reader.fail(robot, UrdfProblem::NoLinks));
+    }
+    let tree = Tree::of(&reader, &links, &joints)?;
+    mimic::check(&reader, &joints)?;
+    check_reserved(&reader, &links, tree.root, options)?;
+    if options.floating_base {
+        free_the_name(&mut reader, &mut joints)?;
+    }
+    if let Some(file) = file {
+        let mut packages = Packages::of(file, &options.package_path);
+        for link in &links {
+            let owner = Owner::Link(link.name.to_owned());
+            for mesh in link.meshes.iter().filter(|mesh| !packages.finds(mesh.file)) {
+                reader.warnings.add(UrdfWarningKind::MeshNotFound, &owner, mesh.line, mesh.file);
+            }
+        }
+    }
+    let name = reader.text(robot, "name").unwrap_or_default().to_owned();
+    if name.is_empty() {
+        reader.warnings.add(UrdfWarningKind::NoName, &Owner::Robot, reader.line(robot), "");
+    }
+    assemble(reader, name, links, joints, &tree, options)
+}
+
+type Entries<'a> = (Vec<LinkEntry<'a>>, Vec<JointEntry<'a>>);
+
+fn entries<'a>(reader: &mut Reader<'a>, robot: Node<'a>, options: &UrdfOptions) -> Result<Entries<'a>, UrdfError> {
+    let owner = Owner::Robot;
+    reader.attributes(robot, &owner, &["name"], &["version"]);
+    let (mut links, mut joints) = (Vec::new(), Vec::new());
+    for node in robot.children() {
+        match reader.name(node) {
+            Some("link") => links.push(link::read(reader, node)?),
+            Some("joint") => joints.push(joint::read(reader, node, options.ignore_mimic)?),
+            Some("material") => {}
+            Some(name) if UNUSED.contains(&name) => {
+                reader.not_used(node, &owner, &format!("<{name}>"));
+                if name == "gazebo" {
+                    note_simulator(reader, node);
+                }
+            }
+            _ if node.is_element() => {
+                if UNSUPPORTED.contains(&node.tag_name().name()) {
+                    let what = format!("<{}>", node.tag_name().name());
+                    return Err(reader.fail(node, UrdfProblem::Unsupported { owner, what }));
+                }
+                reader.unknown_element(node, &owner)?;
+            }
+            _ => reader.stray_text(node, &owner),
+        }
+    }
+    Ok((links, joints))
+}
+
+/// Notes what changes the motion of bodies in a simulator and stands in its own elements.
+fn note_simulator<'a>(reader: &mut Reader<'a>, gazebo: Node<'a>) {
+    for node in gazebo.descendants().filter(Node::is_element) {
+        let says = |words: [&str; 2]| node.text().is_some_and(|text| words.contains(&text.trim()));
+        let changes_motion = match node.tag_name().name() {
+            "springStiffness" => true,
+            "turnGravityOff" => says(["true", "1"]),
+            "gravity" => says(["false", "0"]),
+            "joint" | "hinge" | "slider" | "ball" => {
+                node.children().any(|child| matches!(child.tag_name().name(), "parent" | "body1"))
+            }
+            _ => false,
+        };
+        if changes_motion {
+            let what = format!("<{}>", node.tag_name().name());
+            reader.warnings.add(UrdfWarningKind::InSimulator, &Owner::Robot, reader.line(node), what);
+        }
+    }
+}
+
+fn check_reserved<'a>(
+    reader: &Reader<'a>,
+    links: &[LinkEntry<'a>],
+    root: usize,
+    options: &UrdfOptions,
+) -> Result<(), UrdfError> {
+    let world = links.iter().position(|link| link.name == "world");
+    match world.filter(|&link| link != root || options.floating_base) {
+        Some(world) => Err(reader.fail(links[world].node, UrdfProblem::ReservedLink { is_root: world == root })),
+        None => Ok(()),
+    }
+}
+
+/// Keeps the name of the floating joint free: a fixed joint, which has no coordinates to be named, gets another one.
+fn free_the_name<'a>(reader: &mut Reader<'a>, joints: &mut [JointEntry<'a>]) -> Result<(), UrdfError> {
+    let Some(taken) = joints.iter().position(|joint| joint.spec.name == FLOATING_BASE) else { return Ok(()) };
+    let node = joints[taken].node;
+    if joints[taken].spec.kind != JointKind::Fixed {
+        return Err(reader.fail(node, UrdfProblem::ReservedJoint));
+    }
+    let names: HashSet<&str> = joints.iter().map(|joint| joint.spec.name.as_str()).collect();
+    let mut free = format!("{FLOATING_BASE}_2");
+    while names.contains(free.as_str()) {
+        free.push('_');
+    }
+    let owner = Owner::Joint(FLOATING_BASE.to_owned());
+    reader.warnings.add(UrdfWarningKind::Renamed, &owner, reader.line(node), format!("called {free:?} here"));
+    joints[taken].spec.name = free;
+    Ok(())
+}
+
+/// The bodies in their order, and what is to be said of those that move.
+fn assemble<'a>(
+    mut reader: Reader<'a>,
+    name: String,
+    links: Vec<LinkEntry<'a>>,
+    mut joints: Vec<JointEntry<'a>>,
+    tree: &Tree,
+    options: &UrdfOptions,
+) -> Result<Urdf, UrdfError> {
+    let floats = options.floating_base;
+    let lines: Vec<usize> = links.iter().map(|link| reader.line(link.node)).collect();
+    let root = &links[tree.root];
+    let mut bodies = Vec::with_capacity(links.len());
+    let mut body_lines = Vec::with_capacity(links.len());
+    // Of every link that is done: the body to hang on, and whether it moves in the world.
+    let mut done = vec![(Parent::World, false); links.len()];
+    if floats {
+        let joint = JointSpec::floating(FLOATING_BASE, [0.0; 3]);
+        bodies.push(body(root, Parent::World, joint));
+        body_lines.push(BodyLines { link: lines[tree.root], joint: lines[tree.root] });
+        note_inertia(&mut reader, root, true, true)?;
+        done[tree.root] = (Parent::Body(0), true);
+    } else {
+        note_inertia(&mut reader, root, false, false)?;
+    }
+    for branch in &tree.order {
+        let (link, joint) = (&links[branch.child], &mut joints[branch.joint]);
+        let (parent, parent_moves) = done[branch.parent];
+        let is_carried = joint.spec.kind != JointKind::Fixed;
+        let moves = parent_moves || is_carried;
+        note_inertia(&mut reader, link, is_carried, moves)?;
+        done[branch.child] = (Parent::Body(bodies.len()), moves);
+        body_lines.push(BodyLines { link: lines[branch.child], joint: reader.line(joint.node) });
+        let spec = std::mem::replace(&mut joint.spec, JointSpec::fixed("", [0.0; 3]));
+        bodies.push(body(link, parent, spec));
+    }
+    let root = RootLink {
+        name: root.name.to_owned(),
+        line: lines[tree.root],
+        inertial: root.inertial.as_ref().map(|inertial| inertial.value),
+    };
+    let file = reader.source.file.map(Path::to_path_buf);
+    let warnings = reader.warnings.finish();
+    Ok(Urdf { name, file, root, floating_base: floats, bodies, lines: body_lines, warnings })
+}
+
+fn body(link: &LinkEntry<'_>, parent: Parent, joint: JointSpec) -> BodySpec {
+    let Inertial { mass, com, inertia } = link.inertial.as_ref().map_or(Inertial::ZERO, |inertial| inertial.value);
+    BodySpec { name: link.name.to_owned(), parent, joint, mass, com, inertia }
+}
+
+/// Notes what is odd about the inertia of a link, which is on a moving joint or not, and moves in the world or not.
+///
+/// A link without mass on a fixed joint is a frame, and what is fixed to the world has no part in the dynamics: neither
+/// is worth a line.
+///
+/// # Errors
+/// A negative principal moment on a moving joint.
+fn note_inertia<'a>(
+    reader: &mut Reader<'a>,
+    link: &LinkEntry<'a>,
+    is_carried: bool,
+    moves: bool,
+) -> Result<(), UrdfError> {
+    let owner = Owner::Link(link.name.to_owned());
+    let Some(inertial) = &link.inertial else {
+        if is_carried {
+            reader.warnings.add(UrdfWarningKind::NoInertial, &owner, reader.line(link.node), "");
+        }
+        return Ok(());
+    };
+    let line = inertial.line;
+    if is_carried && inertial.value.mass == 0.0 {
+        reader.warnings.add(UrdfWarningKind::ZeroMass, &owner, line, "");
+    }
+    match inertial.physical {
+        Physical::NotPositive { smallest } if is_carried => {
+            let problem = UrdfProblem::InertiaNotPositive { link: link.name.to_owned(), smallest };
+            return Err(reader.fail(inertial.node, problem));
+        }
+        Physical::NotPositive { smallest } => {
+            let what = format!("{} kg*m^2{}", brief(smallest), if moves { "" } else { ", fixed to the world" });
+            reader.warnings.add(UrdfWarningKind::NotPositive, &owner, line, what);
+        }
+        Physical::BrokenTriangle { largest, others } if moves => {
+            let what = format!("moment {} above the sum {} of the other two", brief(largest), brief(others));
+            reader.warnings.add(UrdfWarningKind::TriangleInequality, &owner, line, what);
+        }
+        Physical::Noise => reader.warnings.add(UrdfWarningKind::PointMass, &owner, line, ""),
+        Physical::BrokenTriangle { .. } | Physical::Yes => {}
+    }
+    Ok(())
+}
