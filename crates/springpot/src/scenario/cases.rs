@@ -6,6 +6,7 @@ use super::path;
 use super::plan::{MotionPlan, Plan};
 use super::reader::{Context, Read, Table};
 use super::refusal::{Place, RefusalKind, Refusals};
+use super::robot::Robot;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
 use super::{Scenario, elements, motion, robot, time};
@@ -46,6 +47,26 @@ pub struct Cases {
 impl Cases {
     /// Applies the overrides, reads sweeps and figures, and tries every swept value once.
     pub(super) fn new(scenario: &Scenario, catalog: &Catalog) -> Result<Self, Refusals> {
+        let mut cases = Self::with_sweeps(scenario, catalog)?;
+        cases.try_values()?;
+        let ctx = cases.context();
+        let read = cases.read_figures(&ctx);
+        let (figures, columns) = ctx.finish(read)?;
+        cases.figures = figures;
+        cases.columns = columns;
+        Ok(cases)
+    }
+
+    /// Reads the robot of the first case, and nothing but the sweeps besides.
+    pub(super) fn robot(scenario: &Scenario, catalog: &Catalog) -> Result<Robot, Refusals> {
+        let cases = Self::with_sweeps(scenario, catalog)?;
+        let document = cases.document_at(&vec![0; cases.axes.len()]);
+        let ctx = cases.context();
+        let read = Table::open(&ctx, &document, "the scenario", &ROOT_KEYS).and_then(|root| robot::read(&root));
+        ctx.finish(read)
+    }
+
+    fn with_sweeps(scenario: &Scenario, catalog: &Catalog) -> Result<Self, Refusals> {
         let mut cases = Self {
             catalog: catalog.clone(),
             folder: scenario.folder.clone(),
@@ -58,12 +79,6 @@ impl Cases {
             parameters: Vec::new(),
         };
         cases.read_sweeps(scenario)?;
-        cases.try_values()?;
-        let ctx = cases.context();
-        let read = cases.read_figures(&ctx);
-        let (figures, columns) = ctx.finish(read)?;
-        cases.figures = figures;
-        cases.columns = columns;
         Ok(cases)
     }
 

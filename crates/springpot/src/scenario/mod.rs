@@ -54,8 +54,8 @@ pub mod units;
 
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
-pub(crate) use names::suggest;
-pub use plan::{BodyPlaces, ElementPlan, Gripper, MotionPlan, Plan, SignalPlan, SolverPlan, TimePlan};
+pub use names::suggest;
+pub use plan::{BodyPlaces, ElementPlan, Gripper, MotionPlan, Plan, RobotPlan, SignalPlan, SolverPlan, TimePlan};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use sweep::MAX_CASES;
 
@@ -175,6 +175,15 @@ impl Scenario {
     /// All refusals that could be collected, in the order of the text.
     pub fn cases(&self, catalog: &Catalog) -> Result<Cases, Refusals> {
         Cases::new(self, catalog)
+    }
+
+    /// The robot alone, as the first case has it: `[robot]` is all that the scenario needs to hold.
+    ///
+    /// # Errors
+    /// All refusals about the robot and the sweeps that could be collected; the rest of the scenario is not looked at.
+    pub fn robot(&self, catalog: &Catalog) -> Result<RobotPlan, Refusals> {
+        let robot = Cases::robot(self, catalog)?;
+        Ok(RobotPlan { gravity: robot.gravity, bodies: robot.bodies, model: robot.model, gripper: robot.gripper })
     }
 }
 

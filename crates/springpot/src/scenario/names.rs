@@ -48,8 +48,8 @@ pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// `did you mean "x"?`, or else what there is.
-pub(crate) fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
+/// What to say of a name that does not exist: the candidate most like it, or else what there is.
+pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match nearest(name, candidates.clone()) {
         Some(right) => format!("did you mean `{right}`?"),
         None => format!("there is {}", list(candidates)),

@@ -45,6 +45,19 @@ impl Plan {
     }
 }
 
+/// The robot of a scenario by itself.
+#[derive(Debug, Clone)]
+pub struct RobotPlan {
+    /// Gravity in the world frame, m/s².
+    pub gravity: [f64; 3],
+    /// The bodies, parents before children.
+    pub bodies: Vec<BodySpec>,
+    /// The robot built of them.
+    pub model: Arc<Model>,
+    /// The gripper, if there is one.
+    pub gripper: Option<Gripper>,
+}
+
 /// Where the fields of a body stand in the scenario.
 #[derive(Debug, Clone)]
 pub struct BodyPlaces {

@@ -7,6 +7,7 @@
 
 mod along;
 mod control;
+mod equation;
 mod error;
 mod ledger;
 mod moment;
@@ -16,6 +17,7 @@ mod row;
 mod row_times;
 
 pub use along::along;
+pub use equation::{ElementTerm, Equation, EquationError};
 pub use error::RunError;
 pub use moment::FRICTION_SPEED;
 pub use pose::{ElementStart, Pose, State};
