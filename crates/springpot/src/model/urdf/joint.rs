@@ -1,6 +1,6 @@
 //! `<joint>`: what it joins, how it moves.
 
-use super::error::{Owner, UrdfError, UrdfProblem};
+use super::error::{Owner, UrdfError, UrdfProblem, brief};
 use super::limit;
 use super::nearest::nearest;
 use super::reader::{Node, Reader};
@@ -127,7 +127,7 @@ fn read_axis<'a>(
     }
     let length = xyz[0].hypot(xyz[1]).hypot(xyz[2]);
     if (length - 1.0).abs() > 1e-3 {
-        reader.warnings.add(UrdfWarningKind::AxisLength, owner, reader.line(axis), format!("length {length:.4}"));
+        reader.warnings.add(UrdfWarningKind::AxisLength, owner, reader.line(axis), format!("length {}", brief(length)));
     }
     Ok(xyz)
 }

@@ -17,6 +17,9 @@ const MAX_ATTRIBUTES_OF_TAG: usize = 128;
 /// Most declarations of namespaces: the parser's time and memory grow faster than their number.
 const MAX_NAMESPACES: usize = 2_000;
 
+/// Longest reason of a broken text, characters.
+const MAX_REASON: usize = 200;
+
 /// A text and where its lines start.
 #[derive(Debug)]
 pub(super) struct Source<'a> {
@@ -111,7 +114,11 @@ impl<'a> Source<'a> {
             XmlError::UnknownNamespace(prefix, _) => {
                 format!("the prefix {prefix:?} is not declared (xmlns:{prefix}=\"…\" in <robot> would do)")
             }
-            _ => error.to_string().replace(&format!(" at {at}"), ""),
+            XmlError::InvalidChar(wanted, found, _) => {
+                format!("expected '{}', found {}", *wanted as char, shown(*found))
+            }
+            XmlError::InvalidChar2(wanted, found, _) => format!("expected {wanted}, found {}", shown(*found)),
+            _ => error.to_string().replace(&format!(" at {at}"), "").chars().take(MAX_REASON).collect(),
         };
         let has_place = !matches!(
             error,
@@ -119,6 +126,11 @@ impl<'a> Source<'a> {
         );
         UrdfError::new(self.file, place.filter(|_| has_place), UrdfProblem::NotXml { reason })
     }
+}
+
+/// A byte as messages write it.
+fn shown(byte: u8) -> String {
+    if byte.is_ascii() { format!("{:?}", byte as char) } else { "a letter beyond ASCII".to_owned() }
 }
 
 /// What matters of one tag before it is parsed.
