@@ -68,6 +68,11 @@ pub(crate) fn error(message: impl Into<String>) {
     show(&Shown::plain(Severity::Error, message.into(), None));
 }
 
+/// Prints an error and what would be right on stderr.
+pub(crate) fn error_with_help(message: impl Into<String>, help: String) {
+    show(&Shown::plain(Severity::Error, message.into(), Some(help)));
+}
+
 /// Prints a warning and what to do about it on stderr.
 pub(crate) fn warning(message: impl Into<String>, help: Option<String>) {
     show(&Shown::plain(Severity::Warning, message.into(), help));

@@ -1,11 +1,16 @@
 //! Tables of text: columns that line up, names cut where the terminal is too narrow.
 
+use std::cmp::Reverse;
+use std::collections::HashSet;
+
 /// Stands where a text was cut.
 const CUT: char = '…';
 /// Blanks between columns.
 const GAP: usize = 2;
 /// No column is cut below this.
 const NARROWEST: usize = 8;
+/// Most names among which the best place for the cut is looked for.
+const MOST_COMPARED: usize = 500;
 
 /// A table; its columns are as wide as their widest text.
 #[derive(Debug)]
@@ -45,8 +50,7 @@ impl Grid {
 
     /// Takes out the columns in which every row is empty.
     pub(crate) fn without_empty_columns(mut self) -> Self {
-        let kept: Vec<bool> =
-            (0..self.columns.len()).map(|c| self.rows.iter().any(|row| !row[c].is_empty())).collect();
+        let kept: Vec<bool> = (0..self.columns.len()).map(|c| self.rows.iter().any(|row| !row[c].is_empty())).collect();
         let mut keep = kept.iter();
         self.columns.retain(|_| *keep.next().unwrap_or(&true));
         for row in &mut self.rows {
@@ -65,13 +69,15 @@ impl Grid {
         if let Some(width) = width {
             self.narrow(&mut widths, width);
         }
+        let heads: Vec<usize> = (0..self.columns.len()).map(|c| self.best_head(c, widths[c])).collect();
         let titles: Vec<String> = self.columns.iter().map(|column| column.title.clone()).collect();
         let head = titles.iter().any(|title| !title.is_empty()).then_some(&titles);
         let mut text = String::new();
         for row in head.into_iter().chain(&rows) {
             let mut line = String::new();
-            for ((field, column), &width) in row.iter().zip(&self.columns).zip(&widths) {
-                let field = cut(field, width);
+            for (c, (field, column)) in row.iter().zip(&self.columns).enumerate() {
+                let width = widths[c];
+                let field = cut_behind(field, width, heads[c]);
                 let blanks = " ".repeat(width - width_of(&field));
                 match column.set {
                     Set::Number => line.push_str(&format!("{blanks}{field}")),
@@ -96,6 +102,22 @@ impl Grid {
             }
         }
         rows
+    }
+
+    /// How much of the names in a column is best kept before the cut: as few as possible should look alike.
+    fn best_head(&self, c: usize, width: usize) -> usize {
+        let long: Vec<&String> = self.rows.iter().map(|row| &row[c]).filter(|field| width_of(field) > width).collect();
+        let middle = width.saturating_sub(1).div_ceil(2);
+        if long.len() < 2 || long.len() > MOST_COMPARED {
+            return middle;
+        }
+        let different = |head: &usize| {
+            let texts: HashSet<String> = long.iter().map(|field| cut_behind(field, width, *head)).collect();
+            texts.len()
+        };
+        // Of equally good ones the one nearest to the middle.
+        let heads = (0..width).map(|head| (different(&head), Reverse(head.abs_diff(middle)), head));
+        heads.max().map_or(middle, |(_, _, head)| head)
     }
 
     /// Takes from the widest of the names until the line fits.
@@ -126,14 +148,18 @@ pub(crate) fn clean(name: &str) -> String {
 
 /// A text with its middle left out where it is too long: names differ at their ends.
 pub(crate) fn cut(text: &str, width: usize) -> String {
-    let length = width_of(text);
-    if length <= width {
+    cut_behind(text, width, width.saturating_sub(1).div_ceil(2))
+}
+
+/// A text of which `head` characters are kept before what is left out, where it is too long.
+fn cut_behind(text: &str, width: usize, head: usize) -> String {
+    if width_of(text) <= width {
         return text.to_owned();
     }
     let characters: Vec<char> = text.chars().collect();
     let kept = width.saturating_sub(1);
-    let (head, tail) = (kept.div_ceil(2), kept / 2);
-    let ends = characters[..head].iter().chain([&CUT]).chain(&characters[characters.len() - tail..]);
+    let head = head.min(kept);
+    let ends = characters[..head].iter().chain([&CUT]).chain(&characters[characters.len() - (kept - head)..]);
     ends.collect()
 }
 
@@ -171,6 +197,17 @@ q\u{308}            prismatic  -10
         assert_eq!(cut("abcdef", 6), "abcdef");
         // What is no name stays whole, whatever the width.
         assert!(grid().text(Some(5)).contains("prismatic"));
+    }
+
+    #[test]
+    fn cut_names_stay_different() {
+        let mut grid = Grid::new([("", Set::Name)]);
+        for name in ["r_gripper_l_finger_joint", "r_gripper_r_finger_joint", "r_gripper_l_finger_tip_joint"] {
+            grid.row(vec![name.to_owned()]);
+        }
+        let text = grid.text(Some(20));
+        let lines: HashSet<&str> = text.lines().collect();
+        assert!(lines.len() == 3 && lines.iter().all(|line| width_of(line) == 20), "{text}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use springpot::model::JointKind;
 /// Columns of the words that lead a line.
 const LEAD: usize = 10;
 /// Most columns for the name of what carries other links.
-const WIDEST_CARRIER: usize = 28;
+const WIDEST_CARRIER: usize = 24;
 
 pub(crate) fn info(options: &InfoOptions) -> Ending {
     match robot::read(&options.robot, &[]) {
@@ -22,7 +22,7 @@ pub(crate) fn info(options: &InfoOptions) -> Ending {
             Ending::Done
         }
         Ok(robot) => {
-            terminal::print(&text(&robot, terminal::stdout_width()));
+            terminal::print(&text(&robot));
             Ending::Done
         }
         Err(Refused) => Ending::Refused,
@@ -30,9 +30,9 @@ pub(crate) fn info(options: &InfoOptions) -> Ending {
 }
 
 /// The description of a robot. Names are cut where they do not fit into a terminal, and never elsewhere.
-fn text(robot: &Robot, width: Option<usize>) -> String {
+fn text(robot: &Robot) -> String {
     let model = &robot.model;
-    let lines = width.or(Some(80));
+    let (width, lines) = (terminal::stdout_columns(), terminal::stdout_width().or(Some(80)));
     let mut text = String::new();
     let mut line = |lead: &str, words: &str| {
         text.push_str(&terminal::hanging(&format!("{lead:<LEAD$}"), words, lines));
@@ -47,6 +47,10 @@ fn text(robot: &Robot, width: Option<usize>) -> String {
     text.push_str(&tables::tree(robot).text(width));
     text.push('\n');
     text.push_str(&tables::joints(robot).text(width));
+    let units = tables::units(robot);
+    if !units.is_empty() {
+        text.push_str(&terminal::hanging("", &units, lines));
+    }
     text.push_str(&section("joints that follow others", "  ", tables::followers(robot), lines));
     let frames = tables::frames(robot);
     let longest = frames.iter().map(|(carrier, _)| width_of(carrier)).max().unwrap_or(0).min(WIDEST_CARRIER);

@@ -95,6 +95,34 @@ pub(super) fn joints(robot: &Robot) -> Grid {
     grid.without_empty_columns()
 }
 
+/// The units of what [`joints`] shows.
+pub(super) fn units(robot: &Robot) -> String {
+    let model = &robot.model;
+    let all = 0..model.joint_count();
+    let is = |j: usize, slides: bool| {
+        model.joint_kind(j).nv() == 1 && slides == (model.joint_kind(j) == JointKind::Prismatic)
+    };
+    let finite = |what: fn(&Limits) -> f64| all.clone().any(|j| what(model.limits(j)).is_finite());
+    let shown = [
+        (finite(|limits| limits.velocity), "speed", ["rad/s", "m/s"]),
+        (finite(|limits| limits.effort), "effort", ["N·m", "N"]),
+        (model.damping().iter().any(|d| *d != 0.0), "damping", ["N·m·s/rad", "N·s/m"]),
+        (model.friction().iter().any(|f| *f != 0.0), "friction", ["N·m", "N"]),
+    ];
+    let kinds: Vec<usize> = [false, true]
+        .into_iter()
+        .enumerate()
+        .filter(|(_, slides)| all.clone().any(|j| is(j, *slides)))
+        .map(|(k, _)| k)
+        .collect();
+    let shown = shown.into_iter().filter(|(shown, ..)| *shown);
+    let unit = |(_, what, units): (bool, &str, [&str; 2])| {
+        let units: Vec<&str> = kinds.iter().map(|&k| units[k]).collect();
+        format!("{what} in {}", units.join(" or "))
+    };
+    shown.map(unit).collect::<Vec<_>>().join(", ")
+}
+
 /// `b = -1·a + 0.5`, for every joint b that follows a joint a.
 pub(super) fn followers(robot: &Robot) -> Vec<String> {
     let model = &robot.model;
@@ -129,11 +157,14 @@ fn numbers(range: Range<usize>) -> String {
     if range.len() == 1 { range.start.to_string() } else { format!("{}-{}", range.start, range.end - 1) }
 }
 
+/// At most four digits behind the point.
 fn limit(value: f64) -> String {
+    let rounded = (value * 1e4).round() / 1e4;
     match value {
         f64::INFINITY => "∞".to_owned(),
         f64::NEG_INFINITY => "-∞".to_owned(),
-        value => brief(value),
+        _ if rounded == 0.0 || value.abs() > 1e4 => brief(value),
+        _ => brief(rounded),
     }
 }
 

@@ -70,7 +70,9 @@ pub enum EquationError {
         end: f64,
     },
     /// A named scheme knows its element at the rows alone.
-    #[error("element \"{element}\" has a named scheme, which is known at the rows alone: t = {t} s is none, t = {nearest} s is")]
+    #[error(
+        "element \"{element}\" has a named scheme, which is known at the rows alone: t = {t} s is none, t = {nearest} s is"
+    )]
     NotARow {
         /// Element.
         element: String,
@@ -111,8 +113,8 @@ impl System {
         let kinematics = Kinematics::at_velocity(&self.model, &state.q, &state.v);
         let mass = crba(&self.model, &kinematics);
         let coriolis = coriolis(&self.model, &kinematics);
-        let christoffel = (self.model.is_one_degree() && n <= MOST_WITH_CHRISTOFFEL)
-            .then(|| christoffel(&self.model, &kinematics));
+        let christoffel =
+            (self.model.is_one_degree() && n <= MOST_WITH_CHRISTOFFEL).then(|| christoffel(&self.model, &kinematics));
         let velocity = christoffel.as_ref().map_or_else(|| times(&coriolis, &state.v), |gamma| twice(gamma, &state.v));
         let mut losses = vec![0.0; n];
         self.add_joint_losses(&state.v, &mut losses);
