@@ -70,17 +70,21 @@ fn from_urdf(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refu
     })
 }
 
-fn from_scenario(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refused> {
+/// Refuses what only a URDF file can be asked for.
+pub(crate) fn refuse_urdf_flags(options: &RobotOptions) -> Result<(), Refused> {
     let given = [
         ("--floating-base", options.floating_base, "floating_base = true"),
         ("--ignore-mimic", options.ignore_mimic, "ignore_mimic = true"),
         ("--package-path", !options.package_path.is_empty(), "package_path = [\"DIR\"]"),
     ];
-    if let Some((flag, _, key)) = given.into_iter().find(|(_, given, _)| *given) {
-        let file = options.file.display();
-        diagnostic::error(format!("{flag} is for URDF files; {file} is a scenario, whose [robot] says {key}"));
-        return Err(Refused);
-    }
+    let Some((flag, _, key)) = given.into_iter().find(|(_, given, _)| *given) else { return Ok(()) };
+    let file = options.file.display();
+    diagnostic::error(format!("{flag} is for URDF files; {file} is a scenario, whose [robot] says {key}"));
+    Err(Refused)
+}
+
+fn from_scenario(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refused> {
+    refuse_urdf_flags(options)?;
     let read = Scenario::read(&options.file).and_then(|mut scenario| {
         for assignment in overrides {
             scenario.set(assignment)?;

@@ -1,9 +1,11 @@
 //! `springpot dynamics`.
 
+mod along;
 mod answer;
 mod json_text;
 mod order;
 mod states;
+mod terms;
 
 use crate::arguments::DynamicsOptions;
 use crate::numbers::{count, short};
@@ -24,10 +26,12 @@ const MOST_WITH_CHRISTOFFEL: usize = 400;
 const NAMED: usize = 5;
 
 pub(crate) fn dynamics(options: &DynamicsOptions) -> Ending {
-    match &options.states {
-        Some(file) => in_states(options, file).unwrap_or(Ending::Refused),
-        None => Ending::Done,
-    }
+    let ended = match (&options.states, &options.at) {
+        (Some(file), _) => in_states(options, file),
+        (None, Some(at)) => along::at(options, at),
+        (None, None) => unreachable!("one of them is required"),
+    };
+    ended.unwrap_or(Ending::Refused)
 }
 
 /// Reads everything before anything is printed.

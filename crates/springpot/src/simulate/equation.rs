@@ -167,15 +167,19 @@ impl System {
 }
 
 impl Equation {
+    /// Q of all elements together.
+    pub fn sum_of_elements(&self) -> Vec<f64> {
+        let sum = |c: usize| self.elements.iter().map(|element| element.q_force[c]).sum();
+        (0..self.tau.len()).map(sum).collect()
+    }
+
     /// What is left of the equation: a_ac q̈^a + Γ_ab,c q̇^a q̇^b less all Q. Rounding alone, where nothing is wrong; NaN where a term
     /// is.
     pub fn residual(&self) -> Vec<f64> {
-        let sum_of_elements = |c: usize| self.elements.iter().map(|element| element.q_force[c]).sum::<f64>();
-        let terms = |c: usize| {
-            let forces = self.gravity[c] + sum_of_elements(c) + self.joints[c] + self.tau[c];
-            self.inertia[c] + self.velocity[c] - forces
+        let terms = |(c, elements): (usize, f64)| {
+            self.inertia[c] + self.velocity[c] - (self.gravity[c] + elements + self.joints[c] + self.tau[c])
         };
-        (0..self.tau.len()).map(terms).collect()
+        self.sum_of_elements().into_iter().enumerate().map(terms).collect()
     }
 
     /// The largest of all terms, what [`Equation::residual`] is to be measured by; 0 where all are.
