@@ -47,7 +47,8 @@ fn inertias_that_no_distribution_of_mass_has() {
     warned(&arm_with(INERTIA, &INERTIA.replace("0.5", "0.7000000005")), &[]);
     // What is fixed to the world has no part in the dynamics; what is fixed to a moving link has.
     warned(&fixed_link("base", "0.3"), &[]);
-    let message = "<inertia> that no distribution of mass has: link \"odd\" (line 31: moment 0.3 above the sum 0.2 of the other two)";
+    let message = "<inertia> that no distribution of mass has: link \"odd\" (line 31: moment 0.3 above the sum 0.2 of \
+        the other two)";
     let urdf = warned(&fixed_link("lower", "0.3"), &[(TriangleInequality, message)]);
     // Together with the link that carries it, it is a body.
     assert!(urdf.model([0.0; 3]).is_ok());
@@ -151,7 +152,8 @@ fn floating_joints_have_no_axis() {
         .replace("<origin xyz=\"0 0 0.4\"/>", "<dynamics damping=\"1\"/>");
     let elbow = "of joint \"elbow\"";
     let message = format!(
-        "not used, the joint is floating: <dynamics> {elbow} (line 25), <axis> {elbow} (line 28), <limit> {elbow} (line 29)"
+        "not used, the joint is floating: <dynamics> {elbow} (line 25), <axis> {elbow} (line 28), <limit> {elbow} \
+            (line 29)"
     );
     let urdf = warned(&text, &[(OfFloatingJoint, &message)]);
     assert_eq!((urdf.bodies[1].joint.kind, urdf.bodies[1].joint.damping), (JointKind::Floating, 0.0));
@@ -159,7 +161,8 @@ fn floating_joints_have_no_axis() {
 
 #[test]
 fn a_fixed_joint_with_the_name_of_the_floating_one() {
-    let more = "<link name=\"tool\"/><joint name=\"floating_base\" type=\"fixed\"><parent link=\"lower\"/><child link=\"tool\"/></joint>";
+    let more = "<link name=\"tool\"/><joint name=\"floating_base\" type=\"fixed\">\
+                <parent link=\"lower\"/><child link=\"tool\"/></joint>";
     let text = arm_and(more).replace("name=\"elbow\"", "name=\"floating_base_2\"");
     warned(&text, &[]);
     let message = "names that are reserved: joint \"floating_base\" (line 31: called \"floating_base_2_\" here)";
@@ -177,12 +180,18 @@ fn a_robot_without_name() {
 #[test]
 fn long_lists_are_shortened_but_kept() {
     let more: String = (0..10)
-        .map(|k| format!("<link name=\"l{k}\"/>\n<joint name=\"j{k}\" type=\"continuous\"><parent link=\"base\"/><child link=\"l{k}\"/></joint>"))
+        .map(|k| {
+            format!(
+                "<link name=\"l{k}\"/>\n<joint name=\"j{k}\" type=\"continuous\">\
+                 <parent link=\"base\"/><child link=\"l{k}\"/></joint>"
+            )
+        })
         .collect();
     let urdf = parse(&arm_and(&more));
     let [inertials, axes] = urdf.warnings.as_slice() else { panic!("{:?}", urdf.warnings) };
     let message = "moving links without <inertial>, taken as massless: \
-                   link \"l0\" (line 31), link \"l1\" (line 32), link \"l2\" (line 33), link \"l3\" (line 34) and 6 more";
+                   link \"l0\" (line 31), link \"l1\" (line 32), link \"l2\" (line 33), link \"l3\" (line 34) \
+                   and 6 more";
     assert_eq!((inertials.to_string().as_str(), inertials.places.len(), inertials.line()), (message, 10, 31));
     let place = UrdfPlace { owner: Owner::Joint("j9".into()), line: 41, what: String::new() };
     assert_eq!((axes.kind, axes.places.last()), (NoAxis, Some(&place)));

@@ -20,7 +20,8 @@ fn names_and_types() {
     let message = "line 31, column 1: there are two of joint \"elbow\", the first in line 24; names must be unique";
     refused(&arm_and(&joint), message);
     let types = "fixed, revolute, continuous, prismatic, floating";
-    let message = "line 24, column 3: joint \"elbow\" has the unknown type \"Prismatic\"; did you mean \"prismatic\"?; the types are";
+    let message = "line 24, column 3: joint \"elbow\" has the unknown type \"Prismatic\"; did you mean \"prismatic\"?; \
+        the types are";
     refused(&arm_with("type=\"prismatic\"", "type=\"Prismatic\""), &format!("{message} {types}"));
     let message = "line 24, column 3: joint \"elbow\" has the unknown type \"\"; the types are";
     refused(&arm_with("type=\"prismatic\"", "type=\"\""), &format!("{message} {types}"));
@@ -81,7 +82,8 @@ fn numbers_that_make_no_sense() {
 #[test]
 fn the_name_of_the_floating_joint_is_reserved() {
     let text = ARM.replace("\"elbow\"", "\"floating_base\"");
-    let message = "line 24, column 3: a joint is called \"floating_base\", the name of the joint that lets the base float; rename it";
+    let message = "line 24, column 3: a joint is called \"floating_base\", the name of the joint that lets the base \
+        float; rename it";
     refused_with(&text, &FLOATING, message);
     assert_eq!(parse(&text).bodies[1].joint.name, "floating_base");
     let world = ARM.replace("\"base\"", "\"world\"");
@@ -95,7 +97,8 @@ fn mimic_joints_follow_joints_of_one_degree() {
     let message =
         "line 25, column 5: joint \"elbow\" mimics joint \"sholder\", which does not exist; did you mean \"shoulder\"?";
     refused(&elbow_with("<mimic joint=\"sholder\"/>"), message);
-    let message = "line 25, column 5: joint \"elbow\" mimics joint \"left\", which does not exist; with ignore_mimic it has its own coordinate";
+    let message = "line 25, column 5: joint \"elbow\" mimics joint \"left\", which does not exist; with ignore_mimic \
+        it has its own coordinate";
     refused(&elbow_with("<mimic joint=\"left\"/>"), message);
     refused(&elbow_with("<mimic/>"), "line 25, column 5: <mimic> of joint \"elbow\" has no joint");
     let message = "line 25, column 5: joint \"elbow\" mimics itself, in a circle; one of them must be free";
@@ -103,7 +106,8 @@ fn mimic_joints_follow_joints_of_one_degree() {
     for kind in ["fixed", "floating"] {
         let text = elbow_with("<mimic joint=\"shoulder\"/>").replace("\"revolute\"", &format!("\"{kind}\""));
         let message = format!(
-            "line 25, column 5: joint \"elbow\" mimics joint \"shoulder\", but joint \"shoulder\" is {kind}; only joints of one degree can"
+            "line 25, column 5: joint \"elbow\" mimics joint \"shoulder\", but joint \"shoulder\" is {kind}; only \
+                joints of one degree can"
         );
         refused(&text, &message);
     }
@@ -121,7 +125,8 @@ fn chain(followed: [&str; 3]) -> String {
         let inertia = "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>";
         text += &format!("<link name=\"{}\"><inertial><mass value=\"1\"/>{inertia}</inertial></link>\n", k + 1);
         text += &format!(
-            "<joint name=\"{name}\" type=\"continuous\"><parent link=\"{k}\"/><child link=\"{}\"/>{mimic}<axis xyz=\"0 0 1\"/></joint>\n",
+            "<joint name=\"{name}\" type=\"continuous\"><parent link=\"{k}\"/><child link=\"{}\"/>{mimic}\
+             <axis xyz=\"0 0 1\"/></joint>\n",
             k + 1
         );
     }

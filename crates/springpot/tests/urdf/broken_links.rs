@@ -13,7 +13,8 @@ fn names() {
     refused(&arm_and("<link name=\" \"/>"), "line 31, column 1: the name of this <link> is empty");
     let message = "line 31, column 1: there are two of link \"upper\", the first in line 3; names must be unique";
     refused(&arm_and("<link name=\"upper\"/>"), message);
-    let message = "line 2, column 3: a link is called \"world\", which is the inertial frame; only the root link can have that name: rename it";
+    let message = "line 2, column 3: a link is called \"world\", which is the inertial frame; only the root link can \
+        have that name: rename it";
     let text = arm_with("<link name=\"base\"/>", "<link name=\"world\"/><link name=\"base\"/>");
     let joint = "<joint name=\"on\" type=\"fixed\"><parent link=\"lower\"/><child link=\"world\"/></joint></robot>";
     refused(&text.replace("</robot>", joint), message);
@@ -105,7 +106,8 @@ fn masses_and_inertias_that_no_body_has() {
 #[test]
 fn the_quaternion_of_later_versions_is_refused() {
     let text = arm_with("rpy=\"0 0 0\"/>\n      <mass", "quat_xyzw=\"0 0 0 1\"/>\n      <mass");
-    let message = "line 5, column 7: quat_xyzw of <origin> of link \"upper\" changes the motion of the robot and is not supported";
+    let message = "line 5, column 7: quat_xyzw of <origin> of link \"upper\" changes the motion of the robot and is \
+        not supported";
     refused(&text, message);
 }
 
@@ -122,6 +124,7 @@ fn what_only_the_whole_robot_shows_has_the_line_of_the_link() {
     assert!(error.to_string().contains(&source.to_string()));
 
     let lonely = parse("<robot name=\"r\">\n<link name=\"rock\"/></robot>").model([0.0; 3]).expect_err("nothing moves");
-    let message = "line 2, column 1: the robot is the single link \"rock\", which is the world on a fixed base; with floating_base it can move";
+    let message = "line 2, column 1: the robot is the single link \"rock\", which is the world on a fixed base; with \
+        floating_base it can move";
     assert_eq!(lonely.to_string(), message);
 }

@@ -19,7 +19,8 @@ fn tree(links: &str, joints: &[&str]) -> String {
 
 #[test]
 fn links_that_do_not_exist() {
-    let message = "line 26, column 5: the <parent> of joint \"elbow\" is link \"uper\", which does not exist; did you mean \"upper\"?";
+    let message = "line 26, column 5: the <parent> of joint \"elbow\" is link \"uper\", which does not exist; did you \
+        mean \"upper\"?";
     refused(&arm_with("<parent link=\"upper\"/>", "<parent link=\"uper\"/>"), message);
     let message = "line 27, column 5: the <child> of joint \"elbow\" is link \"hand\", which does not exist";
     refused(&arm_with("<child link=\"lower\"/>", "<child link=\"hand\"/>"), message);
@@ -43,7 +44,8 @@ fn a_tree_has_one_root() {
         format!("line 31, column 1: the links are not one tree: no joint leads to \"base\" and \"lost\"; {rest}");
     refused(&arm_and("<link name=\"lost\"/>"), &message);
     let message = format!(
-        "line 3, column 1: the links are not one tree: no joint leads to \"a\", \"b\", \"c\", \"d\", \"e\", \"f\" and 2 more; {rest}"
+        "line 3, column 1: the links are not one tree: no joint leads to \"a\", \"b\", \"c\", \"d\", \"e\", \"f\" and \
+            2 more; {rest}"
     );
     refused(&tree("abcdefghi", &["ai"]), &message);
 }

@@ -17,7 +17,8 @@ fn chain(count: usize, joint: impl Fn(usize) -> String) -> String {
         .unwrap();
         writeln!(
             text,
-            "<joint name=\"j{k}\" {} <origin xyz=\"0 0 0.2\"/><parent link=\"{}\"/><child link=\"{k}\"/><axis xyz=\"0 1 0\"/></joint>",
+            "<joint name=\"j{k}\" {} <origin xyz=\"0 0 0.2\"/><parent link=\"{}\"/><child link=\"{k}\"/>\
+             <axis xyz=\"0 1 0\"/></joint>",
             joint(k),
             k - 1
         )

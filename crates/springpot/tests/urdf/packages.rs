@@ -28,7 +28,7 @@ fn missing(urdf: &Path, files: &[&str], package_path: &[PathBuf]) -> Vec<String>
     let options = UrdfOptions { package_path: package_path.to_vec(), ..UrdfOptions::default() };
     let urdf = Urdf::parse(&text, Some(urdf), &options).unwrap();
     assert!(urdf.warnings.iter().all(|warning| warning.kind == UrdfWarningKind::MeshNotFound));
-    urdf.warnings.iter().flat_map(|warning| &warning.places).map(|place| place.what.replace('"', "")).collect()
+    urdf.warnings.iter().flat_map(|warning| &warning.places).map(|place| place.what.clone()).collect()
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn a_missing_mesh_names_link_file_and_line() {
     let message = "mesh files not found, not needed for the dynamics: \
                    \"a.stl\" of link \"base\" (line 3), \"b.stl\" of link \"base\" (line 4) and 1 more";
     assert_eq!(warning.to_string(), message);
-    let place = UrdfPlace { owner: Owner::Link("base".into()), line: 5, what: "\"c.stl\"".into() };
+    let place = UrdfPlace { owner: Owner::Link("base".into()), line: 5, what: "c.stl".into() };
     assert_eq!(warning.places[2], place);
 }
 

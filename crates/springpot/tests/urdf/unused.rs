@@ -9,7 +9,8 @@ fn known_elements_without_part_in_the_dynamics_are_one_line() {
     let text = arm_and("<gazebo/><transmission/><gazebo reference=\"a\"><kp>1</kp></gazebo><ros2_control/>")
         .replace("<origin xyz=\"0 0 0.4\"/>", "<safety_controller k_velocity=\"1\"/><calibration rising=\"0\"/>")
         .replace("upper=\"1\"", "upper=\"1\" jerk=\"2\"");
-    let message = "not used: 1 jerk of <limit>, 1 <safety_controller>, 1 <calibration>, 2 <gazebo>, 1 <transmission>, 1 <ros2_control>";
+    let message = "not used: 1 jerk of <limit>, 1 <safety_controller>, 1 <calibration>, 2 <gazebo>, 1 <transmission>, \
+        1 <ros2_control>";
     let urdf = warned(&text, &[(NotUsed, message)]);
     assert_eq!(urdf.warnings[0].places.len(), 7);
     assert_eq!(urdf.warnings[0].places[1].owner, Owner::Joint("elbow".into()));
@@ -17,7 +18,8 @@ fn known_elements_without_part_in_the_dynamics_are_one_line() {
 
 #[test]
 fn shapes_are_not_mentioned() {
-    let shape = "<visual name=\"v\"><origin xyz=\"any\"/><geometry><box size=\"1 1 1\"/></geometry></visual><collision/><material name=\"m\"/>";
+    let shape = "<visual name=\"v\"><origin xyz=\"any\"/>\
+                 <geometry><box size=\"1 1 1\"/></geometry></visual><collision/><material name=\"m\"/>";
     let text = arm_with("<link name=\"base\"/>", &format!("<link name=\"base\">{shape}{shape}</link>"));
     warned(&text.replace("</robot>", "<material name=\"red\"/></robot>"), &[]);
 }
@@ -36,7 +38,8 @@ fn unknown_elements_and_attributes_name_their_owner() {
     let text = arm_with("<mass value=\"2\"/>", "<mass value=\"2\" unit=\"kg\"/><density/>")
         .replace("<child link=\"lower\"/>", "<child link=\"lower\"><frame/></child>")
         .replace("</robot>", "<lights/>\n<lights/></robot>");
-    let elements = "not known, not used: <density> of link \"upper\" (line 6), <frame> of joint \"elbow\" (line 27), 2 <lights> (from line 31)";
+    let elements = "not known, not used: <density> of link \"upper\" (line 6), <frame> of joint \"elbow\" (line 27), 2 \
+        <lights> (from line 31)";
     let attributes = "not known, not used: unit of <mass> of link \"upper\" (line 6)";
     warned(&text, &[(UnknownElement, elements), (UnknownAttribute, attributes)]);
     let foreign = arm_and("<other:joint xmlns:other=\"http://example.org\" name=\"x\"/>");

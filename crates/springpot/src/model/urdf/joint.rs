@@ -1,8 +1,9 @@
 //! `<joint>`: what it joins, how it moves.
 
-use super::error::{Owner, UrdfError, UrdfProblem, brief};
+use super::error::{Owner, UrdfError};
 use super::limit;
 use super::nearest::nearest;
+use super::problem::{UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
 use crate::model::{JointKind, JointSpec, Mimic};

@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::error::{Owner, UrdfError, UrdfProblem, brief};
+use super::error::{Owner, UrdfError};
 use super::joint::JointEntry;
 use super::link::{Inertial, LinkEntry, Physical};
 use super::package::Packages;
+use super::problem::{UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::source::Source;
 use super::tree::Tree;
@@ -44,7 +45,7 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
         for link in &links {
             let owner = Owner::Link(link.name.to_owned());
             for mesh in link.meshes.iter().filter(|mesh| !packages.finds(mesh.file)) {
-                reader.warnings.add(UrdfWarningKind::MeshNotFound, &owner, mesh.line, format!("{:?}", mesh.file));
+                reader.warnings.add(UrdfWarningKind::MeshNotFound, &owner, mesh.line, mesh.file);
             }
         }
     }
@@ -189,8 +190,8 @@ fn body(link: &LinkEntry<'_>, parent: Parent, joint: JointSpec) -> BodySpec {
 
 /// Notes what is odd about the inertia of a link, which is on a moving joint or not, and moves in the world or not.
 ///
-/// A link without mass on a fixed joint is a frame, and what is fixed to the world has no part in the dynamics: neither is worth
-/// a line.
+/// A link without mass on a fixed joint is a frame, and what is fixed to the world has no part in the dynamics: neither
+/// is worth a line.
 ///
 /// # Errors
 /// A negative principal moment on a moving joint.

@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use super::error::{Owner, UrdfError, UrdfProblem};
+use super::error::{Owner, UrdfError};
 use super::joint::JointEntry;
 use super::link::LinkEntry;
 use super::nearest::nearest;
+use super::problem::UrdfProblem;
 use super::reader::Reader;
 
 /// Links of a circle that a message names.
