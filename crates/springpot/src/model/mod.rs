@@ -30,6 +30,8 @@ mod numbering;
 mod principal;
 mod robot;
 mod spec;
+#[cfg(feature = "urdf")]
+pub mod urdf;
 mod validate;
 
 pub use builder::ModelBuilder;

@@ -1,0 +1,142 @@
+//! `<joint>`: what it joins, how it moves.
+
+use super::error::{Owner, UrdfError, UrdfProblem};
+use super::limit;
+use super::nearest::nearest;
+use super::reader::{Node, Reader};
+use super::warning::UrdfWarningKind;
+use crate::model::{JointKind, JointSpec, Mimic};
+
+/// Types of the format, and of its neighbours, that are not built.
+const OTHER_TYPES: [&str; 7] = ["planar", "spherical", "ball", "universal", "helical", "screw", "cylindrical"];
+
+/// A joint as it stands in the file.
+#[derive(Debug)]
+pub(super) struct JointEntry<'a> {
+    pub(super) node: Node<'a>,
+    /// The `<parent>` and the name of its link.
+    pub(super) parent: (Node<'a>, &'a str),
+    /// The `<child>` and the name of its link.
+    pub(super) child: (Node<'a>, &'a str),
+    /// The `<mimic>` that applies.
+    pub(super) mimic: Option<Node<'a>>,
+    pub(super) spec: JointSpec,
+}
+
+/// Reads a `<joint>`.
+pub(super) fn read<'a>(
+    reader: &mut Reader<'a>,
+    node: Node<'a>,
+    ignore_mimic: bool,
+) -> Result<JointEntry<'a>, UrdfError> {
+    let name = reader.own_name(node, "joint")?;
+    let owner = Owner::Joint(name.to_owned());
+    reader.attributes(node, &owner, &["name", "type"], &["dont_collapse"]);
+    let kind = read_kind(reader, node, name, &owner)?;
+    let wanted = ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"];
+    let found = reader.children(node, &owner, wanted, &["calibration", "safety_controller"])?;
+    let [origin, parent, child, axis, limit, dynamics, mimic] = found;
+    let parent = read_end(reader, node, parent, &owner, "parent")?;
+    let child = read_end(reader, node, child, &owner, "child")?;
+    let (origin, rpy) = reader.origin(origin, &owner)?;
+
+    let mut spec = JointSpec { kind, rpy, ..JointSpec::fixed(name, origin) };
+    if !kind.has_axis() {
+        for (element, name) in [(axis, "axis"), (limit, "limit"), (dynamics, "dynamics"), (mimic, "mimic")] {
+            let Some(element) = element else { continue };
+            if kind == JointKind::Floating {
+                let line = reader.line(element);
+                reader.warnings.add(UrdfWarningKind::OfFloatingJoint, &owner, line, format!("<{name}>"));
+            } else {
+                reader.not_used(element, &owner, &format!("<{name}> of fixed joints"));
+            }
+        }
+        return Ok(JointEntry { node, parent, child, mimic: None, spec });
+    }
+    spec.axis = read_axis(reader, node, axis, &owner)?;
+    spec.limits = limit::read(reader, node, limit, &owner, kind)?;
+    if let Some(dynamics) = dynamics {
+        reader.leaf(dynamics, &owner, &["damping", "friction"], &[])?;
+        let damping = reader.number(dynamics, &owner, "damping")?.unwrap_or(0.0);
+        spec.damping = reader.not_negative(dynamics, &owner, "damping", damping)?;
+        let friction = reader.number(dynamics, &owner, "friction")?.unwrap_or(0.0);
+        spec.friction = reader.not_negative(dynamics, &owner, "friction", friction)?;
+    }
+    if let Some(mimic) = mimic {
+        let found = read_mimic(reader, mimic, &owner)?;
+        if ignore_mimic {
+            reader.warnings.add(UrdfWarningKind::MimicIgnored, &owner, reader.line(mimic), "");
+        } else {
+            spec.mimic = Some(found);
+        }
+    }
+    Ok(JointEntry { node, parent, child, mimic: mimic.filter(|_| !ignore_mimic), spec })
+}
+
+fn read_kind<'a>(reader: &Reader<'a>, node: Node<'a>, name: &str, owner: &Owner) -> Result<JointKind, UrdfError> {
+    let written = reader.required(node, owner, "type")?;
+    if let Some(kind) = JointKind::ALL.into_iter().find(|kind| kind.name() == written) {
+        return Ok(kind);
+    }
+    let (joint, kind) = (name.to_owned(), written.chars().take(40).collect());
+    Err(reader.fail(
+        node,
+        if OTHER_TYPES.contains(&written) {
+            UrdfProblem::UnsupportedJointType { joint, kind }
+        } else {
+            let suggestion = nearest(written, JointKind::ALL.map(JointKind::name));
+            UrdfProblem::UnknownJointType { joint, kind, suggestion }
+        },
+    ))
+}
+
+/// The `<parent>` or `<child>` and the name of its link.
+fn read_end<'a>(
+    reader: &mut Reader<'a>,
+    joint: Node<'a>,
+    end: Option<Node<'a>>,
+    owner: &Owner,
+    element: &'static str,
+) -> Result<(Node<'a>, &'a str), UrdfError> {
+    let Some(end) = end else {
+        return Err(reader.fail(joint, UrdfProblem::MissingElement { owner: owner.clone(), element }));
+    };
+    reader.leaf(end, owner, &["link"], &[])?;
+    Ok((end, reader.required(end, owner, "link")?))
+}
+
+fn read_axis<'a>(
+    reader: &mut Reader<'a>,
+    joint: Node<'a>,
+    axis: Option<Node<'a>>,
+    owner: &Owner,
+) -> Result<[f64; 3], UrdfError> {
+    const DEFAULT: [f64; 3] = [1.0, 0.0, 0.0];
+    let Some(axis) = axis else {
+        reader.warnings.add(UrdfWarningKind::NoAxis, owner, reader.line(joint), "");
+        return Ok(DEFAULT);
+    };
+    reader.leaf(axis, owner, &["xyz"], &[])?;
+    let Some(xyz) = reader.numbers(axis, owner, "xyz")? else {
+        reader.warnings.add(UrdfWarningKind::NoAxis, owner, reader.line(axis), "");
+        return Ok(DEFAULT);
+    };
+    if xyz == [0.0; 3] {
+        let joint = owner.name().unwrap_or_default().to_owned();
+        return Err(reader.fail(axis, UrdfProblem::ZeroAxis { joint }));
+    }
+    let length = xyz[0].hypot(xyz[1]).hypot(xyz[2]);
+    if (length - 1.0).abs() > 1e-3 {
+        reader.warnings.add(UrdfWarningKind::AxisLength, owner, reader.line(axis), format!("length {length:.4}"));
+    }
+    Ok(xyz)
+}
+
+fn read_mimic<'a>(reader: &mut Reader<'a>, node: Node<'a>, owner: &Owner) -> Result<Mimic, UrdfError> {
+    reader.leaf(node, owner, &["joint", "multiplier", "offset"], &[])?;
+    Ok(Mimic {
+        joint: reader.required(node, owner, "joint")?.to_owned(),
+        multiplier: reader.number(node, owner, "multiplier")?.unwrap_or(1.0),
+        offset: reader.number(node, owner, "offset")?.unwrap_or(0.0),
+    })
+}

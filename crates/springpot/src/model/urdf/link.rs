@@ -1,0 +1,123 @@
+//! `<link>`: its inertia, and the files of its shapes.
+
+use super::error::{Owner, UrdfError, UrdfProblem};
+use super::reader::{Node, Reader};
+use crate::model::principal::principal_moments;
+use crate::spatial::{Rotation, Symmetric3};
+
+/// Refuses a principal moment below minus this share of the largest one.
+const POSITIVE_TOLERANCE: f64 = 1e-12;
+/// Notes a largest principal moment that exceeds the sum of the others by more than this share of itself.
+const TRIANGLE_TOLERANCE: f64 = 1e-9;
+
+/// Mass and inertia of a link, in the link's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertial {
+    /// Mass, kg, 0 or more.
+    pub mass: f64,
+    /// Centre of mass in the link's frame, m.
+    pub com: [f64; 3],
+    /// Inertia tensor about the centre of mass in the axes of the link's frame, kg·m² (off-diagonals are tensor components):
+    /// R I Rᵀ of the file's tensor I and the rotation R of `<inertial><origin rpy>`.
+    pub inertia: [[f64; 3]; 3],
+}
+
+impl Inertial {
+    /// No mass.
+    pub(super) const ZERO: Self = Self { mass: 0.0, com: [0.0; 3], inertia: [[0.0; 3]; 3] };
+}
+
+/// A link as it stands in the file.
+#[derive(Debug)]
+pub(super) struct LinkEntry<'a> {
+    pub(super) name: &'a str,
+    pub(super) node: Node<'a>,
+    pub(super) inertial: Option<InertialEntry>,
+    pub(super) meshes: Vec<Mesh<'a>>,
+}
+
+/// An `<inertial>` as it stands in the file.
+#[derive(Debug)]
+pub(super) struct InertialEntry {
+    pub(super) value: Inertial,
+    pub(super) line: usize,
+    /// The largest principal moment and the sum of the others, where the largest is above it.
+    pub(super) broken_triangle: Option<(f64, f64)>,
+}
+
+/// The file of a shape.
+#[derive(Debug)]
+pub(super) struct Mesh<'a> {
+    pub(super) file: &'a str,
+    pub(super) line: usize,
+}
+
+/// Reads a `<link>`.
+pub(super) fn read<'a>(reader: &mut Reader<'a>, node: Node<'a>) -> Result<LinkEntry<'a>, UrdfError> {
+    let name = reader.own_name(node, "link")?;
+    let owner = Owner::Link(name.to_owned());
+    reader.attributes(node, &owner, &["name"], &["type", "dont_collapse"]);
+    let mut inertial = None;
+    let mut meshes = Vec::new();
+    for child in node.children() {
+        match reader.name(child) {
+            Some("inertial") => {
+                if let Some(first) = inertial.replace(child) {
+                    let (element, first) = ("inertial".to_owned(), reader.line(first));
+                    return Err(reader.fail(child, UrdfProblem::DuplicateElement { owner, element, first }));
+                }
+            }
+            Some("visual" | "collision") => {
+                for mesh in child.descendants().filter(|&node| reader.name(node) == Some("mesh")) {
+                    meshes.extend(reader.text(mesh, "filename").map(|file| Mesh { file, line: reader.line(mesh) }));
+                }
+            }
+            Some("material") => {}
+            Some(known @ ("contact" | "self_collision_checking" | "sensor")) => {
+                reader.not_used(child, &owner, &format!("<{known}>"));
+            }
+            _ if child.is_element() => reader.unknown_element(child, &owner)?,
+            _ => reader.stray_text(child, &owner),
+        }
+    }
+    let inertial = inertial.map(|child| read_inertial(reader, child, name, &owner)).transpose()?;
+    Ok(LinkEntry { name, node, inertial, meshes })
+}
+
+fn read_inertial<'a>(
+    reader: &mut Reader<'a>,
+    node: Node<'a>,
+    link: &str,
+    owner: &Owner,
+) -> Result<InertialEntry, UrdfError> {
+    let [origin, mass, inertia] = reader.children(node, owner, ["origin", "mass", "inertia"], &[])?;
+    reader.attributes(node, owner, &[], &[]);
+    let missing = |element| reader.fail(node, UrdfProblem::MissingElement { owner: owner.clone(), element });
+    let mass_node = mass.ok_or_else(|| missing("mass"))?;
+    let inertia_node = inertia.ok_or_else(|| missing("inertia"))?;
+
+    let (com, rpy) = reader.origin(origin, owner)?;
+    reader.leaf(mass_node, owner, &["value"], &[])?;
+    let mass = reader.required_number(mass_node, owner, "value")?;
+    let mass = reader.not_negative(mass_node, owner, "value", mass)?;
+
+    reader.leaf(inertia_node, owner, &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], &[])?;
+    let tensor = Symmetric3 {
+        xx: reader.required_number(inertia_node, owner, "ixx")?,
+        xy: reader.required_number(inertia_node, owner, "ixy")?,
+        xz: reader.required_number(inertia_node, owner, "ixz")?,
+        yy: reader.required_number(inertia_node, owner, "iyy")?,
+        yz: reader.required_number(inertia_node, owner, "iyz")?,
+        zz: reader.required_number(inertia_node, owner, "izz")?,
+    };
+    let [smallest, middle, largest] = principal_moments(tensor.to_matrix());
+    if smallest < -POSITIVE_TOLERANCE * largest.abs() {
+        let problem = UrdfProblem::InertiaNotPositive { link: link.to_owned(), smallest };
+        return Err(reader.fail(inertia_node, problem));
+    }
+    let others = smallest + middle;
+    let broken_triangle = (largest - others > TRIANGLE_TOLERANCE * largest).then_some((largest, others));
+    let turned = if rpy == [0.0; 3] { tensor } else { tensor.rotated(&Rotation::from_rpy(rpy)) };
+    let value = Inertial { mass, com, inertia: turned.to_matrix() };
+    Ok(InertialEntry { value, line: reader.line(node), broken_triangle })
+}

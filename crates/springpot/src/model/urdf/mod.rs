@@ -1,0 +1,178 @@
+//! Robots from URDF files.
+//!
+//! [`Urdf::read`] turns a file into bodies as [`ModelBuilder`] takes them, and says what it left out. The format is that of
+//! <https://wiki.ros.org/urdf/XML>; where it leaves a choice, urdfdom's is taken unless the doc comments here say otherwise.
+//!
+//! ```
+//! use springpot::model::urdf::{Urdf, UrdfOptions};
+//!
+//! let text = r#"<robot name="pendulum">
+//!   <link name="stand"/>
+//!   <link name="rod">
+//!     <inertial>
+//!       <origin xyz="0 0 -0.5"/>
+//!       <mass value="2"/>
+//!       <inertia ixx="0.17" ixy="0" ixz="0" iyy="0.17" iyz="0" izz="0.001"/>
+//!     </inertial>
+//!   </link>
+//!   <joint name="pivot" type="continuous">
+//!     <parent link="stand"/>
+//!     <child link="rod"/>
+//!     <axis xyz="0 1 0"/>
+//!   </joint>
+//! </robot>"#;
+//! let urdf = Urdf::parse(text, None, &UrdfOptions::default())?;
+//! assert_eq!(urdf.root.name, "stand");
+//! let model = urdf.model([0.0, 0.0, -9.81])?;
+//! assert_eq!(model.joint_names(), ["pivot"]);
+//! # Ok::<(), springpot::model::urdf::UrdfError>(())
+//! ```
+
+mod error;
+mod joint;
+mod limit;
+mod link;
+mod mimic;
+mod nearest;
+mod package;
+mod reader;
+mod robot;
+mod source;
+mod tree;
+mod warning;
+
+use std::path::{Path, PathBuf};
+
+pub use error::{Owner, UrdfError, UrdfProblem};
+pub use link::Inertial;
+pub use warning::{UrdfPlace, UrdfWarning, UrdfWarningKind};
+
+use super::{BodySpec, Field, Model, ModelBuilder, ModelError};
+
+/// Name of the joint that lets the base float.
+pub const FLOATING_BASE: &str = "floating_base";
+
+/// How a URDF file is read.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct UrdfOptions {
+    /// Whether the root link hangs on a floating joint called [`FLOATING_BASE`] instead of being the world.
+    pub floating_base: bool,
+    /// Whether mimic joints have a coordinate of their own; a warning lists them.
+    pub ignore_mimic: bool,
+    /// Folders that are packages or hold some, for `package://` after the ancestors of the file; relative ones count from the
+    /// current folder. The environment (`ROS_PACKAGE_PATH`) is not read, so that the same files give the same answer everywhere.
+    pub package_path: Vec<PathBuf>,
+}
+
+/// The link that is the child of no joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RootLink {
+    /// Its name.
+    pub name: String,
+    /// Its line, from 1.
+    pub line: usize,
+    /// Its mass and inertia, if it has some; on a fixed base they have no part in the dynamics.
+    pub inertial: Option<Inertial>,
+}
+
+/// Where a body stands in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BodyLines {
+    /// Line of its `<link>`, from 1.
+    pub link: usize,
+    /// Line of the `<joint>` that carries it, from 1; that of the link for the floating base.
+    pub joint: usize,
+}
+
+/// A robot as a URDF file describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Urdf {
+    /// Name of the robot; empty, with a warning, where it has none.
+    pub name: String,
+    /// The file that was read, as it was given.
+    pub file: Option<PathBuf>,
+    /// The root link; on a fixed base it is the world.
+    pub root: RootLink,
+    /// Whether the base floats, as asked for.
+    pub floating_base: bool,
+    /// The links but the root, on their joints: parents first, depth first, siblings in the order of the file. On a floating base
+    /// the root comes before them, on the joint [`FLOATING_BASE`].
+    ///
+    /// A link's frame is the frame of its joint. Of mimic joints, the one that is followed may come later; it has one degree,
+    /// and no joints follow one another in a circle.
+    pub bodies: Vec<BodySpec>,
+    /// Where the bodies stand in the file.
+    pub lines: Vec<BodyLines>,
+    /// What was not used or was assumed, by kind, the weightiest first.
+    pub warnings: Vec<UrdfWarning>,
+}
+
+impl Urdf {
+    /// Reads a file.
+    ///
+    /// `<visual>`, `<collision>` and `<material>` have no part in the dynamics. Mesh files that are not found, whatever else is
+    /// not used, massless links on moving joints, and single links whose inertia breaks the triangle inequality are warnings.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no UTF-8, no XML or no URDF; names that are missing, empty, not unique or reserved;
+    /// links that are not one tree; types of joints other than [`JointKind::ALL`](super::JointKind::ALL); numbers that are
+    /// missing, too few, too many or not finite (limits may be `inf`); negative mass, damping or friction; a principal moment
+    /// below −1e-12 of the largest; the axis 0 0 0; mimic joints that follow no joint of one degree, or one another; xacro.
+    /// Each names the link or joint and has its line.
+    pub fn read(path: &Path, options: &UrdfOptions) -> Result<Self, UrdfError> {
+        robot::read(&source::read(path)?, Some(path), options)
+    }
+
+    /// As [`Urdf::read`], from text. Mesh files are looked for from `file`, and not at all without it.
+    ///
+    /// # Errors
+    /// As [`Urdf::read`].
+    pub fn parse(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Result<Self, UrdfError> {
+        robot::read(text, file, options)
+    }
+
+    /// The robot in the uniform field `gravity`, m/s², axes of the root link on a fixed base and of the world on a floating one.
+    ///
+    /// The root link of a fixed base becomes a name of the world.
+    ///
+    /// # Errors
+    /// [`UrdfProblem::Model`]: a robot without bodies; a link that moves which is not physical together with what is fixed to it; a
+    /// mass matrix that is singular in every configuration; gravity not finite; overflow.
+    pub fn model(&self, gravity: [f64; 3]) -> Result<Model, UrdfError> {
+        let mut builder = ModelBuilder::of_urdf(gravity);
+        if !self.floating_base {
+            builder.name_world(self.root.name.clone());
+        }
+        for body in &self.bodies {
+            builder.push(body.clone()).map_err(|error| self.blame(error))?;
+        }
+        builder.finish().map_err(|error| self.blame(error))
+    }
+
+    /// Line of the link called `name`.
+    pub fn link_line(&self, name: &str) -> Option<usize> {
+        if name == self.root.name {
+            return Some(self.root.line);
+        }
+        self.bodies.iter().position(|body| body.name == name).map(|body| self.lines[body].link)
+    }
+
+    /// Line of the joint called `name`.
+    pub fn joint_line(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| body.joint.name == name).map(|body| self.lines[body].joint)
+    }
+
+    /// The error with the place of the body that it is about.
+    fn blame(&self, source: ModelError) -> UrdfError {
+        let place = source.subject().and_then(|subject| {
+            let lines = self.lines.get(subject.body)?;
+            Some(if is_of_link(subject.field) { lines.link } else { lines.joint })
+        });
+        UrdfError::new(self.file.as_deref(), place.map(|line| (line, 1)), UrdfProblem::Model { source })
+    }
+}
+
+/// Whether a field of a body stands in its `<link>`.
+fn is_of_link(field: Field) -> bool {
+    matches!(field, Field::Name | Field::Mass | Field::Com | Field::Inertia)
+}
