@@ -13,7 +13,7 @@ use springpot::dynamics::{
     pair_hessian_into, pair_into, point_jacobian_into, point_jacobian_rate_into, potential_energy,
     rnea_derivatives_into, rnea_into,
 };
-use springpot::model::{Anchor, BodySpec, JointSpec, Model, ModelBuilder, Parent};
+use springpot::model::{Anchor, BodySpec, JointSpec, Mimic, Model, ModelBuilder, Parent};
 use springpot::spatial::{Force, Vec3};
 
 struct Counting;
@@ -49,12 +49,11 @@ fn allocations(work: impl FnOnce()) -> usize {
 }
 
 /// Seven joints on two branches, revolute and prismatic.
-fn model() -> Model {
-    let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
-    for k in 0..7usize {
+fn specs() -> Vec<BodySpec> {
+    let spec = |k: usize| {
         let (name, axis) = (format!("q{k}"), [1.0, k as f64, 0.5]);
         let joint = if k % 3 == 2 { JointSpec::prismatic } else { JointSpec::revolute };
-        let spec = BodySpec {
+        BodySpec {
             name: format!("b{k}"),
             parent: match k {
                 0 => Parent::World,
@@ -65,7 +64,14 @@ fn model() -> Model {
             mass: 1.0,
             com: [0.1, 0.0, 0.05],
             inertia: [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]],
-        };
+        }
+    };
+    (0..7).map(spec).collect()
+}
+
+fn build(specs: Vec<BodySpec>) -> Model {
+    let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
+    for spec in specs {
         builder.push(spec).unwrap();
     }
     builder.finish().unwrap()
@@ -73,53 +79,76 @@ fn model() -> Model {
 
 #[test]
 fn algorithms_do_not_allocate() {
-    let model = model();
+    check(&build(specs()));
+}
+
+#[test]
+fn nor_with_a_floating_base() {
+    let mut floating = specs();
+    floating[0].joint = JointSpec::floating("base", [0.0; 3]);
+    check(&build(floating));
+}
+
+#[test]
+fn nor_where_a_joint_follows_another() {
+    let mut following = specs();
+    following[6].joint.mimic = Some(Mimic { joint: "q3".into(), multiplier: -0.5, offset: 0.1 });
+    check(&build(following));
+}
+
+fn check(model: &Model) {
     let n = model.nv();
-    let (q, v, a) = (vec![0.3; n], vec![-0.4; n], vec![0.5; n]);
+    let (q, v, a) = (model.random(1), vec![-0.4; n], vec![0.5; n]);
+    let next = &mut q.clone();
     let site = |body, point| model.resolve(&Anchor { body: Parent::Body(body), point }).unwrap();
     let (from, to) = (site(3, [0.1, 0.2, 0.3]), site(6, [0.0, -0.1, 0.2]));
     let pairs = [PairForce { from, to, force: 10.0, d_length: 3.0, d_rate: 2.0 }];
-    let (mut kinematics, mut workspace) = (Kinematics::new(&model), Workspace::new(&model));
+    let (mut kinematics, mut workspace) = (Kinematics::new(model), Workspace::new(model));
     let (mut vector, mut jacobian) = (vec![0.0; n], vec![0.0; 3 * n]);
     let (mut matrix, mut gamma) = (vec![0.0; n * n], vec![0.0; n * n * n]);
     let (mut factor, mut frame_jacobian) = (vec![0.0; n * n], vec![0.0; 6 * n]);
     let frame = model.frame(Parent::Body(6)).unwrap();
     let wrench = Force { linear: Vec3([1.0, 2.0, 3.0]), angular: Vec3([0.1, 0.2, 0.3]) };
-    let (mut inverse_slopes, mut forward_slopes) = (RneaDerivatives::new(&model), AbaDerivatives::new(&model));
+    let (mut inverse_slopes, mut forward_slopes) = (RneaDerivatives::new(model), AbaDerivatives::new(model));
     let (mut energy, mut centre) = (0.0, Vec3([0.0; 3]));
 
     assert!(allocations(|| drop(std::hint::black_box(vec![1u8; 9]))) > 0, "the counter counts");
     let count = allocations(|| {
-        kinematics.update_position(&model, &q);
-        kinematics.update_velocity(&model, &q, &v);
-        kinematics.update_acceleration(&model, &q, &v, &a);
-        point_jacobian_into(&model, &kinematics, &to, &mut jacobian);
-        point_jacobian_rate_into(&model, &kinematics, &to, &mut jacobian);
-        angular_jacobian_into(&model, &kinematics, &to, &mut jacobian);
-        angular_jacobian_rate_into(&model, &kinematics, &to, &mut jacobian);
-        crba_into(&model, &kinematics, &mut workspace, &mut matrix);
-        christoffel_into(&model, &kinematics, &mut workspace, &mut gamma);
-        gravity_into(&model, &kinematics, &mut workspace, &mut vector);
-        let pair = pair_into(&model, &kinematics, &from, &to, &mut vector);
-        pair_hessian_into(&model, &kinematics, &from, &to, &pair, &mut workspace, &mut matrix);
-        rnea_into(&model, &q, &v, &a, &pairs, &mut workspace, &mut vector);
-        nonlinear_effects_into(&model, &q, &v, &pairs, &mut workspace, &mut vector);
-        aba_into(&model, &kinematics, &a, &pairs, &mut workspace, &mut vector);
-        coriolis_into(&model, &kinematics, &mut workspace, &mut matrix);
-        com_jacobian_into(&model, &kinematics, &mut workspace, &mut jacobian);
-        frame_jacobian_into(&model, &kinematics, &frame, &mut frame_jacobian);
-        frame_jacobian_rate_into(&model, &kinematics, &frame, &mut frame_jacobian);
-        crba_into(&model, &kinematics, &mut workspace, &mut factor);
-        cholesky_into(&model, &mut factor);
-        cholesky_solve_into(&model, &factor, &mut vector);
-        inverse_from_cholesky_into(&model, &factor, &mut matrix);
-        mass_inverse_into(&model, &kinematics, &mut workspace, &mut factor, &mut matrix);
-        add_wrench(&model, &kinematics, &to, wrench, &mut vector);
-        add_wrench_derivative(&model, &kinematics, &to, wrench, &mut matrix);
-        rnea_derivatives_into(&model, &kinematics, &a, &pairs, &mut workspace, &mut inverse_slopes);
-        aba_derivatives_into(&model, &kinematics, &a, &pairs, &mut workspace, &mut forward_slopes);
-        centre = com(&model, &kinematics);
-        energy = kinetic_energy(&model, &kinematics) + potential_energy(&model, &kinematics);
+        kinematics.update_position(model, &q);
+        kinematics.update_velocity(model, &q, &v);
+        kinematics.update_acceleration(model, &q, &v, &a);
+        point_jacobian_into(model, &kinematics, &to, &mut jacobian);
+        point_jacobian_rate_into(model, &kinematics, &to, &mut jacobian);
+        angular_jacobian_into(model, &kinematics, &to, &mut jacobian);
+        angular_jacobian_rate_into(model, &kinematics, &to, &mut jacobian);
+        crba_into(model, &kinematics, &mut workspace, &mut matrix);
+        if model.is_one_degree() {
+            christoffel_into(model, &kinematics, &mut workspace, &mut gamma);
+        }
+        gravity_into(model, &kinematics, &mut workspace, &mut vector);
+        pair_into(model, &kinematics, &from, &to, &mut vector);
+        pair_hessian_into(model, &kinematics, &from, &to, &mut workspace, &mut matrix);
+        rnea_into(model, &q, &v, &a, &pairs, &mut workspace, &mut vector);
+        nonlinear_effects_into(model, &q, &v, &pairs, &mut workspace, &mut vector);
+        aba_into(model, &kinematics, &a, &pairs, &mut workspace, &mut vector);
+        coriolis_into(model, &kinematics, &mut workspace, &mut matrix);
+        com_jacobian_into(model, &kinematics, &mut workspace, &mut jacobian);
+        frame_jacobian_into(model, &kinematics, &frame, &mut frame_jacobian);
+        frame_jacobian_rate_into(model, &kinematics, &frame, &mut frame_jacobian);
+        crba_into(model, &kinematics, &mut workspace, &mut factor);
+        cholesky_into(model, &mut factor);
+        cholesky_solve_into(model, &factor, &mut vector);
+        inverse_from_cholesky_into(model, &factor, &mut matrix);
+        mass_inverse_into(model, &kinematics, &mut workspace, &mut factor, &mut matrix);
+        add_wrench(model, &kinematics, &to, wrench, &mut vector);
+        add_wrench_derivative(model, &kinematics, &to, wrench, &mut matrix);
+        rnea_derivatives_into(model, &kinematics, &a, &pairs, &mut workspace, &mut inverse_slopes);
+        aba_derivatives_into(model, &kinematics, &a, &pairs, &mut workspace, &mut forward_slopes);
+        model.integrate_into(&q, &v, next);
+        model.difference_into(&q, next, &mut vector);
+        model.normalise(next);
+        centre = com(model, &kinematics);
+        energy = kinetic_energy(model, &kinematics) + potential_energy(model, &kinematics);
     });
     assert_eq!(count, 0);
     assert!(energy.is_finite() && centre.is_finite() && frame_jacobian.iter().all(|x| x.is_finite()));

@@ -1,19 +1,34 @@
 //! Two states side by side give, lane by lane, the very bits that each gives alone.
 
 use super::*;
-use crate::model::{Anchor, BodySpec, JointSpec, Model, ModelBuilder, Parent};
+use crate::model::{Anchor, BodySpec, JointSpec, Mimic, Model, ModelBuilder, Parent};
 use crate::spatial::{Scalar, Two};
 
-/// Five joints of both kinds on two branches.
-fn model() -> Model {
+/// What the first and the last of five joints on two branches are, besides revolute and prismatic ones.
+#[derive(Clone, Copy, PartialEq)]
+enum Ends {
+    Plain,
+    Floating,
+    Following,
+}
+
+fn model(ends: Ends) -> Model {
     let mut builder = ModelBuilder::new([0.1, -0.2, -9.81]);
     for k in 0..5usize {
-        let joint = if k % 3 == 1 { JointSpec::prismatic } else { JointSpec::revolute };
+        let kind = if k % 3 == 1 { JointSpec::prismatic } else { JointSpec::revolute };
+        let mut joint = kind(format!("q{k}"), [0.3, k as f64, 1.0], [0.2, 0.1, 0.4]);
+        match ends {
+            Ends::Floating if k == 0 => joint = JointSpec::floating("q0", joint.origin),
+            Ends::Following if k == 4 => {
+                joint.mimic = Some(Mimic { joint: "q2".into(), multiplier: 0.7, offset: -0.2 });
+            }
+            _ => {}
+        }
         builder
             .push(BodySpec {
                 name: format!("b{k}"),
                 parent: if k == 3 { Parent::Body(0) } else { k.checked_sub(1).map_or(Parent::World, Parent::Body) },
-                joint: joint(format!("q{k}"), [0.3, k as f64, 1.0], [0.2, 0.1, 0.4]),
+                joint,
                 mass: 1.0 + k as f64,
                 com: [0.1, 0.2, -0.1],
                 inertia: [[0.2, 0.01, 0.0], [0.01, 0.25, 0.02], [0.0, 0.02, 0.3]],
@@ -36,13 +51,15 @@ fn everything<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T]) -> Vec<T> {
     all.extend(kinematics.acceleration(&to).0);
     all.extend(rnea(model, q, v, a, &[force(from, to), force(base, to)]));
     all.extend(crba(model, &kinematics));
-    all.extend(christoffel(model, &kinematics));
+    if model.is_one_degree() {
+        all.extend(christoffel(model, &kinematics));
+    }
     all.extend(gravity(model, &kinematics));
     all.extend(point_jacobian(model, &kinematics, &from));
     all.extend(point_jacobian_rate(model, &kinematics, &from));
     all.extend(angular_jacobian(model, &kinematics, &to));
     all.extend(angular_jacobian_rate(model, &kinematics, &to));
-    all.extend(pair_hessian(model, &kinematics, &from, &to, &here));
+    all.extend(pair_hessian(model, &kinematics, &from, &to));
     all.extend(gradient);
     all.extend(aba(model, q, v, a, &[force(from, to), force(base, to)]));
     all.extend(nonlinear_effects(model, q, v, &[]));
@@ -63,17 +80,21 @@ fn everything<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T]) -> Vec<T> {
 
 #[test]
 fn lanes_do_not_meet() {
-    let model = model();
-    let n = model.nv();
-    let single = |seed: f64| -> Vec<f64> { (0..n).map(|j| (seed + 1.3 * j as f64).sin()).collect() };
-    let (first, second) = ([0.1, 0.2, 0.3].map(single), [5.4, 2.5, -7.6].map(single));
-    let joined: [Vec<Two>; 3] =
-        [0, 1, 2].map(|k| first[k].iter().zip(&second[k]).map(|(&x, &y)| Two([x, y])).collect());
-    let alone = [&first, &second].map(|[q, v, a]| everything(&model, q, v, a));
-    let together = everything(&model, &joined[0], &joined[1], &joined[2]);
-    assert_eq!(together.len(), alone[0].len());
-    for (k, both) in together.iter().enumerate() {
-        assert_eq!(both.0, [alone[0][k], alone[1][k]], "entry {k}");
+    for ends in [Ends::Plain, Ends::Floating, Ends::Following] {
+        let model = model(ends);
+        let single = |seed: f64| -> [Vec<f64>; 3] {
+            let numbers = |n: usize, seed: f64| (0..n).map(|j| (seed + 1.3 * j as f64).sin()).collect();
+            [numbers(model.nq(), seed), numbers(model.nv(), seed + 0.1), numbers(model.nv(), seed - 7.6)]
+        };
+        let (first, second) = (single(0.1), single(5.4));
+        let joined: [Vec<Two>; 3] =
+            [0, 1, 2].map(|k| first[k].iter().zip(&second[k]).map(|(&x, &y)| Two([x, y])).collect());
+        let alone = [&first, &second].map(|[q, v, a]| everything(&model, q, v, a));
+        let together = everything(&model, &joined[0], &joined[1], &joined[2]);
+        assert_eq!(together.len(), alone[0].len());
+        for (k, both) in together.iter().enumerate() {
+            assert_eq!(both.0, [alone[0][k], alone[1][k]], "entry {k}");
+        }
+        assert_ne!(alone[0], alone[1]);
     }
-    assert_ne!(alone[0], alone[1]);
 }

@@ -25,6 +25,7 @@ mod joint;
 mod kinematics;
 #[cfg(test)]
 mod lanes_fit;
+mod line;
 mod moments;
 mod pair;
 mod pair_stiffness;

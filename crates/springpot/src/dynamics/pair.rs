@@ -1,5 +1,6 @@
 //! Two points of two bodies: their distance, its derivatives, and a force along the line that joins them.
 
+use super::line::Line;
 use super::{Kinematics, Workspace, joint};
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
@@ -93,7 +94,8 @@ pub fn pair<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, from: &Site, t
     (pair, gradient)
 }
 
-/// Second derivatives of the pair's length: entry (a, b) is ∂(∂l/∂q_a)/∂q_b, from `pair` as [`pair_into`] gave it.
+/// Second derivatives of the pair's length: entry (a, b) is ∂(∂l/∂q_a)/∂q_b, by which the gradient of
+/// [`pair_into`] changes.
 ///
 /// With u = l_vec/l and t_b = ∂l_vec/∂q_b it is
 ///
@@ -107,98 +109,24 @@ pub fn pair_hessian_into<T: Scalar>(
     kinematics: &Kinematics<T>,
     from: &Site,
     to: &Site,
-    pair: &Pair<T>,
     workspace: &mut Workspace<T>,
     hessian: &mut [T],
 ) {
     let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(hessian.len(), n * n, "the Hessian is nv x nv");
     hessian.fill(T::ZERO);
-    let columns = &mut workspace.columns[..degrees.len()];
-    line_columns(model, kinematics, from, to, columns);
-    let (length, direction) = (pair.length, pair.direction);
-    second_derivatives(model, kinematics, from, to, length, direction, columns, |a, b, entry| {
+    let line = Line::new(model, kinematics, from, to);
+    line.fill_columns(model, kinematics, &mut workspace.columns);
+    line.second_derivatives(model, kinematics, &workspace.columns, |a, b, entry| {
         hessian[degrees[a].index * n + degrees[b].index] += entry;
     });
 }
 
-/// Fills t_k = ∂l_vec/∂q_k of all degrees between the ends; other columns stay as they are.
-#[inline]
-pub(super) fn line_columns<T: Scalar>(
-    model: &Model,
-    kinematics: &Kinematics<T>,
-    from: &Site,
-    to: &Site,
-    columns: &mut [Vec3<T>],
-) {
-    let common = joint::common_link(model, from.link(), to.link());
-    let (start, end) = (kinematics.position(from), kinematics.position(to));
-    for k in joint::path_to(model, from.link(), common) {
-        let degree = &model.degrees()[k];
-        columns[k] = -joint::point_column(degree, kinematics.link(degree.link), start);
-    }
-    for k in joint::path_to(model, to.link(), common) {
-        let degree = &model.degrees()[k];
-        columns[k] = joint::point_column(degree, kinematics.link(degree.link), end);
-    }
-}
-
-/// Hands ∂(∂l/∂q_a)/∂q_b to `visit` for every ordered two degrees between the ends; all others are 0.
-#[inline]
-pub(super) fn second_derivatives<T: Scalar>(
-    model: &Model,
-    kinematics: &Kinematics<T>,
-    from: &Site,
-    to: &Site,
-    length: T,
-    direction: Vec3<T>,
-    columns: &[Vec3<T>],
-    mut visit: impl FnMut(usize, usize, T),
-) {
-    let degrees = model.degrees();
-    let common = joint::common_link(model, from.link(), to.link());
-    let inverse = T::ONE / length;
-    let stretched = |a: usize, b: usize| {
-        let along = direction.dot(columns[a]) * direction.dot(columns[b]);
-        (columns[a].dot(columns[b]) - along) * inverse
-    };
-    let turn = |k: usize| joint::angular_column(&degrees[k], kinematics.link(degrees[k].link));
-    for site in [from, to] {
-        for hi in joint::path_to(model, site.link(), common) {
-            for lo in joint::inwards(model, hi + 1, model.last_degree(common)) {
-                let both = stretched(lo, hi);
-                let turned = direction.dot(turn(lo).cross(columns[hi]));
-                visit(hi, lo, both + turned);
-                if lo == hi {
-                    continue;
-                }
-                // Degrees of one joint move with one another.
-                let one_joint = degrees[lo].link == degrees[hi].link;
-                let turned = if one_joint { direction.dot(turn(hi).cross(columns[lo])) } else { turned };
-                visit(lo, hi, both + turned);
-            }
-        }
-    }
-    for a in joint::path_to(model, from.link(), common) {
-        for b in joint::path_to(model, to.link(), common) {
-            let both = stretched(a, b);
-            visit(a, b, both);
-            visit(b, a, both);
-        }
-    }
-}
-
 /// [`pair_hessian_into`], allocating.
-pub fn pair_hessian<T: Scalar>(
-    model: &Model,
-    kinematics: &Kinematics<T>,
-    from: &Site,
-    to: &Site,
-    pair: &Pair<T>,
-) -> Vec<T> {
+pub fn pair_hessian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, from: &Site, to: &Site) -> Vec<T> {
     let n = model.nv();
     let mut hessian = vec![T::ZERO; n * n];
-    pair_hessian_into(model, kinematics, from, to, pair, &mut Workspace::new(model), &mut hessian);
+    pair_hessian_into(model, kinematics, from, to, &mut Workspace::new(model), &mut hessian);
     hessian
 }
 

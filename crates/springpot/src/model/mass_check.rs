@@ -23,6 +23,10 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
     let mut articulated: Vec<Matrix6> = model.inertias.iter().map(matrix).collect();
     // What the diagonal blocks would be without the subtraction, the measure of their rounding error.
     let mut gross: Vec<[f64; 2]> = articulated.iter().map(block_traces).collect();
+    let mut leads = vec![false; n];
+    for leader in model.followed.iter().flatten() {
+        leads[*leader] = true;
+    }
     for j in (0..n).rev() {
         let body = model.bodies_of_joints[j];
         let name = || model.body_names[body].clone();
@@ -32,8 +36,7 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
         let mut reduced = articulated[j];
         let mut lost = Vec::with_capacity(6);
         // Joints that follow one another share their inertia: a singularity of theirs is not looked for.
-        let shares = model.followed[j].is_some() || model.followed.contains(&Some(j));
-        let degrees = if shares { &[] } else { model.motions[j].degrees() };
+        let degrees = if model.followed[j].is_some() || leads[j] { &[] } else { model.motions[j].degrees() };
         for degree in degrees.iter().rev() {
             let axis = match degree {
                 DegreeMotion::Turn(axis) => *axis as usize,

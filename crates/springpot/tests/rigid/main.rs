@@ -3,6 +3,7 @@
 mod derivatives;
 mod identities;
 mod long_chain;
+mod manifold;
 mod oracle;
 mod pair;
 mod recursions;

@@ -38,7 +38,7 @@ proptest! {
         let slopes: Vec<f64> = (0..n).map(|j| difference(&model, &case.q, j, length)[0]).collect();
         close("dl", &gradient, &slopes, 1e-7, largest(&gradient).max(1.0));
 
-        let hessian = pair_hessian(&model, &kinematics, &from, &to, &here);
+        let hessian = pair_hessian(&model, &kinematics, &from, &to);
         for b in 0..n {
             let column: Vec<f64> = (0..n).map(|a| hessian[a * n + b]).collect();
             let curvature = difference(&model, &case.q, b, |q| gradient_at(&case, &model, q));
@@ -54,7 +54,7 @@ proptest! {
         let kinematics = Kinematics::at_velocity(&model, &case.q, &case.v);
         let here = pair(&model, &kinematics, &from, &to).0;
         prop_assume!(here.length > SHORTEST);
-        let hessian = pair_hessian(&model, &kinematics, &from, &to, &here);
+        let hessian = pair_hessian(&model, &kinematics, &from, &to);
         let turned: Vec<f64> = (0..n * n).map(|k| hessian[(k % n) * n + k / n]).collect();
         close("d2l", &hessian, &turned, 1e-14, largest(&hessian));
     }
@@ -64,8 +64,8 @@ proptest! {
         let model = case.model();
         let [from, to] = case.sites(&model);
         let kinematics = Kinematics::at_velocity(&model, &case.q, &case.v);
-        let (here, gradient) = pair(&model, &kinematics, &from, &to);
-        let hessian = pair_hessian(&model, &kinematics, &from, &to, &here);
+        let gradient = pair(&model, &kinematics, &from, &to).1;
+        let hessian = pair_hessian(&model, &kinematics, &from, &to);
         let carries = |j: usize, mut link: usize| {
             while link > j + 1 {
                 link = model.parent_link(link - 1);

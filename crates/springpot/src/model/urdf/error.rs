@@ -224,7 +224,7 @@ pub enum UrdfProblem {
     },
     /// An inertia tensor with a negative principal moment.
     #[error(
-        "the <inertia> of link {link:?} has the principal moment {smallest:.3e} kg*m^2; all three must be 0 or more"
+        "the <inertia> of link {link:?} has the principal moment {} kg*m^2; all three must be 0 or more", brief(*.smallest)
     )]
     InertiaNotPositive {
         /// The link.
@@ -312,7 +312,7 @@ pub enum UrdfProblem {
         links: Vec<String>,
     },
     /// A joint mimics one that does not exist.
-    #[error("joint {joint:?} mimics joint {target:?}, which does not exist{}", meant(suggestion))]
+    #[error("joint {joint:?} mimics joint {target:?}, which does not exist{}", mimic_help(suggestion))]
     UnknownMimic {
         /// The joint.
         joint: String,
@@ -339,6 +339,14 @@ pub enum UrdfProblem {
         /// The joints, each following the next.
         joints: Vec<String>,
     },
+    /// A robot of one link on a fixed base.
+    #[error(
+        "the robot is the single link {link:?}, which is the world on a fixed base; with floating_base it can move"
+    )]
+    NothingMoves {
+        /// The link.
+        link: String,
+    },
     /// The robot as a whole cannot be built.
     #[error("{source}")]
     Model {
@@ -362,6 +370,13 @@ fn kinds() -> String {
 
 fn meant(suggestion: &Option<String>) -> String {
     suggestion.as_ref().map_or_else(String::new, |name| format!("; did you mean {name:?}?"))
+}
+
+fn mimic_help(suggestion: &Option<String>) -> String {
+    match suggestion {
+        Some(_) => meant(suggestion),
+        None => "; with ignore_mimic it has its own coordinate".to_owned(),
+    }
 }
 
 fn root_help(root: &str) -> &'static str {
@@ -396,6 +411,11 @@ fn circle(joints: &[String]) -> String {
         [joint] => format!("joint {joint:?} mimics itself,"),
         _ => format!("the joints {} mimic one another", quoted(joints)),
     }
+}
+
+/// `x` to four digits.
+pub(super) fn brief(x: f64) -> String {
+    format!("{:?}", format!("{x:.3e}").parse().unwrap_or(x))
 }
 
 /// `"a", "b" and "c"`, shortened after six.

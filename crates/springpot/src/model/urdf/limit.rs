@@ -38,7 +38,7 @@ pub(super) fn read<'a>(
     for (name, value, limit) in [("effort", effort, &mut limits.effort), ("velocity", velocity, &mut limits.velocity)] {
         match value {
             None => {
-                let what = format!("{name}, taken as unlimited,");
+                let what = format!("{name} taken as unlimited");
                 reader.warnings.add(UrdfWarningKind::IncompleteLimit, owner, line, what);
             }
             Some(value) if value < 0.0 => {
@@ -54,9 +54,9 @@ pub(super) fn read<'a>(
         return Ok(limits);
     }
     let missing = match (lower, upper) {
-        (None, None) => "lower and upper, taken as 0,",
-        (None, _) => "lower, taken as 0,",
-        (_, None) => "upper, taken as 0,",
+        (None, None) => "lower and upper taken as 0",
+        (None, _) => "lower taken as 0",
+        (_, None) => "upper taken as 0",
         _ => "",
     };
     if !missing.is_empty() {

@@ -10,6 +10,9 @@ const POSITIVE_TOLERANCE: f64 = 1e-12;
 /// Notes a largest principal moment that exceeds the sum of the others by more than this share of itself.
 const TRIANGLE_TOLERANCE: f64 = 1e-9;
 
+/// A tensor that is not positive, with entries below this times the mass, m², is that of a point mass and rounding errors.
+const NOISE: f64 = 1e-15;
+
 /// Mass and inertia of a link, in the link's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertial {
@@ -32,17 +35,35 @@ impl Inertial {
 pub(super) struct LinkEntry<'a> {
     pub(super) name: &'a str,
     pub(super) node: Node<'a>,
-    pub(super) inertial: Option<InertialEntry>,
+    pub(super) inertial: Option<InertialEntry<'a>>,
     pub(super) meshes: Vec<Mesh<'a>>,
 }
 
 /// An `<inertial>` as it stands in the file.
 #[derive(Debug)]
-pub(super) struct InertialEntry {
+pub(super) struct InertialEntry<'a> {
+    /// The `<inertia>`.
+    pub(super) node: Node<'a>,
     pub(super) value: Inertial,
     pub(super) line: usize,
-    /// The largest principal moment and the sum of the others, where the largest is above it.
-    pub(super) broken_triangle: Option<(f64, f64)>,
+    pub(super) physical: Physical,
+}
+
+/// Whether an inertia tensor can be that of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Physical {
+    Yes,
+    /// Not positive, but all of it rounding errors.
+    Noise,
+    /// The largest principal moment is above the sum of the others.
+    BrokenTriangle {
+        largest: f64,
+        others: f64,
+    },
+    /// The smallest principal moment is below zero.
+    NotPositive {
+        smallest: f64,
+    },
 }
 
 /// The file of a shape.
@@ -80,16 +101,11 @@ pub(super) fn read<'a>(reader: &mut Reader<'a>, node: Node<'a>) -> Result<LinkEn
             _ => reader.stray_text(child, &owner),
         }
     }
-    let inertial = inertial.map(|child| read_inertial(reader, child, name, &owner)).transpose()?;
+    let inertial = inertial.map(|child| read_inertial(reader, child, &owner)).transpose()?;
     Ok(LinkEntry { name, node, inertial, meshes })
 }
 
-fn read_inertial<'a>(
-    reader: &mut Reader<'a>,
-    node: Node<'a>,
-    link: &str,
-    owner: &Owner,
-) -> Result<InertialEntry, UrdfError> {
+fn read_inertial<'a>(reader: &mut Reader<'a>, node: Node<'a>, owner: &Owner) -> Result<InertialEntry<'a>, UrdfError> {
     let [origin, mass, inertia] = reader.children(node, owner, ["origin", "mass", "inertia"], &[])?;
     reader.attributes(node, owner, &[], &[]);
     let missing = |element| reader.fail(node, UrdfProblem::MissingElement { owner: owner.clone(), element });
@@ -110,14 +126,26 @@ fn read_inertial<'a>(
         yz: reader.required_number(inertia_node, owner, "iyz")?,
         zz: reader.required_number(inertia_node, owner, "izz")?,
     };
-    let [smallest, middle, largest] = principal_moments(tensor.to_matrix());
-    if smallest < -POSITIVE_TOLERANCE * largest.abs() {
-        let problem = UrdfProblem::InertiaNotPositive { link: link.to_owned(), smallest };
-        return Err(reader.fail(inertia_node, problem));
-    }
-    let others = smallest + middle;
-    let broken_triangle = (largest - others > TRIANGLE_TOLERANCE * largest).then_some((largest, others));
-    let turned = if rpy == [0.0; 3] { tensor } else { tensor.rotated(&Rotation::from_rpy(rpy)) };
+    let physical = judge(tensor, mass);
+    let turned = match physical {
+        Physical::Noise => Symmetric3::ZERO,
+        _ if rpy == [0.0; 3] => tensor,
+        _ => tensor.rotated(&Rotation::from_rpy(rpy)),
+    };
     let value = Inertial { mass, com, inertia: turned.to_matrix() };
-    Ok(InertialEntry { value, line: reader.line(node), broken_triangle })
+    Ok(InertialEntry { node: inertia_node, value, line: reader.line(node), physical })
+}
+
+fn judge(tensor: Symmetric3, mass: f64) -> Physical {
+    let matrix = tensor.to_matrix();
+    let [smallest, middle, largest] = principal_moments(matrix);
+    let others = smallest + middle;
+    if smallest < -POSITIVE_TOLERANCE * largest.abs() {
+        let is_noise = matrix.iter().flatten().all(|entry| entry.abs() <= NOISE * mass);
+        if is_noise { Physical::Noise } else { Physical::NotPositive { smallest } }
+    } else if largest - others > TRIANGLE_TOLERANCE * largest {
+        Physical::BrokenTriangle { largest, others }
+    } else {
+        Physical::Yes
+    }
 }

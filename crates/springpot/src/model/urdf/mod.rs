@@ -47,7 +47,7 @@ pub use error::{Owner, UrdfError, UrdfProblem};
 pub use link::Inertial;
 pub use warning::{UrdfPlace, UrdfWarning, UrdfWarningKind};
 
-use super::{BodySpec, Field, Model, ModelBuilder, ModelError};
+use super::{BodySpec, Field, JointKind, Model, ModelBuilder, ModelError, Parent};
 
 /// Name of the joint that lets the base float.
 pub const FLOATING_BASE: &str = "floating_base";
@@ -115,9 +115,9 @@ impl Urdf {
     ///
     /// # Errors
     /// A file that cannot be read or is no UTF-8, no XML or no URDF; names that are missing, empty, not unique or reserved;
-    /// links that are not one tree; types of joints other than [`JointKind::ALL`](super::JointKind::ALL); numbers that are
-    /// missing, too few, too many or not finite (limits may be `inf`); negative mass, damping or friction; a principal moment
-    /// below −1e-12 of the largest; the axis 0 0 0; mimic joints that follow no joint of one degree, or one another; xacro.
+    /// links that are not one tree; types of joints other than [`JointKind::ALL`]; numbers that are
+    /// missing, too few, too many or not finite (limits may be `inf`); negative mass, damping or friction; on a moving joint, a
+    /// principal moment below −1e-12 of the largest; the axis 0 0 0; mimic joints that follow no joint of one degree, or one another; xacro.
     /// Each names the link or joint and has its line.
     pub fn read(path: &Path, options: &UrdfOptions) -> Result<Self, UrdfError> {
         robot::read(&source::read(path)?, Some(path), options)
@@ -136,15 +136,30 @@ impl Urdf {
     /// The root link of a fixed base becomes a name of the world.
     ///
     /// # Errors
-    /// [`UrdfProblem::Model`]: a robot without bodies; a link that moves which is not physical together with what is fixed to it; a
+    /// [`UrdfProblem::NothingMoves`], and [`UrdfProblem::Model`]: a link that moves which is not physical together with what is fixed to it; a
     /// mass matrix that is singular in every configuration; gravity not finite; overflow.
     pub fn model(&self, gravity: [f64; 3]) -> Result<Model, UrdfError> {
+        if self.bodies.is_empty() {
+            let problem = UrdfProblem::NothingMoves { link: self.root.name.clone() };
+            return Err(UrdfError::new(self.file.as_deref(), Some((self.root.line, 1)), problem));
+        }
         let mut builder = ModelBuilder::of_urdf(gravity);
         if !self.floating_base {
             builder.name_world(self.root.name.clone());
         }
+        let mut moves: Vec<bool> = Vec::with_capacity(self.bodies.len());
         for body in &self.bodies {
-            builder.push(body.clone()).map_err(|error| self.blame(error))?;
+            let is_carried = match body.parent {
+                Parent::World => false,
+                Parent::Body(parent) => moves.get(parent).is_some_and(|moves| *moves),
+            };
+            moves.push(is_carried || body.joint.kind != JointKind::Fixed);
+            let mut body = body.clone();
+            if moves.last() == Some(&false) {
+                // What is fixed to the world has no part in the dynamics, and need not be physical.
+                body.inertia = [[0.0; 3]; 3];
+            }
+            builder.push(body).map_err(|error| self.blame(error))?;
         }
         builder.finish().map_err(|error| self.blame(error))
     }

@@ -12,8 +12,13 @@ pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a s
     candidates
         .into_iter()
         .filter(|candidate| candidate.len() <= MAX_COMPARED)
-        .map(|candidate| (strsim::jaro_winkler(&folded, &candidate.to_lowercase()), candidate))
+        .map(|candidate| {
+            // What is only missing a prefix is meant.
+            let is_end = !name.is_empty() && candidate.ends_with(name);
+            let likeness = if is_end { 1.0 } else { strsim::jaro_winkler(&folded, &candidate.to_lowercase()) };
+            (likeness, candidate)
+        })
         .filter(|(likeness, _)| *likeness > 0.78)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .reduce(|best, next| if next.0 > best.0 { next } else { best })
         .map(|(_, candidate)| candidate.to_owned())
 }

@@ -1,10 +1,11 @@
 //! What stands in `<robot>`.
 
+use std::collections::HashSet;
 use std::path::Path;
 
-use super::error::{Owner, UrdfError, UrdfProblem};
+use super::error::{Owner, UrdfError, UrdfProblem, brief};
 use super::joint::JointEntry;
-use super::link::{Inertial, InertialEntry, LinkEntry};
+use super::link::{Inertial, LinkEntry, Physical};
 use super::package::Packages;
 use super::reader::{Node, Reader};
 use super::source::Source;
@@ -28,13 +29,16 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
         let root = robot.tag_name().name().chars().take(40).collect();
         return Err(reader.fail(robot, UrdfProblem::NotUrdf { root }));
     }
-    let (links, joints) = entries(&mut reader, robot, options)?;
+    let (links, mut joints) = entries(&mut reader, robot, options)?;
     if links.is_empty() {
         return Err(reader.fail(robot, UrdfProblem::NoLinks));
     }
     let tree = Tree::of(&reader, &links, &joints)?;
     mimic::check(&reader, &joints)?;
-    check_reserved(&reader, &links, &joints, tree.root, options)?;
+    check_reserved(&reader, &links, tree.root, options)?;
+    if options.floating_base {
+        free_the_name(&mut reader, &mut joints)?;
+    }
     if let Some(file) = file {
         let mut packages = Packages::of(file, &options.package_path);
         for link in &links {
@@ -48,7 +52,7 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
     if name.is_empty() {
         reader.warnings.add(UrdfWarningKind::NoName, &Owner::Robot, reader.line(robot), "");
     }
-    Ok(assemble(reader, name, links, joints, &tree, options))
+    assemble(reader, name, links, joints, &tree, options)
 }
 
 type Entries<'a> = (Vec<LinkEntry<'a>>, Vec<JointEntry<'a>>);
@@ -104,18 +108,32 @@ fn note_simulator<'a>(reader: &mut Reader<'a>, gazebo: Node<'a>) {
 fn check_reserved<'a>(
     reader: &Reader<'a>,
     links: &[LinkEntry<'a>],
-    joints: &[JointEntry<'a>],
     root: usize,
     options: &UrdfOptions,
 ) -> Result<(), UrdfError> {
     let world = links.iter().position(|link| link.name == "world");
-    if let Some(world) = world.filter(|&link| link != root || options.floating_base) {
-        return Err(reader.fail(links[world].node, UrdfProblem::ReservedLink { is_root: world == root }));
+    match world.filter(|&link| link != root || options.floating_base) {
+        Some(world) => Err(reader.fail(links[world].node, UrdfProblem::ReservedLink { is_root: world == root })),
+        None => Ok(()),
     }
-    match joints.iter().find(|joint| joint.spec.name == FLOATING_BASE) {
-        Some(joint) if options.floating_base => Err(reader.fail(joint.node, UrdfProblem::ReservedJoint)),
-        _ => Ok(()),
+}
+
+/// Keeps the name of the floating joint free: a fixed joint, which has no coordinates to be named, gets another one.
+fn free_the_name<'a>(reader: &mut Reader<'a>, joints: &mut [JointEntry<'a>]) -> Result<(), UrdfError> {
+    let Some(taken) = joints.iter().position(|joint| joint.spec.name == FLOATING_BASE) else { return Ok(()) };
+    let node = joints[taken].node;
+    if joints[taken].spec.kind != JointKind::Fixed {
+        return Err(reader.fail(node, UrdfProblem::ReservedJoint));
     }
+    let names: HashSet<&str> = joints.iter().map(|joint| joint.spec.name.as_str()).collect();
+    let mut free = format!("{FLOATING_BASE}_2");
+    while names.contains(free.as_str()) {
+        free.push('_');
+    }
+    let owner = Owner::Joint(FLOATING_BASE.to_owned());
+    reader.warnings.add(UrdfWarningKind::Renamed, &owner, reader.line(node), format!("called {free:?} here"));
+    joints[taken].spec.name = free;
+    Ok(())
 }
 
 /// The bodies in their order, and what is to be said of those that move.
@@ -126,7 +144,7 @@ fn assemble<'a>(
     mut joints: Vec<JointEntry<'a>>,
     tree: &Tree,
     options: &UrdfOptions,
-) -> Urdf {
+) -> Result<Urdf, UrdfError> {
     let floats = options.floating_base;
     let lines: Vec<usize> = links.iter().map(|link| reader.line(link.node)).collect();
     let root = &links[tree.root];
@@ -138,15 +156,17 @@ fn assemble<'a>(
         let joint = JointSpec::floating(FLOATING_BASE, [0.0; 3]);
         bodies.push(body(root, Parent::World, joint));
         body_lines.push(BodyLines { link: lines[tree.root], joint: lines[tree.root] });
-        note_inertia(&mut reader, root, true, true);
+        note_inertia(&mut reader, root, true, true)?;
         done[tree.root] = (Parent::Body(0), true);
+    } else {
+        note_inertia(&mut reader, root, false, false)?;
     }
     for branch in &tree.order {
         let (link, joint) = (&links[branch.child], &mut joints[branch.joint]);
         let (parent, parent_moves) = done[branch.parent];
         let is_carried = joint.spec.kind != JointKind::Fixed;
         let moves = parent_moves || is_carried;
-        note_inertia(&mut reader, link, is_carried, moves);
+        note_inertia(&mut reader, link, is_carried, moves)?;
         done[branch.child] = (Parent::Body(bodies.len()), moves);
         body_lines.push(BodyLines { link: lines[branch.child], joint: reader.line(joint.node) });
         let spec = std::mem::replace(&mut joint.spec, JointSpec::fixed("", [0.0; 3]));
@@ -159,7 +179,7 @@ fn assemble<'a>(
     };
     let file = reader.source.file.map(Path::to_path_buf);
     let warnings = reader.warnings.finish();
-    Urdf { name, file, root, floating_base: floats, bodies, lines: body_lines, warnings }
+    Ok(Urdf { name, file, root, floating_base: floats, bodies, lines: body_lines, warnings })
 }
 
 fn body(link: &LinkEntry<'_>, parent: Parent, joint: JointSpec) -> BodySpec {
@@ -167,26 +187,45 @@ fn body(link: &LinkEntry<'_>, parent: Parent, joint: JointSpec) -> BodySpec {
     BodySpec { name: link.name.to_owned(), parent, joint, mass, com, inertia }
 }
 
-/// Notes what is odd about the inertia of a link.
+/// Notes what is odd about the inertia of a link, which is on a moving joint or not, and moves in the world or not.
 ///
 /// A link without mass on a fixed joint is a frame, and what is fixed to the world has no part in the dynamics: neither is worth
 /// a line.
-fn note_inertia(reader: &mut Reader<'_>, link: &LinkEntry<'_>, is_carried: bool, moves: bool) {
+///
+/// # Errors
+/// A negative principal moment on a moving joint.
+fn note_inertia<'a>(
+    reader: &mut Reader<'a>,
+    link: &LinkEntry<'a>,
+    is_carried: bool,
+    moves: bool,
+) -> Result<(), UrdfError> {
     let owner = Owner::Link(link.name.to_owned());
-    match &link.inertial {
-        None if is_carried => {
-            let line = reader.line(link.node);
-            reader.warnings.add(UrdfWarningKind::NoInertial, &owner, line, "");
+    let Some(inertial) = &link.inertial else {
+        if is_carried {
+            reader.warnings.add(UrdfWarningKind::NoInertial, &owner, reader.line(link.node), "");
         }
-        Some(InertialEntry { value, line, broken_triangle }) => {
-            if is_carried && value.mass == 0.0 {
-                reader.warnings.add(UrdfWarningKind::ZeroMass, &owner, *line, "");
-            }
-            if let Some((largest, others)) = broken_triangle.filter(|_| moves) {
-                let what = format!("principal moment {largest:.3e} above the sum {others:.3e} of the other two");
-                reader.warnings.add(UrdfWarningKind::TriangleInequality, &owner, *line, what);
-            }
-        }
-        None => {}
+        return Ok(());
+    };
+    let line = inertial.line;
+    if is_carried && inertial.value.mass == 0.0 {
+        reader.warnings.add(UrdfWarningKind::ZeroMass, &owner, line, "");
     }
+    match inertial.physical {
+        Physical::NotPositive { smallest } if is_carried => {
+            let problem = UrdfProblem::InertiaNotPositive { link: link.name.to_owned(), smallest };
+            return Err(reader.fail(inertial.node, problem));
+        }
+        Physical::NotPositive { smallest } => {
+            let what = format!("{} kg*m^2{}", brief(smallest), if moves { "" } else { ", fixed to the world" });
+            reader.warnings.add(UrdfWarningKind::NotPositive, &owner, line, what);
+        }
+        Physical::BrokenTriangle { largest, others } if moves => {
+            let what = format!("moment {} above the sum {} of the other two", brief(largest), brief(others));
+            reader.warnings.add(UrdfWarningKind::TriangleInequality, &owner, line, what);
+        }
+        Physical::Noise => reader.warnings.add(UrdfWarningKind::PointMass, &owner, line, ""),
+        Physical::BrokenTriangle { .. } | Physical::Yes => {}
+    }
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! What was left out of a URDF file or assumed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 
 use super::error::Owner;
@@ -35,9 +35,15 @@ pub enum UrdfWarningKind {
     NoInertial,
     /// A link on a moving joint has the mass 0.
     ZeroMass,
+    /// A link has an `<inertia>` that is not positive, but only of rounding errors: its entries are below 1e-15 m² times its mass.
+    /// It is taken as 0, that of a point mass.
+    PointMass,
     /// The largest principal moment of a link that moves is above the sum of the others by more than 1e-9 of itself. The
     /// tensor is used as it is.
     TriangleInequality,
+    /// A link on a fixed joint, or the root on a fixed base, has a principal moment below −1e-12 of its largest. What is fixed to
+    /// the world has no part in the dynamics; on a moving link it must be made up for by what it is fixed to.
+    NotPositive,
     /// A moving joint has no `<axis>`; 1 0 0 is assumed, as the format says.
     NoAxis,
     /// The `<axis>` of a moving joint is not of length 1, by more than 1e-3; its direction is used.
@@ -50,6 +56,8 @@ pub enum UrdfWarningKind {
     SenselessLimit,
     /// A `<mimic>` that was not applied because the caller asked so; the joint has its own coordinate.
     MimicIgnored,
+    /// A fixed joint has the name of the joint that lets the base float; it gets another one.
+    Renamed,
     /// An `<axis>`, `<dynamics>`, `<limit>` or `<mimic>` of a floating joint, which has no use for it.
     OfFloatingJoint,
     /// Something inside `<gazebo>` that changes the motion in that simulator.
@@ -68,35 +76,42 @@ pub enum UrdfWarningKind {
     NotUsed,
 }
 
-impl UrdfWarningKind {
-    /// What it says before the places.
-    fn lead(self) -> &'static str {
-        match self {
-            Self::NoInertial => "no <inertial>, taken as massless",
-            Self::ZeroMass => "mass 0",
-            Self::TriangleInequality => "inertia that no distribution of mass has, used as it is",
-            Self::NoAxis => "no <axis>, 1 0 0 assumed",
-            Self::AxisLength => "<axis> not of length 1, its direction is used",
-            Self::NoLimit => "no <limit>, taken as unlimited",
-            Self::IncompleteLimit => "incomplete <limit>",
-            Self::SenselessLimit => "senseless <limit>, taken as unlimited",
-            Self::MimicIgnored => "<mimic> not applied, own coordinate instead",
-            Self::OfFloatingJoint => "not used, the joint is floating",
-            Self::InSimulator => "not used, though it changes the motion in Gazebo",
-            Self::NoName => "no name",
-            Self::UnknownElement | Self::UnknownAttribute => "not known, not used",
-            Self::StrayText => "text between elements, not used",
-            Self::MeshNotFound => "mesh files not found (the dynamics need none)",
-            Self::NotUsed => "not used",
-        }
-    }
+/// How the places of a kind are shown.
+enum Style {
+    /// `link "a" (line 3), link "b" (line 9: what) and 4 more`
+    Owners,
+    /// `"file" of link "a" (line 3) and 12 more`
+    Files,
+    /// `<axis> of joint "a" (line 3), 3 <axis> (from line 9)`
+    Elements,
+    /// `3 <transmission>, 12 <gazebo>`
+    Numbers,
+}
 
-    /// Whether the number of places says more than their names.
-    fn is_counted(self) -> bool {
-        matches!(
-            self,
-            Self::InSimulator | Self::UnknownElement | Self::UnknownAttribute | Self::StrayText | Self::NotUsed
-        )
+impl UrdfWarningKind {
+    /// What it says before the places, and how they are shown.
+    fn words(self) -> (&'static str, Style) {
+        match self {
+            Self::NoInertial => ("moving links without <inertial>, taken as massless", Style::Owners),
+            Self::ZeroMass => ("moving links of mass 0", Style::Owners),
+            Self::PointMass => ("<inertia> of rounding errors, taken as 0", Style::Owners),
+            Self::TriangleInequality => ("<inertia> that no distribution of mass has", Style::Owners),
+            Self::NotPositive => ("<inertia> with a negative principal moment", Style::Owners),
+            Self::NoAxis => ("no <axis>, 1 0 0 assumed", Style::Owners),
+            Self::AxisLength => ("<axis> not of length 1, its direction is used", Style::Owners),
+            Self::NoLimit => ("no <limit>, taken as unlimited", Style::Owners),
+            Self::IncompleteLimit => ("incomplete <limit>", Style::Owners),
+            Self::SenselessLimit => ("senseless <limit>, taken as unlimited", Style::Owners),
+            Self::MimicIgnored => ("<mimic> not applied, own coordinates instead", Style::Owners),
+            Self::Renamed => ("names that are reserved", Style::Owners),
+            Self::OfFloatingJoint => ("not used, the joint is floating", Style::Elements),
+            Self::InSimulator => ("not used, though it changes the motion in Gazebo", Style::Elements),
+            Self::NoName => ("no name", Style::Owners),
+            Self::UnknownElement | Self::UnknownAttribute => ("not known, not used", Style::Elements),
+            Self::StrayText => ("text between elements, not used", Style::Elements),
+            Self::MeshNotFound => ("mesh files not found, not needed for the dynamics", Style::Files),
+            Self::NotUsed => ("not used", Style::Numbers),
+        }
     }
 }
 
@@ -105,57 +120,60 @@ impl UrdfWarning {
     pub fn line(&self) -> usize {
         self.places[0].line
     }
+
+    /// How often each `what` stands here, and its first place, in the order of the file.
+    fn groups(&self) -> Vec<(usize, &UrdfPlace)> {
+        let mut index = HashMap::new();
+        let mut groups: Vec<(usize, &UrdfPlace)> = Vec::new();
+        for place in &self.places {
+            let at = *index.entry(place.what.as_str()).or_insert(groups.len());
+            match groups.get_mut(at) {
+                Some((count, _)) => *count += 1,
+                None => groups.push((1, place)),
+            }
+        }
+        groups
+    }
 }
 
 impl fmt::Display for UrdfWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        /// Groups and places beyond these are only counted.
-        const GROUPS: usize = 12;
-        const PLACES: usize = 3;
-        write!(f, "{}: ", self.kind.lead())?;
-        let groups = self.groups();
-        for (k, places) in groups.iter().take(GROUPS).enumerate() {
-            let first = places[0];
-            if k > 0 {
-                f.write_str(if self.kind.is_counted() { ", " } else { "; " })?;
+        let (lead, style) = self.kind.words();
+        write!(f, "{lead}: ")?;
+        let owner_and_line = |UrdfPlace { owner, line, what }: &UrdfPlace| match what.as_str() {
+            "" => format!("{owner} (line {line})"),
+            what => format!("{owner} (line {line}: {what})"),
+        };
+        let of_owner = |UrdfPlace { owner, line, what }: &UrdfPlace| match owner {
+            Owner::Robot => format!("{what} (line {line})"),
+            owner => format!("{what} of {owner} (line {line})"),
+        };
+        match style {
+            Style::Owners => listed(f, 4, self.places.iter().map(owner_and_line)),
+            Style::Files => listed(f, 2, self.places.iter().map(of_owner)),
+            Style::Elements => {
+                let groups = self.groups().into_iter().map(|(count, first)| match count {
+                    1 => of_owner(first),
+                    count => format!("{count} {} (from line {})", first.what, first.line),
+                });
+                listed(f, 8, groups)
             }
-            if self.kind.is_counted() && places.len() > 1 {
-                write!(f, "{} {} (from line {})", places.len(), first.what, first.line)?;
-                continue;
-            }
-            for (k, place) in places.iter().take(PLACES).enumerate() {
-                let separator = if k > 0 { ", " } else { "" };
-                match (place.what.is_empty() || k > 0, &place.owner) {
-                    (true, owner) => write!(f, "{separator}{owner} (line {})", place.line)?,
-                    (false, Owner::Robot) => write!(f, "{} (line {})", place.what, place.line)?,
-                    (false, owner) => write!(f, "{} of {owner} (line {})", place.what, place.line)?,
-                }
-            }
-            if places.len() > PLACES {
-                write!(f, " and {} more", places.len() - PLACES)?;
-            }
+            Style::Numbers => listed(
+                f,
+                16,
+                self.groups().into_iter().map(|(count, UrdfPlace { what, .. })| format!("{count} {what}")),
+            ),
         }
-        if groups.len() > GROUPS {
-            write!(f, " and {} more", groups.len() - GROUPS)?;
-        }
-        Ok(())
     }
 }
 
-impl UrdfWarning {
-    /// The places of the same `what`, in the order of the first of each.
-    fn groups(&self) -> Vec<Vec<&UrdfPlace>> {
-        let mut index = std::collections::HashMap::new();
-        let mut groups: Vec<Vec<&UrdfPlace>> = Vec::new();
-        for place in &self.places {
-            let at = *index.entry(place.what.as_str()).or_insert(groups.len());
-            if at == groups.len() {
-                groups.push(Vec::new());
-            }
-            groups[at].push(place);
-        }
-        groups
+/// `a, b, c and 5 more`, of which `shown` are shown.
+fn listed(f: &mut fmt::Formatter<'_>, shown: usize, items: impl ExactSizeIterator<Item = String>) -> fmt::Result {
+    let more = items.len().saturating_sub(shown);
+    for (k, item) in items.take(shown).enumerate() {
+        write!(f, "{}{item}", if k > 0 { ", " } else { "" })?;
     }
+    if more > 0 { write!(f, " and {more} more") } else { Ok(()) }
 }
 
 /// Warnings while they are gathered.

@@ -1,10 +1,20 @@
 //! The robots of `testdata/multibody`, built from the joints listed there.
 
 use serde_json::Value;
-use springpot::model::{Anchor, BodySpec, Frame, JointKind, JointSpec, Model, ModelBuilder, Parent, Site};
+use springpot::model::{Anchor, BodySpec, Frame, JointKind, JointSpec, Mimic, Model, ModelBuilder, Parent, Site};
 use springpot::spatial::Rotation;
 
-pub(crate) const ROBOTS: [&str; 4] = ["double_pendulum", "ur5", "panda", "simple_humanoid"];
+/// Names of the files, and how many states each holds.
+pub(crate) const ROBOTS: [(&str, usize); 8] = [
+    ("double_pendulum", 5),
+    ("ur5", 5),
+    ("panda", 5),
+    ("panda_mimic", 3),
+    ("simple_humanoid", 5),
+    ("simple_humanoid_ff", 2),
+    ("solo12_ff", 3),
+    ("anymal_b_ff", 3),
+];
 
 /// A robot of the reference files, with its named frame and its states.
 pub(crate) struct Robot {
@@ -44,19 +54,24 @@ pub(crate) fn load(name: &str) -> Robot {
     let described = &file["model"];
     let mut builder = ModelBuilder::new(vector(&described["gravity"]));
     for (k, joint) in described["joints"].as_array().unwrap().iter().enumerate() {
-        assert_eq!((joint["idx_q"].as_u64(), joint["idx_v"].as_u64()), (Some(k as u64), Some(k as u64)));
         let kind = match joint["type"].as_str() {
             Some("R") => JointKind::Revolute,
             Some("P") => JointKind::Prismatic,
+            Some("FF") => JointKind::Floating,
             other => panic!("{other:?}"),
         };
-        let axis = vector(&joint["axis"]);
+        let axis = if kind == JointKind::Floating { [0.0; 3] } else { vector(&joint["axis"]) };
         let plain = JointSpec::revolute(joint["name"].as_str().unwrap(), axis, vector(&joint["placement_p"]));
+        let mimic = joint["mimic"].as_object().map(|mimic| Mimic {
+            joint: mimic["joint"].as_str().unwrap().into(),
+            multiplier: mimic["multiplier"].as_f64().unwrap(),
+            offset: mimic["offset"].as_f64().unwrap(),
+        });
         builder
             .push(BodySpec {
                 name: format!("body{k}"),
                 parent: joint["parent"].as_u64().map_or(Parent::World, |p| Parent::Body(p as usize)),
-                joint: JointSpec { kind, rpy: rpy(matrix(&joint["placement_R"])), ..plain },
+                joint: JointSpec { kind, rpy: rpy(matrix(&joint["placement_R"])), mimic, ..plain },
                 mass: joint["mass"].as_f64().unwrap(),
                 com: vector(&joint["com"]),
                 inertia: matrix(&joint["inertia_com"]),
@@ -77,6 +92,10 @@ pub(crate) fn load(name: &str) -> Robot {
         })
         .unwrap();
     let model = builder.finish().unwrap();
+    for (k, joint) in described["joints"].as_array().unwrap().iter().enumerate() {
+        let indices = (model.q_range(k).start as u64, model.v_range(k).start as u64);
+        assert_eq!((joint["idx_q"].as_u64(), joint["idx_v"].as_u64()), (Some(indices.0), Some(indices.1)), "{name}");
+    }
     let end_site = model.resolve(&Anchor { body: Parent::Body(end_body), point: [0.0; 3] }).unwrap();
     let states = file["states"].as_array().unwrap().clone();
     Robot { end: model.frame(Parent::Body(end_body)).unwrap(), end_site, model, states }

@@ -1,0 +1,87 @@
+//! The line between two points: how it changes with the degrees of freedom between its ends.
+
+use super::{Kinematics, joint};
+use crate::model::{Model, Site};
+use crate::spatial::{Scalar, Vec3};
+
+/// The line from one point to another in one state. NaN where the points coincide.
+pub(super) struct Line<'a, T> {
+    from: &'a Site,
+    to: &'a Site,
+    /// The last link that carries both ends.
+    common: usize,
+    length: T,
+    /// u = l_vec/l.
+    pub(super) direction: Vec3<T>,
+}
+
+impl<'a, T: Scalar> Line<'a, T> {
+    #[inline]
+    pub(super) fn new(model: &Model, kinematics: &Kinematics<T>, from: &'a Site, to: &'a Site) -> Self {
+        let line = kinematics.position(to) - kinematics.position(from);
+        let length = line.norm();
+        let common = joint::common_link(model, from.link(), to.link());
+        Self { from, to, common, length, direction: line * (T::ONE / length) }
+    }
+
+    /// The degrees of freedom that move one end and not the other.
+    #[inline]
+    pub(super) fn degrees<'m>(&self, model: &'m Model) -> impl Iterator<Item = usize> + 'm {
+        let path = |site: &Site| joint::path_to(model, site.link(), self.common);
+        path(self.from).chain(path(self.to))
+    }
+
+    /// Fills t_k = ∂l_vec/∂q_k of [`Line::degrees`]; other columns stay as they are.
+    #[inline]
+    pub(super) fn fill_columns(&self, model: &Model, kinematics: &Kinematics<T>, columns: &mut [Vec3<T>]) {
+        let mut fill = |site: &Site, sign: T| {
+            let point = kinematics.position(site);
+            for k in joint::path_to(model, site.link(), self.common) {
+                let degree = &model.degrees()[k];
+                columns[k] = joint::point_column(degree, kinematics.link(degree.link), point) * sign;
+            }
+        };
+        fill(self.from, -T::ONE);
+        fill(self.to, T::ONE);
+    }
+
+    /// Hands ∂(∂l/∂q_a)/∂q_b = (t_a·t_b − ∂_a l ∂_b l)/l + u·∂t_a/∂q_b to `visit` for every ordered two of [`Line::degrees`].
+    #[inline]
+    pub(super) fn second_derivatives(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics<T>,
+        columns: &[Vec3<T>],
+        mut visit: impl FnMut(usize, usize, T),
+    ) {
+        let (degrees, u, inverse) = (model.degrees(), self.direction, T::ONE / self.length);
+        let stretched = |a: usize, b: usize| {
+            let along = u.dot(columns[a]) * u.dot(columns[b]);
+            (columns[a].dot(columns[b]) - along) * inverse
+        };
+        let turn = |k: usize| joint::angular_column(&degrees[k], kinematics.link(degrees[k].link));
+        for site in [self.from, self.to] {
+            for hi in joint::path_to(model, site.link(), self.common) {
+                for lo in joint::inwards(model, hi + 1, model.last_degree(self.common)) {
+                    let both = stretched(lo, hi);
+                    let turned = u.dot(turn(lo).cross(columns[hi]));
+                    visit(hi, lo, both + turned);
+                    if lo == hi {
+                        continue;
+                    }
+                    // Degrees of one joint move with one another.
+                    let one_joint = degrees[lo].link == degrees[hi].link;
+                    let turned = if one_joint { u.dot(turn(hi).cross(columns[lo])) } else { turned };
+                    visit(lo, hi, both + turned);
+                }
+            }
+        }
+        for a in joint::path_to(model, self.from.link(), self.common) {
+            for b in joint::path_to(model, self.to.link(), self.common) {
+                let both = stretched(a, b);
+                visit(a, b, both);
+                visit(b, a, both);
+            }
+        }
+    }
+}
