@@ -34,6 +34,7 @@
 //! # Ok::<(), springpot::scenario::Refusals>(())
 //! ```
 
+mod bodies;
 mod cases;
 mod document;
 mod elements;
@@ -51,11 +52,14 @@ mod sweep;
 mod system;
 mod time;
 pub mod units;
+mod urdf;
 
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
 pub(crate) use names::suggest;
-pub use plan::{BodyPlaces, ElementPlan, Gripper, MotionPlan, Plan, SignalPlan, SolverPlan, TimePlan};
+pub use plan::{
+    BodyPlaces, ElementPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, SignalPlan, SolverPlan, TimePlan, UrdfPlan,
+};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use sweep::MAX_CASES;
 
