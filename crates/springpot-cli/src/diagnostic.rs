@@ -78,6 +78,13 @@ pub(crate) fn warning(message: impl Into<String>, help: Option<String>) {
     show(&Shown::plain(Severity::Warning, message.into(), help));
 }
 
+/// Prints what the robot's files hold that is not used, or lack and is assumed.
+pub(crate) fn robot_warnings(cases: &Cases) {
+    for message in cases.warnings() {
+        warning(message, None);
+    }
+}
+
 /// A file that cannot be read has no line to point at.
 fn headline(refusal: &Refusal) -> String {
     let Refusal { kind, file, line, column, message, text, .. } = refusal;

@@ -5,7 +5,7 @@ use crate::diagnostic;
 use springpot::law::Catalog;
 use springpot::model::urdf::{Urdf, UrdfOptions, UrdfWarning};
 use springpot::model::{BodySpec, JointKind, Model, Parent};
-use springpot::scenario::Scenario;
+use springpot::scenario::{RobotPlan, Scenario};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -59,13 +59,10 @@ fn from_urdf(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refu
         Refused
     })?;
     Ok(Robot {
+        base: base(&urdf),
         name: if urdf.name.is_empty() { stem(&options.file) } else { urdf.name },
         model: Arc::new(model),
         bodies: urdf.bodies,
-        base: match urdf.floating_base {
-            true => ("world".to_owned(), 0.0),
-            false => (urdf.root.name, urdf.root.inertial.map_or(0.0, |inertial| inertial.mass)),
-        },
         warnings: urdf.warnings,
     })
 }
@@ -91,17 +88,30 @@ fn from_scenario(options: &RobotOptions, overrides: &[String]) -> Result<Robot, 
         }
         scenario.robot(&Catalog::standard())
     });
-    let robot = read.map_err(|refusals| {
+    let RobotPlan { model, bodies, urdf, .. } = read.map_err(|refusals| {
         diagnostic::refused(&refusals);
         Refused
     })?;
+    let urdf = urdf.map(|plan| plan.robot);
     Ok(Robot {
-        name: stem(&options.file),
-        model: robot.model,
-        bodies: robot.bodies,
-        base: ("world".to_owned(), 0.0),
-        warnings: Vec::new(),
+        name: urdf
+            .as_ref()
+            .map(|urdf| urdf.name.clone())
+            .filter(|name| !name.is_empty())
+            .unwrap_or(stem(&options.file)),
+        model,
+        bodies,
+        base: urdf.as_ref().map_or(("world".to_owned(), 0.0), |urdf| base(urdf)),
+        warnings: urdf.map_or(Vec::new(), |urdf| urdf.warnings.clone()),
     })
+}
+
+/// What the world is called, and the mass of that link, kg.
+fn base(urdf: &Urdf) -> (String, f64) {
+    match urdf.floating_base {
+        true => ("world".to_owned(), 0.0),
+        false => (urdf.root.name.clone(), urdf.root.inertial.map_or(0.0, |inertial| inertial.mass)),
+    }
 }
 
 fn stem(file: &Path) -> String {

@@ -37,6 +37,7 @@ pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused>
     }
     let plan = cases.plan(index).map_err(refused)?;
     let system = plan.system();
+    diagnostic::robot_warnings(&cases);
     match system.equation(&plan.settings(), t) {
         Ok(equation) => {
             terminal::print(&match options.json {

@@ -4,7 +4,7 @@ use super::json_text::Json;
 use super::order::Order;
 use crate::robot::Robot;
 use springpot::model::JointKind;
-use springpot::scenario::{Place, Refusal, RefusalKind, Refusals, Source};
+use springpot::scenario::{Place, RefusalKind, Refusals, Source};
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
@@ -87,20 +87,20 @@ fn fields<'a, const N: usize>(
     object: &Json<'a>,
     what: &str,
     keys: [&'static str; N],
-) -> Result<[Option<Json<'a>>; N], Refusal> {
+) -> Result<[Option<Json<'a>>; N], Refusals> {
     let Some(entries) = object.entries() else {
         let message = format!("{what} is {}, but must be an object with {}", object.written(), quoted(&keys));
-        return Err(object.refuse(RefusalKind::WrongType, message));
+        return Err(object.refuse(RefusalKind::WrongType, message).into());
     };
     let mut found = std::array::from_fn(|_| None);
     for (key, value) in entries {
         let name = key.text().unwrap_or_default();
         let Some(k) = keys.iter().position(|known| *known == name) else {
             let refusal = key.refuse(RefusalKind::UnknownKey, format!("unknown key {name:?} in {what}"));
-            return Err(refusal.label("unknown key").help(format!("there is {}", quoted(&keys))));
+            return Err(refusal.label("unknown key").help(format!("there is {}", quoted(&keys))).into());
         };
         if found[k].is_some() {
-            return Err(key.refuse(RefusalKind::BadName, format!("{name:?} stands twice in {what}")));
+            return Err(key.refuse(RefusalKind::BadName, format!("{name:?} stands twice in {what}")).into());
         }
         found[k] = Some(value);
     }
@@ -122,14 +122,16 @@ fn state(
     item: &Json<'_>,
     order: &Order,
     floating: &[(usize, usize)],
-) -> Result<(State, Vec<(usize, f64)>), Refusal> {
+) -> Result<(State, Vec<(usize, f64)>), Refusals> {
     let what = format!("states[{k}]");
     let found = fields(item, &what, STATE_KEYS)?;
     let missing: Vec<&str> =
         STATE_KEYS.into_iter().zip(&found).filter(|(_, value)| value.is_none()).map(|(key, _)| key).collect();
     let [Some(q), Some(v), Some(a), Some(tau)] = found else {
         let refusal = item.refuse(RefusalKind::Missing, format!("{what} has no {}", quoted(&missing)));
-        return Err(refusal.help("write all of \"q\", \"v\", \"a\" and \"tau\"; zeros where the robot is at rest"));
+        return Err(refusal
+            .help("write all of \"q\", \"v\", \"a\" and \"tau\"; zeros where the robot is at rest")
+            .into());
     };
     let numbers = |key: &str, value: &Json<'_>, names: &[String], indices: &[usize]| {
         numbers(&format!("{key:?} of {what}"), value, names, &order.joints)
@@ -147,7 +149,7 @@ fn state(
         let length = normalise(attitude);
         if length == 0.0 {
             let message = format!("\"q\" of {what}: the quaternion is 0 0 0 0, which is no attitude");
-            return Err(q.refuse(RefusalKind::OutOfRange, message).help("no turn is qx qy qz qw = 0 0 0 1"));
+            return Err(q.refuse(RefusalKind::OutOfRange, message).help("no turn is qx qy qz qw = 0 0 0 1").into());
         }
         if (length - 1.0).abs() > LENGTH_TOLERANCE {
             lengths.push((joint, length));
@@ -157,25 +159,25 @@ fn state(
 }
 
 /// The finite numbers of an array, as many as there are names.
-fn numbers(what: &str, array: &Json<'_>, names: &[String], joints: &[String]) -> Result<Vec<f64>, Refusal> {
+fn numbers(what: &str, array: &Json<'_>, names: &[String], joints: &[String]) -> Result<Vec<f64>, Refusals> {
     let Some(items) = array.items() else {
         let message = format!("{what} is {}, but must be an array of {} numbers", array.written(), names.len());
-        return Err(array.refuse(RefusalKind::WrongType, message));
+        return Err(array.refuse(RefusalKind::WrongType, message).into());
     };
     if items.len() != names.len() {
         let message = format!("{what} holds {} numbers, but must hold {}", items.len(), names.len());
         let refusal = array.refuse(RefusalKind::WrongType, message);
-        return Err(refusal.help(blocks(names, joints)));
+        return Err(refusal.help(blocks(names, joints)).into());
     }
     let number = |(item, name): (&Json<'_>, &String)| match item.number() {
         Some(number) if number.is_finite() => Ok(number),
         Some(_) => {
             let message = format!("{what}: {} of {name} is beyond all numbers of 64 bits", item.written());
-            Err(item.refuse(RefusalKind::OutOfRange, message))
+            Err(item.refuse(RefusalKind::OutOfRange, message).into())
         }
         None => {
             let message = format!("{what}: the entry of {name} is {}, but must be a number", item.written());
-            Err(item.refuse(RefusalKind::WrongType, message))
+            Err(item.refuse(RefusalKind::WrongType, message).into())
         }
     };
     items.iter().zip(names).map(number).collect()

@@ -34,6 +34,7 @@
 //! # Ok::<(), springpot::scenario::Refusals>(())
 //! ```
 
+mod bodies;
 mod cases;
 mod document;
 mod elements;
@@ -51,16 +52,21 @@ mod sweep;
 mod system;
 mod time;
 pub mod units;
+mod urdf;
 
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
 pub use names::suggest;
-pub use plan::{BodyPlaces, ElementPlan, Gripper, MotionPlan, Plan, RobotPlan, SignalPlan, SolverPlan, TimePlan};
+pub use plan::{
+    BodyPlaces, ElementPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan, SignalPlan, SolverPlan,
+    TimePlan, UrdfPlan,
+};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use sweep::MAX_CASES;
 
 use crate::law::Catalog;
 use document::{MAX_BYTES, Node};
+use robot::Robot;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -182,8 +188,8 @@ impl Scenario {
     /// # Errors
     /// All refusals about the robot and the sweeps that could be collected; the rest of the scenario is not looked at.
     pub fn robot(&self, catalog: &Catalog) -> Result<RobotPlan, Refusals> {
-        let robot = Cases::robot(self, catalog)?;
-        Ok(RobotPlan { gravity: robot.gravity, bodies: robot.bodies, model: robot.model, gripper: robot.gripper })
+        let Robot { gravity, gripper, parts, .. } = Cases::robot(self, catalog)?;
+        Ok(RobotPlan { gravity, bodies: parts.bodies, model: parts.model, urdf: parts.urdf, gripper })
     }
 }
 
