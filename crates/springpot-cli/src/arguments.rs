@@ -1,6 +1,6 @@
 //! What the command line takes.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand};
 use std::path::PathBuf;
 
 /// Robots whose bodies are joined by real materials: exact forces, motion, energy and figures from one scenario file.
@@ -40,6 +40,27 @@ Prints, per element, the length l(0), the stroke x(0) and dl/dq at t = 0, and wa
 singular Riemann-Liouville start, in any case of a sweep. Exit code 1 where a run is known to fail, as on a gripper path \
 out of reach.")]
     Check(CheckOptions),
+    /// Describe a robot: tree, masses, joints, limits, frames, and what was not used.
+    #[command(after_help = "\
+Examples:
+  springpot info arm.urdf
+  springpot info humanoid.urdf --floating-base --json > humanoid.json
+
+In the tree a line hangs on the line above it, unless a branch says otherwise. Masses are those of moving links together with \
+all that is fixed to them. docs/ROBOTS.md describes the JSON.")]
+    Info(InfoOptions),
+    /// Compute the dynamics of a robot in given states, or along a scenario's motion.
+    #[command(after_help = "\
+Examples:
+  springpot dynamics arm.urdf --states states.json > dynamics.json
+  springpot dynamics scenarios/thermoviscoelastic_order.toml --at 0.5
+
+With --states: reads {\"joints\": [names, the order of the numbers; optional], \"states\": [{\"q\": [], \"v\": [], \"a\": [], \"tau\": []}]} \
+and prints the rigid-body terms of every state as JSON, in SI units and in the same order; joint damping and friction stay out. \
+With --at: prints the equations of motion at that time term by term, with the forces of the elements. docs/ROBOTS.md describes both.
+
+Exit codes: 0 done, 1 some numbers are not finite or the motion does not come as far, 2 the input was refused.")]
+    Dynamics(DynamicsOptions),
 }
 
 #[derive(Debug, Args)]
@@ -67,6 +88,59 @@ pub(crate) struct CheckOptions {
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RobotOptions {
+    /// Robot: a URDF file (.urdf), or a scenario or its [robot] alone (.toml)
+    #[arg(value_name = "ROBOT")]
+    pub(crate) file: PathBuf,
+    /// Let the root link of a URDF file float on a joint called floating_base
+    #[arg(long)]
+    pub(crate) floating_base: bool,
+    /// Give joints that mimic another one coordinates of their own
+    #[arg(long)]
+    pub(crate) ignore_mimic: bool,
+    /// Folder that is a package, or holds some, for package:// paths; may be given several times
+    #[arg(long, value_name = "DIR")]
+    pub(crate) package_path: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoOptions {
+    #[command(flatten)]
+    pub(crate) robot: RobotOptions,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("what").args(["states", "at"]).required(true)))]
+pub(crate) struct DynamicsOptions {
+    #[command(flatten)]
+    pub(crate) robot: RobotOptions,
+    /// States to compute the dynamics in (JSON); - reads the standard input
+    #[arg(long, value_name = "FILE")]
+    pub(crate) states: Option<PathBuf>,
+    /// With --states: Christoffel symbols too, where every joint has one degree of freedom
+    #[arg(long, conflicts_with = "at")]
+    pub(crate) christoffel: bool,
+    /// With --states: pose and Jacobian of this link too (or of the link that this joint moves)
+    #[arg(long, value_name = "NAME", conflicts_with = "at")]
+    pub(crate) frame: Option<String>,
+    /// Time along the scenario's motion, in s or with a unit
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(crate) at: Option<String>,
+    /// With --at: the case of a scenario with sweeps, counted from 0 as in run.json [default: 0]
+    #[arg(long, value_name = "N", conflicts_with = "states")]
+    pub(crate) case: Option<usize>,
+    /// With --at: print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Override a value of a scenario, such as element.strut.alpha=0.5; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
 }
 
 #[derive(Debug, Args)]

@@ -17,8 +17,11 @@ use warnings::Warnings;
 const LOOKED_AT: usize = 1_000;
 const PATHS_FOLLOWED: usize = 50;
 
-/// Values of a sweep that are printed.
+/// Values of a sweep, and numbers of a gradient, that are printed whatever they are.
 const PRINTED: usize = 12;
+
+/// Joints that are named.
+const NAMED_JOINTS: usize = 100;
 
 pub(crate) fn check(options: &CheckOptions) -> Ending {
     match describe(options) {
@@ -47,7 +50,7 @@ fn describe(options: &CheckOptions) -> Result<Ending, Refusals> {
         warnings.looked_at += 1;
         match system.element_starts() {
             Ok(starts) => {
-                warnings.take(index, plan, &starts);
+                warnings.take(index, plan, system, &starts);
                 failures.extend(path_failure(plan, system).map(|failure| (index, failure)));
                 if index == 0 {
                     first = Some(starts);
@@ -98,9 +101,10 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, warnings: &W
     if let Some(title) = &plan.title {
         line("title", title);
     }
-    let joints: Vec<&str> = plan.joint_names().collect();
-    let bodies = count(plan.bodies.len(), "body", "bodies");
-    line("robot", &format!("{bodies}; {}: {}", count(joints.len(), "joint", "joints"), joints.join(", ")));
+    line("robot", &robot(plan));
+    for joint in followers(plan) {
+        line("", &joint);
+    }
     line("motion", &format!("{}, 0 to {} s", plan.motion.kind(), short(plan.time.end)));
     line("rows", &rows(&plan.time.rows));
     line("accuracy", &format!("rtol {}, memory_rtol {}", short(plan.solver.rtol), short(plan.solver.memory_rtol)));
@@ -123,11 +127,52 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, warnings: &W
         let (length, stroke) = (range(start.length, warnings.lengths(e)), range(start.stroke, warnings.strokes(e)));
         line("", &format!("l(0) = {length}, l0 = {} m", short(element.rest_length)));
         line("", &format!("x(0) = {stroke}"));
-        let gradient: Vec<String> =
-            plan.joint_names().zip(&start.gradient).map(|(joint, g)| format!("{joint}: {}", short(*g))).collect();
-        line("", &format!("dl/dq = {}", gradient.join(", ")));
+        line("", &format!("dl/dq = {}", gradient(plan, start)));
     }
     text
+}
+
+/// Where the robot comes from, its bodies and its joints.
+fn robot(plan: &Plan) -> String {
+    let joints: Vec<&str> = plan.joint_names().collect();
+    let named = joints.iter().take(NAMED_JOINTS).copied().collect::<Vec<_>>().join(", ");
+    let more = joints.len().checked_sub(NAMED_JOINTS).filter(|more| *more > 0);
+    let more = more.map_or(String::new(), |more| format!(" and {more} more"));
+    let joints = format!("{}: {named}{more}", count(joints.len(), "joint", "joints"));
+    match &plan.urdf {
+        None => format!("{}; {joints}", count(plan.bodies.len(), "body", "bodies")),
+        Some(urdf) => {
+            let links = plan.bodies.len() + usize::from(!urdf.robot.floating_base);
+            let base = if urdf.robot.floating_base { "floating base" } else { "fixed base" };
+            format!("{}, {base}, {}; {joints}", urdf.written, count(links, "link", "links"))
+        }
+    }
+}
+
+/// Joints that follow others.
+fn followers(plan: &Plan) -> Vec<String> {
+    let (model, names) = (&plan.model, plan.model.joint_names());
+    let follows = |j: usize| {
+        let (leader, ratio, offset) = model.followed(j)?;
+        let ratio = if ratio == 1.0 { String::new() } else { format!("{} times ", short(ratio)) };
+        let offset = if offset == 0.0 { String::new() } else { format!(", from {}", short(offset)) };
+        Some(format!("{} follows {ratio}{}{offset}", names[j], names[leader]))
+    };
+    (0..model.joint_count()).filter_map(follows).take(NAMED_JOINTS).collect()
+}
+
+/// ∂l/∂q by coordinate; of a robot of many those that are not 0 but for rounding.
+fn gradient(plan: &Plan, start: &ElementStart) -> String {
+    let labels = plan.model.v_labels();
+    let all = labels.len() <= PRINTED;
+    let shown: Vec<String> = labels
+        .iter()
+        .zip(&start.gradient)
+        .filter(|(_, g)| all || g.abs() > 1e-12)
+        .map(|(label, g)| format!("{}: {}", label.name, short(*g)))
+        .collect();
+    let rest = if shown.len() < labels.len() { ", others 0" } else { "" };
+    format!("{}{rest}", shown.join(", "))
 }
 
 fn rows(rows: &RowTimes) -> String {

@@ -6,8 +6,10 @@ use crate::terminal;
 use miette::ThemeStyles;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Severity, SourceCode, ThemeCharacters};
 use springpot::law::Catalog;
-use springpot::scenario::{Cases, Refusal, RefusalKind, Refusals, Scenario};
+use springpot::model::urdf::UrdfError;
+use springpot::scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Scenario, Source};
 use std::fmt::{self, Display};
+use std::sync::Arc;
 
 /// Length of excerpts where there is no terminal.
 const EXCERPT: usize = 200;
@@ -36,14 +38,51 @@ pub(crate) fn refused(refusals: &Refusals) {
     }
 }
 
+/// Prints what is wrong with a URDF file on stderr, with the tag that it is about.
+pub(crate) fn urdf_refused(urdf_error: &UrdfError) {
+    let UrdfError { file: Some(file), place: Some((line, column)), problem } = urdf_error else {
+        return error(urdf_error.to_string());
+    };
+    // The reader keeps no text; where the file has changed since, the message stands alone.
+    let text = std::fs::read(file).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
+    let Some(start) = byte_at(&text, *line, *column) else { return error(urdf_error.to_string()) };
+    let rest = text[start..].lines().next().unwrap_or_default();
+    let end = start + rest.find('>').map_or(rest.len(), |at| at + 1);
+    let source = Source { name: file.display().to_string(), text: text.into() };
+    let place = Place { source: Arc::new(source), span: start..end };
+    refused(&place.refuse(RefusalKind::Rule, problem.to_string()).into());
+}
+
+/// The byte at a line and a column, both from 1, the column in characters.
+fn byte_at(text: &str, line: usize, column: usize) -> Option<usize> {
+    let mut start = 0;
+    for _ in 1..line {
+        start += text[start..].find('\n')? + 1;
+    }
+    let (byte, _) = text[start..].char_indices().nth(column - 1)?;
+    Some(start + byte)
+}
+
 /// Prints an error on stderr.
 pub(crate) fn error(message: impl Into<String>) {
     show(&Shown::plain(Severity::Error, message.into(), None));
 }
 
+/// Prints an error and what would be right on stderr.
+pub(crate) fn error_with_help(message: impl Into<String>, help: String) {
+    show(&Shown::plain(Severity::Error, message.into(), Some(help)));
+}
+
 /// Prints a warning and what to do about it on stderr.
 pub(crate) fn warning(message: impl Into<String>, help: Option<String>) {
     show(&Shown::plain(Severity::Warning, message.into(), help));
+}
+
+/// Prints what the robot's files hold that is not used, or lack and is assumed.
+pub(crate) fn robot_warnings(cases: &Cases) {
+    for message in cases.warnings() {
+        warning(message, None);
+    }
 }
 
 /// A file that cannot be read has no line to point at.

@@ -5,11 +5,15 @@
 mod arguments;
 mod check;
 mod diagnostic;
+mod dynamics;
 mod excerpt;
 mod figures;
+mod grid;
+mod info;
 mod labels;
 mod numbers;
 mod progress;
+mod robot;
 mod run;
 mod terminal;
 
@@ -51,6 +55,8 @@ pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let ending = match arguments.command {
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
+        Command::Info(options) => info::info(&options),
+        Command::Dynamics(options) => dynamics::dynamics(&options),
     };
     ending.into()
 }

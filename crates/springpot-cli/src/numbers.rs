@@ -5,6 +5,11 @@ pub(crate) fn short(value: f64) -> String {
     digits(value, 5)
 }
 
+/// Five significant digits, for tables.
+pub(crate) fn brief(value: f64) -> String {
+    digits(value, 4)
+}
+
 /// Two significant digits, for shares and errors.
 pub(crate) fn rough(value: f64) -> String {
     digits(value, 1)

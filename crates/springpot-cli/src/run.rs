@@ -5,7 +5,7 @@ use crate::numbers::{count, rough, short};
 use crate::{Ending, diagnostic, figures, progress, terminal};
 use springpot::scenario::{Cases, Plan, Refusals};
 use springpot::simulate::System;
-use springpot::sweep::{self, CaseResult, Layout, Options, Outcome, Status, SweepError};
+use springpot::sweep::{self, CaseResult, CasesPassing, Layout, Options, Outcome, Status, SweepError};
 use springpot::table::folder::Folder;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 
 /// Failed cases that are named one by one.
 const NAMED: usize = 5;
+
+/// Limits of joints that are named one by one.
+pub(crate) const NAMED_LIMITS: usize = 10;
 
 /// What a run that came to an end left behind.
 struct Finished {
@@ -29,6 +32,7 @@ pub(crate) fn run(options: &RunOptions) -> Ending {
     let out = options.out.clone().unwrap_or_else(|| default_folder(&options.scenario.file));
     match execute(options, &out) {
         Ok(finished) => {
+            finished.warn();
             finished.complain();
             if !options.quiet {
                 terminal::print(&finished.summary(begun.elapsed()));
@@ -54,6 +58,7 @@ fn execute(options: &RunOptions, out: &Path) -> Result<Finished, SweepError> {
     let stop = progress::interrupt_flag();
     let cases = diagnostic::open(&options.scenario)?;
     let (plan, system) = first_case(&cases)?;
+    diagnostic::robot_warnings(&cases);
     let layout = Layout::new(&cases, &system)?;
     let mut folder = Folder::prepare(out)?;
 
@@ -86,6 +91,20 @@ fn default_folder(file: &Path) -> PathBuf {
 }
 
 impl Finished {
+    /// Which joints pass their limits, and where.
+    fn warn(&self) {
+        let Self { cases, outcome, .. } = self;
+        let ran = outcome.done + outcome.failed;
+        let passing = &outcome.limits;
+        for CasesPassing { passed, case, cases: found } in passing.iter().take(NAMED_LIMITS) {
+            diagnostic::warning(in_cases(cases, ran, *case, *found, &passed.to_string()), None);
+        }
+        if let Some(more @ 1..) = passing.len().checked_sub(NAMED_LIMITS) {
+            let more = count(more, "more limit of a joint is", "more limits of joints are");
+            diagnostic::warning(format!("{more} passed; run.json says which"), None);
+        }
+    }
+
     /// What failed, and how far an interrupted run came.
     fn complain(&self) {
         let Self { cases, outcome, .. } = self;
@@ -179,6 +198,19 @@ impl Finished {
 pub(crate) fn in_case(cases: &Cases, index: usize, message: &str) -> String {
     let name = case_name(cases, index);
     if name.is_empty() { message.to_owned() } else { format!("{name}: {message}") }
+}
+
+/// `message` about the case `first` with its swept values in front, and how many others it holds for; as it is where it holds
+/// for all that were looked at.
+pub(crate) fn in_cases(cases: &Cases, looked_at: usize, first: usize, found: usize, message: &str) -> String {
+    if found >= looked_at {
+        message.to_owned()
+    } else if found == 1 {
+        in_case(cases, first, message)
+    } else {
+        let others = count(found - 1, "other case", "other cases");
+        format!("{} and {others}: {message}", case_name(cases, first))
+    }
 }
 
 /// The swept values of a case; empty where nothing is swept.

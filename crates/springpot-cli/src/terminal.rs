@@ -33,6 +33,12 @@ pub(crate) fn stdout_width() -> Option<usize> {
     width(io::stdout().is_terminal().then(|| terminal_size_of(io::stdout())))
 }
 
+/// Columns of the terminal on stdout; `None` where it is none.
+pub(crate) fn stdout_columns() -> Option<usize> {
+    let columns = || terminal_size_of(io::stdout()).map_or(80, |(Width(columns), _)| usize::from(columns));
+    io::stdout().is_terminal().then(columns).map(|columns| columns.max(NARROWEST))
+}
+
 /// Columns for running text on stderr; `None` where it is no terminal.
 pub(crate) fn stderr_width() -> Option<usize> {
     width(io::stderr().is_terminal().then(|| terminal_size_of(io::stderr())))

@@ -2,9 +2,10 @@
 
 use crate::diagnostic;
 use crate::numbers::{count, short};
-use crate::run::{case_name, in_case};
+use crate::run::{NAMED_LIMITS, in_cases};
 use springpot::scenario::{Cases, Plan};
-use springpot::simulate::ElementStart;
+use springpot::simulate::{ElementStart, LimitWatch, System};
+use springpot::sweep::{CasesPassing, LimitTally};
 use std::ops::RangeInclusive;
 
 /// A stroke at t = 0 beyond this share of the rest length is worth a warning.
@@ -14,6 +15,7 @@ const LARGE_STROKE: f64 = 0.2;
 pub(super) struct Warnings {
     pub(super) looked_at: usize,
     elements: Vec<ElementWarnings>,
+    limits: LimitTally,
 }
 
 struct ElementWarnings {
@@ -42,11 +44,17 @@ impl Warnings {
             large: None,
             singular: None,
         };
-        Self { looked_at: 0, elements: plan.elements.iter().map(|plan| element(&plan.name)).collect() }
+        let elements = plan.elements.iter().map(|plan| element(&plan.name)).collect();
+        Self { looked_at: 0, elements, limits: LimitTally::default() }
     }
 
     /// Takes the start of one case.
-    pub(super) fn take(&mut self, index: usize, plan: &Plan, starts: &[ElementStart]) {
+    pub(super) fn take(&mut self, index: usize, plan: &Plan, system: &System, starts: &[ElementStart]) {
+        if let Ok(row) = system.first_row(&plan.settings()) {
+            let mut watch = LimitWatch::new(system);
+            watch.see(&row);
+            self.limits.take(index, &watch.passed());
+        }
         for ((element, plan), start) in self.elements.iter_mut().zip(&plan.elements).zip(starts) {
             widen(&mut element.length, start.length);
             widen(&mut element.stroke, start.stroke);
@@ -77,7 +85,10 @@ impl Warnings {
 
     /// Prints the warnings on stderr.
     pub(super) fn print(&self, cases: &Cases) {
-        for ElementWarnings { name, large, singular, .. } in &self.elements {
+        let Self { looked_at, elements, limits } = self;
+        diagnostic::robot_warnings(cases);
+        let placed = |found: &Found, message: &str| in_cases(cases, *looked_at, found.index, found.cases, message);
+        for ElementWarnings { name, large, singular, .. } in elements {
             if let Some(found) = large {
                 let Found { start, rest_length, .. } = found;
                 let message = format!(
@@ -86,7 +97,7 @@ impl Warnings {
                     short(*rest_length)
                 );
                 let help = "look at rest_length and at the points of from and to, or at the start of the motion";
-                diagnostic::warning(self.placed(cases, found, &message), Some(help.into()));
+                diagnostic::warning(placed(found, &message), Some(help.into()));
             }
             if let Some(found) = singular {
                 let message = format!(
@@ -96,20 +107,16 @@ impl Warnings {
                 );
                 let help = "this says that it jumped there from x = 0; derivative = \"caputo\" says that it was held \
                             there before";
-                diagnostic::warning(self.placed(cases, found, &message), Some(help.into()));
+                diagnostic::warning(placed(found, &message), Some(help.into()));
             }
         }
-    }
-
-    /// Says in which cases something was found, where it is not in all.
-    fn placed(&self, cases: &Cases, found: &Found, message: &str) -> String {
-        if found.cases == self.looked_at {
-            message.to_owned()
-        } else if found.cases == 1 {
-            in_case(cases, found.index, message)
-        } else {
-            let others = count(found.cases - 1, "other case", "other cases");
-            format!("{} and {others}: {message}", case_name(cases, found.index))
+        let passing = limits.passing();
+        for CasesPassing { passed, case, cases: found } in passing.iter().take(NAMED_LIMITS) {
+            diagnostic::warning(in_cases(cases, *looked_at, *case, *found, &passed.to_string()), None);
+        }
+        if let Some(more @ 1..) = passing.len().checked_sub(NAMED_LIMITS) {
+            let more = count(more, "more limit of a joint is", "more limits of joints are");
+            diagnostic::warning(format!("{more} passed at the start"), None);
         }
     }
 }

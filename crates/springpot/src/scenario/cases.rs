@@ -6,11 +6,13 @@ use super::path;
 use super::plan::{MotionPlan, Plan};
 use super::reader::{Context, Read, Table};
 use super::refusal::{Place, RefusalKind, Refusals};
+use super::robot::Robot;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
+use super::urdf::UrdfCache;
 use super::{Scenario, elements, motion, robot, time};
 use crate::law::Catalog;
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -34,6 +36,7 @@ pub struct Cases {
     catalog: Catalog,
     folder: PathBuf,
     tables: CsvCache,
+    robots: UrdfCache,
     document: Node,
     axes: Vec<Axis>,
     /// By axis, value and target: the SI value, where it was read as a number; shorter than the axis for long ones.
@@ -41,29 +44,47 @@ pub struct Cases {
     figures: Arc<[FigurePlan]>,
     columns: Option<Arc<[ColumnGlob]>>,
     parameters: Vec<String>,
+    /// Whether the results have the column of the energy lost in joints.
+    tell_joint_losses: bool,
 }
 
 impl Cases {
     /// Applies the overrides, reads sweeps and figures, and tries every swept value once.
     pub(super) fn new(scenario: &Scenario, catalog: &Catalog) -> Result<Self, Refusals> {
-        let mut cases = Self {
-            catalog: catalog.clone(),
-            folder: scenario.folder.clone(),
-            tables: CsvCache::default(),
-            document: scenario.document.clone(),
-            axes: Vec::new(),
-            numbers: Vec::new(),
-            figures: Arc::new([]),
-            columns: None,
-            parameters: Vec::new(),
-        };
-        cases.read_sweeps(scenario)?;
+        let mut cases = Self::with_sweeps(scenario, catalog)?;
         cases.try_values()?;
         let ctx = cases.context();
         let read = cases.read_figures(&ctx);
         let (figures, columns) = ctx.finish(read)?;
         cases.figures = figures;
         cases.columns = columns;
+        Ok(cases)
+    }
+
+    /// Reads the robot of the first case, and nothing but the sweeps besides.
+    pub(super) fn robot(scenario: &Scenario, catalog: &Catalog) -> Result<Robot, Refusals> {
+        let cases = Self::with_sweeps(scenario, catalog)?;
+        let document = cases.document_at(&vec![0; cases.axes.len()]);
+        let ctx = cases.context();
+        let read = Table::open(&ctx, &document, "the scenario", &ROOT_KEYS).and_then(|root| robot::read(&root));
+        ctx.finish(read)
+    }
+
+    fn with_sweeps(scenario: &Scenario, catalog: &Catalog) -> Result<Self, Refusals> {
+        let mut cases = Self {
+            catalog: catalog.clone(),
+            folder: scenario.folder.clone(),
+            tables: CsvCache::default(),
+            robots: UrdfCache::default(),
+            document: scenario.document.clone(),
+            axes: Vec::new(),
+            numbers: Vec::new(),
+            figures: Arc::new([]),
+            columns: None,
+            parameters: Vec::new(),
+            tell_joint_losses: false,
+        };
+        cases.read_sweeps(scenario)?;
         Ok(cases)
     }
 
@@ -142,6 +163,11 @@ impl Cases {
         self.columns.as_deref()
     }
 
+    /// What the URDF files hold that is not used, or lack and is assumed: one line each, which names the file.
+    pub fn warnings(&self) -> Vec<String> {
+        self.robots.warnings()
+    }
+
     /// The figures.
     pub fn figures(&self) -> &[FigurePlan] {
         &self.figures
@@ -160,11 +186,12 @@ impl Cases {
         let document = self.document_at(&self.position(i));
         let read = read_plan(&ctx, &document);
         let plan = ctx.finish(read)?;
-        Ok(Plan { figures: self.figures.clone(), columns: self.columns.clone(), ..plan })
+        let (figures, columns) = (self.figures.clone(), self.columns.clone());
+        Ok(Plan { figures, columns, tells_joint_losses: self.tell_joint_losses, ..plan })
     }
 
     fn context(&self) -> Context<'_> {
-        Context::new(&self.catalog, &self.folder, &self.tables)
+        Context::new(&self.catalog, &self.folder, &self.tables, &self.robots)
     }
 
     fn swept_value(&self, axis: usize, k: usize, number: Option<f64>) -> SweptValue {
@@ -235,6 +262,7 @@ impl Cases {
     fn try_values(&mut self) -> Result<(), Refusals> {
         let first = self.plan(0)?;
         let columns = columns_of(&first);
+        let losses = Cell::new(has_joint_losses(&first));
         let mut numbers = Vec::with_capacity(self.axes.len());
         for (axis, values) in self.axes.iter().enumerate() {
             let count = values.len();
@@ -245,6 +273,7 @@ impl Cases {
                 position[axis] = k;
                 let ctx = self.context();
                 let read = read_plan(&ctx, &self.document_at(&position)).and_then(|plan| {
+                    losses.set(losses.get() || has_joint_losses(&plan));
                     if columns_of(&plan) == columns {
                         return Ok(());
                     }
@@ -263,6 +292,7 @@ impl Cases {
             numbers.push(known);
         }
         self.numbers = numbers;
+        self.tell_joint_losses = losses.get();
         Ok(())
     }
 
@@ -295,9 +325,14 @@ impl Cases {
     }
 }
 
-/// What makes the columns of a case.
+/// Whether a joint has damping or friction.
+fn has_joint_losses(plan: &Plan) -> bool {
+    plan.model.damping().iter().chain(plan.model.friction()).any(|x| *x != 0.0)
+}
+
+/// What makes the columns of a case, but for the energy lost in joints, which all cases have or none.
 fn columns_of(plan: &Plan) -> Vec<String> {
-    let mut columns: Vec<String> = plan.joint_names().map(str::to_owned).collect();
+    let mut columns: Vec<String> = plan.model.q_labels().into_iter().map(|label| label.name).collect();
     for element in &plan.elements {
         columns.extend(element.law.inputs.iter().map(|input| format!("{}.{}", element.name, input.name)));
         columns.push(format!("{}.", element.name));
@@ -324,12 +359,14 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     Ok(Plan {
         title: title?,
         gravity: robot.gravity,
-        bodies: robot.bodies,
-        model: robot.model,
-        body_places: robot.places,
+        bodies: robot.parts.bodies,
+        model: robot.parts.model,
+        body_places: robot.parts.places,
+        urdf: robot.parts.urdf,
         gripper: robot.gripper,
         elements: elements?,
         motion: motion?,
+        tells_joint_losses: false,
         time: time?,
         solver: solver?,
         figures: Arc::new([]),

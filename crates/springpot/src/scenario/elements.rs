@@ -15,6 +15,8 @@ use std::collections::HashMap;
 
 /// Most elements of a robot.
 const MAX_ELEMENTS: usize = 10_000;
+/// Most numbers ∂l/∂q_b of all elements.
+const MAX_GRADIENTS: usize = 10_000_000;
 /// Keys of an element.
 pub(crate) const KEYS: [&str; 9] =
     ["name", "from", "to", "rest_length", "law", "parameters", "inputs", "derivative", "scheme"];
@@ -26,6 +28,12 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
     if items.len() > MAX_ELEMENTS {
         let message = format!("holds {} elements; at most {MAX_ELEMENTS} are taken", items.len());
         return Err(field.refuse(RefusalKind::TooLarge, message, None));
+    }
+    let nv = robot.model().nv();
+    if items.len() * nv > MAX_GRADIENTS {
+        let message = format!("holds {} elements on a robot of {nv} velocities", items.len());
+        let help = format!("elements times velocities may be {MAX_GRADIENTS} at most: each pair makes a column");
+        return Err(field.refuse(RefusalKind::TooLarge, message, Some(help)));
     }
     let mut seen = HashMap::new();
     all(items.iter().enumerate().map(|(i, item)| {

@@ -34,6 +34,7 @@
 //! # Ok::<(), springpot::scenario::Refusals>(())
 //! ```
 
+mod bodies;
 mod cases;
 mod document;
 mod elements;
@@ -51,16 +52,21 @@ mod sweep;
 mod system;
 mod time;
 pub mod units;
+mod urdf;
 
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
-pub(crate) use names::suggest;
-pub use plan::{BodyPlaces, ElementPlan, Gripper, MotionPlan, Plan, SignalPlan, SolverPlan, TimePlan};
+pub use names::suggest;
+pub use plan::{
+    BodyPlaces, ElementPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan, SignalPlan, SolverPlan,
+    TimePlan, UrdfPlan,
+};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use sweep::MAX_CASES;
 
 use crate::law::Catalog;
 use document::{MAX_BYTES, Node};
+use robot::Robot;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -175,6 +181,15 @@ impl Scenario {
     /// All refusals that could be collected, in the order of the text.
     pub fn cases(&self, catalog: &Catalog) -> Result<Cases, Refusals> {
         Cases::new(self, catalog)
+    }
+
+    /// The robot alone, as the first case has it: `[robot]` is all that the scenario needs to hold.
+    ///
+    /// # Errors
+    /// All refusals about the robot and the sweeps that could be collected; the rest of the scenario is not looked at.
+    pub fn robot(&self, catalog: &Catalog) -> Result<RobotPlan, Refusals> {
+        let Robot { gravity, gripper, parts, .. } = Cases::robot(self, catalog)?;
+        Ok(RobotPlan { gravity, bodies: parts.bodies, model: parts.model, urdf: parts.urdf, gripper })
     }
 }
 

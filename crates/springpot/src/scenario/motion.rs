@@ -2,15 +2,21 @@
 
 use super::document::shorten;
 use super::names;
-use super::plan::{MotionPlan, SignalPlan};
+use super::path;
+use super::plan::{JointPlan, MotionPlan, PosePlan, SignalPlan};
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
-use super::robot::Robot;
+use super::robot::{OwnJoint, Robot};
 use super::signals::{self, Wanted};
 use crate::law::Range;
-use crate::model::{JointKind, JointSpec};
+use crate::model::JointKind;
+use crate::model::urdf::FLOATING_BASE;
+use crate::signal::Signal;
+use std::collections::HashSet;
 
 const KINDS: [&str; 3] = ["prescribed", "gripper-path", "forward"];
+/// What follows the name of a floating joint in the columns of a motion.
+const POSE_COLUMNS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 
 /// Reads `[motion]`.
 pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
@@ -39,24 +45,24 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
     }
 }
 
-fn unit(joint: &JointSpec) -> &'static str {
-    if joint.kind == JointKind::Prismatic { "m" } else { "rad" }
-}
-
 fn wanted(unit: &str, end: Option<f64>) -> Wanted<'_> {
     Wanted { unit, range: Range::ANY, smooth: true, end }
 }
 
 fn prescribed(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
     let table = Table::open(field.ctx, field.node, "[motion]", &["kind", "joints", "csv"])?;
-    let joints = robot.joints();
-    let signals = match (table.get("joints"), table.get("csv")) {
+    let joints: Vec<OwnJoint<'_>> = robot.own_joints().collect();
+    let joints = match (table.get("joints"), table.get("csv")) {
         (Some(field), None) => {
             let given = open_joints(&field, robot)?;
-            refuse_missing(&given, &joints, |name| given.get(name).is_some(), &field)?;
+            let missing = joints.iter().map(|joint| joint.name).filter(|name| given.get(name).is_none());
+            refuse_missing(&given, &missing.collect::<Vec<_>>(), "joints", &field)?;
             all(joints.iter().map(|joint| {
-                let field = given.get(&joint.name).ok_or(Refused)?;
-                signals::read(&field, wanted(unit(joint), end))
+                let field = given.get(joint.name).ok_or(Refused)?;
+                match joint.kind {
+                    JointKind::Floating => pose(&field, end).map(|pose| JointPlan::Pose(Box::new(pose))),
+                    _ => signals::read(&field, wanted(joint.unit(), end)).map(JointPlan::Coordinate),
+                }
             }))?
         }
         (None, Some(csv)) => from_csv(&table, &csv, &joints, end)?,
@@ -65,32 +71,49 @@ fn prescribed(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<Motion
             return Err(csv.refuse(RefusalKind::Rule, "stands beside `joints`", Some(help)));
         }
         (None, None) => {
-            let all: Vec<String> = joints.iter().map(|joint| format!("{} = …", joint.name)).take(12).collect();
+            let all: Vec<String> =
+                joints.iter().map(|joint| format!("{} = …", path::quoted(joint.name))).take(12).collect();
             let right = format!("joints = {{ {} }} or csv = \"motion.csv\"", all.join(", "));
             return Err(table.missing("joints", &right));
         }
     };
-    Ok(MotionPlan::Prescribed { joints: signals })
+    Ok(MotionPlan::Prescribed { joints })
 }
 
-/// Opens a table whose keys are names of moving joints.
-fn open_joints<'a>(field: &Field<'a>, robot: &Robot) -> Read<Table<'a>> {
-    let joints = robot.joints();
-    let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
-    let reason = |key: &str| {
-        robot.is_fixed_joint(key).then(|| (RefusalKind::Rule, format!("joint {key:?} is fixed and has no coordinate")))
+/// The pose of a floating joint; what is left out is 0.
+fn pose(field: &Field<'_>, end: Option<f64>) -> Read<PosePlan> {
+    if field.node.entries().is_none() {
+        let right = "a table { x = …, y = …, z = …, rpy = [roll, pitch, yaw] }, since the joint is floating";
+        return Err(field.wrong_type(right));
+    }
+    let table = field.table(&["x", "y", "z", "rpy"])?;
+    let zero = || SignalPlan {
+        signal: Signal::constant(0.0),
+        constant: Some(0.0),
+        written: "0".to_owned(),
+        place: field.node.place.clone(),
     };
+    let axis = |key| table.get(key).map_or_else(|| Ok(zero()), |field| signals::read(&field, wanted("m", end)));
+    let position = [axis("x"), axis("y"), axis("z")];
+    let rpy = table.get("rpy").map_or_else(|| Ok([zero(), zero(), zero()]), |field| rpy(&field, end));
+    let [x, y, z] = position;
+    Ok(PosePlan { position: [x?, y?, z?], rpy: rpy? })
+}
+
+/// Opens a table whose keys are names of joints that have coordinates of their own.
+fn open_joints<'a>(field: &Field<'a>, robot: &Robot) -> Read<Table<'a>> {
+    let names: Vec<&str> = robot.own_joints().map(|joint| joint.name).collect();
+    let reason = |key: &str| robot.why_no_coordinate(key).map(|why| (RefusalKind::Rule, why));
     Table::open_with(field.ctx, field.node, field.to_string(), &names, reason)
 }
 
-/// Refuses the joints for which `has` is false, all in one message.
-fn refuse_missing(given: &Table<'_>, joints: &[&JointSpec], has: impl Fn(&str) -> bool, field: &Field<'_>) -> Read<()> {
-    let missing: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).filter(|name| !has(name)).collect();
+/// Refuses what is missing, all in one message.
+fn refuse_missing(given: &Table<'_>, missing: &[&str], what: &str, field: &Field<'_>) -> Read<()> {
     let untold: Vec<&str> = missing.iter().copied().filter(|name| !given.suspects(name)).collect();
     if untold.is_empty() {
         return if missing.is_empty() { Ok(()) } else { Err(Refused) };
     }
-    let message = format!("leaves out the joints {}", all_names(&untold));
+    let message = format!("leaves out the {what} {}", all_names(&untold));
     let help = "every moving joint needs a signal: a number, a quantity, an expression of t or a CSV column".to_owned();
     Err(field.refuse(RefusalKind::Missing, message, Some(help)))
 }
@@ -100,14 +123,34 @@ fn all_names(names: &[&str]) -> String {
     names.join(", ")
 }
 
-fn from_csv(table: &Table<'_>, csv: &Field<'_>, joints: &[&JointSpec], end: Option<f64>) -> Read<Vec<SignalPlan>> {
+/// Motion from a CSV file: per joint a column of its name; of a floating one six, `NAME.x` to `NAME.yaw`.
+fn from_csv(table: &Table<'_>, csv: &Field<'_>, joints: &[OwnJoint<'_>], end: Option<f64>) -> Read<Vec<JointPlan>> {
     let samples = signals::csv_table(csv, end)?;
-    refuse_missing(table, joints, |name| samples.headers().iter().any(|header| header == name), csv)?;
-    all(joints.iter().map(|joint| {
-        let signal = signals::samples_signal(csv, &samples, &joint.name, true)?;
-        let written = format!("{{ csv = {}, column = \"{}\" }}", csv.node.written(), joint.name);
+    let columns: Vec<Vec<String>> = joints.iter().map(columns_of).collect();
+    let headers: HashSet<&str> = samples.headers().iter().map(String::as_str).collect();
+    let missing = columns.iter().flatten().map(String::as_str).filter(|column| !headers.contains(column));
+    refuse_missing(table, &missing.collect::<Vec<_>>(), "columns", csv)?;
+    let column = |name: &String| -> Read<SignalPlan> {
+        let signal = signals::samples_signal(csv, &samples, name, true)?;
+        let written = format!("{{ csv = {}, column = {name:?} }}", csv.node.written());
         Ok(SignalPlan { signal, constant: None, written, place: csv.node.place.clone() })
+    };
+    all(columns.iter().map(|names| match &names[..] {
+        [x, y, z, roll, pitch, yaw] => {
+            let position = [column(x)?, column(y)?, column(z)?];
+            let rpy = [column(roll)?, column(pitch)?, column(yaw)?];
+            Ok(JointPlan::Pose(Box::new(PosePlan { position, rpy })))
+        }
+        names => column(&names[0]).map(JointPlan::Coordinate),
     }))
+}
+
+/// Columns of a CSV file that say how a joint moves.
+fn columns_of(joint: &OwnJoint<'_>) -> Vec<String> {
+    match joint.kind {
+        JointKind::Floating => POSE_COLUMNS.map(|part| format!("{}.{part}", joint.name)).to_vec(),
+        _ => vec![joint.name.to_owned()],
+    }
 }
 
 fn gripper_path(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
@@ -118,13 +161,23 @@ fn gripper_path(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<Moti
         let right = "write [robot.gripper] with body = \"NAME\" and point = [x, y, z]";
         field.ctx.refuse(place.refuse(RefusalKind::Missing, message).help(right));
     }
+    if let Some(joint) = robot.own_joints().find(|joint| joint.kind.nv() != 1) {
+        let name = joint.name;
+        let message = format!("kind = \"gripper-path\" moves joints of one degree, but joint {name:?} is floating");
+        let place = table.get("kind").map_or(&table.node.place, |field| &field.node.place);
+        let right = match &robot.parts.urdf {
+            Some(_) if name == FLOATING_BASE => "leave floating_base out, or write kind = \"prescribed\"",
+            _ => "write kind = \"prescribed\", or a joint of another kind",
+        };
+        return Err(field.ctx.refuse(place.refuse(RefusalKind::Rule, message).help(right)));
+    }
     let axis = |key: &'static str| {
         let field = table.require(key, "a signal for each of x, y and z (in m)")?;
         signals::read(&field, wanted("m", end))
     };
     let (x, y, z) = (axis("x"), axis("y"), axis("z"));
     let rpy = table.get("rpy").map(|field| rpy(&field, end)).transpose();
-    let guess = table.get("guess").map_or_else(|| Ok(vec![0.0; robot.joints().len()]), |field| guess(&field, robot));
+    let guess = table.get("guess").map_or_else(|| Ok(vec![0.0; robot.model().nq()]), |field| guess(&field, robot));
     Ok(MotionPlan::GripperPath { position: [x?, y?, z?], rpy: rpy?, guess: guess?, place: field.node.place.clone() })
 }
 
@@ -140,5 +193,5 @@ fn rpy(field: &Field<'_>, end: Option<f64>) -> Read<[SignalPlan; 3]> {
 
 fn guess(field: &Field<'_>, robot: &Robot) -> Read<Vec<f64>> {
     let given = open_joints(field, robot)?;
-    all(robot.joints().iter().map(|joint| given.get(&joint.name).map_or(Ok(0.0), |field| field.number(unit(joint)))))
+    all(robot.own_joints().map(|joint| given.get(joint.name).map_or(Ok(0.0), |field| field.number(joint.unit()))))
 }

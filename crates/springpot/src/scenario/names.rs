@@ -29,9 +29,14 @@ pub(crate) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a s
     candidates
         .into_iter()
         .filter(|candidate| candidate.len() <= MAX_COMPARED)
-        .map(|candidate| (strsim::jaro_winkler(&folded, &candidate.to_lowercase()), candidate))
+        .map(|candidate| {
+            // What only lacks a prefix is meant: `joint1` for `panda_joint1`.
+            let is_end = name.len() > 2 && candidate.ends_with(name);
+            let likeness = if is_end { 1.0 } else { strsim::jaro_winkler(&folded, &candidate.to_lowercase()) };
+            (likeness, candidate)
+        })
         .filter(|(likeness, _)| *likeness > 0.78)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .reduce(|best, next| if next.0 > best.0 { next } else { best })
         .map(|(_, candidate)| candidate)
 }
 
@@ -48,8 +53,8 @@ pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// `did you mean "x"?`, or else what there is.
-pub(crate) fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
+/// What to say of a name that does not exist: the candidate most like it, or else what there is.
+pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match nearest(name, candidates.clone()) {
         Some(right) => format!("did you mean `{right}`?"),
         None => format!("there is {}", list(candidates)),

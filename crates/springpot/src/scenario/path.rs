@@ -113,7 +113,7 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
     let mut node = Some(document);
     let mut steps = Vec::with_capacity(keys.len() + 1);
     for (at, key) in keys.iter().enumerate() {
-        let walked = || keys[..at].join(".");
+        let walked = || dotted(&keys[..at]);
         let Some(here) = node else {
             steps.push(Step::Key(key.clone()));
             continue;
@@ -161,11 +161,7 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
         let message = format!("path {:?} leads to a whole table", shorten(path));
         return Err(refuse(RefusalKind::WrongType, message, "go on to one of its keys".to_owned()));
     }
-    Ok(Target {
-        written: keys.iter().map(|key| quoted(key)).collect::<Vec<_>>().join("."),
-        place: place.clone(),
-        steps,
-    })
+    Ok(Target { written: dotted(&keys), place: place.clone(), steps })
 }
 
 fn is_section(node: &Node) -> bool {
@@ -173,9 +169,25 @@ fn is_section(node: &Node) -> bool {
         || node.items().is_some_and(|items| items.iter().any(|item| item.entries().is_some()))
 }
 
-fn quoted(key: &str) -> String {
+fn dotted(keys: &[String]) -> String {
+    keys.iter().map(|key| quoted(key)).collect::<Vec<_>>().join(".")
+}
+
+/// A key as TOML and the paths of `--set` take it: bare where it can be, else in quotes.
+pub(crate) fn quoted(key: &str) -> String {
     let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare { key.to_owned() } else { format!("{key:?}") }
+    if bare {
+        return key.to_owned();
+    }
+    let mut text = "\"".to_owned();
+    for c in key.chars() {
+        match c {
+            '"' | '\\' => text.extend(['\\', c]),
+            c if c.is_control() => text.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c => text.push(c),
+        }
+    }
+    text + "\""
 }
 
 /// The table of an element in which `key` is looked up: parameters, then inputs, then (`None`) the element's own keys.
@@ -243,5 +255,15 @@ mod tests {
             assert_eq!(split(bad), None, "{bad}");
         }
         assert_eq!(keys(&["a"; MAX_KEYS + 1].join(".")), None);
+    }
+
+    #[test]
+    fn every_key_has_a_path() {
+        for key in ["q1", "left knee", "a.b", "", "ü", "a\"b", "a\\b", "tab\tnull\0", "'", "a=b", "\u{7f}"] {
+            let path = format!("motion.joints.{}", quoted(key));
+            assert_eq!(keys(&path), Some(vec!["motion".into(), "joints".into(), key.to_owned()]), "{path}");
+            assert_eq!(equals_sign(&format!("{path}=1")), Some(path.len()), "{path}");
+        }
+        assert_eq!(["q1", "left knee", "a\"b"].map(quoted), ["q1", "\"left knee\"", "\"a\\\"b\""]);
     }
 }

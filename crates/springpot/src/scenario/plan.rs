@@ -4,6 +4,7 @@ use super::figures::{ColumnGlob, FigurePlan};
 use super::refusal::Place;
 use crate::fractional::scheme::Scheme;
 use crate::law::{Derivative, Entry, Law};
+use crate::model::urdf::Urdf;
 use crate::model::{Anchor, BodySpec, Model};
 use crate::signal::Signal;
 use crate::simulate::RowTimes;
@@ -20,14 +21,18 @@ pub struct Plan {
     pub bodies: Vec<BodySpec>,
     /// The robot built of them.
     pub model: Arc<Model>,
-    /// Where each body stands in the scenario.
+    /// Where each body stands in the scenario; those of a URDF file stand where the file is named.
     pub body_places: Vec<BodyPlaces>,
+    /// The URDF file that the bodies come from, if they do.
+    pub urdf: Option<UrdfPlan>,
     /// The gripper, if there is one.
     pub gripper: Option<Gripper>,
     /// The elements, in the order of the scenario.
     pub elements: Vec<ElementPlan>,
     /// What moves the robot.
     pub motion: MotionPlan,
+    /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is lost there.
+    pub tells_joint_losses: bool,
     /// Duration and rows.
     pub time: TimePlan,
     /// Accuracy and steps.
@@ -39,10 +44,31 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Names of the moving joints, in the order of q.
+    /// Names of the moving joints, those that follow another one included.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> {
         self.model.joint_names().iter().map(String::as_str)
     }
+
+    /// Names of the moving joints that have coordinates of their own, in the order of q.
+    pub fn own_joint_names(&self) -> impl Iterator<Item = &str> {
+        let own = (0..self.model.joint_count()).filter(|&j| self.model.followed(j).is_none());
+        own.map(|j| self.model.joint_names()[j].as_str())
+    }
+}
+
+/// The robot of a scenario by itself.
+#[derive(Debug, Clone)]
+pub struct RobotPlan {
+    /// Gravity in the world frame, m/s².
+    pub gravity: [f64; 3],
+    /// The bodies, parents before children.
+    pub bodies: Vec<BodySpec>,
+    /// The robot built of them.
+    pub model: Arc<Model>,
+    /// The URDF file that the bodies come from, if they do.
+    pub urdf: Option<UrdfPlan>,
+    /// The gripper, if there is one.
+    pub gripper: Option<Gripper>,
 }
 
 /// Where the fields of a body stand in the scenario.
@@ -59,6 +85,19 @@ impl BodyPlaces {
     pub fn at(&self, key: &str) -> &Place {
         self.fields.iter().find(|(field, _)| field == key).map_or(&self.table, |(_, place)| place)
     }
+}
+
+/// A URDF file and how it was read.
+#[derive(Debug, Clone)]
+pub struct UrdfPlan {
+    /// The path as written in the scenario, to whose folder it is relative.
+    pub written: String,
+    /// Whether mimic joints have coordinates of their own.
+    pub ignore_mimic: bool,
+    /// Folders that are packages or hold some, as written.
+    pub package_path: Vec<String>,
+    /// What the file says; its warnings are among those of [`super::Cases::warnings`].
+    pub robot: Arc<Urdf>,
 }
 
 /// The point that a gripper path is about, and whose coordinates are columns.
@@ -110,14 +149,32 @@ pub struct ElementPlan {
     pub place: Place,
 }
 
+/// How one joint moves.
+#[derive(Debug, Clone)]
+pub enum JointPlan {
+    /// A joint of one degree: its coordinate, rad or m.
+    Coordinate(SignalPlan),
+    /// A floating joint.
+    Pose(Box<PosePlan>),
+}
+
+/// How a floating joint moves.
+#[derive(Debug, Clone)]
+pub struct PosePlan {
+    /// x, y, z of the joint's frame in the frame that it hangs on, m.
+    pub position: [SignalPlan; 3],
+    /// Roll, pitch, yaw of the joint's frame there, R = Rz(yaw)·Ry(pitch)·Rx(roll), rad.
+    pub rpy: [SignalPlan; 3],
+}
+
 /// What moves the robot.
 #[derive(Debug, Clone)]
 #[expect(clippy::large_enum_variant, reason = "one per run")]
 pub enum MotionPlan {
     /// Every coordinate is a function of time.
     Prescribed {
-        /// One signal per moving joint, in the order of q, rad or m.
-        joints: Vec<SignalPlan>,
+        /// The joints that have coordinates of their own, in the order of q.
+        joints: Vec<JointPlan>,
     },
     /// The gripper follows a path.
     GripperPath {
@@ -125,7 +182,7 @@ pub enum MotionPlan {
         position: [SignalPlan; 3],
         /// Roll, pitch, yaw of the gripper's body, rad.
         rpy: Option<[SignalPlan; 3]>,
-        /// Coordinates near the start of the path, in the order of q, rad or m.
+        /// Coordinates near the start of the path (every joint has one), in the order of q, rad or m.
         guess: Vec<f64>,
         /// Where the motion stands in the scenario.
         place: Place,

@@ -5,6 +5,7 @@ use super::names;
 use super::refusal::{Refusal, RefusalKind, Refusals};
 use super::signals::CsvCache;
 use super::units;
+use super::urdf::UrdfCache;
 use crate::law::Catalog;
 use std::cell::RefCell;
 use std::fmt;
@@ -27,14 +28,15 @@ pub(crate) struct Context<'a> {
     /// Folder that paths in the scenario are relative to.
     pub(crate) folder: &'a Path,
     pub(crate) tables: &'a CsvCache,
+    pub(crate) robots: &'a UrdfCache,
     refusals: RefCell<Vec<Refusal>>,
     /// SI value of every swept number, by tag.
     swept: RefCell<Vec<Option<f64>>>,
 }
 
 impl<'a> Context<'a> {
-    pub(crate) fn new(catalog: &'a Catalog, folder: &'a Path, tables: &'a CsvCache) -> Self {
-        Self { catalog, folder, tables, refusals: RefCell::default(), swept: RefCell::default() }
+    pub(crate) fn new(catalog: &'a Catalog, folder: &'a Path, tables: &'a CsvCache, robots: &'a UrdfCache) -> Self {
+        Self { catalog, folder, tables, robots, refusals: RefCell::default(), swept: RefCell::default() }
     }
 
     /// Notes a refusal.
@@ -213,6 +215,14 @@ impl<'a> Field<'a> {
     /// A text.
     pub(crate) fn text(&self) -> Read<&'a str> {
         self.node.text().ok_or_else(|| self.wrong_type("a text"))
+    }
+
+    /// true or false.
+    pub(crate) fn boolean(&self) -> Read<bool> {
+        match self.node.value {
+            Value::Boolean(value) => Ok(value),
+            _ => Err(self.wrong_type("true or false")),
+        }
     }
 
     /// The same field of another value: an item of an array.

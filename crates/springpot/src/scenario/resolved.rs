@@ -1,8 +1,8 @@
 //! The plan as JSON, for the record of a run.
 
 use super::figures::{FigureKind, FigurePlan};
-use super::plan::{ElementPlan, MotionPlan, Plan, SignalPlan};
-use crate::model::{Anchor, BodySpec, Parent};
+use super::plan::{ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
+use crate::model::{Anchor, BodySpec, Limits, Mimic, Parent};
 use crate::simulate::RowTimes;
 use serde_json::{Map, Value, json};
 
@@ -23,6 +23,7 @@ impl Plan {
         json!({
             "title": self.title,
             "gravity": self.gravity,
+            "urdf": self.urdf.as_ref().map(urdf),
             "bodies": self.bodies.iter().map(|body| self.body(body)).collect::<Vec<_>>(),
             "gripper": self.gripper.as_ref().map(|gripper| self.anchor(&gripper.anchor)),
             "elements": self.elements.iter().map(|element| self.element(element)).collect::<Vec<_>>(),
@@ -66,6 +67,10 @@ impl Plan {
                 "rpy": joint.rpy,
                 "damping": joint.damping,
                 "friction": joint.friction,
+                "limits": limits(&joint.limits),
+                "mimic": joint.mimic.as_ref().map(|Mimic { joint, multiplier, offset }| {
+                    json!({ "joint": joint, "multiplier": multiplier, "offset": offset })
+                }),
             },
             "mass": body.mass,
             "com": body.com,
@@ -95,12 +100,12 @@ impl Plan {
         match &self.motion {
             MotionPlan::Prescribed { joints } => {
                 let joints: Map<String, Value> =
-                    self.joint_names().zip(joints).map(|(name, joint)| (name.to_owned(), signal(joint))).collect();
+                    self.own_joint_names().zip(joints).map(|(name, plan)| (name.to_owned(), joint(plan))).collect();
                 json!({ "kind": "prescribed", "joints": joints })
             }
             MotionPlan::GripperPath { position: [x, y, z], rpy, guess, .. } => {
                 let guess: Map<String, Value> =
-                    self.joint_names().zip(guess).map(|(name, guess)| (name.to_owned(), json!(guess))).collect();
+                    self.own_joint_names().zip(guess).map(|(name, guess)| (name.to_owned(), json!(guess))).collect();
                 json!({
                     "kind": "gripper-path",
                     "x": signal(x),
@@ -110,6 +115,37 @@ impl Plan {
                     "guess": guess,
                 })
             }
+        }
+    }
+}
+
+fn urdf(plan: &UrdfPlan) -> Value {
+    json!({
+        "file": plan.written,
+        "robot": plan.robot.name,
+        "root": plan.robot.root.name,
+        "floating_base": plan.robot.floating_base,
+        "ignore_mimic": plan.ignore_mimic,
+        "package_path": plan.package_path,
+    })
+}
+
+/// The limits that there are.
+fn limits(limits: &Limits) -> Value {
+    let Limits { lower, upper, velocity, effort } = *limits;
+    let all = [("lower", lower), ("upper", upper), ("velocity", velocity), ("effort", effort)];
+    all.into_iter()
+        .filter(|(_, limit)| limit.is_finite())
+        .map(|(name, limit)| (name.to_owned(), json!(limit)))
+        .collect()
+}
+
+fn joint(plan: &JointPlan) -> Value {
+    match plan {
+        JointPlan::Coordinate(coordinate) => signal(coordinate),
+        JointPlan::Pose(pose) => {
+            let [x, y, z] = pose.position.each_ref().map(signal);
+            json!({ "x": x, "y": y, "z": z, "rpy": pose.rpy.each_ref().map(signal) })
         }
     }
 }

@@ -1,9 +1,9 @@
 //! From a plan to what the time loop runs.
 
-use super::plan::{ElementPlan, MotionPlan, Plan, SignalPlan};
+use super::plan::{ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan};
 use crate::element::Element;
 use crate::model::{Anchor, Model, Site};
-use crate::motion::{GripperPath, JointPath, Motion, gripper_path::Task};
+use crate::motion::{GripperPath, JointPath, Motion, PosePath, gripper_path::Task};
 use crate::signal::Signal;
 use crate::simulate::{Settings, System};
 
@@ -15,6 +15,7 @@ impl Plan {
             motion: self.solved_motion(),
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: Model::clone(&self.model),
+            tells_joint_losses: self.tells_joint_losses,
         }
     }
 
@@ -48,9 +49,7 @@ impl Plan {
 
     fn solved_motion(&self) -> Motion {
         match &self.motion {
-            MotionPlan::Prescribed { joints } => {
-                Motion::Prescribed(joints.iter().map(|joint| JointPath::Coordinate(signal(joint))).collect())
-            }
+            MotionPlan::Prescribed { joints } => Motion::Prescribed(joints.iter().map(path).collect()),
             MotionPlan::GripperPath { position, rpy, guess, .. } => {
                 let gripper = self.gripper.as_ref().expect("a gripper path was read with its gripper");
                 let task = Task {
@@ -66,6 +65,16 @@ impl Plan {
 
     fn site(&self, anchor: &Anchor) -> Site {
         self.model.resolve(anchor).expect("an anchor that was read")
+    }
+}
+
+fn path(plan: &JointPlan) -> JointPath {
+    match plan {
+        JointPlan::Coordinate(coordinate) => JointPath::Coordinate(signal(coordinate)),
+        JointPlan::Pose(pose) => JointPath::Pose(Box::new(PosePath {
+            position: pose.position.each_ref().map(signal),
+            rpy: pose.rpy.each_ref().map(signal),
+        })),
     }
 }
 

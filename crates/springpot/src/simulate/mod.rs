@@ -7,9 +7,11 @@
 
 mod along;
 mod control;
+mod equation;
 mod error;
 pub mod forward;
 mod ledger;
+mod limits;
 mod lu;
 mod moment;
 mod on_grid;
@@ -18,7 +20,9 @@ mod row;
 mod row_times;
 
 pub use along::along;
+pub use equation::{ElementTerm, Equation, EquationError};
 pub use error::RunError;
+pub use limits::{LimitKind, LimitWatch, PassedLimit};
 pub use moment::FRICTION_SPEED;
 pub use pose::{ElementStart, Pose, State};
 pub use row_times::RowTimes;
@@ -39,6 +43,8 @@ pub struct System {
     pub motion: Motion,
     /// The gripper, where there is one.
     pub gripper: Option<Site>,
+    /// Whether the rows tell the energy lost in damping and friction of joints. It is part of the balance in any case.
+    pub tells_joint_losses: bool,
 }
 
 /// How a run is carried out.

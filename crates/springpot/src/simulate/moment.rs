@@ -115,18 +115,7 @@ impl System {
         rnea_into(&self.model, &moment.q, &moment.v, &moment.a, &[], &mut scratch.workspace, &mut moment.rigid);
         moment.kinetic = kinetic_energy(&self.model, kinematics);
         moment.potential = potential_energy(&self.model, kinematics);
-        moment.joint_loss = 0.0;
-        for j in 0..self.model.joint_count() {
-            if self.model.joint_kind(j).nv() != 1 {
-                continue;
-            }
-            let (index, ratio) =
-                (self.model.v_range(j).start, self.model.followed(j).map_or(1.0, |(_, ratio, _)| ratio));
-            let v = ratio * moment.v[index];
-            let resistance = self.model.damping()[j] * v + self.model.friction()[j] * (v / FRICTION_SPEED).tanh();
-            moment.rigid[index] += ratio * resistance;
-            moment.joint_loss += resistance * v;
-        }
+        moment.joint_loss = self.add_joint_losses(&moment.v, &mut moment.rigid);
         for (element, state) in self.elements.iter().zip(&mut moment.elements) {
             let pair = pair_into(&self.model, kinematics, &element.from, &element.to, &mut state.gradient);
             if pair.check().is_err() {
@@ -147,6 +136,25 @@ impl System {
             });
         }
         Ok(())
+    }
+
+    /// Adds what the joints' damping d·v and friction f·tanh(v/[`FRICTION_SPEED`]) ask of the actuators at the velocities `v` (nv)
+    /// to `tau` (nv); returns the power that they take, W.
+    pub(super) fn add_joint_losses(&self, v: &[f64], tau: &mut [f64]) -> f64 {
+        let mut power = 0.0;
+        for j in 0..self.model.joint_count() {
+            if self.model.joint_kind(j).nv() != 1 {
+                continue;
+            }
+            let (index, ratio) =
+                (self.model.v_range(j).start, self.model.followed(j).map_or(1.0, |(_, ratio, _)| ratio));
+            let speed = ratio * v[index];
+            let resistance =
+                self.model.damping()[j] * speed + self.model.friction()[j] * (speed / FRICTION_SPEED).tanh();
+            tau[index] += ratio * resistance;
+            power += resistance * speed;
+        }
+        power
     }
 
     fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {

@@ -73,7 +73,7 @@ impl System {
             "potential energy in the field of gravity, 0 at the world origin",
         ));
         columns.push(Column::new("energy.actuators", "J", "work of the actuators since t = 0"));
-        if self.has_joint_losses() {
+        if self.tells_joint_losses {
             columns.push(Column::new("energy.joints", "J", "energy lost in joint damping and friction since t = 0"));
         }
         columns.push(Column::new(
@@ -82,11 +82,6 @@ impl System {
             "kinetic + potential + stored + dissipated - input - actuators, less its value at t = 0",
         ));
         columns
-    }
-
-    /// Whether any joint has damping or friction.
-    pub(super) fn has_joint_losses(&self) -> bool {
-        self.model.damping().iter().chain(self.model.friction()).any(|x| *x != 0.0)
     }
 
     /// Fills one row; `balance` holds the work and losses, `residual` the ledger's residual, NaN where unknown.
@@ -126,7 +121,7 @@ impl System {
             row.extend(moment.gripper_error);
         }
         row.extend([moment.kinetic, moment.potential, balance.actuators]);
-        if self.has_joint_losses() {
+        if self.tells_joint_losses {
             row.push(joints);
         }
         row.push(residual);

@@ -3,7 +3,7 @@
 use super::layout::Layout;
 use super::{Options, Writers, push_field, push_fields};
 use crate::scenario::{Cases, SweptValue};
-use crate::simulate::{Report, RunError, System, along};
+use crate::simulate::{LimitWatch, PassedLimit, Report, RunError, System, along};
 use crate::table::{Statistics, push_number};
 use std::io;
 use std::sync::atomic::Ordering;
@@ -28,6 +28,8 @@ pub struct CaseResult {
     pub wall: Duration,
     /// Why its energy ledger is not known; `None` where it is.
     pub no_ledger: Option<String>,
+    /// The limits of joints that it passes.
+    pub limits: Vec<PassedLimit>,
     /// The columns that figures need, where this case is drawn.
     pub kept: Option<Vec<Vec<f64>>>,
 }
@@ -58,12 +60,14 @@ pub(super) fn run(
     let mut kept = kept_columns.map(|columns| vec![Vec::new(); columns.len()]);
     let (mut text, mut handed_over) = (String::with_capacity(2 * CHUNK), Instant::now());
 
-    let (report, no_ledger, outcome) = match cases.plan(index) {
+    let (report, no_ledger, limits, outcome) = match cases.plan(index) {
         Err(refusals) => {
-            (Report::default(), Some("no row was written".into()), Err(CaseError::Refused(refusals.to_string())))
+            let why = Some("no row was written".into());
+            (Report::default(), why, Vec::new(), Err(CaseError::Refused(refusals.to_string())))
         }
         Ok(plan) => {
             let system = plan.system();
+            let mut watch = LimitWatch::new(&system);
             let mut rows = |row: &[f64]| -> io::Result<()> {
                 text.push_str(&lead);
                 let mut values = selected.iter().map(|&k| row[k]);
@@ -76,6 +80,7 @@ pub(super) fn run(
                 for (kept, &k) in kept.iter_mut().flatten().zip(kept_columns.into_iter().flatten()) {
                     kept.push(row[k]);
                 }
+                watch.see(row);
                 options.rows.fetch_add(1, Ordering::Relaxed);
                 if text.len() >= CHUNK || handed_over.elapsed() > PATIENCE {
                     writers.rows.write(text.as_bytes())?;
@@ -85,7 +90,7 @@ pub(super) fn run(
                 Ok(())
             };
             let (report, outcome) = along(&system, &plan.settings(), &mut rows, options.stop);
-            (report, why_no_ledger(&system, &report), outcome.map_err(CaseError::Run))
+            (report, why_no_ledger(&system, &report), watch.passed(), outcome.map_err(CaseError::Run))
         }
     };
     writers.rows.write(text.as_bytes())?;
@@ -106,7 +111,7 @@ pub(super) fn run(
     }
     let interrupted = matches!(outcome, Err(CaseError::Run(RunError::Interrupted { .. })));
     let error = outcome.err().map(|error| error.to_string());
-    Ok(CaseResult { index, report, error, interrupted, wall: begun.elapsed(), no_ledger, kept })
+    Ok(CaseResult { index, report, error, interrupted, wall: begun.elapsed(), no_ledger, limits, kept })
 }
 
 /// Why a case does not know its energies; `None` where it does.

@@ -2,10 +2,12 @@
 
 mod case;
 mod layout;
+mod limits;
 mod record;
 
 pub use case::CaseResult;
 pub use layout::{FigureColumn, FigureData, Layout, MAX_CURVES, MAX_POINTS};
+pub use limits::{CasesPassing, LimitTally};
 
 use crate::scenario::{Cases, Refusals};
 use crate::simulate::Stop;
@@ -63,6 +65,8 @@ pub struct Outcome {
     /// The energy residual of the case in which it is largest beside the energy turned over, and that energy, J; `None`
     /// where no case knows its ledger.
     pub energy_residual: Option<(f64, f64)>,
+    /// The limits of joints that cases pass.
+    pub limits: Vec<CasesPassing>,
     /// Number of cases that do not know their ledger, and why the first of them does not.
     pub no_ledger: Option<(usize, String)>,
     /// Wall time.
@@ -150,6 +154,7 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         rejected_steps: tally.rejected_steps,
         t_reached: tally.t_reached.flatten(),
         energy_residual: tally.energy_residual,
+        limits: tally.limits.passing(),
         no_ledger: tally.no_ledger.map(|(count, _, why)| (count, why)),
         wall: begun.elapsed(),
     })
@@ -179,6 +184,7 @@ struct Tally {
     /// `None` before the first case.
     t_reached: Option<Option<f64>>,
     energy_residual: Option<(f64, f64)>,
+    limits: LimitTally,
     /// How many, index of the first, and its reason.
     no_ledger: Option<(usize, usize, String)>,
     listed: [usize; 2],
@@ -206,6 +212,7 @@ impl Tally {
                 self.energy_residual = Some(new);
             }
         }
+        self.limits.take(case.index, &case.limits);
         if let Some(why) = &case.no_ledger {
             let (count, first, reason) = self.no_ledger.get_or_insert_with(|| (0, case.index, why.clone()));
             *count += 1;

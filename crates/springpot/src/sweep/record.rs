@@ -27,6 +27,8 @@ impl Outcome {
             "energy_residual": residual,
             "energy_turned_over": turned_over,
             "ledger": ledger,
+            "warnings": cases.warnings(),
+            "limits": self.limits,
             "plan": plan.resolved(),
             "columns": layout.written(),
             "cases": listed,
@@ -55,6 +57,7 @@ fn one(cases: &Cases, case: &CaseResult) -> Value {
         "status": status,
         "error": case.error,
         "ledger": case.no_ledger.as_ref().map(|why| format!("unknown: {why}")),
+        "limits": case.limits,
         "wall_time": case.wall.as_secs_f64(),
     });
     if let (Value::Object(record), Ok(Value::Object(report))) = (&mut record, serde_json::to_value(case.report)) {

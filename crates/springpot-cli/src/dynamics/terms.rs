@@ -1,0 +1,219 @@
+//! The equations of motion as text.
+
+use crate::grid::{Grid, Set, width_of};
+use crate::numbers::{brief, rough, short};
+use crate::terminal;
+use springpot::model::Label;
+use springpot::simulate::{ElementTerm, Equation, System};
+
+/// Most joints whose matrices are printed.
+const MOST_PRINTED: usize = 8;
+/// What is smaller than this share of its table is rounding, and is shown as 0.
+const ROUNDING: f64 = 1e-14;
+/// Stands where a number is not known.
+const UNKNOWN: &str = "-";
+
+pub(super) fn text(title: Option<&str>, case: &str, system: &System, equation: &Equation) -> String {
+    let running = terminal::stdout_width().or(Some(80));
+    let page = Page { width: terminal::stdout_columns().unwrap_or(80) };
+    let names: Vec<String> = system.model.v_labels().into_iter().map(|label| label.name).collect();
+    let mut text = String::new();
+    let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, running));
+    if let Some(title) = title {
+        line("title", title);
+    }
+    if !case.is_empty() {
+        line("case", case);
+    }
+    line("t", &format!("{} s", short(equation.t)));
+    text.push_str("\nin SI units: rad or m, N·m or N\n\n");
+    text.push_str(&state(system, equation, &names, &page));
+    if names.len() <= MOST_PRINTED {
+        text.push('\n');
+        text.push_str(&page.table("a_ab", &names, &names, &square(&equation.mass, names.len())));
+        if let Some(gamma) = &equation.christoffel {
+            text.push('\n');
+            text.push_str(&christoffel(gamma, &names, &page));
+        }
+    } else {
+        let n = names.len();
+        let symbols = if equation.christoffel.is_some() { ", Γ_ab,c" } else { "" };
+        let words = format!("a_ab{symbols} and C have {n} rows: --json prints them");
+        text.push('\n');
+        text.push_str(&terminal::hanging("", &words, running));
+    }
+    if !equation.elements.is_empty() {
+        text.push('\n');
+        text.push_str(&elements(system, equation, &page));
+    }
+    text.push('\n');
+    text.push_str(&sum(system, equation, &names, &page));
+    text.push_str(&terminal::hanging("", &closing(equation), running));
+    text
+}
+
+/// How wide tables may be.
+struct Page {
+    width: usize,
+}
+
+impl Page {
+    /// Numbers under names, as many columns at a time as fit.
+    fn table(&self, corner: &str, rows: &[String], columns: &[String], numbers: &[Vec<String>]) -> String {
+        let label = rows.iter().map(|row| width_of(row)).fold(width_of(corner), usize::max);
+        let widths: Vec<usize> = (0..columns.len())
+            .map(|c| numbers.iter().map(|row| width_of(&row[c])).fold(width_of(&columns[c]), usize::max) + 4)
+            .collect();
+        let mut text = String::new();
+        let mut from = 0;
+        while from < columns.len() {
+            let (mut to, mut width) = (from + 1, label + widths[from]);
+            while to < columns.len() && width + widths[to] <= self.width {
+                width += widths[to];
+                to += 1;
+            }
+            let head = columns[from..to].iter().map(|name| (name.clone(), Set::Number));
+            let mut grid = Grid::new([(corner.to_owned(), Set::Name)].into_iter().chain(head));
+            for (row, numbers) in rows.iter().zip(numbers) {
+                grid.row([row].into_iter().chain(&numbers[from..to]).cloned().collect());
+            }
+            if from > 0 {
+                text.push('\n');
+            }
+            text.push_str(&grid.text(Some(self.width)));
+            from = to;
+        }
+        text
+    }
+}
+
+/// A number, or 0 where it is rounding beside `largest`.
+fn shown(value: f64, largest: f64) -> String {
+    match value {
+        value if !value.is_finite() => UNKNOWN.to_owned(),
+        value if value.abs() < ROUNDING * largest => "0".to_owned(),
+        value => brief(value),
+    }
+}
+
+fn largest(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |largest, x| x.abs().max(largest))
+}
+
+fn square(matrix: &[f64], n: usize) -> Vec<Vec<String>> {
+    let largest = largest(matrix);
+    matrix.chunks(n).map(|row| row.iter().map(|x| shown(*x, largest)).collect()).collect()
+}
+
+/// q, q̇ and q̈; floating joints have more numbers in q than in q̇.
+fn state(system: &System, equation: &Equation, names: &[String], page: &Page) -> String {
+    let springpot::simulate::State { q, v, a } = &equation.state;
+    let number = |x: &f64| shown(*x, 0.0);
+    let columns = ["q", "q\u{307}", "q\u{308}"].map(str::to_owned);
+    if system.model.is_one_degree() {
+        let numbers: Vec<Vec<String>> = (0..names.len()).map(|k| [&q[k], &v[k], &a[k]].map(number).to_vec()).collect();
+        return page.table("joint", names, &columns, &numbers);
+    }
+    let q_names: Vec<String> = system.model.q_labels().into_iter().map(|Label { name, .. }| name).collect();
+    let of_q: Vec<Vec<String>> = q.iter().map(|x| vec![number(x)]).collect();
+    let of_v: Vec<Vec<String>> = v.iter().zip(a).map(|(v, a)| vec![number(v), number(a)]).collect();
+    let first = page.table("joint", &q_names, &columns[..1], &of_q);
+    format!("{first}\n{}", page.table("joint", names, &columns[1..], &of_v))
+}
+
+/// The symbols that are not 0; a ≤ b, since Γ_ab,c = Γ_ba,c.
+fn christoffel(gamma: &[f64], names: &[String], page: &Page) -> String {
+    let n = names.len();
+    let largest = largest(gamma);
+    let (mut rows, mut numbers) = (Vec::new(), Vec::new());
+    for a in 0..n {
+        for b in a..n {
+            let symbols = &gamma[(a * n + b) * n..][..n];
+            if symbols.iter().any(|x| x.abs() >= ROUNDING * largest && *x != 0.0) {
+                rows.push(format!("{} {}", names[a], names[b]));
+                numbers.push(symbols.iter().map(|x| shown(*x, largest)).collect());
+            }
+        }
+    }
+    if rows.is_empty() {
+        return "Γ_ab,c = 0 for all a, b, c\n".to_owned();
+    }
+    let columns: Vec<String> = names.iter().map(|name| format!("c = {name}")).collect();
+    page.table("Γ_ab,c", &rows, &columns, &numbers)
+}
+
+fn elements(system: &System, equation: &Equation, page: &Page) -> String {
+    let mut text = String::new();
+    let names: Vec<String> = equation.elements.iter().map(|element| element.name.clone()).collect();
+    let columns = ["l", "x = l - l0", "x'", "D^α x", "F"].map(str::to_owned);
+    let numbers = |element: &ElementTerm| {
+        let ElementTerm { length, stroke, rate, derivative, force, .. } = element;
+        [length, stroke, rate, derivative, force].map(|x| shown(*x, 0.0)).to_vec()
+    };
+    let rows: Vec<Vec<String>> = equation.elements.iter().map(numbers).collect();
+    text.push_str(&page.table("element", &names, &columns, &rows));
+    for (term, element) in equation.elements.iter().zip(&system.elements) {
+        let inputs: Vec<String> = (element.row.inputs.iter().zip(&term.inputs))
+            .map(|(input, value)| format!("{} = {} {}", input.name, short(*value), input.unit))
+            .collect();
+        if !inputs.is_empty() {
+            text.push_str(&format!("{}: {}\n", term.name, inputs.join(", ")));
+        }
+    }
+    text
+}
+
+/// Every term of the equation under every joint, or the other way round where there are many joints.
+fn sum(system: &System, equation: &Equation, names: &[String], page: &Page) -> String {
+    let velocity = if equation.christoffel.is_some() { "Γ_ab,c q\u{307}_a q\u{307}_b" } else { "C q\u{307}" };
+    let mut terms: Vec<(String, Vec<f64>)> = vec![
+        ("a_ac q\u{308}_a".to_owned(), equation.inertia.clone()),
+        (velocity.to_owned(), equation.velocity.clone()),
+        ("Q gravity".to_owned(), equation.gravity.clone()),
+    ];
+    let many = names.len() > MOST_PRINTED;
+    if many && !equation.elements.is_empty() {
+        terms.push(("Q elements".to_owned(), equation.sum_of_elements()));
+    } else {
+        terms.extend(equation.elements.iter().map(|term| (format!("Q {}", term.name), term.q_force.clone())));
+    }
+    if system.model.damping().iter().chain(system.model.friction()).any(|x| *x != 0.0) {
+        terms.push(("Q joints".to_owned(), equation.joints.clone()));
+    }
+    terms.push(("tau".to_owned(), equation.tau.clone()));
+    let largest = equation.largest_term();
+    let mut rows: Vec<Vec<String>> =
+        terms.iter().map(|(_, numbers)| numbers.iter().map(|x| shown(*x, largest)).collect()).collect();
+    let residual = |x: &f64| if x.is_finite() { rough(*x) } else { UNKNOWN.to_owned() };
+    rows.push(equation.residual().iter().map(residual).collect());
+    let labels: Vec<String> = terms.into_iter().map(|(label, _)| label).chain(["residual".to_owned()]).collect();
+    if many {
+        let turned: Vec<Vec<String>> =
+            (0..names.len()).map(|joint| rows.iter().map(|row| row[joint].clone()).collect()).collect();
+        return page.table("joint", names, &labels, &turned);
+    }
+    page.table("term", &labels, names, &rows)
+}
+
+/// How well the equation closes.
+fn closing(equation: &Equation) -> String {
+    let residual = largest(&equation.residual());
+    let names: Vec<&str> = (equation.elements.iter())
+        .filter(|element| !element.force.is_finite())
+        .map(|element| element.name.as_str())
+        .collect();
+    if !names.is_empty() {
+        return format!(
+            "the force of {} is infinite at t = 0, after a Riemann-Liouville start from x(0) other than 0, so that the \
+             equation is not known",
+            names.join(", ")
+        );
+    }
+    let velocity = if equation.christoffel.is_some() { "Γ_ab,c q\u{307}_a q\u{307}_b" } else { "C q\u{307}" };
+    let share = if residual == 0.0 {
+        "exactly".to_owned()
+    } else {
+        format!("to {} of the largest term", rough(residual / equation.largest_term()))
+    };
+    format!("a_ac q\u{308}_a + {velocity} - ΣQ - tau = 0 {share}")
+}

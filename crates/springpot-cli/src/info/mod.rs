@@ -1,0 +1,94 @@
+//! `springpot info`.
+
+mod json;
+mod tables;
+
+use crate::arguments::InfoOptions;
+use crate::grid::{clean, cut, width_of};
+use crate::numbers::brief;
+use crate::robot::{Refused, Robot};
+use crate::{Ending, robot, terminal};
+use springpot::model::JointKind;
+
+/// Columns of the words that lead a line.
+const LEAD: usize = 10;
+/// Most columns for the name of what carries other links.
+const WIDEST_CARRIER: usize = 24;
+
+pub(crate) fn info(options: &InfoOptions) -> Ending {
+    match robot::read(&options.robot, &[]) {
+        Ok(robot) if options.json => {
+            terminal::print(&json::text(&robot, &options.robot.file));
+            Ending::Done
+        }
+        Ok(robot) => {
+            terminal::print(&text(&robot));
+            Ending::Done
+        }
+        Err(Refused) => Ending::Refused,
+    }
+}
+
+/// The description of a robot. Names are cut where they do not fit into a terminal, and never elsewhere.
+fn text(robot: &Robot) -> String {
+    let model = &robot.model;
+    let (width, lines) = (terminal::stdout_columns(), terminal::stdout_width().or(Some(80)));
+    let mut text = String::new();
+    let mut line = |lead: &str, words: &str| {
+        text.push_str(&terminal::hanging(&format!("{lead:<LEAD$}"), words, lines));
+    };
+    line("robot", &clean(&robot.name));
+    line("joints", &format!("{}; nq = {}, nv = {}", kinds(robot), model.nq(), model.nv()));
+    line("mass", &masses(robot));
+    let [x, y, z] = model.gravity().map(brief);
+    line("gravity", &format!("({x}, {y}, {z}) m/s²"));
+
+    text.push('\n');
+    text.push_str(&tables::tree(robot).text(width));
+    text.push('\n');
+    text.push_str(&tables::joints(robot).text(width));
+    let units = tables::units(robot);
+    if !units.is_empty() {
+        text.push_str(&terminal::hanging("", &units, lines));
+    }
+    text.push_str(&section("joints that follow others", "  ", tables::followers(robot), lines));
+    let frames = tables::frames(robot);
+    let longest = frames.iter().map(|(carrier, _)| width_of(carrier)).max().unwrap_or(0).min(WIDEST_CARRIER);
+    if !frames.is_empty() {
+        text.push_str("\nlinks on fixed joints, behind what carries them\n");
+    }
+    for (carrier, links) in frames {
+        let carrier = if width.is_some() { cut(&carrier, longest) } else { carrier };
+        text.push_str(&terminal::hanging(&format!("  {carrier:<longest$}  "), &links, lines));
+    }
+    let warnings = robot.warnings.iter().map(|warning| clean(&warning.to_string())).collect();
+    text.push_str(&section("not used or assumed", "- ", warnings, lines));
+    text
+}
+
+/// A headline and its items; nothing where there are none.
+fn section(headline: &str, lead: &str, items: Vec<String>, width: Option<usize>) -> String {
+    let lines: String = items.iter().map(|item| terminal::hanging(lead, item, width)).collect();
+    if lines.is_empty() { lines } else { format!("\n{headline}\n{lines}") }
+}
+
+/// How many joints of which kind there are.
+fn kinds(robot: &Robot) -> String {
+    let model = &robot.model;
+    let of = |kind: JointKind| (0..model.joint_count()).filter(|&j| model.joint_kind(j) == kind).count();
+    let kinds = JointKind::ALL.into_iter().filter(|kind| of(*kind) > 0);
+    let kinds: Vec<String> = kinds.map(|kind| format!("{} {}", of(kind), kind.name())).collect();
+    let followers = model.joint_count() - robot.own_joints().count();
+    let following = match followers {
+        0 => String::new(),
+        1 => ", of which 1 follows another".to_owned(),
+        many => format!(", of which {many} follow others"),
+    };
+    format!("{}{following}", kinds.join(", "))
+}
+
+fn masses(robot: &Robot) -> String {
+    let fixed = robot.fixed_mass();
+    let moving = format!("{} kg", brief(robot.moving_mass()));
+    if fixed == 0.0 { moving } else { format!("{moving} that moves, {} kg fixed to the world", brief(fixed)) }
+}

@@ -1,0 +1,214 @@
+//! Limits of joints that a motion passes, seen in its rows.
+
+use super::{RowTimes, Settings, Stop, System, along};
+use crate::model::{JointKind, Limits, Model};
+use std::fmt;
+
+/// What is beyond a limit by less than this, in its unit and as a share of it, is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The limits that a joint may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LimitKind {
+    /// Smallest coordinate.
+    Lower,
+    /// Largest coordinate.
+    Upper,
+    /// Largest speed.
+    Velocity,
+    /// Largest actuator force.
+    Effort,
+}
+
+impl LimitKind {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Lower => "lower limit",
+            Self::Upper => "upper limit",
+            Self::Velocity => "velocity limit",
+            Self::Effort => "effort limit",
+        }
+    }
+}
+
+/// A limit that a joint passes; `Display` is one sentence without full stop.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct PassedLimit {
+    /// Name of the joint.
+    pub joint: String,
+    /// Which of its limits.
+    pub kind: LimitKind,
+    /// The limit, in `unit`.
+    pub limit: f64,
+    /// rad, m, rad/s, m/s, N*m or N.
+    pub unit: &'static str,
+    /// Time of the first row beyond it, s.
+    pub first: f64,
+    /// Time of the row that is farthest beyond it, s.
+    pub farthest: f64,
+    /// Coordinate, velocity or actuator force in that row, in `unit`.
+    pub value: f64,
+}
+
+impl PassedLimit {
+    /// How far beyond the limit the value is.
+    pub fn excess(&self) -> f64 {
+        excess(self.kind, self.limit, self.value)
+    }
+}
+
+impl fmt::Display for PassedLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { joint, kind, limit, unit, first, farthest, .. } = self;
+        let (by, kind) = (brief(self.excess()), kind.name());
+        write!(f, "joint {joint:?} passes its {kind} {} {unit} at t = {} s, by ", brief(*limit), brief(*first))?;
+        if first == farthest {
+            write!(f, "{by} {unit}")
+        } else {
+            write!(f, "up to {by} {unit} at t = {} s", brief(*farthest))
+        }
+    }
+}
+
+/// Watches the rows of a run for joints that pass their limits. What happens between two rows is not seen.
+#[derive(Debug, Clone)]
+pub struct LimitWatch {
+    watched: Vec<Watched>,
+}
+
+/// One limit of one joint.
+#[derive(Debug, Clone)]
+struct Watched {
+    joint: String,
+    kind: LimitKind,
+    limit: f64,
+    unit: &'static str,
+    /// Value = ratio · row\[column\] + offset.
+    column: usize,
+    ratio: f64,
+    offset: f64,
+    passed: Option<Passed>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Passed {
+    first: f64,
+    farthest: f64,
+    value: f64,
+}
+
+impl LimitWatch {
+    /// Watches every limit of the robot's joints. A joint that follows another one has no actuator and no limit of effort.
+    pub fn new(system: &System) -> Self {
+        let model = &system.model;
+        Self { watched: (0..model.joint_count()).flat_map(|joint| of_joint(model, joint)).collect() }
+    }
+
+    /// Looks at one row, in the order of [`System::columns`].
+    pub fn see(&mut self, row: &[f64]) {
+        for watched in &mut self.watched {
+            let value = watched.ratio * row[watched.column] + watched.offset;
+            let excess = |value| excess(watched.kind, watched.limit, value);
+            // An empty field is beyond nothing.
+            if excess(value) > ROUNDING * (1.0 + watched.limit.abs()) {
+                let new = Passed { first: row[0], farthest: row[0], value };
+                let passed = watched.passed.get_or_insert(new);
+                if excess(value) > excess(passed.value) {
+                    *passed = Passed { first: passed.first, ..new };
+                }
+            }
+        }
+    }
+
+    /// The limits that were passed, joint by joint.
+    pub fn passed(self) -> Vec<PassedLimit> {
+        let passed = |Watched { joint, kind, limit, unit, passed, .. }: Watched| {
+            passed.map(|Passed { first, farthest, value }| PassedLimit {
+                joint,
+                kind,
+                limit,
+                unit,
+                first,
+                farthest,
+                value,
+            })
+        };
+        self.watched.into_iter().filter_map(passed).collect()
+    }
+}
+
+impl System {
+    /// The row at t = 0, in the order of [`System::columns`], whether or not the run has one there; without its forces where
+    /// these are not known at once (named schemes).
+    ///
+    /// # Errors
+    /// What keeps a run from starting.
+    pub fn first_row(&self, settings: &Settings) -> Result<Vec<f64>, super::RunError> {
+        let settings = Settings { rows: RowTimes::Times([0.0].into()), ..settings.clone() };
+        let mut first = None;
+        let mut keep = |row: &[f64]| -> std::io::Result<()> {
+            first = Some(row.to_vec());
+            Ok(())
+        };
+        // Stopped from the outset, it writes its first row and takes no step.
+        let _ = along(self, &settings, &mut keep, &Stop::new(true));
+        if let Some(row) = first {
+            return Ok(row);
+        }
+        let state = self.state(0.0)?;
+        let known = std::iter::once(0.0).chain(state.q).chain(state.v).chain(state.a);
+        let mut row: Vec<f64> = known.collect();
+        row.resize(self.columns().len(), f64::NAN);
+        Ok(row)
+    }
+}
+
+fn of_joint(model: &Model, joint: usize) -> Vec<Watched> {
+    let (q, v) = (model.q_range(joint).start, model.v_range(joint).start);
+    let (nq, nv) = (model.nq(), model.nv());
+    if model.joint_kind(joint).nv() != 1 {
+        return Vec::new();
+    }
+    let units = match model.joint_kind(joint) {
+        JointKind::Prismatic => ["m", "m/s", "N"],
+        _ => ["rad", "rad/s", "N*m"],
+    };
+    let followed = model.followed(joint);
+    let (ratio, offset) = followed.map_or((1.0, 0.0), |(_, ratio, offset)| (ratio, offset));
+    let Limits { lower, upper, velocity, effort } = *model.limits(joint);
+    let effort = if followed.is_some() { f64::INFINITY } else { effort };
+    let all = [
+        (LimitKind::Lower, lower, units[0], 1 + q, offset),
+        (LimitKind::Upper, upper, units[0], 1 + q, offset),
+        (LimitKind::Velocity, velocity, units[1], 1 + nq + v, 0.0),
+        (LimitKind::Effort, effort, units[2], 1 + nq + 2 * nv + v, 0.0),
+    ];
+    let finite = all.into_iter().filter(|(_, limit, ..)| limit.is_finite());
+    let name = &model.joint_names()[joint];
+    let watched = finite.map(|(kind, limit, unit, column, offset)| Watched {
+        joint: name.clone(),
+        kind,
+        limit,
+        unit,
+        column,
+        ratio,
+        offset,
+        passed: None,
+    });
+    watched.collect()
+}
+
+/// How far `value` is beyond a limit; negative within it, NaN for an empty field.
+fn excess(kind: LimitKind, limit: f64, value: f64) -> f64 {
+    match kind {
+        LimitKind::Lower => limit - value,
+        LimitKind::Upper => value - limit,
+        LimitKind::Velocity | LimitKind::Effort => value.abs() - limit,
+    }
+}
+
+/// `x` to six digits.
+fn brief(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
