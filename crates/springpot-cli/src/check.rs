@@ -17,8 +17,12 @@ use warnings::Warnings;
 const LOOKED_AT: usize = 1_000;
 const PATHS_FOLLOWED: usize = 50;
 
-/// Values of a sweep, and numbers of a gradient, that are printed whatever they are.
+/// Values of a sweep that are printed.
 const PRINTED: usize = 12;
+
+/// Numbers of a gradient that are printed even where they are 0, and what counts as 0.
+const PRINTED_GRADIENT: usize = 6;
+const ROUNDING: f64 = 1e-12;
 
 /// Joints that are named.
 const NAMED_JOINTS: usize = 100;
@@ -161,18 +165,18 @@ fn followers(plan: &Plan) -> Vec<String> {
     (0..model.joint_count()).filter_map(follows).take(NAMED_JOINTS).collect()
 }
 
-/// ∂l/∂q by coordinate; of a robot of many those that are not 0 but for rounding.
+/// ∂l/∂q by coordinate; of a robot of many those that are not 0.
 fn gradient(plan: &Plan, start: &ElementStart) -> String {
     let labels = plan.model.v_labels();
-    let all = labels.len() <= PRINTED;
+    let all = labels.len() <= PRINTED_GRADIENT;
     let shown: Vec<String> = labels
         .iter()
-        .zip(&start.gradient)
-        .filter(|(_, g)| all || g.abs() > 1e-12)
-        .map(|(label, g)| format!("{}: {}", label.name, short(*g)))
+        .zip(start.gradient.iter().map(|g| if g.abs() > ROUNDING { *g } else { 0.0 }))
+        .filter(|(_, g)| all || *g != 0.0)
+        .map(|(label, g)| format!("{}: {}", label.name, short(g)))
         .collect();
-    let rest = if shown.len() < labels.len() { ", others 0" } else { "" };
-    format!("{}{rest}", shown.join(", "))
+    let rest = (shown.len() < labels.len()).then(|| if shown.is_empty() { "0" } else { "others 0" }.to_owned());
+    shown.into_iter().chain(rest).collect::<Vec<_>>().join(", ")
 }
 
 fn rows(rows: &RowTimes) -> String {

@@ -1,12 +1,13 @@
 //! The scenario's figures from the columns that the run kept.
 
+mod robot;
+
 use crate::labels;
-use springpot::model::{JointKind, Parent};
 use springpot::scenario::{Cases, FigureKind, FigurePlan, Plan};
 use springpot::simulate::System;
 use springpot::sweep::{CaseResult, FigureColumn, FigureData, Layout, MAX_CURVES, MAX_POINTS, Outcome};
 use springpot::table::folder::Folder;
-use springpot_report::{Curve, ElementMark, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing, WORLD};
+use springpot_report::{Curve, Panel, Plot, Rendered, ReportError};
 use std::io;
 
 /// Draws every figure into the folder; returns what could not be drawn and why.
@@ -21,7 +22,7 @@ pub(crate) fn draw(
     let mut warnings = Vec::new();
     for (figure, data) in cases.figures().iter().zip(layout.figures()) {
         let rendered = match figure.kind {
-            FigureKind::Robot => robot(figure, system, plan).and_then(|drawing| render(drawing.render())),
+            FigureKind::Robot => robot::drawing(figure, system, plan).and_then(|drawing| render(drawing.render())),
             FigureKind::Curves { .. } => curves(cases, figure, data, outcome).and_then(|plot| render(plot.render())),
         };
         match rendered {
@@ -125,47 +126,4 @@ fn axis_label(cases: &Cases, axis: usize, k: usize, named: bool) -> String {
 
 fn axis_title(cases: &Cases, axis: usize) -> String {
     cases.axis_parameters(axis).map(labels::parameter).collect::<Vec<_>>().join(", ")
-}
-
-/// The robot at t = 0 with its joints, elements and gripper.
-fn robot(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDrawing, String> {
-    let pose = system.pose(0.0).map_err(|error| error.to_string())?;
-    let mut drawing = RobotDrawing { title: figure.title.clone(), ..RobotDrawing::default() };
-    let name = |body: Parent| match body {
-        Parent::World => WORLD,
-        Parent::Body(index) => plan.bodies[index].name.as_str(),
-    };
-    for (index, body) in plan.bodies.iter().enumerate() {
-        let origin = pose.origin(Parent::Body(index));
-        // A body reaches from its joint to the joints that it carries, or to the gripper, or to its centre of mass.
-        let children: Vec<[f64; 3]> = (0..plan.bodies.len())
-            .filter(|child| plan.bodies[*child].parent == Parent::Body(index))
-            .map(|child| pose.origin(Parent::Body(child)))
-            .collect();
-        let gripper = plan.gripper.as_ref().filter(|gripper| gripper.anchor.body == Parent::Body(index));
-        let mut ends: Vec<[f64; 3]> = children;
-        ends.extend(gripper.map(|gripper| pose.point(&gripper.anchor)));
-        if ends.is_empty() {
-            ends.push(pose.point(&springpot::model::Anchor { body: Parent::Body(index), point: body.com }));
-        }
-        for end in ends {
-            drawing.links.push(Link { name: body.name.clone(), points: vec![origin, end] });
-        }
-        let kind = match body.joint.kind {
-            JointKind::Revolute | JointKind::Continuous => springpot_report::JointKind::Revolute,
-            JointKind::Prismatic => springpot_report::JointKind::Prismatic,
-            JointKind::Fixed | JointKind::Floating => continue,
-        };
-        let axis = pose.direction(Parent::Body(index), body.joint.axis);
-        drawing.joints.push(JointMark { name: body.joint.name.clone(), position: origin, axis, kind });
-    }
-    for element in &plan.elements {
-        let (from, to) = (pose.point(&element.from), pose.point(&element.to));
-        drawing.elements.push(ElementMark { name: element.name.clone(), from, to });
-        drawing.bracket(name(element.from.body), from);
-        drawing.bracket(name(element.to.body), to);
-    }
-    drawing.gripper = plan.gripper.as_ref().map(|gripper| pose.point(&gripper.anchor));
-    drawing.ground = plan.bodies.first().map_or([0.0; 3], |_| pose.origin(Parent::Body(0)));
-    Ok(drawing)
 }

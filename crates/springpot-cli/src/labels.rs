@@ -11,22 +11,17 @@ pub(crate) fn axis(column: &Column, unit: Option<&str>) -> String {
 
 /// The quantity alone: `strut.Q.q2` becomes "Q₂ of strut".
 pub(crate) fn quantity(name: &str) -> String {
-    let mut parts = name.splitn(3, '.');
-    let (first, second, third) = (parts.next().unwrap_or(""), parts.next(), parts.next());
+    // Names of elements hold no dot; those of joints may, and the parts of a floating joint follow one.
+    let (first, rest) = name.split_once('.').map_or((name, None), |(first, rest)| (first, Some(rest)));
+    match (first, rest) {
+        ("q" | "v" | "a", Some(joint)) => return motion(first, joint),
+        ("tau", Some(joint)) => return format!("actuator τ{}", joint_suffix(joint)),
+        _ => {}
+    }
+    let (second, third) =
+        rest.map_or((None, None), |rest| rest.split_once('.').map_or((Some(rest), None), |(a, b)| (Some(a), Some(b))));
     match (first, second, third) {
         ("t", None, None) => "time t".into(),
-        ("q" | "v" | "a", Some(joint), None) => {
-            let dots = match first {
-                "q" => "",
-                "v" => "\u{307}",
-                _ => "\u{308}",
-            };
-            match joint.strip_prefix('q').filter(|rest| rest.chars().all(|c| c.is_ascii_digit())) {
-                Some(index) => format!("q{dots}{}", subscript(index)),
-                None => format!("q{dots} of {joint}"),
-            }
-        }
-        ("tau", Some(joint), None) => format!("actuator τ{}", joint_suffix(joint)),
         ("gripper", Some("error"), None) => "distance of the gripper from its path".into(),
         ("gripper", Some(axis), None) => format!("{axis} of the gripper"),
         ("energy", Some("residual"), None) => "energy residual".into(),
@@ -45,9 +40,40 @@ pub(crate) fn quantity(name: &str) -> String {
     }
 }
 
+/// A coordinate, velocity or acceleration: of a joint of one degree q with its dots, of a floating one its part.
+fn motion(kind: &str, joint: &str) -> String {
+    let dots = match kind {
+        "q" => "",
+        "v" => "\u{307}",
+        _ => "\u{308}",
+    };
+    let floating = joint.rsplit_once('.').and_then(|(joint, part)| Some((joint, part_of_floating(kind, part)?)));
+    if let Some((joint, part)) = floating {
+        return format!("{part} of {joint}");
+    }
+    match joint.strip_prefix('q').filter(|rest| rest.chars().all(|c| c.is_ascii_digit())) {
+        Some(index) => format!("q{dots}{}", subscript(index)),
+        None => format!("q{dots} of {joint}"),
+    }
+}
+
+/// A part of a floating joint as a symbol: its velocities are v and ω in its own axes, their rates have a dot.
+fn part_of_floating(kind: &str, part: &str) -> Option<String> {
+    let dot = if kind == "a" { "\u{307}" } else { "" };
+    match (kind, part) {
+        ("q", "x" | "y" | "z" | "qx" | "qy" | "qz" | "qw") => Some(part.to_owned()),
+        ("v" | "a", "vx" | "vy" | "vz") => Some(format!("v{dot}_{}", &part[1..])),
+        ("v" | "a", "wx" | "wy" | "wz") => Some(format!("ω{dot}_{}", &part[1..])),
+        _ => None,
+    }
+}
+
 /// Last name of a path as a symbol: `alpha` becomes α, `mu_0` μ₀; other names stay.
 pub(crate) fn parameter(path: &str) -> String {
-    let last = path.rsplit('.').next().unwrap_or(path);
+    let last = match path.strip_suffix('"') {
+        Some(quoted) => quoted.rsplit_once(".\"").map_or(quoted, |(_, last)| last),
+        None => path.rsplit('.').next().unwrap_or(path),
+    };
     let (root, index) = last.split_once('_').map_or((last, None), |(root, index)| (root, Some(index)));
     let root = match root {
         "alpha" => "α",
@@ -98,6 +124,14 @@ mod tests {
         assert_eq!(axis(&column("arm.derivative", "m/s^alpha"), None), "Dᵅ x of arm, m/sᵅ");
         assert_eq!(axis(&column("strut.Q.elbow", "N*m"), None), "Q at elbow of strut, N·m");
         assert_eq!(written_unit("25 degC"), "25 °C");
+        assert_eq!(axis(&column("q.left knee", "rad"), None), "q of left knee, rad");
+        assert_eq!(axis(&column("q.base.qw", "1"), None), "qw of base, 1");
+        assert_eq!(axis(&column("v.base.wx", "rad/s"), None), "ω_x of base, rad/s");
+        assert_eq!(axis(&column("a.base.vz", "m/s^2"), None), "v\u{307}_z of base, m/s²");
+        assert_eq!(axis(&column("q.arm.1", "rad"), None), "q of arm.1, rad");
+        assert_eq!(axis(&column("tau.base.vz", "N"), None), "actuator τ at base.vz, N");
+        assert_eq!(axis(&column("strut.Q.base.wz", "N*m"), None), "Q at base.wz of strut, N·m");
+        assert_eq!(["motion.joints.\"left knee\"", "motion.joints.\"a.b\""].map(parameter), ["left knee", "a.b"]);
         let symbols = ["element.strut.alpha", "e.mu_0", "e.mu", "e.E_kv", "e.alpha_pz", "solver.rtol", "T"];
         assert_eq!(symbols.map(parameter), ["α", "μ₀", "μ", "E_kv", "α_pz", "rtol", "T"]);
     }

@@ -206,7 +206,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         ],
         elements: vec![element("strut", [0.14, -0.1, 0.08], [0.44, 0.1, 0.68])],
         gripper: Some([0.9, 0.0, 0.6]),
-        ground: [0.0; 3],
+        ground: Some([0.0; 3]),
     };
     column.bracket("column", [0.14, -0.1, 0.08]);
     column.bracket("forearm", [0.44, 0.1, 0.68]);
@@ -232,7 +232,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
             element("guy", [-0.5, 0.0, 0.0], [0.0, 0.0, 0.42]),
         ],
         gripper: Some([0.95, 0.0, 0.35]),
-        ground: [0.0; 3],
+        ground: Some([0.0; 3]),
     };
     for (body, anchor) in [("base", [0.0, 0.12, 0.3]), ("boom", [0.35, 0.1, 0.8]), ("base", [0.0, -0.12, 0.3])] {
         bent.bracket(body, anchor);
@@ -254,7 +254,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         ],
         elements: vec![element("damper", [0.0, 0.0, 0.1], [0.6, 0.0, 0.533])],
         gripper: Some([0.7, 0.0, 0.45]),
-        ground: [0.0; 3],
+        ground: Some([0.0; 3]),
     };
 
     // A seven-joint arm of human size, standing bent.
@@ -283,7 +283,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
             element("elbow_band", [0.15, 0.15, 0.6], [0.45, 0.22, 0.82]),
         ],
         gripper: Some(chain[7]),
-        ground: [0.0; 3],
+        ground: Some([0.0; 3]),
     };
     arm.bracket("link1", [0.0, -0.08, 0.2]);
     arm.bracket("link2", [0.08, -0.05, 0.55]);
@@ -296,7 +296,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         joints: vec![joint("q", [0.0; 3], y, Revolute)],
         elements: vec![element("band", [0.02, 0.0, -0.001], [0.0045, 0.0, -0.015])],
         gripper: None,
-        ground: [0.0; 3],
+        ground: Some([0.0; 3]),
     };
     hanging.bracket(WORLD, [0.02, 0.0, -0.001]);
     vec![

@@ -224,7 +224,7 @@ fn arm() -> RobotDrawing {
         ],
         elements: vec![ElementMark { name: "strut".into(), from: [0.14, -0.1, 0.08], to: [0.44, 0.1, 0.68] }],
         gripper: Some([0.9, 0.0, 0.5]),
-        ground: [0.0; 3],
+        ground: Some([0.0; 3]),
     };
     robot.bracket("column", [0.14, -0.1, 0.08]);
     robot.bracket("arm", [0.44, 0.1, 0.68]);
@@ -302,7 +302,7 @@ proptest! {
             joints: points.iter().enumerate().map(joint).collect(),
             elements: vec![ElementMark { name: "strut".into(), from: points[0], to: points[points.len() - 1] }],
             gripper: Some(points[1]),
-            ground: points[0],
+            ground: Some(points[0]),
         };
         let figure = robot.render().unwrap();
         check(&figure);

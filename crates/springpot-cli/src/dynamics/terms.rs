@@ -6,8 +6,11 @@ use crate::terminal;
 use springpot::model::Label;
 use springpot::simulate::{ElementTerm, Equation, System};
 
-/// Most joints whose matrices are printed.
-const MOST_PRINTED: usize = 8;
+/// Most velocities for which a_ab, and Γ_ab,c, are printed.
+const MOST_WITH_MATRIX: usize = 8;
+const MOST_WITH_CHRISTOFFEL: usize = 6;
+/// Longer names than these stand in the first table only, with a number for the others.
+const SHORT_NAME: usize = 6;
 /// What is smaller than this share of its table is rounding, and is shown as 0.
 const ROUNDING: f64 = 1e-14;
 /// Stands where a number is not known.
@@ -17,6 +20,9 @@ pub(super) fn text(title: Option<&str>, case: &str, system: &System, equation: &
     let running = terminal::stdout_width().or(Some(80));
     let page = Page { width: terminal::stdout_columns().unwrap_or(80) };
     let names: Vec<String> = system.model.v_labels().into_iter().map(|label| label.name).collect();
+    let n = names.len();
+    let numbered = names.iter().any(|name| width_of(name) > SHORT_NAME);
+    let labels = if numbered { (1..=n).map(|number| number.to_string()).collect() } else { names.clone() };
     let mut text = String::new();
     let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, running));
     if let Some(title) = title {
@@ -27,18 +33,24 @@ pub(super) fn text(title: Option<&str>, case: &str, system: &System, equation: &
     }
     line("t", &format!("{} s", short(equation.t)));
     text.push_str("\nin SI units: rad or m, N·m or N\n\n");
-    text.push_str(&state(system, equation, &names, &page));
-    if names.len() <= MOST_PRINTED {
+    text.push_str(&state(system, equation, &names, &labels, &page));
+    let mut left_out = Vec::new();
+    if n <= MOST_WITH_MATRIX {
         text.push('\n');
-        text.push_str(&page.table("a_ab", &names, &names, &square(&equation.mass, names.len())));
-        if let Some(gamma) = &equation.christoffel {
-            text.push('\n');
-            text.push_str(&christoffel(gamma, &names, &page));
-        }
+        text.push_str(&page.table("a_ab", &labels, &labels, &square(&equation.mass, n)));
     } else {
-        let n = names.len();
-        let symbols = if equation.christoffel.is_some() { ", Γ_ab,c" } else { "" };
-        let words = format!("a_ab{symbols} and C have {n} rows: --json prints them");
+        left_out.push("a_ab");
+    }
+    match &equation.christoffel {
+        Some(gamma) if n <= MOST_WITH_CHRISTOFFEL => {
+            text.push('\n');
+            text.push_str(&christoffel(gamma, &labels, &page));
+        }
+        Some(_) => left_out.push("Γ_ab,c"),
+        None => left_out.push("the Coriolis matrix C"),
+    }
+    if !left_out.is_empty() {
+        let words = format!("--json prints {} too", left_out.join(" and "));
         text.push('\n');
         text.push_str(&terminal::hanging("", &words, running));
     }
@@ -47,7 +59,7 @@ pub(super) fn text(title: Option<&str>, case: &str, system: &System, equation: &
         text.push_str(&elements(system, equation, &page));
     }
     text.push('\n');
-    text.push_str(&sum(system, equation, &names, &page));
+    text.push_str(&sum(system, equation, &labels, &page));
     text.push_str(&terminal::hanging("", &closing(equation), running));
     text
 }
@@ -105,32 +117,37 @@ fn square(matrix: &[f64], n: usize) -> Vec<Vec<String>> {
     matrix.chunks(n).map(|row| row.iter().map(|x| shown(*x, largest)).collect()).collect()
 }
 
-/// q, q̇ and q̈; floating joints have more numbers in q than in q̇.
-fn state(system: &System, equation: &Equation, names: &[String], page: &Page) -> String {
+/// q, q̇ and q̈, with the labels of the other tables; floating joints have more numbers in q than in q̇.
+fn state(system: &System, equation: &Equation, names: &[String], labels: &[String], page: &Page) -> String {
     let springpot::simulate::State { q, v, a } = &equation.state;
     let number = |x: &f64| shown(*x, 0.0);
     let columns = ["q", "q\u{307}", "q\u{308}"].map(str::to_owned);
+    let pad = labels.last().map_or(0, |label| width_of(label));
+    let named = |(name, label): (&String, &String)| {
+        if name == label { name.clone() } else { format!("{label:>pad$}  {name}") }
+    };
+    let rows: Vec<String> = names.iter().zip(labels).map(named).collect();
     if system.model.is_one_degree() {
         let numbers: Vec<Vec<String>> = (0..names.len()).map(|k| [&q[k], &v[k], &a[k]].map(number).to_vec()).collect();
-        return page.table("joint", names, &columns, &numbers);
+        return page.table("joint", &rows, &columns, &numbers);
     }
     let q_names: Vec<String> = system.model.q_labels().into_iter().map(|Label { name, .. }| name).collect();
     let of_q: Vec<Vec<String>> = q.iter().map(|x| vec![number(x)]).collect();
     let of_v: Vec<Vec<String>> = v.iter().zip(a).map(|(v, a)| vec![number(v), number(a)]).collect();
     let first = page.table("joint", &q_names, &columns[..1], &of_q);
-    format!("{first}\n{}", page.table("joint", names, &columns[1..], &of_v))
+    format!("{first}\n{}", page.table("joint", &rows, &columns[1..], &of_v))
 }
 
 /// The symbols that are not 0; a ≤ b, since Γ_ab,c = Γ_ba,c.
-fn christoffel(gamma: &[f64], names: &[String], page: &Page) -> String {
-    let n = names.len();
+fn christoffel(gamma: &[f64], labels: &[String], page: &Page) -> String {
+    let n = labels.len();
     let largest = largest(gamma);
     let (mut rows, mut numbers) = (Vec::new(), Vec::new());
     for a in 0..n {
         for b in a..n {
             let symbols = &gamma[(a * n + b) * n..][..n];
             if symbols.iter().any(|x| x.abs() >= ROUNDING * largest && *x != 0.0) {
-                rows.push(format!("{} {}", names[a], names[b]));
+                rows.push(format!("{} {}", labels[a], labels[b]));
                 numbers.push(symbols.iter().map(|x| shown(*x, largest)).collect());
             }
         }
@@ -138,7 +155,7 @@ fn christoffel(gamma: &[f64], names: &[String], page: &Page) -> String {
     if rows.is_empty() {
         return "Γ_ab,c = 0 for all a, b, c\n".to_owned();
     }
-    let columns: Vec<String> = names.iter().map(|name| format!("c = {name}")).collect();
+    let columns: Vec<String> = labels.iter().map(|label| format!("c = {label}")).collect();
     page.table("Γ_ab,c", &rows, &columns, &numbers)
 }
 
@@ -164,14 +181,14 @@ fn elements(system: &System, equation: &Equation, page: &Page) -> String {
 }
 
 /// Every term of the equation under every joint, or the other way round where there are many joints.
-fn sum(system: &System, equation: &Equation, names: &[String], page: &Page) -> String {
+fn sum(system: &System, equation: &Equation, joints: &[String], page: &Page) -> String {
     let velocity = if equation.christoffel.is_some() { "Γ_ab,c q\u{307}_a q\u{307}_b" } else { "C q\u{307}" };
     let mut terms: Vec<(String, Vec<f64>)> = vec![
         ("a_ac q\u{308}_a".to_owned(), equation.inertia.clone()),
         (velocity.to_owned(), equation.velocity.clone()),
         ("Q gravity".to_owned(), equation.gravity.clone()),
     ];
-    let many = names.len() > MOST_PRINTED;
+    let many = joints.len() > MOST_WITH_MATRIX;
     if many && !equation.elements.is_empty() {
         terms.push(("Q elements".to_owned(), equation.sum_of_elements()));
     } else {
@@ -186,13 +203,13 @@ fn sum(system: &System, equation: &Equation, names: &[String], page: &Page) -> S
         terms.iter().map(|(_, numbers)| numbers.iter().map(|x| shown(*x, largest)).collect()).collect();
     let residual = |x: &f64| if x.is_finite() { rough(*x) } else { UNKNOWN.to_owned() };
     rows.push(equation.residual().iter().map(residual).collect());
-    let labels: Vec<String> = terms.into_iter().map(|(label, _)| label).chain(["residual".to_owned()]).collect();
+    let terms: Vec<String> = terms.into_iter().map(|(label, _)| label).chain(["residual".to_owned()]).collect();
     if many {
         let turned: Vec<Vec<String>> =
-            (0..names.len()).map(|joint| rows.iter().map(|row| row[joint].clone()).collect()).collect();
-        return page.table("joint", names, &labels, &turned);
+            (0..joints.len()).map(|joint| rows.iter().map(|row| row[joint].clone()).collect()).collect();
+        return page.table("joint", joints, &terms, &turned);
     }
-    page.table("term", &labels, names, &rows)
+    page.table("term", &terms, joints, &rows)
 }
 
 /// How well the equation closes.

@@ -65,6 +65,12 @@ impl Obstacles {
         lines.sum::<f64>() + frames.sum::<f64>()
     }
 
+    /// Cost of a thin line through frames; the one that it ends in is what it points at.
+    fn crossed(&self, from: Point, to: Point) -> f64 {
+        let others = self.frames.iter().filter(|frame| frame.nearest(to) != to);
+        TOUCHES * others.filter(|frame| frame.length_inside(from, to) > 0.0).count() as f64
+    }
+
     /// Finds the best place, draws the name, with a thin line to what it names where that is far, and keeps the place.
     pub(super) fn place(&mut self, scene: &mut Scene, font: &Font, request: &Request) {
         let width = font.width(&request.text, request.size);
@@ -79,7 +85,9 @@ impl Obstacles {
                     let reach = (half[0] / cos.abs().max(1e-9)).min(half[1] / sin.abs().max(1e-9));
                     let middle = [beside[0] + cos * (clear + reach), beside[1] - sin * (clear + reach)];
                     let order = 0.05 * f64::from((direction + 14) % 16);
-                    let cost = self.cost(Frame::sized(middle, half)) + 3.0 * f64::from(ring) + rank as f64 + order;
+                    let frame = Frame::sized(middle, half);
+                    let leader = leader(frame, *beside, request.clear).map_or(0.0, |from| self.crossed(from, *beside));
+                    let cost = self.cost(frame) + leader + 3.0 * f64::from(ring) + rank as f64 + order;
                     if best.is_none_or(|(least, ..)| cost < least) {
                         best = Some((cost, middle, *beside));
                     }
@@ -91,14 +99,20 @@ impl Obstacles {
             return;
         }
         let frame = Frame::sized(middle, half);
-        let near = frame.nearest(beside);
-        if (near[0] - beside[0]).hypot(near[1] - beside[1]) > request.clear + 16.0 {
+        if let Some(near) = leader(frame, beside, request.clear) {
             scene.line(&[near, beside], Stroke::new(GREY, 0.7).butt());
+            self.line(&[near, beside], 0.7);
         }
         let at = [middle[0], middle[1] + Font::middle(request.size)];
         scene.text(Text::new(&request.text, at, request.size, Align::Middle).color(request.color).halo());
         self.frame(frame);
     }
+}
+
+/// Where the thin line from a name to what it names begins; `None` where they are near enough.
+fn leader(frame: Frame, beside: Point, clear: f64) -> Option<Point> {
+    let near = frame.nearest(beside);
+    ((near[0] - beside[0]).hypot(near[1] - beside[1]) > clear + 16.0).then_some(near)
 }
 
 impl Frame {

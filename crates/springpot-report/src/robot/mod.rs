@@ -28,8 +28,8 @@ pub struct RobotDrawing {
     pub elements: Vec<ElementMark>,
     /// The gripper's point, labelled H.
     pub gripper: Option<[f64; 3]>,
-    /// Where the robot stands.
-    pub ground: [f64; 3],
+    /// Where the robot stands; `None` for one that stands nowhere.
+    pub ground: Option<[f64; 3]>,
 }
 
 /// The centre line of a body, or a thin arm of it.
@@ -102,7 +102,7 @@ impl RobotDrawing {
         let links = self.links.iter().flat_map(|link| link.points.iter().map(|p| (link.name.as_str(), p)));
         let joints = self.joints.iter().flat_map(|j| [(j.name.as_str(), &j.position), (j.name.as_str(), &j.axis)]);
         let elements = self.elements.iter().flat_map(|e| [(e.name.as_str(), &e.from), (e.name.as_str(), &e.to)]);
-        let others = self.gripper.iter().map(|p| ("gripper", p)).chain([("ground", &self.ground)]);
+        let others = self.gripper.iter().map(|p| ("gripper", p)).chain(self.ground.iter().map(|p| ("ground", p)));
         let mut all = links.chain(joints).chain(elements).chain(others);
         // Squares of larger numbers would overflow.
         match all.find(|(_, point)| !point.iter().all(|v| v.abs() < 1e100)) {

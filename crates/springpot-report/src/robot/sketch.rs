@@ -8,8 +8,10 @@ use super::{ElementMark, JointKind, JointMark, RobotDrawing, WORLD};
 use crate::draw::{Align, Color, Font, INK, Point, Scene, Stroke, Text, wrap};
 use std::collections::HashMap;
 
-/// The robot fills this box, pixels.
+/// The robot fills this box, pixels; one of more than [`FEW_JOINTS`] gets a larger one, so that their names find room.
 const BOX: [f64; 2] = [440.0, 340.0];
+const FEW_JOINTS: f64 = 10.0;
+const LARGEST: f64 = 3.0;
 const NAME_SIZE: f64 = 13.0;
 const LINK_SIZE: f64 = 11.5;
 const TITLE_SIZE: f64 = 15.0;
@@ -42,16 +44,18 @@ impl Camera {
         let links = robot.links.iter().flat_map(|link| link.points.iter().copied());
         let elements = robot.elements.iter().flat_map(|element| [element.from, element.to]);
         let joints = robot.joints.iter().map(|joint| joint.position);
-        let points = links.chain(elements).chain(joints).chain(robot.gripper).chain([robot.ground]);
+        let points = links.chain(elements).chain(joints).chain(robot.gripper).chain(robot.ground);
         let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
         for point in points {
             let p = view.project(point);
             low = [low[0].min(p[0]), low[1].min(p[1])];
             high = [high[0].max(p[0]), high[1].max(p[1])];
         }
-        let scale = (BOX[0] / (high[0] - low[0])).min(BOX[1] / (high[1] - low[1]));
+        let [width, height] =
+            BOX.map(|side| side * (robot.joints.len() as f64 / FEW_JOINTS).sqrt().clamp(1.0, LARGEST));
+        let scale = (width / (high[0] - low[0])).min(height / (high[1] - low[1]));
         // A robot of one point has no size to fill the box with.
-        Self { view, scale: if scale.is_finite() { scale } else { BOX[1] } }
+        Self { view, scale: if scale.is_finite() { scale } else { height } }
     }
 
     fn at(&self, point: Vector) -> Point {
@@ -87,10 +91,13 @@ pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
 }
 
 fn ground(robot: &RobotDrawing, camera: &Camera, sheet: &mut Sheet) {
-    let heights = robot.links.iter().flat_map(|link| &link.points).map(|point| point[2] - robot.ground[2]);
-    let hangs = heights.sum::<f64>() < 0.0;
+    let height = robot.ground.map_or(0.0, |ground| ground[2]);
+    let heights = robot.links.iter().flat_map(|link| &link.points).map(|point| point[2] - height);
+    let hangs = robot.ground.is_some() && heights.sum::<f64>() < 0.0;
     let down = if hangs { -1.0 } else { 1.0 };
-    sheet.base(camera.at(robot.ground), down);
+    if let Some(ground) = robot.ground {
+        sheet.base(camera.at(ground), down);
+    }
     for point in robot.links.iter().filter(|link| link.name == WORLD).flat_map(|link| &link.points) {
         sheet.fixed(camera.at(*point), down);
     }

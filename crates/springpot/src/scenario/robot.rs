@@ -128,11 +128,11 @@ impl Robot {
         let model = self.model();
         let (leader, ratio, offset) = model.followed(model.joint_index(name)?)?;
         let leader = &model.joint_names()[leader];
-        let mut rule = if ratio == 1.0 { leader.clone() } else { format!("{ratio}*{leader}") };
-        if offset != 0.0 {
-            rule.push_str(&format!(" {} {}", if offset < 0.0 { '-' } else { '+' }, offset.abs()));
+        let mut rule = String::new();
+        if (ratio, offset) != (1.0, 0.0) {
+            rule = format!(" ({ratio}*{leader} {} {})", if offset < 0.0 { '-' } else { '+' }, offset.abs());
         }
-        Some(format!("joint {name:?} follows {leader:?} ({rule}) and has no coordinate of its own"))
+        Some(format!("joint {name:?} follows {leader:?}{rule} and has no coordinate of its own"))
     }
 
     fn body_names(&self) -> impl Iterator<Item = &str> + Clone {
