@@ -1,9 +1,9 @@
+use serde_json::Value;
 use springpot::law::Catalog;
 use springpot::motion::{Drive, Forward, Motion};
 use springpot::scenario::Scenario;
 use springpot::signal::Signal;
 use springpot::simulate::{System, forward};
-use serde_json::Value;
 use std::time::Instant;
 
 fn system(text: &str, q: Vec<f64>, v: Vec<f64>) -> (System, springpot::simulate::Settings) {
@@ -11,7 +11,11 @@ fn system(text: &str, q: Vec<f64>, v: Vec<f64>) -> (System, springpot::simulate:
     let plan = cases.plan(0).unwrap();
     let mut system = plan.system();
     let n = system.model.nv();
-    system.motion = Motion::Forward(Box::new(Forward { q, v, drives: (0..n).map(|_| Drive::Force(vec![Signal::constant(0.0)])).collect() }));
+    system.motion = Motion::Forward(Box::new(Forward {
+        q,
+        v,
+        drives: (0..n).map(|_| Drive::Force(vec![Signal::constant(0.0)])).collect(),
+    }));
     (system, plan.settings())
 }
 
@@ -20,14 +24,26 @@ fn arm() {
     let text = std::fs::read_to_string("../../scenarios/thermoviscoelastic_order.toml").unwrap();
     let (system, mut settings) = {
         let cases = Scenario::parse(&text, "x.toml", "").unwrap().cases(&Catalog::standard()).unwrap();
-        let k = (0..6).find(|&k| { let p = cases.plan(k).unwrap(); p.elements[0].parameters.contains(&0.5) }).unwrap();
+        let k = (0..6)
+            .find(|&k| {
+                let p = cases.plan(k).unwrap();
+                p.elements[0].parameters.contains(&0.5)
+            })
+            .unwrap();
         let plan = cases.plan(k).unwrap();
         println!("{:?} {}", plan.elements[0].parameters, plan.elements[0].derivative.name());
         let mut system = plan.system();
-        system.motion = Motion::Forward(Box::new(Forward { q: vec![0.0; 3], v: vec![0.0; 3], drives: (0..3).map(|_| Drive::Force(vec![Signal::constant(0.0)])).collect() }));
+        system.motion = Motion::Forward(Box::new(Forward {
+            q: vec![0.0; 3],
+            v: vec![0.0; 3],
+            drives: (0..3).map(|_| Drive::Force(vec![Signal::constant(0.0)])).collect(),
+        }));
         (system, plan.settings())
     };
-    let file: Value = serde_json::from_str(&std::fs::read_to_string("../../testdata/papers/forward_thermoviscoelastic.json").unwrap()).unwrap();
+    let file: Value = serde_json::from_str(
+        &std::fs::read_to_string("../../testdata/papers/forward_thermoviscoelastic.json").unwrap(),
+    )
+    .unwrap();
     for rtol in [1e-4, 1e-6, 1e-8, 1e-10, 1e-11] {
         settings.rtol = rtol;
         settings.atol = Some(rtol);
@@ -49,13 +65,15 @@ fn arm() {
 
 #[test]
 fn slider() {
-    let file: Value = serde_json::from_str(&std::fs::read_to_string("../../testdata/papers/one_mass_exact.json").unwrap()).unwrap();
+    let file: Value =
+        serde_json::from_str(&std::fs::read_to_string("../../testdata/papers/one_mass_exact.json").unwrap()).unwrap();
     for case in file["cases"].as_array().unwrap() {
         let num = |k: &str| case[k].as_str().unwrap().parse::<f64>().unwrap();
         let kind = if case["kind"] == "RL" { "riemann-liouville" } else { "caputo" };
         let (m, k, c, a) = (num("m"), num("K"), num("C"), num("lambda"));
         // f = -m g + force: put the constant force into the torque.
-        let text = format!(r#"
+        let text = format!(
+            r#"
 robot.body = [{{ name = "mass", joint = {{ name = "q1", kind = "prismatic", axis = [0, 0, 1] }}, mass = {m} }}]
 motion = {{ kind = "prescribed", joints = {{ q1 = "1" }} }}
 time = {{ end = "5 s", output_step = "10 ms" }}
@@ -67,7 +85,8 @@ rest_length = 0.7
 law = "fractional-kelvin-voigt"
 derivative = "{kind}"
 parameters = {{ k = {k}, c = {c}, alpha = {a} }}
-"#);
+"#
+        );
         let (mut system, mut settings) = system(&text, vec![0.7 + num("x0")], vec![num("v0")]);
         let Motion::Forward(f) = &mut system.motion else { panic!() };
         f.drives = vec![Drive::Force(vec![Signal::constant(num("f") + m * 9.81)])];

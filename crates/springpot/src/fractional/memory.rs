@@ -10,7 +10,8 @@ use super::gamma::reciprocal_gamma;
 use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
 use super::step::{
-    Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_INVERSE, RADAU_NODES, RatePolynomial, TABLEAU, exponential_moments, local_factors,
+    Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_INVERSE, RADAU_NODES, RatePolynomial, TABLEAU, exponential_moments,
+    local_factors,
 };
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;

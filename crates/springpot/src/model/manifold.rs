@@ -141,7 +141,8 @@ impl Model {
                 JointKind::Fixed => {}
                 JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => rate[0] = v[0],
                 JointKind::Floating => {
-                    let twist = |v: &[f64]| Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) };
+                    let twist =
+                        |v: &[f64]| Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) };
                     let (xi, v) = (twist(xi), twist(v));
                     let (second, fourth) = bracket_factors(xi.angular.norm());
                     let once = xi.cross(v);
@@ -205,7 +206,8 @@ fn bracket_factors(theta: f64) -> (f64, f64) {
     let square = theta * theta;
     if theta < 0.3 {
         // 1/12 + O(θ⁴) and −1/720 + O(θ²), from the series of α and β.
-        let second = 1.0 / 12.0 - square * square * (1.0 / 30_240.0 + square * (1.0 / 604_800.0 + square / 15_966_720.0));
+        let second =
+            1.0 / 12.0 - square * square * (1.0 / 30_240.0 + square * (1.0 / 604_800.0 + square / 15_966_720.0));
         let fourth = -1.0 / 720.0 - square * (1.0 / 15_120.0 + square * (1.0 / 403_200.0 + square / 11_975_040.0));
         return (second, fourth);
     }

@@ -6,6 +6,7 @@
 //! steps. The [`Report`] tells steps, rows, the time reached, and the residual of the energy balance.
 
 mod along;
+mod book;
 mod control;
 mod equation;
 mod error;

@@ -11,7 +11,11 @@ use crate::simulate::{RunError, Settings, System};
 use stepper::{Outcome, Stepper, Tolerance};
 
 #[doc(hidden)]
-pub fn prototype(system: &System, settings: &Settings, times: &[f64]) -> Result<(Vec<(Vec<f64>, Vec<f64>)>, [u64; 3]), RunError> {
+pub fn prototype(
+    system: &System,
+    settings: &Settings,
+    times: &[f64],
+) -> Result<(Vec<(Vec<f64>, Vec<f64>)>, [u64; 3]), RunError> {
     let Motion::Forward(forward) = &system.motion else { panic!("forward") };
     let rtol = settings.rtol;
     let mapped = MAP * rtol.powf(2.0 / 3.0);
@@ -27,7 +31,9 @@ pub fn prototype(system: &System, settings: &Settings, times: &[f64]) -> Result<
             delta: RADAU_NODES[0] * h,
             horizon: settings.end,
         };
-        laws.push(element.law.begin(&begin).map_err(|source| RunError::Kernel { element: element.name.clone(), source })?);
+        laws.push(
+            element.law.begin(&begin).map_err(|source| RunError::Kernel { element: element.name.clone(), source })?,
+        );
     }
     let mut stepper = Stepper::new(system, forward, tolerance, rtol);
     stepper.origin = origin;
@@ -38,7 +44,13 @@ pub fn prototype(system: &System, settings: &Settings, times: &[f64]) -> Result<
         while stepper.origin.t < target {
             let t = stepper.origin.t;
             let left = target - t;
-            let size = if h >= left * (1.0 - 1e-9) { left } else if h > 0.5 * left { 0.5 * left } else { h };
+            let size = if h >= left * (1.0 - 1e-9) {
+                left
+            } else if h > 0.5 * left {
+                0.5 * left
+            } else {
+                h
+            };
             match stepper.attempt(size, t + size, &laws)? {
                 Outcome::Diverged { iterations } => {
                     counts[1] += 1;
@@ -67,7 +79,8 @@ pub fn prototype(system: &System, settings: &Settings, times: &[f64]) -> Result<
                     let error = error.max(1e-10);
                     let mut factor = safety * error.powf(-p);
                     if h_old > 0.0 {
-                        factor = factor.min(safety * (size / h_old) * (f64::max(e_old, 1e-2) / (error * error)).powf(p));
+                        factor =
+                            factor.min(safety * (size / h_old) * (f64::max(e_old, 1e-2) / (error * error)).powf(p));
                     }
                     (h_old, e_old) = (size, error);
                     h = (size * factor.clamp(0.2, 8.0)).max(if size < h { h } else { 0.0 });

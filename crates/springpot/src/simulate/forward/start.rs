@@ -68,7 +68,8 @@ pub(super) fn origin(system: &System, forward: &Forward) -> Result<(Origin, Vec<
 fn solve_mass(system: &System, kinematics: &Kinematics, free: &[usize], x: &mut [f64]) {
     let (mass, n, count) = (crba(&system.model, kinematics), system.model.nv(), free.len());
     let mut lu = Lu::default();
-    if count > 0 && lu.factor(count, |m| (0..count * count).for_each(|k| m[k] = mass[free[k / count] * n + free[k % count]]))
+    if count > 0
+        && lu.factor(count, |m| (0..count * count).for_each(|k| m[k] = mass[free[k / count] * n + free[k % count]]))
     {
         lu.solve(x);
     }

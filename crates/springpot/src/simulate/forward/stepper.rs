@@ -240,7 +240,9 @@ impl<'a> Stepper<'a> {
     /// Goes on to the end of the step that was just attempted.
     pub(super) fn accept(&mut self, h: f64) {
         let cubic = std::array::from_fn(|p| {
-            (0..self.model.nv()).map(|j| (0..=MAX_NODES).map(|k| lagrange_row(k)[p] * self.regular[k][j]).sum()).collect()
+            (0..self.model.nv())
+                .map(|j| (0..=MAX_NODES).map(|k| lagrange_row(k)[p] * self.regular[k][j]).sum())
+                .collect()
         });
         self.last = Some((h, cubic));
         let end = &self.stages[MAX_NODES - 1];
@@ -263,7 +265,13 @@ impl<'a> Stepper<'a> {
         self.start.update_velocity(self.model, &self.origin.q, &self.origin.v);
         self.pairs.clear();
         for (element, force) in self.system.elements.iter().zip(&self.origin.forces) {
-            self.pairs.push(PairForce { from: element.from, to: element.to, force: *force, d_length: 0.0, d_rate: 0.0 });
+            self.pairs.push(PairForce {
+                from: element.from,
+                to: element.to,
+                force: *force,
+                d_length: 0.0,
+                d_rate: 0.0,
+            });
         }
         let (origin, slopes) = (&self.origin, &mut self.slopes);
         rnea_derivatives_into(self.model, &self.start, &origin.a, &self.pairs, &mut self.workspace, slopes);
@@ -321,7 +329,13 @@ impl<'a> Stepper<'a> {
         for (element, stage) in self.system.elements.iter().zip(&mut self.elements) {
             let count = element.inputs.len();
             for k in 0..=MAX_NODES {
-                let at = if k == 0 { t } else if k == MAX_NODES { t_end } else { t + RADAU_NODES[k - 1] * h };
+                let at = if k == 0 {
+                    t
+                } else if k == MAX_NODES {
+                    t_end
+                } else {
+                    t + RADAU_NODES[k - 1] * h
+                };
                 let values = &mut stage.inputs[k * count..(k + 1) * count];
                 element.inputs_at(at, values);
                 element.check_inputs(at, values)?;
@@ -503,7 +517,8 @@ impl<'a> Stepper<'a> {
     }
 
     /// Accelerations without what a singular start adds: a_i − s σ_i with s σ = −M⁻¹ Σ g F_singular.
-    fn collect_regular(&mut self) {        self.regular[0].copy_from_slice(&self.origin.a);
+    fn collect_regular(&mut self) {
+        self.regular[0].copy_from_slice(&self.origin.a);
         for i in 0..MAX_NODES {
             self.regular[i + 1].copy_from_slice(&self.stages[i].a);
         }
@@ -525,7 +540,9 @@ impl<'a> Stepper<'a> {
         let (n, free, slopes) = (self.model.nv(), &self.free, &self.slopes);
         let count = free.len();
         let mut mass = Lu::default();
-        mass.factor(count, |m| (0..count * count).for_each(|k| m[k] = slopes.d_a[free[k / count] * n + free[k % count]]));
+        mass.factor(count, |m| {
+            (0..count * count).for_each(|k| m[k] = slopes.d_a[free[k / count] * n + free[k % count]])
+        });
         self.elements
             .iter()
             .map(|element| {
@@ -598,11 +615,7 @@ impl<'a> Stepper<'a> {
 
     /// The size of the coordinate that velocity `k` moves: 1 for those of a floating joint.
     fn sizes(&self, k: usize) -> f64 {
-        if self.model.is_one_degree() {
-            self.origin.q[k].abs().max(self.stages[MAX_NODES - 1].q[k].abs())
-        } else {
-            1.0
-        }
+        if self.model.is_one_degree() { self.origin.q[k].abs().max(self.stages[MAX_NODES - 1].q[k].abs()) } else { 1.0 }
     }
 }
 

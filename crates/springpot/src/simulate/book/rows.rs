@@ -1,19 +1,19 @@
 //! Rows, and the balance of energies in them.
 
-use super::Run;
-use super::attempt::singular_force;
+use super::Book;
+use super::elements::singular_force;
 use crate::element::Element;
 use crate::fractional::Nodes;
 use crate::fractional::step::MAX_NODES;
 use crate::law::{Observation, Point, Power};
-use crate::simulate::RunError;
 use crate::simulate::ledger::{Balance, NodePower, singular_work, work};
-use crate::simulate::moment::Moment;
+use crate::simulate::moment::{Moment, Scratch};
 use crate::simulate::row::ElementRow;
+use crate::simulate::{RunError, System};
 
-impl Run<'_> {
+impl Book<'_> {
     /// Work of the actuators and losses of the joints from the start of the step to θ.
-    pub(super) fn work_until(&self, theta: f64) -> (f64, f64) {
+    pub(in crate::simulate) fn work_until(&self, theta: f64) -> (f64, f64) {
         let [from, .., to] = &self.moments;
         let (t, h) = (from.t, to.t - from.t);
         let mut actuators = work(&self.powers.actuators, h, theta);
@@ -34,21 +34,27 @@ impl Run<'_> {
     }
 
     /// The time of the next row, unless it is later than `until`.
-    pub(super) fn next_row_until(&self, until: f64) -> Option<f64> {
+    pub(in crate::simulate) fn next_row_until(&self, until: f64) -> Option<f64> {
         let rows = &self.settings.rows;
         (self.next_row < rows.count()).then(|| rows.at(self.next_row)).filter(|at| *at <= until)
     }
 
-    /// The rows in (t, to], the step just attempted.
-    pub(super) fn emit_rows(&mut self, t: f64, to: f64, on_break: bool) -> Result<(), RunError> {
+    /// The rows in (t, to], the step just worked out; `place` fills the moment at a time and θ inside the step.
+    pub(in crate::simulate) fn emit_rows(
+        &mut self,
+        t: f64,
+        to: f64,
+        on_break: bool,
+        place: &mut dyn FnMut(&System, &mut Scratch, f64, f64, &mut Moment) -> Result<(), RunError>,
+    ) -> Result<(), RunError> {
         while let Some(at) = self.next_row_until(to) {
             let mut moment = self.spare.take().unwrap_or_else(|| Moment::new(self.system));
+            let theta = if at == to { 1.0 } else { (at - t) / (to - t) };
             if at == to && !on_break {
                 moment.clone_from(&self.moments[MAX_NODES]);
             } else {
-                self.system.evaluate(at, at, &mut self.scratch, &mut moment)?;
+                place(self.system, &mut self.scratch, at, theta, &mut moment)?;
             }
-            let theta = if at == to { 1.0 } else { (at - t) / (to - t) };
             let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.element_row(e, theta, &moment)).collect();
             let (actuators, joints) = self.work_until(theta);
             self.write_row(&moment, &rows, actuators, joints)?;
@@ -58,7 +64,7 @@ impl Run<'_> {
     }
 
     /// Element `e` in a row at θ, whose moment is `moment`.
-    fn element_row(&self, e: usize, theta: f64, moment: &Moment) -> ElementRow {
+    pub(in crate::simulate) fn element_row(&self, e: usize, theta: f64, moment: &Moment) -> ElementRow {
         let element = &self.system.elements[e];
         let point = moment.elements[e].point(moment.t);
         let [from, .., to] = &self.moments;
@@ -68,14 +74,14 @@ impl Run<'_> {
     }
 
     /// The next row of an element with a named scheme.
-    pub(super) fn grid_row(&self, e: usize, point: &Point) -> ElementRow {
+    pub(in crate::simulate) fn grid_row(&self, e: usize, point: &Point) -> ElementRow {
         let value = self.grid[e].as_ref().and_then(|values| values.get(self.next_row)).copied();
         let observation = on_grid_observation(&self.system.elements[e], point, value.unwrap_or(f64::NAN));
         ElementRow { observation, dissipated: f64::NAN, input: f64::NAN }
     }
 
     /// An observation at θ with what the element has dissipated and taken in until then.
-    pub(super) fn with_ledger(&self, e: usize, theta: f64, observation: Observation) -> ElementRow {
+    pub(in crate::simulate) fn with_ledger(&self, e: usize, theta: f64, observation: Observation) -> ElementRow {
         let account = &self.accounts[e];
         if account.law.is_none() {
             return ElementRow { observation, dissipated: f64::NAN, input: f64::NAN };
@@ -90,7 +96,13 @@ impl Run<'_> {
     }
 
     /// The balance at a moment, `actuators` and `joints` being the work since the start of the step.
-    pub(super) fn balance(&self, moment: &Moment, rows: &[ElementRow], actuators: f64, joints: f64) -> Balance {
+    pub(in crate::simulate) fn balance(
+        &self,
+        moment: &Moment,
+        rows: &[ElementRow],
+        actuators: f64,
+        joints: f64,
+    ) -> Balance {
         let joints = self.joints + joints;
         Balance {
             kinetic: moment.kinetic,
@@ -102,7 +114,7 @@ impl Run<'_> {
         }
     }
 
-    pub(super) fn write_row(
+    pub(in crate::simulate) fn write_row(
         &mut self,
         moment: &Moment,
         rows: &[ElementRow],
@@ -124,6 +136,6 @@ impl Run<'_> {
 }
 
 /// An element whose derivative comes from a named scheme: its energies are unknown.
-pub(super) fn on_grid_observation(element: &Element, at: &Point, derivative: f64) -> Observation {
+pub(in crate::simulate) fn on_grid_observation(element: &Element, at: &Point, derivative: f64) -> Observation {
     Observation { derivative, force: element.law.force(at, derivative), stored: None }
 }
