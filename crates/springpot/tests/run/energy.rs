@@ -337,6 +337,7 @@ fn work_less_ledger(alpha: f64, at: usize, edit: &dyn Fn(&mut Value)) -> f64 {
             rate: &rate,
             inputs: &[],
             resolution: 1e-16,
+            singular: springpot::law::Singular::Value,
         };
         let response = law.respond(&step, &state);
         let weights = springpot::fractional::step::RADAU_WEIGHTS;
