@@ -1,6 +1,6 @@
 //! The equations of motion at one time, term by term.
 
-use super::{Report, RowTimes, RunError, Settings, State, Stop, System, along};
+use super::{Report, RowTimes, RunError, Settings, State, Stop, System, run};
 use crate::dynamics::{Kinematics, christoffel, coriolis, crba, gravity};
 use std::sync::atomic::Ordering;
 
@@ -157,7 +157,7 @@ impl System {
             }
             Ok(())
         };
-        let (Report { t_reached, .. }, outcome) = along(self, &Settings { rows, ..settings.clone() }, &mut keep, &stop);
+        let (Report { t_reached, .. }, outcome) = run(self, &Settings { rows, ..settings.clone() }, &mut keep, &stop);
         match (found, outcome) {
             (Some(row), _) => Ok(row),
             (None, Err(error)) => Err(error.into()),

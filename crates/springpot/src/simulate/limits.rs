@@ -1,6 +1,6 @@
 //! Limits of joints that a motion passes, seen in its rows.
 
-use super::{RowTimes, Settings, Stop, System, along};
+use super::{RowTimes, Settings, Stop, System, run};
 use crate::model::{JointKind, Limits, Model};
 use std::fmt;
 
@@ -152,7 +152,7 @@ impl System {
             Ok(())
         };
         // Stopped from the outset, it writes its first row and takes no step.
-        let _ = along(self, &settings, &mut keep, &Stop::new(true));
+        let _ = run(self, &settings, &mut keep, &Stop::new(true));
         if let Some(row) = first {
             return Ok(row);
         }

@@ -10,7 +10,7 @@ mod book;
 mod control;
 mod equation;
 mod error;
-pub mod forward;
+mod forward;
 mod ledger;
 mod limits;
 mod lu;
@@ -23,6 +23,7 @@ mod row_times;
 pub use along::along;
 pub use equation::{ElementTerm, Equation, EquationError};
 pub use error::RunError;
+pub use forward::forward;
 pub use limits::{LimitKind, LimitWatch, PassedLimit};
 pub use moment::FRICTION_SPEED;
 pub use pose::{ElementStart, Pose, State};
@@ -76,6 +77,9 @@ pub struct Report {
     pub steps: u64,
     /// Inner steps tried and not kept.
     pub rejected_steps: u64,
+    /// Newton iterations of a robot that moves by itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton_iterations: Option<u64>,
     /// Rows written.
     pub rows: u64,
     /// Time of the last complete row, s; `None` before the first.
@@ -100,6 +104,14 @@ pub trait Rows {
 impl<F: FnMut(&[f64]) -> std::io::Result<()>> Rows for F {
     fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
         self(values)
+    }
+}
+
+/// Runs `system` as its motion says: [`along`] a motion given in advance, or [`forward`].
+pub fn run(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
+    match &system.motion {
+        Motion::Prescribed(_) | Motion::GripperPath(_) => along(system, settings, rows, stop),
+        Motion::Forward(_) => forward(system, settings, rows, stop),
     }
 }
 

@@ -33,6 +33,8 @@ pub(super) struct Moment {
     pub(super) a: Vec<f64>,
     /// M a + C v + g and joint friction: the actuator forces were there no elements.
     pub(super) rigid: Vec<f64>,
+    /// Actuator forces that are known beforehand; the others follow from `rigid` and the elements.
+    pub(super) driven: Vec<Option<f64>>,
     /// Power lost in the joints' damping and friction, W.
     pub(super) joint_loss: f64,
     pub(super) kinetic: f64,
@@ -79,6 +81,7 @@ impl Moment {
             v: vec![0.0; n],
             a: vec![0.0; n],
             rigid: vec![0.0; n],
+            driven: vec![None; n],
             joint_loss: 0.0,
             kinetic: 0.0,
             potential: 0.0,
@@ -107,9 +110,24 @@ impl System {
         scratch: &mut Scratch,
         moment: &mut Moment,
     ) -> Result<(), RunError> {
-        moment.t = t;
         let wanted = self.motion.at(&self.model, t, &mut moment.q, &mut moment.v, &mut moment.a)?;
         self.require_finite(t, moment)?;
+        self.fill(t, t_inputs, wanted, scratch, moment)
+    }
+
+    /// Fills `moment`, whose q, v and a are there, for the time `t`, inputs taken at `t_inputs`.
+    ///
+    /// # Errors
+    /// [`RunError`] where an input is not finite or breaks a rule, or an element has no direction.
+    pub(super) fn fill(
+        &self,
+        t: f64,
+        t_inputs: f64,
+        wanted: Option<Wanted>,
+        scratch: &mut Scratch,
+        moment: &mut Moment,
+    ) -> Result<(), RunError> {
+        moment.t = t;
         let kinematics = &mut scratch.kinematics;
         kinematics.update_velocity(&self.model, &moment.q, &moment.v);
         rnea_into(&self.model, &moment.q, &moment.v, &moment.a, &[], &mut scratch.workspace, &mut moment.rigid);

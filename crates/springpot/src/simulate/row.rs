@@ -105,7 +105,7 @@ impl System {
                 .zip(&moment.elements)
                 .map(|(row, state)| generalized_force(row.observation.force, state.gradient[j]))
                 .sum();
-            row.push(moment.rigid[j] - from_elements);
+            row.push(moment.driven[j].unwrap_or(moment.rigid[j] - from_elements));
         }
         for (ElementRow { observation, dissipated, input }, state) in elements.iter().zip(&moment.elements) {
             let known = observation.stored.is_some();

@@ -3,7 +3,7 @@
 use super::layout::Layout;
 use super::{Options, Writers, push_field, push_fields};
 use crate::scenario::{Cases, SweptValue};
-use crate::simulate::{LimitWatch, PassedLimit, Report, RunError, System, along};
+use crate::simulate::{self, LimitWatch, PassedLimit, Report, RunError, System};
 use crate::table::{Statistics, push_number};
 use std::io;
 use std::sync::atomic::Ordering;
@@ -89,7 +89,7 @@ pub(super) fn run(
                 }
                 Ok(())
             };
-            let (report, outcome) = along(&system, &plan.settings(), &mut rows, options.stop);
+            let (report, outcome) = simulate::run(&system, &plan.settings(), &mut rows, options.stop);
             (report, why_no_ledger(&system, &report), watch.passed(), outcome.map_err(CaseError::Run))
         }
     };

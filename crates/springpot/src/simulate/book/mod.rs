@@ -65,6 +65,8 @@ pub(in crate::simulate) struct Book<'a> {
     pub(in crate::simulate) accounts: Vec<Account>,
     pub(in crate::simulate) steps: Vec<ElementStep>,
     pub(in crate::simulate) powers: StepPowers,
+    /// Whether actuators move the elements, as along a motion given in advance.
+    pub(in crate::simulate) takes_elements_work: bool,
     pub(in crate::simulate) grid: GridDerivatives,
     next_row: usize,
     row: Vec<f64>,
@@ -101,6 +103,7 @@ impl<'a> Book<'a> {
             accounts: system.elements.iter().map(|_| Account::default()).collect(),
             steps: system.elements.iter().map(element_step).collect(),
             powers: StepPowers::default(),
+            takes_elements_work: true,
             grid: Vec::new(),
             next_row: 0,
             row: Vec::new(),

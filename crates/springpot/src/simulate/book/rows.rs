@@ -19,7 +19,7 @@ impl Book<'_> {
         let mut actuators = work(&self.powers.actuators, h, theta);
         for (e, element) in self.system.elements.iter().enumerate() {
             let Some(state) = &self.accounts[e].law else { continue };
-            if element.law.singular(1.0, state) == 0.0 {
+            if !self.takes_elements_work || element.law.singular(1.0, state) == 0.0 {
                 continue;
             }
             let step = self.steps[e].law_step(t, h);

@@ -1,57 +1,86 @@
 //! The first moment and the first step.
 
-use super::stepper::{Origin, Tolerance, add_resistance, force_of};
-use crate::dynamics::{Kinematics, PairForce, Workspace, add_wrench, crba, rnea};
+use super::stepper::{Origin, Tolerance, add_resistance, force_at};
+use crate::dynamics::{Kinematics, PairForce, crba, rnea};
+use crate::element::Element;
 use crate::law::Point;
 use crate::motion::{Drive, Forward};
 use crate::simulate::lu::Lu;
 use crate::simulate::{RunError, System};
 
-/// Elements at t = 0.
+/// One element where a motion starts.
 pub(super) struct ElementStart {
-    pub(super) stroke: f64,
+    stroke: f64,
+    /// x(0) where it counts as different from 0, else 0, m.
     pub(super) jump: f64,
     gradient: Vec<f64>,
 }
 
-/// The start: prescribed joints where their signals say, accelerations from M a = τ − nle − Σ g F(0+), F without the share of a
-/// singular start; and a first step small enough for the layer at t = 0.
+/// The start: prescribed joints where their signals say, and accelerations.
 pub(super) fn origin(system: &System, forward: &Forward) -> Result<(Origin, Vec<ElementStart>), RunError> {
     let model = &system.model;
-    let (mut q, mut v, mut a) = (forward.q.clone(), forward.v.clone(), vec![0.0; model.nv()]);
+    let mut origin = Origin {
+        t: 0.0,
+        q: forward.q.clone(),
+        v: forward.v.clone(),
+        a: vec![0.0; model.nv()],
+        forces: vec![0.0; system.elements.len()],
+    };
+    for (j, drive) in model.own_joints().zip(&forward.drives) {
+        if matches!(drive, Drive::Locked) {
+            origin.v[model.v_range(j)].fill(0.0);
+        }
+    }
+    let elements = accelerate(system, forward, &mut origin, |element, point| {
+        element.law.start_derivative(point, element.derivative)
+    })?;
+    Ok((origin, elements))
+}
+
+/// Accelerations and forces of the elements at the origin's time, whatever came before: from M a = τ − nle − Σ g F with the
+/// `derivative` of each, without the share of a singular start.
+pub(super) fn accelerate(
+    system: &System,
+    forward: &Forward,
+    origin: &mut Origin,
+    derivative: impl Fn(&Element, &Point) -> f64,
+) -> Result<Vec<ElementStart>, RunError> {
+    let model = &system.model;
+    let Origin { t, q, v, a, forces } = origin;
+    let t = *t;
+    a.fill(0.0);
     let mut free = Vec::new();
     for (j, drive) in model.own_joints().zip(&forward.drives) {
         let (q, v, a) = (&mut q[model.q_range(j)], &mut v[model.v_range(j)], &mut a[model.v_range(j)]);
         match drive {
             Drive::Force(_) => free.extend(model.v_range(j)),
-            Drive::Prescribed(path) => path.at(0.0, q, v, a),
-            Drive::Locked => v.fill(0.0),
+            Drive::Prescribed(path) => path.at(t, q, v, a),
+            Drive::Locked => {}
         }
     }
-    let kinematics = Kinematics::at_velocity(model, &q, &v);
-    let (mut elements, mut forces, mut pairs) = (Vec::new(), Vec::new(), Vec::new());
-    for element in &system.elements {
+    let kinematics = Kinematics::at_velocity(model, q, v);
+    let (mut elements, mut pairs) = (Vec::new(), Vec::new());
+    for (element, known) in system.elements.iter().zip(forces) {
         let (pair, gradient) = crate::dynamics::pair(model, &kinematics, &element.from, &element.to);
         if pair.check().is_err() {
-            return Err(RunError::ZeroLength { t: 0.0, element: element.name.clone(), length: pair.length });
+            return Err(RunError::ZeroLength { t, element: element.name.clone(), length: pair.length });
         }
         let mut inputs = vec![Default::default(); element.inputs.len()];
-        element.inputs_at(0.0, &mut inputs);
-        element.check_inputs(0.0, &inputs)?;
+        element.inputs_at(t, &mut inputs);
+        element.check_inputs(t, &inputs)?;
         let stroke = pair.length - element.rest_length;
-        let point = Point { t: 0.0, stroke, rate: pair.rate, inputs: &inputs };
-        let derivative = element.law.start_derivative(&point, element.derivative);
-        let force = element.law.force(&point, derivative);
+        let point = Point { t, stroke, rate: pair.rate, inputs: &inputs };
+        let force = element.law.force(&point, derivative(element, &point));
         pairs.push(PairForce { from: element.from, to: element.to, force, d_length: 0.0, d_rate: 0.0 });
-        forces.push(force);
+        *known = force;
         elements.push(ElementStart { stroke, jump: element.jump(pair.length), gradient });
     }
-    let mut residual = rnea(model, &q, &v, &a, &pairs);
-    add_resistance(model, &v, &mut residual);
+    let mut residual = rnea(model, q, v, a, &pairs);
+    add_resistance(model, v, &mut residual);
     for (j, drive) in model.own_joints().zip(&forward.drives) {
         if let Drive::Force(signals) = drive {
             for (k, signal) in model.v_range(j).zip(signals) {
-                residual[k] -= force_of(signal, 0.0);
+                residual[k] -= force_at(model, j, signal, t)?;
             }
         }
     }
@@ -60,8 +89,7 @@ pub(super) fn origin(system: &System, forward: &Forward) -> Result<(Origin, Vec<
     for (&k, change) in free.iter().zip(change) {
         a[k] += change;
     }
-    let _ = (Workspace::<f64>::new(model), add_wrench::<f64>);
-    Ok((Origin { t: 0.0, q, v, a, forces }, elements))
+    Ok(elements)
 }
 
 /// x ← M⁻¹ x over the free velocities.

@@ -83,7 +83,7 @@ pub(super) struct Stage {
     pub(super) a: Vec<f64>,
     /// Tangent vector from the start of the step.
     xi: Vec<f64>,
-    xi_rate: Vec<f64>,
+    pub(super) xi_rate: Vec<f64>,
     kinematics: Kinematics,
 }
 
@@ -120,6 +120,8 @@ pub(super) struct Stepper<'a> {
     residual: Vec<f64>,
     tau: Vec<f64>,
     pairs: Vec<PairForce>,
+    /// Actuator forces of the free velocities at the nodes.
+    drives: [Vec<f64>; MAX_NODES],
     /// Ratio of successive increments, carried from step to step.
     contraction: f64,
 }
@@ -179,16 +181,17 @@ impl<'a> Stepper<'a> {
             residual: Vec::new(),
             tau: vec![0.0; nv],
             pairs: Vec::new(),
+            drives: Default::default(),
             contraction: 0.0,
         }
     }
 
     /// Tries the step of size `h`; nothing but scratch changes. Inputs at the end are taken at `t_end`.
-    pub(super) fn attempt(&mut self, h: f64, t_end: f64, laws: &[State]) -> Result<Outcome, RunError> {
+    pub(super) fn attempt(&mut self, h: f64, t_end: f64, laws: &[&State]) -> Result<Outcome, RunError> {
         self.take_inputs(h, t_end)?;
         self.linearise(h)?;
         self.foretell(h);
-        self.take_prescribed(h, t_end);
+        self.take_drives(h, t_end)?;
         self.place_stages(h);
         self.respond(h, laws);
         let (count, mut before, mut iterations) = (self.free.len(), f64::INFINITY, 0);
@@ -201,7 +204,7 @@ impl<'a> Stepper<'a> {
         }
         loop {
             iterations += 1;
-            self.fill_residual(h);
+            self.fill_residual();
             if self.residual.iter().any(|r| !r.is_finite()) {
                 return Ok(Outcome::Diverged { iterations });
             }
@@ -344,24 +347,28 @@ impl<'a> Stepper<'a> {
         Ok(())
     }
 
-    /// The joints that signals prescribe, at the nodes.
-    fn take_prescribed(&mut self, h: f64, t_end: f64) {
+    /// What drives the joints at the nodes.
+    fn take_drives(&mut self, h: f64, t_end: f64) -> Result<(), RunError> {
         let t = self.origin.t;
-        for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
-            for (stage, c) in self.stages.iter_mut().zip(RADAU_NODES) {
-                let at = if c == 1.0 { t_end } else { t + c * h };
-                let (q, v, a) = (
-                    &mut stage.q[self.model.q_range(j)],
-                    &mut stage.v[self.model.v_range(j)],
-                    &mut stage.a[self.model.v_range(j)],
-                );
+        for (stage, (c, drives)) in self.stages.iter_mut().zip(RADAU_NODES.into_iter().zip(&mut self.drives)) {
+            let at = if c == 1.0 { t_end } else { t + c * h };
+            drives.clear();
+            for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
+                let (range, v) = (self.model.q_range(j), self.model.v_range(j));
                 match drive {
-                    Drive::Force(_) => {}
-                    Drive::Prescribed(path) => path.at(at, q, v, a),
-                    Drive::Locked => a.fill(0.0),
+                    Drive::Force(signals) => {
+                        for signal in signals {
+                            drives.push(force_at(self.model, j, signal, at)?);
+                        }
+                    }
+                    Drive::Prescribed(path) => {
+                        path.at(at, &mut stage.q[range], &mut stage.v[v.clone()], &mut stage.a[v]);
+                    }
+                    Drive::Locked => stage.a[v].fill(0.0),
                 }
             }
         }
+        Ok(())
     }
 
     /// Positions and velocities of the stages from their accelerations, and the elements there.
@@ -424,25 +431,19 @@ impl<'a> Stepper<'a> {
     }
 
     /// The laws' answers to the stages.
-    fn respond(&mut self, h: f64, laws: &[State]) {
+    fn respond(&mut self, h: f64, laws: &[&State]) {
         for ((element, stage), law) in self.system.elements.iter().zip(&mut self.elements).zip(laws) {
             stage.response = element.law.respond(&stage.law_step(self.origin.t, h), law);
         }
     }
 
     /// RNEA(q_i, v_i, a_i) + resistance − drive, node by node, of the free velocities.
-    fn fill_residual(&mut self, h: f64) {
+    fn fill_residual(&mut self) {
         self.residual.clear();
         for i in 0..MAX_NODES {
             self.inverse_dynamics(i);
-            let t = self.origin.t + RADAU_NODES[i] * h;
-            for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
-                if let Drive::Force(signals) = drive {
-                    for (k, signal) in self.model.v_range(j).zip(signals) {
-                        self.residual.push(self.tau[k] - force_of(signal, t));
-                    }
-                }
-            }
+            let forces = self.free.iter().zip(&self.drives[i]);
+            self.residual.extend(forces.map(|(&k, drive)| self.tau[k] - drive));
         }
     }
 
@@ -536,7 +537,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// −M(q)⁻¹ g of every element at the start of the step: the accelerations that a unit of its force gives.
-    fn yield_of_elements(&self) -> Vec<Vec<f64>> {
+    pub(super) fn yield_of_elements(&self) -> Vec<Vec<f64>> {
         let (n, free, slopes) = (self.model.nv(), &self.free, &self.slopes);
         let count = free.len();
         let mut mass = Lu::default();
@@ -619,9 +620,13 @@ impl<'a> Stepper<'a> {
     }
 }
 
-/// The actuator force at t.
-pub(super) fn force_of(signal: &Signal, t: f64) -> f64 {
-    signal.at(t).value
+/// The actuator force of joint `j` at t.
+pub(super) fn force_at(model: &Model, j: usize, signal: &Signal, t: f64) -> Result<f64, RunError> {
+    let value = signal.at(t).value;
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(RunError::NotFinite { t, what: format!("tau.{}", model.joint_names()[j]), value })
 }
 
 /// Joint damping and smooth Coulomb friction, added to the actuator forces.
