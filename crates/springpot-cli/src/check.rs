@@ -79,7 +79,7 @@ fn describe(options: &CheckOptions) -> Result<Ending, Refusals> {
 /// The first case, and each other value of each sweep with the rest at their first values.
 fn looked_at(cases: &Cases, plan: &Plan) -> Vec<usize> {
     let most = match plan.motion {
-        MotionPlan::Prescribed { .. } => LOOKED_AT,
+        MotionPlan::Prescribed { .. } | MotionPlan::Forward(_) => LOOKED_AT,
         MotionPlan::GripperPath { .. } => PATHS_FOLLOWED,
     };
     let mut indices = vec![0];

@@ -26,12 +26,9 @@ impl Attitude {
         let (ez, ey, ex) = (Vec3([0.0, 0.0, 1.0]), turn * Vec3([0.0, 1.0, 0.0]), tilt * Vec3([1.0, 0.0, 0.0]));
         let carrier = ez * yaw.first;
         let tilted = carrier + ey * pitch.first;
-        let about = |axis: [f64; 3], angle: f64| Quaternion::from_rotation_vector(Vec3(axis) * angle);
         Self {
             rotation: Rotation::from_rpy([roll.value, pitch.value, yaw.value]),
-            quaternion: about([0.0, 0.0, 1.0], yaw.value)
-                * about([0.0, 1.0, 0.0], pitch.value)
-                * about([1.0, 0.0, 0.0], roll.value),
+            quaternion: Quaternion::from_rpy([roll.value, pitch.value, yaw.value]),
             omega: tilted + ex * roll.first,
             alpha: ez * yaw.second
                 + ey * pitch.second

@@ -356,6 +356,14 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     };
     let elements = elements::read(&root, &robot, time.as_ref().ok());
     let motion = motion::read(&root, &robot, time.as_ref().ok().map(|time| time.end));
+    if let (Ok(elements), Ok(MotionPlan::Forward(_))) = (&elements, &motion)
+        && let Some(element) = elements.iter().find(|element| element.scheme.is_some())
+    {
+        let message = format!("element {:?} has a `scheme`, but the robot moves by itself", element.name);
+        let refusal = element.place.refuse(RefusalKind::Rule, message);
+        let help = "leave the scheme out: named schemes need a motion that is given in advance";
+        return Err(ctx.refuse(refusal.help(help)));
+    }
     Ok(Plan {
         title: title?,
         gravity: robot.gravity,

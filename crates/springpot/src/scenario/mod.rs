@@ -39,6 +39,7 @@ mod cases;
 mod document;
 mod elements;
 mod figures;
+mod forward;
 mod motion;
 mod names;
 mod path;
@@ -58,8 +59,8 @@ pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
 pub use names::suggest;
 pub use plan::{
-    BodyPlaces, ElementPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan, SignalPlan, SolverPlan,
-    TimePlan, UrdfPlan,
+    BodyPlaces, DrivePlan, ElementPlan, ForwardPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan,
+    SignalPlan, SolverPlan, TimePlan, UrdfPlan,
 };
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use sweep::MAX_CASES;

@@ -1,6 +1,7 @@
-//! `[motion]`: prescribed joints and gripper paths.
+//! `[motion]`: prescribed joints and gripper paths; robots that move by themselves are read by `forward`.
 
 use super::document::shorten;
+use super::forward;
 use super::names;
 use super::path;
 use super::plan::{JointPlan, MotionPlan, PosePlan, SignalPlan};
@@ -11,7 +12,6 @@ use super::signals::{self, Wanted};
 use crate::law::Range;
 use crate::model::JointKind;
 use crate::model::urdf::FLOATING_BASE;
-use crate::signal::Signal;
 use std::collections::HashSet;
 
 const KINDS: [&str; 3] = ["prescribed", "gripper-path", "forward"];
@@ -20,24 +20,20 @@ const POSE_COLUMNS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 
 /// Reads `[motion]`.
 pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let right = "[motion] with kind = \"prescribed\" or \"gripper-path\"";
+    let right = "[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\"";
     let field = root.require("motion", right)?;
     if field.node.entries().is_none() {
         return Err(field.wrong_type("a table: [motion]"));
     }
     let Some(kind) = field.node.get("kind") else {
         let refusal = field.node.place.refuse(RefusalKind::Missing, "[motion] has no `kind`");
-        return Err(root.ctx.refuse(refusal.help("write kind = \"prescribed\" or kind = \"gripper-path\"")));
+        return Err(root.ctx.refuse(refusal.help("write kind = \"prescribed\", \"gripper-path\" or \"forward\"")));
     };
     let kind = Field { key: "kind", node: kind, owner: "[motion]".into(), ..field.clone() };
     match kind.text()? {
         "prescribed" => prescribed(&field, robot, end),
         "gripper-path" => gripper_path(&field, robot, end),
-        "forward" => {
-            let message = "is \"forward\", which this version does not run yet";
-            let help = "this version runs \"prescribed\" motions and \"gripper-path\"".to_owned();
-            Err(kind.refuse(RefusalKind::NotYet, message, Some(help)))
-        }
+        "forward" => forward::read(&field, robot, end),
         other => {
             let message = format!("is {:?}, which is no kind of motion", shorten(other));
             Err(kind.refuse(RefusalKind::UnknownName, message, Some(names::suggest(other, KINDS))))
@@ -57,13 +53,7 @@ fn prescribed(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<Motion
             let given = open_joints(&field, robot)?;
             let missing = joints.iter().map(|joint| joint.name).filter(|name| given.get(name).is_none());
             refuse_missing(&given, &missing.collect::<Vec<_>>(), "joints", &field)?;
-            all(joints.iter().map(|joint| {
-                let field = given.get(joint.name).ok_or(Refused)?;
-                match joint.kind {
-                    JointKind::Floating => pose(&field, end).map(|pose| JointPlan::Pose(Box::new(pose))),
-                    _ => signals::read(&field, wanted(joint.unit(), end)).map(JointPlan::Coordinate),
-                }
-            }))?
+            all(joints.iter().map(|joint| path_of_joint(&given.get(joint.name).ok_or(Refused)?, joint, end)))?
         }
         (None, Some(csv)) => from_csv(&table, &csv, &joints, end)?,
         (Some(_), Some(csv)) => {
@@ -80,6 +70,14 @@ fn prescribed(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<Motion
     Ok(MotionPlan::Prescribed { joints })
 }
 
+/// How one joint moves.
+pub(super) fn path_of_joint(field: &Field<'_>, joint: &OwnJoint<'_>, end: Option<f64>) -> Read<JointPlan> {
+    match joint.kind {
+        JointKind::Floating => pose(field, end).map(|pose| JointPlan::Pose(Box::new(pose))),
+        _ => signals::read(field, wanted(joint.unit(), end)).map(JointPlan::Coordinate),
+    }
+}
+
 /// The pose of a floating joint; what is left out is 0.
 fn pose(field: &Field<'_>, end: Option<f64>) -> Read<PosePlan> {
     if field.node.entries().is_none() {
@@ -87,12 +85,7 @@ fn pose(field: &Field<'_>, end: Option<f64>) -> Read<PosePlan> {
         return Err(field.wrong_type(right));
     }
     let table = field.table(&["x", "y", "z", "rpy"])?;
-    let zero = || SignalPlan {
-        signal: Signal::constant(0.0),
-        constant: Some(0.0),
-        written: "0".to_owned(),
-        place: field.node.place.clone(),
-    };
+    let zero = || forward::zero(field);
     let axis = |key| table.get(key).map_or_else(|| Ok(zero()), |field| signals::read(&field, wanted("m", end)));
     let position = [axis("x"), axis("y"), axis("z")];
     let rpy = table.get("rpy").map_or_else(|| Ok([zero(), zero(), zero()]), |field| rpy(&field, end));
@@ -101,7 +94,7 @@ fn pose(field: &Field<'_>, end: Option<f64>) -> Read<PosePlan> {
 }
 
 /// Opens a table whose keys are names of joints that have coordinates of their own.
-fn open_joints<'a>(field: &Field<'a>, robot: &Robot) -> Read<Table<'a>> {
+pub(super) fn open_joints<'a>(field: &Field<'a>, robot: &Robot) -> Read<Table<'a>> {
     let names: Vec<&str> = robot.own_joints().map(|joint| joint.name).collect();
     let reason = |key: &str| robot.why_no_coordinate(key).map(|why| (RefusalKind::Rule, why));
     Table::open_with(field.ctx, field.node, field.to_string(), &names, reason)

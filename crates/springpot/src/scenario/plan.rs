@@ -187,6 +187,32 @@ pub enum MotionPlan {
         /// Where the motion stands in the scenario.
         place: Place,
     },
+    /// The robot moves by itself.
+    Forward(Box<ForwardPlan>),
+}
+
+/// A motion that follows from the equations of motion.
+#[derive(Debug, Clone)]
+pub struct ForwardPlan {
+    /// q(0), in the order of q.
+    pub q: Vec<f64>,
+    /// v(0), in the order of v.
+    pub v: Vec<f64>,
+    /// The joints that have coordinates of their own, in the order of q.
+    pub drives: Vec<DrivePlan>,
+    /// Where the motion stands in the scenario.
+    pub place: Place,
+}
+
+/// What drives one joint.
+#[derive(Debug, Clone)]
+pub enum DrivePlan {
+    /// An actuator force for each of its velocities, N·m or N.
+    Force(Vec<SignalPlan>),
+    /// It moves as signals say.
+    Prescribed(JointPlan),
+    /// It stays where it starts.
+    Locked,
 }
 
 impl MotionPlan {
@@ -195,6 +221,7 @@ impl MotionPlan {
         match self {
             Self::Prescribed { .. } => "prescribed",
             Self::GripperPath { .. } => "gripper-path",
+            Self::Forward(_) => "forward",
         }
     }
 }

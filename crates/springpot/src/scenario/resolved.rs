@@ -1,7 +1,7 @@
 //! The plan as JSON, for the record of a run.
 
 use super::figures::{FigureKind, FigurePlan};
-use super::plan::{ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
+use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
 use crate::model::{Anchor, BodySpec, Limits, Mimic, Parent};
 use crate::simulate::RowTimes;
 use serde_json::{Map, Value, json};
@@ -115,6 +115,14 @@ impl Plan {
                     "guess": guess,
                 })
             }
+            MotionPlan::Forward(plan) => {
+                let drives: Map<String, Value> = self
+                    .own_joint_names()
+                    .zip(&plan.drives)
+                    .map(|(name, plan)| (name.to_owned(), drive(plan)))
+                    .collect();
+                json!({ "kind": "forward", "start": { "q": plan.q, "v": plan.v }, "joints": drives })
+            }
         }
     }
 }
@@ -138,6 +146,17 @@ fn limits(limits: &Limits) -> Value {
         .filter(|(_, limit)| limit.is_finite())
         .map(|(name, limit)| (name.to_owned(), json!(limit)))
         .collect()
+}
+
+fn drive(plan: &DrivePlan) -> Value {
+    match plan {
+        DrivePlan::Force(signals) => match &signals[..] {
+            [only] => json!({ "torque": signal(only) }),
+            several => json!({ "torque": several.iter().map(signal).collect::<Vec<_>>() }),
+        },
+        DrivePlan::Prescribed(plan) => json!({ "prescribed": joint(plan) }),
+        DrivePlan::Locked => json!("locked"),
+    }
 }
 
 fn joint(plan: &JointPlan) -> Value {

@@ -1,9 +1,9 @@
 //! From a plan to what the time loop runs.
 
-use super::plan::{ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan};
+use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan};
 use crate::element::Element;
 use crate::model::{Anchor, Model, Site};
-use crate::motion::{GripperPath, JointPath, Motion, PosePath, gripper_path::Task};
+use crate::motion::{Drive, Forward, GripperPath, JointPath, Motion, PosePath, gripper_path::Task};
 use crate::signal::Signal;
 use crate::simulate::{Settings, System};
 
@@ -60,11 +60,24 @@ impl Plan {
                 };
                 Motion::GripperPath(Box::new(GripperPath::new(&self.model, task, guess, self.time.end)))
             }
+            MotionPlan::Forward(plan) => Motion::Forward(Box::new(Forward {
+                q: plan.q.clone(),
+                v: plan.v.clone(),
+                drives: plan.drives.iter().map(drive).collect(),
+            })),
         }
     }
 
     fn site(&self, anchor: &Anchor) -> Site {
         self.model.resolve(anchor).expect("an anchor that was read")
+    }
+}
+
+fn drive(plan: &DrivePlan) -> Drive {
+    match plan {
+        DrivePlan::Force(signals) => Drive::Force(signals.iter().map(signal).collect()),
+        DrivePlan::Prescribed(joint) => Drive::Prescribed(path(joint)),
+        DrivePlan::Locked => Drive::Locked,
     }
 }
 

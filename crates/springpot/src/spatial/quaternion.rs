@@ -31,6 +31,12 @@ impl Quaternion {
         Self([x, y, z, cosine])
     }
 
+    /// The attitude Rz(yaw) Ry(pitch) Rx(roll), angles in rad; without a jump of sign where the angles have none.
+    pub fn from_rpy([roll, pitch, yaw]: [f64; 3]) -> Self {
+        let about = |axis: [f64; 3], angle: f64| Self::from_rotation_vector(Vec3(axis) * angle);
+        about([0.0, 0.0, 1.0], yaw) * about([0.0, 1.0, 0.0], pitch) * about([1.0, 0.0, 0.0], roll)
+    }
+
     /// The turn of at most π that leads to this attitude (of length 1), as axis times angle, rad.
     pub fn rotation_vector(self) -> Vec3 {
         let [x, y, z, w] = if self.0[3] < 0.0 { self.0.map(|c| -c) } else { self.0 };
