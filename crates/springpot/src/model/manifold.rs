@@ -19,8 +19,8 @@ impl Model {
         q
     }
 
-    /// q ⊕ v: the configuration after one second at the constant velocities `v`, which for a floating joint are a twist in
-    /// its own axes (p + R V ω-dependent shift, R exp \[ω\]×). All slices are nq, but `v`, which is nv.
+    /// q ⊕ v: the configuration after one second at the constant velocities `v`. A floating joint follows the twist (u, ω) in
+    /// its own axes, p + R V(ω) u and R exp \[ω\]×. `q` and `out` are nq, `v` is nv.
     ///
     /// Source: Blanco-Claraco, A tutorial on SE(3) transformation parameterizations and on-manifold optimization, 2010.
     pub fn integrate_into(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
