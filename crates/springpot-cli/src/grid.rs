@@ -177,22 +177,22 @@ mod tests {
     #[test]
     fn columns_line_up() {
         let expected = "\
-name                       kind          x
-left_shoulder_pitch_joint  revolute    1.5
+name                       kind           x
+left_shoulder_pitch_joint  revolute     1.5
 q\u{308}                          prismatic  -10
 ";
         assert_eq!(grid().without_empty_columns().text(None), expected);
-        assert_eq!(grid().without_empty_columns().text(Some(42)), expected);
+        assert_eq!(grid().without_empty_columns().text(Some(43)), expected);
     }
 
     #[test]
     fn names_are_cut_to_fit() {
         let expected = "\
-name         kind          x
-left_…joint  revolute    1.5
+name         kind           x
+left_…joint  revolute     1.5
 q\u{308}            prismatic  -10
 ";
-        assert_eq!(grid().without_empty_columns().text(Some(28)), expected);
+        assert_eq!(grid().without_empty_columns().text(Some(29)), expected);
         assert_eq!(cut("abcdef", 5), "ab…ef");
         assert_eq!(cut("abcdef", 6), "abcdef");
         // What is no name stays whole, whatever the width.
