@@ -2,7 +2,7 @@
 
 use crate::support::{ARM, FLOATING, arm_with, parse, parse_with};
 use serde_json::Value;
-use springpot::model::urdf::{FLOATING_BASE, Urdf, UrdfOptions};
+use springpot::model::urdf::{FLOATING_BASE, Urdf, UrdfOptions, UrdfWarningKind};
 use springpot::model::{JointKind, Limits, Model, Parent};
 use springpot::spatial::{Placement, Rotation, Vec3};
 use std::path::{Path, PathBuf};
@@ -192,4 +192,14 @@ fn the_root_may_be_called_world() {
     let text = ARM.replace("\"base\"", "\"world\"");
     let model = parse(&text).model([0.0; 3]).unwrap();
     assert_eq!(model.find_body("world"), Some(Parent::World));
+
+    let urdf = parse_with(&text, &FLOATING).unwrap();
+    assert_eq!((urdf.bodies[0].name.as_str(), urdf.root.name.as_str()), ("floating_base", "world"));
+    let told = urdf.warnings.iter().find(|warning| warning.kind == UrdfWarningKind::Renamed).unwrap().to_string();
+    assert!(told.contains("link \"world\" (line 2: called \"floating_base\" here)"), "{told}");
+    let inertial =
+        r#"<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
+    let heavy = text.replace("<link name=\"world\"/>", &format!("<link name=\"world\">{inertial}</link>"));
+    let model = parse_with(&heavy, &FLOATING).unwrap().model([0.0; 3]).unwrap();
+    assert_eq!((model.nv(), model.find_body("world")), (8, Some(Parent::World)));
 }

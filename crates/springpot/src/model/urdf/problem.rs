@@ -90,12 +90,11 @@ pub enum UrdfProblem {
         /// Line of the first one.
         first: usize,
     },
-    /// The name of the inertial frame on a link that is not the root on a fixed base.
-    #[error("a link is called \"world\", which is the inertial frame; {}", world_help(*.is_root))]
-    ReservedLink {
-        /// Whether it is the root link, asked to float.
-        is_root: bool,
-    },
+    /// The name of the inertial frame on a link that is not the root.
+    #[error(
+        "a link is called \"world\", which is the inertial frame; only the root link can have that name: rename it"
+    )]
+    ReservedLink,
     /// The name of the joint that lets the base float.
     #[error("a joint is called \"floating_base\", the name of the joint that lets the base float; rename it")]
     ReservedJoint,
@@ -314,14 +313,6 @@ fn root_help(root: &str) -> &'static str {
         "mujoco" => "; this is a MuJoCo file (MJCF), and only URDF is read",
         "Robot" | "ROBOT" => "; names are case-sensitive",
         _ => "",
-    }
-}
-
-fn world_help(is_root: bool) -> &'static str {
-    if is_root {
-        "it cannot float: leave out floating_base, or remove the link and the joint that hangs on it"
-    } else {
-        "only the root link can have that name: rename it"
     }
 }
 

@@ -15,6 +15,9 @@ use super::warning::UrdfWarningKind;
 use super::{BodyLines, FLOATING_BASE, RootLink, Urdf, UrdfOptions, joint, link, mimic};
 use crate::model::{BodySpec, JointKind, JointSpec, Parent};
 
+/// The inertial frame's name.
+const WORLD: &str = "world";
+
 /// Elements of `<robot>` that have no part in the dynamics.
 const UNUSED: [&str; 6] = ["transmission", "gazebo", "ros2_control", "sensor", "mujoco", "model_state"];
 /// Elements of other programs that join links or drive them, for which there is no place in a tree.
@@ -36,7 +39,7 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
     }
     let tree = Tree::of(&reader, &links, &joints)?;
     mimic::check(&reader, &joints)?;
-    check_reserved(&reader, &links, tree.root, options)?;
+    check_reserved(&reader, &links, tree.root)?;
     if options.floating_base {
         free_the_name(&mut reader, &mut joints)?;
     }
@@ -106,17 +109,26 @@ fn note_simulator<'a>(reader: &mut Reader<'a>, gazebo: Node<'a>) {
     }
 }
 
-fn check_reserved<'a>(
-    reader: &Reader<'a>,
-    links: &[LinkEntry<'a>],
-    root: usize,
-    options: &UrdfOptions,
-) -> Result<(), UrdfError> {
-    let world = links.iter().position(|link| link.name == "world");
-    match world.filter(|&link| link != root || options.floating_base) {
-        Some(world) => Err(reader.fail(links[world].node, UrdfProblem::ReservedLink { is_root: world == root })),
+fn check_reserved<'a>(reader: &Reader<'a>, links: &[LinkEntry<'a>], root: usize) -> Result<(), UrdfError> {
+    match links.iter().position(|link| link.name == WORLD).filter(|&link| link != root) {
+        Some(world) => Err(reader.fail(links[world].node, UrdfProblem::ReservedLink)),
         None => Ok(()),
     }
+}
+
+/// What a root link that floats is called: its name, but for "world", which is the inertial frame.
+fn floating_name<'a>(reader: &mut Reader<'a>, links: &[LinkEntry<'a>], root: usize) -> String {
+    let link = &links[root];
+    if link.name != WORLD {
+        return link.name.to_owned();
+    }
+    let mut free = FLOATING_BASE.to_owned();
+    while links.iter().any(|link| link.name == free) {
+        free.push('_');
+    }
+    let owner = Owner::Link(WORLD.to_owned());
+    reader.warnings.add(UrdfWarningKind::Renamed, &owner, reader.line(link.node), format!("called {free:?} here"));
+    free
 }
 
 /// Keeps the name of the floating joint free: a fixed joint, which has no coordinates to be named, gets another one.
@@ -155,7 +167,8 @@ fn assemble<'a>(
     let mut done = vec![(Parent::World, false); links.len()];
     if floats {
         let joint = JointSpec::floating(FLOATING_BASE, [0.0; 3]);
-        bodies.push(body(root, Parent::World, joint));
+        let name = floating_name(&mut reader, &links, tree.root);
+        bodies.push(BodySpec { name, ..body(root, Parent::World, joint) });
         body_lines.push(BodyLines { link: lines[tree.root], joint: lines[tree.root] });
         note_inertia(&mut reader, root, true, true)?;
         done[tree.root] = (Parent::Body(0), true);
