@@ -255,6 +255,23 @@ fn robots_show_names_and_scale() {
 }
 
 #[test]
+fn a_robot_that_floats_has_no_base() {
+    const PLINTH: &str = "#d9d9d9";
+    let floating = RobotDrawing { ground: None, ..arm() }.render().unwrap();
+    check(&floating);
+    assert!(arm().render().unwrap().svg.contains(PLINTH) && !floating.svg.contains(PLINTH));
+}
+
+#[test]
+fn robots_of_many_joints_get_more_room() {
+    let mut robot = arm();
+    let narrow = svg_size(&robot.render().unwrap().svg, "width");
+    robot.joints.extend(std::iter::repeat_n(JointMark { name: String::new(), ..robot.joints[0].clone() }, 38));
+    let wide = svg_size(&robot.render().unwrap().svg, "width");
+    assert!(wide > 1.7 * narrow && wide < 2.1 * narrow, "{narrow} {wide}");
+}
+
+#[test]
 fn degenerate_robots_still_make_a_figure() {
     check(&RobotDrawing::default().render().unwrap());
     let mut robot = arm();

@@ -180,6 +180,20 @@ mod tests {
     }
 
     #[test]
+    fn leaders_are_short_of_other_names() {
+        let mut obstacles = Obstacles::default();
+        obstacles.frame(Frame::sized([50.0, 0.0], [10.0, 5.0]));
+        assert_eq!(obstacles.crossed([0.0, 0.0], [100.0, 0.0]), TOUCHES);
+        assert_eq!(obstacles.crossed([0.0, 6.0], [100.0, 6.0]), 0.0);
+        // What a leader points at may have a frame about it.
+        assert_eq!(obstacles.crossed([0.0, 0.0], [55.0, 0.0]), 0.0);
+
+        let name = Frame::sized([100.0, 0.0], [10.0, 5.0]);
+        assert_eq!(leader(name, [50.0, 0.0], 8.0), Some([90.0, 0.0]));
+        assert_eq!(leader(name, [70.0, 0.0], 8.0), None);
+    }
+
+    #[test]
     fn labels_avoid_lines_and_each_other() {
         let font = Font::load().unwrap();
         let mut obstacles = Obstacles::default();

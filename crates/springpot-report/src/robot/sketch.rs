@@ -54,8 +54,8 @@ impl Camera {
         let [width, height] =
             BOX.map(|side| side * (robot.joints.len() as f64 / FEW_JOINTS).sqrt().clamp(1.0, LARGEST));
         let scale = (width / (high[0] - low[0])).min(height / (high[1] - low[1]));
-        // A robot of one point has no size to fill the box with.
-        Self { view, scale: if scale.is_finite() { scale } else { height } }
+        // A robot of one point, or none, has no size to fill the box with.
+        Self { view, scale: if scale.is_finite() && scale > 0.0 { scale } else { height } }
     }
 
     fn at(&self, point: Vector) -> Point {

@@ -100,7 +100,7 @@ fn samples(robot: &RobotDrawing, lines: &[[Vector; 2]]) -> Vec<Vector> {
     let joints = robot.joints.iter().map(|joint| joint.position);
     let fixed = robot.links.iter().filter(|link| link.name == WORLD).flat_map(|link| link.points.iter().copied());
     let all: Vec<Vector> = on_lines.chain(joints).chain(fixed).chain(robot.gripper).chain(robot.ground).collect();
-    let step = all.len().div_ceil(MOST_POINTS);
+    let step = all.len().div_ceil(MOST_POINTS).max(1);
     all.into_iter().step_by(step).collect()
 }
 

@@ -36,7 +36,7 @@ pub(crate) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a s
             (likeness, candidate)
         })
         .filter(|(likeness, _)| *likeness > 0.78)
-        .reduce(|best, next| if next.0 > best.0 { next } else { best })
+        .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate)
 }
 
@@ -92,6 +92,7 @@ mod tests {
         assert_eq!(nearest("rest_lenght", keys), Some("rest_length"));
         assert_eq!(nearest("Law", keys), Some("law"));
         assert_eq!(nearest("zzz", keys), None);
+        assert_eq!(nearest("joint2", ["panda_joint1", "panda_joint2", "joint3x"]), Some("panda_joint2"));
         assert_eq!(suggest("zzz", ["a", "b", "c"]), "there is a, b and c");
     }
 }

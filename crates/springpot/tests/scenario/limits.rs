@@ -143,7 +143,7 @@ fn csv_signals_are_checked() {
     };
     for (edits, words) in [
         ((JOINTS, "csv = ‸\"short.csv\""), "covers t from 0 s to 9.5 s, but the run needs 0 s to 10 s"),
-        ((JOINTS, "csv = ‸\"some.csv\""), "leaves out the joints q2, q3"),
+        ((JOINTS, "csv = ‸\"some.csv\""), "leaves out the columns q2, q3"),
         ((JOINTS, "csv = ‸\"none.csv\""), "cannot be read"),
         (("T = \"25 degC\"", "T = { csv = \"some.csv\", column = ‸\"TT\" }"), "did you mean `T`?"),
         (("T = \"25 degC\"", "T = ‸{ csv = \"some.csv\", column = \"T\" }"), "25 K? write unit = \"degC\""),

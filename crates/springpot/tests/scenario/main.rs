@@ -1,8 +1,10 @@
 //! Scenario files: plans, sweeps, refusals, limits, broken texts.
 
 mod fuzz;
+mod joints;
 mod limits;
 mod plan;
 mod refusals;
 mod support;
 mod sweeps;
+mod urdf;

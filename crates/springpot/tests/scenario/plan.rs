@@ -1,6 +1,6 @@
 //! The example of the format, whole: what its plan holds.
 
-use crate::support::{EXAMPLE, cases, catalog, edited, parameter, parse, single};
+use crate::support::{EXAMPLE, cases, catalog, coordinates, edited, parameter, parse, single};
 use springpot::law::Derivative;
 use springpot::model::{Anchor, JointKind, Parent};
 use springpot::scenario::{FigureKind, MotionPlan, SweptValue};
@@ -61,7 +61,7 @@ fn the_example_is_planned_whole() {
     assert_eq!(strut.derivative, Derivative::RiemannLiouville);
     assert_eq!(strut.scheme, None);
 
-    let MotionPlan::Prescribed { joints } = &plan.motion else { panic!("prescribed") };
+    let joints = coordinates(&plan);
     let written: Vec<&str> = joints.iter().map(|joint| joint.written.as_str()).collect();
     assert_eq!(written, ["0", "0.1*sin(8*t)", "0.1*t"]);
     assert_eq!(joints[0].constant, Some(0.0));
@@ -163,7 +163,7 @@ fn joints_take_quantities_of_their_kind() {
     assert_eq!((plan.bodies[0].joint.damping, plan.bodies[0].joint.friction), (2.0, 3.0));
     assert_eq!((plan.bodies[1].joint.damping, plan.bodies[1].joint.friction), (0.1, 0.2));
     assert_eq!(plan.bodies[0].joint.rpy[2], std::f64::consts::PI);
-    let MotionPlan::Prescribed { joints } = &plan.motion else { panic!("prescribed") };
+    let joints = coordinates(&plan);
     assert_eq!(joints[0].constant, Some(0.05));
 }
 
@@ -235,7 +235,7 @@ fn signals_come_from_tables_and_csv_files() {
     std::fs::write(folder.path().join("arm.toml"), text).unwrap();
     let scenario = springpot::scenario::Scenario::read(folder.path().join("arm.toml")).unwrap();
     let plan = scenario.cases(&catalog()).unwrap().plan(0).unwrap();
-    let MotionPlan::Prescribed { joints } = &plan.motion else { panic!("prescribed") };
+    let joints = coordinates(&plan);
     assert_eq!(joints.len(), 3);
     assert_eq!(joints[1].signal.at(0.0).value, 0.5);
     assert_eq!(plan.elements[0].inputs[0].signal.at(0.0).value, 293.15);

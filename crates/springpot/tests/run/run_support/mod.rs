@@ -35,9 +35,9 @@ impl Run {
         self.column("t")
     }
 
-    /// Columns `PREFIX.JOINT` of the robot's joints, in order.
+    /// What follows `v.` in the columns of the velocities, in order: the names of joints of one degree.
     pub(crate) fn joints(&self) -> Vec<String> {
-        self.names.iter().filter_map(|name| name.strip_prefix("q.")).map(str::to_owned).collect()
+        self.names.iter().filter_map(|name| name.strip_prefix("v.")).map(str::to_owned).collect()
     }
 
     /// Inner steps tried.

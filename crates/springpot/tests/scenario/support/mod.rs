@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test uses its share")]
 
 use springpot::law::Catalog;
-use springpot::scenario::{Cases, Plan, RefusalKind, Refusals, Scenario};
+use springpot::scenario::{Cases, JointPlan, MotionPlan, Plan, RefusalKind, Refusals, Scenario, SignalPlan};
 
 /// The example of the format, as the documentation shows it.
 pub(crate) const EXAMPLE: &str = include_str!("thermoviscoelastic.toml");
@@ -78,4 +78,16 @@ pub(crate) fn parameter(plan: &Plan, name: &str) -> f64 {
     let element = &plan.elements[0];
     let at = element.law.params.iter().position(|param| param.name == name).expect("a parameter of the law");
     element.parameters[at]
+}
+
+/// The signals of a prescribed motion of joints of one degree.
+pub(crate) fn coordinates(plan: &Plan) -> Vec<&SignalPlan> {
+    let MotionPlan::Prescribed { joints } = &plan.motion else { panic!("prescribed") };
+    fn of_one_degree(joint: &JointPlan) -> &SignalPlan {
+        match joint {
+            JointPlan::Coordinate(signal) => signal,
+            JointPlan::Pose(_) => panic!("a floating joint"),
+        }
+    }
+    joints.iter().map(of_one_degree).collect()
 }
