@@ -2,6 +2,7 @@
 
 use crate::support::{Ended, Place, numbers, testdata};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::process::Stdio;
 
@@ -47,15 +48,17 @@ const COMPARED: [(&str, &str, f64); 15] = [
     ("pose", "", 1e-12),
 ];
 
-/// Compares to `tolerance` of the largest reference value; returns how many numbers were compared.
-fn close(what: &str, computed: &Value, reference: &Value, tolerance: f64) -> usize {
+/// Compares to `tolerance` of the largest reference value; returns how many numbers were compared, and the worst error.
+fn close(what: &str, computed: &Value, reference: &Value, tolerance: f64) -> (usize, f64) {
     let (computed, reference) = (numbers(computed), numbers(reference));
     assert_eq!(computed.len(), reference.len(), "{what}");
     let largest = reference.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let mut worst = 0.0_f64;
     for (k, (c, r)) in computed.iter().zip(&reference).enumerate() {
         assert!((c - r).abs() <= tolerance * largest, "{what}[{k}]: {c} instead of {r}");
+        worst = worst.max((c - r).abs() / largest.max(f64::MIN_POSITIVE));
     }
-    reference.len()
+    (reference.len(), worst)
 }
 
 /// The reference has the force index first: [c][a][b].
@@ -88,7 +91,7 @@ fn read(file: &str) -> Value {
 #[test]
 fn all_reference_robots_in_all_states() {
     let place = Place::new();
-    let mut total = 0;
+    let (mut total, mut worst) = (0, BTreeMap::new());
     for Reference { file, urdf, flags, states: count } in REFERENCES {
         let reference = read(&format!("multibody/{file}.json"));
         let (joints, states) = input(&reference);
@@ -101,24 +104,23 @@ fn all_reference_robots_in_all_states() {
         for (computed, reference) in computed.iter().zip(reference["states"].as_array().unwrap()) {
             let n = computed["rnea"].as_array().unwrap().len();
             let mut seen = 0;
+            let mut compare = |key: &'static str, computed: &Value, reference: &Value, tolerance: f64| {
+                let (count, error) = close(&format!("{file} {key}"), computed, reference, tolerance);
+                seen += count;
+                let known: &mut f64 = worst.entry(key).or_default();
+                *known = known.max(error);
+            };
             for (key, of_reference, tolerance) in COMPARED {
-                let what = format!("{file} {key}");
-                seen += match key {
-                    "pose" => {
-                        close(&what, &computed["pose"]["R"], &reference["ee_R"], tolerance)
-                            + close(&what, &computed["pose"]["p"], &reference["ee_p"], tolerance)
-                    }
-                    _ => close(&what, &computed[key], &reference[of_reference], tolerance),
-                };
+                if key == "pose" {
+                    compare("pose R", &computed["pose"]["R"], &reference["ee_R"], tolerance);
+                    compare("pose p", &computed["pose"]["p"], &reference["ee_p"], tolerance);
+                } else {
+                    compare(key, &computed[key], &reference[of_reference], tolerance);
+                }
             }
             let with_christoffel = !reference["christoffel1"].is_null();
             if with_christoffel {
-                seen += close(
-                    &format!("{file} christoffel"),
-                    &moved(&computed["christoffel"]),
-                    &reference["christoffel1"],
-                    1e-12,
-                );
+                compare("christoffel", &moved(&computed["christoffel"]), &reference["christoffel1"], 1e-12);
             }
             let symbols = if with_christoffel { n * n * n } else { 0 };
             assert_eq!(seen, 7 * n * n + symbols + 3 * n + 6 * n + 9 + 3 + 1 + 1 + 3, "{file}");
@@ -126,6 +128,9 @@ fn all_reference_robots_in_all_states() {
             assert_eq!(keys, COMPARED.len() + usize::from(!computed["christoffel"].is_null()), "{file}");
             total += seen;
         }
+    }
+    for (key, error) in worst {
+        println!("{key:12} {error:.1e}");
     }
     assert_eq!(total, 76_488);
 }
