@@ -5,6 +5,7 @@
 mod accuracy;
 mod accuracy_laws;
 mod energy;
+mod equation;
 mod floating;
 mod gripper;
 mod kinks;
