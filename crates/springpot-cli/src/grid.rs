@@ -77,7 +77,7 @@ impl Grid {
             let mut line = String::new();
             for (c, (field, column)) in row.iter().zip(&self.columns).enumerate() {
                 let width = widths[c];
-                let field = cut_behind(field, width, heads[c]);
+                let field = cut(field, width, heads[c]);
                 let blanks = " ".repeat(width - width_of(&field));
                 match column.set {
                     Set::Number => line.push_str(&format!("{blanks}{field}")),
@@ -112,7 +112,7 @@ impl Grid {
             return middle;
         }
         let different = |head: &usize| {
-            let texts: HashSet<String> = long.iter().map(|field| cut_behind(field, width, *head)).collect();
+            let texts: HashSet<String> = long.iter().map(|field| cut(field, width, *head)).collect();
             texts.len()
         };
         // Of equally good ones the one nearest to the middle.
@@ -146,13 +146,8 @@ pub(crate) fn clean(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
-/// A text with its middle left out where it is too long: names differ at their ends.
-pub(crate) fn cut(text: &str, width: usize) -> String {
-    cut_behind(text, width, width.saturating_sub(1).div_ceil(2))
-}
-
 /// A text of which `head` characters are kept before what is left out, where it is too long.
-fn cut_behind(text: &str, width: usize, head: usize) -> String {
+fn cut(text: &str, width: usize, head: usize) -> String {
     if width_of(text) <= width {
         return text.to_owned();
     }
@@ -177,24 +172,24 @@ mod tests {
     #[test]
     fn columns_line_up() {
         let expected = "\
-name                       kind          x
-left_shoulder_pitch_joint  revolute    1.5
+name                       kind           x
+left_shoulder_pitch_joint  revolute     1.5
 q\u{308}                          prismatic  -10
 ";
         assert_eq!(grid().without_empty_columns().text(None), expected);
-        assert_eq!(grid().without_empty_columns().text(Some(42)), expected);
+        assert_eq!(grid().without_empty_columns().text(Some(43)), expected);
     }
 
     #[test]
     fn names_are_cut_to_fit() {
         let expected = "\
-name         kind          x
-left_…joint  revolute    1.5
+name         kind           x
+left_…joint  revolute     1.5
 q\u{308}            prismatic  -10
 ";
-        assert_eq!(grid().without_empty_columns().text(Some(28)), expected);
-        assert_eq!(cut("abcdef", 5), "ab…ef");
-        assert_eq!(cut("abcdef", 6), "abcdef");
+        assert_eq!(grid().without_empty_columns().text(Some(29)), expected);
+        assert_eq!(cut("abcdef", 5, 2), "ab…ef");
+        assert_eq!(cut("abcdef", 6, 2), "abcdef");
         // What is no name stays whole, whatever the width.
         assert!(grid().text(Some(5)).contains("prismatic"));
     }

@@ -75,8 +75,8 @@ pub(crate) fn refuse_urdf_flags(options: &RobotOptions) -> Result<(), Refused> {
         ("--package-path", !options.package_path.is_empty(), "package_path = [\"DIR\"]"),
     ];
     let Some((flag, _, key)) = given.into_iter().find(|(_, given, _)| *given) else { return Ok(()) };
-    let file = options.file.display();
-    diagnostic::error(format!("{flag} is for URDF files; {file} is a scenario, whose [robot] says {key}"));
+    let message = format!("{flag} is for URDF files, and {} is a scenario", options.file.display());
+    diagnostic::error_with_help(message, format!("write {key} beside urdf in its [robot]"));
     Err(Refused)
 }
 

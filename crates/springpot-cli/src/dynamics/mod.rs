@@ -72,7 +72,7 @@ fn find_frame(robot: &Robot, name: &str) -> Result<Frame, Refused> {
     found.ok_or_else(|| {
         let bodies = robot.bodies.iter().map(|body| body.name.as_str());
         let joints = robot.bodies.iter().map(|body| body.joint.name.as_str());
-        let names: Vec<&str> = bodies.chain(joints).collect();
+        let names: Vec<&str> = bodies.chain(joints).chain([robot.base.0.as_str()]).collect();
         let message = format!("--frame {name:?}: the robot has no link and no joint of that name");
         diagnostic::error_with_help(message, suggest(name, names.iter().copied()));
         Refused

@@ -236,7 +236,63 @@ fn quaternion_warning(robot: &Robot, found: &[(usize, usize, f64)]) -> Option<St
 
 #[cfg(test)]
 mod tests {
-    use super::normalise;
+    use super::{Source, States, normalise, read};
+    use crate::arguments::RobotOptions;
+    use crate::robot::{self, Robot};
+    use proptest::prelude::*;
+    use std::sync::Arc;
+
+    fn floating_pendulum() -> Robot {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../testdata/multibody/double_pendulum.urdf");
+        let options =
+            RobotOptions { file: file.into(), floating_base: true, ignore_mimic: false, package_path: Vec::new() };
+        robot::read(&options, &[]).unwrap()
+    }
+
+    const STATES: &str = r#"{"joints": ["joint2", "floating_base", "joint1"],
+ "states": [{"q": [0.1, 1, 2, 3, 0, 0, 0, 1e0, -0.2], "v": [1, 2, 3, 4, 5, 6, 7, 8],
+   "a": [0, 0, 0, 0, 0, 0, 0, 0], "tau": [8, 7, 6, 5, 4, 3, 2, 1]}]}"#;
+
+    #[test]
+    fn blocks_go_to_their_joints() {
+        let source = Arc::new(Source { name: String::new(), text: STATES.into() });
+        let States { order, states, warnings } = read(&floating_pendulum(), &source).unwrap();
+        assert_eq!(order.joints, ["joint2", "floating_base", "joint1"]);
+        assert_eq!(states[0].q, [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0, -0.2, 0.1]);
+        assert_eq!(states[0].v, [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 1.0]);
+        assert_eq!(states[0].tau, [7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0, 8.0]);
+        assert!(warnings.is_empty());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn broken_files_are_refused_with_a_place(
+            edits in prop::collection::vec((any::<prop::sample::Index>(), 0..4usize, 0..16usize), 1..4),
+        ) {
+            const PIECES: [&str; 16] =
+                ["", "\"", "[", "]", "{", "}", ",", ":", "1e999", "NaN", "null", "\"v\"", "ä", "\\u0000", "-", "\n"];
+            let mut text = STATES.to_owned();
+            for (at, length, piece) in edits {
+                let at = at.index(text.len() + 1);
+                let end = (at + length).min(text.len());
+                if text.is_char_boundary(at) && text.is_char_boundary(end) {
+                    text.replace_range(at..end, PIECES[piece]);
+                }
+            }
+            let source = Arc::new(Source { name: "states.json".into(), text: text.as_str().into() });
+            match read(&floating_pendulum(), &source) {
+                Ok(States { states, .. }) => {
+                    prop_assert!(states.iter().all(|s| s.q.len() == 9 && s.q.iter().all(|x| x.is_finite())));
+                }
+                Err(refusals) => {
+                    let refusal = refusals.first().unwrap();
+                    prop_assert!(text.get(refusal.span.clone()).is_some(), "{refusal}");
+                    prop_assert!(!refusal.message.is_empty() && refusal.line >= 1 && refusal.column >= 1);
+                }
+            }
+        }
+    }
 
     #[test]
     fn quaternions_of_any_size_are_normalised() {

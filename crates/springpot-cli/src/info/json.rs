@@ -124,7 +124,7 @@ pub(super) fn text(robot: &Robot, file: &Path) -> String {
         links: robot.bodies.iter().map(link).collect(),
         warnings: robot.warnings.iter().map(warning).collect(),
     };
-    let mut text = serde_json::to_string_pretty(&info).expect("names are text and numbers are numbers or null");
+    let mut text = serde_json::to_string(&info).expect("names are text and numbers are numbers or null");
     text.push('\n');
     text
 }

@@ -4,7 +4,7 @@ mod json;
 mod tables;
 
 use crate::arguments::InfoOptions;
-use crate::grid::{clean, cut, width_of};
+use crate::grid::{clean, width_of};
 use crate::numbers::brief;
 use crate::robot::{Refused, Robot};
 use crate::{Ending, robot, terminal};
@@ -12,7 +12,7 @@ use springpot::model::JointKind;
 
 /// Columns of the words that lead a line.
 const LEAD: usize = 10;
-/// Most columns for the name of what carries other links.
+/// Names of what carries other links stand on a line of their own where they are wider.
 const WIDEST_CARRIER: usize = 24;
 
 pub(crate) fn info(options: &InfoOptions) -> Ending {
@@ -53,13 +53,18 @@ fn text(robot: &Robot) -> String {
     }
     text.push_str(&section("joints that follow others", "  ", tables::followers(robot), lines));
     let frames = tables::frames(robot);
-    let longest = frames.iter().map(|(carrier, _)| width_of(carrier)).max().unwrap_or(0).min(WIDEST_CARRIER);
+    let widths = frames.iter().map(|(carrier, _)| width_of(carrier)).filter(|width| *width <= WIDEST_CARRIER);
+    let widest = widths.max().unwrap_or(0);
     if !frames.is_empty() {
         text.push_str("\nlinks on fixed joints, behind what carries them\n");
     }
     for (carrier, links) in frames {
-        let carrier = if width.is_some() { cut(&carrier, longest) } else { carrier };
-        text.push_str(&terminal::hanging(&format!("  {carrier:<longest$}  "), &links, lines));
+        if width_of(&carrier) <= widest {
+            text.push_str(&terminal::hanging(&format!("  {carrier:<widest$}  "), &links, lines));
+        } else {
+            text.push_str(&format!("  {carrier}\n"));
+            text.push_str(&terminal::hanging(&" ".repeat(widest + 4), &links, lines));
+        }
     }
     let warnings = robot.warnings.iter().map(|warning| clean(&warning.to_string())).collect();
     text.push_str(&section("not used or assumed", "- ", warnings, lines));

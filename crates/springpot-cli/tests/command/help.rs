@@ -7,9 +7,14 @@ fn help_is_where_it_is_looked_for() {
     let place = Place::new();
     let help = place.done(&["--help"]).stdout;
     assert_eq!(place.done(&["help"]).stdout, help);
-    for line in
-        ["Usage: springpot <COMMAND>", "  run    Run a scenario", "  check  Read and check", "Exit codes: 0 done"]
-    {
+    for line in [
+        "Usage: springpot <COMMAND>",
+        "  run       Run a scenario",
+        "  check     Read and check",
+        "  info      Describe a robot",
+        "  dynamics  Compute the dynamics",
+        "Exit codes: 0 done",
+    ] {
         assert!(help.contains(line), "{help}");
     }
     let nothing = place.springpot(&[]);
@@ -19,6 +24,22 @@ fn help_is_where_it_is_looked_for() {
     for (command, options) in [
         ("run", &["--set <PATH=VALUE>", "--out <DIR>", "--jobs <N>", "--no-figures", "--quiet"][..]),
         ("check", &["--set <PATH=VALUE>", "--quiet"]),
+        ("info", &["--json", "--floating-base", "--ignore-mimic", "--package-path <DIR>"]),
+        (
+            "dynamics",
+            &[
+                "--states <FILE>",
+                "--christoffel",
+                "--frame <NAME>",
+                "--at <TIME>",
+                "--case <N>",
+                "--json",
+                "--set <PATH=VALUE>",
+                "--floating-base",
+                "--ignore-mimic",
+                "--package-path <DIR>",
+            ],
+        ),
     ] {
         let help = place.done(&[command, "--help"]).stdout;
         assert_eq!(place.done(&["help", command]).stdout, help);
@@ -41,6 +62,12 @@ fn mistyped_commands_get_a_suggestion() {
         (&["run", "arm.toml", "--jobs", "many"], "invalid value 'many' for '--jobs <N>'"),
         (&["run", "arm.toml", "--out", ""], "a value is required for '--out <DIR>'"),
         (&["run", "arm.toml", "other.toml"], "unexpected argument 'other.toml'"),
+        (&["dynamics", "arm.toml"], "<--states <FILE>|--at <TIME>>"),
+        (&["dynamics", "arm.toml", "--at", "1", "--states", "s.json"], "cannot be used with"),
+        (&["dynamics", "arm.toml", "--at", "1", "--christoffel"], "cannot be used with"),
+        (&["dynamics", "arm.toml", "--at", "1", "--frame", "arm"], "cannot be used with"),
+        (&["dynamics", "arm.toml", "--states", "s.json", "--case", "1"], "cannot be used with"),
+        (&["dynamics", "arm.toml", "--at", "1", "--case", "-1"], "'-1'"),
     ] {
         let ended = place.springpot(arguments);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{arguments:?}");

@@ -122,6 +122,20 @@ impl Place {
     }
 }
 
+/// A file of testdata/.
+pub(crate) fn testdata(file: &str) -> String {
+    format!("{}/../../testdata/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// All numbers of nested arrays, in their order; decimal texts count as numbers.
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(items) => items.iter().flat_map(numbers).collect(),
+        Value::String(text) => vec![text.parse().unwrap()],
+        value => vec![value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))],
+    }
+}
+
 /// How the program ended and what it said.
 #[derive(Debug)]
 pub(crate) struct Ended {

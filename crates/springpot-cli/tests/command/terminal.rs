@@ -47,3 +47,33 @@ fn a_long_run_shows_how_far_it_is() {
     let short = shown(&place, "", &["run", "arm.toml"]).unwrap();
     assert!(!short.contains('%') && short.contains("5 rows, "), "{short}");
 }
+
+#[test]
+fn wide_names_do_not_break_tables() {
+    let place = Place::new();
+    let joint = |side: &str, part: &str, parent: &str| {
+        let link = format!("{side}_gripper_of_the_upper_arm_{part}_finger_link");
+        format!(
+            "<link name=\"{link}\"><inertial><mass value=\"0.125\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" \
+             iyz=\"0\"/></inertial></link><link name=\"{side}_{part}_a_frame_with_a_name_that_is_longer_than_the_terminal_is_wide\"/>\
+             <joint name=\"{side}_fixed_{part}\" type=\"fixed\"><parent link=\"{link}\"/>\
+             <child link=\"{side}_{part}_a_frame_with_a_name_that_is_longer_than_the_terminal_is_wide\"/></joint>\
+             <joint name=\"{side}_gripper_of_the_upper_arm_{part}_finger_joint\" type=\"revolute\"><parent link=\"{parent}\"/>\
+             <child link=\"{link}\"/><axis xyz=\"0 0 1\"/><limit lower=\"-1.25\" upper=\"2.5\" velocity=\"3\" effort=\"4\"/>\
+             <dynamics damping=\"0.1\"/></joint>"
+        )
+    };
+    let joints: String = ["left", "right"]
+        .into_iter()
+        .flat_map(|side| ["inner", "outer"].map(|part| joint(side, part, "base")))
+        .collect();
+    place.write("wide.urdf", format!("<robot name=\"wide\"><link name=\"base\"/>{joints}</robot>"));
+    let Some(text) = shown(&place, "NO_COLOR=1", &["info", "wide.urdf"]) else { return };
+    let text = text.replace('\r', "");
+    let tables: Vec<&str> =
+        text.lines().take_while(|line| !line.starts_with("links on fixed")).map(str::trim_end).collect();
+    assert!(text.contains("\n  right_gripper_of_the_upper_arm_outer_finger_link\n    right_outer_a_frame"), "{text}");
+    assert!(tables.len() > 14 && tables.iter().all(|line| line.chars().count() <= 60), "{text}");
+    // A pipe takes whole names.
+    assert!(place.done(&["info", "wide.urdf"]).stdout.contains("right_gripper_of_the_upper_arm_outer_finger_joint  "));
+}

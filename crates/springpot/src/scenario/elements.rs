@@ -70,6 +70,11 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     {
         let why = if first == second {
             format!("has both ends on {first:?}")
+        } else if from.body == to.body {
+            format!(
+                "has both ends on the world, which is also called {:?}",
+                if first == "world" { second } else { first }
+            )
         } else {
             format!("joins {first:?} and {second:?}, which fixed joints hold together")
         };

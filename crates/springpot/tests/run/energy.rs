@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 const CLOSED: f64 = 1e-7;
 
 /// The residual in units of the energy turned over, from the columns: the report must say the same.
-fn residual(run: &Run, elements: &[&str]) -> f64 {
+pub(crate) fn residual(run: &Run, elements: &[&str]) -> f64 {
     let column = |name: &str| run.column(name);
     let mut total = vec![0.0; run.rows.len()];
     let mut add = |name: &str, sign: f64| {
@@ -42,7 +42,7 @@ fn residual(run: &Run, elements: &[&str]) -> f64 {
 }
 
 /// Q·v = −F x' in every row in which the force is finite.
-fn power_balance(run: &Run, element: &str) {
+pub(crate) fn power_balance(run: &Run, element: &str) {
     let joints = run.joints();
     let (force, rate) = (run.column(&format!("{element}.force")), run.column(&format!("{element}.rate")));
     let q: Vec<Vec<f64>> = joints.iter().map(|j| run.column(&format!("{element}.Q.{j}"))).collect();
@@ -59,7 +59,7 @@ fn power_balance(run: &Run, element: &str) {
 }
 
 /// Stored energy is not negative, dissipated energy never falls.
-fn second_law(run: &Run, element: &str) {
+pub(crate) fn second_law(run: &Run, element: &str) {
     let stored = run.column(&format!("{element}.stored"));
     assert!(stored.iter().all(|x| *x >= 0.0), "{element} stores less than nothing");
     let dissipated = run.column(&format!("{element}.dissipated"));

@@ -5,6 +5,8 @@
 mod accuracy;
 mod accuracy_laws;
 mod energy;
+mod equation;
+mod floating;
 mod gripper;
 mod kinks;
 mod law;
@@ -15,3 +17,4 @@ mod slider_drift;
 mod slider_energy;
 mod slider_kinks;
 mod slider_support;
+mod urdf;

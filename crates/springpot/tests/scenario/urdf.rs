@@ -307,7 +307,8 @@ fn what_names_the_robots_parts_wrongly_is_refused_in_its_place() {
     // Both ends on the world, by its two names.
     let edited = edit("body = \"left hook\", point = [0.1, 0, 0] }", "body = \"world\", point = [0.1, 0, 0] }")
         .replace("to = {", "to = ‸{");
-    assert_refused(&edited, Rule, "its length cannot change");
+    let words = "has both ends on the world, which is also called \"mast\": its length cannot change";
+    assert_refused(&edited, Rule, words);
 }
 
 #[test]
