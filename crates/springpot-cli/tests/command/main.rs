@@ -7,6 +7,7 @@ mod help;
 #[cfg(unix)]
 mod interrupted;
 mod results;
+mod robots;
 mod support;
 #[cfg(target_os = "linux")]
 mod terminal;
