@@ -15,23 +15,27 @@ pub fn crba_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace
     composites(model, kinematics, &mut workspace.composite);
     mass.fill(T::ZERO);
     for (k, degree) in degrees.iter().enumerate() {
-        let link = kinematics.link(degree.link);
-        let momentum = workspace.composite[degree.link - 1] * joint::unit_motion(degree, link, Vec3::ZERO);
-        for c in joint::inwards(model, k + 1, 0) {
+        let (link, column) = (kinematics.link(degree.link), degree.index);
+        let unit = joint::unit_motion(degree, link, Vec3::ZERO);
+        let composite = &workspace.composite[degree.link - 1];
+        let momentum = match degree.motion {
+            DegreeMotion::Turn(_) => composite.turned_by(unit.angular),
+            DegreeMotion::Shift(_) => composite.shifted_by(unit.linear),
+        };
+        mass[column * n + column] += unit.dot(momentum);
+        for c in joint::carriers(model, k) {
             let carrier = kinematics.link(degrees[c].link);
-            let unit = joint::unit_motion(&degrees[c], carrier, Vec3::ZERO);
+            let felt = joint::unit_motion(&degrees[c], carrier, Vec3::ZERO);
             let entry = match degrees[c].motion {
                 DegreeMotion::Turn(_) => {
                     let arm = link.translation - carrier.translation;
-                    unit.angular.dot(momentum.angular + arm.cross(momentum.linear))
+                    felt.angular.dot(momentum.angular + arm.cross(momentum.linear))
                 }
-                DegreeMotion::Shift(_) => unit.linear.dot(momentum.linear),
+                DegreeMotion::Shift(_) => felt.linear.dot(momentum.linear),
             };
-            let (row, column) = (degrees[c].index, degree.index);
+            let row = degrees[c].index;
             mass[row * n + column] += entry;
-            if c != k {
-                mass[column * n + row] += entry;
-            }
+            mass[column * n + row] += entry;
         }
     }
 }
@@ -48,14 +52,22 @@ pub fn crba<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec<T> {
 pub(super) fn composites<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, composite: &mut [Inertia<T>]) {
     let n = model.joint_count();
     let composite = &mut composite[..n];
-    for j in 0..n {
-        composite[j] = Inertia::from_f64(model.link_inertia(j)).rotated(&kinematics.link(j + 1).rotation);
-    }
+    composite.fill(Inertia::ZERO);
+    let mut carried = Inertia::ZERO;
     for j in (0..n).rev() {
+        let link = kinematics.link(j + 1);
+        let own = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation);
+        // Along a chain what the next joint carries is still at hand.
+        let total = own + composite[j] + carried;
+        composite[j] = total;
+        carried = Inertia::ZERO;
         if let Some(parent) = model.parent_link(j).checked_sub(1) {
-            let arm = kinematics.link(j + 1).translation - kinematics.link(parent + 1).translation;
-            let carried = composite[j].shifted(arm);
-            composite[parent] += carried;
+            let moved = total.shifted(link.translation - kinematics.link(parent + 1).translation);
+            if parent + 1 == j {
+                carried = moved;
+            } else {
+                composite[parent] += moved;
+            }
         }
     }
 }

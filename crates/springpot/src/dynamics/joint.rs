@@ -3,11 +3,45 @@
 use crate::model::{Axis, Degree, DegreeMotion, JointMotion, Model};
 use crate::spatial::{Motion, Placement, Rotation, Scalar, Vec3};
 
-/// The coordinate of a joint of one degree.
-#[inline]
-pub(super) fn coordinate<T: Scalar>(model: &Model, j: usize, q: &[T]) -> T {
-    let own = model.coordinates(j);
-    q[own.q].times_plus(T::from_f64(own.ratio), T::from_f64(own.offset))
+/// Where the joints stand: coordinate, sine and cosine of each; without meaning for a floating joint.
+#[derive(Debug, Clone)]
+pub(super) struct Stands<T> {
+    coordinates: Vec<T>,
+    sines: Vec<T>,
+    cosines: Vec<T>,
+}
+
+impl<T: Scalar> Stands<T> {
+    pub(super) fn new(model: &Model) -> Self {
+        let zeros = || vec![T::ZERO; model.joint_count()];
+        Self { coordinates: zeros(), sines: zeros(), cosines: zeros() }
+    }
+
+    /// Reads `q` (nq).
+    #[inline]
+    pub(super) fn read(&mut self, model: &Model, q: &[T]) {
+        for (j, coordinate) in self.coordinates.iter_mut().enumerate() {
+            let own = model.coordinates(j);
+            *coordinate = q[own.q].times_plus(T::from_f64(own.ratio), T::from_f64(own.offset));
+        }
+        T::sin_cos_each(&self.coordinates, &mut self.sines, &mut self.cosines);
+    }
+
+    /// The link frame of joint `j` in the frame of its parent link; `q` as it was read.
+    #[inline]
+    pub(super) fn placement(&self, model: &Model, j: usize, q: &[T]) -> Placement<T> {
+        let at_zero = Placement::from_f64(model.joint_placement(j));
+        match model.motion(j) {
+            JointMotion::Revolute => {
+                Placement { rotation: at_zero.rotation.turned_about_z(self.sines[j], self.cosines[j]), ..at_zero }
+            }
+            JointMotion::Prismatic => {
+                let translation = at_zero.rotation.z_axis().times_plus(self.coordinates[j], at_zero.translation);
+                Placement { translation, ..at_zero }
+            }
+            JointMotion::Floating => at_zero * floating_placement(model, j, q),
+        }
+    }
 }
 
 /// The velocity (or acceleration) of a joint of one degree.
@@ -23,23 +57,6 @@ pub(super) fn twist<T: Scalar>(model: &Model, j: usize, v: &[T]) -> Motion<T> {
     let first = model.coordinates(j).v;
     let v = &v[first..first + 6];
     Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) }
-}
-
-/// The link frame of joint `j` at `q` in the frame of its parent link.
-#[inline]
-pub(super) fn placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placement<T> {
-    let at_zero = Placement::from_f64(model.joint_placement(j));
-    match model.motion(j) {
-        JointMotion::Revolute => {
-            let (sin, cos) = coordinate(model, j, q).sin_cos();
-            Placement { rotation: at_zero.rotation.turned_about_z(sin, cos), ..at_zero }
-        }
-        JointMotion::Prismatic => {
-            let shift = coordinate(model, j, q);
-            Placement { translation: at_zero.rotation.z_axis().times_plus(shift, at_zero.translation), ..at_zero }
-        }
-        JointMotion::Floating => at_zero * floating_placement(model, j, q),
-    }
 }
 
 fn floating_placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placement<T> {

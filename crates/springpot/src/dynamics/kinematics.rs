@@ -1,6 +1,6 @@
 //! Forward kinematics: where the links are and how they move.
 
-use super::joint;
+use super::joint::{self, Stands};
 use crate::model::{Frame, JointMotion, Model, Site};
 use crate::spatial::{Motion, Placement, Scalar, Vec3};
 
@@ -26,6 +26,7 @@ pub struct Kinematics<T = f64> {
     /// dω/dt, and the acceleration of the link's origin (the second derivative of its position).
     accelerations: Vec<Motion<T>>,
     joint_velocities: Vec<T>,
+    stands: Stands<T>,
 }
 
 impl<T: Scalar> Kinematics<T> {
@@ -38,6 +39,7 @@ impl<T: Scalar> Kinematics<T> {
             velocities: vec![Motion::ZERO; n + 1],
             accelerations: vec![Motion::ZERO; n + 1],
             joint_velocities: vec![T::ZERO; model.nv()],
+            stands: Stands::new(model),
         };
         let neutral: Vec<T> = model.neutral().into_iter().map(T::from_f64).collect();
         kinematics.update_position(model, &neutral);
@@ -70,9 +72,14 @@ impl<T: Scalar> Kinematics<T> {
         self.level = Level::Position;
         let (n, q) = (model.joint_count(), &q[..model.nq()]);
         assert_eq!(self.placements.len(), n + 1, "the kinematics are of another model");
+        self.stands.read(model, q);
+        let mut last = self.placements[0];
         for j in 0..n {
-            let local = joint::placement(model, j, q);
-            self.placements[j + 1] = self.placements[model.parent_link(j)] * local;
+            let parent = model.parent_link(j);
+            // Along a chain the link before is still at hand.
+            let carrier = if parent == j { last } else { self.placements[parent] };
+            last = carrier * self.stands.placement(model, j, q);
+            self.placements[j + 1] = last;
         }
     }
 

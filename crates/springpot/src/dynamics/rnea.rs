@@ -52,13 +52,14 @@ fn inverse_dynamics<T: Scalar>(
 ) {
     let n = model.joint_count();
     let (q, v, tau) = (&q[..model.nq()], &v[..model.nv()], &mut tau[..model.nv()]);
+    ws.stands.read(model, q);
     ws.velocity[0] = Motion::ZERO;
     // A frame that accelerates upwards feels gravity.
     ws.acceleration[0] = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(model.gravity().into()) };
     ws.force[0] = Force::ZERO;
     for j in 0..n {
         let parent = model.parent_link(j);
-        let local = joint::placement(model, j, q);
+        let local = ws.stands.placement(model, j, q);
         let mut velocity = local.motion_to_child(ws.velocity[parent]);
         let mut acceleration = local.motion_to_child(ws.acceleration[parent]);
         // With S along z: v += S q̇, a += S q̈ + v × S q̇.

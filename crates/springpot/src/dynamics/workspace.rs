@@ -1,5 +1,6 @@
 //! Scratch memory of the algorithms.
 
+use super::joint::Stands;
 use super::moments::Sway;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scalar, Vec3};
@@ -9,6 +10,7 @@ use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scal
 /// It carries nothing from one call to the next.
 #[derive(Debug, Clone)]
 pub struct Workspace<T = f64> {
+    pub(super) stands: Stands<T>,
     /// Joint j in its parent link.
     pub(super) local: Vec<Placement<T>>,
     /// Links in the world (index 0 is the world); written only where pair forces act.
@@ -49,6 +51,7 @@ impl<T: Scalar> Workspace<T> {
         let (n, d) = (model.joint_count(), model.degrees().len());
         let dense = if model.is_free_of_followers() { 0 } else { model.nv() };
         Self {
+            stands: Stands::new(model),
             local: vec![Placement::IDENTITY; n],
             world: vec![Placement::IDENTITY; n + 1],
             velocity: vec![Motion::ZERO; n + 1],

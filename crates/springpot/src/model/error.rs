@@ -218,9 +218,10 @@ pub enum ModelError {
     },
 }
 
-/// `x` to six digits.
-fn brief(x: f64) -> f64 {
-    format!("{x:.5e}").parse().unwrap_or(x)
+/// `x` to six digits, by powers of ten where it is small or large.
+fn brief(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 /// A field of the description of a body; `Display` writes it as in a scenario file.

@@ -10,7 +10,7 @@ impl Model {
     /// The configuration in which every joint stands at 0: floating joints at their origin, unturned.
     pub fn neutral(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.nq()];
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             match kind {
                 JointKind::Fixed | JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => {}
                 JointKind::Floating => q[self.q_range(j).end - 1] = 1.0,
@@ -19,13 +19,13 @@ impl Model {
         q
     }
 
-    /// q ⊕ v: the configuration after one second at the constant velocities `v`, which for a floating joint are a twist in
-    /// its own axes (p + R V ω-dependent shift, R exp \[ω\]×). All slices are nq, but `v`, which is nv.
+    /// q ⊕ v: the configuration after one second at the constant velocities `v`. A floating joint follows the twist (u, ω) in
+    /// its own axes, p + R V(ω) u and R exp \[ω\]×. `q` and `out` are nq, `v` is nv.
     ///
     /// Source: Blanco-Claraco, A tutorial on SE(3) transformation parameterizations and on-manifold optimization, 2010.
     pub fn integrate_into(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
         out[..self.nq()].copy_from_slice(&q[..self.nq()]);
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             let (q, v) = (&mut out[self.q_range(j)], &v[self.v_range(j)]);
             match kind {
                 JointKind::Fixed => {}
@@ -54,7 +54,7 @@ impl Model {
     ///
     /// The shorter way round where there are two: the turn of a continuous or floating joint is at most π.
     pub fn difference_into(&self, from: &[f64], to: &[f64], v: &mut [f64]) {
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             let (from, to, v) = (&from[self.q_range(j)], &to[self.q_range(j)], &mut v[self.v_range(j)]);
             match kind {
                 JointKind::Fixed => {}
@@ -83,7 +83,7 @@ impl Model {
     /// Brings `q` back to the manifold, where it already is but for rounding: quaternions to length 1 (with qw ≥ 0), angles
     /// of continuous joints into (−π, π]. A quaternion of length 0 becomes NaN.
     pub fn normalise(&self, q: &mut [f64]) {
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             let q = &mut q[self.q_range(j)];
             match kind {
                 JointKind::Fixed | JointKind::Revolute | JointKind::Prismatic => {}
@@ -103,7 +103,7 @@ impl Model {
         let mut state = seed;
         let mut uniform = || splitmix(&mut state);
         let mut q = self.neutral();
-        for (j, kind) in self.own_joints() {
+        for (j, kind) in self.own_joints_and_kinds() {
             let q = &mut q[self.q_range(j)];
             let Limits { lower, upper, .. } = *self.limits(j);
             let mut within = |reach: f64| {
@@ -128,8 +128,12 @@ impl Model {
     }
 
     /// The joints that have coordinates of their own.
-    fn own_joints(&self) -> impl Iterator<Item = (usize, JointKind)> + '_ {
-        (0..self.joint_count()).filter(|&j| self.followed(j).is_none()).map(|j| (j, self.joint_kind(j)))
+    pub fn own_joints(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.joint_count()).filter(|&j| self.followed(j).is_none())
+    }
+
+    fn own_joints_and_kinds(&self) -> impl Iterator<Item = (usize, JointKind)> + '_ {
+        self.own_joints().map(|j| (j, self.joint_kind(j)))
     }
 }
 

@@ -9,6 +9,9 @@ use crate::spatial::{Inertia, Placement, Vec3};
 /// A pivot below this share of what it was computed from is rounding.
 const PIVOT_TOLERANCE: f64 = 1e-14;
 
+/// Rounding of a link's inertia about its origin, summed over what is fixed to it.
+const ROUNDING: f64 = 1e-14;
+
 type Vec6 = [f64; 6];
 type Matrix6 = [Vec6; 6];
 
@@ -87,7 +90,9 @@ pub(super) fn links(model: &Model) -> Result<(), ModelError> {
         if central.iter().flatten().any(|x| !x.is_finite()) {
             return Err(ModelError::Overflow { body, name: name.clone() });
         }
-        validate::inertia(body, name, central, true)?;
+        // The tensor about the centre of mass is a difference, known to the rounding of what it is taken from.
+        let about_origin = inertia.rotational.to_matrix().iter().flatten().fold(0.0, |s: f64, x| s.max(x.abs()));
+        validate::inertia(body, name, central, ROUNDING * about_origin, true)?;
     }
     Ok(())
 }

@@ -30,6 +30,7 @@ mod numbering;
 mod principal;
 mod robot;
 mod spec;
+mod state;
 #[cfg(feature = "urdf")]
 pub mod urdf;
 mod validate;
@@ -41,3 +42,4 @@ pub use frame::{Frame, Site};
 pub use labels::{Label, Measure};
 pub use robot::Model;
 pub use spec::{Anchor, BodySpec, JointKind, JointSpec, Limits, Mimic, Parent};
+pub use state::StateError;

@@ -42,30 +42,44 @@ pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), 
 fn leaders(model: &Model, mimics: &[Option<Mimic>]) -> Result<Vec<Leader>, ModelError> {
     let names: HashMap<&str, usize> =
         model.joint_names.iter().enumerate().map(|(j, name)| (name.as_str(), j)).collect();
-    (0..mimics.len())
-        .map(|j| {
-            let (body, joint) = (model.bodies_of_joints[j], &model.joint_names[j]);
-            let (mut at, mut ratio, mut offset) = (j, 1.0, 0.0);
-            let mut hops = 0;
-            while let Some(mimic) = &mimics[at] {
-                let kind = model.kinds[at];
-                if kind.nv() != 1 {
-                    return Err(ModelError::MimicKind { body, joint: joint.clone(), kind });
-                }
-                let target = names.get(mimic.joint.as_str()).copied();
-                at = target.filter(|&target| model.kinds[target].nv() == 1).ok_or_else(|| ModelError::MimicTarget {
-                    body,
-                    joint: joint.clone(),
-                    followed: mimic.joint.clone(),
-                    exists: target.is_some(),
-                })?;
-                (ratio, offset) = (ratio * mimic.multiplier, ratio * mimic.offset + offset);
-                hops += 1;
-                if hops > mimics.len() {
-                    return Err(ModelError::MimicCycle { body, joint: joint.clone() });
-                }
+    let mut resolved: Vec<Option<Leader>> = vec![None; mimics.len()];
+    let mut chain = Vec::new();
+    for j in 0..mimics.len() {
+        let mut at = j;
+        // Outwards to a joint that is resolved or follows none, then back.
+        while resolved[at].is_none() {
+            let Some(mimic) = &mimics[at] else {
+                resolved[at] = Some(None);
+                break;
+            };
+            chain.push((at, mimic));
+            if chain.len() > mimics.len() {
+                let body = model.bodies_of_joints[j];
+                return Err(ModelError::MimicCycle { body, joint: model.joint_names[j].clone() });
             }
-            Ok((hops > 0).then_some((at, ratio, offset)))
-        })
-        .collect()
+            at = followed(model, &names, at, mimic)?;
+        }
+        while let Some((follower, mimic)) = chain.pop() {
+            let (leader, ratio, offset) = resolved[at].flatten().unwrap_or((at, 1.0, 0.0));
+            resolved[follower] =
+                Some(Some((leader, mimic.multiplier * ratio, mimic.multiplier * offset + mimic.offset)));
+            at = follower;
+        }
+    }
+    Ok(resolved.into_iter().map(Option::flatten).collect())
+}
+
+/// The joint that joint `j` follows by `mimic`.
+fn followed(model: &Model, names: &HashMap<&str, usize>, j: usize, mimic: &Mimic) -> Result<usize, ModelError> {
+    let (body, joint, kind) = (model.bodies_of_joints[j], model.joint_names[j].clone(), model.kinds[j]);
+    if kind.nv() != 1 {
+        return Err(ModelError::MimicKind { body, joint, kind });
+    }
+    let target = names.get(mimic.joint.as_str()).copied();
+    target.filter(|&target| model.kinds[target].nv() == 1).ok_or_else(|| ModelError::MimicTarget {
+        body,
+        joint,
+        followed: mimic.joint.clone(),
+        exists: target.is_some(),
+    })
 }

@@ -2,7 +2,7 @@
 
 use super::error::{Field, ModelError};
 use super::principal::principal_moments;
-use super::spec::{BodySpec, Parent};
+use super::spec::{BodySpec, JointKind, Parent};
 
 /// Refuses a principal moment below minus this share of the largest one.
 const POSITIVE_TOLERANCE: f64 = 1e-12;
@@ -34,7 +34,11 @@ pub(super) fn body(body: usize, spec: &BodySpec, rules: Rules) -> Result<(), Mod
     if spec.joint.kind.has_axis() && spec.joint.axis == [0.0; 3] {
         return Err(ModelError::ZeroAxis { body, joint: spec.joint.name.clone() });
     }
-    inertia(body, &spec.name, spec.inertia, rules == Rules::Body)
+    // What a URDF fixes to another link is judged together with it.
+    if rules == Rules::UrdfLink && spec.joint.kind == JointKind::Fixed {
+        return Ok(());
+    }
+    inertia(body, &spec.name, spec.inertia, 0.0, rules == Rules::Body)
 }
 
 /// Whether `name` matches `[A-Za-z_][A-Za-z0-9_-]*`.
@@ -84,8 +88,15 @@ fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Checks an inertia tensor about a centre of mass; the triangle inequality only where it is asked for.
-pub(super) fn inertia(body: usize, name: &str, m: [[f64; 3]; 3], triangle: bool) -> Result<(), ModelError> {
+/// Checks an inertia tensor about a centre of mass, whose entries are known to `rounding`; the triangle inequality only where
+/// it is asked for.
+pub(super) fn inertia(
+    body: usize,
+    name: &str,
+    m: [[f64; 3]; 3],
+    rounding: f64,
+    triangle: bool,
+) -> Result<(), ModelError> {
     let name = || name.to_owned();
     let scale = m.iter().flatten().fold(0.0, |s: f64, x| s.max(x.abs()));
     for (row, column) in [(0, 1), (0, 2), (1, 2)] {
@@ -95,11 +106,11 @@ pub(super) fn inertia(body: usize, name: &str, m: [[f64; 3]; 3], triangle: bool)
         }
     }
     let [smallest, middle, largest] = principal_moments(m);
-    if smallest < -POSITIVE_TOLERANCE * largest.abs() {
+    if smallest < -POSITIVE_TOLERANCE * largest.abs() - rounding {
         return Err(ModelError::InertiaNotPositive { body, name: name(), smallest });
     }
     let others = smallest + middle;
-    if triangle && largest - others > TRIANGLE_TOLERANCE * largest {
+    if triangle && largest - others > TRIANGLE_TOLERANCE * largest + 3.0 * rounding {
         return Err(ModelError::TriangleInequality { body, name: name(), largest, others });
     }
     Ok(())

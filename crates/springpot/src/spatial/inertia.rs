@@ -63,6 +63,18 @@ impl<T: Scalar> Inertia<T> {
         Self { mass: self.mass, first_moment, rotational: self.rotational + correction }
     }
 
+    /// Momentum of the body that turns about the origin with the angular velocity `omega`: (ω × h, I ω).
+    #[inline]
+    pub fn turned_by(&self, omega: Vec3<T>) -> Force<T> {
+        Force { linear: omega.cross(self.first_moment), angular: self.rotational * omega }
+    }
+
+    /// Momentum of the body that moves with the velocity `v` without turning: (m v, h × v).
+    #[inline]
+    pub fn shifted_by(&self, v: Vec3<T>) -> Force<T> {
+        Force { linear: v * self.mass, angular: self.first_moment.cross(v) }
+    }
+
     /// The same body in the parent frame of `placement`.
     #[inline]
     pub fn to_parent(&self, placement: &Placement<T>) -> Self {

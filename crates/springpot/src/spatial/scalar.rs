@@ -45,6 +45,14 @@ pub trait Scalar:
     /// (sin, cos) of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
 
+    /// The sines and cosines of many angles in radians; slices of one length.
+    #[inline]
+    fn sin_cos_each(angles: &[Self], sines: &mut [Self], cosines: &mut [Self]) {
+        for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
+            (*sine, *cosine) = angle.sin_cos();
+        }
+    }
+
     /// self · factor + term, in one rounding or two as suits the type.
     #[inline]
     fn times_plus(self, factor: Self, term: Self) -> Self {
@@ -69,6 +77,19 @@ impl Scalar for f64 {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         if self.abs() <= sincos::LARGEST { sincos::sin_cos(self) } else { f64::sin_cos(self) }
+    }
+
+    #[inline]
+    fn sin_cos_each(angles: &[Self], sines: &mut [Self], cosines: &mut [Self]) {
+        // Without the branch of `sin_cos` the compiler takes several angles at a time.
+        for ((&angle, sine), cosine) in angles.iter().zip(&mut *sines).zip(&mut *cosines) {
+            (*sine, *cosine) = sincos::sin_cos(angle);
+        }
+        for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
+            if angle.abs() > sincos::LARGEST {
+                (*sine, *cosine) = angle.sin_cos();
+            }
+        }
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use crate::support::{build, case, close, config, largest};
 use proptest::prelude::*;
 use springpot::dynamics::{Kinematics, aba, kinetic_energy, potential_energy};
-use springpot::model::{BodySpec, JointKind, JointSpec, Limits, Model, ModelBuilder, Parent};
+use springpot::model::{BodySpec, JointKind, JointSpec, Limits, Model, ModelBuilder, Parent, StateError};
 use springpot::spatial::{Motion, Rotation, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -92,6 +92,28 @@ fn random_configurations_are_within_limits_and_the_same_for_a_seed() {
     }
     assert!((mean(0) - 0.25).abs() < 0.01 && (1..8).all(|k| mean(k).abs() < 0.2));
     assert_eq!(model.neutral(), [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn what_is_no_state_is_told() {
+    let mut builder = ModelBuilder::new([0.0; 3]);
+    builder.push(rod("hull".into(), JointSpec::floating("base", [0.0; 3]))).unwrap();
+    builder.push(rod("arm".into(), JointSpec::revolute("shoulder", [0.0, 0.0, 1.0], [0.0; 3]))).unwrap();
+    let model = builder.finish().unwrap();
+    let told = |error: StateError| error.to_string();
+    assert_eq!((model.check_q(&model.neutral()), model.check_v("v", &[0.0; 7])), (Ok(()), Ok(())));
+    assert_eq!(told(model.check_q(&[0.0; 7]).unwrap_err()), "q has 7 numbers; this robot's q has 8");
+    assert_eq!(told(model.check_v("tau", &[0.0; 8]).unwrap_err()), "tau has 8 numbers; this robot's tau has 7");
+    let mut q = model.neutral();
+    q[1] = f64::NAN;
+    assert_eq!(told(model.check_q(&q).unwrap_err()), "q.base.y is NaN; it must be finite");
+    let mut v = vec![0.0; 7];
+    v[6] = f64::INFINITY;
+    assert_eq!(told(model.check_v("a", &v).unwrap_err()), "a.shoulder is inf; it must be finite");
+    let message = "the quaternion of joint \"base\" has the length 0; it must have one, such as [0, 0, 0, 1]";
+    assert_eq!(told(model.check_q(&[0.0; 8]).unwrap_err()), message);
+    // What the algorithms make of NaN is NaN, and no panic.
+    assert!(aba(&model, &[f64::NAN; 8], &[f64::NAN; 7], &[0.0; 7], &[]).iter().all(|a| a.is_nan()));
 }
 
 fn rod(name: String, joint: JointSpec) -> BodySpec {

@@ -1,7 +1,7 @@
 //! What the model builder refuses, and what it says.
 
 use springpot::model::{
-    Anchor, BodySpec, Field, JointKind, JointSpec, Model, ModelBuilder, ModelError, Parent, Subject,
+    Anchor, BodySpec, Field, JointKind, JointSpec, Mimic, Model, ModelBuilder, ModelError, Parent, Subject,
 };
 
 const DIAGONAL: [[f64; 3]; 3] = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]];
@@ -263,4 +263,71 @@ fn what_the_model_tells() {
     assert_eq!(model.subtree_mass(0), 2.0);
     fn shared(_: &(impl Send + Sync)) {}
     shared(&model);
+}
+
+/// Two sliders in a row with a joint before them that is `first`, the second slider following `followed`.
+fn followers(first: JointSpec, followed: &str) -> Result<Model, ModelError> {
+    let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
+    let slider = |name: &str, mimic: Option<Mimic>| JointSpec {
+        mimic,
+        ..JointSpec::prismatic(name, [1.0, 0.0, 0.0], [0.1, 0.0, 0.0])
+    };
+    let mimic = |joint: &str| Some(Mimic { joint: joint.into(), multiplier: -0.5, offset: 0.25 });
+    for (k, joint) in [first, slider("q2", mimic("q1")), slider("q3", mimic(followed))].into_iter().enumerate() {
+        let parent = k.checked_sub(1).map_or(Parent::World, Parent::Body);
+        builder.push(BodySpec { name: format!("b{k}"), parent, joint, ..body("link", "q1") })?;
+    }
+    builder.finish()
+}
+
+#[test]
+fn joints_that_follow_others() {
+    let turn = || JointSpec::revolute("q1", [0.0, 0.0, 1.0], [0.0; 3]);
+    let model = followers(turn(), "q2").unwrap();
+    assert_eq!((model.nq(), model.nv(), model.joint_count()), (1, 1, 3));
+    assert_eq!((model.followed(0), model.followed(1)), (None, Some((0, -0.5, 0.25))));
+    // q3 = −½ (−½ q1 + ¼) + ¼
+    assert_eq!(model.followed(2), Some((0, 0.25, 0.125)));
+
+    let told = |result: Result<Model, ModelError>| result.unwrap_err().to_string();
+    assert_eq!(told(followers(turn(), "q9")), "joint \"q3\" follows joint \"q9\", which does not exist");
+    let circle = JointSpec { mimic: Some(Mimic { joint: "q3".into(), multiplier: 1.0, offset: 0.0 }), ..turn() };
+    assert_eq!(told(followers(circle, "q1")), "joint \"q1\" follows itself, directly or through other joints");
+    let free = || JointSpec::floating("q1", [0.0; 3]);
+    let expected = "joint \"q2\" follows joint \"q1\", which has not exactly one degree of freedom";
+    assert_eq!(told(followers(free(), "q2")), expected);
+    let bound = JointSpec { mimic: Some(Mimic { joint: "q3".into(), multiplier: 1.0, offset: 0.0 }), ..free() };
+    let expected =
+        "joint \"q1\" is floating, so it cannot follow another joint; only joints of one degree of freedom can";
+    assert_eq!(told(followers(bound, "q3")), expected);
+    let endless = JointSpec { mimic: Some(Mimic { joint: "q3".into(), multiplier: f64::NAN, offset: 0.0 }), ..turn() };
+    assert!(told(followers(endless, "q1")).contains("joint.mimic"));
+}
+
+#[test]
+fn links_of_a_urdf_are_physical_together() {
+    let build = |inertia: [f64; 3], com: [f64; 3], fixed: [f64; 3]| {
+        let diagonal = |[x, y, z]: [f64; 3]| [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]];
+        let mut builder = ModelBuilder::of_urdf([0.0, 0.0, -9.81]);
+        builder.push(BodySpec { name: "a link/1".into(), inertia: diagonal(inertia), com, ..body("link", "q1") })?;
+        let joint = JointSpec::fixed("weld", [0.0; 3]);
+        let load = BodySpec {
+            name: "load".into(),
+            parent: Parent::Body(0),
+            joint,
+            inertia: diagonal(fixed),
+            ..body("link", "q1")
+        };
+        builder.push(BodySpec { com, ..load })?;
+        builder.finish()
+    };
+    // Together 1.2, 1.2, 2: one alone breaks the triangle inequality, and so does a part with a negative moment.
+    assert!(build([0.2, 0.2, 1.0], [0.0; 3], [1.0, 1.0, 1.0]).is_ok());
+    assert!(build([1.0, 1.0, 1.0], [0.0; 3], [-0.2, 0.2, 0.2]).is_ok());
+    let refused = build([0.2, 0.2, 1.0], [0.0; 3], [0.1, 0.1, 0.1]).unwrap_err();
+    assert!(matches!(refused, ModelError::TriangleInequality { body: 0, .. }), "{refused}");
+    let refused = build([0.1, 0.1, 0.1], [0.0; 3], [-0.2, 0.2, 0.2]).unwrap_err();
+    assert!(matches!(refused, ModelError::InertiaNotPositive { body: 0, .. }), "{refused}");
+    // Point masses far from the joint: their inertia about it says nothing about that about their centre.
+    assert!(build([0.0; 3], [0.3, 0.7, -12.3], [0.0; 3]).is_ok());
 }

@@ -1,8 +1,9 @@
 //! `<joint>`: what it joins, how it moves.
 
-use super::error::{Owner, UrdfError, UrdfProblem};
+use super::error::{Owner, UrdfError};
 use super::limit;
 use super::nearest::nearest;
+use super::problem::{UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
 use crate::model::{JointKind, JointSpec, Mimic};
@@ -127,7 +128,7 @@ fn read_axis<'a>(
     }
     let length = xyz[0].hypot(xyz[1]).hypot(xyz[2]);
     if (length - 1.0).abs() > 1e-3 {
-        reader.warnings.add(UrdfWarningKind::AxisLength, owner, reader.line(axis), format!("length {length:.4}"));
+        reader.warnings.add(UrdfWarningKind::AxisLength, owner, reader.line(axis), format!("length {}", brief(length)));
     }
     Ok(xyz)
 }

@@ -10,8 +10,9 @@ const UNUSED: [&str; 6] = ["acceleration", "deceleration", "jerk", "current", "c
 
 /// Reads the `<limit>` of a joint with an axis.
 ///
-/// The format asks for effort and velocity, and takes 0 for lower and upper that are left out; `inf` stands for no limit. No
-/// algorithm enforces limits, so that what makes no sense is noted and left out, not refused (other readers take it as it is).
+/// The format asks for effort and velocity, and takes 0 for lower and upper that are left out; `inf` stands for no
+/// limit. No algorithm enforces limits, so that what makes no sense is noted and left out, not refused (other readers
+/// take it as it is).
 pub(super) fn read<'a>(
     reader: &mut Reader<'a>,
     joint: Node<'a>,

@@ -1,6 +1,7 @@
 //! `<link>`: its inertia, and the files of its shapes.
 
-use super::error::{Owner, UrdfError, UrdfProblem};
+use super::error::{Owner, UrdfError};
+use super::problem::UrdfProblem;
 use super::reader::{Node, Reader};
 use crate::model::principal::principal_moments;
 use crate::spatial::{Rotation, Symmetric3};
@@ -10,7 +11,8 @@ const POSITIVE_TOLERANCE: f64 = 1e-12;
 /// Notes a largest principal moment that exceeds the sum of the others by more than this share of itself.
 const TRIANGLE_TOLERANCE: f64 = 1e-9;
 
-/// A tensor that is not positive, with entries below this times the mass, m², is that of a point mass and rounding errors.
+/// A tensor that is not positive, with entries below this times the mass, m², is that of a point mass and rounding
+/// errors.
 const NOISE: f64 = 1e-15;
 
 /// Mass and inertia of a link, in the link's frame.
@@ -20,8 +22,8 @@ pub struct Inertial {
     pub mass: f64,
     /// Centre of mass in the link's frame, m.
     pub com: [f64; 3],
-    /// Inertia tensor about the centre of mass in the axes of the link's frame, kg·m² (off-diagonals are tensor components):
-    /// R I Rᵀ of the file's tensor I and the rotation R of `<inertial><origin rpy>`.
+    /// Inertia tensor about the centre of mass in the axes of the link's frame, kg·m² (off-diagonals are tensor
+    /// components): R I Rᵀ of the file's tensor I and the rotation R of `<inertial><origin rpy>`.
     pub inertia: [[f64; 3]; 3],
 }
 

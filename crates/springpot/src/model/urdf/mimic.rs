@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::error::{UrdfError, UrdfProblem};
+use super::error::UrdfError;
 use super::joint::JointEntry;
 use super::nearest::nearest;
+use super::problem::UrdfProblem;
 use super::reader::Reader;
 use crate::model::Mimic;
 

@@ -1,7 +1,8 @@
 //! Robots from URDF files.
 //!
-//! [`Urdf::read`] turns a file into bodies as [`ModelBuilder`] takes them, and says what it left out. The format is that of
-//! <https://wiki.ros.org/urdf/XML>; where it leaves a choice, urdfdom's is taken unless the doc comments here say otherwise.
+//! [`Urdf::read`] turns a file into bodies as [`ModelBuilder`] takes them, and says what it left out. The format is
+//! that of <https://wiki.ros.org/urdf/XML>; where it leaves a choice, urdfdom's is taken unless the doc comments here
+//! say otherwise.
 //!
 //! ```
 //! use springpot::model::urdf::{Urdf, UrdfOptions};
@@ -35,6 +36,7 @@ mod link;
 mod mimic;
 mod nearest;
 mod package;
+mod problem;
 mod reader;
 mod robot;
 mod source;
@@ -43,8 +45,9 @@ mod warning;
 
 use std::path::{Path, PathBuf};
 
-pub use error::{Owner, UrdfError, UrdfProblem};
+pub use error::{Owner, UrdfError};
 pub use link::Inertial;
+pub use problem::UrdfProblem;
 pub use warning::{UrdfPlace, UrdfWarning, UrdfWarningKind};
 
 use super::{BodySpec, Field, JointKind, Model, ModelBuilder, ModelError, Parent};
@@ -59,8 +62,9 @@ pub struct UrdfOptions {
     pub floating_base: bool,
     /// Whether mimic joints have a coordinate of their own; a warning lists them.
     pub ignore_mimic: bool,
-    /// Folders that are packages or hold some, for `package://` after the ancestors of the file; relative ones count from the
-    /// current folder. The environment (`ROS_PACKAGE_PATH`) is not read, so that the same files give the same answer everywhere.
+    /// Folders that are packages or hold some, for `package://` after the ancestors of the file; relative ones count
+    /// from the current folder. The environment (`ROS_PACKAGE_PATH`) is not read, so that the same files give the same
+    /// answer everywhere.
     pub package_path: Vec<PathBuf>,
 }
 
@@ -95,11 +99,11 @@ pub struct Urdf {
     pub root: RootLink,
     /// Whether the base floats, as asked for.
     pub floating_base: bool,
-    /// The links but the root, on their joints: parents first, depth first, siblings in the order of the file. On a floating base
-    /// the root comes before them, on the joint [`FLOATING_BASE`].
+    /// The links but the root, on their joints: parents first, depth first, siblings in the order of the file. On a
+    /// floating base the root comes before them, on the joint [`FLOATING_BASE`].
     ///
-    /// A link's frame is the frame of its joint. Of mimic joints, the one that is followed may come later; it has one degree,
-    /// and no joints follow one another in a circle.
+    /// A link's frame is the frame of its joint. Of mimic joints, the one that is followed may come later; it has one
+    /// degree, and no joints follow one another in a circle.
     pub bodies: Vec<BodySpec>,
     /// Where the bodies stand in the file.
     pub lines: Vec<BodyLines>,
@@ -110,15 +114,16 @@ pub struct Urdf {
 impl Urdf {
     /// Reads a file.
     ///
-    /// `<visual>`, `<collision>` and `<material>` have no part in the dynamics. Mesh files that are not found, whatever else is
-    /// not used, massless links on moving joints, and single links whose inertia breaks the triangle inequality are warnings.
+    /// `<visual>`, `<collision>` and `<material>` have no part in the dynamics. Mesh files that are not found, whatever
+    /// else is not used, massless links on moving joints, and single links whose inertia breaks the triangle inequality
+    /// are warnings.
     ///
     /// # Errors
-    /// A file that cannot be read or is no UTF-8, no XML or no URDF; names that are missing, empty, not unique or reserved;
-    /// links that are not one tree; types of joints other than [`JointKind::ALL`]; numbers that are
-    /// missing, too few, too many or not finite (limits may be `inf`); negative mass, damping or friction; on a moving joint, a
-    /// principal moment below −1e-12 of the largest; the axis 0 0 0; mimic joints that follow no joint of one degree, or one another; xacro.
-    /// Each names the link or joint and has its line.
+    /// A file that cannot be read or is no UTF-8, no XML or no URDF; names that are missing, empty, not unique or
+    /// reserved; links that are not one tree; types of joints other than [`JointKind::ALL`]; numbers that are missing,
+    /// too few, too many or not finite (limits may be `inf`); negative mass, damping or friction; on a moving joint, a
+    /// principal moment below −1e-12 of the largest; the axis 0 0 0; mimic joints that follow no joint of one degree,
+    /// or one another; xacro. Each names the link or joint and has its line.
     pub fn read(path: &Path, options: &UrdfOptions) -> Result<Self, UrdfError> {
         robot::read(&source::read(path)?, Some(path), options)
     }
@@ -131,13 +136,14 @@ impl Urdf {
         robot::read(text, file, options)
     }
 
-    /// The robot in the uniform field `gravity`, m/s², axes of the root link on a fixed base and of the world on a floating one.
+    /// The robot in the uniform field `gravity`, m/s², axes of the root link on a fixed base and of the world on a
+    /// floating one.
     ///
     /// The root link of a fixed base becomes a name of the world.
     ///
     /// # Errors
-    /// [`UrdfProblem::NothingMoves`], and [`UrdfProblem::Model`]: a link that moves which is not physical together with what is fixed to it; a
-    /// mass matrix that is singular in every configuration; gravity not finite; overflow.
+    /// [`UrdfProblem::NothingMoves`], and [`UrdfProblem::Model`]: a link that moves which is not physical together with
+    /// what is fixed to it; a mass matrix that is singular in every configuration; gravity not finite; overflow.
     pub fn model(&self, gravity: [f64; 3]) -> Result<Model, UrdfError> {
         if self.bodies.is_empty() {
             let problem = UrdfProblem::NothingMoves { link: self.root.name.clone() };

@@ -10,12 +10,12 @@ const MAX_MANIFEST: u64 = 1 << 20;
 /// Finds files by `package://NAME/rest`, `file://` and plain paths.
 ///
 /// Package NAME is looked for, in this order:
-/// 1. in the ancestors of the URDF file, the nearest first: the ancestor itself, where it is called NAME or its `package.xml`
-///    says so, then its folder NAME;
+/// 1. in the ancestors of the URDF file, the nearest first: the ancestor itself, where it is called NAME or its
+///    `package.xml` says so, then its folder NAME;
 /// 2. in the folders of `package_path`: the folder itself, in the same way, then its folder NAME.
 ///
-/// The environment (`ROS_PACKAGE_PATH`) is not read: the same files give the same answer everywhere. `model://` is read as
-/// `package://`.
+/// The environment (`ROS_PACKAGE_PATH`) is not read: the same files give the same answer everywhere. `model://` is
+/// read as `package://`.
 #[derive(Debug)]
 pub(super) struct Packages {
     /// Folder of the URDF file.

@@ -2,7 +2,8 @@
 
 use roxmltree::{Attribute, Node as XmlNode};
 
-use super::error::{Owner, UrdfError, UrdfProblem};
+use super::error::{Owner, UrdfError};
+use super::problem::UrdfProblem;
 use super::source::Source;
 use super::warning::{UrdfWarningKind, Warnings};
 
@@ -75,7 +76,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The children called `wanted`, at most one of each; those called `unused` are noted as known, all others as unknown.
+    /// The children called `wanted`, at most one of each; those called `unused` are noted as known, all others as
+    /// unknown.
     pub(super) fn children<const N: usize>(
         &mut self,
         parent: Node<'a>,

@@ -3,16 +3,20 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::error::{Owner, UrdfError, UrdfProblem, brief};
+use super::error::{Owner, UrdfError};
 use super::joint::JointEntry;
 use super::link::{Inertial, LinkEntry, Physical};
 use super::package::Packages;
+use super::problem::{UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::source::Source;
 use super::tree::Tree;
 use super::warning::UrdfWarningKind;
 use super::{BodyLines, FLOATING_BASE, RootLink, Urdf, UrdfOptions, joint, link, mimic};
 use crate::model::{BodySpec, JointKind, JointSpec, Parent};
+
+/// The inertial frame's name.
+const WORLD: &str = "world";
 
 /// Elements of `<robot>` that have no part in the dynamics.
 const UNUSED: [&str; 6] = ["transmission", "gazebo", "ros2_control", "sensor", "mujoco", "model_state"];
@@ -35,7 +39,7 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
     }
     let tree = Tree::of(&reader, &links, &joints)?;
     mimic::check(&reader, &joints)?;
-    check_reserved(&reader, &links, tree.root, options)?;
+    check_reserved(&reader, &links, tree.root)?;
     if options.floating_base {
         free_the_name(&mut reader, &mut joints)?;
     }
@@ -44,7 +48,7 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
         for link in &links {
             let owner = Owner::Link(link.name.to_owned());
             for mesh in link.meshes.iter().filter(|mesh| !packages.finds(mesh.file)) {
-                reader.warnings.add(UrdfWarningKind::MeshNotFound, &owner, mesh.line, format!("{:?}", mesh.file));
+                reader.warnings.add(UrdfWarningKind::MeshNotFound, &owner, mesh.line, mesh.file);
             }
         }
     }
@@ -105,17 +109,26 @@ fn note_simulator<'a>(reader: &mut Reader<'a>, gazebo: Node<'a>) {
     }
 }
 
-fn check_reserved<'a>(
-    reader: &Reader<'a>,
-    links: &[LinkEntry<'a>],
-    root: usize,
-    options: &UrdfOptions,
-) -> Result<(), UrdfError> {
-    let world = links.iter().position(|link| link.name == "world");
-    match world.filter(|&link| link != root || options.floating_base) {
-        Some(world) => Err(reader.fail(links[world].node, UrdfProblem::ReservedLink { is_root: world == root })),
+fn check_reserved<'a>(reader: &Reader<'a>, links: &[LinkEntry<'a>], root: usize) -> Result<(), UrdfError> {
+    match links.iter().position(|link| link.name == WORLD).filter(|&link| link != root) {
+        Some(world) => Err(reader.fail(links[world].node, UrdfProblem::ReservedLink)),
         None => Ok(()),
     }
+}
+
+/// What a root link that floats is called: its name, but for "world", which is the inertial frame.
+fn floating_name<'a>(reader: &mut Reader<'a>, links: &[LinkEntry<'a>], root: usize) -> String {
+    let link = &links[root];
+    if link.name != WORLD {
+        return link.name.to_owned();
+    }
+    let mut free = FLOATING_BASE.to_owned();
+    while links.iter().any(|link| link.name == free) {
+        free.push('_');
+    }
+    let owner = Owner::Link(WORLD.to_owned());
+    reader.warnings.add(UrdfWarningKind::Renamed, &owner, reader.line(link.node), format!("called {free:?} here"));
+    free
 }
 
 /// Keeps the name of the floating joint free: a fixed joint, which has no coordinates to be named, gets another one.
@@ -154,7 +167,8 @@ fn assemble<'a>(
     let mut done = vec![(Parent::World, false); links.len()];
     if floats {
         let joint = JointSpec::floating(FLOATING_BASE, [0.0; 3]);
-        bodies.push(body(root, Parent::World, joint));
+        let name = floating_name(&mut reader, &links, tree.root);
+        bodies.push(BodySpec { name, ..body(root, Parent::World, joint) });
         body_lines.push(BodyLines { link: lines[tree.root], joint: lines[tree.root] });
         note_inertia(&mut reader, root, true, true)?;
         done[tree.root] = (Parent::Body(0), true);
@@ -189,8 +203,8 @@ fn body(link: &LinkEntry<'_>, parent: Parent, joint: JointSpec) -> BodySpec {
 
 /// Notes what is odd about the inertia of a link, which is on a moving joint or not, and moves in the world or not.
 ///
-/// A link without mass on a fixed joint is a frame, and what is fixed to the world has no part in the dynamics: neither is worth
-/// a line.
+/// A link without mass on a fixed joint is a frame, and what is fixed to the world has no part in the dynamics: neither
+/// is worth a line.
 ///
 /// # Errors
 /// A negative principal moment on a moving joint.

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use roxmltree::{Document, Error as XmlError};
 
-use super::error::{UrdfError, UrdfProblem};
+use super::error::UrdfError;
+use super::problem::UrdfProblem;
 
 /// Longest text, bytes. A robot of 10⁵ links takes some 60 MB.
 const MAX_BYTES: usize = 256 << 20;
@@ -17,31 +18,42 @@ const MAX_ATTRIBUTES_OF_TAG: usize = 128;
 /// Most declarations of namespaces: the parser's time and memory grow faster than their number.
 const MAX_NAMESPACES: usize = 2_000;
 
-/// A text and where its lines start.
+/// Longest reason of a broken text, characters.
+const MAX_REASON: usize = 200;
+
+/// Bytes whose line breaks are counted together.
+const BLOCK: usize = 1024;
+
+/// A text that knows its lines.
 #[derive(Debug)]
 pub(super) struct Source<'a> {
     pub(super) file: Option<&'a Path>,
     pub(super) text: &'a str,
-    /// Bytes at which the lines start.
-    lines: Vec<usize>,
+    /// Line breaks before each block.
+    breaks: Vec<usize>,
 }
 
 impl<'a> Source<'a> {
     pub(super) fn new(text: &'a str, file: Option<&'a Path>) -> Self {
-        let ends = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n');
-        Self { file, text, lines: std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect() }
+        let counts = text.as_bytes().chunks(BLOCK).map(breaks_in);
+        let breaks = std::iter::once(0).chain(counts.scan(0, |sum, count| {
+            *sum += count;
+            Some(*sum)
+        }));
+        Self { file, text, breaks: breaks.collect() }
     }
 
     /// The line of byte `at`, from 1.
     pub(super) fn line(&self, at: usize) -> usize {
-        self.lines.partition_point(|&start| start <= at)
+        let block = at / BLOCK;
+        self.breaks[block] + breaks_in(&self.text.as_bytes()[block * BLOCK..at]) + 1
     }
 
     /// Line and column of byte `at`, from 1; the column counts characters.
     fn place(&self, at: usize) -> (usize, usize) {
-        let line = self.line(at);
-        let before = self.text.get(self.lines[line - 1]..at).unwrap_or("");
-        (line, before.chars().count() + 1)
+        let before = self.text.get(..at).unwrap_or("");
+        let line_start = before.rfind('\n').map_or(0, |k| k + 1);
+        (self.line(at), before[line_start..].chars().count() + 1)
     }
 
     /// An error at byte `at`.
@@ -51,7 +63,8 @@ impl<'a> Source<'a> {
 
     /// The tree of the XML.
     ///
-    /// Entities beyond the five of XML are refused, and so is what would take the parser more than linear time or memory.
+    /// Entities beyond the five of XML are refused, and so is what would take the parser more than linear time or
+    /// memory.
     pub(super) fn parse(&self) -> Result<Document<'a>, UrdfError> {
         self.check_size()?;
         Document::parse(self.text).map_err(|error| self.not_xml(&error))
@@ -111,7 +124,11 @@ impl<'a> Source<'a> {
             XmlError::UnknownNamespace(prefix, _) => {
                 format!("the prefix {prefix:?} is not declared (xmlns:{prefix}=\"…\" in <robot> would do)")
             }
-            _ => error.to_string().replace(&format!(" at {at}"), ""),
+            XmlError::InvalidChar(wanted, found, _) => {
+                format!("expected '{}', found {}", *wanted as char, shown(*found))
+            }
+            XmlError::InvalidChar2(wanted, found, _) => format!("expected {wanted}, found {}", shown(*found)),
+            _ => error.to_string().replace(&format!(" at {at}"), "").chars().take(MAX_REASON).collect(),
         };
         let has_place = !matches!(
             error,
@@ -119,6 +136,15 @@ impl<'a> Source<'a> {
         );
         UrdfError::new(self.file, place.filter(|_| has_place), UrdfProblem::NotXml { reason })
     }
+}
+
+fn breaks_in(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|byte| **byte == b'\n').count()
+}
+
+/// A byte as messages write it.
+fn shown(byte: u8) -> String {
+    if byte.is_ascii() { format!("{:?}", byte as char) } else { "a letter beyond ASCII".to_owned() }
 }
 
 /// What matters of one tag before it is parsed.
@@ -188,6 +214,18 @@ mod tests {
         for (at, place) in places {
             assert_eq!(source.place(at), place, "byte {at}");
         }
+    }
+
+    #[test]
+    fn lines_are_counted_across_blocks() {
+        let text: String = (0..2_000).map(|k| "x".repeat(k % 7) + "\n").collect();
+        let source = Source::new(&text, None);
+        let mut line = 1;
+        for (at, byte) in text.bytes().enumerate() {
+            assert_eq!(source.line(at), line, "byte {at}");
+            line += usize::from(byte == b'\n');
+        }
+        assert_eq!(source.line(text.len()), 2_001);
     }
 
     #[test]

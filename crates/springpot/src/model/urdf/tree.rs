@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use super::error::{Owner, UrdfError, UrdfProblem};
+use super::error::{Owner, UrdfError};
 use super::joint::JointEntry;
 use super::link::LinkEntry;
 use super::nearest::nearest;
+use super::problem::UrdfProblem;
 use super::reader::Reader;
 
 /// Links of a circle that a message names.
@@ -139,6 +140,9 @@ fn circle<'a>(
         link = parent(link);
     }
     circle.reverse();
+    // From the link that comes first in the file.
+    let first = circle.iter().enumerate().min_by_key(|(_, link)| **link).map_or(0, |(k, _)| k);
+    circle.rotate_left(first);
     let names = circle.iter().take(NAMED).map(|&link| links[link].name.to_owned()).collect();
     let node = joint_of_link[circle[0]].map_or(links[circle[0]].node, |joint| joints[joint].node);
     reader.fail(node, UrdfProblem::Cycle { links: names })

@@ -23,7 +23,7 @@ pub struct UrdfPlace {
     pub owner: Owner,
     /// Line of the file, from 1.
     pub line: usize,
-    /// The element, file or value; empty where the kind says it all.
+    /// The element, the file as it is named, or the value; empty where the kind says it all.
     pub what: String,
 }
 
@@ -35,14 +35,14 @@ pub enum UrdfWarningKind {
     NoInertial,
     /// A link on a moving joint has the mass 0.
     ZeroMass,
-    /// A link has an `<inertia>` that is not positive, but only of rounding errors: its entries are below 1e-15 m² times its mass.
-    /// It is taken as 0, that of a point mass.
+    /// A link has an `<inertia>` that is not positive, but only of rounding errors: its entries are below 1e-15 m²
+    /// times its mass. It is taken as 0, that of a point mass.
     PointMass,
-    /// The largest principal moment of a link that moves is above the sum of the others by more than 1e-9 of itself. The
-    /// tensor is used as it is.
+    /// The largest principal moment of a link that moves is above the sum of the others by more than 1e-9 of itself.
+    /// The tensor is used as it is.
     TriangleInequality,
-    /// A link on a fixed joint, or the root on a fixed base, has a principal moment below −1e-12 of its largest. What is fixed to
-    /// the world has no part in the dynamics; on a moving link it must be made up for by what it is fixed to.
+    /// A link on a fixed joint, or the root on a fixed base, has a principal moment below −1e-12 of its largest. What is
+    /// fixed to the world has no part in the dynamics; of what moves, [`Urdf::model`](super::Urdf::model) decides.
     NotPositive,
     /// A moving joint has no `<axis>`; 1 0 0 is assumed, as the format says.
     NoAxis,
@@ -150,7 +150,11 @@ impl fmt::Display for UrdfWarning {
         };
         match style {
             Style::Owners => listed(f, 4, self.places.iter().map(owner_and_line)),
-            Style::Files => listed(f, 2, self.places.iter().map(of_owner)),
+            Style::Files => listed(
+                f,
+                2,
+                self.places.iter().map(|UrdfPlace { owner, line, what }| format!("{what:?} of {owner} (line {line})")),
+            ),
             Style::Elements => {
                 let groups = self.groups().into_iter().map(|(count, first)| match count {
                     1 => of_owner(first),

@@ -1,0 +1,107 @@
+//! Mesh files: where they are looked for, and what is said of those that are not found.
+
+use crate::support::ARM;
+use springpot::model::urdf::{Owner, Urdf, UrdfOptions, UrdfPlace, UrdfWarningKind};
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// A folder with these files, each with the text after a blank, if there is one.
+fn folder(files: &[&str]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for file in files {
+        let (name, text) = file.split_once(' ').unwrap_or((file, ""));
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+/// The mesh files that are not found by the robot at `urdf`.
+fn missing(urdf: &Path, files: &[&str], package_path: &[PathBuf]) -> Vec<String> {
+    let meshes: String = files
+        .iter()
+        .map(|file| format!("\n<visual><geometry><mesh filename=\"{file}\"/></geometry></visual>"))
+        .collect();
+    let text = ARM.replace("<link name=\"base\"/>", &format!("<link name=\"base\">{meshes}</link>"));
+    let options = UrdfOptions { package_path: package_path.to_vec(), ..UrdfOptions::default() };
+    let urdf = Urdf::parse(&text, Some(urdf), &options).unwrap();
+    assert!(urdf.warnings.iter().all(|warning| warning.kind == UrdfWarningKind::MeshNotFound));
+    urdf.warnings.iter().flat_map(|warning| &warning.places).map(|place| place.what.clone()).collect()
+}
+
+#[test]
+fn a_package_is_an_ancestor_or_stands_beside_one() {
+    let root = folder(&[
+        "ws/arm/urdf/arm.urdf",
+        "ws/arm/meshes/a.stl",
+        "ws/hand/b.stl",
+        "ws/odd/package.xml <package><name> named </name></package>",
+        "ws/odd/urdf/odd.urdf",
+        "ws/odd/c.stl",
+    ]);
+    let urdf = root.path().join("ws/arm/urdf/arm.urdf");
+    let found = ["package://arm/meshes/a.stl", "package://hand/b.stl", "package://odd/c.stl", "model://hand//b.stl"];
+    assert_eq!(missing(&urdf, &found, &[]), [""; 0]);
+    let not_found =
+        ["package://arm/meshes/b.stl", "package://foot/b.stl", "package://named/c.stl", "package://", "package://arm"];
+    assert_eq!(missing(&urdf, &not_found, &[]), not_found);
+    // Its own package.xml gives a package its name.
+    let odd = root.path().join("ws/odd/urdf/odd.urdf");
+    assert_eq!(missing(&odd, &["package://named/c.stl", "package://odd/c.stl"], &[]), [""; 0]);
+}
+
+#[test]
+fn a_package_is_in_the_package_path_or_one_of_it() {
+    let root = folder(&[
+        "robot/arm.urdf",
+        "other/hand/b.stl",
+        "other/broken/package.xml <package><name>",
+        "x/package.xml <package><name>foot</name></package>",
+        "x/f.stl",
+    ]);
+    let urdf = root.path().join("robot/arm.urdf");
+    let path = |name: &str| root.path().join(name);
+    let files = ["package://hand/b.stl", "package://foot/f.stl"];
+    assert_eq!(missing(&urdf, &files, &[]), files);
+    assert_eq!(missing(&urdf, &files, &[path("other")]), ["package://foot/f.stl"]);
+    assert_eq!(missing(&urdf, &files, &[path("other/hand"), path("x"), path("none"), path("other/broken")]), [""; 0]);
+}
+
+#[test]
+fn plain_paths_count_from_the_file() {
+    let root = folder(&["robot/arm.urdf", "robot/a.stl", "meshes/b.stl"]);
+    let urdf = root.path().join("robot/arm.urdf");
+    let absolute = root.path().join("meshes/b.stl");
+    let absolute = absolute.to_str().unwrap();
+    let found = ["a.stl", "../meshes/b.stl", absolute, &format!("file://{absolute}"), "http://example.org/x.stl"];
+    assert_eq!(missing(&urdf, &found, &[]), [""; 0]);
+    let not_found = ["b.stl", "", "..", "file:///none/b.stl", "a.stl/b"];
+    assert_eq!(missing(&urdf, &not_found, &[]), not_found);
+}
+
+#[test]
+fn a_missing_mesh_names_link_file_and_line() {
+    let root = folder(&["arm.urdf"]);
+    let shape = |file: &str| format!("\n<collision><geometry><mesh filename=\"{file}\"/></geometry></collision>");
+    let shapes: String = ["a.stl", "b.stl", "c.stl"].map(shape).concat();
+    let path = root.path().join("arm.urdf");
+    fs::write(&path, ARM.replace("<link name=\"base\"/>", &format!("<link name=\"base\">{shapes}</link>"))).unwrap();
+    let urdf = Urdf::read(&path, &UrdfOptions::default()).unwrap();
+    let [warning] = urdf.warnings.as_slice() else { panic!("{:?}", urdf.warnings) };
+    let message = "mesh files not found, not needed for the dynamics: \
+                   \"a.stl\" of link \"base\" (line 3), \"b.stl\" of link \"base\" (line 4) and 1 more";
+    assert_eq!(warning.to_string(), message);
+    let place = UrdfPlace { owner: Owner::Link("base".into()), line: 5, what: "c.stl".into() };
+    assert_eq!(warning.places[2], place);
+}
+
+#[test]
+fn nothing_is_looked_for_without_a_file() {
+    let text = ARM.replace(
+        "<link name=\"base\"/>",
+        "<link name=\"base\"><visual><geometry><mesh filename=\"a.stl\"/></geometry></visual></link>",
+    );
+    assert_eq!(Urdf::parse(&text, None, &UrdfOptions::default()).unwrap().warnings, []);
+}
