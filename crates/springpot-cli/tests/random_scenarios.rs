@@ -101,20 +101,26 @@ fn text(bodies: &[Body], elements: &[Element]) -> String {
     let mut text = "title = \"random\"\n[robot]\n".to_owned();
     let mut joints = Vec::new();
     for (k, body) in bodies.iter().enumerate() {
-        let kind = ["revolute", "prismatic", "revolute", "fixed", "revolute"][body.kind];
+        let kind = ["revolute", "prismatic", "floating", "fixed", "continuous"][body.kind];
         let parent = if k == 0 { None } else { Some((body.parent * k as f64) as usize).filter(|p| *p < k) };
         let Body { axis, origin, com, mass, inertia, damping, .. } = body;
         let _ = writeln!(text, "[[robot.body]]\nname = \"b{k}\"");
         if let Some(parent) = parent {
             let _ = writeln!(text, "parent = \"b{parent}\"");
         }
-        let moving = if kind == "fixed" { String::new() } else { format!(", axis = {axis:?}, damping = {damping}") };
+        let has_axis = !matches!(kind, "fixed" | "floating");
+        let moving = if has_axis { format!(", axis = {axis:?}, damping = {damping}") } else { String::new() };
         let _ = writeln!(text, "joint = {{ name = \"j{k}\", kind = \"{kind}\", origin = {origin:?}{moving} }}");
         let _ = writeln!(text, "mass = {mass}\ncom = {com:?}");
         let _ = writeln!(text, "inertia = {{ xx = {inertia}, yy = {inertia}, zz = {inertia} }}");
-        if kind != "fixed" {
-            let [amplitude, omega, phase] = body.motion;
-            joints.push(format!("j{k} = \"{amplitude}*sin({omega}*t + {phase})\""));
+        let [amplitude, omega, phase] = body.motion;
+        let wave = format!("\"{amplitude}*sin({omega}*t + {phase})\"");
+        match kind {
+            "fixed" => {}
+            "floating" => {
+                joints.push(format!("j{k} = {{ y = {wave}, z = {amplitude}, rpy = [{wave}, {phase}, {wave}] }}"))
+            }
+            _ => joints.push(format!("j{k} = {wave}")),
         }
     }
     for (k, element) in elements.iter().enumerate() {

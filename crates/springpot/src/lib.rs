@@ -10,7 +10,7 @@
 //! | module | holds | knows |
 //! |---|---|---|
 //! | [`spatial`] | vectors, rotations, spatial quantities, over one scalar | nothing |
-//! | [`model`] | the robot: bodies, joints, anchors; constant once built | `spatial` |
+//! | [`model`] | the robot: bodies, joints, anchors, from code or a URDF file; constant once built | `spatial` |
 //! | [`dynamics`] | kinematics, RNEA, CRBA, ABA and their derivatives, Coriolis terms, pairs of anchors | `model` |
 //! | [`fractional`] | D^alpha: kernel, memory, streaming, named schemes | nothing |
 //! | [`law`] | stroke history → force; the catalog of laws | `fractional` |

@@ -12,6 +12,7 @@ mod info;
 #[cfg(unix)]
 mod interrupted;
 mod results;
+mod robots;
 mod support;
 #[cfg(target_os = "linux")]
 mod terminal;
