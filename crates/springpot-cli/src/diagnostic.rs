@@ -29,11 +29,9 @@ pub(crate) fn refused(refusals: &Refusals) {
     let width = terminal::stderr_width().map_or(EXCERPT, |width| width - 10);
     for refusal in refusals.iter() {
         show(&Shown {
-            severity: Severity::Error,
-            message: headline(refusal),
-            help: refusal.help.clone(),
             label: refusal.label.clone(),
             excerpt: Excerpt::new(refusal, width),
+            ..Shown::plain(Severity::Error, headline(refusal), refusal.help.clone())
         });
     }
 }
@@ -123,8 +121,14 @@ struct Shown {
 
 impl Shown {
     fn plain(severity: Severity, message: String, help: Option<String>) -> Self {
-        Self { severity, message, help, label: String::new(), excerpt: None }
+        let help = help.map(|help| harmless(&help));
+        Self { severity, message: harmless(&message), help, label: String::new(), excerpt: None }
     }
+}
+
+/// A text without control characters, which would steer the terminal; names of a URDF may hold some.
+fn harmless(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 impl Display for Shown {
@@ -230,6 +234,13 @@ mod tests {
                 assert!(shown.chars().all(|c| c == '\n' || !c.is_control()), "{shown:?}");
             }
         }
+    }
+
+    #[test]
+    fn messages_do_not_steer_it_either() {
+        let shown = Shown::plain(Severity::Error, "joint \u{1b}[31m\u{7}".into(), Some("a\u{9b}\nb".into()));
+        assert_eq!(shown.message, "joint \u{fffd}[31m\u{fffd}");
+        assert_eq!(shown.help.as_deref(), Some("a\u{fffd}\nb"));
     }
 
     #[test]

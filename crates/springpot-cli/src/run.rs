@@ -200,8 +200,8 @@ pub(crate) fn in_case(cases: &Cases, index: usize, message: &str) -> String {
     if name.is_empty() { message.to_owned() } else { format!("{name}: {message}") }
 }
 
-/// `message` about the case `first` with its swept values in front, and how many others it holds for; as it is where it holds
-/// for all that were looked at.
+/// `message` about the case `first` with its swept values in front, and how many others it holds for; as it is where
+/// it holds for all that were looked at.
 pub(crate) fn in_cases(cases: &Cases, looked_at: usize, first: usize, found: usize, message: &str) -> String {
     if found >= looked_at {
         message.to_owned()

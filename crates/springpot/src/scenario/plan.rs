@@ -31,7 +31,8 @@ pub struct Plan {
     pub elements: Vec<ElementPlan>,
     /// What moves the robot.
     pub motion: MotionPlan,
-    /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is lost there.
+    /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
+    /// lost there.
     pub tells_joint_losses: bool,
     /// Duration and rows.
     pub time: TimePlan,

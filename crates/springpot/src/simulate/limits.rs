@@ -99,7 +99,7 @@ struct Passed {
 }
 
 impl LimitWatch {
-    /// Watches every limit of the robot's joints. A joint that follows another one has no actuator and no limit of effort.
+    /// Watches every limit of the robot's joints. A joint that follows another one has no actuator, so no limit of effort.
     pub fn new(system: &System) -> Self {
         let model = &system.model;
         Self { watched: (0..model.joint_count()).flat_map(|joint| of_joint(model, joint)).collect() }
@@ -139,8 +139,8 @@ impl LimitWatch {
 }
 
 impl System {
-    /// The row at t = 0, in the order of [`System::columns`], whether or not the run has one there; without its forces where
-    /// these are not known at once (named schemes).
+    /// The row at t = 0, in the order of [`System::columns`], whether or not the run has one there; without its forces
+    /// where these are not known at once (named schemes).
     ///
     /// # Errors
     /// What keeps a run from starting.

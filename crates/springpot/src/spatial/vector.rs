@@ -86,7 +86,8 @@ impl<T: Scalar> Neg for Vec3<T> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
+        let [x, y, z] = self.0;
+        Self([-x, -y, -z])
     }
 }
 
@@ -94,7 +95,8 @@ impl<T: Scalar> Mul<T> for Vec3<T> {
     type Output = Self;
     #[inline]
     fn mul(self, factor: T) -> Self {
-        Self(self.0.map(|x| x * factor))
+        let [x, y, z] = self.0;
+        Self([x * factor, y * factor, z * factor])
     }
 }
 
