@@ -1,0 +1,391 @@
+//! One step of a fixed-step method: one stage, a fixed number of Newton iterations.
+
+use super::Method;
+use super::resistance::add_secants;
+use crate::dynamics::{
+    Kinematics, Pair, PairForce, RneaDerivatives, Workspace, pair_into, rnea_derivatives_into, rnea_into,
+};
+use crate::fractional::{Form, Nodes};
+use crate::law::{InputValue, Response, Singular, State, Step};
+use crate::model::Model;
+use crate::motion::{Drive, Forward};
+use crate::simulate::lu::Lu;
+use crate::simulate::{RunError, System};
+
+/// The robot at one time.
+#[derive(Debug, Clone)]
+pub(super) struct Place {
+    pub(super) t: f64,
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
+    pub(super) kinematics: Kinematics,
+}
+
+/// One element over a step.
+#[derive(Debug, Clone)]
+pub(super) struct ElementStep {
+    /// At the start and at the end.
+    pub(super) ends: [Pair; 2],
+    /// At the start and at the stage.
+    stroke: [f64; 2],
+    rate: [f64; 2],
+    inputs: Vec<InputValue>,
+    pub(super) held: Vec<Option<f64>>,
+    resolution: f64,
+    pub(super) response: Response,
+    gradient: Vec<f64>,
+}
+
+/// Steps of one method from one [`Place`] to the next.
+///
+/// With c the node of the method (1 or ½) and κ = c h, the stage has the velocities v_0 + κ a and the place q_0 ⊕ κ v, and the
+/// accelerations a solve RNEA(q, v, a) = τ + ΣQ there. The step ends at v_0 + h a and q_0 ⊕ h v.
+#[derive(Debug, Clone)]
+pub(super) struct Stepper<'a> {
+    system: &'a System,
+    model: &'a Model,
+    forward: &'a Forward,
+    method: Method,
+    /// Velocities that no signal prescribes.
+    free: Vec<usize>,
+    pub(super) origin: Place,
+    stage: Place,
+    pub(super) end: Place,
+    /// Accelerations of the stage.
+    pub(super) a: Vec<f64>,
+    /// Tangent vector from the start, 0 where a joint is not free.
+    xi: Vec<f64>,
+    moved: Vec<f64>,
+    pub(super) elements: Vec<ElementStep>,
+    drives: Vec<f64>,
+    workspace: Workspace,
+    slopes: RneaDerivatives,
+    newton: Lu,
+    residual: Vec<f64>,
+    tau: Vec<f64>,
+    pairs: Vec<PairForce>,
+    /// Largest change of a stage's velocity in the last iteration of the last step.
+    pub(super) correction: f64,
+}
+
+impl<'a> Stepper<'a> {
+    /// At rest where the motion starts; nothing is asked of the laws.
+    ///
+    /// # Errors
+    /// [`RunError::ZeroLength`].
+    pub(super) fn new(system: &'a System, forward: &'a Forward, method: Method) -> Result<Self, RunError> {
+        let model = &system.model;
+        let nv = model.nv();
+        let mut free = Vec::new();
+        let mut start =
+            Place { t: 0.0, q: forward.q.clone(), v: forward.v.clone(), kinematics: Kinematics::new(model) };
+        let mut a = vec![0.0; nv];
+        for (j, drive) in model.own_joints().zip(&forward.drives) {
+            let (q, v) = (model.q_range(j), model.v_range(j));
+            match drive {
+                Drive::Force(_) => free.extend(v),
+                Drive::Prescribed(path) => path.at(0.0, &mut start.q[q], &mut start.v[v.clone()], &mut a[v]),
+                Drive::Locked => start.v[v].fill(0.0),
+            }
+        }
+        start.kinematics.update_velocity(model, &start.q, &start.v);
+        let elements = system.elements.iter().map(|element| {
+            let mut gradient = vec![0.0; nv];
+            let pair = pair_into(model, &start.kinematics, &element.from, &element.to, &mut gradient);
+            if pair.check().is_err() {
+                return Err(RunError::ZeroLength { t: 0.0, element: element.name.clone(), length: pair.length });
+            }
+            Ok(ElementStep {
+                ends: [pair; 2],
+                stroke: [0.0; 2],
+                rate: [0.0; 2],
+                inputs: vec![InputValue::default(); 2 * element.inputs.len()],
+                held: vec![None; element.inputs.len()],
+                resolution: 0.0,
+                response: Response::default(),
+                gradient,
+            })
+        });
+        let elements = elements.collect::<Result<Vec<_>, _>>()?;
+        let mut stepper = Self {
+            system,
+            model,
+            forward,
+            method,
+            origin: start.clone(),
+            stage: start.clone(),
+            end: start,
+            a,
+            xi: vec![0.0; nv],
+            moved: vec![0.0; model.nq()],
+            drives: vec![0.0; free.len()],
+            workspace: Workspace::new(model),
+            slopes: RneaDerivatives::new(model),
+            newton: Lu::default(),
+            residual: vec![0.0; free.len()],
+            tau: vec![0.0; nv],
+            pairs: Vec::with_capacity(elements.len()),
+            correction: 0.0,
+            elements,
+            free,
+        };
+        // Room for the factors, so that no step allocates.
+        let count = stepper.free.len();
+        stepper.newton.factor(count, |matrix| (0..count).for_each(|k| matrix[k * count + k] = 1.0));
+        stepper.take_inputs(0.0)?;
+        Ok(stepper)
+    }
+
+    /// Works out the step of size `h` to `to`; the origin stays. `torque` (nv) is held over the step and added to the motion's
+    /// signals; `law` gives the state of each element's law.
+    ///
+    /// # Errors
+    /// [`RunError`]; the step may be tried again with other torques.
+    pub(super) fn attempt<'l>(
+        &mut self,
+        to: f64,
+        h: f64,
+        torque: &[f64],
+        law: impl Fn(usize) -> &'l State,
+    ) -> Result<(), RunError> {
+        let kappa = self.method.node() * h;
+        // The end of the last step comes from a table of times, and so does that of this one.
+        let t = if self.method.node() == 1.0 { to } else { self.origin.t + kappa };
+        self.stage.t = t;
+        self.take_inputs(t)?;
+        self.take_drives(t, torque)?;
+        for &k in &self.free {
+            // Not those of the step before: where an element is stiff they would lead far away.
+            self.a[k] = 0.0;
+        }
+        self.correction = 0.0;
+        for _ in 0..self.method.iterations() {
+            self.place_stage(kappa);
+            self.respond(h, &law)?;
+            self.improve(kappa, h)?;
+        }
+        self.place_stage(kappa);
+        self.respond(h, &law)?;
+        self.place_end(to, h)
+    }
+
+    /// Goes on to the end of the step that was just worked out.
+    pub(super) fn accept(&mut self) {
+        std::mem::swap(&mut self.origin, &mut self.end);
+        for element in &mut self.elements {
+            element.ends[0] = element.ends[1];
+        }
+    }
+
+    /// The step as memories take it into the past: x' is constant.
+    pub(super) fn with_past<R>(&self, e: usize, h: f64, take: impl FnOnce(&Step) -> R) -> R {
+        let (element, step) = (&self.system.elements[e], &self.elements[e]);
+        let stroke = step.ends.map(|pair| pair.length - element.rest_length);
+        let rate = step.ends.map(|pair| pair.rate);
+        take(&Step {
+            t: self.origin.t,
+            h,
+            nodes: Nodes::One,
+            form: Form::Strokes,
+            stroke: &stroke,
+            rate: &rate,
+            inputs: &step.inputs,
+            resolution: step.resolution,
+            singular: Singular::Moments,
+        })
+    }
+
+    /// Inputs of an element at the stage of the last step.
+    pub(super) fn inputs(&self, e: usize) -> &[InputValue] {
+        let inputs = &self.elements[e].inputs;
+        &inputs[inputs.len() / 2..]
+    }
+
+    fn take_inputs(&mut self, at: f64) -> Result<(), RunError> {
+        for (element, step) in self.system.elements.iter().zip(&mut self.elements) {
+            let count = element.inputs.len();
+            for (t, values) in [self.origin.t, at].into_iter().zip(step.inputs.chunks_exact_mut(count.max(1))) {
+                element.inputs_at(t, values);
+                for (value, held) in values.iter_mut().zip(&step.held) {
+                    if let Some(held) = *held {
+                        *value = InputValue { value: held, rate: 0.0 };
+                    }
+                }
+                element.check_inputs(t, values)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn take_drives(&mut self, t: f64, torque: &[f64]) -> Result<(), RunError> {
+        let mut place = 0;
+        for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
+            let (q, v) = (self.model.q_range(j), self.model.v_range(j));
+            match drive {
+                Drive::Force(signals) => {
+                    for (k, signal) in v.zip(signals) {
+                        let force = signal.at(t).value + torque[k];
+                        if !force.is_finite() {
+                            let what = format!("tau.{}", self.model.v_labels()[k].name);
+                            return Err(RunError::NotFinite { t, what, value: force });
+                        }
+                        self.drives[place] = force;
+                        place += 1;
+                    }
+                }
+                Drive::Prescribed(path) => {
+                    let stage = &mut self.stage;
+                    path.at(t, &mut stage.q[q], &mut stage.v[v.clone()], &mut self.a[v.clone()]);
+                    self.check_prescribed(t, j)?;
+                }
+                Drive::Locked => self.a[v].fill(0.0),
+            }
+        }
+        Ok(())
+    }
+
+    fn check_prescribed(&self, t: f64, j: usize) -> Result<(), RunError> {
+        let (q, v) = (&self.stage.q[self.model.q_range(j)], self.model.v_range(j));
+        let all = q.iter().chain(&self.stage.v[v.clone()]).chain(&self.a[v]);
+        match all.copied().find(|x| !x.is_finite()) {
+            Some(value) => Err(RunError::NotFinite { t, what: format!("q.{}", self.model.joint_names()[j]), value }),
+            None => Ok(()),
+        }
+    }
+
+    fn place_stage(&mut self, kappa: f64) {
+        for &k in &self.free {
+            self.stage.v[k] = self.origin.v[k] + kappa * self.a[k];
+            self.xi[k] = kappa * self.stage.v[k];
+        }
+        self.model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
+        take_moved(self.model, self.forward, &self.moved, &mut self.stage.q);
+        self.stage.kinematics.update_velocity(self.model, &self.stage.q, &self.stage.v);
+    }
+
+    /// Asks the elements at the stage.
+    fn respond<'l>(&mut self, h: f64, law: &impl Fn(usize) -> &'l State) -> Result<(), RunError> {
+        self.pairs.clear();
+        for (e, element) in self.system.elements.iter().enumerate() {
+            let step = &mut self.elements[e];
+            let pair = pair_into(self.model, &self.stage.kinematics, &element.from, &element.to, &mut step.gradient);
+            step.stroke = [step.ends[0].length, pair.length].map(|length| length - element.rest_length);
+            step.rate = [step.ends[0].rate, pair.rate];
+            step.resolution = element.resolution(pair.length);
+            step.ends[1] = pair;
+            if pair.length.is_finite() && pair.check().is_err() {
+                let (t, element) = (self.stage.t, element.name.clone());
+                return Err(RunError::ZeroLength { t, element, length: pair.length });
+            }
+            let asked = Step {
+                t: self.origin.t,
+                h,
+                nodes: self.method.nodes(),
+                form: self.method.form(),
+                stroke: &step.stroke,
+                rate: &step.rate,
+                inputs: &step.inputs,
+                resolution: step.resolution,
+                singular: Singular::Moments,
+            };
+            step.response = element.law.respond(&asked, law(e));
+            self.pairs.push(PairForce {
+                from: element.from,
+                to: element.to,
+                force: step.response.force[0],
+                d_length: step.response.d_stroke[0][0],
+                d_rate: step.response.d_rate[0][0],
+            });
+        }
+        Ok(())
+    }
+
+    /// One Newton iteration with all derivatives taken anew: (M + κ D + κ² K) Δa = −residual.
+    fn improve(&mut self, kappa: f64, h: f64) -> Result<(), RunError> {
+        let (n, free) = (self.model.nv(), &self.free);
+        if free.is_empty() {
+            return Ok(());
+        }
+        let (stage, workspace) = (&self.stage, &mut self.workspace);
+        rnea_into(self.model, &stage.q, &stage.v, &self.a, &self.pairs, workspace, &mut self.tau);
+        self.system.add_joint_losses(&stage.v, &mut self.tau);
+        for ((r, &k), drive) in self.residual.iter_mut().zip(free).zip(&self.drives) {
+            *r = drive - self.tau[k];
+        }
+        rnea_derivatives_into(self.model, &stage.kinematics, &self.a, &self.pairs, workspace, &mut self.slopes);
+        add_secants(self.model, &stage.v, &mut self.slopes.d_v);
+        let (slopes, count) = (&self.slopes, free.len());
+        let regular = self.newton.factor(count, |matrix| {
+            for (line, &row) in matrix.chunks_exact_mut(count).zip(free) {
+                for (entry, &column) in line.iter_mut().zip(free) {
+                    let at = row * n + column;
+                    *entry = slopes.d_a[at] + kappa * (slopes.d_v[at] + kappa * slopes.d_q[at]);
+                }
+            }
+        });
+        if regular {
+            self.newton.solve(&mut self.residual);
+        }
+        self.correction = 0.0;
+        for (&k, change) in free.iter().zip(&self.residual) {
+            if !(regular && change.is_finite()) {
+                return Err(self.too_long(h, k));
+            }
+            self.a[k] += change;
+            self.correction = self.correction.max((kappa * change).abs());
+        }
+        Ok(())
+    }
+
+    /// The end of the step, and the elements there.
+    fn place_end(&mut self, to: f64, h: f64) -> Result<(), RunError> {
+        if self.method.node() == 1.0 {
+            std::mem::swap(&mut self.end, &mut self.stage);
+        } else {
+            let end = &mut self.end;
+            end.t = to;
+            for &k in &self.free {
+                end.v[k] = self.origin.v[k] + h * self.a[k];
+                self.xi[k] = h * self.stage.v[k];
+            }
+            self.model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
+            take_moved(self.model, self.forward, &self.moved, &mut end.q);
+            for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
+                let (q, v) = (self.model.q_range(j), self.model.v_range(j));
+                if let Drive::Prescribed(path) = drive {
+                    // Its accelerations at the end are not asked for.
+                    path.at(to, &mut end.q[q], &mut end.v[v.clone()], &mut self.tau[v]);
+                }
+            }
+            end.kinematics.update_velocity(self.model, &end.q, &end.v);
+            for (element, step) in self.system.elements.iter().zip(&mut self.elements) {
+                step.ends[1] = pair_into(self.model, &end.kinematics, &element.from, &element.to, &mut step.gradient);
+            }
+        }
+        if let Some(k) = self.end.v.iter().position(|v| !v.is_finite()) {
+            return Err(self.too_long(h, k));
+        }
+        for (element, step) in self.system.elements.iter().zip(&self.elements) {
+            let [start, end] = &step.ends;
+            // One that turned by more than a right angle had length 0 on the way.
+            if end.check().is_err() || start.direction.dot(end.direction) <= 0.0 {
+                let length = start.length.min(end.length);
+                return Err(RunError::ZeroLength { t: to, element: element.name.clone(), length });
+            }
+        }
+        Ok(())
+    }
+
+    fn too_long(&self, h: f64, k: usize) -> RunError {
+        RunError::FixedStep { t: self.origin.t, h, joint: self.model.v_labels()[k].name.clone() }
+    }
+}
+
+/// Takes the places of all joints but those that signals move.
+fn take_moved(model: &Model, forward: &Forward, moved: &[f64], q: &mut [f64]) {
+    for (j, drive) in model.own_joints().zip(&forward.drives) {
+        if !matches!(drive, Drive::Prescribed(_)) {
+            q[model.q_range(j)].copy_from_slice(&moved[model.q_range(j)]);
+        }
+    }
+}
