@@ -1,7 +1,7 @@
 //! One step of a fixed-step method: one stage, a fixed number of Newton iterations.
 
-use super::Method;
 use super::resistance::add_secants;
+use super::{ITERATIONS, Method};
 use crate::dynamics::{
     Kinematics, Pair, PairForce, RneaDerivatives, Workspace, pair_into, rnea_derivatives_into, rnea_into,
 };
@@ -26,14 +26,15 @@ pub(super) struct Place {
 pub(super) struct ElementStep {
     /// At the start and at the end.
     pub(super) ends: [Pair; 2],
-    /// At the start and at the stage.
+    /// At the start, and what the law is asked for: at the end, or the mean over the step.
     stroke: [f64; 2],
     rate: [f64; 2],
     inputs: Vec<InputValue>,
     pub(super) held: Vec<Option<f64>>,
     resolution: f64,
     pub(super) response: Response,
-    gradient: Vec<f64>,
+    /// ∂l/∂q at the stage and at the end.
+    gradients: [Vec<f64>; 2],
 }
 
 /// Steps of one method from one [`Place`] to the next.
@@ -103,7 +104,7 @@ impl<'a> Stepper<'a> {
                 held: vec![None; element.inputs.len()],
                 resolution: 0.0,
                 response: Response::default(),
-                gradient,
+                gradients: [gradient.clone(), gradient],
             })
         });
         let elements = elements.collect::<Result<Vec<_>, _>>()?;
@@ -152,6 +153,7 @@ impl<'a> Stepper<'a> {
         // The end of the last step comes from a table of times, and so does that of this one.
         let t = if self.method.node() == 1.0 { to } else { self.origin.t + kappa };
         self.stage.t = t;
+        self.end.t = to;
         self.take_inputs(t)?;
         self.take_drives(t, torque)?;
         for &k in &self.free {
@@ -159,14 +161,14 @@ impl<'a> Stepper<'a> {
             self.a[k] = 0.0;
         }
         self.correction = 0.0;
-        for _ in 0..self.method.iterations() {
-            self.place_stage(kappa);
-            self.respond(h, &law)?;
-            self.improve(kappa, h)?;
-        }
-        self.place_stage(kappa);
+        self.place(kappa, h);
         self.respond(h, &law)?;
-        self.place_end(to, h)
+        for _ in 0..ITERATIONS {
+            self.improve(kappa, h)?;
+            self.place(kappa, h);
+            self.respond(h, &law)?;
+        }
+        self.check_end(h)
     }
 
     /// Goes on to the end of the step that was just worked out.
@@ -234,8 +236,10 @@ impl<'a> Stepper<'a> {
                     }
                 }
                 Drive::Prescribed(path) => {
-                    let stage = &mut self.stage;
-                    path.at(t, &mut stage.q[q], &mut stage.v[v.clone()], &mut self.a[v.clone()]);
+                    let (stage, end) = (&mut self.stage, &mut self.end);
+                    // The accelerations at the end are not asked for.
+                    path.at(end.t, &mut end.q[q.clone()], &mut end.v[v.clone()], &mut self.a[v.clone()]);
+                    path.at(t, &mut stage.q[q], &mut stage.v[v.clone()], &mut self.a[v]);
                     self.check_prescribed(t, j)?;
                 }
                 Drive::Locked => self.a[v].fill(0.0),
@@ -253,35 +257,64 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    fn place_stage(&mut self, kappa: f64) {
+    /// Places the stage and the end under the accelerations.
+    fn place(&mut self, kappa: f64, h: f64) {
+        let (model, ends_at_stage) = (self.model, self.method.node() == 1.0);
         for &k in &self.free {
             self.stage.v[k] = self.origin.v[k] + kappa * self.a[k];
+            self.end.v[k] = self.origin.v[k] + h * self.a[k];
             self.xi[k] = kappa * self.stage.v[k];
         }
-        self.model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
-        take_moved(self.model, self.forward, &self.moved, &mut self.stage.q);
-        self.stage.kinematics.update_velocity(self.model, &self.stage.q, &self.stage.v);
+        model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
+        take_moved(model, self.forward, &self.moved, &mut self.stage.q);
+        self.stage.kinematics.update_velocity(model, &self.stage.q, &self.stage.v);
+        if ends_at_stage {
+            self.end.q.copy_from_slice(&self.stage.q);
+            self.end.v.copy_from_slice(&self.stage.v);
+            return;
+        }
+        for &k in &self.free {
+            self.xi[k] = h * self.stage.v[k];
+        }
+        model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
+        take_moved(model, self.forward, &self.moved, &mut self.end.q);
+        self.end.kinematics.update_velocity(model, &self.end.q, &self.end.v);
     }
 
-    /// Asks the elements at the stage.
+    /// Asks the elements.
+    ///
+    /// With the midpoint rule, which acts along ∂l/∂q at the stage, the law gets the mean of the strokes at both ends and the rate
+    /// (x_1 − x_0)/h. The work of a spring is then the energy that it takes up, but for terms of order h³: with strokes and rates of the stage
+    /// itself stiff elements make energy.
     fn respond<'l>(&mut self, h: f64, law: &impl Fn(usize) -> &'l State) -> Result<(), RunError> {
+        let ends_at_stage = self.method.node() == 1.0;
         self.pairs.clear();
         for (e, element) in self.system.elements.iter().enumerate() {
             let step = &mut self.elements[e];
-            let pair = pair_into(self.model, &self.stage.kinematics, &element.from, &element.to, &mut step.gradient);
-            step.stroke = [step.ends[0].length, pair.length].map(|length| length - element.rest_length);
-            step.rate = [step.ends[0].rate, pair.rate];
-            step.resolution = element.resolution(pair.length);
-            step.ends[1] = pair;
+            let [at_stage, at_end] = &mut step.gradients;
+            let (stage, end) = (&self.stage.kinematics, &self.end.kinematics);
+            let pair = pair_into(self.model, stage, &element.from, &element.to, at_stage);
+            let start = step.ends[0];
+            let (stroke, rate) = if ends_at_stage {
+                step.ends[1] = pair;
+                (pair.length, pair.rate)
+            } else {
+                step.ends[1] = pair_into(self.model, end, &element.from, &element.to, at_end);
+                let length = step.ends[1].length;
+                (0.5 * (start.length + length), (length - start.length) / h)
+            };
             if pair.length.is_finite() && pair.check().is_err() {
                 let (t, element) = (self.stage.t, element.name.clone());
                 return Err(RunError::ZeroLength { t, element, length: pair.length });
             }
+            step.stroke = [start.length, stroke].map(|length| length - element.rest_length);
+            step.rate = [start.rate, rate];
+            step.resolution = element.resolution(pair.length);
             let asked = Step {
                 t: self.origin.t,
                 h,
                 nodes: self.method.nodes(),
-                form: self.method.form(),
+                form: Form::Strokes,
                 stroke: &step.stroke,
                 rate: &step.rate,
                 inputs: &step.inputs,
@@ -289,12 +322,14 @@ impl<'a> Stepper<'a> {
                 singular: Singular::Moments,
             };
             step.response = element.law.respond(&asked, law(e));
+            let Response { force, d_stroke, d_rate, .. } = &step.response;
+            let tangents = if ends_at_stage { [d_stroke[0][0], d_rate[0][0]] } else { [0.0; 2] };
             self.pairs.push(PairForce {
                 from: element.from,
                 to: element.to,
-                force: step.response.force[0],
-                d_length: step.response.d_stroke[0][0],
-                d_rate: step.response.d_rate[0][0],
+                force: force[0],
+                d_length: tangents[0],
+                d_rate: tangents[1],
             });
         }
         Ok(())
@@ -314,7 +349,20 @@ impl<'a> Stepper<'a> {
         }
         rnea_derivatives_into(self.model, &stage.kinematics, &self.a, &self.pairs, workspace, &mut self.slopes);
         add_secants(self.model, &stage.v, &mut self.slopes.d_v);
-        let (slopes, count) = (&self.slopes, free.len());
+        let (slopes, count) = (&mut self.slopes, free.len());
+        if self.method.node() != 1.0 {
+            // ∂F/∂a = (κ² ∂F/∂x + κ ∂F/∂x') ∂l/∂q, taken at the end; added to the place of κ² K.
+            for step in &self.elements {
+                let Response { d_stroke, d_rate, .. } = &step.response;
+                let stiffness = d_stroke[0][0] + d_rate[0][0] / kappa;
+                let [at_stage, at_end] = &step.gradients;
+                for (line, push) in slopes.d_q.chunks_exact_mut(n).zip(at_stage) {
+                    for (entry, g) in line.iter_mut().zip(at_end) {
+                        *entry += stiffness * push * g;
+                    }
+                }
+            }
+        }
         let regular = self.newton.factor(count, |matrix| {
             for (line, &row) in matrix.chunks_exact_mut(count).zip(free) {
                 for (entry, &column) in line.iter_mut().zip(free) {
@@ -337,31 +385,8 @@ impl<'a> Stepper<'a> {
         Ok(())
     }
 
-    /// The end of the step, and the elements there.
-    fn place_end(&mut self, to: f64, h: f64) -> Result<(), RunError> {
-        if self.method.node() == 1.0 {
-            std::mem::swap(&mut self.end, &mut self.stage);
-        } else {
-            let end = &mut self.end;
-            end.t = to;
-            for &k in &self.free {
-                end.v[k] = self.origin.v[k] + h * self.a[k];
-                self.xi[k] = h * self.stage.v[k];
-            }
-            self.model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
-            take_moved(self.model, self.forward, &self.moved, &mut end.q);
-            for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
-                let (q, v) = (self.model.q_range(j), self.model.v_range(j));
-                if let Drive::Prescribed(path) = drive {
-                    // Its accelerations at the end are not asked for.
-                    path.at(to, &mut end.q[q], &mut end.v[v.clone()], &mut self.tau[v]);
-                }
-            }
-            end.kinematics.update_velocity(self.model, &end.q, &end.v);
-            for (element, step) in self.system.elements.iter().zip(&mut self.elements) {
-                step.ends[1] = pair_into(self.model, &end.kinematics, &element.from, &element.to, &mut step.gradient);
-            }
-        }
+    /// Whether the end of the step is one to go on from.
+    fn check_end(&mut self, h: f64) -> Result<(), RunError> {
         if let Some(k) = self.end.v.iter().position(|v| !v.is_finite()) {
             return Err(self.too_long(h, k));
         }
@@ -370,8 +395,11 @@ impl<'a> Stepper<'a> {
             // One that turned by more than a right angle had length 0 on the way.
             if end.check().is_err() || start.direction.dot(end.direction) <= 0.0 {
                 let length = start.length.min(end.length);
-                return Err(RunError::ZeroLength { t: to, element: element.name.clone(), length });
+                return Err(RunError::ZeroLength { t: self.end.t, element: element.name.clone(), length });
             }
+        }
+        if self.method.node() == 1.0 {
+            std::mem::swap(&mut self.end, &mut self.stage);
         }
         Ok(())
     }
