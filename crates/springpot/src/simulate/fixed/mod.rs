@@ -9,6 +9,7 @@
 //! turns, which two leave at 0.1. [`Loop::correction`] tells how far the last one went. The iterations start from v_0 and not from the last
 //! accelerations, so that a shock does not throw the next step off.
 
+mod elements;
 mod place;
 mod real_time;
 mod resistance;

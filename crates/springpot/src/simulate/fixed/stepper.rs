@@ -1,12 +1,10 @@
 //! One step of a fixed-step method: one stage, a fixed number of Newton iterations.
 
+use super::elements::ElementStep;
 use super::resistance::add_secants;
 use super::{ITERATIONS, Method};
-use crate::dynamics::{
-    Kinematics, Pair, PairForce, RneaDerivatives, Workspace, pair_into, rnea_derivatives_into, rnea_into,
-};
-use crate::fractional::{Form, Nodes};
-use crate::law::{InputValue, Response, Singular, State, Step};
+use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, rnea_derivatives_into, rnea_into};
+use crate::law::{Response, State};
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
 use crate::simulate::lu::Lu;
@@ -21,36 +19,20 @@ pub(super) struct Place {
     pub(super) kinematics: Kinematics,
 }
 
-/// One element over a step.
-#[derive(Debug, Clone)]
-pub(super) struct ElementStep {
-    /// At the start and at the end.
-    pub(super) ends: [Pair; 2],
-    /// At the start, and what the law is asked for: at the end, or the mean over the step.
-    stroke: [f64; 2],
-    rate: [f64; 2],
-    inputs: Vec<InputValue>,
-    pub(super) held: Vec<Option<f64>>,
-    resolution: f64,
-    pub(super) response: Response,
-    /// ∂l/∂q at the stage and at the end.
-    gradients: [Vec<f64>; 2],
-}
-
 /// Steps of one method from one [`Place`] to the next.
 ///
 /// With c the node of the method (1 or ½) and κ = c h, the stage has the velocities v_0 + κ a and the place q_0 ⊕ κ v, and the
 /// accelerations a solve RNEA(q, v, a) = τ + ΣQ there. The step ends at v_0 + h a and q_0 ⊕ h v.
 #[derive(Debug, Clone)]
 pub(super) struct Stepper<'a> {
-    system: &'a System,
-    model: &'a Model,
+    pub(super) system: &'a System,
+    pub(super) model: &'a Model,
     forward: &'a Forward,
-    method: Method,
+    pub(super) method: Method,
     /// Velocities that no signal prescribes.
     free: Vec<usize>,
     pub(super) origin: Place,
-    stage: Place,
+    pub(super) stage: Place,
     pub(super) end: Place,
     /// Accelerations of the stage.
     pub(super) a: Vec<f64>,
@@ -64,7 +46,7 @@ pub(super) struct Stepper<'a> {
     newton: Lu,
     residual: Vec<f64>,
     tau: Vec<f64>,
-    pairs: Vec<PairForce>,
+    pub(super) pairs: Vec<PairForce>,
     /// Largest change of a stage's velocity in the last iteration of the last step.
     pub(super) correction: f64,
 }
@@ -90,23 +72,7 @@ impl<'a> Stepper<'a> {
             }
         }
         start.kinematics.update_velocity(model, &start.q, &start.v);
-        let elements = system.elements.iter().map(|element| {
-            let mut gradient = vec![0.0; nv];
-            let pair = pair_into(model, &start.kinematics, &element.from, &element.to, &mut gradient);
-            if pair.check().is_err() {
-                return Err(RunError::ZeroLength { t: 0.0, element: element.name.clone(), length: pair.length });
-            }
-            Ok(ElementStep {
-                ends: [pair; 2],
-                stroke: [0.0; 2],
-                rate: [0.0; 2],
-                inputs: vec![InputValue::default(); 2 * element.inputs.len()],
-                held: vec![None; element.inputs.len()],
-                resolution: 0.0,
-                response: Response::default(),
-                gradients: [gradient.clone(), gradient],
-            })
-        });
+        let elements = system.elements.iter().map(|element| ElementStep::new(element, model, &start.kinematics));
         let elements = elements.collect::<Result<Vec<_>, _>>()?;
         let mut stepper = Self {
             system,
@@ -179,46 +145,6 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// The step as memories take it into the past: x' is constant.
-    pub(super) fn with_past<R>(&self, e: usize, h: f64, take: impl FnOnce(&Step) -> R) -> R {
-        let (element, step) = (&self.system.elements[e], &self.elements[e]);
-        let stroke = step.ends.map(|pair| pair.length - element.rest_length);
-        let rate = step.ends.map(|pair| pair.rate);
-        take(&Step {
-            t: self.origin.t,
-            h,
-            nodes: Nodes::One,
-            form: Form::Strokes,
-            stroke: &stroke,
-            rate: &rate,
-            inputs: &step.inputs,
-            resolution: step.resolution,
-            singular: Singular::Moments,
-        })
-    }
-
-    /// Inputs of an element at the stage of the last step.
-    pub(super) fn inputs(&self, e: usize) -> &[InputValue] {
-        let inputs = &self.elements[e].inputs;
-        &inputs[inputs.len() / 2..]
-    }
-
-    fn take_inputs(&mut self, at: f64) -> Result<(), RunError> {
-        for (element, step) in self.system.elements.iter().zip(&mut self.elements) {
-            let count = element.inputs.len();
-            for (t, values) in [self.origin.t, at].into_iter().zip(step.inputs.chunks_exact_mut(count.max(1))) {
-                element.inputs_at(t, values);
-                for (value, held) in values.iter_mut().zip(&step.held) {
-                    if let Some(held) = *held {
-                        *value = InputValue { value: held, rate: 0.0 };
-                    }
-                }
-                element.check_inputs(t, values)?;
-            }
-        }
-        Ok(())
-    }
-
     fn take_drives(&mut self, t: f64, torque: &[f64]) -> Result<(), RunError> {
         let mut place = 0;
         for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
@@ -279,60 +205,6 @@ impl<'a> Stepper<'a> {
         model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
         take_moved(model, self.forward, &self.moved, &mut self.end.q);
         self.end.kinematics.update_velocity(model, &self.end.q, &self.end.v);
-    }
-
-    /// Asks the elements.
-    ///
-    /// With the midpoint rule, which acts along ∂l/∂q at the stage, the law gets the mean of the strokes at both ends and the rate
-    /// (x_1 − x_0)/h. The work of a spring is then the energy that it takes up, but for terms of order h³: with strokes and rates of the stage
-    /// itself stiff elements make energy.
-    fn respond<'l>(&mut self, h: f64, law: &impl Fn(usize) -> &'l State) -> Result<(), RunError> {
-        let ends_at_stage = self.method.node() == 1.0;
-        self.pairs.clear();
-        for (e, element) in self.system.elements.iter().enumerate() {
-            let step = &mut self.elements[e];
-            let [at_stage, at_end] = &mut step.gradients;
-            let (stage, end) = (&self.stage.kinematics, &self.end.kinematics);
-            let pair = pair_into(self.model, stage, &element.from, &element.to, at_stage);
-            let start = step.ends[0];
-            let (stroke, rate) = if ends_at_stage {
-                step.ends[1] = pair;
-                (pair.length, pair.rate)
-            } else {
-                step.ends[1] = pair_into(self.model, end, &element.from, &element.to, at_end);
-                let length = step.ends[1].length;
-                (0.5 * (start.length + length), (length - start.length) / h)
-            };
-            if pair.length.is_finite() && pair.check().is_err() {
-                let (t, element) = (self.stage.t, element.name.clone());
-                return Err(RunError::ZeroLength { t, element, length: pair.length });
-            }
-            step.stroke = [start.length, stroke].map(|length| length - element.rest_length);
-            step.rate = [start.rate, rate];
-            step.resolution = element.resolution(pair.length);
-            let asked = Step {
-                t: self.origin.t,
-                h,
-                nodes: self.method.nodes(),
-                form: Form::Strokes,
-                stroke: &step.stroke,
-                rate: &step.rate,
-                inputs: &step.inputs,
-                resolution: step.resolution,
-                singular: Singular::Moments,
-            };
-            step.response = element.law.respond(&asked, law(e));
-            let Response { force, d_stroke, d_rate, .. } = &step.response;
-            let tangents = if ends_at_stage { [d_stroke[0][0], d_rate[0][0]] } else { [0.0; 2] };
-            self.pairs.push(PairForce {
-                from: element.from,
-                to: element.to,
-                force: force[0],
-                d_length: tangents[0],
-                d_rate: tangents[1],
-            });
-        }
-        Ok(())
     }
 
     /// One Newton iteration with all derivatives taken anew: (M + κ D + κ² K) Δa = −residual.
