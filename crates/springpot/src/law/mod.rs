@@ -136,6 +136,12 @@ pub struct State {
 }
 
 impl State {
+    /// As [`Memory::prepare`] for all memories.
+    pub fn prepare(&self, lags: &[f64]) {
+        self.memory.iter().for_each(|memory| memory.prepare(lags));
+        self.parts.iter().for_each(|part| part.prepare(lags));
+    }
+
     /// Number of exponentials in all memories.
     pub fn modes(&self) -> usize {
         self.memory.as_ref().map_or(0, Memory::modes) + self.parts.iter().map(Self::modes).sum::<usize>()

@@ -76,6 +76,18 @@ pub enum RunError {
         /// Worst element, or the energy.
         subject: String,
     },
+    /// The step of a fixed-step method is too long.
+    #[error(
+        "t = {t} s: a step of {h} s is too long: no finite acceleration of {joint} solves it; take a shorter solver.step"
+    )]
+    FixedStep {
+        /// Time, s.
+        t: f64,
+        /// Step size, s.
+        h: f64,
+        /// Joint.
+        joint: String,
+    },
     /// More steps than allowed.
     #[error("t = {t} s: {limit} steps are used up (solver.max_steps)")]
     TooManySteps {

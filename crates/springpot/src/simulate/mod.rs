@@ -10,6 +10,7 @@ mod book;
 mod control;
 mod equation;
 mod error;
+pub mod fixed;
 mod forward;
 mod ledger;
 mod limits;
@@ -23,6 +24,7 @@ mod row_times;
 pub use along::along;
 pub use equation::{ElementTerm, Equation, EquationError};
 pub use error::RunError;
+pub use fixed::FixedStep;
 pub use forward::forward;
 pub use limits::{LimitKind, LimitWatch, PassedLimit};
 pub use moment::FRICTION_SPEED;
@@ -68,6 +70,8 @@ pub struct Settings {
     pub max_step: Option<f64>,
     /// Number of inner steps allowed.
     pub max_steps: Option<u64>,
+    /// Steps of one size, for robots that move by themselves; `None`: the run chooses its steps.
+    pub fixed_step: Option<FixedStep>,
 }
 
 /// What a run did.
@@ -107,11 +111,12 @@ impl<F: FnMut(&[f64]) -> std::io::Result<()>> Rows for F {
     }
 }
 
-/// Runs `system` as its motion says: [`along`] a motion given in advance, or [`forward`].
+/// Runs `system` as its motion says: [`along`] a motion given in advance, [`forward`], or in [`fixed`] steps.
 pub fn run(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
-    match &system.motion {
-        Motion::Prescribed(_) | Motion::GripperPath(_) => along(system, settings, rows, stop),
-        Motion::Forward(_) => forward(system, settings, rows, stop),
+    match (&system.motion, settings.fixed_step) {
+        (Motion::Prescribed(_) | Motion::GripperPath(_), _) => along(system, settings, rows, stop),
+        (Motion::Forward(_), None) => forward(system, settings, rows, stop),
+        (Motion::Forward(_), Some(by)) => fixed::fixed(system, by, settings, rows, stop),
     }
 }
 
