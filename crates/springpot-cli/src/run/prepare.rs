@@ -46,7 +46,7 @@ pub(super) fn prepare(options: &RunOptions) -> Result<Prepared, Unprepared> {
     progress::interrupt_flag();
     let every = options.checkpoint_every.as_deref().map(spacing).transpose()?;
     match (&options.resume, &options.file) {
-        (Some(folder), _) => go_on(options, folder, every).map_err(|error| show(folder, error)),
+        (Some(folder), _) => go_on(options, folder, every).map_err(show),
         (None, Some(file)) => begin(options, file, every),
         (None, None) => unreachable!("one of them is required"),
     }
@@ -95,7 +95,7 @@ fn go_on(options: &RunOptions, folder: &Path, every: Option<f64>) -> Result<Prep
 }
 
 /// Says why a run cannot go on, and what can be done.
-fn show(folder: &Path, error: CheckpointError) -> Unprepared {
+fn show(error: CheckpointError) -> Unprepared {
     let help = match &error {
         CheckpointError::Missing(_) => {
             "name the folder of the results of a run with --checkpoint-every; other runs start anew"
@@ -112,7 +112,7 @@ fn show(folder: &Path, error: CheckpointError) -> Unprepared {
         }
         CheckpointError::File { .. } => "nothing was run",
     };
-    diagnostic::error_with_help(format!("--resume {}: {error}", folder.display()), help.to_owned());
+    diagnostic::error_with_help(error.to_string(), help.to_owned());
     Unprepared::Shown
 }
 
