@@ -131,6 +131,9 @@ fn take_record(from: &mut impl Read) -> Result<Taken, SealError> {
     Ok(Taken::Record(record))
 }
 
+/// Takes a record and its place.
+type Visit<'a> = &'a mut dyn FnMut(u64, &[u8]) -> Result<(), SealError>;
+
 /// Records, one after the other.
 #[derive(Debug)]
 pub(crate) struct Journal {
@@ -146,10 +149,7 @@ impl Journal {
     }
 
     /// Hands every record and its place to `visit`, in their order. Half a record at the end, which a kill may leave, is cut off.
-    pub(crate) fn open(
-        path: &Path,
-        visit: &mut dyn FnMut(u64, &[u8]) -> Result<(), SealError>,
-    ) -> Result<Self, SealError> {
+    pub(crate) fn open(path: &Path, visit: Visit<'_>) -> Result<Self, SealError> {
         let mut reader = BufReader::new(File::open(path)?);
         let mut at = 0;
         loop {
