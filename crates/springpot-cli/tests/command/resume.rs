@@ -40,6 +40,20 @@ columns = ["t", "q.*", "strut.stored", "energy.*"]
 y = "strut.force"
 "#;
 
+/// The same pendulum, with limits that it passes and something that nobody uses.
+const LIMITED: &str = r#"<robot name="pendulum">
+  <link name="base"><visual/></link>
+  <link name="arm">
+    <inertial><origin xyz="0.2 0 0"/><mass value="2"/><inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <joint name="q1" type="revolute">
+    <parent link="base"/><child link="arm"/><origin xyz="0 0 0.5"/><axis xyz="0 1 0"/>
+    <limit lower="-0.1" upper="0.3" velocity="0.5" effort="1.5"/>
+    <safety_controller k_velocity="1"/>
+  </joint>
+</robot>
+"#;
+
 /// Numbers that look random and are always the same, in 0 … 1.
 struct Dice(u64);
 
@@ -115,7 +129,7 @@ fn killed_and_equal(place: &Place, arguments: &[&str], every: &str, dice: &mut D
     assert_eq!(files(place, "out"), files(place, "whole"));
     // What is said counts all rows and steps, too.
     let said = |ended: &Ended| ended.stdout.split(" in ").next().unwrap().to_owned();
-    assert_eq!(said(&last), said(&whole));
+    assert_eq!((said(&last), &last.stderr), (said(&whole), &whole.stderr));
     println!("{kills} kills of a run of {length:?}");
     kills
 }
@@ -130,9 +144,18 @@ fn a_killed_robot_falls_on() {
 #[test]
 fn a_killed_sweep_goes_on() {
     let sweep = "[[sweep]]\nparameter = [\"element.strut.alpha\"]\nvalues = [0.2, 0.5, 0.8, 0.9]\n";
-    let place = Place::with(&format!("{FALLING}{sweep}"));
+    let elements = &FALLING[FALLING.find("[[element]]").unwrap()..];
+    let place = Place::with(&format!("robot.urdf = \"arm.urdf\"\n{elements}{sweep}"));
+    place.write("arm.urdf", LIMITED);
     let kills = killed_and_equal(&place, &["--jobs", "2", "--set", "time.end=10"], "0.5", &mut Dice(2));
     assert!(kills > 0);
+    let limits = place.record("out")["limits"].clone();
+    assert!(limits.as_array().is_some_and(|limits| limits.len() > 1), "{limits}");
+
+    // What the scenario names must not change either.
+    killed(&place);
+    place.write("arm.urdf", LIMITED.replace("mass value=\"2\"", "mass value=\"2.1\""));
+    assert!(refused(&place).contains("a file that arm.toml names has changed since the run began"));
 }
 
 #[test]
