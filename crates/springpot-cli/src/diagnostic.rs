@@ -9,6 +9,7 @@ use springpot::law::Catalog;
 use springpot::model::urdf::UrdfError;
 use springpot::scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Scenario, Source};
 use std::fmt::{self, Display};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Length of excerpts where there is no terminal.
@@ -16,11 +17,14 @@ const EXCERPT: usize = 200;
 
 /// Reads the scenario, applies the overrides and checks everything.
 pub(crate) fn open(options: &ScenarioOptions) -> Result<Cases, Refusals> {
-    let mut scenario = Scenario::read(&options.file)?;
-    for assignment in &options.overrides {
-        scenario.set(assignment)?;
-    }
-    scenario.cases(&Catalog::standard())
+    scenario(&options.file, &options.overrides)?.cases(&Catalog::standard())
+}
+
+/// Reads the scenario and applies the overrides.
+pub(crate) fn scenario(file: &Path, overrides: &[String]) -> Result<Scenario, Refusals> {
+    let mut scenario = Scenario::read(file)?;
+    overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
+    Ok(scenario)
 }
 
 /// Prints refusals on stderr.

@@ -39,7 +39,7 @@ use crate::fractional::{Form, KernelError, Memory, Nodes, StepStart};
 use serde::{Deserialize, Serialize};
 
 /// Value and rate of one input at one time, SI.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct InputValue {
     /// Value.
     pub value: f64,

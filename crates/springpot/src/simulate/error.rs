@@ -3,7 +3,8 @@
 use crate::fractional::KernelError;
 use crate::fractional::scheme::SchemeError;
 
-/// Why a run stopped; every variant but [`RunError::Output`] and [`RunError::Scheme`] names the time.
+/// Why a run stopped; every variant but [`RunError::Output`], [`RunError::Scheme`] and [`RunError::OtherRun`]
+/// names the time.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The points that an element joins met, so that its direction is undefined.
@@ -118,6 +119,9 @@ pub enum RunError {
         /// Time reached, s.
         t: f64,
     },
+    /// A checkpoint was taken from another system.
+    #[error("the checkpoint belongs to another run")]
+    OtherRun,
     /// The motion cannot be followed.
     #[error("{0}")]
     Path(#[from] crate::motion::PathError),

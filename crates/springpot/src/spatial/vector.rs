@@ -3,9 +3,10 @@
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 use super::Scalar;
+use serde::{Deserialize, Serialize};
 
 /// A three-vector in right-handed Cartesian components.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Vec3<T = f64>(pub [T; 3]);
 
 impl<T: Scalar> Vec3<T> {

@@ -11,14 +11,15 @@ mod stepper;
 mod tableau;
 
 use self::dense::{Dense, drive};
-use self::stepper::{Outcome, Stepper, Tolerance};
-use super::book::{Book, target};
+use self::stepper::{Carried, Outcome, Stepper, Tolerance};
+use super::book::{Book, Books, target};
 use super::moment::{Moment, Scratch};
 use super::{Report, Rows, RunError, Settings, Stop, System};
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::law::{Singular, State};
 use crate::motion::kinks::locate;
 use crate::motion::{Forward, Motion};
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
 /// The estimate is of order 3, the method of order 5: the estimate may reach this share of rtol^⅔.
@@ -44,6 +45,32 @@ pub fn forward(
     let mut run = Run::new(system, forward, settings, rows, stop);
     let outcome = run.start().and_then(|h| run.march(h));
     (run.book.finish(), outcome)
+}
+
+/// Goes on with a run from what was kept of it.
+pub(super) fn resume(
+    system: &System,
+    forward: &Forward,
+    settings: &Settings,
+    (books, pace): (Books, Pace),
+    rows: &mut dyn Rows,
+    stop: &Stop,
+) -> (Report, Result<(), RunError>) {
+    let mut run = Run::new(system, forward, settings, rows, stop);
+    run.book.restore(books);
+    run.stepper.restore(pace.carried);
+    run.last = pace.last;
+    let outcome = run.march(pace.h);
+    (run.book.finish(), outcome)
+}
+
+/// What the next step takes over from those before.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Pace {
+    carried: Carried,
+    /// Size and error of the last step kept.
+    last: Option<(f64, f64)>,
+    h: f64,
 }
 
 struct Run<'a> {
@@ -115,7 +142,10 @@ impl<'a> Run<'a> {
         let mut h = first;
         while self.stepper.origin.t < end {
             let t = self.stepper.origin.t;
-            if self.stop.load(Ordering::Relaxed) {
+            let (stopped, stepper, last) = (self.stop.load(Ordering::Relaxed), &self.stepper, self.last);
+            self.book
+                .keep(t, stopped, || super::Pace::Forward(Box::new(Pace { carried: stepper.carried(), last, h })))?;
+            if stopped {
                 return Err(RunError::Interrupted { t });
             }
             if self.book.settings.max_steps.is_some_and(|limit| self.book.report.steps >= limit) {

@@ -13,6 +13,7 @@ use crate::signal::Signal;
 use crate::simulate::lu::Lu;
 use crate::simulate::moment::FRICTION_SPEED;
 use crate::simulate::{RunError, System};
+use serde::{Deserialize, Serialize};
 
 /// Newton iterations after which a step is given up.
 const MOST_ITERATIONS: u32 = 10;
@@ -34,7 +35,7 @@ impl Tolerance {
 }
 
 /// Where a step starts.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Origin {
     pub(super) t: f64,
     pub(super) q: Vec<f64>,
@@ -85,6 +86,14 @@ pub(super) struct Stage {
     xi: Vec<f64>,
     pub(super) xi_rate: Vec<f64>,
     kinematics: Kinematics,
+}
+
+/// All that a step takes over from those before it: whatever else a [`Stepper`] holds, every attempt fills anew.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Carried {
+    origin: Origin,
+    last: Option<(f64, [Vec<f64>; 4])>,
+    contraction: f64,
 }
 
 /// How a step went.
@@ -256,6 +265,16 @@ impl<'a> Stepper<'a> {
             *force = element.response.force[MAX_NODES - 1] - element.response.singular[MAX_NODES - 1];
         }
         self.origin.t += h;
+    }
+
+    /// What the next step takes over.
+    pub(super) fn carried(&self) -> Carried {
+        Carried { origin: self.origin.clone(), last: self.last.clone(), contraction: self.contraction }
+    }
+
+    /// Goes on from what was carried.
+    pub(super) fn restore(&mut self, Carried { origin, last, contraction }: Carried) {
+        (self.origin, self.last, self.contraction) = (origin, last, contraction);
     }
 
     /// A break in the accelerations: nothing can be foretold from what was.
