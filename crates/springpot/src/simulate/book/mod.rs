@@ -31,6 +31,13 @@ pub(in crate::simulate) struct Account {
     pub(in crate::simulate) derivative: f64,
 }
 
+impl Account {
+    /// What the law remembers; panics for an element with a named scheme.
+    pub(in crate::simulate) fn memory(&self) -> &State {
+        self.law.as_ref().expect("an element without a named scheme")
+    }
+}
+
 /// What one step works out for one element.
 #[derive(Debug, Clone)]
 pub(in crate::simulate) struct ElementStep {

@@ -1,0 +1,112 @@
+//! One step tried: its errors, the size of the next one, and what to say where no step is small enough.
+
+use super::Run;
+use super::newton::Outcome;
+use crate::fractional::step::MAX_NODES;
+use crate::motion::Drive;
+use crate::simulate::RunError;
+
+/// Shortest step as a share of the run.
+const SHORTEST_STEP: f64 = 1e-14;
+
+/// 1/(order of the estimate + 1).
+const EXPONENT: f64 = 0.25;
+
+/// What makes most of the error of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Worst {
+    Velocity(usize),
+    Element(usize),
+    /// The iteration did not converge, for this velocity least of all.
+    Newton(usize),
+}
+
+impl Run<'_> {
+    /// Tries the step up to `to`: `Ok` holds the factor for the next step, `Err` the size to try instead.
+    pub(super) fn attempt(&mut self, to: f64, on_break: bool) -> Result<Result<f64, f64>, RunError> {
+        let t = self.stepper.origin.t;
+        let h = to - t;
+        let t_end = if on_break { to.next_down() } else { to };
+        let (mut error, mut worst, iterations) = match self.stepper.attempt(h, t_end, &self.book.accounts)? {
+            Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
+            Outcome::Converged { iterations } => {
+                let (error, worst) = self.stepper.estimate(h);
+                (error, Worst::Velocity(worst), iterations)
+            }
+        };
+        *self.book.report.newton_iterations.get_or_insert(0) += u64::from(iterations);
+        if error <= 1.0
+            && let Some((memory, e)) = self.memory_error(h)
+            && memory > error
+        {
+            (error, worst) = (memory, Worst::Element(e));
+        }
+        if let Some(e) = self.turned_over() {
+            (error, worst) = (f64::INFINITY, Worst::Element(e));
+        }
+        let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
+        if error > 1.0 || error.is_nan() {
+            let smaller = h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
+            if smaller < SHORTEST_STEP * self.book.settings.end {
+                return Err(self.step_too_small(t, h, error, worst));
+            }
+            return Ok(Err(smaller));
+        }
+        let error = error.max(1e-10);
+        let mut factor = safety * error.powf(-EXPONENT);
+        if let Some((size, before)) = self.last {
+            factor = factor.min(safety * (h / size) * (before.max(1e-2) / (error * error)).powf(EXPONENT));
+        }
+        self.last = Some((h, error));
+        Ok(Ok(factor.clamp(0.2, 8.0)))
+    }
+
+    /// The error of D^alpha x of the elements that prescribed joints move, which the estimate of the free ones may not see: in units
+    /// of its tolerance, brought to the order of that estimate, and the worst element.
+    fn memory_error(&self, h: f64) -> Option<(f64, usize)> {
+        let (book, stepper) = (&self.book, &self.stepper);
+        let (system, t) = (book.system, stepper.origin.t);
+        let moved = |gradient: &[f64]| {
+            let mut joints = system.model.own_joints().zip(&self.forward.drives);
+            joints.any(|(j, drive)| {
+                matches!(drive, Drive::Prescribed(_)) && gradient[system.model.v_range(j)].iter().any(|g| *g != 0.0)
+            })
+        };
+        let errors = system.elements.iter().enumerate().filter_map(|(e, element)| {
+            let stage = &stepper.elements[e];
+            let (account, step) = (&book.accounts[e], stage.law_step(t, h));
+            let defect = element.law.defect(&step, account.memory());
+            if defect == 0.0 || !moved(&stage.gradient) {
+                return None;
+            }
+            let end = element.law.observe(&step, 1.0, &step.point(MAX_NODES), account.memory()).derivative;
+            let regular = end - element.law.singular(t + h, account.memory());
+            let allowed = book.settings.atol.unwrap_or(0.0) + book.settings.rtol * account.scale.max(regular.abs());
+            let exponent = 1.0 / (EXPONENT * (4.0 - element.law.order()));
+            Some(((defect / allowed).powf(exponent), e))
+        });
+        errors.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The first element whose points passed each other in the step.
+    fn turned_over(&self) -> Option<usize> {
+        self.stepper.elements.iter().position(super::stepper::ElementStage::turned_over)
+    }
+
+    fn step_too_small(&self, t: f64, h: f64, error: f64, worst: Worst) -> RunError {
+        let system = self.book.system;
+        let joint = |k: usize| system.model.v_labels()[k].name.clone();
+        if let Some(e) = self.turned_over() {
+            let pairs = self.stepper.elements[e].pairs.iter().flatten();
+            let length = pairs.map(|pair| pair.length).fold(f64::INFINITY, f64::min);
+            return RunError::ZeroLength { t, element: system.elements[e].name.clone(), length };
+        }
+        match worst {
+            Worst::Velocity(k) => RunError::StepTooSmall { t, h, error, subject: format!("joint \"{}\"", joint(k)) },
+            Worst::Element(e) => {
+                RunError::StepTooSmall { t, h, error, subject: format!("element \"{}\"", system.elements[e].name) }
+            }
+            Worst::Newton(k) => RunError::NoConvergence { t, h, joint: joint(k) },
+        }
+    }
+}
