@@ -2,5 +2,7 @@
 
 #![cfg(feature = "scenario")]
 
+mod failures;
+mod limits;
 mod references;
 mod support;

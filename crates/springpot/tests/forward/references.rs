@@ -82,7 +82,12 @@ fn one_mass_exactly() {
     let (mut compared, mut regular, mut singular) = (0, 0.0f64, 0.0f64);
     for case in reference["cases"].as_array().unwrap() {
         let kind = if text(&case["kind"]) == "RL" { "riemann-liouville" } else { "caputo" };
-        let parameters = format!("E_c = {}, E_kv = 0, E_d = {}, alpha = {}, a_kv = 0", text(&case["K"]), text(&case["C"]), text(&case["lambda"]));
+        let parameters = format!(
+            "E_c = {}, E_kv = 0, E_d = {}, alpha = {}, a_kv = 0",
+            text(&case["K"]),
+            text(&case["C"]),
+            text(&case["lambda"])
+        );
         let law = format!(
             "law = \"thermoviscoelastic\"\nparameters = {{ {parameters} }}\ninputs = {{ T = 300 }}\nderivative = \"{kind}\""
         );
@@ -123,8 +128,7 @@ fn one_mass_on_every_law() {
         let start = state(text(&case["x0"]), text(&case["v0"]));
         let run = run(&(slider("2", -9.81, &law, &start) + &at("5", &times.join(", "), 1e-10)));
         let alpha = number(&case["alpha"]);
-        let is_singular =
-            kind == "riemann-liouville" && number(&case["x0"]) != 0.0 && alpha > 0.0 && alpha < 1.0;
+        let is_singular = kind == "riemann-liouville" && number(&case["x0"]) != 0.0 && alpha > 0.0 && alpha < 1.0;
         for (column, key) in [("q.q", "x"), ("v.q", "v")] {
             let expected: Vec<f64> = case[key].as_array().unwrap().iter().map(number).collect();
             let error = distance(&run.column(column), &expected);

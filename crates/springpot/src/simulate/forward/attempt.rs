@@ -9,6 +9,9 @@ use crate::simulate::RunError;
 /// Shortest step as a share of the run.
 const SHORTEST_STEP: f64 = 1e-14;
 
+/// Velocities whose squares are finite.
+const FASTEST: f64 = 1e150;
+
 /// 1/(order of the estimate + 1).
 const EXPONENT: f64 = 0.25;
 
@@ -44,6 +47,7 @@ impl Run<'_> {
         if let Some(e) = self.turned_over() {
             (error, worst) = (f64::INFINITY, Worst::Element(e));
         }
+        self.refuse_overflow(t, h)?;
         let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
         if error > 1.0 || error.is_nan() {
             let smaller = h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
@@ -59,6 +63,14 @@ impl Run<'_> {
         }
         self.last = Some((h, error));
         Ok(Ok(factor.clamp(0.2, 8.0)))
+    }
+
+    /// Velocities whose energy is beyond double precision.
+    fn refuse_overflow(&self, t: f64, h: f64) -> Result<(), RunError> {
+        let overflow = self.stepper.stages[MAX_NODES - 1].v.iter().position(|v| v.abs() > FASTEST);
+        let Some(k) = overflow else { return Ok(()) };
+        let what = format!("v.{}", self.book.system.model.v_labels()[k].name);
+        Err(RunError::NotFinite { t: t + h, what, value: f64::INFINITY })
     }
 
     /// The error of D^alpha x of the elements that prescribed joints move, which the estimate of the free ones may not see: in units

@@ -100,7 +100,9 @@ impl<'a> Run<'a> {
     fn start(&mut self) -> Result<f64, RunError> {
         let (system, settings) = (self.book.system, self.book.settings);
         let (origin, elements) = start::origin(system, self.forward)?;
-        let chosen = start::first_step(system, self.forward, &origin, &elements, self.tolerance, settings.end);
+        let strict = Tolerance { rtol: settings.rtol, atol: settings.atol.unwrap_or(settings.rtol) };
+        let tolerances = [self.tolerance, strict];
+        let chosen = start::first_step(system, self.forward, &origin, &elements, tolerances, settings.end);
         let h = settings.first_step.unwrap_or(chosen).min(self.longest_step);
         let [moment, ..] = &mut self.book.moments;
         moment.q.copy_from_slice(&origin.q);

@@ -78,7 +78,10 @@ impl ElementStage {
     /// An element whose direction turned by more than a right angle between two nodes: its points passed each other.
     pub(super) fn turned_over(&self) -> bool {
         self.pairs.windows(2).any(|pair| match (&pair[0], &pair[1]) {
-            (Some(a), Some(b)) => b.check().is_err() || a.direction.dot(b.direction) <= 0.0,
+            (Some(a), Some(b)) => {
+                let met = b.length < a.length && b.check().is_err();
+                met || a.direction.dot(b.direction) <= 0.0
+            }
             _ => false,
         })
     }
