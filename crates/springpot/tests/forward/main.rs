@@ -2,7 +2,11 @@
 
 #![cfg(feature = "scenario")]
 
+mod drives;
 mod failures;
+mod floating;
 mod limits;
+mod random;
 mod references;
+mod rows;
 mod support;

@@ -4,6 +4,7 @@
 //! under way, and commits it.
 
 mod between;
+mod defect;
 mod elements;
 mod rows;
 

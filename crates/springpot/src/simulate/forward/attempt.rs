@@ -3,7 +3,6 @@
 use super::Run;
 use super::newton::Outcome;
 use crate::fractional::step::MAX_NODES;
-use crate::motion::Drive;
 use crate::simulate::RunError;
 
 /// Shortest step as a share of the run.
@@ -20,6 +19,7 @@ const EXPONENT: f64 = 0.25;
 enum Worst {
     Velocity(usize),
     Element(usize),
+    Energy,
     /// The iteration did not converge, for this velocity least of all.
     Newton(usize),
 }
@@ -38,16 +38,16 @@ impl Run<'_> {
             }
         };
         *self.book.report.newton_iterations.get_or_insert(0) += u64::from(iterations);
-        if error <= 1.0
-            && let Some((memory, e)) = self.memory_error(h)
-            && memory > error
-        {
-            (error, worst) = (memory, Worst::Element(e));
-        }
         if let Some(e) = self.turned_over() {
             (error, worst) = (f64::INFINITY, Worst::Element(e));
         }
         self.refuse_overflow(t, h)?;
+        if error <= 1.0 {
+            self.take_stock(to, on_break)?;
+            if self.has_paths {
+                (error, worst) = self.books_error(h, error, worst);
+            }
+        }
         let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
         if error > 1.0 || error.is_nan() {
             let smaller = h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
@@ -73,31 +73,29 @@ impl Run<'_> {
         Err(RunError::NotFinite { t: t + h, what, value: f64::INFINITY })
     }
 
-    /// The error of D^alpha x of the elements that prescribed joints move, which the estimate of the free ones may not see: in units
-    /// of its tolerance, brought to the order of that estimate, and the worst element.
-    fn memory_error(&self, h: f64) -> Option<(f64, usize)> {
-        let (book, stepper) = (&self.book, &self.stepper);
-        let (system, t) = (book.system, stepper.origin.t);
-        let moved = |gradient: &[f64]| {
-            let mut joints = system.model.own_joints().zip(&self.forward.drives);
-            joints.any(|(j, drive)| {
-                matches!(drive, Drive::Prescribed(_)) && gradient[system.model.v_range(j)].iter().any(|g| *g != 0.0)
-            })
-        };
-        let errors = system.elements.iter().enumerate().filter_map(|(e, element)| {
-            let stage = &stepper.elements[e];
-            let (account, step) = (&book.accounts[e], stage.law_step(t, h));
+    /// The largest of `error` and of what the estimate of the free joints may not see where others are prescribed: the errors of
+    /// D^alpha x and of the energy ledger. In units of their tolerances, brought to the order of that estimate.
+    fn books_error(&self, h: f64, error: f64, worst: Worst) -> (f64, Worst) {
+        let (book, t) = (&self.book, self.stepper.origin.t);
+        let (mut error, mut worst) = (error, worst);
+        let energy = book.energy_error(h, 0.0);
+        if energy > error {
+            (error, worst) = (energy, Worst::Energy);
+        }
+        for (e, element) in book.system.elements.iter().enumerate() {
+            let (account, step) = (&book.accounts[e], self.stepper.elements[e].law_step(t, h));
             let defect = element.law.defect(&step, account.memory());
-            if defect == 0.0 || !moved(&stage.gradient) {
-                return None;
+            if defect == 0.0 {
+                continue;
             }
-            let end = element.law.observe(&step, 1.0, &step.point(MAX_NODES), account.memory()).derivative;
-            let regular = end - element.law.singular(t + h, account.memory());
-            let allowed = book.settings.atol.unwrap_or(0.0) + book.settings.rtol * account.scale.max(regular.abs());
-            let exponent = 1.0 / (EXPONENT * (4.0 - element.law.order()));
-            Some(((defect / allowed).powf(exponent), e))
-        });
-        errors.max_by(|a, b| a.0.total_cmp(&b.0))
+            let scale = book.scale_with_step(e, t + h);
+            let allowed = book.settings.atol.unwrap_or(0.0) + book.settings.rtol * scale;
+            let memory = (defect / allowed).powf(1.0 / (EXPONENT * (4.0 - element.law.order())));
+            if memory > error {
+                (error, worst) = (memory, Worst::Element(e));
+            }
+        }
+        (error, worst)
     }
 
     /// The first element whose points passed each other in the step.
@@ -118,6 +116,7 @@ impl Run<'_> {
             Worst::Element(e) => {
                 RunError::StepTooSmall { t, h, error, subject: format!("element \"{}\"", system.elements[e].name) }
             }
+            Worst::Energy => RunError::StepTooSmall { t, h, error, subject: "the energy ledger".to_owned() },
             Worst::Newton(k) => RunError::NoConvergence { t, h, joint: joint(k) },
         }
     }

@@ -9,8 +9,8 @@ use crate::simulate::moment::{Moment, Scratch};
 use crate::simulate::{RunError, System};
 
 impl Run<'_> {
-    /// Writes the rows of the step that was just tried, and takes it into the past.
-    pub(super) fn keep(&mut self, to: f64, on_break: bool) -> Result<(), RunError> {
+    /// Works out the energies of the step that was just solved.
+    pub(super) fn take_stock(&mut self, to: f64, on_break: bool) -> Result<(), RunError> {
         self.stepper.fit();
         let Self { book, stepper, starts, scratch, .. } = self;
         let (system, t) = (book.system, stepper.origin.t);
@@ -31,7 +31,14 @@ impl Run<'_> {
             book.evaluate_element(e, t, h);
         }
         self.take_powers();
+        Ok(())
+    }
+
+    /// Writes the rows of the step whose stock was taken, and takes it into the past.
+    pub(super) fn keep(&mut self, to: f64, on_break: bool) -> Result<(), RunError> {
         let Self { book, stepper, starts, scratch, .. } = self;
+        let t = stepper.origin.t;
+        let h = to - t;
         let mut dense = Dense { stepper, h, starts, scratch };
         let mut place = |system: &System, scratch: &mut Scratch, at: f64, theta: f64, moment: &mut Moment| {
             dense.place(at, theta, moment);

@@ -57,6 +57,8 @@ struct Run<'a> {
     tolerance: Tolerance,
     stop: &'a Stop,
     longest_step: f64,
+    /// Whether signals prescribe joints.
+    has_paths: bool,
     /// Size and error of the last step kept.
     last: Option<(f64, f64)>,
     /// Of each element the singular share of D^alpha x at t = 1 s; 0 without one.
@@ -90,6 +92,7 @@ impl<'a> Run<'a> {
             tolerance,
             stop,
             longest_step: settings.max_step.unwrap_or(settings.end * share).min(settings.end),
+            has_paths: forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))),
             last: None,
             starts: Vec::new(),
             scratch: dense::Scratch::default(),
