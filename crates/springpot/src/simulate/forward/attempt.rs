@@ -11,6 +11,9 @@ const SHORTEST_STEP: f64 = 1e-14;
 /// Velocities whose squares are finite.
 const FASTEST: f64 = 1e150;
 
+/// Growth that is not worth a new size.
+const KEPT: f64 = 1.2;
+
 /// 1/(order of the estimate + 1).
 const EXPONENT: f64 = 0.25;
 
@@ -25,10 +28,9 @@ enum Worst {
 }
 
 impl Run<'_> {
-    /// Tries the step up to `to`: `Ok` holds the factor for the next step, `Err` the size to try instead.
-    pub(super) fn attempt(&mut self, to: f64, on_break: bool) -> Result<Result<f64, f64>, RunError> {
+    /// Tries the step of size `h` up to `to`: `Ok` holds the factor for the next step, `Err` the size to try instead.
+    pub(super) fn attempt(&mut self, to: f64, h: f64, on_break: bool) -> Result<Result<f64, f64>, RunError> {
         let t = self.stepper.origin.t;
-        let h = to - t;
         let t_end = if on_break { to.next_down() } else { to };
         let (mut error, mut worst, iterations) = match self.stepper.attempt(h, t_end, &self.book.accounts)? {
             Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
@@ -43,7 +45,7 @@ impl Run<'_> {
         }
         self.refuse_overflow(t, h)?;
         if error <= 1.0 {
-            self.take_stock(to, on_break)?;
+            self.take_stock(to, h, on_break)?;
             if self.has_paths {
                 (error, worst) = self.books_error(h, error, worst);
             }
@@ -62,7 +64,8 @@ impl Run<'_> {
             factor = factor.min(safety * (h / size) * (before.max(1e-2) / (error * error)).powf(EXPONENT));
         }
         self.last = Some((h, error));
-        Ok(Ok(factor.clamp(0.2, 8.0)))
+        // A step that changes little keeps its size, and with it the tables of the exponentials.
+        Ok(Ok(if (1.0..KEPT).contains(&factor) { 1.0 } else { factor.clamp(0.2, 8.0) }))
     }
 
     /// Velocities whose energy is beyond double precision.

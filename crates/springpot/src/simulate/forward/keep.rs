@@ -10,11 +10,10 @@ use crate::simulate::{RunError, System};
 
 impl Run<'_> {
     /// Works out the energies of the step that was just solved.
-    pub(super) fn take_stock(&mut self, to: f64, on_break: bool) -> Result<(), RunError> {
+    pub(super) fn take_stock(&mut self, to: f64, h: f64, on_break: bool) -> Result<(), RunError> {
         self.stepper.fit();
         let Self { book, stepper, starts, scratch, .. } = self;
         let (system, t) = (book.system, stepper.origin.t);
-        let h = to - t;
         let mut dense = Dense { stepper, h, starts, scratch };
         for k in 0..MAX_NODES {
             let at = if k + 1 == MAX_NODES { to } else { t + RADAU_NODES[k] * h };
@@ -35,10 +34,9 @@ impl Run<'_> {
     }
 
     /// Writes the rows of the step whose stock was taken, and takes it into the past.
-    pub(super) fn keep(&mut self, to: f64, on_break: bool) -> Result<(), RunError> {
+    pub(super) fn keep(&mut self, to: f64, h: f64, on_break: bool) -> Result<(), RunError> {
         let Self { book, stepper, starts, scratch, .. } = self;
         let t = stepper.origin.t;
-        let h = to - t;
         let mut dense = Dense { stepper, h, starts, scratch };
         let mut place = |system: &System, scratch: &mut Scratch, at: f64, theta: f64, moment: &mut Moment| {
             dense.place(at, theta, moment);

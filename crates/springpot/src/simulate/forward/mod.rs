@@ -155,15 +155,16 @@ impl<'a> Run<'a> {
                 }
                 (to, far_side) = (before, Some(after));
             }
-            let size = to - t;
+            // The size itself where it may be: a sum and a difference would change its last bits, and with them the tables of lags.
+            let size = if to == t + h { h } else { to - t };
             let on_break = to == next_break && to < end;
-            match self.attempt(to, on_break)? {
+            match self.attempt(to, size, on_break)? {
                 Err(smaller) => {
                     self.book.report.rejected_steps += 1;
                     h = smaller;
                 }
                 Ok(factor) => {
-                    self.keep(to, on_break)?;
+                    self.keep(to, size, on_break)?;
                     // A step cut short by a stop says nothing against the size chosen before.
                     h = (size * factor).max(if size < h { h } else { 0.0 }).min(self.longest_step);
                     if on_break || far_side.is_some() {
