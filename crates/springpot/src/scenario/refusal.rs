@@ -73,8 +73,6 @@ pub enum RefusalKind {
     Rule,
     /// More than this program takes on.
     TooLarge,
-    /// Part of the format that this version does not run.
-    NotYet,
 }
 
 /// One mistake in a scenario: message, place, label under the place, and what would be right.

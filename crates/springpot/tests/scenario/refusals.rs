@@ -511,15 +511,25 @@ fn names_keep_their_rules() {
 }
 
 #[test]
-fn what_later_versions_run_is_said() {
-    assert_refused(
-        &single(),
-        &(
-            &[("kind = \"prescribed\"", "kind = ‸\"forward\"")],
-            NotYet,
-            "this version runs \"prescribed\" motions and \"gripper-path\"",
-        ),
-    );
+fn motions_that_follow_from_forces() {
+    let text = single();
+    let start = text.find("kind = \"prescribed\"").unwrap();
+    let line_end = text[start..].find("joints =").unwrap() + start;
+    let end = text[line_end..].find('\n').unwrap() + line_end;
+    let forward = |keys: &str| format!("{}kind = \"forward\"\n{keys}{}", &text[..start], &text[end..]);
+    let told = |keys: &str| refusals(&forward(keys)).to_string();
+    for (keys, words) in [
+        ("torque = { q9 = 1 }", "unknown key `q9`"),
+        ("torque = { q1 = \"5 N\" }", "N*m"),
+        ("locked = [\"q9\"]", "names no joint: \"q9\""),
+        ("locked = [\"q1\"]\ntorque = { q1 = 1 }", "joint \"q1\" in more than one way: torque, locked"),
+        ("start = { q = { q1 = \"5 m\" } }", "rad"),
+        ("start = { w = {} }", "unknown key `w`"),
+        ("joints = { q1 = 0 }", "unknown key `joints`"),
+    ] {
+        let told = told(keys);
+        assert!(told.contains(words), "{keys}: {told}");
+    }
 }
 
 #[test]
