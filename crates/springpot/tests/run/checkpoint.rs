@@ -101,6 +101,26 @@ fn robots_that_move_by_themselves() {
 }
 
 #[test]
+fn steps_of_one_size() {
+    let element = thermoviscoelastic(0.5, 25.0, "caputo");
+    let singular = thermoviscoelastic(0.3, 25.0, "riemann-liouville");
+    let floating = ARM.replacen("kind = \"revolute\", axis = [0, 0, 1], origin = [0, 0, 0]", "kind = \"floating\"", 1);
+    let mut states = 0;
+    for (robot, element, motion) in [
+        (ARM, &element, "torque = { q1 = \"2*sign(sin(9*t))\" }\nprescribed = { q3 = \"0.1*sin(3*t)\" }"),
+        (ARM, &singular, "start = { q = { q2 = 0.1 } }\nlocked = [\"q1\"]"),
+        (&floating, &element, "start = { v = { q1 = { vx = 0.5, wz = 1, wx = 0.3 } } }"),
+    ] {
+        for method in ["backward-euler", "midpoint"] {
+            let solver = format!("[solver]\nmethod = \"{method}\"\nstep = \"3 ms\"\n");
+            let motion = format!("\n[motion]\nkind = \"forward\"\n{motion}\n");
+            states += goes_on(&cases(&format!("{robot}{element}{motion}{}{solver}", every(0.3, 0.017))), 7);
+        }
+    }
+    assert_eq!(states, 600);
+}
+
+#[test]
 fn motions_given_in_advance() {
     let kinked = prescribed("0.2*abs(sin(4*t))", "0.1*t + 0.2*max(0, t - 0.3)");
     let scheme = strut("law = \"springpot\"\nparameters = { c = 1, alpha = 0.4 }\nscheme = \"l1\"");
