@@ -4,7 +4,7 @@ mod prepare;
 
 use self::prepare::{Prepared, Unprepared, prepare};
 use crate::arguments::RunOptions;
-use crate::numbers::{count, rough, short};
+use crate::numbers::{brief, count, rough, short};
 use crate::{Ending, diagnostic, figures, progress, terminal};
 use springpot::scenario::Cases;
 use springpot::sweep::{self, CaseResult, CasesPassing, Options, Outcome, Status, SweepError};
@@ -174,7 +174,10 @@ impl Finished {
         if cases.len() > 1 {
             work.push(count(outcome.done + outcome.failed, "case", "cases"));
         }
-        work.extend([count(*rows, "row", "rows"), count(outcome.steps, "step", "steps")]);
+        work.push(count(*rows, "row", "rows"));
+        if outcome.newton_iterations.is_none() {
+            work.push(count(outcome.steps, "step", "steps"));
+        }
         let work = format!("{} in {:.2} s", work.join(", "), wall.as_secs_f64());
         let width = terminal::stdout_width();
         let mut lines = terminal::hanging("", &work, width);
@@ -185,7 +188,29 @@ impl Finished {
             files.push_str(&format!(", {} (SVG and PNG)", count(figures, "figure", "figures")));
         }
         lines.push_str(&terminal::hanging("results  ", &format!("{}: {files}", folder.path().display()), width));
+        if let Some(iterations) = outcome.newton_iterations {
+            lines.push_str(&terminal::hanging("forward  ", &self.effort(iterations), width));
+        }
         lines
+    }
+
+    /// What robots that move by themselves took: work, wall time, how much faster than life, and how well the energy balance closes.
+    fn effort(&self, iterations: u64) -> String {
+        let outcome = &self.outcome;
+        let wall = outcome.wall.as_secs_f64();
+        let residual = match outcome.energy_residual {
+            Some((residual, turned_over)) if turned_over > 0.0 => rough(residual / turned_over),
+            Some(_) => "0".to_owned(),
+            None => "unknown".to_owned(),
+        };
+        format!(
+            "{}, {} rejected, {}, {} s, {} times real time, energy residual {residual}",
+            count(outcome.steps, "step", "steps"),
+            outcome.rejected_steps,
+            count(iterations, "Newton iteration", "Newton iterations"),
+            brief(wall),
+            brief(if wall > 0.0 { outcome.simulated / wall } else { 0.0 }),
+        )
     }
 
     /// How well the energy balance closes, and where it is not known.

@@ -89,6 +89,16 @@ pub enum RunError {
         /// Joint.
         joint: String,
     },
+    /// The equations of motion of a step have no solution that the iteration finds.
+    #[error("t = {t} s: the motion cannot go on: joint \"{joint}\" settles in no step down to {h:e} s")]
+    NoConvergence {
+        /// Time, s.
+        t: f64,
+        /// Step tried, s.
+        h: f64,
+        /// The joint that is farthest off.
+        joint: String,
+    },
     /// More steps than allowed.
     #[error("t = {t} s: {limit} steps are used up (solver.max_steps)")]
     TooManySteps {

@@ -65,6 +65,10 @@ pub struct Outcome {
     pub steps: u64,
     /// Inner steps tried and not kept.
     pub rejected_steps: u64,
+    /// Newton iterations over all cases, of robots that move by themselves.
+    pub newton_iterations: Option<u64>,
+    /// Simulated time over all cases, s.
+    pub simulated: f64,
     /// Smallest time reached by a case that was begun; `None` where one has no row, or none was begun.
     pub t_reached: Option<f64>,
     /// The energy residual of the case in which it is largest beside the energy turned over, and that energy, J; `None`
@@ -157,6 +161,8 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         failed: tally.failed,
         steps: tally.steps,
         rejected_steps: tally.rejected_steps,
+        newton_iterations: tally.newton_iterations,
+        simulated: tally.simulated,
         t_reached: tally.t_reached.flatten(),
         energy_residual: tally.energy_residual,
         limits: tally.limits.passing(),
@@ -245,6 +251,8 @@ struct Tally {
     failed: usize,
     steps: u64,
     rejected_steps: u64,
+    newton_iterations: Option<u64>,
+    simulated: f64,
     /// `None` before the first case.
     t_reached: Option<Option<f64>>,
     energy_residual: Option<(f64, f64)>,
@@ -263,7 +271,11 @@ impl Tally {
         }
         self.steps += case.report.steps;
         self.rejected_steps += case.report.rejected_steps;
+        if let Some(iterations) = case.report.newton_iterations {
+            *self.newton_iterations.get_or_insert(0) += iterations;
+        }
         let reached = case.report.t_reached;
+        self.simulated += reached.unwrap_or(0.0);
         self.t_reached = Some(match self.t_reached {
             None => reached,
             Some(smallest) => smallest.zip(reached).map(|(a, b)| a.min(b)),

@@ -34,7 +34,12 @@ impl Outcome {
             "cases": listed,
         });
         match record {
-            Value::Object(map) => map,
+            Value::Object(mut map) => {
+                if let Some(iterations) = self.newton_iterations {
+                    map.insert("newton_iterations".to_owned(), iterations.into());
+                }
+                map
+            }
             _ => unreachable!("the literal above is an object"),
         }
     }

@@ -5,14 +5,6 @@ use crate::fractional::step::RADAU_NODES;
 use crate::simulate::RunError;
 use crate::simulate::book::StepPowers;
 use crate::simulate::control::StepError;
-use crate::simulate::ledger::work_defect;
-
-/// A step this short, as a share of the motion, is kept whatever it does to the energy ledger: behind a kink of the rates the
-/// powers rise like t^{1−alpha}, which no step resolves, and such a step turns over next to nothing.
-const SHORTEST_LEDGER_STEP: f64 = 1e-11;
-
-/// Share of rtol^⅔ that the energy ledger may err in one step, in units of the energy turned over.
-const ENERGY_SHARE: f64 = 0.01;
 
 impl Run<'_> {
     /// Evaluates the step from t to `to` without keeping it; an element that turns over on the way is asked for a shorter step.
@@ -44,9 +36,7 @@ impl Run<'_> {
                 error = StepError { memory: share, alpha, element: Some(e), ..error };
             }
         }
-        if h > SHORTEST_LEDGER_STEP * self.book.settings.end {
-            error.energy = self.energy_error(h);
-        }
+        error.energy = self.book.energy_error(h, self.energy_floor);
         Ok(error)
     }
 
@@ -66,23 +56,5 @@ impl Run<'_> {
             }
         }
         Ok(None)
-    }
-
-    /// Estimate of what the step adds to the error of the energy ledger, in units of its tolerance.
-    fn energy_error(&self, h: f64) -> f64 {
-        let turned_over = self.energy_floor.max(self.book.turnover.total());
-        if self.book.actuators_unknown() || turned_over == 0.0 {
-            return 0.0;
-        }
-        let mut defect = work_defect(&self.book.powers.actuators, h) + work_defect(&self.book.powers.joints, h);
-        for step in &self.book.steps {
-            defect += work_defect(&step.powers.map(|p| p.dissipation), h);
-            defect += work_defect(&step.powers.map(|p| p.input), h);
-        }
-        if defect.is_nan() {
-            0.0
-        } else {
-            defect / (ENERGY_SHARE * self.book.settings.rtol.powf(2.0 / 3.0) * turned_over)
-        }
     }
 }

@@ -4,6 +4,7 @@
 //! under way, and commits it.
 
 mod between;
+mod defect;
 mod elements;
 mod kept;
 mod rows;
@@ -32,6 +33,13 @@ pub(in crate::simulate) struct Account {
     pub(in crate::simulate) scale: f64,
     /// D^alpha x at the start of the step.
     pub(in crate::simulate) derivative: f64,
+}
+
+impl Account {
+    /// What the law remembers; panics for an element with a named scheme.
+    pub(in crate::simulate) fn memory(&self) -> &State {
+        self.law.as_ref().expect("an element without a named scheme")
+    }
 }
 
 /// What one step works out for one element.

@@ -3,7 +3,7 @@
 use super::stepper::Place;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
 use crate::motion::{Drive, Forward};
-use crate::simulate::forward::dense::drive;
+use crate::simulate::forward::drives::drive;
 use crate::simulate::lu::Lu;
 use crate::simulate::moment::{Moment, Scratch};
 use crate::simulate::{RunError, System};

@@ -1,9 +1,11 @@
 //! The first moment and the first step.
 
-use super::stepper::{Origin, Tolerance, add_resistance, force_at};
+use super::drives::{force_at, take_path};
+use super::resistance::add_resistance;
+use super::stepper::{Origin, Tolerance, free_velocities};
 use crate::dynamics::{Kinematics, PairForce, crba, rnea};
-use crate::element::Element;
-use crate::law::Point;
+use crate::law::{Derivative, Point};
+use crate::model::Model;
 use crate::motion::{Drive, Forward};
 use crate::simulate::lu::Lu;
 use crate::simulate::{RunError, System};
@@ -19,20 +21,14 @@ pub(super) struct ElementStart {
 /// The start: prescribed joints where their signals say, and accelerations.
 pub(super) fn origin(system: &System, forward: &Forward) -> Result<(Origin, Vec<ElementStart>), RunError> {
     let model = &system.model;
-    let mut origin = Origin {
-        t: 0.0,
-        q: forward.q.clone(),
-        v: forward.v.clone(),
-        a: vec![0.0; model.nv()],
-        forces: vec![0.0; system.elements.len()],
-    };
+    let mut origin = Origin::new(system, forward);
     for (j, drive) in model.own_joints().zip(&forward.drives) {
         if matches!(drive, Drive::Locked) {
             origin.v[model.v_range(j)].fill(0.0);
         }
     }
-    let elements = accelerate(system, forward, &mut origin, |element, point| {
-        element.law.start_derivative(point, element.derivative)
+    let elements = accelerate(system, forward, &mut origin, |e, point| {
+        system.elements[e].law.start_derivative(point, system.elements[e].derivative)
     })?;
     Ok((origin, elements))
 }
@@ -43,24 +39,21 @@ pub(super) fn accelerate(
     system: &System,
     forward: &Forward,
     origin: &mut Origin,
-    derivative: impl Fn(&Element, &Point) -> f64,
+    derivative: impl Fn(usize, &Point) -> f64,
 ) -> Result<Vec<ElementStart>, RunError> {
     let model = &system.model;
     let Origin { t, q, v, a, forces } = origin;
     let t = *t;
     a.fill(0.0);
-    let mut free = Vec::new();
     for (j, drive) in model.own_joints().zip(&forward.drives) {
-        let (q, v, a) = (&mut q[model.q_range(j)], &mut v[model.v_range(j)], &mut a[model.v_range(j)]);
-        match drive {
-            Drive::Force(_) => free.extend(model.v_range(j)),
-            Drive::Prescribed(path) => path.at(t, q, v, a),
-            Drive::Locked => {}
+        if let Drive::Prescribed(path) = drive {
+            take_path(model, j, path, t, q, v, a)?;
         }
     }
+    let free = free_velocities(model, forward);
     let kinematics = Kinematics::at_velocity(model, q, v);
     let (mut elements, mut pairs) = (Vec::new(), Vec::new());
-    for (element, known) in system.elements.iter().zip(forces) {
+    for (e, (element, known)) in system.elements.iter().zip(forces).enumerate() {
         let (pair, gradient) = crate::dynamics::pair(model, &kinematics, &element.from, &element.to);
         if pair.check().is_err() {
             return Err(RunError::ZeroLength { t, element: element.name.clone(), length: pair.length });
@@ -70,7 +63,7 @@ pub(super) fn accelerate(
         element.check_inputs(t, &inputs)?;
         let stroke = pair.length - element.rest_length;
         let point = Point { t, stroke, rate: pair.rate, inputs: &inputs };
-        let force = element.law.force(&point, derivative(element, &point));
+        let force = element.law.force(&point, derivative(e, &point));
         pairs.push(PairForce { from: element.from, to: element.to, force, d_length: 0.0, d_rate: 0.0 });
         *known = force;
         elements.push(ElementStart { stroke, jump: element.jump(pair.length), gradient });
@@ -80,7 +73,7 @@ pub(super) fn accelerate(
     for (j, drive) in model.own_joints().zip(&forward.drives) {
         if let Drive::Force(signals) = drive {
             for (k, signal) in model.v_range(j).zip(signals) {
-                residual[k] -= force_at(model, j, signal, t)?;
+                residual[k] -= force_at(model, k, signal, t)?;
             }
         }
     }
@@ -90,6 +83,46 @@ pub(super) fn accelerate(
         a[k] += change;
     }
     Ok(elements)
+}
+
+/// Takes over what prescribed joints jump to at the origin's time. A velocity that jumps takes an impulse of its actuator, and the
+/// free joints get their share of it: M_ff Δv_f = −M_fp Δv_p.
+pub(super) fn take_jumps(system: &System, forward: &Forward, origin: &mut Origin) -> Result<(), RunError> {
+    let model = &system.model;
+    let (before_q, before_v) = (origin.q.clone(), origin.v.clone());
+    let Origin { t, q, v, a, .. } = origin;
+    for (j, drive) in model.own_joints().zip(&forward.drives) {
+        if let Drive::Prescribed(path) = drive {
+            take_path(model, j, path, *t, q, v, a)?;
+        }
+    }
+    refuse_jumps(model, *t, &before_q, q, v)?;
+    let change: Vec<f64> = v.iter().zip(&before_v).map(|(after, before)| after - before).collect();
+    if change.iter().all(|change| *change == 0.0) {
+        return Ok(());
+    }
+    let kinematics = Kinematics::at_velocity(model, q, v);
+    let (mass, n, free) = (crba(model, &kinematics), model.nv(), free_velocities(model, forward));
+    let mut share: Vec<f64> =
+        free.iter().map(|&k| -change.iter().zip(&mass[k * n..]).map(|(change, m)| change * m).sum::<f64>()).collect();
+    solve_mass(system, &kinematics, &free, &mut share);
+    free.iter().zip(share).for_each(|(&k, share)| v[k] += share);
+    Ok(())
+}
+
+/// Coordinates may have kinks, no jumps.
+fn refuse_jumps(model: &Model, t: f64, before: &[f64], after: &[f64], v: &[f64]) -> Result<(), RunError> {
+    let jumps = model.difference(before, after);
+    for j in model.own_joints() {
+        let size = after[model.q_range(j)].iter().fold(1.0, |largest: f64, q| largest.max(q.abs()));
+        for k in model.v_range(j) {
+            let reach = 8.0 * f64::EPSILON * t * v[k].abs();
+            if jumps[k].abs() > 2e-9 * size + reach {
+                return Err(RunError::Jump { t, joint: model.joint_names()[j].clone(), jump: jumps[k] });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// x ← M⁻¹ x over the free velocities.
@@ -105,18 +138,20 @@ fn solve_mass(system: &System, kinematics: &Kinematics, free: &[usize], x: &mut 
 
 /// The largest power-of-two share of a second whose step keeps the layer at t = 0 within the tolerance of the velocities:
 /// h max_i |(M⁻¹ g)_i|/tol_i |F(h) − F(0)| ≤ 1 with F(h) − F(0) ≈ c h^−alpha |x(h) − x(0)|, and no longer than
-/// (1/max(|v|/tol, |a|/tol))^¼.
+/// (1/max(|v|/tol, |a|/tol))^¼. A singular start moves the positions by (M⁻¹ g)_i c x(0) h^{2−alpha}: that must stay within `strict`,
+/// the tolerance that the user asks for, since the estimate does not see it.
 pub(super) fn first_step(
     system: &System,
+    forward: &Forward,
     origin: &Origin,
     elements: &[ElementStart],
-    tolerance: Tolerance,
+    [tolerance, strict]: [Tolerance; 2],
     end: f64,
 ) -> f64 {
     let model = &system.model;
     let kinematics = Kinematics::at_velocity(model, &origin.q, &origin.v);
-    let all: Vec<usize> = (0..model.nv()).collect();
-    let fastest = all.iter().fold(0.0, |m: f64, &k| {
+    let free = free_velocities(model, forward);
+    let fastest = (0..model.nv()).fold(0.0, |m: f64, k| {
         let (v, a) = (origin.v[k].abs(), origin.a[k].abs());
         m.max(v / tolerance.of(if model.is_one_degree() { origin.q[k] } else { 1.0 })).max(a / tolerance.of(v))
     });
@@ -133,10 +168,17 @@ pub(super) fn first_step(
         element.inputs_at(0.0, &mut inputs);
         let point = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: &inputs };
         let coefficient = element.law.force(&point, 1.0) - element.law.force(&point, 0.0);
-        let mut push = start.gradient.clone();
-        solve_mass(system, &kinematics, &all, &mut push);
-        let reach =
-            push.iter().zip(&origin.v).map(|(p, v)| p.abs() / tolerance.of(*v)).fold(0.0, f64::max) * coefficient.abs();
+        let mut push: Vec<f64> = free.iter().map(|&k| start.gradient[k]).collect();
+        solve_mass(system, &kinematics, &free, &mut push);
+        if element.derivative == Derivative::RiemannLiouville && start.jump != 0.0 {
+            let shares = push.iter().zip(&free).map(|(push, &k)| push.abs() / strict.of(origin.v[k]));
+            let kick = shares.fold(0.0, f64::max) * (coefficient * start.jump).abs();
+            if kick > 0.0 {
+                h = h.min((1.0 / kick).powf(1.0 / (2.0 - order)));
+            }
+        }
+        let shares = push.iter().zip(&free).map(|(push, &k)| push.abs() / tolerance.of(origin.v[k]));
+        let reach = shares.fold(0.0, f64::max) * coefficient.abs();
         // x(h) − x(0) to second order, from the motion at the start.
         let slope: f64 = start.gradient.iter().zip(&origin.v).map(|(g, v)| g * v).sum();
         let bend: f64 = start.gradient.iter().zip(&origin.a).map(|(g, a)| g * a).sum();

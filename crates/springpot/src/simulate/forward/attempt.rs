@@ -1,0 +1,126 @@
+//! One step tried: its errors, the size of the next one, and what to say where no step is small enough.
+
+use super::Run;
+use super::newton::Outcome;
+use crate::fractional::step::MAX_NODES;
+use crate::simulate::RunError;
+
+/// Shortest step as a share of the run.
+const SHORTEST_STEP: f64 = 1e-14;
+
+/// Velocities whose squares are finite.
+const FASTEST: f64 = 1e150;
+
+/// Growth that is not worth a new size.
+const KEPT: f64 = 1.2;
+
+/// 1/(order of the estimate + 1).
+const EXPONENT: f64 = 0.25;
+
+/// What makes most of the error of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Worst {
+    Velocity(usize),
+    Element(usize),
+    Energy,
+    /// The iteration did not converge, for this velocity least of all.
+    Newton(usize),
+}
+
+impl Run<'_> {
+    /// Tries the step of size `h` up to `to`: `Ok` holds the factor for the next step, `Err` the size to try instead.
+    pub(super) fn attempt(&mut self, to: f64, h: f64, on_break: bool) -> Result<Result<f64, f64>, RunError> {
+        let t = self.stepper.origin.t;
+        let t_end = if on_break { to.next_down() } else { to };
+        let (mut error, mut worst, iterations) = match self.stepper.attempt(h, t_end, &self.book.accounts)? {
+            Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
+            Outcome::Converged { iterations } => {
+                let (error, worst) = self.stepper.estimate(h);
+                (error, Worst::Velocity(worst), iterations)
+            }
+        };
+        *self.book.report.newton_iterations.get_or_insert(0) += u64::from(iterations);
+        if let Some(e) = self.turned_over() {
+            (error, worst) = (f64::INFINITY, Worst::Element(e));
+        }
+        self.refuse_overflow(t, h)?;
+        if error <= 1.0 {
+            self.take_stock(to, h, on_break)?;
+            if self.has_paths {
+                (error, worst) = self.books_error(h, error, worst);
+            }
+        }
+        let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
+        if error > 1.0 || error.is_nan() {
+            let smaller = h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
+            if smaller < SHORTEST_STEP * self.book.settings.end {
+                return Err(self.step_too_small(t, h, error, worst));
+            }
+            return Ok(Err(smaller));
+        }
+        let error = error.max(1e-10);
+        let mut factor = safety * error.powf(-EXPONENT);
+        if let Some((size, before)) = self.last {
+            factor = factor.min(safety * (h / size) * (before.max(1e-2) / (error * error)).powf(EXPONENT));
+        }
+        self.last = Some((h, error));
+        // A step that changes little keeps its size, and with it the tables of the exponentials.
+        Ok(Ok(if (1.0..KEPT).contains(&factor) { 1.0 } else { factor.clamp(0.2, 8.0) }))
+    }
+
+    /// Velocities whose energy is beyond double precision.
+    fn refuse_overflow(&self, t: f64, h: f64) -> Result<(), RunError> {
+        let overflow = self.stepper.stages[MAX_NODES - 1].v.iter().position(|v| v.abs() > FASTEST);
+        let Some(k) = overflow else { return Ok(()) };
+        let what = format!("v.{}", self.book.system.model.v_labels()[k].name);
+        Err(RunError::NotFinite { t: t + h, what, value: f64::INFINITY })
+    }
+
+    /// The largest of `error` and of what the estimate of the free joints may not see where others are prescribed: the errors of
+    /// D^alpha x and of the energy ledger. In units of their tolerances, brought to the order of that estimate.
+    fn books_error(&self, h: f64, error: f64, worst: Worst) -> (f64, Worst) {
+        let (book, t) = (&self.book, self.stepper.origin.t);
+        let (mut error, mut worst) = (error, worst);
+        let energy = book.energy_error(h, 0.0);
+        if energy > error {
+            (error, worst) = (energy, Worst::Energy);
+        }
+        for (e, element) in book.system.elements.iter().enumerate() {
+            let (account, step) = (&book.accounts[e], self.stepper.elements[e].law_step(t, h));
+            let defect = element.law.defect(&step, account.memory());
+            if defect == 0.0 {
+                continue;
+            }
+            let scale = book.scale_with_step(e, t + h);
+            let allowed = book.settings.atol.unwrap_or(0.0) + book.settings.rtol * scale;
+            let memory = (defect / allowed).powf(1.0 / (EXPONENT * (4.0 - element.law.order())));
+            if memory > error {
+                (error, worst) = (memory, Worst::Element(e));
+            }
+        }
+        (error, worst)
+    }
+
+    /// The first element whose points passed each other in the step.
+    fn turned_over(&self) -> Option<usize> {
+        self.stepper.elements.iter().position(super::stepper::ElementStage::turned_over)
+    }
+
+    fn step_too_small(&self, t: f64, h: f64, error: f64, worst: Worst) -> RunError {
+        let system = self.book.system;
+        let joint = |k: usize| system.model.v_labels()[k].name.clone();
+        if let Some(e) = self.turned_over() {
+            let pairs = self.stepper.elements[e].pairs.iter().flatten();
+            let length = pairs.map(|pair| pair.length).fold(f64::INFINITY, f64::min);
+            return RunError::ZeroLength { t, element: system.elements[e].name.clone(), length };
+        }
+        match worst {
+            Worst::Velocity(k) => RunError::StepTooSmall { t, h, error, subject: format!("joint \"{}\"", joint(k)) },
+            Worst::Element(e) => {
+                RunError::StepTooSmall { t, h, error, subject: format!("element \"{}\"", system.elements[e].name) }
+            }
+            Worst::Energy => RunError::StepTooSmall { t, h, error, subject: "the energy ledger".to_owned() },
+            Worst::Newton(k) => RunError::NoConvergence { t, h, joint: joint(k) },
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! A step kept: its rows and energies; and the far side of breaks and kinks.
+
+use super::dense::Dense;
+use super::drives::drive;
+use super::{Run, start};
+use crate::fractional::step::{MAX_NODES, RADAU_NODES};
+use crate::simulate::book::Book;
+use crate::simulate::moment::{Moment, Scratch};
+use crate::simulate::{RunError, System};
+
+impl Run<'_> {
+    /// Works out the energies of the step that was just solved.
+    pub(super) fn take_stock(&mut self, to: f64, h: f64, on_break: bool) -> Result<(), RunError> {
+        self.stepper.fit();
+        let Self { book, stepper, starts, scratch, .. } = self;
+        let (system, t) = (book.system, stepper.origin.t);
+        let mut dense = Dense { stepper, h, starts, scratch };
+        for k in 0..MAX_NODES {
+            let at = if k + 1 == MAX_NODES { to } else { t + RADAU_NODES[k] * h };
+            let t_inputs = if k + 1 == MAX_NODES && on_break { to.next_down() } else { at };
+            let moment = &mut book.moments[k + 1];
+            dense.place(at, RADAU_NODES[k], moment);
+            moment.q.copy_from_slice(&stepper.stages[k].q);
+            moment.v.copy_from_slice(&stepper.stages[k].v);
+            system.fill(at, t_inputs, None, &mut book.scratch, moment)?;
+        }
+        for (e, element) in stepper.elements.iter().enumerate() {
+            book.steps[e].form = element.form;
+            book.fill_element_step(e);
+            book.evaluate_element(e, t, h);
+        }
+        self.take_powers();
+        Ok(())
+    }
+
+    /// Writes the rows of the step whose stock was taken, and takes it into the past.
+    pub(super) fn keep(&mut self, to: f64, h: f64, on_break: bool) -> Result<(), RunError> {
+        let Self { book, stepper, starts, scratch, .. } = self;
+        let t = stepper.origin.t;
+        let mut dense = Dense { stepper, h, starts, scratch };
+        let mut place = |system: &System, scratch: &mut Scratch, at: f64, theta: f64, moment: &mut Moment| {
+            dense.place(at, theta, moment);
+            system.fill(at, at, None, scratch, moment)
+        };
+        book.emit_rows(t, to, on_break, &mut place)?;
+        book.commit(h);
+        book.report.steps += 1;
+        stepper.accept(h, to);
+        Ok(())
+    }
+
+    /// Power of the actuators and losses of the joints at the start of the step and at its nodes.
+    fn take_powers(&mut self) {
+        let Self { book, stepper, .. } = self;
+        for (k, moment) in book.moments.iter().enumerate() {
+            let mut power = 0.0;
+            for (j, v) in moment.v.iter().enumerate() {
+                let computed = || {
+                    let forces = stepper.elements.iter().zip(&moment.elements).zip(&stepper.origin.forces);
+                    let pull = forces.map(|((element, state), start)| {
+                        let force = if k == 0 { *start } else { element.response.force[k - 1] };
+                        force * state.gradient[j]
+                    });
+                    moment.rigid[j] + pull.sum::<f64>()
+                };
+                power += moment.driven[j].unwrap_or_else(computed) * v;
+            }
+            book.powers.actuators[k] = power;
+            book.powers.joints[k] = moment.joint_loss;
+        }
+    }
+
+    /// Goes to the far side of a break or kink of the signals, where accelerations and prescribed velocities may jump.
+    pub(super) fn cross(&mut self, after: f64) -> Result<(), RunError> {
+        let Self { book, stepper, forward, .. } = self;
+        let system = book.system;
+        // One bit behind it, since a sign is 0 while it turns.
+        let to = if system.branch(after) == system.branch(after.next_up()) { after } else { after.next_up() };
+        stepper.origin.t = to;
+        stepper.restart();
+        self.last = None;
+        start::take_jumps(system, forward, &mut stepper.origin)?;
+        let derivatives = regular_derivatives(book, to);
+        start::accelerate(system, forward, &mut stepper.origin, |e, point| {
+            if system.elements[e].law.order() == 1.0 { point.rate } else { derivatives[e] }
+        })?;
+        let left = book.moments[0].clone();
+        let mut right = left.clone();
+        right.a.copy_from_slice(&stepper.origin.a);
+        right.q.copy_from_slice(&stepper.origin.q);
+        right.v.copy_from_slice(&stepper.origin.v);
+        drive(&system.model, forward, to, &mut right);
+        system.fill(to, to, None, &mut book.scratch, &mut right)?;
+        book.jump([left, right]);
+        book.emit_rows_between_steps(to)
+    }
+}
+
+/// D^alpha x of each element between two steps at t, without the share of a singular start.
+fn regular_derivatives(book: &Book, t: f64) -> Vec<f64> {
+    let elements = book.accounts.iter().zip(&book.system.elements);
+    let regular = elements.map(|(account, element)| {
+        let singular = if t > 0.0 { element.law.singular(t, account.memory()) } else { 0.0 };
+        account.derivative - singular
+    });
+    regular.collect()
+}

@@ -1,0 +1,34 @@
+//! Rows and threads change nothing.
+
+use crate::support::{cases, every, falling};
+use springpot::sweep::{self, Layout, Options};
+use springpot::table::folder::Folder;
+use std::sync::atomic::{AtomicBool, AtomicU64};
+
+#[test]
+fn a_sweep_gives_the_same_bytes_for_any_number_of_threads() {
+    let text = falling(0.5, 25.0, "riemann-liouville", "start = { q = { q2 = 0.2 } }")
+        + &every(0.5, 0.05, 1e-7)
+        + "[[sweep]]\nparameter = \"element.strut.alpha\"\nvalues = [0.1, 0.3, 0.5, 0.7, 0.9, 1.0]\n\
+           [[sweep]]\nparameter = \"motion.torque.q2\"\nvalues = [0, \"abs(sin(9*t))\", \"2*sin(5*t)\"]\n";
+    let text = text.replace("[time]", "[motion.torque]\nq2 = 0\n[time]");
+    let cases = cases(&text);
+    assert_eq!(cases.len(), 18);
+    let system = cases.plan(0).unwrap().system();
+    let layout = Layout::new(&cases, &system).unwrap();
+    let results: Vec<Vec<u8>> = [1, 2, 7]
+        .into_iter()
+        .map(|jobs| {
+            let out = tempfile::tempdir().unwrap();
+            let mut folder = Folder::prepare(out.path()).unwrap();
+            let (stop, rows) = (AtomicBool::new(false), AtomicU64::new(0));
+            let outcome =
+                sweep::run(&cases, &layout, &mut folder, Options { jobs, stop: &stop, rows: &rows, checkpoints: None })
+                    .unwrap();
+            assert_eq!(outcome.done, 18);
+            std::fs::read(out.path().join("results.csv")).unwrap()
+        })
+        .collect();
+    assert!(results[0].len() > 10_000);
+    assert!(results.iter().all(|bytes| *bytes == results[0]));
+}
