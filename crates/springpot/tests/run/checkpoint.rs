@@ -78,9 +78,9 @@ fn robots_that_move_by_themselves() {
     let struts = [
         thermoviscoelastic(0.5, 25.0, "caputo"),
         thermoviscoelastic(0.3, 25.0, "riemann-liouville"),
-        springpot(0.1, "caputo"),
-        springpot(1.0, "caputo"),
         magnetorheological(0.8, "riemann-liouville"),
+        springpot(1.0, "caputo"),
+        springpot(0.1, "caputo"),
     ];
     let motions = [
         "torque = { q1 = \"2*sign(sin(9*t))\", q2 = \"abs(sin(5*t))\" }",
