@@ -1,7 +1,7 @@
 //! The state of a run between two steps: all that it takes to go on, and to end with the same bits.
 
 use super::book::Books;
-use super::{Report, System, along, forward};
+use super::{Report, System, along, fixed, forward};
 use serde::{Deserialize, Serialize};
 
 /// The state of a run between two steps, memories included; see [`super::Rows::checkpoint`] and [`super::resume`].
@@ -20,6 +20,7 @@ pub struct Checkpoint {
 pub(super) enum Pace {
     Along(along::Pace),
     Forward(Box<forward::Pace>),
+    Fixed(Box<fixed::Pace>),
 }
 
 impl Checkpoint {

@@ -151,12 +151,15 @@ pub fn resume(
 ) -> (Report, Result<(), RunError>) {
     let fits = checkpoint.fits(system);
     let Checkpoint { books, pace } = checkpoint;
-    match (&system.motion, pace) {
-        (Motion::Prescribed(_) | Motion::GripperPath(_), Pace::Along(pace)) if fits => {
+    match (&system.motion, settings.fixed_step, pace) {
+        (Motion::Prescribed(_) | Motion::GripperPath(_), _, Pace::Along(pace)) if fits => {
             along::resume(system, settings, (books, pace), rows, stop)
         }
-        (Motion::Forward(motion), Pace::Forward(pace)) if fits => {
+        (Motion::Forward(motion), None, Pace::Forward(pace)) if fits => {
             forward::resume(system, motion, settings, (books, *pace), rows, stop)
+        }
+        (Motion::Forward(motion), Some(by), Pace::Fixed(pace)) if fits => {
+            fixed::resume(system, (motion, by), settings, (books, *pace), rows, stop)
         }
         _ => (Report::default(), Err(RunError::OtherRun)),
     }

@@ -78,9 +78,9 @@ fn robots_that_move_by_themselves() {
     let struts = [
         thermoviscoelastic(0.5, 25.0, "caputo"),
         thermoviscoelastic(0.3, 25.0, "riemann-liouville"),
-        springpot(0.1, "caputo"),
-        springpot(1.0, "caputo"),
         magnetorheological(0.8, "riemann-liouville"),
+        springpot(1.0, "caputo"),
+        springpot(0.1, "caputo"),
     ];
     let motions = [
         "torque = { q1 = \"2*sign(sin(9*t))\", q2 = \"abs(sin(5*t))\" }",
@@ -98,6 +98,26 @@ fn robots_that_move_by_themselves() {
     let start = "start = { v = { q1 = { vx = 0.5, wz = 1, wx = 0.3 } } }";
     states += goes_on(&cases(&format!("{floating}{}{}{}", struts[0], forward(start), every(0.4, 0.03))), 5);
     assert!(states > 300, "{states} states");
+}
+
+#[test]
+fn steps_of_one_size() {
+    let element = thermoviscoelastic(0.5, 25.0, "caputo");
+    let singular = thermoviscoelastic(0.3, 25.0, "riemann-liouville");
+    let floating = ARM.replacen("kind = \"revolute\", axis = [0, 0, 1], origin = [0, 0, 0]", "kind = \"floating\"", 1);
+    let mut states = 0;
+    for (robot, element, motion) in [
+        (ARM, &element, "torque = { q1 = \"2*sign(sin(9*t))\" }\nprescribed = { q3 = \"0.1*sin(3*t)\" }"),
+        (ARM, &singular, "start = { q = { q2 = 0.1 } }\nlocked = [\"q1\"]"),
+        (&floating, &element, "start = { v = { q1 = { vx = 0.5, wz = 1, wx = 0.3 } } }"),
+    ] {
+        for method in ["backward-euler", "midpoint"] {
+            let solver = format!("[solver]\nmethod = \"{method}\"\nstep = \"3 ms\"\n");
+            let motion = format!("\n[motion]\nkind = \"forward\"\n{motion}\n");
+            states += goes_on(&cases(&format!("{robot}{element}{motion}{}{solver}", every(0.3, 0.017))), 7);
+        }
+    }
+    assert_eq!(states, 600);
 }
 
 #[test]

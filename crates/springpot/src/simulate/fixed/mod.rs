@@ -18,6 +18,7 @@ mod stepper;
 
 pub use real_time::{Loop, LoopError, MemorySettings};
 pub use run::fixed;
+pub(super) use run::{Pace, resume};
 
 use crate::fractional::Nodes;
 

@@ -1,15 +1,16 @@
 //! A whole run in steps of one size, with rows and the energy ledger.
 
 use super::place::{Accelerator, Between};
-use super::stepper::Stepper;
+use super::stepper::{Place, Stepper};
 use super::{FixedStep, ITERATIONS};
 use crate::fractional::Form;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::law::{Derivative, Singular};
 use crate::motion::{Forward, Motion};
-use crate::simulate::book::Book;
+use crate::simulate::book::{Book, Books};
 use crate::simulate::moment::{Moment, Scratch};
-use crate::simulate::{Report, RowTimes, Rows, RunError, Settings, Stop, System};
+use crate::simulate::{self, Report, RowTimes, Rows, RunError, Settings, Stop, System};
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
 /// Runs a `system` that moves by itself in steps of one size and hands every row to `rows`.
@@ -27,6 +28,38 @@ pub fn fixed(
     stop: &Stop,
 ) -> (Report, Result<(), RunError>) {
     let Motion::Forward(forward) = &system.motion else { panic!("the motion is given in advance") };
+    whole(system, forward, by, settings, rows, stop, None)
+}
+
+/// Goes on with a run from what was kept of it.
+pub(in crate::simulate) fn resume(
+    system: &System,
+    (forward, by): (&Forward, FixedStep),
+    settings: &Settings,
+    kept: (Books, Pace),
+    rows: &mut dyn Rows,
+    stop: &Stop,
+) -> (Report, Result<(), RunError>) {
+    whole(system, forward, by, settings, rows, stop, Some(kept))
+}
+
+/// Where the next step starts; its number is that of the steps taken.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(in crate::simulate) struct Pace {
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+}
+
+fn whole(
+    system: &System,
+    forward: &Forward,
+    by: FixedStep,
+    settings: &Settings,
+    rows: &mut dyn Rows,
+    stop: &Stop,
+    kept: Option<(Books, Pace)>,
+) -> (Report, Result<(), RunError>) {
     let mut book = Book::new(system, settings, rows);
     book.takes_elements_work = false;
     book.report.newton_iterations = Some(0);
@@ -38,7 +71,13 @@ pub fn fixed(
         let accelerator = Accelerator::new(system, forward);
         let still = vec![0.0; system.model.nv()];
         let mut run = Run { system, forward, by, stop, stepper, accelerator, still };
-        run.start(&mut book)?;
+        match kept {
+            None => run.start(&mut book)?,
+            Some((books, Pace { t, q, v })) => {
+                book.restore(books);
+                run.stepper.go_on(t, &q, &v);
+            }
+        }
         run.march(&mut book)
     });
     (book.finish(), outcome)
@@ -82,9 +121,12 @@ impl Run<'_> {
     fn march(&mut self, book: &mut Book) -> Result<(), RunError> {
         let step = self.by.step;
         let ends = RowTimes::Step { step, end: book.settings.end };
-        for to in (1..ends.count()).map(|k| ends.at(k)) {
-            let t = self.stepper.origin.t;
-            if self.stop.load(Ordering::Relaxed) {
+        // Every step ends where the table says, so that the steps taken tell where the next one ends.
+        for to in (book.report.steps as usize + 1..ends.count()).map(|k| ends.at(k)) {
+            let Place { t, ref q, ref v, .. } = self.stepper.origin;
+            let stopped = self.stop.load(Ordering::Relaxed);
+            book.keep(t, stopped, || simulate::Pace::Fixed(Box::new(Pace { t, q: q.clone(), v: v.clone() })))?;
+            if stopped {
                 return Err(RunError::Interrupted { t });
             }
             if book.settings.max_steps.is_some_and(|limit| book.report.steps >= limit) {

@@ -3,7 +3,7 @@
 use super::elements::ElementStep;
 use super::resistance::add_secants;
 use super::{ITERATIONS, Method};
-use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, rnea_derivatives_into, rnea_into};
+use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pair_into, rnea_derivatives_into, rnea_into};
 use crate::law::{Response, State};
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
@@ -142,6 +142,19 @@ impl<'a> Stepper<'a> {
         std::mem::swap(&mut self.origin, &mut self.end);
         for element in &mut self.elements {
             element.ends[0] = element.ends[1];
+        }
+    }
+
+    /// Goes on from where an earlier step ended.
+    pub(super) fn go_on(&mut self, t: f64, q: &[f64], v: &[f64]) {
+        let (model, origin) = (self.model, &mut self.origin);
+        origin.t = t;
+        origin.q.copy_from_slice(q);
+        origin.v.copy_from_slice(v);
+        origin.kinematics.update_velocity(model, q, v);
+        for (element, step) in self.system.elements.iter().zip(&mut self.elements) {
+            let gradient = &mut step.gradients[1];
+            step.ends[0] = pair_into(model, &origin.kinematics, &element.from, &element.to, gradient);
         }
     }
 
