@@ -27,9 +27,12 @@ pub(crate) enum Command {
 Examples:
   springpot run scenarios/thermoviscoelastic_order.toml
   springpot run arm.toml --set element.strut.alpha=0.3 --set 'element.strut.T=40 degC' --out warm
+  springpot run arm.toml --checkpoint-every '10 s'
+  springpot run --resume results/arm
 
 Writes results.csv, summary.csv, figures/ and run.json. A rerun replaces the last run's files and nothing else. \
-Ctrl-C ends a run early; the rows so far are kept, all of them complete.")]
+Ctrl-C ends a run early; the rows so far are kept, all of them complete. With --checkpoint-every a run that was interrupted or \
+killed goes on with --resume, and its results are those of an uninterrupted run.")]
     Run(RunOptions),
     /// Read and check a scenario without running it.
     #[command(after_help = "\
@@ -65,11 +68,21 @@ Exit codes: 0 done, 1 some numbers are not finite or the motion does not come as
 
 #[derive(Debug, Args)]
 pub(crate) struct RunOptions {
-    #[command(flatten)]
-    pub(crate) scenario: ScenarioOptions,
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO", required_unless_present = "resume")]
+    pub(crate) file: Option<PathBuf>,
+    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE", conflicts_with = "resume")]
+    pub(crate) overrides: Vec<String>,
     /// Folder of the results [default: results/<file stem>]
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with = "resume")]
     pub(crate) out: Option<PathBuf>,
+    /// Keep the state of the run every so much simulated time, in s or with a unit
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(crate) checkpoint_every: Option<String>,
+    /// Go on with the run whose results are in this folder
+    #[arg(long, value_name = "DIR", conflicts_with = "file")]
+    pub(crate) resume: Option<PathBuf>,
     /// Cases at a time [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) jobs: Option<u16>,

@@ -9,6 +9,7 @@ use springpot::law::Catalog;
 use springpot::model::urdf::UrdfError;
 use springpot::scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Scenario, Source};
 use std::fmt::{self, Display};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Length of excerpts where there is no terminal.
@@ -16,11 +17,14 @@ const EXCERPT: usize = 200;
 
 /// Reads the scenario, applies the overrides and checks everything.
 pub(crate) fn open(options: &ScenarioOptions) -> Result<Cases, Refusals> {
-    let mut scenario = Scenario::read(&options.file)?;
-    for assignment in &options.overrides {
-        scenario.set(assignment)?;
-    }
-    scenario.cases(&Catalog::standard())
+    scenario(&options.file, &options.overrides)?.cases(&Catalog::standard())
+}
+
+/// Reads the scenario and applies the overrides.
+pub(crate) fn scenario(file: &Path, overrides: &[String]) -> Result<Scenario, Refusals> {
+    let mut scenario = Scenario::read(file)?;
+    overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
+    Ok(scenario)
 }
 
 /// Prints refusals on stderr.
@@ -29,11 +33,9 @@ pub(crate) fn refused(refusals: &Refusals) {
     let width = terminal::stderr_width().map_or(EXCERPT, |width| width - 10);
     for refusal in refusals.iter() {
         show(&Shown {
-            severity: Severity::Error,
-            message: headline(refusal),
-            help: refusal.help.clone(),
             label: refusal.label.clone(),
             excerpt: Excerpt::new(refusal, width),
+            ..Shown::plain(Severity::Error, headline(refusal), refusal.help.clone())
         });
     }
 }
@@ -123,8 +125,14 @@ struct Shown {
 
 impl Shown {
     fn plain(severity: Severity, message: String, help: Option<String>) -> Self {
-        Self { severity, message, help, label: String::new(), excerpt: None }
+        let help = help.map(|help| harmless(&help));
+        Self { severity, message: harmless(&message), help, label: String::new(), excerpt: None }
     }
+}
+
+/// A text without control characters, which would steer the terminal; names of a URDF may hold some.
+fn harmless(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 impl Display for Shown {
@@ -230,6 +238,13 @@ mod tests {
                 assert!(shown.chars().all(|c| c == '\n' || !c.is_control()), "{shown:?}");
             }
         }
+    }
+
+    #[test]
+    fn messages_do_not_steer_it_either() {
+        let shown = Shown::plain(Severity::Error, "joint \u{1b}[31m\u{7}".into(), Some("a\u{9b}\nb".into()));
+        assert_eq!(shown.message, "joint \u{fffd}[31m\u{fffd}");
+        assert_eq!(shown.help.as_deref(), Some("a\u{fffd}\nb"));
     }
 
     #[test]

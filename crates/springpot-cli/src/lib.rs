@@ -20,6 +20,7 @@ mod terminal;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use std::ffi::OsString;
+use std::io;
 use std::process::ExitCode;
 
 /// How a command ended.
@@ -39,6 +40,19 @@ impl From<Ending> for ExitCode {
             Ending::Refused => 2,
             Ending::Interrupted => 130,
         })
+    }
+}
+
+/// How a command ends whose results were printed, or were not.
+fn printed(result: io::Result<()>) -> Ending {
+    match result {
+        Ok(()) => Ending::Done,
+        // Whoever reads has read enough.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ending::Done,
+        Err(error) => {
+            diagnostic::error(format!("the results cannot be written: {error}"));
+            Ending::Failed
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use springpot::law::Catalog;
 use springpot::model::urdf::{Urdf, UrdfOptions, UrdfWarning};
 use springpot::model::{BodySpec, JointKind, Model, Parent};
 use springpot::scenario::{RobotPlan, Scenario};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Gravity of a URDF robot, m/s²; the file says nothing of it.
@@ -22,7 +22,11 @@ pub(crate) struct Robot {
     pub(crate) bodies: Vec<BodySpec>,
     /// What the world is called, and the mass of that link, kg.
     pub(crate) base: (String, f64),
-    /// What was not used or was assumed.
+    /// The gripper of a scenario: its body and its point there, m.
+    pub(crate) gripper: Option<(String, [f64; 3])>,
+    /// The URDF file, if there is one.
+    pub(crate) urdf: Option<PathBuf>,
+    /// What of it was not used or was assumed.
     pub(crate) warnings: Vec<UrdfWarning>,
 }
 
@@ -63,6 +67,8 @@ fn from_urdf(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refu
         name: if urdf.name.is_empty() { stem(&options.file) } else { urdf.name },
         model: Arc::new(model),
         bodies: urdf.bodies,
+        gripper: None,
+        urdf: urdf.file,
         warnings: urdf.warnings,
     })
 }
@@ -88,7 +94,7 @@ fn from_scenario(options: &RobotOptions, overrides: &[String]) -> Result<Robot, 
         }
         scenario.robot(&Catalog::standard())
     });
-    let RobotPlan { model, bodies, urdf, .. } = read.map_err(|refusals| {
+    let RobotPlan { model, bodies, urdf, gripper, .. } = read.map_err(|refusals| {
         diagnostic::refused(&refusals);
         Refused
     })?;
@@ -102,6 +108,8 @@ fn from_scenario(options: &RobotOptions, overrides: &[String]) -> Result<Robot, 
         model,
         bodies,
         base: urdf.as_ref().map_or(("world".to_owned(), 0.0), |urdf| base(urdf)),
+        gripper: gripper.map(|gripper| (gripper.body, gripper.anchor.point)),
+        urdf: urdf.as_ref().and_then(|urdf| urdf.file.clone()),
         warnings: urdf.map_or(Vec::new(), |urdf| urdf.warnings.clone()),
     })
 }
@@ -166,8 +174,9 @@ impl Robot {
 
     /// Prints the warnings of the URDF file on stderr.
     pub(crate) fn warn(&self) {
+        let file = self.urdf.as_deref().unwrap_or(Path::new("")).display();
         for warning in &self.warnings {
-            diagnostic::warning(warning.to_string(), None);
+            diagnostic::warning(format!("{file}: {warning}"), None);
         }
     }
 }

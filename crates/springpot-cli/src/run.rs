@@ -1,13 +1,16 @@
 //! `springpot run`.
 
+mod prepare;
+
+use self::prepare::{Prepared, Unprepared, prepare};
 use crate::arguments::RunOptions;
 use crate::numbers::{brief, count, rough, short};
 use crate::{Ending, diagnostic, figures, progress, terminal};
-use springpot::scenario::{Cases, Plan, Refusals};
-use springpot::simulate::System;
-use springpot::sweep::{self, CaseResult, CasesPassing, Layout, Options, Outcome, Status, SweepError};
+use springpot::scenario::Cases;
+use springpot::sweep::{self, CaseResult, CasesPassing, Options, Outcome, Status, SweepError};
 use springpot::table::folder::Folder;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -29,11 +32,23 @@ struct Finished {
 
 pub(crate) fn run(options: &RunOptions) -> Ending {
     let begun = Instant::now();
-    let out = options.out.clone().unwrap_or_else(|| default_folder(&options.scenario.file));
-    match execute(options, &out) {
+    let prepared = match prepare(options) {
+        Ok(prepared) => prepared,
+        Err(Unprepared::Refused(refused)) => {
+            diagnostic::refused(&refused);
+            return Ending::Refused;
+        }
+        Err(Unprepared::Shown) => return Ending::Refused,
+        Err(Unprepared::Output(out, error)) => return cannot_write(&out, &error, false),
+    };
+    let (out, goes_on) = (prepared.folder.path().to_owned(), prepared.checkpoints.is_some());
+    match execute(options, prepared) {
         Ok(finished) => {
             finished.warn();
             finished.complain();
+            if goes_on && finished.outcome.status == Status::Interrupted {
+                terminal::print_error(&format!("to go on: {}\n", to_go_on(&out)));
+            }
             if !options.quiet {
                 terminal::print(&finished.summary(begun.elapsed()));
             }
@@ -47,47 +62,46 @@ pub(crate) fn run(options: &RunOptions) -> Ending {
             diagnostic::refused(&refused);
             Ending::Refused
         }
-        Err(SweepError::Output(error)) => {
-            diagnostic::error(format!("the results cannot be written to {}: {error}", out.display()));
-            Ending::Failed
-        }
+        Err(SweepError::Output(error)) => cannot_write(&out, &error, goes_on),
     }
 }
 
-fn execute(options: &RunOptions, out: &Path) -> Result<Finished, SweepError> {
-    let stop = progress::interrupt_flag();
-    let cases = diagnostic::open(&options.scenario)?;
-    let (plan, system) = first_case(&cases)?;
-    diagnostic::robot_warnings(&cases);
-    let layout = Layout::new(&cases, &system)?;
-    let mut folder = Folder::prepare(out)?;
+fn cannot_write(out: &Path, error: &io::Error, goes_on: bool) -> Ending {
+    let message = format!("the results cannot be written to {}: {error}", out.display());
+    match goes_on {
+        true => diagnostic::error_with_help(message, format!("to go on once they can: {}", to_go_on(out))),
+        false => diagnostic::error(message),
+    }
+    Ending::Failed
+}
 
+/// The command that goes on with a run.
+fn to_go_on(out: &Path) -> String {
+    format!("springpot run --resume {}", out.display())
+}
+
+/// Runs all cases, draws the figures, and writes the record.
+fn execute(options: &RunOptions, prepared: Prepared) -> Result<Finished, SweepError> {
+    let Prepared { cases, plan, system, layout, mut folder, checkpoints, figures } = prepared;
     let rows = AtomicU64::new(0);
     let wanted = (cases.len() as u64).saturating_mul(plan.time.rows.count() as u64);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = options.jobs.map_or(cores, usize::from);
-    let sweep_options = Options { jobs, stop, rows: &rows };
+    let stop = progress::interrupt_flag();
+    let sweep_options = Options { jobs, stop, rows: &rows, checkpoints: checkpoints.as_ref() };
     let outcome =
         progress::show_while(wanted, &rows, options.quiet, || sweep::run(&cases, &layout, &mut folder, sweep_options))?;
 
-    if !options.no_figures && outcome.status != Status::Interrupted {
+    if figures && outcome.status != Status::Interrupted {
         for warning in figures::draw(&cases, &system, &plan, &layout, &outcome, &mut folder)? {
             diagnostic::warning(warning, None);
         }
     }
     folder.write_run(outcome.record(&cases, &plan, &layout))?;
+    if let Some(checkpoints) = checkpoints.filter(|_| outcome.status != Status::Interrupted) {
+        checkpoints.remove()?;
+    }
     Ok(Finished { cases, outcome, folder, rows: rows.load(Ordering::Relaxed), end: plan.time.end })
-}
-
-fn first_case(cases: &Cases) -> Result<(Plan, System), Refusals> {
-    let plan = cases.plan(0)?;
-    let system = plan.system();
-    Ok((plan, system))
-}
-
-/// `results/<file stem>` in the current folder.
-fn default_folder(file: &Path) -> PathBuf {
-    Path::new("results").join(file.file_stem().unwrap_or("run".as_ref()))
 }
 
 impl Finished {
@@ -225,8 +239,8 @@ pub(crate) fn in_case(cases: &Cases, index: usize, message: &str) -> String {
     if name.is_empty() { message.to_owned() } else { format!("{name}: {message}") }
 }
 
-/// `message` about the case `first` with its swept values in front, and how many others it holds for; as it is where it holds
-/// for all that were looked at.
+/// `message` about the case `first` with its swept values in front, and how many others it holds for; as it is where
+/// it holds for all that were looked at.
 pub(crate) fn in_cases(cases: &Cases, looked_at: usize, first: usize, found: usize, message: &str) -> String {
     if found >= looked_at {
         message.to_owned()

@@ -14,8 +14,13 @@ pub(crate) const NO_BREAK: &str = "\u{a0}";
 
 /// Prints on stdout. A closed pipe is no error: whoever reads has read enough.
 pub(crate) fn print(text: &str) {
+    let _ = try_print(text);
+}
+
+/// Prints on stdout what is the result of a command.
+pub(crate) fn try_print(text: &str) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
-    let _ = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush())
 }
 
 /// Prints on stderr.

@@ -4,7 +4,7 @@ use super::terms;
 use crate::arguments::{DynamicsOptions, ScenarioOptions};
 use crate::robot::{Refused, is_scenario, refuse_urdf_flags};
 use crate::run::{case_name, in_case};
-use crate::{Ending, diagnostic, terminal};
+use crate::{Ending, diagnostic, printed, terminal};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use springpot::scenario::units::parse_quantity;
@@ -40,11 +40,11 @@ pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused>
     diagnostic::robot_warnings(&cases);
     match system.equation(&plan.settings(), t) {
         Ok(equation) => {
-            terminal::print(&match options.json {
+            let text = match options.json {
                 true => json(&cases, index, &system, &equation),
                 false => terms::text(plan.title.as_deref(), &case_name(&cases, index), &system, &equation),
-            });
-            Ok(Ending::Done)
+            };
+            Ok(printed(terminal::try_print(&text)))
         }
         Err(EquationError::Run(error)) => {
             diagnostic::error(in_case(&cases, index, &error.to_string()));

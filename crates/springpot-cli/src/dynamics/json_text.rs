@@ -93,8 +93,9 @@ impl<'a> Json<'a> {
         }
         let message = error.to_string();
         let message = message.split(" at line ").next().unwrap_or_default();
-        let word_start = text[..at].rfind(|c: char| !(c.is_ascii_alphabetic() || c == '-')).map_or(0, |end| end + 1);
-        let word: String = text[word_start..].chars().take_while(|c| c.is_ascii_alphabetic() || *c == '-').collect();
+        let of_word = |c: char| c.is_ascii_alphabetic() || c == '-';
+        let word_start = text[..at].trim_end_matches(of_word).len();
+        let word: String = text[word_start..].chars().take_while(|c| of_word(*c)).collect();
         if ["NaN", "Infinity", "-Infinity"].contains(&word.as_str()) {
             let place = self.place(word_start..word_start + word.len());
             let refusal = place.refuse(RefusalKind::Syntax, format!("{word} is no JSON, and no finite number"));

@@ -10,13 +10,13 @@ mod terms;
 use crate::arguments::DynamicsOptions;
 use crate::numbers::{count, short};
 use crate::robot::{Refused, Robot};
-use crate::{Ending, diagnostic, robot};
+use crate::{Ending, diagnostic, printed, robot};
 use answer::Answers;
 use springpot::model::{Frame, JointKind};
 use springpot::scenario::suggest;
 use states::States;
 use std::collections::BTreeMap;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 /// Most velocities for which nv × nv matrices, and nv × nv × nv symbols, are printed.
@@ -53,17 +53,11 @@ fn in_states(options: &DynamicsOptions, file: &Path) -> Result<Ending, Refused> 
     }
     let stdout = io::stdout().lock();
     match print(stdout, &robot, &states, options.christoffel, frame) {
-        Ok(infinite) if infinite.is_empty() => Ok(Ending::Done),
-        Ok(infinite) => {
+        Ok(infinite) if !infinite.is_empty() => {
             complain(&infinite);
             Ok(Ending::Failed)
         }
-        // Whoever reads has read enough.
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(Ending::Done),
-        Err(error) => {
-            diagnostic::error(format!("the results cannot be written: {error}"));
-            Ok(Ending::Failed)
-        }
+        ended => Ok(printed(ended.map(drop))),
     }
 }
 

@@ -56,7 +56,7 @@ fn ground(plan: &Plan, pose: &Pose<'_>) -> Option<[f64; 3]> {
     }
 }
 
-/// The centre lines of a robot. Links of a URDF that are fixed to others are frames of those, without a line of their own.
+/// The centre lines of a robot. Links of a URDF that are fixed to others are frames of those and have no line.
 struct Skeleton<'a> {
     bones: Vec<Bone>,
     names: Vec<&'a str>,

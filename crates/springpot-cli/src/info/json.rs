@@ -22,10 +22,17 @@ struct Info<'a> {
     q: Vec<String>,
     v: Vec<String>,
     base: &'a str,
+    gripper: Option<Gripper<'a>>,
     joints: Vec<Joint<'a>>,
     frames: Vec<Frame<'a>>,
     links: Vec<Link<'a>>,
     warnings: Vec<Warning<'a>>,
+}
+
+#[derive(Serialize)]
+struct Gripper<'a> {
+    body: &'a str,
+    point: [f64; 3],
 }
 
 /// A joint that moves.
@@ -119,6 +126,7 @@ pub(super) fn text(robot: &Robot, file: &Path) -> String {
         q: names(model.q_labels()),
         v: names(model.v_labels()),
         base: &robot.base.0,
+        gripper: robot.gripper.as_ref().map(|(body, point)| Gripper { body, point: *point }),
         joints: (0..model.joint_count()).map(|j| joint(robot, j)).collect(),
         frames: robot.fixed_bodies().filter_map(|(index, body)| frame(robot, index, body)).collect(),
         links: robot.bodies.iter().map(link).collect(),

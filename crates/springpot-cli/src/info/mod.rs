@@ -7,7 +7,7 @@ use crate::arguments::InfoOptions;
 use crate::grid::{clean, width_of};
 use crate::numbers::brief;
 use crate::robot::{Refused, Robot};
-use crate::{Ending, robot, terminal};
+use crate::{Ending, printed, robot, terminal};
 use springpot::model::JointKind;
 
 /// Columns of the words that lead a line.
@@ -17,13 +17,9 @@ const WIDEST_CARRIER: usize = 24;
 
 pub(crate) fn info(options: &InfoOptions) -> Ending {
     match robot::read(&options.robot, &[]) {
-        Ok(robot) if options.json => {
-            terminal::print(&json::text(&robot, &options.robot.file));
-            Ending::Done
-        }
         Ok(robot) => {
-            terminal::print(&text(&robot));
-            Ending::Done
+            let text = if options.json { json::text(&robot, &options.robot.file) } else { text(&robot) };
+            printed(terminal::try_print(&text))
         }
         Err(Refused) => Ending::Refused,
     }
@@ -40,8 +36,10 @@ fn text(robot: &Robot) -> String {
     line("robot", &clean(&robot.name));
     line("joints", &format!("{}; nq = {}, nv = {}", kinds(robot), model.nq(), model.nv()));
     line("mass", &masses(robot));
-    let [x, y, z] = model.gravity().map(brief);
-    line("gravity", &format!("({x}, {y}, {z}) m/s²"));
+    line("gravity", &format!("{} m/s²", vector(model.gravity())));
+    if let Some((body, point)) = &robot.gripper {
+        line("gripper", &format!("{} m of {}", vector(*point), clean(body)));
+    }
 
     text.push('\n');
     text.push_str(&tables::tree(robot).text(width));
@@ -69,6 +67,10 @@ fn text(robot: &Robot) -> String {
     let warnings = robot.warnings.iter().map(|warning| clean(&warning.to_string())).collect();
     text.push_str(&section("not used or assumed", "- ", warnings, lines));
     text
+}
+
+fn vector(components: [f64; 3]) -> String {
+    format!("({})", components.map(brief).join(", "))
 }
 
 /// A headline and its items; nothing where there are none.

@@ -28,6 +28,7 @@ fn broken_json_is_marked() {
             &["states.json:3:15: not JSON: expected value", "3 │"],
         ),
         ("{\"states\": []} x", &["states.json:1:16: not JSON: trailing characters"]),
+        ("{\"ä", &["states.json:1:3: not JSON: EOF"]),
         ("{'states': []}", &["states.json:1:2: not JSON: key must be a string"]),
         ("{\"states\": [{\"q\": [1,\n NaN]}]}", &["states.json:2:2: NaN is no JSON", "─┬─", "must be finite"]),
         ("{\"states\": [{\"q\": [-Infinity]}]}", &["states.json:1:20: -Infinity is no JSON"]),

@@ -22,7 +22,18 @@ fn help_is_where_it_is_looked_for() {
     assert!(nothing.stderr.contains("Usage: springpot <COMMAND>"));
 
     for (command, options) in [
-        ("run", &["--set <PATH=VALUE>", "--out <DIR>", "--jobs <N>", "--no-figures", "--quiet"][..]),
+        (
+            "run",
+            &[
+                "--set <PATH=VALUE>",
+                "--out <DIR>",
+                "--checkpoint-every <TIME>",
+                "--resume <DIR>",
+                "--jobs <N>",
+                "--no-figures",
+                "--quiet",
+            ][..],
+        ),
         ("check", &["--set <PATH=VALUE>", "--quiet"]),
         ("info", &["--json", "--floating-base", "--ignore-mimic", "--package-path <DIR>"]),
         (

@@ -89,6 +89,7 @@ robot     arm
 joints    1 revolute, 1 prismatic; nq = 2, nv = 2
 mass      2.5 kg
 gravity   (0, 0, -9.81) m/s²
+gripper   (0.1, 0, 0) m of slide
 
 joint  link   kind       axis  mass, kg
        world
@@ -150,6 +151,7 @@ fn everything_is_in_the_data() {
             "fixed_mass",
             "frames",
             "gravity",
+            "gripper",
             "joints",
             "links",
             "mass",
@@ -188,6 +190,10 @@ fn everything_is_in_the_data() {
     // No limit is null.
     let arm = json_of(&place, &["arm.toml"]);
     assert_eq!(arm["joints"][0]["limits"], json!({ "lower": null, "upper": null, "velocity": null, "effort": null }));
+    assert_eq!(
+        (&arm["gripper"], &panda["gripper"]),
+        (&json!({ "body": "slide", "point": [0.1, 0.0, 0.0] }), &Value::Null)
+    );
     let floating = json_of(&place, &[&urdf("solo12"), "--floating-base"]);
     let base = &floating["joints"][0];
     assert_eq!(

@@ -12,6 +12,8 @@ mod info;
 #[cfg(unix)]
 mod interrupted;
 mod results;
+#[cfg(unix)]
+mod resume;
 mod robots;
 mod support;
 #[cfg(target_os = "linux")]

@@ -5,12 +5,14 @@ use serde_json::{Value, json};
 
 /// A crane that floats or stands: a mast that turns, a jib that lifts, a pulley that follows it, a hook welded on.
 const CRANE: &str = r#"<robot name="crane">
-  <link name="dock"><inertial><mass value="20"/><inertia ixx="2" ixy="0" ixz="0" iyy="2" iyz="0" izz="2"/></inertial></link>
+  <link name="dock"><inertial><mass value="20"/>
+    <inertia ixx="2" ixy="0" ixz="0" iyy="2" iyz="0" izz="2"/></inertial></link>
   <link name="mast"><inertial><mass value="5"/><origin xyz="0 0 0.5"/>
     <inertia ixx="0.4" ixy="0" ixz="0" iyy="0.4" iyz="0" izz="0.02"/></inertial></link>
   <link name="jib"><inertial><mass value="2"/><origin xyz="0.4 0 0"/>
     <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
-  <link name="pulley"><inertial><mass value="0.1"/><inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial></link>
+  <link name="pulley"><inertial><mass value="0.1"/>
+    <inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial></link>
   <link name="hook"/>
   <joint name="slew" type="continuous"><parent link="dock"/><child link="mast"/><origin xyz="0 0 0.2"/><axis xyz="0 0 1"/>
     <limit effort="50" velocity="1"/></joint>
@@ -54,6 +56,14 @@ fn place() -> Place {
 /// The warnings on stderr, without what helps.
 fn warnings(ended: &Ended) -> Vec<&str> {
     ended.stderr.lines().filter_map(|line| line.strip_prefix("warning: ")).collect()
+}
+
+/// A link of mass and inertia 1.
+fn link(name: &str) -> String {
+    format!(
+        "<link name=\"{name}\"><inertial><mass value=\"1\"/>\
+         <inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>"
+    )
 }
 
 const UNUSED: &str = "crane.urdf: not used: 1 <transmission>";
@@ -203,16 +213,21 @@ fn many_limits_are_counted() {
     let place = place();
     let mut links = "<link name=\"l0\"/>".to_owned();
     for k in 1..=13 {
+        links.push_str(&link(&format!("l{k}")));
         links.push_str(&format!(
-            "<link name=\"l{k}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>\
-             <joint name=\"j{k}\" type=\"revolute\"><parent link=\"l{}\"/><child link=\"l{k}\"/><axis xyz=\"0 0 1\"/>\
+            "<joint name=\"j{k}\" type=\"revolute\"><parent link=\"l{}\"/><child link=\"l{k}\"/><axis xyz=\"0 0 1\"/>\
              <limit lower=\"-1\" upper=\"1\" effort=\"1e9\" velocity=\"9\"/></joint>",
             k - 1
         ));
     }
     place.write("chain.urdf", format!("<robot name=\"chain\">{links}</robot>"));
     let joints: Vec<String> = (1..=13).map(|k| format!("j{k} = 1.5")).collect();
-    place.write("chain.toml", format!("robot.urdf = \"chain.urdf\"\nmotion = {{ kind = \"prescribed\", joints = {{ {} }} }}\ntime = {{ end = 1, output_step = 0.5 }}\n", joints.join(", ")));
+    let text = format!(
+        "robot.urdf = \"chain.urdf\"\nmotion = {{ kind = \"prescribed\", joints = {{ {} }} }}\n\
+         time = {{ end = 1, output_step = 0.5 }}\n",
+        joints.join(", ")
+    );
+    place.write("chain.toml", text);
     let ran = place.done(&["run", "chain.toml"]);
     assert_eq!(warnings(&ran).len(), 11);
     assert_eq!(warnings(&ran)[10], "3 more limits of joints are passed; run.json says which");
@@ -231,7 +246,7 @@ fn a_broken_urdf_is_refused_at_the_line_that_names_it() {
         let first = ended.stderr.lines().next().unwrap();
         assert_eq!(
             first,
-            "error: crane.toml:3:8: `urdf` of [robot] cannot be used: crane.urdf:3:44: value of <mass> of link \"mast\" holds \"five\", which is not a number"
+            "error: crane.toml:3:8: `urdf` of [robot] cannot be used: crane.urdf:4:44: value of <mass> of link \"mast\" holds \"five\", which is not a number"
         );
         assert!(ended.stderr.contains("urdf = \"crane.urdf\""), "{}", ended.stderr);
         assert!(!place.path("results").exists());
@@ -271,24 +286,29 @@ fn robots_too_large_for_a_sketch_are_not_drawn() {
     let place = place();
     let body = |k: usize| {
         format!(
-            "[[robot.body]]\nname = \"b{k}\"\nmass = 1\ncom = [0.1, 0, 0]\njoint = {{ name = \"j{k}\", kind = \"fixed\", origin = [0.1, 0, 0] }}\n"
+            "[[robot.body]]\nname = \"b{k}\"\nmass = 1\ncom = [0.1, 0, 0]\n\
+             joint = {{ name = \"j{k}\", kind = \"fixed\", origin = [0.1, 0, 0] }}\n"
         )
     };
     let first = body(0).replace("kind = \"fixed\"", "kind = \"revolute\", axis = [0, 1, 0]");
-    let rest = "[motion]\nkind = \"prescribed\"\njoints = { j0 = 0 }\n[time]\nend = 1\noutput_step = 1\n[[figure]]\nkind = \"robot\"\nname = \"big\"\n";
-    let text: String = std::iter::once(first).chain((1..1000).map(body)).chain([rest.to_owned()]).collect();
-    place.write("big.toml", &text);
+    let rest = "motion = { kind = \"prescribed\", joints = { j0 = 0 } }\n";
+    let figure = "time = { end = 1, output_step = 1 }\n[[figure]]\nkind = \"robot\"\nname = \"big\"\n";
+    let bodies: String = std::iter::once(first).chain((1..1000).map(body)).collect();
+    place.write("big.toml", format!("{rest}{figure}{bodies}"));
     let ended = place.done(&["run", "big.toml"]);
     assert_eq!(ended.stderr, "");
-    let links: String = (0..1001).map(|k| format!("<link name=\"l{k}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>")).collect();
-    let joints: String = (1..1001)
-        .map(|k| format!("<joint name=\"j{k}\" type=\"continuous\"><parent link=\"l0\"/><child link=\"l{k}\"/><axis xyz=\"0 0 1\"/></joint>"))
-        .collect();
+    let links: String = (0..1001).map(|k| link(&format!("l{k}"))).collect();
+    let joint = |k: usize| {
+        let ends = format!("<parent link=\"l0\"/><child link=\"l{k}\"/><axis xyz=\"0 0 1\"/>");
+        format!("<joint name=\"j{k}\" type=\"continuous\">{ends}</joint>")
+    };
+    let joints: String = (1..1001).map(joint).collect();
     place.write("hub.urdf", format!("<robot name=\"hub\">{links}{joints}</robot>"));
     let samples = |t: &str| format!("{t}{}\n", ",0".repeat(1000));
     let header: String = std::iter::once("t".to_owned()).chain((1..1001).map(|k| format!(",j{k}"))).collect();
     place.write("hub.csv", format!("{header}\n{}{}", samples("0"), samples("1")));
-    place.write("hub.toml", "robot.urdf = \"hub.urdf\"\nmotion = { kind = \"prescribed\", csv = \"hub.csv\" }\ntime = { end = 1, output_step = 1 }\n[[figure]]\nkind = \"robot\"\nname = \"big\"\n");
+    let rest = "robot.urdf = \"hub.urdf\"\nmotion = { kind = \"prescribed\", csv = \"hub.csv\" }\n";
+    place.write("hub.toml", format!("{rest}{figure}"));
     let ended = place.done(&["run", "hub.toml", "--set", "solver.max_step=0.5"]);
     assert!(
         ended.stderr.contains("figure \"big\" is not drawn: the robot has 1001 links (at most 1000 are drawn)"),

@@ -39,7 +39,7 @@ impl<T: Scalar> Stands<T> {
                 let translation = at_zero.rotation.z_axis().times_plus(self.coordinates[j], at_zero.translation);
                 Placement { translation, ..at_zero }
             }
-            JointMotion::Floating => at_zero * floating_placement(model, j, q),
+            JointMotion::Floating => floating_placement(model, j, q),
         }
     }
 }
@@ -59,13 +59,16 @@ pub(super) fn twist<T: Scalar>(model: &Model, j: usize, v: &[T]) -> Motion<T> {
     Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) }
 }
 
+/// Apart, so that joints of one degree keep a short path.
+#[inline(never)]
 fn floating_placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placement<T> {
     let first = model.coordinates(j).q;
     let q = &q[first..first + 7];
-    Placement {
+    let own = Placement {
         rotation: Rotation::from_quaternion_components([q[3], q[4], q[5], q[6]]),
         translation: Vec3([q[0], q[1], q[2]]),
-    }
+    };
+    Placement::from_f64(model.joint_placement(j)) * own
 }
 
 /// The axis of a degree of freedom in world axes, as long as its ratio, and whether it turns about it.

@@ -77,8 +77,10 @@ impl<T: Scalar> Kinematics<T> {
         for j in 0..n {
             let parent = model.parent_link(j);
             // Along a chain the link before is still at hand.
-            let carrier = if parent == j { last } else { self.placements[parent] };
-            last = carrier * self.stands.placement(model, j, q);
+            if parent != j {
+                last = self.placements[parent];
+            }
+            last = last * self.stands.placement(model, j, q);
             self.placements[j + 1] = last;
         }
     }

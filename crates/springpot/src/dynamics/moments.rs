@@ -89,7 +89,9 @@ impl<T: Scalar> Sway<T> {
     /// B (α, β), which β does not change.
     #[inline]
     pub(super) fn times(&self, alpha: Vec3<T>) -> Force<T> {
-        Force { angular: -Vec3(self.rows.map(|row| row.dot(alpha))), linear: alpha.cross(self.momentum) }
+        let [r0, r1, r2] = self.rows;
+        let angular = -Vec3([r0.dot(alpha), r1.dot(alpha), r2.dot(alpha)]);
+        Force { angular, linear: alpha.cross(self.momentum) }
     }
 
     /// The angular part of Bᵀ (η, φ); the linear part is 0.

@@ -158,16 +158,16 @@ impl Memory {
         if self.jump == 0.0 { 0.0 } else { self.jump * t.powf(-self.alpha) * self.singular_factor }
     }
 
-    /// The singular part at the Radau nodes of a step, such that h Σ_j A_ij σ_j is its exact integral up to every node:
-    /// σ = x(0)/(h Γ(2−alpha)) A⁻¹ (t_j^{1−alpha} − t_n^{1−alpha}).
+    /// The singular part at the nodes of a step, such that h Σ_j A_ij σ_j is its exact integral up to every node:
+    /// σ = x(0)/(h Γ(2−alpha)) A⁻¹ (t_j^{1−alpha} − t_n^{1−alpha}); with one node its mean over the step.
     ///
     /// Collocation that takes the point values instead loses its order at a singular start; far from the start both agree.
-    pub fn singular_moments(&self, start: &StepStart) -> [f64; MAX_NODES] {
+    pub fn singular_moments(&self, start: &StepStart, nodes: Nodes) -> [f64; MAX_NODES] {
         if self.jump == 0.0 {
             return [0.0; MAX_NODES];
         }
         let power = 1.0 - self.alpha;
-        let impulse = RADAU_NODES.map(|c| {
+        let impulse = |c: f64| {
             let lag = c * start.h;
             let grown = if start.t == 0.0 {
                 lag.powf(power)
@@ -175,11 +175,22 @@ impl Memory {
                 start.t.powf(power) * (power * (lag / start.t).ln_1p()).exp_m1()
             };
             self.jump * self.singular_factor / power * grown / start.h
-        });
-        RADAU_INVERSE.map(|row| row.iter().zip(impulse).map(|(a, i)| a * i).sum())
+        };
+        match nodes {
+            Nodes::One | Nodes::Midpoint => [impulse(1.0), 0.0, 0.0],
+            Nodes::Radau => {
+                let impulse = RADAU_NODES.map(impulse);
+                RADAU_INVERSE.map(|row| row.iter().zip(impulse).map(|(a, i)| a * i).sum())
+            }
+        }
     }
 
     /// D^alpha x at the nodes of a step as an affine map of the step's strokes and rates.
+    ///
+    /// With [`Nodes::Midpoint`] it is the mean of D^alpha x over the step under a constant rate u:
+    /// h^{1−alpha}/Γ(3−alpha)·u + Σ_k w_k z_k ψ_0(λ_k h), the singular part apart. Impulses are then those of a continuous stroke
+    /// of straight pieces, whose errors do not add up: a force that errs by h^{2−alpha} in every step leaves the motion of order 2. The
+    /// work h Σ F u is that of D^alpha x on this stroke, never negative in all, so that no step size makes energy.
     pub fn respond(&self, start: &StepStart, nodes: Nodes, form: Form) -> Affine {
         let mut affine = Affine::default();
         let positions = nodes.positions();
@@ -196,7 +207,11 @@ impl Memory {
                 }
                 continue;
             };
-            affine.history[i] = modes.history(c * start.h) + self.singular_part(start.t + c * start.h);
+            let past = match nodes {
+                Nodes::Midpoint => modes.mean_history(start.h),
+                Nodes::One | Nodes::Radau => modes.history(c * start.h),
+            };
+            affine.history[i] = past + self.singular_part(start.t + c * start.h);
             match form {
                 Form::Strokes => affine.stroke[i] = self.stroke_row(start.h, c, nodes),
                 Form::Rates => {
@@ -272,6 +287,16 @@ impl Memory {
         self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate).stored
     }
 
+    /// Makes the tables of the exponentials for these `lags` (at most 6), s, so that steps that ask for no other do not allocate.
+    pub fn prepare(&self, lags: &[f64]) {
+        if let Some(modes) = &self.modes {
+            let mut tables = modes.tables.borrow_mut();
+            for &lag in lags {
+                tables.at(lag, &modes.kernel.lambda);
+            }
+        }
+    }
+
     /// Takes an accepted step into the past: z_k ← e^{−λ_k h} z_k + ∫ e^{−λ_k(h−s)} x'(s) ds, exact for the polynomial.
     pub fn commit(&mut self, step: &RatePolynomial) {
         if let Some(modes) = &mut self.modes {
@@ -317,6 +342,7 @@ impl Memory {
         let mut row = [0.0; 4];
         match nodes {
             Nodes::One => (row[0], row[1]) = (self.local[0] - c * self.local[1], c * self.local[1]),
+            Nodes::Midpoint => return [0.0, self.mean_factor(h), 0.0, 0.0],
             Nodes::Radau => {
                 for (k, factor) in row.iter_mut().enumerate() {
                     *factor = (0..4).rev().fold(0.0, |sum, p| sum * c + self.local[p] * TABLEAU.rates[p][k]);
@@ -326,12 +352,18 @@ impl Memory {
         row.map(|factor| scale * factor)
     }
 
+    /// Mean over the step of D^alpha x under the rate 1: h^{1−alpha}/Γ(3−alpha).
+    fn mean_factor(&self, h: f64) -> f64 {
+        h.powf(1.0 - self.alpha) * self.local[0] / (2.0 - self.alpha)
+    }
+
     /// Factors of the strokes x_j − x_0.
     fn stroke_row(&self, h: f64, c: f64, nodes: Nodes) -> [f64; 3] {
         let scale = (c * h).powf(1.0 - self.alpha) / h;
         let mut row = [0.0; 3];
         match nodes {
             Nodes::One => row[0] = self.local[0],
+            Nodes::Midpoint => return [2.0 / h * self.mean_factor(h), 0.0, 0.0],
             Nodes::Radau => {
                 for (j, factor) in row.iter_mut().enumerate() {
                     let term = |p: usize| self.local[p] * (p + 1) as f64 * TABLEAU.strokes[p][j];
@@ -363,6 +395,20 @@ impl Modes {
             sum += weight * (-lambda * tau).exp() * last.convolve(lambda, 1.0);
         }
         sum
+    }
+
+    /// The mean of the history over lags up to h, Σ_k w_k z_k ψ_0(λ_k h), modes above the kernel's included: they have settled
+    /// to z = x'/λ and add d2·x'/h.
+    fn mean_history(&self, h: f64) -> f64 {
+        let Some(last) = &self.last else { return 0.0 };
+        let mut tables = self.tables.borrow_mut();
+        let table = tables.at(h, &self.kernel.lambda);
+        let mut sum = 0.0;
+        for ((w, psi), z) in self.kernel.weight.iter().zip(&table.psi[0]).zip(&self.z) {
+            sum += w * psi * z;
+        }
+        let [_, d2, _] = self.kernel.fast_tail();
+        sum + d2 * last.rate(1.0) / h
     }
 
     fn energy(&self, step: &RatePolynomial, theta: f64, rate: f64) -> Energy {

@@ -31,6 +31,8 @@ pub const MAX_NODES: usize = 3;
 pub enum Nodes {
     /// s = 1, at the end.
     One,
+    /// s = 1, in the middle: x' is constant over the step, and the node stands for the mean over the step.
+    Midpoint,
     /// s = 3, Radau IIA.
     Radau,
 }
@@ -40,6 +42,7 @@ impl Nodes {
     pub fn positions(self) -> &'static [f64] {
         match self {
             Self::One => &[1.0],
+            Self::Midpoint => &[0.5],
             Self::Radau => &RADAU_NODES,
         }
     }
@@ -53,7 +56,8 @@ impl Nodes {
 /// Which data of the step determine the polynomial of x'.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Form {
-    /// x' at 0 and at the nodes; order 5 − alpha along a given motion with Radau nodes.
+    /// x' at 0 and at the nodes (in the middle alone with [`Nodes::Midpoint`]); order 5 − alpha along a given motion with Radau
+    /// nodes.
     Rates,
     /// x at 0 and at the nodes; order 4 − alpha with Radau nodes, 2 − alpha (the L1 scheme) with one.
     Strokes,
@@ -69,10 +73,12 @@ pub struct RatePolynomial {
 }
 
 impl RatePolynomial {
-    /// Through x' at 0 and at the nodes (s + 1 values): the cubic for Radau, the straight line for one node.
+    /// Through x' at 0 and at the nodes (s + 1 values): the cubic for Radau, the straight line for one
+    /// node at the end, the constant for one in the middle.
     pub fn through_rates(h: f64, nodes: Nodes, rate: &[f64]) -> Self {
         let u = match nodes {
             Nodes::One => [rate[0], rate[1] - rate[0], 0.0, 0.0],
+            Nodes::Midpoint => [rate[1], 0.0, 0.0, 0.0],
             Nodes::Radau => {
                 let inverse = &TABLEAU.rates;
                 std::array::from_fn(|p| (0..4).map(|k| inverse[p][k] * rate[k]).sum())
@@ -86,6 +92,7 @@ impl RatePolynomial {
         let mut u = [0.0; 4];
         match nodes {
             Nodes::One => u[0] = (stroke[1] - stroke[0]) / h,
+            Nodes::Midpoint => u[0] = 2.0 * (stroke[1] - stroke[0]) / h,
             Nodes::Radau => {
                 for p in 0..3 {
                     let coefficient: f64 = (0..3).map(|j| TABLEAU.strokes[p][j] * (stroke[j + 1] - stroke[0])).sum();
@@ -129,10 +136,12 @@ impl RatePolynomial {
     }
 }
 
-/// Weights of ∫₀^θ f dθ on the values of f at 0 and at the nodes: the Radau weights at θ = 1.
+/// Weights of ∫₀^θ f dθ on the values of f at 0 and at the nodes: the Radau weights at θ = 1, the
+/// value in the middle alone for [`Nodes::Midpoint`].
 pub fn quadrature(nodes: Nodes, theta: f64) -> [f64; MAX_NODES + 1] {
     match nodes {
         Nodes::One => [theta - 0.5 * theta * theta, 0.5 * theta * theta, 0.0, 0.0],
+        Nodes::Midpoint => [0.0, theta, 0.0, 0.0],
         Nodes::Radau if theta == 1.0 => [0.0, RADAU_WEIGHTS[0], RADAU_WEIGHTS[1], RADAU_WEIGHTS[2]],
         Nodes::Radau => std::array::from_fn(|k| {
             (0..4).rev().fold(0.0, |sum, p| sum * theta + TABLEAU.rates[p][k] / (p + 1) as f64) * theta

@@ -175,7 +175,7 @@ impl Law for Springpot {
         let start = step.start();
         let affine = memory.respond(&start, step.nodes, step.form);
         let moments = match step.singular {
-            Singular::Moments if memory.is_singular() => memory.singular_moments(&start),
+            Singular::Moments if memory.is_singular() => memory.singular_moments(&start, step.nodes),
             _ => [0.0; MAX_NODES],
         };
         let mut response = Response::default();

@@ -39,7 +39,7 @@ use crate::fractional::{Form, KernelError, Memory, Nodes, StepStart};
 use serde::{Deserialize, Serialize};
 
 /// Value and rate of one input at one time, SI.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct InputValue {
     /// Value.
     pub value: f64,
@@ -136,6 +136,12 @@ pub struct State {
 }
 
 impl State {
+    /// As [`Memory::prepare`] for all memories.
+    pub fn prepare(&self, lags: &[f64]) {
+        self.memory.iter().for_each(|memory| memory.prepare(lags));
+        self.parts.iter().for_each(|part| part.prepare(lags));
+    }
+
     /// Number of exponentials in all memories.
     pub fn modes(&self) -> usize {
         self.memory.as_ref().map_or(0, Memory::modes) + self.parts.iter().map(Self::modes).sum::<usize>()

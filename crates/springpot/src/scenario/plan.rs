@@ -7,7 +7,7 @@ use crate::law::{Derivative, Entry, Law};
 use crate::model::urdf::Urdf;
 use crate::model::{Anchor, BodySpec, Model};
 use crate::signal::Signal;
-use crate::simulate::RowTimes;
+use crate::simulate::{FixedStep, RowTimes};
 use std::sync::Arc;
 
 /// One run, ready to be started.
@@ -31,7 +31,8 @@ pub struct Plan {
     pub elements: Vec<ElementPlan>,
     /// What moves the robot.
     pub motion: MotionPlan,
-    /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is lost there.
+    /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
+    /// lost there.
     pub tells_joint_losses: bool,
     /// Duration and rows.
     pub time: TimePlan,
@@ -250,4 +251,6 @@ pub struct SolverPlan {
     pub max_step: Option<f64>,
     /// Most inner steps of a run.
     pub max_steps: u64,
+    /// Steps of one size; `None`: the run chooses its steps.
+    pub fixed_step: Option<FixedStep>,
 }

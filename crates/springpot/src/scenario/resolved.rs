@@ -2,6 +2,7 @@
 
 use super::figures::{FigureKind, FigurePlan};
 use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
+use super::time::ADAPTIVE;
 use crate::model::{Anchor, BodySpec, Limits, Mimic, Parent};
 use crate::simulate::RowTimes;
 use serde_json::{Map, Value, json};
@@ -30,6 +31,8 @@ impl Plan {
             "motion": self.motion(),
             "time": time,
             "solver": {
+                "method": self.method(),
+                "step": self.solver.fixed_step.map(|by| by.step),
                 "rtol": self.solver.rtol,
                 "atol": self.solver.atol,
                 "memory_rtol": self.solver.memory_rtol,
@@ -40,6 +43,12 @@ impl Plan {
             "figures": self.figures.iter().map(figure).collect::<Vec<_>>(),
             "columns": self.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
         })
+    }
+
+    /// What moves the robot on, where it moves by itself.
+    fn method(&self) -> Option<&'static str> {
+        matches!(self.motion, MotionPlan::Forward(_))
+            .then(|| self.solver.fixed_step.map_or(ADAPTIVE, |by| by.method.name()))
     }
 
     fn body_name(&self, body: Parent) -> &str {

@@ -30,6 +30,7 @@ impl Plan {
             first_step: self.solver.first_step,
             max_step: self.solver.max_step,
             max_steps: Some(self.solver.max_steps),
+            fixed_step: self.solver.fixed_step,
         }
     }
 

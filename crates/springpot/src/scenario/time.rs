@@ -1,9 +1,15 @@
 //! `[time]` and `[solver]`.
 
+use super::document::{Value, shorten};
+use super::names;
 use super::plan::{SolverPlan, TimePlan};
 use super::reader::{Field, Read, Table};
 use super::refusal::RefusalKind;
-use crate::simulate::RowTimes;
+use crate::simulate::fixed::Method;
+use crate::simulate::{FixedStep, RowTimes};
+
+/// The method that chooses its steps.
+pub(super) const ADAPTIVE: &str = "radau";
 
 /// Most rows of one run.
 const MAX_ROWS: f64 = 2e7;
@@ -74,7 +80,8 @@ fn output_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
 
 /// Reads `[solver]`.
 pub(crate) fn read_solver(root: &Table<'_>) -> Read<SolverPlan> {
-    const KEYS: [&str; 6] = ["rtol", "atol", "memory_rtol", "first_step", "max_step", "max_steps"];
+    const KEYS: [&str; 8] = ["rtol", "atol", "memory_rtol", "first_step", "max_step", "max_steps", "method", "step"];
+    let known = if moves_by_itself(root) { &KEYS[..] } else { &KEYS[..6] };
     let forward_only = |key: &str| {
         matches!(key, "method" | "step").then(|| {
             let why = "belongs to forward runs; along a prescribed motion or a gripper path the run chooses its steps";
@@ -82,7 +89,7 @@ pub(crate) fn read_solver(root: &Table<'_>) -> Read<SolverPlan> {
         })
     };
     let table = match root.get("solver") {
-        Some(field) => Some(Table::open_with(root.ctx, field.node, "[solver]", &KEYS, forward_only)?),
+        Some(field) => Some(Table::open_with(root.ctx, field.node, "[solver]", known, forward_only)?),
         None => None,
     };
     let get = |key: &'static str| table.as_ref().and_then(|table| table.get(key));
@@ -94,6 +101,7 @@ pub(crate) fn read_solver(root: &Table<'_>) -> Read<SolverPlan> {
     let optional = |key| get(key).map(|field| field.positive("s")).transpose();
     let (first_step, max_step) = (optional("first_step"), optional("max_step"));
     let max_steps = get("max_steps").map_or(Ok(DEFAULT_MAX_STEPS), |field| field.integer(1, i64::MAX));
+    let fixed_step = fixed_step(table.as_ref());
     Ok(SolverPlan {
         rtol: rtol?,
         atol: atol?,
@@ -101,7 +109,56 @@ pub(crate) fn read_solver(root: &Table<'_>) -> Read<SolverPlan> {
         first_step: first_step?,
         max_step: max_step?,
         max_steps: max_steps?.unsigned_abs(),
+        fixed_step: fixed_step?,
     })
+}
+
+/// Whether the motion follows from forces, as far as one can see before it is read.
+fn moves_by_itself(root: &Table<'_>) -> bool {
+    let kind = root.get("motion").and_then(|motion| motion.node.get("kind"));
+    kind.is_some_and(|kind| matches!(&kind.value, Value::Text(kind) if kind == "forward"))
+}
+
+/// `method` and `step`.
+fn fixed_step(table: Option<&Table<'_>>) -> Read<Option<FixedStep>> {
+    let get = |key: &'static str| table.and_then(|table| table.get(key));
+    let method = get("method").map(|field| method(&field)).transpose()?.flatten();
+    match (method, get("step"), table) {
+        (None, None, _) | (_, _, None) => Ok(None),
+        (None, Some(step), _) => {
+            let help = "add method = \"backward-euler\" or \"midpoint\", or leave step out".to_owned();
+            Err(step.refuse(
+                RefusalKind::Rule,
+                "belongs to a fixed-step method; \"radau\" chooses its steps",
+                Some(help),
+            ))
+        }
+        (Some(_), None, Some(table)) => Err(table.missing("step", "step = \"1 ms\", as fixed-step methods need it")),
+        (Some(method), Some(step), Some(table)) => {
+            for key in ["atol", "first_step", "max_step"] {
+                if let Some(field) = table.get(key) {
+                    let message = format!("has no effect with method = {:?}, whose steps are all alike", method.name());
+                    return Err(field.refuse(RefusalKind::Rule, message, Some("leave it out".to_owned())));
+                }
+            }
+            Ok(Some(FixedStep { method, step: step.positive("s")? }))
+        }
+    }
+}
+
+/// The method by its name; `None`: the adaptive one.
+fn method(field: &Field<'_>) -> Read<Option<Method>> {
+    const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
+    let name = field.text()?;
+    if name == ADAPTIVE {
+        return Ok(None);
+    }
+    if let Some(method) = FIXED.into_iter().find(|method| method.name() == name) {
+        return Ok(Some(method));
+    }
+    let names = FIXED.map(Method::name);
+    let help = names::suggest(name, std::iter::once(ADAPTIVE).chain(names));
+    Err(field.refuse(RefusalKind::UnknownName, format!("names no method: {:?}", shorten(name)), Some(help)))
 }
 
 fn tolerance(field: &Field<'_>, (low, high): (f64, f64)) -> Read<f64> {

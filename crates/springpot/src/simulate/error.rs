@@ -3,7 +3,8 @@
 use crate::fractional::KernelError;
 use crate::fractional::scheme::SchemeError;
 
-/// Why a run stopped; every variant but [`RunError::Output`] and [`RunError::Scheme`] names the time.
+/// Why a run stopped; every variant but [`RunError::Output`], [`RunError::Scheme`] and [`RunError::OtherRun`]
+/// names the time.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The points that an element joins met, so that its direction is undefined.
@@ -86,6 +87,18 @@ pub enum RunError {
         /// The joint that is farthest off.
         joint: String,
     },
+    /// The step of a fixed-step method is too long.
+    #[error(
+        "t = {t} s: a step of {h} s is too long: no finite acceleration of {joint} solves it; take a shorter solver.step"
+    )]
+    FixedStep {
+        /// Time, s.
+        t: f64,
+        /// Step size, s.
+        h: f64,
+        /// Joint.
+        joint: String,
+    },
     /// More steps than allowed.
     #[error("t = {t} s: {limit} steps are used up (solver.max_steps)")]
     TooManySteps {
@@ -116,6 +129,9 @@ pub enum RunError {
         /// Time reached, s.
         t: f64,
     },
+    /// A checkpoint was taken from another system.
+    #[error("the checkpoint belongs to another run")]
+    OtherRun,
     /// The motion cannot be followed.
     #[error("{0}")]
     Path(#[from] crate::motion::PathError),

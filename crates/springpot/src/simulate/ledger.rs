@@ -2,6 +2,7 @@
 
 use crate::fractional::Nodes;
 use crate::fractional::step::{MAX_NODES, lagrange_row, quadrature, quadrature_defect};
+use serde::{Deserialize, Serialize};
 
 /// Gauss–Legendre rule on [−1, 1], 12 points: positive nodes and weights.
 const GAUSS: [(f64, f64); 6] = [
@@ -53,7 +54,7 @@ fn gauss(f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The largest energies seen, which make "the energy turned over", J.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Turnover {
     kinetic: f64,
     potential: f64,

@@ -2,13 +2,18 @@
 
 use super::{RowTimes, Settings, Stop, System, run};
 use crate::model::{JointKind, Limits, Model};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
 /// What is beyond a limit by less than this, in its unit and as a share of it, is rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// Units of coordinate, velocity and actuator force, of joints that slide and of those that turn.
+const SLIDING: [&str; 3] = ["m", "m/s", "N"];
+const TURNING: [&str; 3] = ["rad", "rad/s", "N*m"];
+
 /// The limits that a joint may have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LimitKind {
     /// Smallest coordinate.
@@ -32,8 +37,11 @@ impl LimitKind {
     }
 }
 
+/// One of a few names; behind its own, so that it is read as one of them and not taken from the text that is read.
+type UnitName = &'static str;
+
 /// A limit that a joint passes; `Display` is one sentence without full stop.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PassedLimit {
     /// Name of the joint.
     pub joint: String,
@@ -42,7 +50,8 @@ pub struct PassedLimit {
     /// The limit, in `unit`.
     pub limit: f64,
     /// rad, m, rad/s, m/s, N*m or N.
-    pub unit: &'static str,
+    #[serde(deserialize_with = "unit")]
+    pub unit: UnitName,
     /// Time of the first row beyond it, s.
     pub first: f64,
     /// Time of the row that is farthest beyond it, s.
@@ -71,6 +80,10 @@ impl fmt::Display for PassedLimit {
     }
 }
 
+/// What a [`LimitWatch`] has seen so far.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Watch(Vec<Option<Passed>>);
+
 /// Watches the rows of a run for joints that pass their limits. What happens between two rows is not seen.
 #[derive(Debug, Clone)]
 pub struct LimitWatch {
@@ -91,7 +104,7 @@ struct Watched {
     passed: Option<Passed>,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Passed {
     first: f64,
     farthest: f64,
@@ -99,10 +112,22 @@ struct Passed {
 }
 
 impl LimitWatch {
-    /// Watches every limit of the robot's joints. A joint that follows another one has no actuator and no limit of effort.
+    /// Watches every limit of the robot's joints. A joint that follows another one has no actuator, so no limit of effort.
     pub fn new(system: &System) -> Self {
         let model = &system.model;
         Self { watched: (0..model.joint_count()).flat_map(|joint| of_joint(model, joint)).collect() }
+    }
+
+    /// What was seen so far.
+    pub fn seen(&self) -> Watch {
+        Watch(self.watched.iter().map(|watched| watched.passed).collect())
+    }
+
+    /// Goes on from what another watch of the same robot has seen.
+    pub fn go_on(&mut self, Watch(seen): Watch) {
+        for (watched, passed) in self.watched.iter_mut().zip(seen) {
+            watched.passed = passed;
+        }
     }
 
     /// Looks at one row, in the order of [`System::columns`].
@@ -139,8 +164,8 @@ impl LimitWatch {
 }
 
 impl System {
-    /// The row at t = 0, in the order of [`System::columns`], whether or not the run has one there; without its forces where
-    /// these are not known at once (named schemes).
+    /// The row at t = 0, in the order of [`System::columns`], whether or not the run has one there; without its forces
+    /// where these are not known at once (named schemes).
     ///
     /// # Errors
     /// What keeps a run from starting.
@@ -170,10 +195,7 @@ fn of_joint(model: &Model, joint: usize) -> Vec<Watched> {
     if model.joint_kind(joint).nv() != 1 {
         return Vec::new();
     }
-    let units = match model.joint_kind(joint) {
-        JointKind::Prismatic => ["m", "m/s", "N"],
-        _ => ["rad", "rad/s", "N*m"],
-    };
+    let units = if model.joint_kind(joint) == JointKind::Prismatic { SLIDING } else { TURNING };
     let followed = model.followed(joint);
     let (ratio, offset) = followed.map_or((1.0, 0.0), |(_, ratio, offset)| (ratio, offset));
     let Limits { lower, upper, velocity, effort } = *model.limits(joint);
@@ -211,4 +233,11 @@ fn excess(kind: LimitKind, limit: f64, value: f64) -> f64 {
 /// `x` to six digits.
 fn brief(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+/// One of the six units.
+fn unit<'de, D: Deserializer<'de>>(deserializer: D) -> Result<&'static str, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    let known = SLIDING.into_iter().chain(TURNING).find(|unit| **unit == text);
+    known.ok_or_else(|| serde::de::Error::custom("not a unit of a limit"))
 }

@@ -7,9 +7,11 @@
 
 mod along;
 mod book;
+mod checkpoint;
 mod control;
 mod equation;
 mod error;
+pub mod fixed;
 mod forward;
 mod ledger;
 mod limits;
@@ -21,17 +23,23 @@ mod row;
 mod row_times;
 
 pub use along::along;
+pub use checkpoint::Checkpoint;
 pub use equation::{ElementTerm, Equation, EquationError};
 pub use error::RunError;
+pub use fixed::FixedStep;
 pub use forward::forward;
-pub use limits::{LimitKind, LimitWatch, PassedLimit};
+pub use limits::{LimitKind, LimitWatch, PassedLimit, Watch};
 pub use moment::FRICTION_SPEED;
 pub use pose::{ElementStart, Pose, State};
 pub use row_times::RowTimes;
 
+#[cfg(feature = "scenario")]
+pub(crate) use checkpoint::ReportFields;
+
 use crate::element::Element;
 use crate::model::{Model, Site};
 use crate::motion::Motion;
+use checkpoint::Pace;
 use std::sync::atomic::AtomicBool;
 
 /// A robot, its elements and its motion.
@@ -68,6 +76,8 @@ pub struct Settings {
     pub max_step: Option<f64>,
     /// Number of inner steps allowed.
     pub max_steps: Option<u64>,
+    /// Steps of one size, for robots that move by themselves; `None`: the run chooses its steps.
+    pub fixed_step: Option<FixedStep>,
 }
 
 /// What a run did.
@@ -99,6 +109,20 @@ pub trait Rows {
     /// # Errors
     /// Whatever keeps the row from being kept; the run stops.
     fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
+
+    /// Whether [`Self::checkpoint`] is to be called now, at time `t` between two steps; `last` where the run stops here because it
+    /// was interrupted. Asking changes nothing about the steps.
+    fn wants_checkpoint(&mut self, _t: f64, _last: bool) -> bool {
+        false
+    }
+
+    /// The state from which [`resume`] goes on; all rows that belong to it were handed over.
+    ///
+    /// # Errors
+    /// Whatever keeps it from being kept; the run stops.
+    fn checkpoint(&mut self, _state: Checkpoint) -> std::io::Result<()> {
+        Ok(())
+    }
 }
 
 impl<F: FnMut(&[f64]) -> std::io::Result<()>> Rows for F {
@@ -107,11 +131,34 @@ impl<F: FnMut(&[f64]) -> std::io::Result<()>> Rows for F {
     }
 }
 
-/// Runs `system` as its motion says: [`along`] a motion given in advance, or [`forward`].
+/// Runs `system` as its motion says: [`along`] a motion given in advance, [`forward`], or in [`fixed`] steps.
 pub fn run(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
-    match &system.motion {
-        Motion::Prescribed(_) | Motion::GripperPath(_) => along(system, settings, rows, stop),
-        Motion::Forward(_) => forward(system, settings, rows, stop),
+    match (&system.motion, settings.fixed_step) {
+        (Motion::Prescribed(_) | Motion::GripperPath(_), _) => along(system, settings, rows, stop),
+        (Motion::Forward(_), None) => forward(system, settings, rows, stop),
+        (Motion::Forward(_), Some(by)) => fixed::fixed(system, by, settings, rows, stop),
+    }
+}
+
+/// Goes on with a run of this very `system` and these `settings` from where its `checkpoint` was taken: rows that are still to
+/// come, and the report at the end, are those of a run that was never interrupted, bit by bit.
+pub fn resume(
+    system: &System,
+    settings: &Settings,
+    checkpoint: Checkpoint,
+    rows: &mut dyn Rows,
+    stop: &Stop,
+) -> (Report, Result<(), RunError>) {
+    let fits = checkpoint.fits(system);
+    let Checkpoint { books, pace } = checkpoint;
+    match (&system.motion, pace) {
+        (Motion::Prescribed(_) | Motion::GripperPath(_), Pace::Along(pace)) if fits => {
+            along::resume(system, settings, (books, pace), rows, stop)
+        }
+        (Motion::Forward(motion), Pace::Forward(pace)) if fits => {
+            forward::resume(system, motion, settings, (books, *pace), rows, stop)
+        }
+        _ => (Report::default(), Err(RunError::OtherRun)),
     }
 }
 

@@ -7,12 +7,13 @@ use crate::law::{InputValue, Point};
 use crate::model::Model;
 use crate::motion::Wanted;
 use crate::spatial::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// Speed at which Coulomb friction has reached 76 % of its value, rad/s or m/s: the width of the smooth sign.
 pub const FRICTION_SPEED: f64 = 1e-3;
 
 /// State of one element at one time.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct ElementMoment {
     pub(super) length: f64,
     pub(super) stroke: f64,
@@ -25,7 +26,7 @@ pub(super) struct ElementMoment {
 }
 
 /// State of robot and elements at one time.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Moment {
     pub(super) t: f64,
     pub(super) q: Vec<f64>,

@@ -43,7 +43,8 @@ impl<T: Scalar> ArticulatedInertia<T> {
     /// The force that gives the linear acceleration `beta` alone: (B β, C β).
     #[inline]
     pub fn times_linear(&self, beta: Vec3<T>) -> Force<T> {
-        Force { angular: Vec3(self.coupling.map(|row| row.dot(beta))), linear: self.linear * beta }
+        let [b0, b1, b2] = self.coupling;
+        Force { angular: Vec3([b0.dot(beta), b1.dot(beta), b2.dot(beta)]), linear: self.linear * beta }
     }
 
     /// The force that the acceleration `m` takes: (A α + B β, Bᵀ α + C β).
@@ -89,8 +90,8 @@ impl<T: Scalar> ArticulatedInertia<T> {
         let row = |r: usize| self.coupling[r] + Vec3([columns[0].0[r], columns[1].0[r], columns[2].0[r]]);
         let coupling = [row(0), row(1), row(2)];
         // Row r of −B [d]× is d × b_r, column c of [d]× B'ᵀ is d × b'_c.
-        let [p0, p1, p2] = self.coupling.map(|b| d.cross(b).0);
-        let [q0, q1, q2] = coupling.map(|b| d.cross(b).0);
+        let turned = |[b0, b1, b2]: [Vec3<T>; 3]| [d.cross(b0).0, d.cross(b1).0, d.cross(b2).0];
+        let ([p0, p1, p2], [q0, q1, q2]) = (turned(self.coupling), turned(coupling));
         let a = &self.angular;
         let angular = Symmetric3 {
             xx: a.xx + (p0[0] + q0[0]),

@@ -53,13 +53,16 @@ impl<T: Scalar> Rotation<T> {
     /// R · Rz(angle) from the sine and cosine of the angle; the third column stays.
     #[inline]
     pub fn turned_about_z(&self, sin: T, cos: T) -> Self {
-        Self(self.0.map(|[a, b, c]| [a.times_plus(cos, b * sin), b.times_plus(cos, -(a * sin)), c]))
+        let turned = |[a, b, c]: [T; 3]| [a.times_plus(cos, b * sin), b.times_plus(cos, -(a * sin)), c];
+        let [r0, r1, r2] = self.0;
+        Self([turned(r0), turned(r1), turned(r2)])
     }
 
     /// The rows, as vectors.
     #[inline]
     pub fn rows(&self) -> [Vec3<T>; 3] {
-        self.0.map(Vec3)
+        let [r0, r1, r2] = self.0;
+        [Vec3(r0), Vec3(r1), Vec3(r2)]
     }
 
     /// The third column: the z axis of the child frame in the parent frame.
@@ -131,7 +134,8 @@ impl<T: Scalar> Mul<Vec3<T>> for Rotation<T> {
     type Output = Vec3<T>;
     #[inline]
     fn mul(self, v: Vec3<T>) -> Vec3<T> {
-        Vec3(self.rows().map(|row| row.dot(v)))
+        let [r0, r1, r2] = self.rows();
+        Vec3([r0.dot(v), r1.dot(v), r2.dot(v)])
     }
 }
 
@@ -139,7 +143,11 @@ impl<T: Scalar> Mul for Rotation<T> {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
+        // Written out, since calls of closures over arrays are not always inlined.
         let o = &other.0;
-        Self(self.0.map(|[a, b, c]| [0, 1, 2].map(|k| c.times_plus(o[2][k], b.times_plus(o[1][k], a * o[0][k])))))
+        let entry = |[a, b, c]: [T; 3], k: usize| c.times_plus(o[2][k], b.times_plus(o[1][k], a * o[0][k]));
+        let row = |r: [T; 3]| [entry(r, 0), entry(r, 1), entry(r, 2)];
+        let [r0, r1, r2] = self.0;
+        Self([row(r0), row(r1), row(r2)])
     }
 }

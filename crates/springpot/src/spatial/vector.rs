@@ -3,9 +3,10 @@
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 use super::Scalar;
+use serde::{Deserialize, Serialize};
 
 /// A three-vector in right-handed Cartesian components.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Vec3<T = f64>(pub [T; 3]);
 
 impl<T: Scalar> Vec3<T> {
@@ -86,7 +87,8 @@ impl<T: Scalar> Neg for Vec3<T> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
+        let [x, y, z] = self.0;
+        Self([-x, -y, -z])
     }
 }
 
@@ -94,7 +96,8 @@ impl<T: Scalar> Mul<T> for Vec3<T> {
     type Output = Self;
     #[inline]
     fn mul(self, factor: T) -> Self {
-        Self(self.0.map(|x| x * factor))
+        let [x, y, z] = self.0;
+        Self([x * factor, y * factor, z * factor])
     }
 }
 

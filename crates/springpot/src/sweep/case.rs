@@ -1,17 +1,14 @@
 //! One case of a sweep.
 
-use super::layout::Layout;
-use super::{Options, Writers, push_field, push_fields};
-use crate::scenario::{Cases, SweptValue};
+use super::Sweep;
+use super::checkpoint::{CaseDone, Written};
+use super::output::{self, CaseRows, Output};
 use crate::simulate::{self, LimitWatch, PassedLimit, Report, RunError, System};
-use crate::table::{Statistics, push_number};
+use crate::table::ordered::Section;
+use std::fs::File;
 use std::io;
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
-
-/// Text is handed over at this size, or after this time.
-const CHUNK: usize = 1 << 15;
-const PATIENCE: Duration = Duration::from_millis(200);
+use std::time::Duration;
 
 /// What one case did.
 #[derive(Debug)]
@@ -34,84 +31,91 @@ pub struct CaseResult {
     pub kept: Option<Vec<Vec<f64>>>,
 }
 
-/// Runs case `index`.
+/// The rows and the statistics of one case, in the files that all cases share.
+pub(super) type Sections<'a> = (Section<'a, File>, Section<'a, File>);
+
+/// Runs case `index`, or goes on with it.
 ///
 /// # Errors
 /// What keeps rows from being written; that of the case itself is in the result.
-pub(super) fn run(
-    cases: &Cases,
-    index: usize,
-    layout: &Layout,
-    writers: Writers,
-    options: &Options,
-) -> io::Result<CaseResult> {
-    let begun = Instant::now();
-    let mut lead = String::new();
-    for value in cases.values(index) {
-        match value {
-            SweptValue::Number(number) => push_number(&mut lead, number),
-            SweptValue::Text(text) => push_field(&mut lead, &text),
-        }
-        lead.push(',');
+pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>) -> io::Result<CaseResult> {
+    let checkpoints = sweep.options.checkpoints;
+    if let Some(done) = checkpoints.map(|checkpoints| checkpoints.done(index)).transpose()?.flatten() {
+        return again(sweep, done, Some(sections));
     }
-    let selected: Vec<usize> = layout.selected().map(|(k, _)| k).collect();
-    let mut statistics = vec![Statistics::default(); selected.len()];
-    let kept_columns = layout.kept(index);
-    let mut kept = kept_columns.map(|columns| vec![Vec::new(); columns.len()]);
-    let (mut text, mut handed_over) = (String::with_capacity(2 * CHUNK), Instant::now());
-
-    let (report, no_ledger, limits, outcome) = match cases.plan(index) {
+    let (rows, summary) = sections;
+    let state = checkpoints.and_then(|checkpoints| checkpoints.take_state(index));
+    let mut output = Output::open(sweep, index, rows, state.as_ref())?;
+    let (report, no_ledger, limits, outcome) = match sweep.cases.plan(index) {
         Err(refusals) => {
             let why = Some("no row was written".into());
             (Report::default(), why, Vec::new(), Err(CaseError::Refused(refusals.to_string())))
         }
         Ok(plan) => {
-            let system = plan.system();
-            let mut watch = LimitWatch::new(&system);
-            let mut rows = |row: &[f64]| -> io::Result<()> {
-                text.push_str(&lead);
-                let mut values = selected.iter().map(|&k| row[k]);
-                push_number(&mut text, values.next().unwrap_or(f64::NAN));
-                push_fields(&mut text, values);
-                text.push('\n');
-                for (statistics, &k) in statistics.iter_mut().zip(&selected) {
-                    statistics.add(row[k]);
+            let (system, settings, stop) = (plan.system(), plan.settings(), sweep.options.stop);
+            let watch = LimitWatch::new(&system);
+            let mut rows = CaseRows { output: &mut output, watch, plan: &plan, system: &system };
+            let (report, outcome) = match state {
+                None => simulate::run(&system, &settings, &mut rows, stop),
+                Some(state) => {
+                    rows.watch.go_on(state.watch);
+                    simulate::resume(&system, &settings, state.run, &mut rows, stop)
                 }
-                for (kept, &k) in kept.iter_mut().flatten().zip(kept_columns.into_iter().flatten()) {
-                    kept.push(row[k]);
-                }
-                watch.see(row);
-                options.rows.fetch_add(1, Ordering::Relaxed);
-                if text.len() >= CHUNK || handed_over.elapsed() > PATIENCE {
-                    writers.rows.write(text.as_bytes())?;
-                    text.clear();
-                    handed_over = Instant::now();
-                }
-                Ok(())
             };
-            let (report, outcome) = simulate::run(&system, &plan.settings(), &mut rows, options.stop);
-            (report, why_no_ledger(&system, &report), watch.passed(), outcome.map_err(CaseError::Run))
+            (report, why_no_ledger(&system, &report), rows.watch.passed(), outcome.map_err(CaseError::Run))
         }
     };
-    writers.rows.write(text.as_bytes())?;
-    writers.rows.finish()?;
-    let mut summary = String::new();
-    for ((_, column), statistics) in layout.selected().zip(&statistics) {
-        summary.push_str(&lead);
-        push_field(&mut summary, &column.name);
-        summary.push(',');
-        push_field(&mut summary, &column.unit);
-        push_fields(&mut summary, [statistics.min, statistics.max, statistics.rms()].into_iter());
-        summary.push('\n');
+    let error = match outcome {
+        // What was kept last is what can be gone on from.
+        Err(CaseError::Run(RunError::Output(error))) => return Err(error),
+        outcome => outcome.err(),
+    };
+    let interrupted = matches!(error, Some(CaseError::Run(RunError::Interrupted { .. })));
+    let error = error.map(|error| error.to_string());
+    let (wall, statistics) = (output.wall(), output.statistics.clone());
+    let kept = output.close(|output| {
+        let (false, Some(files)) = (interrupted, output.files.take()) else { return Ok(()) };
+        let (error, no_ledger, limits) = (error.clone(), no_ledger.clone(), limits.clone());
+        let written = Written { aside: files.is_aside(), ..output.written() };
+        let done = CaseDone { index, written, report, error, no_ledger, limits };
+        files.end(&done, output.kept.as_deref(), || sweep.sync())
+    })?;
+    summary.write(output::summary(sweep, index, &statistics).as_bytes())?;
+    summary.finish()?;
+    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, limits, kept })
+}
+
+/// A case that an earlier run brought to its end, and whose rows stand where they belong.
+///
+/// # Errors
+/// The file system's.
+pub(super) fn ended(sweep: &Sweep, index: usize) -> io::Result<CaseResult> {
+    let done = sweep.options.checkpoints.map(|checkpoints| checkpoints.done(index)).transpose()?.flatten();
+    again(sweep, done.ok_or(io::ErrorKind::NotFound)?, None)
+}
+
+/// Writes what an earlier run has of a case that it brought to its end.
+fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<CaseResult> {
+    let lines = output::summary(sweep, done.index, &done.written.statistics);
+    let checkpoints = sweep.options.checkpoints.expect("it has the record");
+    match rows {
+        Some((rows, summary)) => {
+            checkpoints.copy_rows(&done, &mut |text| rows.write(text))?;
+            rows.finish()?;
+            summary.write(lines.as_bytes())?;
+            summary.finish()?;
+        }
+        None => {
+            let summary = sweep.summary.section(done.index);
+            summary.write(lines.as_bytes())?;
+            summary.finish()?;
+        }
     }
-    writers.summary.write(summary.as_bytes())?;
-    writers.summary.finish()?;
-    if let Err(CaseError::Run(RunError::Output(error))) = outcome {
-        return Err(error);
-    }
-    let interrupted = matches!(outcome, Err(CaseError::Run(RunError::Interrupted { .. })));
-    let error = outcome.err().map(|error| error.to_string());
-    Ok(CaseResult { index, report, error, interrupted, wall: begun.elapsed(), no_ledger, limits, kept })
+    let columns = sweep.layout.kept(done.index);
+    let kept = columns.map(|columns| checkpoints.kept(done.index, done.written.kept, columns.len())).transpose()?;
+    let CaseDone { index, written, report, error, no_ledger, limits } = done;
+    sweep.options.rows.fetch_add(report.rows, Ordering::Relaxed);
+    Ok(CaseResult { index, report, error, interrupted: false, wall: written.wall, no_ledger, limits, kept })
 }
 
 /// Why a case does not know its energies; `None` where it does.

@@ -1,21 +1,24 @@
 //! All cases of a scenario on all cores, into one folder of results.
 
 mod case;
+mod checkpoint;
 mod layout;
 mod limits;
+mod output;
 mod record;
 
 pub use case::CaseResult;
+pub use checkpoint::{CheckpointError, Checkpoints, Origin, Unfinished};
 pub use layout::{FigureColumn, FigureData, Layout, MAX_CURVES, MAX_POINTS};
 pub use limits::{CasesPassing, LimitTally};
 
 use crate::scenario::{Cases, Refusals};
 use crate::simulate::Stop;
 use crate::table::folder::Folder;
-use crate::table::ordered::{Ordered, Section};
+use crate::table::ordered::Ordered;
 use crate::table::{Column, push_number};
 use std::fs::File;
-use std::io::{self, Write as _};
+use std::io::{self, Seek as _, SeekFrom, Write as _};
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -30,6 +33,8 @@ pub struct Options<'a> {
     pub stop: &'a Stop,
     /// Rows written so far, over all cases; counted as the run goes.
     pub rows: &'a AtomicU64,
+    /// Keeps what it takes to go on later, or goes on.
+    pub checkpoints: Option<&'a Checkpoints>,
 }
 
 /// How a sweep ended.
@@ -98,15 +103,15 @@ pub enum SweepError {
 /// # Errors
 /// [`SweepError::Output`] where the folder cannot be written; the complete rows that were written stay there.
 pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options) -> Result<Outcome, SweepError> {
-    let begun = Instant::now();
     let jobs = options.jobs.clamp(1, cases.len().max(1));
-    let (mut rows, mut summary) = (folder.open_rows()?, folder.open_summary()?);
-    rows.write_all(header(layout.written()).as_bytes())?;
-    summary.write_all(header(&layout.summary_columns()).as_bytes())?;
-    let (rows, summary) = (Ordered::new(rows, 4 * jobs + 16), Ordered::new(summary, usize::MAX));
+    let sweep = Sweep::open(cases, layout, folder, options, jobs)?;
+    let mut tally = Tally::default();
+    for index in 0..sweep.first {
+        tally.take(case::ended(&sweep, index)?);
+    }
 
-    let next = AtomicUsize::new(0);
-    let tally = Mutex::new(Tally::default());
+    let next = AtomicUsize::new(sweep.first);
+    let tally = Mutex::new(tally);
     let stopped = || options.stop.load(Ordering::Relaxed);
     let work = || -> io::Result<()> {
         while !stopped() {
@@ -114,12 +119,12 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
             if index >= cases.len() {
                 break;
             }
-            let writers = Writers { rows: rows.section(index), summary: summary.section(index) };
+            let sections = (sweep.rows.section(index), sweep.summary.section(index));
             // The section may have been long in coming.
             if stopped() {
                 break;
             }
-            let result = case::run(cases, index, layout, writers, &options)?;
+            let result = case::run(&sweep, index, sections)?;
             tally.lock().unwrap_or_else(PoisonError::into_inner).take(result);
         }
         Ok(())
@@ -162,15 +167,74 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         energy_residual: tally.energy_residual,
         limits: tally.limits.passing(),
         no_ledger: tally.no_ledger.map(|(count, _, why)| (count, why)),
-        wall: begun.elapsed(),
+        wall: sweep.wall(),
     })
 }
 
-/// What one case writes of the two files that all cases share.
+/// What all cases share.
 #[derive(Debug)]
-struct Writers<'a> {
-    rows: Section<'a, File>,
-    summary: Section<'a, File>,
+struct Sweep<'a> {
+    cases: &'a Cases,
+    layout: &'a Layout,
+    options: Options<'a>,
+    rows: Ordered<File>,
+    summary: Ordered<File>,
+    /// The file of `rows`, to wait for the disk without keeping others from writing.
+    file: File,
+    /// The first case that has not ended.
+    first: usize,
+    begun: Instant,
+    earlier_wall: Duration,
+}
+
+impl<'a> Sweep<'a> {
+    fn open(
+        cases: &'a Cases,
+        layout: &'a Layout,
+        folder: &Folder,
+        options: Options<'a>,
+        jobs: usize,
+    ) -> io::Result<Self> {
+        let begun = Instant::now();
+        let first = options.checkpoints.and_then(Checkpoints::first);
+        let mut summary = folder.open_summary()?;
+        summary.write_all(header(&layout.summary_columns()).as_bytes())?;
+        let rows = if first.is_some() {
+            let mut rows = folder.reopen_rows()?;
+            rows.seek(SeekFrom::End(0))?;
+            rows
+        } else {
+            let mut rows = folder.open_rows()?;
+            rows.write_all(header(layout.written()).as_bytes())?;
+            rows
+        };
+        let first = first.unwrap_or(0);
+        Ok(Self {
+            cases,
+            layout,
+            options,
+            file: rows.try_clone()?,
+            rows: Ordered::new(rows, 4 * jobs + 16).from_case(first),
+            // It begins with the cases that have ended.
+            summary: Ordered::new(summary, usize::MAX),
+            first,
+            begun,
+            earlier_wall: options.checkpoints.map_or(Duration::ZERO, Checkpoints::earlier_wall),
+        })
+    }
+
+    /// Makes the rows safe from the loss of power; returns the first case whose rows may not all be there.
+    fn sync(&self) -> io::Result<usize> {
+        let turn = self.rows.turn();
+        self.file.sync_data()?;
+        // Once interrupted, cases may end without rows.
+        Ok(if self.options.stop.load(Ordering::Relaxed) { 0 } else { turn })
+    }
+
+    /// Wall time, that of an earlier run included.
+    fn wall(&self) -> Duration {
+        self.earlier_wall + self.begun.elapsed()
+    }
 }
 
 /// The error with the system's own words, or else any: a case that others kept from writing knows its kind alone.

@@ -16,6 +16,13 @@ const RUN: &str = "run.json";
 const FIGURES: &str = "figures";
 const FIGURE_ENDINGS: [&str; 2] = ["svg", "png"];
 
+/// The folder of the checkpoint; what its files are called.
+const CHECKPOINT: &str = "checkpoint";
+pub(crate) const HEAD: &str = "run";
+pub(crate) const JOURNAL: &str = "done";
+pub(crate) const CASE: &str = "case-";
+pub(crate) const CASE_ENDINGS: [&str; 3] = ["", ".rows", ".kept"];
+
 /// A folder into which one run writes; a new run replaces the last run's files and nothing else.
 #[derive(Debug)]
 pub struct Folder {
@@ -30,17 +37,37 @@ impl Folder {
     /// The file system's.
     pub fn prepare(path: &Path) -> io::Result<Self> {
         fs::create_dir_all(path)?;
-        let listed = fs::read_to_string(path.join(RUN)).ok();
-        let listed = listed.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
-        let listed = listed.as_ref().and_then(|run| run["files"].as_array());
-        let listed = listed.into_iter().flatten().filter_map(|name| name.as_str());
-        let figures = listed.filter(|name| is_figure(name));
-        for name in figures.chain([PART, SUMMARY_PART, RESULTS, SUMMARY, RUN]) {
-            match fs::remove_file(path.join(name)) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
+        remove_checkpoint(path)?;
+        take_away(path, &[PART, SUMMARY_PART, RESULTS, SUMMARY, RUN])?;
+        Ok(Self { path: path.to_owned(), files: Vec::new() })
+    }
+
+    /// The file of the rows of a run that has not come to its end, and its first bytes, `count` of them or fewer where it is
+    /// shorter or not there.
+    ///
+    /// # Errors
+    /// The file system's.
+    pub(crate) fn rows_of(path: &Path, count: usize) -> io::Result<(PathBuf, Vec<u8>)> {
+        let part = path.join(PART);
+        let file = if part.exists() { part } else { path.join(RESULTS) };
+        let mut beginning = Vec::new();
+        match File::open(&file) {
+            Ok(open) => open.take(count as u64).read_to_end(&mut beginning)?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => 0,
+            Err(error) => return Err(error),
+        };
+        Ok((file, beginning))
+    }
+
+    /// Opens the folder of a run that is to go on: its rows are kept, what else it wrote at its end is taken away.
+    ///
+    /// # Errors
+    /// The file system's.
+    pub(crate) fn reopen(path: &Path) -> io::Result<Self> {
+        if !path.join(PART).exists() && path.join(RESULTS).exists() {
+            fs::rename(path.join(RESULTS), path.join(PART))?;
         }
+        take_away(path, &[SUMMARY_PART, RESULTS, SUMMARY, RUN])?;
         Ok(Self { path: path.to_owned(), files: Vec::new() })
     }
 
@@ -60,6 +87,14 @@ impl Folder {
     /// The file system's.
     pub fn open_rows(&self) -> io::Result<File> {
         File::create(self.path.join(PART))
+    }
+
+    /// Opens the file of the rows to go on with it.
+    ///
+    /// # Errors
+    /// The file system's.
+    pub(crate) fn reopen_rows(&self) -> io::Result<File> {
+        File::options().read(true).write(true).create(true).truncate(false).open(self.path.join(PART))
     }
 
     /// Gives the rows their name; to be called at every end of a run.
@@ -139,6 +174,64 @@ impl Folder {
         self.files.push(name.into());
         Ok(())
     }
+}
+
+/// Removes the last run's files by their fixed names, and the figures that its run.json lists.
+fn take_away(path: &Path, fixed: &[&str]) -> io::Result<()> {
+    let listed = fs::read_to_string(path.join(RUN)).ok();
+    let listed = listed.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
+    let listed = listed.as_ref().and_then(|run| run["files"].as_array());
+    let listed = listed.into_iter().flatten().filter_map(|name| name.as_str());
+    let figures = listed.filter(|name| is_figure(name));
+    figures.chain(fixed.iter().copied()).try_for_each(|name| remove_if_there(&path.join(name)))
+}
+
+/// Removes a file; one that is not there is no error.
+pub(crate) fn remove_if_there(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// The folder of the checkpoint among the results in `path`.
+pub(crate) fn checkpoint_folder(path: &Path) -> PathBuf {
+    path.join(CHECKPOINT)
+}
+
+/// How the last run in a folder ended, as its run.json says.
+pub(crate) fn last_status(path: &Path) -> Option<String> {
+    let text = fs::read_to_string(path.join(RUN)).ok()?;
+    let run: serde_json::Value = serde_json::from_str(&text).ok()?;
+    run["status"].as_str().map(str::to_owned)
+}
+
+/// Removes the checkpoint among the results in `path`, its head first: without it nothing is taken for a checkpoint.
+pub(crate) fn remove_checkpoint(path: &Path) -> io::Result<()> {
+    let folder = checkpoint_folder(path);
+    let Ok(entries) = fs::read_dir(&folder) else { return Ok(()) };
+    remove_if_there(&folder.join(HEAD))?;
+    for entry in entries {
+        let entry = entry?;
+        if entry.file_name().to_str().is_some_and(is_of_checkpoint) {
+            remove_if_there(&entry.path())?;
+        }
+    }
+    match fs::remove_dir(&folder) {
+        // Somebody else's files stay.
+        Err(error) if error.kind() != io::ErrorKind::DirectoryNotEmpty => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a file in the folder of the checkpoint is one of its own.
+fn is_of_checkpoint(name: &str) -> bool {
+    let name = name.strip_suffix(".new").unwrap_or(name);
+    let of_case = |name: &str| {
+        let mut ends = CASE_ENDINGS.iter().filter_map(|ending| name.strip_suffix(ending));
+        ends.any(|digits| !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    [HEAD, JOURNAL].contains(&name) || name.strip_prefix(CASE).is_some_and(of_case)
 }
 
 /// Whether a name listed in run.json is that of a figure: a file right in `figures/`. Nothing else is taken away by name.

@@ -4,6 +4,8 @@
 pub mod folder;
 pub mod number;
 pub mod ordered;
+#[cfg(feature = "scenario")]
+pub(crate) mod sealed;
 pub mod statistics;
 
 pub use number::push_number;

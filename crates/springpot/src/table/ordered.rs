@@ -52,6 +52,17 @@ impl<W: Write> Ordered<W> {
         Self { state: Mutex::new(state), changed: Condvar::new(), window: window.max(1), most_held: MOST_HELD }
     }
 
+    /// Lets `case` be the first: those before it are written.
+    pub fn from_case(mut self, case: usize) -> Self {
+        self.state.get_mut().unwrap_or_else(PoisonError::into_inner).turn = case;
+        self
+    }
+
+    /// The case whose text goes right to the file; all before it have ended.
+    pub fn turn(&self) -> usize {
+        self.lock().turn
+    }
+
     /// Begins `case`, once it is within the window.
     pub fn section(&self, case: usize) -> Section<'_, W> {
         let mut state = self.lock();

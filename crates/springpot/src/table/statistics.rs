@@ -1,7 +1,9 @@
 //! Smallest, largest and root-mean-square value of a column.
 
+use serde::{Deserialize, Serialize};
+
 /// Running statistics over rows; empty fields do not count.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Smallest value; NaN without any.
     pub min: f64,

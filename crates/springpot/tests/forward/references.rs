@@ -221,6 +221,7 @@ fn the_library_alone_gives_the_same_bits_as_a_scenario() {
             first_step: None,
             max_step: None,
             max_steps: None,
+            fixed_step: None,
         };
         let code = run_system(&system, &settings);
         let law = format!(

@@ -4,6 +4,7 @@
 
 mod accuracy;
 mod accuracy_laws;
+mod checkpoint;
 mod energy;
 mod equation;
 mod floating;

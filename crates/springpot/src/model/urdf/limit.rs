@@ -42,7 +42,8 @@ pub(super) fn read<'a>(
                 let what = format!("{name} taken as unlimited");
                 reader.warnings.add(UrdfWarningKind::IncompleteLimit, owner, line, what);
             }
-            Some(value) if value < 0.0 => {
+            // Some exporters write 0 where they know nothing.
+            Some(value) if value <= 0.0 => {
                 reader.warnings.add(UrdfWarningKind::SenselessLimit, owner, line, format!("{name} {value}"));
             }
             Some(value) => *limit = value,

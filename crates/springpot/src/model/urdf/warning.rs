@@ -52,7 +52,7 @@ pub enum UrdfWarningKind {
     NoLimit,
     /// A `<limit>` is incomplete: lower and upper are then 0, as the format says, effort and velocity unlimited.
     IncompleteLimit,
-    /// A lower limit above the upper one, or a largest effort or velocity below 0: taken as unlimited.
+    /// A lower limit above the upper one, or a largest effort or velocity that is not above 0: taken as unlimited.
     SenselessLimit,
     /// A `<mimic>` that was not applied because the caller asked so; the joint has its own coordinate.
     MimicIgnored,

@@ -8,11 +8,12 @@ mod kink;
 
 use crate::fractional::step::RADAU_NODES;
 use crate::motion::kinks::locate;
-use crate::simulate::book::{Book, target};
+use crate::simulate::book::{Book, Books, target};
 use crate::simulate::control::StepError;
 use crate::simulate::moment::{Moment, Scratch};
 use crate::simulate::on_grid;
-use crate::simulate::{Report, Rows, RunError, Settings, Stop, System};
+use crate::simulate::{self, Report, Rows, RunError, Settings, Stop, System};
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
 /// The longest inner step is this share of the motion, so that nothing in it is stepped over.
@@ -32,8 +33,33 @@ const NEAR: f64 = 1e-3;
 /// The report is true also where the run stops early: all rows up to `t_reached` were handed over.
 pub fn along(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
     let mut run = Run::new(system, settings, rows, stop);
-    let outcome = run.start().and_then(|()| run.march());
+    let first = run.first_step();
+    let outcome = run.start().and_then(|()| run.march(0.0, first));
     (run.book.finish(), outcome)
+}
+
+/// Goes on with a run from what was kept of it.
+pub(super) fn resume(
+    system: &System,
+    settings: &Settings,
+    (books, pace): (Books, Pace),
+    rows: &mut dyn Rows,
+    stop: &Stop,
+) -> (Report, Result<(), RunError>) {
+    let mut run = Run::new(system, settings, rows, stop);
+    let Pace { t, h, energy_floor } = pace;
+    run.energy_floor = energy_floor;
+    run.book.restore(books);
+    let outcome = run.differentiate_grid().and_then(|()| run.march(t, h));
+    (run.book.finish(), outcome)
+}
+
+/// What the next step takes over from those before.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Pace {
+    t: f64,
+    h: f64,
+    energy_floor: f64,
 }
 
 struct Run<'a> {
@@ -60,9 +86,15 @@ impl<'a> Run<'a> {
         let (system, delta) = (self.book.system, RADAU_NODES[0] * self.first_step());
         let [moment, ..] = &mut self.book.moments;
         system.evaluate(0.0, 0.0, &mut self.book.scratch, moment)?;
-        self.book.grid = on_grid::derivatives(system, &self.book.settings.rows, &mut self.book.scratch)?;
+        self.differentiate_grid()?;
         self.energy_floor = self.glance();
         self.book.open(delta)
+    }
+
+    /// The derivatives of elements with named schemes, at all rows.
+    fn differentiate_grid(&mut self) -> Result<(), RunError> {
+        self.book.grid = on_grid::derivatives(self.book.system, &self.book.settings.rows, &mut self.book.scratch)?;
+        Ok(())
     }
 
     /// A lower bound of the energy that the motion turns over, from 65 glances at it.
@@ -89,14 +121,16 @@ impl<'a> Run<'a> {
         kinetic + (potential[1] - potential[0]).max(0.0) + elements.max(0.0)
     }
 
-    fn march(&mut self) -> Result<(), RunError> {
+    /// Takes step after step from t on, the first of size h.
+    fn march(&mut self, mut t: f64, mut h: f64) -> Result<(), RunError> {
         let end = self.book.settings.end;
         let breaks = self.book.system.break_points(end);
         let mut breaks = breaks.into_iter().peekable();
         let has_kinks = self.book.system.has_kinks();
-        let (mut t, mut h) = (0.0, self.first_step());
         while t < end {
-            if self.stop.load(Ordering::Relaxed) {
+            let (stopped, energy_floor) = (self.stop.load(Ordering::Relaxed), self.energy_floor);
+            self.book.keep(t, stopped, || simulate::Pace::Along(Pace { t, h, energy_floor }))?;
+            if stopped {
                 return Err(RunError::Interrupted { t });
             }
             if self.book.settings.max_steps.is_some_and(|limit| self.book.report.steps >= limit) {

@@ -6,8 +6,10 @@
 mod between;
 mod defect;
 mod elements;
+mod kept;
 mod rows;
 
+pub(in crate::simulate) use self::kept::Books;
 use self::rows::on_grid_observation;
 use super::ledger::{NodePower, Turnover};
 use super::moment::{Moment, Scratch};
@@ -18,9 +20,10 @@ use crate::element::Element;
 use crate::fractional::Form;
 use crate::fractional::step::MAX_NODES;
 use crate::law::{InputValue, Observation, Powers, Singular, Start, State};
+use serde::{Deserialize, Serialize};
 
 /// The running accounts of one element.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(in crate::simulate) struct Account {
     /// `None` for an element with a named scheme.
     pub(in crate::simulate) law: Option<State>,

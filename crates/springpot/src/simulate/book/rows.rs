@@ -11,6 +11,10 @@ use crate::simulate::moment::{Moment, Scratch};
 use crate::simulate::row::ElementRow;
 use crate::simulate::{RunError, System};
 
+/// Fills the moment at a time and θ inside the step.
+pub(in crate::simulate) type Place<'a> =
+    &'a mut dyn FnMut(&System, &mut Scratch, f64, f64, &mut Moment) -> Result<(), RunError>;
+
 impl Book<'_> {
     /// Work of the actuators and losses of the joints from the start of the step to θ.
     pub(in crate::simulate) fn work_until(&self, theta: f64) -> (f64, f64) {
@@ -39,13 +43,13 @@ impl Book<'_> {
         (self.next_row < rows.count()).then(|| rows.at(self.next_row)).filter(|at| *at <= until)
     }
 
-    /// The rows in (t, to], the step just worked out; `place` fills the moment at a time and θ inside the step.
+    /// The rows in (t, to], the step just worked out.
     pub(in crate::simulate) fn emit_rows(
         &mut self,
         t: f64,
         to: f64,
         on_break: bool,
-        place: &mut dyn FnMut(&System, &mut Scratch, f64, f64, &mut Moment) -> Result<(), RunError>,
+        place: Place<'_>,
     ) -> Result<(), RunError> {
         while let Some(at) = self.next_row_until(to) {
             let mut moment = self.spare.take().unwrap_or_else(|| Moment::new(self.system));

@@ -38,7 +38,7 @@ pub(super) fn take_path(
 }
 
 /// What drives the joints at t, and the places of those that signals move.
-pub(super) fn drive(model: &Model, forward: &Forward, t: f64, moment: &mut Moment) {
+pub(in crate::simulate) fn drive(model: &Model, forward: &Forward, t: f64, moment: &mut Moment) {
     for (j, drive) in model.own_joints().zip(&forward.drives) {
         let (q, v) = (model.q_range(j), model.v_range(j));
         match drive {

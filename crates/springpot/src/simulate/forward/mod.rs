@@ -7,7 +7,7 @@
 
 mod attempt;
 mod dense;
-mod drives;
+pub(super) mod drives;
 mod estimate;
 mod keep;
 mod newton;
@@ -18,13 +18,14 @@ mod stepper;
 mod tableau;
 
 use self::drives::drive;
-use self::stepper::{Stepper, Tolerance};
-use super::book::{Book, target};
+use self::stepper::{Carried, Stepper, Tolerance};
+use super::book::{Book, Books, target};
 use super::{Report, Rows, RunError, Settings, Stop, System};
 use crate::fractional::step::RADAU_NODES;
-use crate::law::{Derivative, Singular};
+use crate::law::Singular;
 use crate::motion::kinks::locate;
 use crate::motion::{Drive, Forward, Motion};
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
 /// The estimate is of order 3, the method of order 5: the estimate may reach this share of rtol^⅔.
@@ -48,6 +49,33 @@ pub fn forward(
     let mut run = Run::new(system, forward, settings, rows, stop);
     let outcome = run.start().and_then(|h| run.march(h));
     (run.book.finish(), outcome)
+}
+
+/// Goes on with a run from what was kept of it.
+pub(super) fn resume(
+    system: &System,
+    forward: &Forward,
+    settings: &Settings,
+    (books, pace): (Books, Pace),
+    rows: &mut dyn Rows,
+    stop: &Stop,
+) -> (Report, Result<(), RunError>) {
+    let mut run = Run::new(system, forward, settings, rows, stop);
+    run.book.restore(books);
+    run.stepper.restore(pace.carried);
+    run.last = pace.last;
+    run.take_starts();
+    let outcome = run.march(pace.h);
+    (run.book.finish(), outcome)
+}
+
+/// What the next step takes over from those before.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Pace {
+    carried: Carried,
+    /// Size and error of the last step kept.
+    last: Option<(f64, f64)>,
+    h: f64,
 }
 
 struct Run<'a> {
@@ -112,21 +140,23 @@ impl<'a> Run<'a> {
         moment.v.copy_from_slice(&origin.v);
         moment.a.copy_from_slice(&origin.a);
         drive(&system.model, self.forward, 0.0, moment);
-        let is_singular = system.elements.iter().zip(&elements).any(|(element, start)| {
-            let order = element.law.order();
-            element.derivative == Derivative::RiemannLiouville && order > 0.0 && order < 1.0 && start.jump != 0.0
-        });
+        let is_singular = system.elements.iter().zip(&elements).any(|(element, start)| start.is_singular(element));
         if is_singular {
             moment.a.fill(f64::NAN);
             moment.driven.fill(None);
         }
         system.fill(0.0, 0.0, None, &mut self.book.scratch, moment)?;
         self.stepper.origin = origin;
-        self.stepper.is_singular = is_singular;
         self.book.open(RADAU_NODES[0] * h)?;
-        let laws = system.elements.iter().zip(&self.book.accounts);
-        self.starts = laws.map(|(element, account)| element.law.singular(1.0, account.memory())).collect();
+        self.take_starts();
         Ok(h)
+    }
+
+    /// Takes from the laws which starts are singular.
+    fn take_starts(&mut self) {
+        let laws = self.book.system.elements.iter().zip(&self.book.accounts);
+        self.starts = laws.map(|(element, account)| element.law.singular(1.0, account.memory())).collect();
+        self.stepper.is_singular = self.starts.iter().any(|start| *start != 0.0);
     }
 
     fn march(&mut self, first: f64) -> Result<(), RunError> {
@@ -137,7 +167,10 @@ impl<'a> Run<'a> {
         let mut h = first;
         while self.stepper.origin.t < end {
             let t = self.stepper.origin.t;
-            if self.stop.load(Ordering::Relaxed) {
+            let (stopped, stepper, last) = (self.stop.load(Ordering::Relaxed), &self.stepper, self.last);
+            self.book
+                .keep(t, stopped, || super::Pace::Forward(Box::new(Pace { carried: stepper.carried(), last, h })))?;
+            if stopped {
                 return Err(RunError::Interrupted { t });
             }
             if self.book.settings.max_steps.is_some_and(|limit| self.book.report.steps >= limit) {

@@ -48,9 +48,10 @@ impl Stepper<'_> {
         }
         if self.is_singular {
             // What the last step's end had of it, seen from this step's start, so that the rest has no jump.
-            for element in &self.elements {
+            for element in &mut self.elements {
+                let before = std::mem::take(&mut element.singular_before);
                 for &k in &self.free {
-                    self.origin.a[k] -= element.share[k] * element.singular_before;
+                    self.origin.a[k] -= element.share[k] * before;
                 }
             }
         }

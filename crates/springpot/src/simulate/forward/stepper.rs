@@ -9,6 +9,7 @@ use crate::model::{JointKind, Model};
 use crate::motion::{Drive, Forward};
 use crate::simulate::System;
 use crate::simulate::lu::Lu;
+use serde::{Deserialize, Serialize};
 
 /// Tolerances of positions and velocities.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +25,7 @@ impl Tolerance {
 }
 
 /// Where a step starts.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Origin {
     pub(super) t: f64,
     pub(super) q: Vec<f64>,
@@ -98,6 +99,17 @@ pub(super) struct Stage {
     pub(super) xi: Vec<f64>,
     pub(super) xi_rate: Vec<f64>,
     pub(super) kinematics: Kinematics,
+}
+
+/// All that a step takes over from those before it: whatever else a [`Stepper`] holds, every attempt fills anew.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Carried {
+    origin: Origin,
+    last: Option<f64>,
+    cubic: [Vec<f64>; MAX_NODES + 1],
+    /// What a singular start had in the force of each element, N.
+    singular_before: Vec<f64>,
+    contraction: f64,
 }
 
 /// The step from an [`Origin`].
@@ -245,6 +257,25 @@ impl<'a> Stepper<'a> {
             element.singular_before = singular;
         }
         self.origin.t = to;
+    }
+
+    /// What the next step takes over.
+    pub(super) fn carried(&self) -> Carried {
+        Carried {
+            origin: self.origin.clone(),
+            last: self.last,
+            cubic: self.cubic.clone(),
+            singular_before: self.elements.iter().map(|element| element.singular_before).collect(),
+            contraction: self.contraction,
+        }
+    }
+
+    /// Goes on from what was carried.
+    pub(super) fn restore(&mut self, carried: Carried) {
+        let Carried { origin, last, cubic, singular_before, contraction } = carried;
+        (self.origin, self.last, self.cubic, self.contraction) = (origin, last, cubic, contraction);
+        self.elements.iter_mut().zip(singular_before).for_each(|(element, before)| element.singular_before = before);
+        self.linearised = false;
     }
 
     /// The origin was set from outside: nothing can be foretold from what was.

@@ -1,0 +1,134 @@
+//! What must be right before anything is run, whether a run begins or goes on.
+
+use crate::arguments::RunOptions;
+use crate::{diagnostic, progress};
+use springpot::law::Catalog;
+use springpot::scenario::units::parse_quantity;
+use springpot::scenario::{Cases, Plan, Refusals, Scenario};
+use springpot::simulate::System;
+use springpot::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
+use springpot::table::folder::Folder;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// All that a run needs.
+pub(super) struct Prepared {
+    pub(super) cases: Cases,
+    /// The first case.
+    pub(super) plan: Plan,
+    pub(super) system: System,
+    pub(super) layout: Layout,
+    pub(super) folder: Folder,
+    pub(super) checkpoints: Option<Checkpoints>,
+    /// Whether figures are drawn.
+    pub(super) figures: bool,
+}
+
+/// Why nothing is run.
+pub(super) enum Unprepared {
+    /// The scenario is refused.
+    Refused(Refusals),
+    /// What is wrong was said.
+    Shown,
+    /// The folder of the results cannot be written.
+    Output(PathBuf, io::Error),
+}
+
+impl From<Refusals> for Unprepared {
+    fn from(refusals: Refusals) -> Self {
+        Self::Refused(refusals)
+    }
+}
+
+/// Reads everything and opens the folder of the results.
+pub(super) fn prepare(options: &RunOptions) -> Result<Prepared, Unprepared> {
+    // Before anything takes time.
+    progress::interrupt_flag();
+    let every = options.checkpoint_every.as_deref().map(spacing).transpose()?;
+    match (&options.resume, &options.file) {
+        (Some(folder), _) => go_on(options, folder, every).map_err(show),
+        (None, Some(file)) => begin(options, file, every),
+        (None, None) => unreachable!("one of them is required"),
+    }
+}
+
+/// What a scenario says, its first case, and its columns.
+struct Read {
+    cases: Cases,
+    plan: Plan,
+    system: System,
+    layout: Layout,
+}
+
+fn read(scenario: &Scenario) -> Result<Read, Refusals> {
+    let cases = scenario.cases(&Catalog::standard())?;
+    let plan = cases.plan(0)?;
+    let system = plan.system();
+    diagnostic::robot_warnings(&cases);
+    let layout = Layout::new(&cases, &system)?;
+    Ok(Read { cases, plan, system, layout })
+}
+
+fn begin(options: &RunOptions, file: &Path, every: Option<f64>) -> Result<Prepared, Unprepared> {
+    let out = options.out.clone().unwrap_or_else(|| default_folder(file));
+    let scenario = diagnostic::scenario(file, &options.overrides)?;
+    let Read { cases, plan, system, layout } = read(&scenario)?;
+    let (figures, not_written) = (!options.no_figures, |error| Unprepared::Output(out.clone(), error));
+    let folder = Folder::prepare(&out).map_err(not_written)?;
+    let checkpoints = every.map(|every| {
+        let origin = Origin::of(file, &scenario, &options.overrides, figures, every)?;
+        Checkpoints::begin(&folder, origin, &cases, &plan, &system)
+    });
+    let checkpoints = checkpoints.transpose().map_err(not_written)?;
+    Ok(Prepared { cases, plan, system, layout, folder, checkpoints, figures })
+}
+
+fn go_on(options: &RunOptions, folder: &Path, every: Option<f64>) -> Result<Prepared, CheckpointError> {
+    let unfinished = Unfinished::read(folder)?;
+    let origin = unfinished.origin().clone();
+    let changed = || CheckpointError::OtherScenario { what: origin.typed.clone() };
+    let scenario = origin.scenario()?.ok_or_else(changed)?;
+    let Read { cases, plan, system, layout } = read(&scenario)?;
+    let (checkpoints, folder) = unfinished.take_up(&cases, (&plan, &system), &layout, every)?;
+    let figures = origin.figures && !options.no_figures;
+    Ok(Prepared { cases, plan, system, layout, folder, checkpoints: Some(checkpoints), figures })
+}
+
+/// Says why a run cannot go on, and what can be done.
+fn show(error: CheckpointError) -> Unprepared {
+    let help = match &error {
+        CheckpointError::Missing(_) => {
+            "name the folder of the results of a run with --checkpoint-every; other runs start anew"
+        }
+        CheckpointError::Finished(_) => "its results are complete; to run it again, name its scenario",
+        CheckpointError::Damaged(_) | CheckpointError::Rows(_) => {
+            "nothing was changed; put the files back as they were, or run the scenario anew"
+        }
+        CheckpointError::OtherVersion { .. } => "go on with the version that wrote it, or run the scenario anew",
+        CheckpointError::OtherScenario { .. } => "put it back as it was, or run the scenario anew",
+        CheckpointError::Refused(refusals) => {
+            diagnostic::refused(refusals);
+            return Unprepared::Shown;
+        }
+        CheckpointError::File { .. } => "nothing was run",
+    };
+    diagnostic::error_with_help(error.to_string(), help.to_owned());
+    Unprepared::Shown
+}
+
+/// The simulated time between two checkpoints, s.
+fn spacing(text: &str) -> Result<f64, Unprepared> {
+    let why = match parse_quantity(text, "s", &|_| None) {
+        Ok(every) if every.is_finite() && every > 0.0 => return Ok(every),
+        Ok(_) => "not a positive time".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    let help = "write a simulated time such as 10 or \"500 ms\"".to_owned();
+    diagnostic::error_with_help(format!("--checkpoint-every {text}: {why}"), help);
+    Err(Unprepared::Shown)
+}
+
+/// `results/<file stem>` in the current folder.
+fn default_folder(file: &Path) -> PathBuf {
+    Path::new("results").join(file.file_stem().unwrap_or("run".as_ref()))
+}

@@ -1,0 +1,50 @@
+//! One step of the fixed-step methods: the falling three-body arm and a Panda arm, each with a strut.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use springpot::law::Catalog;
+use springpot::scenario::Scenario;
+use springpot::simulate::System;
+use springpot::simulate::fixed::{Loop, MemorySettings, Method};
+use std::hint::black_box;
+
+/// A shipped scenario whose robot moves by itself from its position at `start`.
+fn system(name: &str, start: &str) -> System {
+    let folder = format!("{}/../../scenarios", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(format!("{folder}/{name}.toml")).expect("a shipped scenario");
+    // Everything up to the motion: the robot and its elements.
+    let robot = text.split("[motion]").next().expect("a first part");
+    let text = format!("{robot}\n[motion]\nkind = \"forward\"\nstart = {start}\n[time]\nend = 1\noutput_step = 0.1\n");
+    let cases = Scenario::parse(&text, name, folder).unwrap_or_else(|refusals| panic!("{refusals}"));
+    let cases = cases.cases(&Catalog::standard()).unwrap_or_else(|refusals| panic!("{refusals}"));
+    cases.plan(0).expect("a valid case").system()
+}
+
+fn advance(criterion: &mut Criterion) {
+    let robots = [
+        ("arm, thermoviscoelastic strut", system("thermoviscoelastic_temperature", "{}")),
+        (
+            "panda, strut and strap",
+            system("panda_strut_and_strap", "{ q = { panda_joint2 = -0.6, panda_joint4 = -2.1, panda_joint6 = 1.5 } }"),
+        ),
+    ];
+    let memory = MemorySettings { tolerance: 1e-8, horizon: 3600.0 };
+    for (name, system) in &robots {
+        let mut group = criterion.benchmark_group(*name);
+        for method in [Method::BackwardEuler, Method::Midpoint] {
+            let mut robot = Loop::new(system, method, 1e-4, memory).expect("a loop");
+            let mut torque = vec![0.0; system.model.nv()];
+            println!("{} exponentials in {} elements", robot.modes(), system.elements.len());
+            group.bench_function(method.name(), |bench| {
+                bench.iter(|| {
+                    // A little damping keeps it in one region however long the measurement takes.
+                    torque.iter_mut().zip(robot.v()).for_each(|(torque, v)| *torque = -0.5 * v);
+                    robot.advance(black_box(&torque)).expect("a step");
+                });
+            });
+        }
+        group.finish();
+    }
+}
+
+criterion_group! { name = benches; config = Criterion::default().without_plots(); targets = advance }
+criterion_main!(benches);

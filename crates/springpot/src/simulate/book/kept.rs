@@ -1,0 +1,88 @@
+//! What of the books must outlast a step.
+
+use super::{Account, Book};
+use crate::simulate::checkpoint::ReportFields;
+use crate::simulate::ledger::Turnover;
+use crate::simulate::moment::Moment;
+use crate::simulate::{Checkpoint, Pace, Report, RunError};
+use serde::{Deserialize, Serialize};
+
+/// The books between two steps. Whatever else they hold follows from the system and its settings, or is filled anew by every step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(in crate::simulate) struct Books {
+    accounts: Vec<Account>,
+    /// Where the next step starts.
+    pub(in crate::simulate) moment: Moment,
+    pub(in crate::simulate) next_row: usize,
+    actuators: f64,
+    joints: f64,
+    potential_origin: f64,
+    origin: f64,
+    turnover: Turnover,
+    residual: f64,
+    #[serde(with = "ReportFields")]
+    report: Report,
+}
+
+impl Book<'_> {
+    /// Hands over the state between two steps where it is wanted; `last` says that the run stops here for now.
+    pub(in crate::simulate) fn keep(
+        &mut self,
+        t: f64,
+        last: bool,
+        pace: impl FnOnce() -> Pace,
+    ) -> Result<(), RunError> {
+        if !self.rows.wants_checkpoint(t, last) {
+            return Ok(());
+        }
+        let books = Books {
+            accounts: self.accounts.clone(),
+            moment: self.moments[0].clone(),
+            next_row: self.next_row,
+            actuators: self.actuators,
+            joints: self.joints,
+            potential_origin: self.potential_origin,
+            origin: self.origin,
+            turnover: self.turnover,
+            residual: self.residual,
+            report: self.report,
+        };
+        self.rows.checkpoint(Checkpoint { books, pace: pace() })?;
+        Ok(())
+    }
+
+    /// Goes on from what was kept of a run of the same system.
+    pub(in crate::simulate) fn restore(&mut self, books: Books) {
+        let Books {
+            accounts,
+            moment,
+            next_row,
+            actuators,
+            joints,
+            potential_origin,
+            origin,
+            turnover,
+            residual,
+            report,
+        } = books;
+        self.accounts = accounts;
+        self.moments[0] = moment;
+        self.next_row = next_row;
+        self.actuators = actuators;
+        self.joints = joints;
+        self.potential_origin = potential_origin;
+        self.origin = origin;
+        self.turnover = turnover;
+        self.residual = residual;
+        self.report = report;
+    }
+}
+
+impl Books {
+    /// Whether these can be the books of a system of that many elements, coordinates and velocities.
+    pub(in crate::simulate) fn fit(&self, elements: usize, nq: usize, nv: usize) -> bool {
+        let Moment { q, v, a, .. } = &self.moment;
+        let sizes = [self.accounts.len(), self.moment.elements.len(), q.len(), v.len(), a.len()];
+        sizes == [elements, elements, nq, nv, nv]
+    }
+}

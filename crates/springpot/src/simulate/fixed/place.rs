@@ -1,0 +1,117 @@
+//! Rows between the ends of a step, and accelerations that solve the equations of motion there.
+
+use super::stepper::Place;
+use crate::dynamics::{Kinematics, Workspace, crba_into};
+use crate::motion::{Drive, Forward};
+use crate::simulate::forward::drives::drive;
+use crate::simulate::lu::Lu;
+use crate::simulate::moment::{Moment, Scratch};
+use crate::simulate::{RunError, System};
+
+/// A step between its ends: places by the cubic Hermite form in the tangent space of the start, velocities and accelerations by
+/// straight lines.
+pub(super) struct Between<'a> {
+    pub(super) system: &'a System,
+    pub(super) forward: &'a Forward,
+    pub(super) from: &'a Place,
+    pub(super) to: &'a Place,
+    /// Accelerations at both ends.
+    pub(super) a: [&'a [f64]; 2],
+    pub(super) h: f64,
+    /// Tangent vector from start to end.
+    xi: Vec<f64>,
+    /// How fast it grows at the end.
+    xi_rate: Vec<f64>,
+}
+
+impl<'a> Between<'a> {
+    pub(super) fn new(
+        system: &'a System,
+        forward: &'a Forward,
+        [from, to]: [&'a Place; 2],
+        a: [&'a [f64]; 2],
+        h: f64,
+    ) -> Self {
+        let (model, nv) = (&system.model, system.model.nv());
+        let (mut xi, mut xi_rate) = (vec![0.0; nv], vec![0.0; nv]);
+        model.difference_into(&from.q, &to.q, &mut xi);
+        model.tangent_rate_into(&xi, &to.v, &mut xi_rate);
+        Self { system, forward, from, to, a, h, xi, xi_rate }
+    }
+
+    /// Fills q, v, a and what drives the joints at t = t_n + θh.
+    pub(super) fn place(&self, t: f64, theta: f64, moment: &mut Moment) {
+        let mut xi = vec![0.0; self.xi.len()];
+        let rest = 1.0 - theta;
+        for (k, xi) in xi.iter_mut().enumerate() {
+            let (v, w) = (self.h * self.from.v[k], self.h * self.xi_rate[k]);
+            *xi = theta * (rest * rest * v - theta * rest * w) + theta * theta * (3.0 - 2.0 * theta) * self.xi[k];
+            moment.v[k] = rest * self.from.v[k] + theta * self.to.v[k];
+            moment.a[k] = rest * self.a[0][k] + theta * self.a[1][k];
+        }
+        self.system.model.integrate_into(&self.from.q, &xi, &mut moment.q);
+        drive(&self.system.model, self.forward, t, moment);
+    }
+}
+
+/// Solves for accelerations.
+#[derive(Debug)]
+pub(super) struct Accelerator {
+    kinematics: Kinematics,
+    workspace: Workspace,
+    mass: Vec<f64>,
+    lu: Lu,
+    free: Vec<usize>,
+}
+
+impl Accelerator {
+    pub(super) fn new(system: &System, forward: &Forward) -> Self {
+        let model = &system.model;
+        let joints = model.own_joints().zip(&forward.drives).filter(|(_, drive)| matches!(drive, Drive::Force(_)));
+        Self {
+            kinematics: Kinematics::new(model),
+            workspace: Workspace::new(model),
+            mass: vec![0.0; model.nv() * model.nv()],
+            lu: Lu::default(),
+            free: joints.flat_map(|(j, _)| model.v_range(j)).collect(),
+        }
+    }
+
+    /// Fills a `moment`, whose q and v are there, for the time `t`: the accelerations of the joints that no signal moves solve
+    /// M a = τ − nle − Σ g F under the `forces` of the elements, which see the moment's kinematics.
+    pub(super) fn fill(
+        &mut self,
+        system: &System,
+        forward: &Forward,
+        t: f64,
+        scratch: &mut Scratch,
+        moment: &mut Moment,
+        mut forces: impl FnMut(usize, &Moment) -> f64,
+    ) -> Result<(), RunError> {
+        let (model, n) = (&system.model, system.model.nv());
+        for &k in &self.free {
+            moment.a[k] = 0.0;
+        }
+        drive(model, forward, t, moment);
+        system.fill(t, t, None, scratch, moment)?;
+        let mut push: Vec<f64> = self.free.iter().map(|&k| moment.driven[k].unwrap_or(0.0) - moment.rigid[k]).collect();
+        for e in 0..system.elements.len() {
+            let force = forces(e, moment);
+            for (push, &k) in push.iter_mut().zip(&self.free) {
+                *push -= force * moment.elements[e].gradient[k];
+            }
+        }
+        let (free, count) = (&self.free, self.free.len());
+        self.kinematics.update_position(model, &moment.q);
+        crba_into(model, &self.kinematics, &mut self.workspace, &mut self.mass);
+        let mass = &self.mass;
+        let entry = |k: usize| mass[free[k / count] * n + free[k % count]];
+        if count > 0 && self.lu.factor(count, |m| (0..count * count).for_each(|k| m[k] = entry(k))) {
+            self.lu.solve(&mut push);
+        }
+        for (push, &k) in push.iter().zip(&self.free) {
+            moment.a[k] = *push;
+        }
+        system.fill(t, t, None, scratch, moment)
+    }
+}

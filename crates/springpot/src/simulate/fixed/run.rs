@@ -1,0 +1,163 @@
+//! A whole run in steps of one size, with rows and the energy ledger.
+
+use super::place::{Accelerator, Between};
+use super::stepper::Stepper;
+use super::{FixedStep, ITERATIONS};
+use crate::fractional::Form;
+use crate::fractional::step::{MAX_NODES, RADAU_NODES};
+use crate::law::{Derivative, Singular};
+use crate::motion::{Forward, Motion};
+use crate::simulate::book::Book;
+use crate::simulate::moment::{Moment, Scratch};
+use crate::simulate::{Report, RowTimes, Rows, RunError, Settings, Stop, System};
+use std::sync::atomic::Ordering;
+
+/// Runs a `system` that moves by itself in steps of one size and hands every row to `rows`.
+///
+/// Steps end at k·step; only the last one is shorter where the end is no multiple of the step. A row inside a step takes its
+/// place from the cubic Hermite form between the ends and its velocity from a straight line; its accelerations solve the equations of
+/// motion at the ends of the step. Signals are met at the stages, their kinks are stepped over. The residual of the ledger is the method's
+/// own error, of its order in the step. The report is true also where the run stops early: all rows up to `t_reached` were handed over.
+/// Panics unless the motion is [`Motion::Forward`].
+pub fn fixed(
+    system: &System,
+    by: FixedStep,
+    settings: &Settings,
+    rows: &mut dyn Rows,
+    stop: &Stop,
+) -> (Report, Result<(), RunError>) {
+    let Motion::Forward(forward) = &system.motion else { panic!("the motion is given in advance") };
+    let mut book = Book::new(system, settings, rows);
+    book.takes_elements_work = false;
+    book.report.newton_iterations = Some(0);
+    for step in &mut book.steps {
+        step.singular = Singular::Moments;
+        step.form = Form::Strokes;
+    }
+    let outcome = Stepper::new(system, forward, by.method).and_then(|stepper| {
+        let accelerator = Accelerator::new(system, forward);
+        let still = vec![0.0; system.model.nv()];
+        let mut run = Run { system, forward, by, stop, stepper, accelerator, still };
+        run.start(&mut book)?;
+        run.march(&mut book)
+    });
+    (book.finish(), outcome)
+}
+
+struct Run<'a> {
+    system: &'a System,
+    forward: &'a Forward,
+    by: FixedStep,
+    stop: &'a Stop,
+    stepper: Stepper<'a>,
+    accelerator: Accelerator,
+    /// No torque besides the motion's signals.
+    still: Vec<f64>,
+}
+
+impl Run<'_> {
+    /// The first moment and its row.
+    fn start(&mut self, book: &mut Book) -> Result<(), RunError> {
+        let (system, forward) = (self.system, self.forward);
+        let [moment, ..] = &mut book.moments;
+        moment.q.copy_from_slice(&self.stepper.origin.q);
+        moment.v.copy_from_slice(&self.stepper.origin.v);
+        let mut is_singular = false;
+        let force = |e: usize, moment: &Moment| {
+            let (element, state) = (&system.elements[e], &moment.elements[e]);
+            let order = element.law.order();
+            let jumps = element.derivative == Derivative::RiemannLiouville && element.jump(state.length) != 0.0;
+            is_singular |= jumps && order > 0.0 && order < 1.0;
+            let point = state.point(0.0);
+            element.law.force(&point, element.law.start_derivative(&point, element.derivative))
+        };
+        self.accelerator.fill(system, forward, 0.0, &mut book.scratch, moment, force)?;
+        if is_singular {
+            moment.a.fill(f64::NAN);
+            moment.driven.fill(None);
+        }
+        book.open(RADAU_NODES[0] * self.by.step)
+    }
+
+    fn march(&mut self, book: &mut Book) -> Result<(), RunError> {
+        let step = self.by.step;
+        let ends = RowTimes::Step { step, end: book.settings.end };
+        for to in (1..ends.count()).map(|k| ends.at(k)) {
+            let t = self.stepper.origin.t;
+            if self.stop.load(Ordering::Relaxed) {
+                return Err(RunError::Interrupted { t });
+            }
+            if book.settings.max_steps.is_some_and(|limit| book.report.steps >= limit) {
+                return Err(RunError::TooManySteps { t, limit: book.report.steps });
+            }
+            // To the bit where it can be, so that the tables of the exponentials are made once.
+            let h = if (to - t - step).abs() <= 1e-9 * step { step } else { to - t };
+            let laws = &book.accounts;
+            let law = |e: usize| laws[e].law.as_ref().expect("forward runs have no schemes");
+            self.stepper.attempt(to, h, &self.still, law)?;
+            self.keep(book, t, to, h)?;
+            self.stepper.accept();
+            book.report.steps += 1;
+            *book.report.newton_iterations.get_or_insert(0) += u64::from(ITERATIONS);
+        }
+        Ok(())
+    }
+
+    /// Writes the rows of the step that was just worked out, and takes it into the past.
+    fn keep(&mut self, book: &mut Book, t: f64, to: f64, h: f64) -> Result<(), RunError> {
+        let (system, forward, stepper) = (self.system, self.forward, &self.stepper);
+        let [from, end] = [&stepper.origin, &stepper.end];
+        let within = Between::new(system, forward, [from, end], [&stepper.a, &stepper.a], h);
+        for (k, c) in RADAU_NODES.into_iter().enumerate() {
+            let at = if k + 1 == MAX_NODES { to } else { t + c * h };
+            let moment = &mut book.moments[k + 1];
+            within.place(at, c, moment);
+            if k + 1 == MAX_NODES {
+                moment.q.copy_from_slice(&end.q);
+                moment.v.copy_from_slice(&end.v);
+            }
+            system.fill(at, at, None, &mut book.scratch, moment)?;
+        }
+        for e in 0..system.elements.len() {
+            book.fill_element_step(e);
+            // What the memory was told: a straight line.
+            let [first, .., last] = book.steps[e].stroke;
+            for (stroke, c) in book.steps[e].stroke[1..].iter_mut().zip(RADAU_NODES) {
+                *stroke = first + c * (last - first);
+            }
+            book.evaluate_element(e, t, h);
+        }
+        let Book { moments, steps, scratch, .. } = &mut *book;
+        let moment = &mut moments[MAX_NODES];
+        self.accelerator.fill(system, forward, to, scratch, moment, |e, _| steps[e].end.force)?;
+        self.fill_powers(book);
+        let a_at_start = book.moments[0].a.clone();
+        let a_at_end = book.moments[MAX_NODES].a.clone();
+        // Of a singular start there are none.
+        let first = if a_at_start.iter().all(|a| a.is_finite()) { &a_at_start } else { &self.stepper.a };
+        let within = Between::new(system, forward, [from, end], [first, &a_at_end], h);
+        let mut place = |system: &System, scratch: &mut Scratch, at: f64, theta: f64, moment: &mut Moment| {
+            within.place(at, theta, moment);
+            system.fill(at, at, None, scratch, moment)
+        };
+        book.emit_rows(t, to, false, &mut place)?;
+        book.commit(h);
+        Ok(())
+    }
+
+    /// Powers of actuators and joints at the start and at the nodes, elements with the force of the step.
+    fn fill_powers(&self, book: &mut Book) {
+        for (k, moment) in book.moments.iter().enumerate() {
+            let of_joint = |j: usize| {
+                let pull = self.stepper.elements.iter().zip(&moment.elements);
+                let computed = || {
+                    let pull: f64 = pull.map(|(step, at)| step.response.force[0] * at.gradient[j]).sum();
+                    moment.rigid[j] + pull
+                };
+                moment.driven[j].unwrap_or_else(computed)
+            };
+            book.powers.actuators[k] = moment.v.iter().enumerate().map(|(j, v)| of_joint(j) * v).sum();
+            book.powers.joints[k] = moment.joint_loss;
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! One step of a fixed-step method: one stage, a fixed number of Newton iterations.
+
+use super::elements::ElementStep;
+use super::resistance::add_secants;
+use super::{ITERATIONS, Method};
+use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, rnea_derivatives_into, rnea_into};
+use crate::law::{Response, State};
+use crate::model::Model;
+use crate::motion::{Drive, Forward};
+use crate::simulate::lu::Lu;
+use crate::simulate::{RunError, System};
+
+/// The robot at one time.
+#[derive(Debug, Clone)]
+pub(super) struct Place {
+    pub(super) t: f64,
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
+    pub(super) kinematics: Kinematics,
+}
+
+/// Steps of one method from one [`Place`] to the next.
+///
+/// With c the node of the method (1 or ½) and κ = c h, the stage has the velocities v_0 + κ a and the place q_0 ⊕ κ v, and the
+/// accelerations a solve RNEA(q, v, a) = τ + ΣQ there. The step ends at v_0 + h a and q_0 ⊕ h v.
+#[derive(Debug, Clone)]
+pub(super) struct Stepper<'a> {
+    pub(super) system: &'a System,
+    pub(super) model: &'a Model,
+    forward: &'a Forward,
+    pub(super) method: Method,
+    /// Velocities that no signal prescribes.
+    free: Vec<usize>,
+    pub(super) origin: Place,
+    pub(super) stage: Place,
+    pub(super) end: Place,
+    /// Accelerations of the stage.
+    pub(super) a: Vec<f64>,
+    /// Tangent vector from the start, 0 where a joint is not free.
+    xi: Vec<f64>,
+    moved: Vec<f64>,
+    pub(super) elements: Vec<ElementStep>,
+    drives: Vec<f64>,
+    workspace: Workspace,
+    slopes: RneaDerivatives,
+    newton: Lu,
+    residual: Vec<f64>,
+    tau: Vec<f64>,
+    pub(super) pairs: Vec<PairForce>,
+    /// Largest change of a stage's velocity in the last iteration of the last step.
+    pub(super) correction: f64,
+}
+
+impl<'a> Stepper<'a> {
+    /// At rest where the motion starts; nothing is asked of the laws.
+    ///
+    /// # Errors
+    /// [`RunError::ZeroLength`].
+    pub(super) fn new(system: &'a System, forward: &'a Forward, method: Method) -> Result<Self, RunError> {
+        let model = &system.model;
+        let nv = model.nv();
+        let mut free = Vec::new();
+        let mut start =
+            Place { t: 0.0, q: forward.q.clone(), v: forward.v.clone(), kinematics: Kinematics::new(model) };
+        let mut a = vec![0.0; nv];
+        for (j, drive) in model.own_joints().zip(&forward.drives) {
+            let (q, v) = (model.q_range(j), model.v_range(j));
+            match drive {
+                Drive::Force(_) => free.extend(v),
+                Drive::Prescribed(path) => path.at(0.0, &mut start.q[q], &mut start.v[v.clone()], &mut a[v]),
+                Drive::Locked => start.v[v].fill(0.0),
+            }
+        }
+        start.kinematics.update_velocity(model, &start.q, &start.v);
+        let elements = system.elements.iter().map(|element| ElementStep::new(element, model, &start.kinematics));
+        let elements = elements.collect::<Result<Vec<_>, _>>()?;
+        let mut stepper = Self {
+            system,
+            model,
+            forward,
+            method,
+            origin: start.clone(),
+            stage: start.clone(),
+            end: start,
+            a,
+            xi: vec![0.0; nv],
+            moved: vec![0.0; model.nq()],
+            drives: vec![0.0; free.len()],
+            workspace: Workspace::new(model),
+            slopes: RneaDerivatives::new(model),
+            newton: Lu::default(),
+            residual: vec![0.0; free.len()],
+            tau: vec![0.0; nv],
+            pairs: Vec::with_capacity(elements.len()),
+            correction: 0.0,
+            elements,
+            free,
+        };
+        // Room for the factors, so that no step allocates.
+        let count = stepper.free.len();
+        stepper.newton.factor(count, |matrix| (0..count).for_each(|k| matrix[k * count + k] = 1.0));
+        stepper.take_inputs(0.0)?;
+        Ok(stepper)
+    }
+
+    /// Works out the step of size `h` to `to`; the origin stays. `torque` (nv) is held over the step and added to the motion's
+    /// signals; `law` gives the state of each element's law.
+    ///
+    /// # Errors
+    /// [`RunError`]; the step may be tried again with other torques.
+    pub(super) fn attempt<'l>(
+        &mut self,
+        to: f64,
+        h: f64,
+        torque: &[f64],
+        law: impl Fn(usize) -> &'l State,
+    ) -> Result<(), RunError> {
+        let kappa = self.method.node() * h;
+        // The end of the last step comes from a table of times, and so does that of this one.
+        let t = if self.method.node() == 1.0 { to } else { self.origin.t + kappa };
+        self.stage.t = t;
+        self.end.t = to;
+        self.take_inputs(t)?;
+        self.take_drives(t, torque)?;
+        for &k in &self.free {
+            // Not those of the step before: where an element is stiff they would lead far away.
+            self.a[k] = 0.0;
+        }
+        self.correction = 0.0;
+        self.place(kappa, h);
+        self.respond(h, &law)?;
+        for _ in 0..ITERATIONS {
+            self.improve(kappa, h)?;
+            self.place(kappa, h);
+            self.respond(h, &law)?;
+        }
+        self.check_end(h)
+    }
+
+    /// Goes on to the end of the step that was just worked out.
+    pub(super) fn accept(&mut self) {
+        std::mem::swap(&mut self.origin, &mut self.end);
+        for element in &mut self.elements {
+            element.ends[0] = element.ends[1];
+        }
+    }
+
+    fn take_drives(&mut self, t: f64, torque: &[f64]) -> Result<(), RunError> {
+        let mut place = 0;
+        for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
+            let (q, v) = (self.model.q_range(j), self.model.v_range(j));
+            match drive {
+                Drive::Force(signals) => {
+                    for (k, signal) in v.zip(signals) {
+                        let force = signal.at(t).value + torque[k];
+                        if !force.is_finite() {
+                            let what = format!("tau.{}", self.model.v_labels()[k].name);
+                            return Err(RunError::NotFinite { t, what, value: force });
+                        }
+                        self.drives[place] = force;
+                        place += 1;
+                    }
+                }
+                Drive::Prescribed(path) => {
+                    let (stage, end) = (&mut self.stage, &mut self.end);
+                    // The accelerations at the end are not asked for.
+                    path.at(end.t, &mut end.q[q.clone()], &mut end.v[v.clone()], &mut self.a[v.clone()]);
+                    path.at(t, &mut stage.q[q], &mut stage.v[v.clone()], &mut self.a[v]);
+                    self.check_prescribed(t, j)?;
+                }
+                Drive::Locked => self.a[v].fill(0.0),
+            }
+        }
+        Ok(())
+    }
+
+    fn check_prescribed(&self, t: f64, j: usize) -> Result<(), RunError> {
+        let (q, v) = (&self.stage.q[self.model.q_range(j)], self.model.v_range(j));
+        let all = q.iter().chain(&self.stage.v[v.clone()]).chain(&self.a[v]);
+        match all.copied().find(|x| !x.is_finite()) {
+            Some(value) => Err(RunError::NotFinite { t, what: format!("q.{}", self.model.joint_names()[j]), value }),
+            None => Ok(()),
+        }
+    }
+
+    /// Places the stage and the end under the accelerations.
+    fn place(&mut self, kappa: f64, h: f64) {
+        let (model, ends_at_stage) = (self.model, self.method.node() == 1.0);
+        for &k in &self.free {
+            self.stage.v[k] = self.origin.v[k] + kappa * self.a[k];
+            self.end.v[k] = self.origin.v[k] + h * self.a[k];
+            self.xi[k] = kappa * self.stage.v[k];
+        }
+        model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
+        take_moved(model, self.forward, &self.moved, &mut self.stage.q);
+        self.stage.kinematics.update_velocity(model, &self.stage.q, &self.stage.v);
+        if ends_at_stage {
+            self.end.q.copy_from_slice(&self.stage.q);
+            self.end.v.copy_from_slice(&self.stage.v);
+            return;
+        }
+        for &k in &self.free {
+            self.xi[k] = h * self.stage.v[k];
+        }
+        model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
+        take_moved(model, self.forward, &self.moved, &mut self.end.q);
+        self.end.kinematics.update_velocity(model, &self.end.q, &self.end.v);
+    }
+
+    /// One Newton iteration with all derivatives taken anew: (M + κ D + κ² K) Δa = −residual.
+    fn improve(&mut self, kappa: f64, h: f64) -> Result<(), RunError> {
+        let (n, free) = (self.model.nv(), &self.free);
+        if free.is_empty() {
+            return Ok(());
+        }
+        let (stage, workspace) = (&self.stage, &mut self.workspace);
+        rnea_into(self.model, &stage.q, &stage.v, &self.a, &self.pairs, workspace, &mut self.tau);
+        self.system.add_joint_losses(&stage.v, &mut self.tau);
+        for ((r, &k), drive) in self.residual.iter_mut().zip(free).zip(&self.drives) {
+            *r = drive - self.tau[k];
+        }
+        rnea_derivatives_into(self.model, &stage.kinematics, &self.a, &self.pairs, workspace, &mut self.slopes);
+        add_secants(self.model, &stage.v, &mut self.slopes.d_v);
+        let (slopes, count) = (&mut self.slopes, free.len());
+        if self.method.node() != 1.0 {
+            // ∂F/∂a = (κ² ∂F/∂x + κ ∂F/∂x') ∂l/∂q, taken at the end; added to the place of κ² K.
+            for step in &self.elements {
+                let Response { d_stroke, d_rate, .. } = &step.response;
+                let stiffness = d_stroke[0][0] + d_rate[0][0] / kappa;
+                let [at_stage, at_end] = &step.gradients;
+                for (line, push) in slopes.d_q.chunks_exact_mut(n).zip(at_stage) {
+                    for (entry, g) in line.iter_mut().zip(at_end) {
+                        *entry += stiffness * push * g;
+                    }
+                }
+            }
+        }
+        let regular = self.newton.factor(count, |matrix| {
+            for (line, &row) in matrix.chunks_exact_mut(count).zip(free) {
+                for (entry, &column) in line.iter_mut().zip(free) {
+                    let at = row * n + column;
+                    *entry = slopes.d_a[at] + kappa * (slopes.d_v[at] + kappa * slopes.d_q[at]);
+                }
+            }
+        });
+        if regular {
+            self.newton.solve(&mut self.residual);
+        }
+        self.correction = 0.0;
+        for (&k, change) in free.iter().zip(&self.residual) {
+            if !(regular && change.is_finite()) {
+                return Err(self.too_long(h, k));
+            }
+            self.a[k] += change;
+            self.correction = self.correction.max((kappa * change).abs());
+        }
+        Ok(())
+    }
+
+    /// Whether the end of the step is one to go on from.
+    fn check_end(&mut self, h: f64) -> Result<(), RunError> {
+        if let Some(k) = self.end.v.iter().position(|v| !v.is_finite()) {
+            return Err(self.too_long(h, k));
+        }
+        for (element, step) in self.system.elements.iter().zip(&self.elements) {
+            let [start, end] = &step.ends;
+            // One that turned by more than a right angle had length 0 on the way.
+            if end.check().is_err() || start.direction.dot(end.direction) <= 0.0 {
+                let length = start.length.min(end.length);
+                return Err(RunError::ZeroLength { t: self.end.t, element: element.name.clone(), length });
+            }
+        }
+        if self.method.node() == 1.0 {
+            std::mem::swap(&mut self.end, &mut self.stage);
+        }
+        Ok(())
+    }
+
+    fn too_long(&self, h: f64, k: usize) -> RunError {
+        RunError::FixedStep { t: self.origin.t, h, joint: self.model.v_labels()[k].name.clone() }
+    }
+}
+
+/// Takes the places of all joints but those that signals move.
+fn take_moved(model: &Model, forward: &Forward, moved: &[f64], q: &mut [f64]) {
+    for (j, drive) in model.own_joints().zip(&forward.drives) {
+        if !matches!(drive, Drive::Prescribed(_)) {
+            q[model.q_range(j)].copy_from_slice(&moved[model.q_range(j)]);
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! Fixed-step methods: orders, stability, conserved quantities, allocation, rows and ledger, bad input.
+
+mod allocations;
+mod conserved;
+mod joints;
+mod memory;
+mod orders;
+mod refusals;
+mod runs;
+mod stability;
+mod support;

@@ -1,0 +1,97 @@
+//! Bad input: typed errors that leave the loop usable, and refusals of scenario files.
+
+use crate::support::*;
+use springpot::law::Catalog;
+use springpot::scenario::Scenario;
+use springpot::simulate::RunError;
+use springpot::simulate::fixed::{Loop, LoopError, Method};
+
+#[test]
+fn steps_must_be_positive_and_motions_free() {
+    let free_arm = system(&arm(&free("")));
+    for step in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+        let error = Loop::new(&free_arm, Method::Midpoint, step, MEMORY).unwrap_err();
+        assert!(matches!(error, LoopError::Step(_)), "{error}");
+    }
+    let given =
+        "[motion]\nkind = \"prescribed\"\njoints = { q1 = 0, q2 = 0, q3 = 0 }\n[time]\nend = 1\noutput_step = 0.1\n";
+    let given = system(&arm(given));
+    let error = Loop::new(&given, Method::Midpoint, 1e-3, MEMORY).unwrap_err();
+    assert!(matches!(error, LoopError::MotionGiven), "{error}");
+    let elastic = system(&arm(&(thermoviscoelastic(0.5, "caputo") + &free(""))));
+    let forgetful = springpot::simulate::fixed::MemorySettings { tolerance: 0.0, ..MEMORY };
+    let error = Loop::new(&elastic, Method::Midpoint, 1e-3, forgetful).unwrap_err();
+    assert!(matches!(error, LoopError::Run(RunError::Kernel { .. })), "{error}");
+}
+
+#[test]
+fn a_torque_that_is_no_number_stops_one_step_alone() {
+    let system = system(&arm(&(thermoviscoelastic(0.5, "caputo") + &free(""))));
+    for method in METHODS {
+        let mut robot = looped(&system, method, 1e-3, 0.1);
+        let mut other = robot.clone();
+        let error = robot.advance(&[0.0, f64::NAN, 0.0]).unwrap_err();
+        let RunError::NotFinite { t, what, value } = error else { panic!("{error}") };
+        assert!((0.1..=0.101).contains(&t) && what == "tau.q2" && value.is_nan(), "{t} {what} {value}");
+        for robot in [&mut robot, &mut other] {
+            robot.advance(&[0.0; 3]).unwrap();
+        }
+        assert_eq!(state(&robot), state(&other));
+        // A force beyond all bounds has no finite answer.
+        let error = robot.advance(&[0.0, 1e308, 0.0]).unwrap_err();
+        assert!(matches!(error, RunError::FixedStep { .. } | RunError::ZeroLength { .. }), "{error}");
+    }
+}
+
+#[test]
+fn an_element_whose_points_meet_is_named() {
+    let text = r#"
+[[robot.body]]
+name = "slider"
+joint = { name = "q", kind = "prismatic", axis = [1, 0, 0], origin = [1, 0, 0] }
+mass = 1
+[[element]]
+name = "e"
+from = { body = "world", point = [0, 0, 0] }
+to = { body = "slider", point = [0, 0, 0] }
+rest_length = 1
+law = "springpot"
+parameters = { c = 1, alpha = 0.5 }
+"#;
+    let system = system(&format!("{text}{}", free("start = { v = { q = -8 } }")));
+    for method in METHODS {
+        let mut robot = Loop::new(&system, method, 1e-2, MEMORY).unwrap();
+        let error = (0..100).find_map(|_| robot.advance(&[0.0]).err()).expect("the points meet");
+        let RunError::ZeroLength { t, element, .. } = error else { panic!("{error}") };
+        assert!((0.1..0.2).contains(&t) && element == "e", "{t} {element}");
+        assert!(robot.length(0) > 0.0 && robot.t() < t);
+    }
+}
+
+#[test]
+fn scenario_files_are_refused_with_what_would_be_right() {
+    let cases = [
+        ("method = \"midpont\"\nstep = 1e-3", "names no method: \"midpont\"", "did you mean `midpoint`?"),
+        ("method = 3", "method", "a text"),
+        ("method = \"midpoint\"", "step", "step = \"1 ms\""),
+        ("step = 1e-3", "belongs to a fixed-step method", "backward-euler"),
+        ("method = \"radau\"\nstep = 1e-3", "belongs to a fixed-step method", "backward-euler"),
+        ("method = \"midpoint\"\nstep = 0", "0", "positive"),
+        ("method = \"midpoint\"\nstep = \"-1 ms\"", "-1 ms", "positive"),
+        ("method = \"midpoint\"\nstep = \"1 mm\"", "`mm`", "this place takes `s`"),
+        (
+            "method = \"midpoint\"\nstep = 1e-3\nmax_step = 1",
+            "has no effect with method = \"midpoint\"",
+            "leave it out",
+        ),
+        ("metod = \"midpoint\"", "metod", "method"),
+    ];
+    for (solver, message, help) in cases {
+        let text = arm(&format!("{}[solver]\n{solver}\n", free("")));
+        let scenario = Scenario::parse(&text, "arm.toml", "").unwrap();
+        let refusals = scenario.cases(&Catalog::standard()).unwrap_err().to_string();
+        assert!(refusals.contains(message) && refusals.contains(help), "{solver}: {refusals}");
+    }
+    let fine = arm(&format!("{}[solver]\nmethod = \"radau\"\nmax_step = 0.1\n", free("")));
+    assert!(Scenario::parse(&fine, "arm.toml", "").unwrap().cases(&Catalog::standard()).is_ok());
+}
