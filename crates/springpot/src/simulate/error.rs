@@ -77,16 +77,6 @@ pub enum RunError {
         /// Worst element, or the energy.
         subject: String,
     },
-    /// The equations of motion of a step have no solution that the iteration finds.
-    #[error("t = {t} s: the motion cannot go on: joint \"{joint}\" settles in no step down to {h:e} s")]
-    NoConvergence {
-        /// Time, s.
-        t: f64,
-        /// Step tried, s.
-        h: f64,
-        /// The joint that is farthest off.
-        joint: String,
-    },
     /// The step of a fixed-step method is too long.
     #[error(
         "t = {t} s: a step of {h} s is too long: no finite acceleration of {joint} solves it; take a shorter solver.step"
@@ -97,6 +87,16 @@ pub enum RunError {
         /// Step size, s.
         h: f64,
         /// Joint.
+        joint: String,
+    },
+    /// The equations of motion of a step have no solution that the iteration finds.
+    #[error("t = {t} s: the motion cannot go on: joint \"{joint}\" settles in no step down to {h:e} s")]
+    NoConvergence {
+        /// Time, s.
+        t: f64,
+        /// Step tried, s.
+        h: f64,
+        /// The joint that is farthest off.
         joint: String,
     },
     /// More steps than allowed.

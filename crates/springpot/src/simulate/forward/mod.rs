@@ -22,7 +22,7 @@ use self::stepper::{Carried, Stepper, Tolerance};
 use super::book::{Book, Books, target};
 use super::{Report, Rows, RunError, Settings, Stop, System};
 use crate::fractional::step::RADAU_NODES;
-use crate::law::Singular;
+use crate::law::{Derivative, Singular};
 use crate::motion::kinks::locate;
 use crate::motion::{Drive, Forward, Motion};
 use serde::{Deserialize, Serialize};
@@ -63,8 +63,8 @@ pub(super) fn resume(
     let mut run = Run::new(system, forward, settings, rows, stop);
     run.book.restore(books);
     run.stepper.restore(pace.carried);
+    run.find_starts();
     run.last = pace.last;
-    run.take_starts();
     let outcome = run.march(pace.h);
     (run.book.finish(), outcome)
 }
@@ -140,23 +140,25 @@ impl<'a> Run<'a> {
         moment.v.copy_from_slice(&origin.v);
         moment.a.copy_from_slice(&origin.a);
         drive(&system.model, self.forward, 0.0, moment);
-        let is_singular = system.elements.iter().zip(&elements).any(|(element, start)| start.is_singular(element));
+        let is_singular = system.elements.iter().zip(&elements).any(|(element, start)| {
+            let order = element.law.order();
+            element.derivative == Derivative::RiemannLiouville && order > 0.0 && order < 1.0 && start.jump != 0.0
+        });
         if is_singular {
             moment.a.fill(f64::NAN);
             moment.driven.fill(None);
         }
         system.fill(0.0, 0.0, None, &mut self.book.scratch, moment)?;
         self.stepper.origin = origin;
+        self.stepper.is_singular = is_singular;
         self.book.open(RADAU_NODES[0] * h)?;
-        self.take_starts();
+        self.find_starts();
         Ok(h)
     }
 
-    /// Takes from the laws which starts are singular.
-    fn take_starts(&mut self) {
+    fn find_starts(&mut self) {
         let laws = self.book.system.elements.iter().zip(&self.book.accounts);
         self.starts = laws.map(|(element, account)| element.law.singular(1.0, account.memory())).collect();
-        self.stepper.is_singular = self.starts.iter().any(|start| *start != 0.0);
     }
 
     fn march(&mut self, first: f64) -> Result<(), RunError> {

@@ -47,11 +47,11 @@ impl Stepper<'_> {
             self.share_forces();
         }
         if self.is_singular {
+            self.arrived.copy_from_slice(&self.origin.a);
             // What the last step's end had of it, seen from this step's start, so that the rest has no jump.
-            for element in &mut self.elements {
-                let before = std::mem::take(&mut element.singular_before);
+            for element in &self.elements {
                 for &k in &self.free {
-                    self.origin.a[k] -= element.share[k] * before;
+                    self.origin.a[k] -= element.share[k] * element.singular_before;
                 }
             }
         }

@@ -4,7 +4,6 @@ use super::drives::{force_at, take_path};
 use super::resistance::add_resistance;
 use super::stepper::{Origin, Tolerance, free_velocities};
 use crate::dynamics::{Kinematics, PairForce, crba, rnea};
-use crate::element::Element;
 use crate::law::{Derivative, Point};
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
@@ -17,14 +16,6 @@ pub(super) struct ElementStart {
     /// x(0) where it counts as different from 0, else 0, m.
     pub(super) jump: f64,
     gradient: Vec<f64>,
-}
-
-impl ElementStart {
-    /// Whether the force is infinite at the start.
-    pub(super) fn is_singular(&self, element: &Element) -> bool {
-        let order = element.law.order();
-        element.derivative == Derivative::RiemannLiouville && order > 0.0 && order < 1.0 && self.jump != 0.0
-    }
 }
 
 /// The start: prescribed joints where their signals say, and accelerations.
@@ -179,7 +170,7 @@ pub(super) fn first_step(
         let coefficient = element.law.force(&point, 1.0) - element.law.force(&point, 0.0);
         let mut push: Vec<f64> = free.iter().map(|&k| start.gradient[k]).collect();
         solve_mass(system, &kinematics, &free, &mut push);
-        if start.is_singular(element) {
+        if element.derivative == Derivative::RiemannLiouville && start.jump != 0.0 {
             let shares = push.iter().zip(&free).map(|(push, &k)| push.abs() / strict.of(origin.v[k]));
             let kick = shares.fold(0.0, f64::max) * (coefficient * start.jump).abs();
             if kick > 0.0 {

@@ -105,9 +105,9 @@ pub(super) struct Stage {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Carried {
     origin: Origin,
-    last: Option<f64>,
     cubic: [Vec<f64>; MAX_NODES + 1],
-    /// What a singular start had in the force of each element, N.
+    last: Option<f64>,
+    is_singular: bool,
     singular_before: Vec<f64>,
     contraction: f64,
 }
@@ -136,6 +136,8 @@ pub(super) struct Stepper<'a> {
     pub(super) last: Option<f64>,
     /// Whether a start is singular, so that its share of the accelerations is kept apart.
     pub(super) is_singular: bool,
+    /// Accelerations that a run with a singular start arrived with at the origin, before their share of it was taken off.
+    pub(super) arrived: Vec<f64>,
     /// Whether the linearisation is that of the origin.
     pub(super) linearised: bool,
     pub(super) start: Kinematics,
@@ -205,6 +207,7 @@ impl<'a> Stepper<'a> {
             turning: std::array::from_fn(|_| vec![0.0; nv]),
             last: None,
             is_singular: false,
+            arrived: vec![0.0; nv],
             linearised: false,
             start: Kinematics::new(model),
             workspace: Workspace::new(model),
@@ -261,10 +264,15 @@ impl<'a> Stepper<'a> {
 
     /// What the next step takes over.
     pub(super) fn carried(&self) -> Carried {
+        let mut origin = self.origin.clone();
+        if self.linearised && self.is_singular {
+            origin.a.copy_from_slice(&self.arrived);
+        }
         Carried {
-            origin: self.origin.clone(),
-            last: self.last,
+            origin,
             cubic: self.cubic.clone(),
+            last: self.last,
+            is_singular: self.is_singular,
             singular_before: self.elements.iter().map(|element| element.singular_before).collect(),
             contraction: self.contraction,
         }
@@ -272,10 +280,12 @@ impl<'a> Stepper<'a> {
 
     /// Goes on from what was carried.
     pub(super) fn restore(&mut self, carried: Carried) {
-        let Carried { origin, last, cubic, singular_before, contraction } = carried;
-        (self.origin, self.last, self.cubic, self.contraction) = (origin, last, cubic, contraction);
-        self.elements.iter_mut().zip(singular_before).for_each(|(element, before)| element.singular_before = before);
-        self.linearised = false;
+        let Carried { origin, cubic, last, is_singular, singular_before, contraction } = carried;
+        (self.origin, self.cubic, self.last) = (origin, cubic, last);
+        (self.is_singular, self.contraction, self.linearised) = (is_singular, contraction, false);
+        for (element, before) in self.elements.iter_mut().zip(singular_before) {
+            element.singular_before = before;
+        }
     }
 
     /// The origin was set from outside: nothing can be foretold from what was.
