@@ -130,7 +130,7 @@ fn refusals_name_file_line_and_column_and_mark_the_place() {
         ("name = \"damper\"", "name = \"energy\"", "21:8", "which the columns of the results use"),
         ("end = 0.35", "end = = 0.35", "34:7", "not TOML"),
         ("output_step = \"100 ms\"", "output_step = 1e-12", "35:15", "at most 20000000"),
-        ("kind = \"prescribed\"", "kind = \"forward\"", "30:8", "does not run yet"),
+        ("kind = \"prescribed\"", "kind = \"forward\"", "31:1", "unknown key `joints` in [motion]"),
     ];
     for (from, to, position, words) in cases {
         let place = Place::with(&edited(from, to));

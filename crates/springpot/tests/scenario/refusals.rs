@@ -511,13 +511,13 @@ fn names_keep_their_rules() {
 }
 
 #[test]
-fn what_later_versions_run_is_said() {
+fn a_robot_that_moves_by_itself_takes_other_keys() {
     assert_refused(
         &single(),
         &(
-            &[("kind = \"prescribed\"", "kind = ‸\"forward\"")],
-            NotYet,
-            "this version runs \"prescribed\" motions and \"gripper-path\"",
+            &[("kind = \"prescribed\"\njoints", "kind = \"forward\"\n‸joints")],
+            UnknownKey,
+            "there is kind, start, torque, prescribed and locked",
         ),
     );
 }

@@ -18,7 +18,7 @@ pub(super) const A_SQUARED: [[f64; 3]; 3] = [
 pub(super) const GAMMA: f64 = 0.274_888_829_595_676_77;
 
 /// eᵀA of the embedded estimate: err = h (γ_0 f_0 + Σ_i (eᵀA)_i f_i) + …
-pub(super) const ESTIMATE: [f64; 3] = [-0.428_298_294_115_368_1, 0.245_039_074_384_916_53, -0.091_629_610_265_225_79];
+pub(super) const ESTIMATE: [f64; 3] = [-0.428_298_294_115_368_1, 0.245_039_074_384_916_53, -0.091_629_609_865_225_79];
 
 /// Left and right eigenvectors of A for its real eigenvalue γ_0, with l·r = 1.
 pub(super) const LEFT: [f64; 3] = [4.325_579_890_063_155, 0.339_199_251_815_809_87, 0.541_770_539_935_874_9];
