@@ -2,6 +2,7 @@
 
 use super::{Report, RowTimes, RunError, Settings, State, Stop, System, run};
 use crate::dynamics::{Kinematics, christoffel, coriolis, crba, gravity};
+use crate::motion::Motion;
 use std::sync::atomic::Ordering;
 
 /// Most velocities for which Christoffel symbols are kept.
@@ -88,7 +89,8 @@ pub enum EquationError {
 
 impl System {
     /// The equations of motion at time `t`, the forces with the whole memory of a run until then: the numbers are those of the row
-    /// that a run with these `settings` writes at that time.
+    /// that a run with these `settings` writes at that time; of a robot that moves by itself, at the times of its rows, and elsewhere
+    /// within the tolerance.
     ///
     /// # Errors
     /// [`EquationError`].
@@ -138,10 +140,14 @@ impl System {
         if !(0.0..=settings.end).contains(&t) {
             return Err(EquationError::Outside { t, end: settings.end });
         }
+        let nearest_row = nearest(&settings.rows, t);
+        // Where steps may end on rows, those of the run are kept.
+        let of_the_run = matches!(self.motion, Motion::Forward(_)) && nearest_row == t;
         let (rows, t) = match self.elements.iter().find(|element| element.scheme.is_some()) {
+            None if of_the_run => (settings.rows.clone(), t),
             None => (RowTimes::Times([t].into()), t),
             Some(element) => {
-                let nearest = nearest(&settings.rows, t);
+                let nearest = nearest_row;
                 if (nearest - t).abs() > 1e-12 * settings.end {
                     return Err(EquationError::NotARow { element: element.name.clone(), t, nearest });
                 }

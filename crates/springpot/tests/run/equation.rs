@@ -2,8 +2,9 @@
 
 use crate::run_support::robots::{ARM, SWING, every, springpot};
 use crate::run_support::{cases, scenarios, shipped};
+use springpot::motion::Motion;
 use springpot::scenario::Cases;
-use springpot::simulate::{Equation, EquationError, RowTimes, Settings, Stop, along};
+use springpot::simulate::{Equation, EquationError, RowTimes, Settings, Stop, run as simulate};
 
 /// Times of a motion as shares of its duration; all but the end are no multiples of a step.
 const SHARES: [f64; 4] = [0.0, 0.1037, 0.5219, 1.0];
@@ -33,19 +34,21 @@ fn told(equation: &Equation, labels: &[String], q_labels: &[String]) -> Vec<(Str
 fn check(what: &str, cases: &Cases, case: usize) -> usize {
     let plan = cases.plan(case).unwrap();
     let (system, settings) = (plan.system(), plan.settings());
+    // Named schemes live on the rows, and steps of robots that move by themselves may end on rows.
     let named_scheme = system.elements.iter().any(|element| element.scheme.is_some());
+    let of_rows = named_scheme || matches!(system.motion, Motion::Forward(_));
     let count = settings.rows.count() - 1;
-    let times: Vec<f64> = match named_scheme {
+    let times: Vec<f64> = match of_rows {
         true => SHARES.map(|share| settings.rows.at((share * count as f64) as usize)).to_vec(),
         false => SHARES.map(|share| share * settings.end).to_vec(),
     };
-    let rows_at = if named_scheme { settings.rows.clone() } else { RowTimes::Times(times.as_slice().into()) };
+    let rows_at = if of_rows { settings.rows.clone() } else { RowTimes::Times(times.as_slice().into()) };
     let mut rows: Vec<Vec<f64>> = Vec::new();
     let mut keep = |row: &[f64]| -> std::io::Result<()> {
         rows.push(row.to_vec());
         Ok(())
     };
-    let (_, outcome) = along(&system, &Settings { rows: rows_at, ..settings.clone() }, &mut keep, &Stop::new(false));
+    let (_, outcome) = simulate(&system, &Settings { rows: rows_at, ..settings.clone() }, &mut keep, &Stop::new(false));
     outcome.unwrap();
 
     let columns: Vec<String> = system.columns().into_iter().map(|column| column.name).collect();
@@ -63,7 +66,9 @@ fn check(what: &str, cases: &Cases, case: usize) -> usize {
         let singular = equation.elements.iter().any(|element| element.force.is_nan());
         let largest =
             equation.residual().into_iter().fold(0.0, |m: f64, r| if r.is_nan() { f64::NAN } else { m.max(r.abs()) });
-        assert!(singular || largest <= 1e-13 * equation.largest_term(), "{what} case {case} at {t}: {largest}");
+        // Accelerations between steps are interpolated where forces bring them about.
+        let bound = if matches!(system.motion, Motion::Forward(_)) { 1e-8 } else { 1e-13 };
+        assert!(singular || largest <= bound * equation.largest_term(), "{what} case {case} at {t}: {largest}");
     }
     compared
 }

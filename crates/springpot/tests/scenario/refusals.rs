@@ -533,6 +533,18 @@ fn motions_that_follow_from_forces() {
 }
 
 #[test]
+fn a_robot_that_moves_by_itself_takes_other_keys() {
+    assert_refused(
+        &single(),
+        &(
+            &[("kind = \"prescribed\"\njoints", "kind = \"forward\"\n‸joints")],
+            UnknownKey,
+            "there is kind, start, torque, prescribed and locked",
+        ),
+    );
+}
+
+#[test]
 fn mistakes_are_collected() {
     let text = edited(
         &single(),
