@@ -9,4 +9,5 @@ mod limits;
 mod random;
 mod references;
 mod rows;
+mod shipped;
 mod support;
