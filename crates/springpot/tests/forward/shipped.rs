@@ -40,7 +40,7 @@ fn the_mass_stays_on_its_exact_solution() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "compares wall times: for a quiet machine"]
 fn an_hour_costs_the_same_from_minute_to_minute() {
     // Stirred slowly for an hour: steps and time of each tenth.
     let text = falling(0.5, 25.0, "caputo", "torque = { q2 = \"3*sin(0.05*t)\", q1 = \"0.2*sin(0.7*t)\" }")
@@ -67,7 +67,7 @@ fn an_hour_costs_the_same_from_minute_to_minute() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "a minute"]
 fn ten_million_steps_keep_the_memory_as_it_is() {
     let law = "law = \"springpot\"\nparameters = { c = 30, alpha = 0.5 }";
     let stir = state("0", "0") + "\ntorque = { q = \"19.62 + 5*sin(3*t)\" }";
