@@ -77,7 +77,7 @@ fn momenta_are_conserved_and_the_attitude_stays_a_unit_quaternion() {
         let norm: f64 = q[3..7].iter().map(|x| x * x).sum();
         assert!((norm - 1.0).abs() < 1e-14, "{norm}");
     }
-    println!("momenta drift by {worst:.1e}, {:?}", run.report);
+    println!("momenta drift by {worst:.1e} of {:.1}, {:?}", largest(start), run.report);
     assert!(worst < 3e-8 * largest(start), "{worst:e}");
     assert!(run.residual() < 1e-8, "{:e}", run.residual());
     assert!(largest(run.column("v.hinge")) > 0.5);
