@@ -1,6 +1,7 @@
 //! Robots that move by themselves: what they start from, and what drives their joints.
 
 use super::prescribed::JointPath;
+use crate::model::Model;
 use crate::signal::Signal;
 
 /// A motion that follows from the equations of motion.
@@ -12,6 +13,14 @@ pub struct Forward {
     pub v: Vec<f64>,
     /// One for each joint that has coordinates of its own, in their order.
     pub drives: Vec<Drive>,
+}
+
+impl Forward {
+    /// The velocities of `model`'s joints that forces drive, in rising order.
+    pub(crate) fn free_velocities(&self, model: &Model) -> Vec<usize> {
+        let drives = model.own_joints().zip(&self.drives);
+        drives.filter(|(_, drive)| matches!(drive, Drive::Force(_))).flat_map(|(j, _)| model.v_range(j)).collect()
+    }
 }
 
 /// What drives one joint.

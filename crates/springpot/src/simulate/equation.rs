@@ -1,5 +1,6 @@
 //! The equations of motion at one time, term by term.
 
+use super::resistance::add_resistance;
 use super::{Report, RowTimes, RunError, Settings, State, Stop, System, run};
 use crate::dynamics::{Kinematics, christoffel, coriolis, crba, gravity};
 use crate::motion::Motion;
@@ -119,7 +120,7 @@ impl System {
             (self.model.is_one_degree() && n <= MOST_WITH_CHRISTOFFEL).then(|| christoffel(&self.model, &kinematics));
         let velocity = christoffel.as_ref().map_or_else(|| times(&coriolis, &state.v), |gamma| twice(gamma, &state.v));
         let mut losses = vec![0.0; n];
-        self.add_joint_losses(&state.v, &mut losses);
+        add_resistance(&self.model, &state.v, &mut losses);
         Ok(Equation {
             t,
             inertia: times(&mass, &state.a),

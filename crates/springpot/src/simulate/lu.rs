@@ -47,6 +47,17 @@ impl Lu {
         true
     }
 
+    /// Factors the rows and columns `part` of a full n × n matrix; `false` as for [`Lu::factor`], of an empty part `true`.
+    pub(super) fn factor_part(&mut self, n: usize, full: &[f64], part: &[usize]) -> bool {
+        self.factor(part.len(), |matrix| {
+            for (line, &row) in matrix.chunks_exact_mut(part.len().max(1)).zip(part) {
+                for (entry, &column) in line.iter_mut().zip(part) {
+                    *entry = full[row * n + column];
+                }
+            }
+        })
+    }
+
     /// Solves in place: `x` holds the right-hand side before and the solution after.
     pub(super) fn solve(&mut self, x: &mut [f64]) {
         let n = self.n;

@@ -19,6 +19,7 @@ mod lu;
 mod moment;
 mod on_grid;
 mod pose;
+mod resistance;
 mod row;
 mod row_times;
 
@@ -29,8 +30,8 @@ pub use error::RunError;
 pub use fixed::FixedStep;
 pub use forward::forward;
 pub use limits::{LimitKind, LimitWatch, PassedLimit, Watch};
-pub use moment::FRICTION_SPEED;
 pub use pose::{ElementStart, Pose, State};
+pub use resistance::FRICTION_SPEED;
 pub use row_times::RowTimes;
 
 #[cfg(feature = "scenario")]

@@ -1,5 +1,6 @@
 //! The robot and its elements at one time, before any law is asked.
 
+use super::resistance::add_resistance;
 use super::{RunError, System};
 use crate::dynamics::{Kinematics, Workspace, kinetic_energy, pair_into, potential_energy, rnea_into};
 use crate::element::Element;
@@ -8,9 +9,6 @@ use crate::model::Model;
 use crate::motion::Wanted;
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
-
-/// Speed at which Coulomb friction has reached 76 % of its value, rad/s or m/s: the width of the smooth sign.
-pub const FRICTION_SPEED: f64 = 1e-3;
 
 /// State of one element at one time.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -134,7 +132,7 @@ impl System {
         rnea_into(&self.model, &moment.q, &moment.v, &moment.a, &[], &mut scratch.workspace, &mut moment.rigid);
         moment.kinetic = kinetic_energy(&self.model, kinematics);
         moment.potential = potential_energy(&self.model, kinematics);
-        moment.joint_loss = self.add_joint_losses(&moment.v, &mut moment.rigid);
+        moment.joint_loss = add_resistance(&self.model, &moment.v, &mut moment.rigid);
         for (element, state) in self.elements.iter().zip(&mut moment.elements) {
             let pair = pair_into(&self.model, kinematics, &element.from, &element.to, &mut state.gradient);
             if pair.check().is_err() {
@@ -155,25 +153,6 @@ impl System {
             });
         }
         Ok(())
-    }
-
-    /// Adds what the joints' damping d·v and friction f·tanh(v/[`FRICTION_SPEED`]) ask of the actuators at the velocities `v` (nv)
-    /// to `tau` (nv); returns the power that they take, W.
-    pub(super) fn add_joint_losses(&self, v: &[f64], tau: &mut [f64]) -> f64 {
-        let mut power = 0.0;
-        for j in 0..self.model.joint_count() {
-            if self.model.joint_kind(j).nv() != 1 {
-                continue;
-            }
-            let (index, ratio) =
-                (self.model.v_range(j).start, self.model.followed(j).map_or(1.0, |(_, ratio, _)| ratio));
-            let speed = ratio * v[index];
-            let resistance =
-                self.model.damping()[j] * speed + self.model.friction()[j] * (speed / FRICTION_SPEED).tanh();
-            tau[index] += ratio * resistance;
-            power += resistance * speed;
-        }
-        power
     }
 
     fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {

@@ -1,5 +1,12 @@
 //! Robots that move by themselves, from texts, in fixed steps and with error control.
 
+#[allow(dead_code, reason = "a share of it")]
+#[path = "../run/run_support/robots.rs"]
+mod robots;
+
+use robots::ARM;
+pub(crate) use robots::strut;
+
 use springpot::law::Catalog;
 use springpot::scenario::Scenario;
 use springpot::simulate::fixed::{Loop, MemorySettings, Method};
@@ -9,52 +16,12 @@ pub(crate) const METHODS: [Method; 2] = [Method::BackwardEuler, Method::Midpoint
 
 /// The three-body arm of the papers, falling under gravity; `more` holds elements and the rest.
 pub(crate) fn arm(more: &str) -> String {
-    format!(
-        r#"
-[[robot.body]]
-name = "column"
-joint = {{ name = "q1", kind = "revolute", axis = [0, 0, 1], origin = [0, 0, 0] }}
-mass = 6.0
-com = [0.02, 0.0, 0.3]
-inertia = {{ xx = 0.20, yy = 0.20, zz = 0.06, xz = 0.01 }}
-[[robot.body]]
-name = "upper_arm"
-joint = {{ name = "q2", kind = "revolute", axis = [0, 1, 0], origin = [0, 0, 0.6] }}
-mass = 3.0
-com = [0.25, 0.01, 0.02]
-inertia = {{ xx = 0.01, yy = 0.07, zz = 0.07, xy = 0.001, yz = 0.0005 }}
-[[robot.body]]
-name = "forearm"
-joint = {{ name = "q3", kind = "revolute", axis = [0, 1, 0], origin = [0.5, 0, 0] }}
-mass = 2.0
-com = [0.18, -0.01, 0.01]
-inertia = {{ xx = 0.006, yy = 0.03, zz = 0.03, xz = -0.001, yz = 0.0004 }}
-{more}"#
-    )
+    format!("{ARM}{more}")
 }
 
-/// The arm's strut; `law` is the rest of its table.
-pub(crate) fn strut(law: &str) -> String {
-    format!(
-        r#"
-[[element]]
-name = "strut"
-from = {{ body = "column", point = [0.14, -0.1, 0.08] }}
-to = {{ body = "forearm", point = [-0.06, 0.1, 0.08] }}
-rest_length = "70 cm"
-{law}
-"#
-    )
-}
-
-/// The thermoviscoelastic strut of the first paper.
+/// The thermoviscoelastic strut of the first paper, at 25 °C.
 pub(crate) fn thermoviscoelastic(alpha: f64, derivative: &str) -> String {
-    strut(&format!(
-        r#"law = "thermoviscoelastic"
-parameters = {{ E_c = "30 N/m", E_kv = "20 N/m", E_d = "50 N*s^alpha/m", alpha = {alpha}, a_kv = "0.0007 m/K" }}
-inputs = {{ T = "25 degC" }}
-derivative = "{derivative}""#
-    ))
+    robots::thermoviscoelastic(alpha, 25.0, derivative)
 }
 
 /// A free motion of 1 s, which tests cut where they want.

@@ -1,5 +1,11 @@
 //! Robots that move by themselves, as scenario texts, and their rows by column.
 
+#[allow(dead_code, reason = "a share of it")]
+#[path = "../run/run_support/robots.rs"]
+mod robots;
+
+pub(crate) use robots::{ARM, strut, thermoviscoelastic};
+
 use springpot::law::Catalog;
 use springpot::scenario::{Cases, Scenario};
 use springpot::simulate::{Report, RunError, Settings, Stop, System, run as simulate};
@@ -118,51 +124,10 @@ pub(crate) fn state(x: &str, v: &str) -> String {
     format!("{{ q = {{ q = {x} }}, v = {{ q = {v} }} }}")
 }
 
-/// The robot of the papers' scenarios.
-pub(crate) const ARM: &str = r#"
-[[robot.body]]
-name = "column"
-joint = { name = "q1", kind = "revolute", axis = [0, 0, 1], origin = [0, 0, 0] }
-mass = 6.0
-com = [0.02, 0.0, 0.3]
-inertia = { xx = 0.20, yy = 0.20, zz = 0.06, xz = 0.01 }
-[[robot.body]]
-name = "upper_arm"
-joint = { name = "q2", kind = "revolute", axis = [0, 1, 0], origin = [0, 0, 0.6] }
-mass = 3.0
-com = [0.25, 0.01, 0.02]
-inertia = { xx = 0.01, yy = 0.07, zz = 0.07, xy = 0.001, yz = 0.0005 }
-[[robot.body]]
-name = "forearm"
-joint = { name = "q3", kind = "revolute", axis = [0, 1, 0], origin = [0.5, 0, 0] }
-mass = 2.0
-com = [0.18, -0.01, 0.01]
-inertia = { xx = 0.006, yy = 0.03, zz = 0.03, xz = -0.001, yz = 0.0004 }
-"#;
-
-/// An element named strut between column and forearm; `law` is the rest of its table.
-pub(crate) fn strut(law: &str) -> String {
-    format!(
-        r#"
-[[element]]
-name = "strut"
-from = {{ body = "column", point = [0.14, -0.1, 0.08] }}
-to = {{ body = "forearm", point = [-0.06, 0.1, 0.08] }}
-rest_length = "70 cm"
-{law}
-"#
-    )
-}
-
 /// The arm falling with the thermoviscoelastic strut of the first paper; `motion` is the rest of its motion.
 pub(crate) fn falling(alpha: f64, celsius: f64, derivative: &str, motion: &str) -> String {
-    let law = format!(
-        r#"law = "thermoviscoelastic"
-parameters = {{ E_c = "30 N/m", E_kv = "20 N/m", E_d = "50 N*s^alpha/m", alpha = {alpha}, a_kv = "0.0007 m/K" }}
-inputs = {{ T = "{celsius} degC" }}
-derivative = "{derivative}""#
-    );
-    format!("{ARM}{}\n[motion]\nkind = \"forward\"\n{motion}\n", strut(&law))
+    let strut = thermoviscoelastic(alpha, celsius, derivative);
+    format!("{ARM}{strut}\n[motion]\nkind = \"forward\"\n{motion}\n")
 }
 
 /// Rows every `step` seconds.

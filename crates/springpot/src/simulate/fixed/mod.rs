@@ -12,7 +12,6 @@
 mod elements;
 mod place;
 mod real_time;
-mod resistance;
 mod run;
 mod stepper;
 

@@ -2,7 +2,7 @@
 
 use super::stepper::Place;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
-use crate::motion::{Drive, Forward};
+use crate::motion::Forward;
 use crate::simulate::forward::drives::drive;
 use crate::simulate::lu::Lu;
 use crate::simulate::moment::{Moment, Scratch};
@@ -67,13 +67,12 @@ pub(super) struct Accelerator {
 impl Accelerator {
     pub(super) fn new(system: &System, forward: &Forward) -> Self {
         let model = &system.model;
-        let joints = model.own_joints().zip(&forward.drives).filter(|(_, drive)| matches!(drive, Drive::Force(_)));
         Self {
             kinematics: Kinematics::new(model),
             workspace: Workspace::new(model),
             mass: vec![0.0; model.nv() * model.nv()],
             lu: Lu::default(),
-            free: joints.flat_map(|(j, _)| model.v_range(j)).collect(),
+            free: forward.free_velocities(model),
         }
     }
 
@@ -88,7 +87,7 @@ impl Accelerator {
         moment: &mut Moment,
         mut forces: impl FnMut(usize, &Moment) -> f64,
     ) -> Result<(), RunError> {
-        let (model, n) = (&system.model, system.model.nv());
+        let model = &system.model;
         for &k in &self.free {
             moment.a[k] = 0.0;
         }
@@ -101,12 +100,9 @@ impl Accelerator {
                 *push -= force * moment.elements[e].gradient[k];
             }
         }
-        let (free, count) = (&self.free, self.free.len());
         self.kinematics.update_position(model, &moment.q);
         crba_into(model, &self.kinematics, &mut self.workspace, &mut self.mass);
-        let mass = &self.mass;
-        let entry = |k: usize| mass[free[k / count] * n + free[k % count]];
-        if count > 0 && self.lu.factor(count, |m| (0..count * count).for_each(|k| m[k] = entry(k))) {
+        if self.lu.factor_part(model.nv(), &self.mass, &self.free) {
             self.lu.solve(&mut push);
         }
         for (push, &k) in push.iter().zip(&self.free) {

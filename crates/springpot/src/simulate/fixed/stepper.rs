@@ -1,13 +1,13 @@
 //! One step of a fixed-step method: one stage, a fixed number of Newton iterations.
 
 use super::elements::ElementStep;
-use super::resistance::add_secants;
 use super::{ITERATIONS, Method};
 use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pair_into, rnea_derivatives_into, rnea_into};
 use crate::law::{Response, State};
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
 use crate::simulate::lu::Lu;
+use crate::simulate::resistance::{add_resistance, add_secants};
 use crate::simulate::{RunError, System};
 
 /// The robot at one time.
@@ -59,14 +59,14 @@ impl<'a> Stepper<'a> {
     pub(super) fn new(system: &'a System, forward: &'a Forward, method: Method) -> Result<Self, RunError> {
         let model = &system.model;
         let nv = model.nv();
-        let mut free = Vec::new();
+        let free = forward.free_velocities(model);
         let mut start =
             Place { t: 0.0, q: forward.q.clone(), v: forward.v.clone(), kinematics: Kinematics::new(model) };
         let mut a = vec![0.0; nv];
         for (j, drive) in model.own_joints().zip(&forward.drives) {
             let (q, v) = (model.q_range(j), model.v_range(j));
             match drive {
-                Drive::Force(_) => free.extend(v),
+                Drive::Force(_) => {}
                 Drive::Prescribed(path) => path.at(0.0, &mut start.q[q], &mut start.v[v.clone()], &mut a[v]),
                 Drive::Locked => start.v[v].fill(0.0),
             }
@@ -228,7 +228,7 @@ impl<'a> Stepper<'a> {
         }
         let (stage, workspace) = (&self.stage, &mut self.workspace);
         rnea_into(self.model, &stage.q, &stage.v, &self.a, &self.pairs, workspace, &mut self.tau);
-        self.system.add_joint_losses(&stage.v, &mut self.tau);
+        add_resistance(self.model, &stage.v, &mut self.tau);
         for ((r, &k), drive) in self.residual.iter_mut().zip(free).zip(&self.drives) {
             *r = drive - self.tau[k];
         }

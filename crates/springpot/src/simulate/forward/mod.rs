@@ -11,7 +11,6 @@ pub(super) mod drives;
 mod estimate;
 mod keep;
 mod newton;
-mod resistance;
 mod stages;
 mod start;
 mod stepper;

@@ -1,12 +1,12 @@
 //! The Newton iteration for the accelerations of the stages: three unknowns for each free velocity.
 
-use super::resistance::add_resistance;
 use super::stepper::Stepper;
 use super::tableau::{A, A_SQUARED};
 use crate::dynamics::{PairForce, rnea_into};
 use crate::fractional::step::MAX_NODES;
 use crate::simulate::RunError;
 use crate::simulate::book::Account;
+use crate::simulate::resistance::add_resistance;
 
 /// Newton iterations after which a step is given up.
 const MOST_ITERATIONS: u32 = 10;

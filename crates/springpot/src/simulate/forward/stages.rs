@@ -1,7 +1,6 @@
 //! The stages of a step: where they are, what drives them, and the linearisation at its start.
 
 use super::drives::{force_at, take_path};
-use super::resistance::add_resistance_slope;
 use super::stepper::Stepper;
 use super::tableau::{A_SQUARED, GAMMA};
 use crate::dynamics::{PairForce, pair_into, rnea_derivatives_into};
@@ -10,6 +9,7 @@ use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::motion::Drive;
 use crate::simulate::RunError;
 use crate::simulate::book::Account;
+use crate::simulate::resistance::add_tangents;
 
 /// Above this stiffness a springpot of order below ½ takes its polynomial through strokes, which is stable however stiff.
 const STIFF: f64 = 10.0;
@@ -31,7 +31,7 @@ impl Stepper<'_> {
         }
         let (origin, slopes) = (&self.origin, &mut self.slopes);
         rnea_derivatives_into(self.model, &self.start, &origin.a, &self.pairs, &mut self.workspace, slopes);
-        add_resistance_slope(self.model, &origin.v, &mut slopes.d_v);
+        add_tangents(self.model, &origin.v, &mut slopes.d_v);
         let t = origin.t;
         for (element, stage) in self.system.elements.iter().zip(&mut self.elements) {
             let pair = pair_into(self.model, &self.start, &element.from, &element.to, &mut stage.gradient);
@@ -62,13 +62,10 @@ impl Stepper<'_> {
     /// −M⁻¹ ∂l/∂q of every element over the free velocities.
     fn share_forces(&mut self) {
         let (n, free, slopes) = (self.model.nv(), &self.free, &self.slopes);
-        let count = free.len();
-        let regular = self.mass.factor(count, |m| {
-            (0..count * count).for_each(|k| m[k] = slopes.d_a[free[k / count] * n + free[k % count]]);
-        });
+        let regular = self.mass.factor_part(n, &slopes.d_a, free);
         for element in &mut self.elements {
             element.share.fill(0.0);
-            if !regular || count == 0 {
+            if !regular {
                 continue;
             }
             let x = &mut self.scratch.error;

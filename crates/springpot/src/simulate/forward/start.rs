@@ -1,13 +1,13 @@
 //! The first moment and the first step.
 
 use super::drives::{force_at, take_path};
-use super::resistance::add_resistance;
-use super::stepper::{Origin, Tolerance, free_velocities};
+use super::stepper::{Origin, Tolerance};
 use crate::dynamics::{Kinematics, PairForce, crba, rnea};
 use crate::law::{Derivative, Point};
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
 use crate::simulate::lu::Lu;
+use crate::simulate::resistance::add_resistance;
 use crate::simulate::{RunError, System};
 
 /// One element where a motion starts.
@@ -50,7 +50,7 @@ pub(super) fn accelerate(
             take_path(model, j, path, t, q, v, a)?;
         }
     }
-    let free = free_velocities(model, forward);
+    let free = forward.free_velocities(model);
     let kinematics = Kinematics::at_velocity(model, q, v);
     let (mut elements, mut pairs) = (Vec::new(), Vec::new());
     for (e, (element, known)) in system.elements.iter().zip(forces).enumerate() {
@@ -102,7 +102,7 @@ pub(super) fn take_jumps(system: &System, forward: &Forward, origin: &mut Origin
         return Ok(());
     }
     let kinematics = Kinematics::at_velocity(model, q, v);
-    let (mass, n, free) = (crba(model, &kinematics), model.nv(), free_velocities(model, forward));
+    let (mass, n, free) = (crba(model, &kinematics), model.nv(), forward.free_velocities(model));
     let mut share: Vec<f64> =
         free.iter().map(|&k| -change.iter().zip(&mass[k * n..]).map(|(change, m)| change * m).sum::<f64>()).collect();
     solve_mass(system, &kinematics, &free, &mut share);
@@ -127,11 +127,8 @@ fn refuse_jumps(model: &Model, t: f64, before: &[f64], after: &[f64], v: &[f64])
 
 /// x ← M⁻¹ x over the free velocities.
 fn solve_mass(system: &System, kinematics: &Kinematics, free: &[usize], x: &mut [f64]) {
-    let (mass, n, count) = (crba(&system.model, kinematics), system.model.nv(), free.len());
     let mut lu = Lu::default();
-    if count > 0
-        && lu.factor(count, |m| (0..count * count).for_each(|k| m[k] = mass[free[k / count] * n + free[k % count]]))
-    {
+    if lu.factor_part(system.model.nv(), &crba(&system.model, kinematics), free) {
         lu.solve(x);
     }
 }
@@ -150,7 +147,7 @@ pub(super) fn first_step(
 ) -> f64 {
     let model = &system.model;
     let kinematics = Kinematics::at_velocity(model, &origin.q, &origin.v);
-    let free = free_velocities(model, forward);
+    let free = forward.free_velocities(model);
     let fastest = (0..model.nv()).fold(0.0, |m: f64, k| {
         let (v, a) = (origin.v[k].abs(), origin.a[k].abs());
         m.max(v / tolerance.of(if model.is_one_degree() { origin.q[k] } else { 1.0 })).max(a / tolerance.of(v))

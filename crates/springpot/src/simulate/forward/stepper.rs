@@ -6,7 +6,7 @@ use crate::fractional::step::{MAX_NODES, lagrange_row};
 use crate::fractional::{Form, Nodes};
 use crate::law::{InputValue, Response, Singular, Step};
 use crate::model::{JointKind, Model};
-use crate::motion::{Drive, Forward};
+use crate::motion::Forward;
 use crate::simulate::System;
 use crate::simulate::lu::Lu;
 use serde::{Deserialize, Serialize};
@@ -197,7 +197,7 @@ impl<'a> Stepper<'a> {
             forward,
             tolerance,
             rtol,
-            free: free_velocities(model, forward),
+            free: forward.free_velocities(model),
             coordinates: coordinates(model),
             origin: Origin::new(system, forward),
             stages: std::array::from_fn(|_| stage.clone()),
@@ -294,12 +294,6 @@ impl<'a> Stepper<'a> {
         self.linearised = false;
         self.elements.iter_mut().for_each(|element| element.singular_before = 0.0);
     }
-}
-
-/// The velocities of joints that forces drive.
-pub(super) fn free_velocities(model: &Model, forward: &Forward) -> Vec<usize> {
-    let drives = model.own_joints().zip(&forward.drives);
-    drives.filter(|(_, drive)| matches!(drive, Drive::Force(_))).flat_map(|(j, _)| model.v_range(j)).collect()
 }
 
 /// The coordinate that each velocity moves; none for those of floating joints.
