@@ -57,8 +57,8 @@ pub struct Kernel {
     pub tolerance: f64,
 }
 
-/// Number of lags at which a new kernel is compared with the power law.
-const SAMPLES: usize = 600;
+/// Lags at which a new kernel is compared with the power law, per period eta of the error in ln t.
+const SAMPLES: usize = 8;
 
 /// Orders below are taken for this one: t^−alpha is then 1 to rounding for any lag there is.
 const SMALLEST_ORDER: f64 = f64::EPSILON;
@@ -99,7 +99,7 @@ impl Kernel {
             weight.push(scale * cut.powf(alpha) * mass);
         }
         let kernel = Self { alpha, lambda, weight, eta, delta, horizon, tolerance };
-        let error = kernel.sampled_error(SAMPLES);
+        let error = kernel.lattice_error(count);
         if error.is_nan() || error > tolerance {
             return Err(KernelError::Bound { alpha, error, tolerance });
         }
@@ -126,6 +126,30 @@ impl Kernel {
                 (self.value(t) / (inverse * t.powf(-self.alpha)) - 1.0).abs()
             })
             .fold(0.0, |largest: f64, error| if error > largest || error.is_nan() { error } else { largest })
+    }
+
+    /// Largest relative error at [`SAMPLES`] lags per eta in ln t over [delta, horizon], both ends among them.
+    ///
+    /// At these lags the first `count` modes, λ_0 e^{−kη}, share their exponentials: λ_k t depends on one index alone.
+    fn lattice_error(&self, count: usize) -> f64 {
+        let spacing = self.eta / SAMPLES as f64;
+        let rows = ((self.horizon / self.delta).ln() / spacing).ceil() as usize;
+        let first = SAMPLES * (count - 1);
+        let shared: Vec<f64> = (0..=first + rows)
+            .map(|m| (-self.lambda[0] * self.delta * ((m as f64 - first as f64) * spacing).exp()).exp())
+            .collect();
+        let inverse = 1.0 / gamma(1.0 - self.alpha);
+        let mut largest = self.sampled_error(1);
+        for row in 0..rows {
+            let t = self.delta * (row as f64 * spacing).exp();
+            let trapezoid: f64 = (0..count).map(|k| self.weight[k] * shared[first + row - SAMPLES * k]).sum();
+            let tail: f64 = (count..self.modes()).map(|k| self.weight[k] * (-self.lambda[k] * t).exp()).sum();
+            let error = ((trapezoid + tail) / (inverse * t.powf(-self.alpha)) - 1.0).abs();
+            if error > largest || error.is_nan() {
+                largest = error;
+            }
+        }
+        largest
     }
 
     /// How many modes must be put in front so that the bound holds from `lag` on; 0 when it already does.
@@ -185,21 +209,29 @@ impl Tail {
         let exponentials = |nodes: &[f64], masses: &[f64], s: f64| -> f64 {
             nodes.iter().zip(masses).map(|(y, m)| m * (-s * y).exp()).sum()
         };
+        // Reaches are looked for on the lattice 1e-14·1.12^k. The error grows with s = λ_c t up to the first crossing, later for
+        // every further node: each size goes on from the one before, in strides, then in halves.
+        const STRIDE: usize = 8;
+        let reach_at = |k: usize| 1e-14 * 1.12f64.powi(k as i32);
+        let last = 344;
         let mut best: Option<(usize, Self)> = None;
-        for size in 1..=8 {
-            let (nodes, weights) = gauss_rule(&points, &masses, size);
-            // The error grows with s = λ_c t up to the first crossing: walk up to it.
-            let mut reach = 1e-14f64;
-            while reach < 1e3 {
-                let s = reach * 1.12;
+        let mut low = 0;
+        for (nodes, weights) in gauss_rules(&points, &masses, 8) {
+            let holds = |k: usize| {
+                let s = reach_at(k);
                 let error = (exponentials(&points, &masses, s) - exponentials(&nodes, &weights, s)).abs();
-                if error * to_kernel * s.powf(alpha) > tolerance {
-                    break;
-                }
-                reach = s;
+                error * to_kernel * s.powf(alpha) <= tolerance
+            };
+            let mut high = low + STRIDE;
+            while high < last && holds(high) {
+                (low, high) = (high, high + STRIDE);
             }
-            let count = ((span / reach).ln() / eta).ceil().max(1.0) as usize;
-            if best.as_ref().is_none_or(|(c, tail)| count + size < c + tail.nodes.len()) {
+            while high - low > 1 {
+                let middle = low.midpoint(high);
+                if holds(middle) { low = middle } else { high = middle }
+            }
+            let count = ((span / reach_at(low)).ln() / eta).ceil().max(1.0) as usize;
+            if best.as_ref().is_none_or(|(c, tail)| count + nodes.len() < c + tail.nodes.len()) {
                 best = Some((count, Self { nodes, masses: weights }));
             }
         }
@@ -217,15 +249,15 @@ fn geometric_measure(alpha: f64, eta: f64) -> (Vec<f64>, Vec<f64>) {
     (points, masses)
 }
 
-/// `size`-point Gauss rule of a discrete positive measure: Lanczos with full reorthogonalisation, then the eigenvalues of the
-/// Jacobi matrix (Golub & Welsch 1969).
-fn gauss_rule(points: &[f64], masses: &[f64], size: usize) -> (Vec<f64>, Vec<f64>) {
+/// Gauss rules of 1 to `largest` points of a discrete positive measure, nodes descending: Lanczos with full
+/// reorthogonalisation, then the eigenvalues of the leading blocks of the Jacobi matrix (Golub & Welsch 1969).
+fn gauss_rules(points: &[f64], masses: &[f64], largest: usize) -> Vec<(Vec<f64>, Vec<f64>)> {
     let total: f64 = masses.iter().sum();
     let mut basis: Vec<Vec<f64>> = vec![masses.iter().map(|m| (m / total).sqrt()).collect()];
-    let mut jacobi = vec![vec![0.0; size]; size];
-    for j in 0..size {
+    let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
+    for j in 0..largest {
         let mut next: Vec<f64> = basis[j].iter().zip(points).map(|(v, y)| v * y).collect();
-        jacobi[j][j] = dot(&next, &basis[j]);
+        diagonal.push(dot(&next, &basis[j]));
         for _ in 0..2 {
             for v in &basis {
                 let overlap = dot(&next, v);
@@ -233,32 +265,48 @@ fn gauss_rule(points: &[f64], masses: &[f64], size: usize) -> (Vec<f64>, Vec<f64
             }
         }
         let norm = dot(&next, &next).sqrt();
-        if j + 1 < size {
-            jacobi[j][j + 1] = norm;
-            jacobi[j + 1][j] = norm;
-            basis.push(next.iter().map(|n| n / norm).collect());
-        }
+        beside.push(norm);
+        basis.push(next.iter().map(|n| n / norm).collect());
     }
-    let (values, first) = symmetric_eigen(jacobi);
-    let mut order: Vec<usize> = (0..size).collect();
-    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-    (order.iter().map(|&i| values[i].max(0.0)).collect(), order.iter().map(|&i| total * first[i] * first[i]).collect())
+    let rule = |size: usize| {
+        let mut jacobi = vec![vec![0.0; size]; size];
+        for j in 0..size {
+            jacobi[j][j] = diagonal[j];
+            if j > 0 {
+                jacobi[j][j - 1] = beside[j - 1];
+                jacobi[j - 1][j] = beside[j - 1];
+            }
+        }
+        let (values, first) = symmetric_eigen(jacobi);
+        let mut order: Vec<usize> = (0..size).collect();
+        order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+        (
+            order.iter().map(|&i| values[i].max(0.0)).collect(),
+            order.iter().map(|&i| total * first[i] * first[i]).collect(),
+        )
+    };
+    (1..=largest).map(rule).collect()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Eigenvalues of a small symmetric matrix and the first components of its eigenvectors, by cyclic Jacobi rotations.
+/// Eigenvalues of a small positive definite matrix and the first components of its eigenvectors, by cyclic Jacobi rotations.
+///
+/// Elements below rounding next to their own diagonal count as 0, so that small eigenvalues keep their digits (Demmel &
+/// Veselić, SIAM J. Matrix Anal. Appl. 13 (1992) 1204).
 fn symmetric_eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<f64>) {
     let n = a.len();
     let mut first: Vec<f64> = (0..n).map(|i| if i == 0 { 1.0 } else { 0.0 }).collect();
     for _ in 0..60 {
+        let mut turned = false;
         for p in 0..n {
             for q in p + 1..n {
-                if a[p][q] == 0.0 {
+                if a[p][q].abs() <= 1e-17 * (a[p][p] * a[q][q]).abs().sqrt() {
                     continue;
                 }
+                turned = true;
                 let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
                 let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
                 let c = 1.0 / t.hypot(1.0);
@@ -272,8 +320,7 @@ fn symmetric_eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<f64>) {
                 (first[p], first[q]) = (c * first[p] - s * first[q], s * first[p] + c * first[q]);
             }
         }
-        let off: f64 = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| a[i][j].abs()).sum();
-        if off < 1e-300 {
+        if !turned {
             break;
         }
     }
