@@ -224,6 +224,8 @@ fn main() {
             println!("  springpot, rtol {rtol:.0e}: {:9.3} ms, error {:.1e}", 1e3 * seconds, point.error);
             own.push(point);
         }
+        let longer = Settings { end: 10.0, rows: RowTimes::Times([10.0].into()), ..settings.clone() };
+        println!("  springpot, 10 s at rtol 1e-8: {:.1} ms", 1e3 * springpot(&system, &longer, 1e-8, 15).0);
         let mut sums = Vec::new();
         for steps in STEPS {
             let begun = Instant::now();
