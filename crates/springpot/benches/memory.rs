@@ -1,8 +1,10 @@
-//! Streaming D^½ of uniform samples, and the price of one step of the memory as the past grows.
+//! D^½ of uniform samples, and the price of one step of the memory as the past grows.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use springpot::fractional::stream::derivative_of_samples;
-use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
+use springpot::fractional::scheme::Samples;
+use springpot::fractional::{
+    Definition, Form, Kind, Memory, Method, Nodes, RatePolynomial, StepStart, derivative, step::RADAU_NODES,
+};
 use std::hint::black_box;
 
 fn signal(t: f64) -> f64 {
@@ -13,21 +15,27 @@ fn rate(t: f64) -> f64 {
     5.6 * (8.0 * t).cos() + 0.1
 }
 
-/// 10⁶ samples over 10 s: error ≤ 1e-8 of the largest value (asserted against the reference at t = 10).
-fn million_samples(criterion: &mut Criterion) {
-    let count = 1_000_000;
-    let h = 10.0 / (count - 1) as f64;
-    let x: Vec<f64> = (0..count).map(|n| signal(n as f64 * h)).collect();
-    let values = derivative_of_samples(&x, h, 0.5, 1e-9).unwrap();
-    let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let error = (values[count - 1] + 1.189_941_531_700_918).abs() / largest;
-    assert!(error <= 1e-8, "error {error:e}");
-    println!("error at t = 10 s: {error:.1e} of the largest value");
-    let mut group = criterion.benchmark_group("stream");
-    group.sample_size(20).throughput(Throughput::Elements(count as u64));
-    group.bench_function("derivative of 10^6 samples, alpha 0.5, 1e-8", |b| {
-        b.iter(|| derivative_of_samples(black_box(&x), h, 0.5, 1e-9).unwrap());
-    });
+/// 10⁵ and 10⁶ samples over 10 s: error ≤ 1e-8 of the largest value (asserted against the reference at t = 10).
+fn samples(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("samples");
+    group.sample_size(20);
+    for count in [100_000, 1_000_000] {
+        let h = 10.0 / (count - 1) as f64;
+        let t: Vec<f64> = (0..count).map(|n| n as f64 * h).collect();
+        let x: Vec<f64> = t.iter().map(|t| signal(*t)).collect();
+        let samples = Samples { t: &t, x: &x, rate: None };
+        group.throughput(Throughput::Elements(count as u64));
+        for method in [Method::Spline, Method::Hermite, Method::Exponential] {
+            let values = derivative(&samples, 0.5, Definition::Caputo, method).unwrap();
+            let largest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+            let error = (values[count - 1] + 1.189_941_531_700_918).abs() / largest;
+            assert!(error <= 1e-8, "{method}: error {error:e}");
+            println!("{method}, {count} samples: error at t = 10 s {error:.1e} of the largest value");
+            group.bench_function(BenchmarkId::new(method.to_string(), count), |b| {
+                b.iter(|| derivative(black_box(&samples), 0.5, Definition::Caputo, method).unwrap());
+            });
+        }
+    }
     group.finish();
 }
 
@@ -61,5 +69,5 @@ fn step_after(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, million_samples, step_after);
+criterion_group!(benches, samples, step_after);
 criterion_main!(benches);

@@ -1,0 +1,41 @@
+//! D^a along pieces, one after the other: constant time for each.
+
+use super::DerivativeError;
+use super::order::Order;
+use super::past::Past;
+
+/// Most coefficients of a piece of y.
+const MOST: usize = 8;
+
+/// I^beta x⁽ᵐ⁾ at the ends of pieces of x.
+#[derive(Debug, Clone)]
+pub(super) struct March {
+    order: Order,
+    /// None where the order is an integer.
+    past: Option<Past>,
+    running: [f64; 2],
+    factors: Vec<f64>,
+    y: Vec<f64>,
+    /// h^beta of the last width.
+    scale: (f64, f64),
+}
+
+impl March {
+    /// For pieces from `shortest` on, up to `horizon`.
+    pub(super) fn new(order: Order, shortest: f64, horizon: f64) -> Result<Self, DerivativeError> {
+        let past = if order.is_integer() { None } else { Some(Past::new(&order, shortest, horizon)?) };
+        let (factors, y) = (order.factors(MOST), Vec::with_capacity(MOST));
+        Ok(Self { order, past, running: [0.0; 2], factors, y, scale: (0.0, 0.0) })
+    }
+
+    /// The value at the end of the next piece of x, given by its coefficients in powers of θ; `end` is its time.
+    pub(super) fn advance(&mut self, width: f64, x: &[f64], end: f64) -> f64 {
+        self.order.lower(width, x, &mut self.running, &mut self.y);
+        let Some(past) = &mut self.past else { return self.y.iter().sum() };
+        if self.scale.0 != width {
+            self.scale = (width, width.powf(self.order.beta()));
+        }
+        let local: f64 = self.y.iter().zip(&self.factors).map(|(c, factor)| c * factor).sum();
+        self.scale.1 * local + past.advance(width, &self.y, 4.0 * f64::EPSILON * end)
+    }
+}

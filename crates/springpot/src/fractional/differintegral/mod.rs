@@ -1,0 +1,20 @@
+//! Derivatives and integrals of order −2 … 2 of samples, streams and closures.
+
+mod along;
+mod definition;
+mod error;
+mod hermite;
+mod march;
+mod method;
+mod order;
+mod past;
+mod sampled;
+mod stencil;
+mod stream;
+mod uniform;
+
+pub use definition::{Definition, DefinitionNameError};
+pub use error::{DerivativeError, FunctionError};
+pub use method::{Method, MethodNameError};
+pub use sampled::{Estimated, derivative, derivative_with_error};
+pub use stream::{RatedStream, Row, Stream};
