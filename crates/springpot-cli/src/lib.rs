@@ -4,6 +4,7 @@
 
 mod arguments;
 mod check;
+mod derivative;
 mod diagnostic;
 mod dynamics;
 mod excerpt;
@@ -71,6 +72,7 @@ pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(options) => check::check(&options),
         Command::Info(options) => info::info(&options),
         Command::Dynamics(options) => dynamics::dynamics(&options),
+        Command::Derivative(options) => derivative::derivative(&options),
     };
     ending.into()
 }

@@ -1,6 +1,7 @@
 //! The program as a user types it.
 
 mod check;
+mod derivative;
 mod documents;
 mod dynamics;
 mod dynamics_refusals;

@@ -1,8 +1,10 @@
 //! Columns of numbers from CSV files: a header row, a time column that increases, UTF-8.
 
 mod error;
+mod rows;
 
 pub use error::{CsvError, CsvProblem};
+pub use rows::{CsvRow, CsvRows};
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -123,40 +125,18 @@ fn count_lines(mut reader: impl BufRead) -> Result<u64, CsvProblem> {
 }
 
 fn parse(file: &Path, reader: impl Read, time_name: &str, lines: u64) -> Result<CsvTable, CsvProblem> {
-    // Lines end with a line feed only (a carriage return before it is trimmed), the last one too: so the line that a record
-    // ends on is known, which the crate's own record position does not tell behind blank lines and CRLF.
-    let mut reader = ::csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(::csv::Trim::All)
-        .terminator(::csv::Terminator::Any(b'\n'))
-        .from_reader(reader.chain(&b"\n"[..]));
-    let mut record = ::csv::ByteRecord::new();
-    let mut headers: Option<(Vec<String>, usize)> = None;
-    let mut columns: Vec<Column> = Vec::new();
-    while reader.read_byte_record(&mut record).map_err(unreadable)? {
-        let line = reader.position().line() - 1;
-        let Some((names, time)) = &headers else {
-            if !is_blank(&record) {
-                let (names, time) = read_headers(&record, line, time_name)?;
-                if lines.saturating_mul(names.len() as u64) > MAX_NUMBERS {
-                    return Err(CsvProblem::TooLarge { limit: MAX_NUMBERS, what: "numbers" });
-                }
-                let rows = lines.saturating_sub(1) as usize;
-                columns = names.iter().map(|_| Column { numbers: Vec::with_capacity(rows), flaw: None }).collect();
-                headers = Some((names, time));
-            }
-            continue;
-        };
-        if is_blank(&record) {
-            continue;
-        }
-        if record.len() != names.len() {
-            return Err(CsvProblem::Ragged { line, given: record.len(), wanted: names.len() });
-        }
-        read_row(&record, line, names, *time, &mut columns)?;
+    let mut rows = CsvRows::new(reader)?;
+    let time = rows.find(time_name)?;
+    let headers = rows.headers().to_vec();
+    if lines.saturating_mul(headers.len() as u64) > MAX_NUMBERS {
+        return Err(CsvProblem::TooLarge { limit: MAX_NUMBERS, what: "numbers" });
     }
-    let (headers, time) = headers.ok_or(CsvProblem::Empty)?;
+    let capacity = lines.saturating_sub(1) as usize;
+    let mut columns: Vec<Column> =
+        headers.iter().map(|_| Column { numbers: Vec::with_capacity(capacity), flaw: None }).collect();
+    while let Some(row) = rows.next_row()? {
+        read_row(&row, time, &mut columns)?;
+    }
     let rows = columns[time].numbers.len();
     if rows < 2 {
         return Err(CsvProblem::TooFewRows { given: rows });
@@ -164,67 +144,31 @@ fn parse(file: &Path, reader: impl Read, time_name: &str, lines: u64) -> Result<
     Ok(CsvTable { file: file.to_owned(), headers, time, columns })
 }
 
-fn read_headers(record: &::csv::ByteRecord, line: u64, time_name: &str) -> Result<(Vec<String>, usize), CsvProblem> {
-    let mut names: Vec<String> = Vec::with_capacity(record.len());
-    for (index, cell) in record.iter().enumerate() {
-        let column = index + 1;
-        let name = std::str::from_utf8(cell).map_err(|_| CsvProblem::NotUtf8 { line, column })?;
-        if name.is_empty() && record.len() > 1 {
-            return Err(CsvProblem::NoName { column });
-        }
-        if let Some(first) = names.iter().position(|other| other == name) {
-            return Err(CsvProblem::DuplicateName { name: shorten(name), first: first + 1, second: column });
-        }
-        names.push(name.to_owned());
-    }
-    if names.iter().all(|name| name.parse::<f64>().is_ok()) {
-        return Err(CsvProblem::NoHeader { first: shorten(&names[0]) });
-    }
-    if let [only] = &names[..]
-        && let Some(separator) = only.chars().find(|c| matches!(c, ';' | '\t' | '|'))
-    {
-        return Err(CsvProblem::OtherSeparator { separator });
-    }
-    let Some(time) = names.iter().position(|name| name == time_name) else {
-        return Err(missing(time_name, &names));
-    };
-    Ok((names, time))
-}
-
-fn read_row(
-    record: &::csv::ByteRecord,
-    line: u64,
-    names: &[String],
-    time: usize,
-    columns: &mut [Column],
-) -> Result<(), CsvProblem> {
-    for (index, (cell, column)) in record.iter().zip(columns.iter_mut()).enumerate() {
-        let text = std::str::from_utf8(cell).map_err(|_| CsvProblem::NotUtf8 { line, column: index + 1 })?;
+fn read_row(row: &CsvRow, time: usize, columns: &mut [Column]) -> Result<(), CsvProblem> {
+    for (index, column) in columns.iter_mut().enumerate() {
+        let text = row.text(index)?;
         let number = text.parse().unwrap_or(f64::NAN);
         if !number.is_finite() && index == time {
-            return Err(not_a_number(text, line, index, &names[index]));
+            row.number(index)?;
         }
         if !number.is_finite() && column.flaw.is_none() {
-            column.flaw = Some((line, shorten(text)));
+            column.flaw = Some((row.line(), shorten(text)));
         }
         column.numbers.push(number);
     }
     match columns[time].numbers[..] {
-        [.., before, now] if now <= before => Err(CsvProblem::TimeNotIncreasing { line, time: now, before }),
+        [.., before, now] if now <= before => {
+            Err(CsvProblem::TimeNotIncreasing { line: row.line(), time: now, before })
+        }
         _ => Ok(()),
     }
 }
 
-fn is_blank(record: &::csv::ByteRecord) -> bool {
-    record.len() == 1 && record[0].is_empty()
-}
-
-fn unreadable(error: ::csv::Error) -> CsvProblem {
-    CsvProblem::Unreadable { source: error.into() }
-}
-
 fn not_a_number(text: &str, line: u64, index: usize, name: &str) -> CsvProblem {
     let (text, name, column) = (shorten(text), shorten(name), index + 1);
+    if text.is_empty() {
+        return CsvProblem::NoNumber { line, column, name };
+    }
     // "nan" and "inf" parse, and so does 1e999.
     if text.parse::<f64>().is_ok() {
         CsvProblem::NotFinite { text, line, column, name }

@@ -43,7 +43,7 @@ impl Method {
     /// Fewest rows the method can work on.
     pub fn min_rows(self) -> usize {
         match self {
-            Self::Spline | Self::Hermite | Self::Exponential => 2,
+            Self::Spline | Self::Hermite | Self::Exponential => 3,
             Self::Scheme(scheme) => scheme.min_rows(),
         }
     }

@@ -78,6 +78,16 @@ pub enum CsvProblem {
         /// The column's name.
         name: String,
     },
+    /// An empty cell where a number should be.
+    #[error("column {column} (`{name}`) is empty")]
+    NoNumber {
+        /// Its line.
+        line: u64,
+        /// Its column.
+        column: usize,
+        /// The column's name.
+        name: String,
+    },
     /// NaN, infinity, or beyond the range of numbers.
     #[error("`{text}` in column {column} (`{name}`) is not a finite number")]
     NotFinite {
@@ -145,6 +155,7 @@ impl CsvProblem {
     pub fn line(&self) -> Option<u64> {
         match self {
             Self::NotANumber { line, .. }
+            | Self::NoNumber { line, .. }
             | Self::NotFinite { line, .. }
             | Self::TimeNotIncreasing { line, .. }
             | Self::Ragged { line, .. }
@@ -157,6 +168,7 @@ impl CsvProblem {
     pub fn column(&self) -> Option<usize> {
         match self {
             Self::NotANumber { column, .. }
+            | Self::NoNumber { column, .. }
             | Self::NotFinite { column, .. }
             | Self::NotUtf8 { column, .. }
             | Self::NoName { column } => Some(*column),

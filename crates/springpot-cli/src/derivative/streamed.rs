@@ -1,0 +1,110 @@
+//! Derivatives of rows as they come.
+
+use super::Problem;
+use super::sheet::{Layout, Sheet};
+use springpot::fractional::{DerivativeError, Stream};
+use springpot::signal::csv::{CsvProblem, CsvRows};
+use springpot::table::push_number;
+use std::collections::VecDeque;
+use std::io::{Read, Write};
+
+/// Goes on from the rows that are `held`, and then as they are read.
+pub(super) fn differentiate(
+    layout: &Layout,
+    held: Sheet,
+    rows: &mut CsvRows<impl Read>,
+    output: &mut dyn Write,
+) -> Result<(), Problem> {
+    let mut writer = Writer::new(layout, output)?;
+    for row in 0..held.times.len() {
+        let values = held.values.iter().map(|column| column[row]);
+        writer.push(held.times[row], values, held.row_text(row).to_vec())?;
+    }
+    drop(held);
+    while let Some(row) = rows.next_row()? {
+        let time = layout.time(&row, writer.last)?;
+        let values = layout.values(&row).collect::<Result<Vec<_>, _>>()?;
+        let mut text = Vec::new();
+        layout.text(&row, &mut text);
+        writer.push(time, values.into_iter(), text)?;
+    }
+    writer.finish()
+}
+
+/// Rows wait here until their derivatives are known.
+struct Writer<'a> {
+    output: &'a mut dyn Write,
+    /// One for each column and order.
+    streams: Vec<Stream>,
+    orders: usize,
+    /// Values that are known, in the order of the streams; all streams are as far.
+    known: Vec<Vec<f64>>,
+    waiting: VecDeque<Vec<u8>>,
+    first: f64,
+    last: Option<f64>,
+    taken: usize,
+}
+
+impl<'a> Writer<'a> {
+    fn new(layout: &Layout, output: &'a mut dyn Write) -> Result<Self, Problem> {
+        output.write_all(&layout.header(false))?;
+        let orders = layout.orders.iter().cycle().take(layout.orders.len() * layout.count());
+        let streams = orders.map(|order| Stream::new(*order, layout.definition));
+        let streams: Vec<Stream> = streams.collect::<Result<_, _>>()?;
+        let known = vec![Vec::new(); streams.len()];
+        Ok(Self {
+            output,
+            streams,
+            orders: layout.orders.len(),
+            known,
+            waiting: VecDeque::new(),
+            first: 0.0,
+            last: None,
+            taken: 0,
+        })
+    }
+
+    fn push(&mut self, time: f64, values: impl Iterator<Item = f64>, text: Vec<u8>) -> Result<(), Problem> {
+        if self.last.is_none() {
+            self.first = time;
+        }
+        self.last = Some(time);
+        self.taken += 1;
+        self.waiting.push_back(text);
+        let streams = self.streams.chunks_mut(self.orders).zip(self.known.chunks_mut(self.orders));
+        for (value, (streams, known)) in values.zip(streams) {
+            for (stream, known) in streams.iter_mut().zip(known) {
+                known.clear();
+                known.extend(stream.push(time - self.first, value)?.iter().map(|row| row.value));
+            }
+        }
+        self.write()
+    }
+
+    fn finish(mut self) -> Result<(), Problem> {
+        if self.taken < 2 {
+            return Err(CsvProblem::TooFewRows { given: self.taken }.into());
+        }
+        let rests = std::mem::take(&mut self.streams).into_iter().map(Stream::finish);
+        let rests = rests.collect::<Result<Vec<_>, DerivativeError>>()?;
+        self.known = rests.iter().map(|rows| rows.iter().map(|row| row.value).collect()).collect();
+        self.write()
+    }
+
+    /// Writes the rows whose derivatives are known.
+    fn write(&mut self) -> Result<(), Problem> {
+        let mut cells = String::new();
+        for row in 0..self.known[0].len() {
+            let text = self.waiting.pop_front().expect("a row for every value");
+            cells.clear();
+            for values in &self.known {
+                cells.push(',');
+                push_number(&mut cells, values[row]);
+            }
+            cells.push('\n');
+            self.output.write_all(&text)?;
+            self.output.write_all(cells.as_bytes())?;
+        }
+        Ok(())
+    }
+}

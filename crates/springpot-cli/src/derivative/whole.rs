@@ -1,0 +1,59 @@
+//! Derivatives of all rows at once.
+
+use super::Problem;
+use super::sheet::{Layout, Sheet};
+use springpot::fractional::scheme::{Samples, SchemeError};
+use springpot::fractional::{DerivativeError, Method, derivative, derivative_with_error};
+use springpot::signal::csv::CsvProblem;
+use springpot::table::push_number;
+use std::io::Write;
+
+pub(super) fn differentiate(
+    layout: &Layout,
+    sheet: &Sheet,
+    method: Method,
+    with_error: bool,
+    output: &mut dyn Write,
+) -> Result<(), Problem> {
+    if sheet.times.len() < 2 {
+        return Err(CsvProblem::TooFewRows { given: sheet.times.len() }.into());
+    }
+    let times = sheet.times_from_start();
+    let mut results: Vec<Vec<f64>> = Vec::new();
+    for values in &sheet.values {
+        let samples = Samples { t: &times, x: values, rate: None };
+        for &order in &layout.orders {
+            let on_line = |problem| match row(&problem) {
+                Some(row) => Problem::Row { line: sheet.line(row), problem },
+                None => problem.into(),
+            };
+            if with_error {
+                let estimated = derivative_with_error(&samples, order, layout.definition, method).map_err(on_line)?;
+                results.extend([estimated.values, estimated.error]);
+            } else {
+                results.push(derivative(&samples, order, layout.definition, method).map_err(on_line)?);
+            }
+        }
+    }
+    output.write_all(&layout.header(with_error))?;
+    let mut text = String::new();
+    for row in 0..times.len() {
+        output.write_all(sheet.row_text(row))?;
+        text.clear();
+        for result in &results {
+            text.push(',');
+            push_number(&mut text, result[row]);
+        }
+        text.push('\n');
+        output.write_all(text.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// The row that a scheme refuses.
+fn row(problem: &DerivativeError) -> Option<usize> {
+    match problem {
+        DerivativeError::Samples(SchemeError::NotUniform { row, .. }) => Some(*row),
+        _ => None,
+    }
+}
