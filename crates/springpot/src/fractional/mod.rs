@@ -9,8 +9,8 @@ pub mod scheme;
 pub mod step;
 
 pub use differintegral::{
-    Definition, DefinitionNameError, DerivativeError, Estimated, FunctionError, Method, MethodNameError, RatedStream,
-    Row, Stream, derivative, derivative_with_error,
+    Definition, DefinitionNameError, DerivativeError, Differintegral, Estimate, Estimated, FunctionError, Method,
+    MethodNameError, Piecewise, RatedStream, Row, Stream, derivative, derivative_with_error,
 };
 pub use kernel::{Kernel, KernelError};
 pub use kind::Kind;

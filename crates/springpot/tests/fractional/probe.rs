@@ -1,4 +1,3 @@
-use springpot::fractional::scheme::Samples;
 use springpot::fractional::*;
 #[test]
 fn probe() {
@@ -13,55 +12,86 @@ fn probe() {
         ("cos(3t)", |t| (3.0 * t).cos()),
         ("exp(-t)", |t| (-t).exp()),
     ];
-    let n = 40000;
-    let h = 10.0 / n as f64;
-    let t: Vec<f64> = (0..=n).map(|k| k as f64 * h).collect();
     for (name, f) in fs {
-        let x: Vec<f64> = t.iter().map(|t| f(*t)).collect();
-        let s = Samples { t: &t, x: &x, rate: None };
-        for m in [Method::Spline, Method::Hermite, Method::Exponential] {
-            for a in [0.1, 0.5, 0.9] {
-                let y = derivative(&s, a, Definition::Caputo, m).unwrap();
-                let big = y.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-                let mut e = 0.0f64;
-                let mut c = 0;
-                for r in v["functions"][name].as_array().unwrap() {
-                    let g = |k: &str| r[k].as_str().unwrap().parse::<f64>().unwrap();
-                    let tt = g("t");
-                    if tt > 10.0 || g("alpha") != a {
-                        continue;
-                    }
-                    let k = (tt / h).round() as usize;
-                    if (k as f64 * h - tt).abs() > 1e-9 {
-                        continue;
-                    }
-                    c += 1;
-                    e = e.max((y[k] - g("caputo")).abs() / big);
-                }
-                println!("{name} {m} {a}: {e:.1e} ({c})");
-            }
-        }
-        // methods against each other at all orders
-        for a in [-2.0, -1.9, -1.5, -1.0, -0.5, -0.01, 0.0, 0.01, 0.5, 0.99, 1.0, 1.01, 1.5, 1.9, 1.99, 2.0] {
-            let y: Vec<Vec<f64>> = [Method::Spline, Method::Hermite, Method::Exponential]
+        let i = std::time::Instant::now();
+        let p = Piecewise::of(f, 0.0..=50.0, 1e-15).unwrap();
+        println!("{name}: {} pieces {:?}", p.pieces(), i.elapsed());
+        for a in [0.1, 0.5, 0.9] {
+            let i = std::time::Instant::now();
+            let d = p.derivative(a, Definition::Caputo).unwrap();
+            let el = i.elapsed();
+            let rows: Vec<(f64, f64, f64)> = v["functions"][name]
+                .as_array()
+                .unwrap()
                 .iter()
-                .map(|m| derivative(&s, a, Definition::Caputo, *m).unwrap())
+                .map(|r| {
+                    let g = |k: &str| r[k].as_str().unwrap().parse::<f64>().unwrap();
+                    (g("t"), g("alpha"), g("caputo"))
+                })
+                .filter(|r| r.1 == a)
                 .collect();
-            let big = y[0].iter().fold(0.0f64, |m, v| m.max(v.abs()));
-            let d = |i: usize, j: usize| y[i].iter().zip(&y[j]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / big;
-            println!("{name} a={a}: spl-her {:.1e} spl-exp {:.1e}", d(0, 1), d(0, 2));
+            let big = rows.iter().fold(0.0f64, |m, v| m.max(v.2.abs()));
+            let i = std::time::Instant::now();
+            let e = rows
+                .iter()
+                .map(|r| {
+                    let y = d.at(r.0);
+                    ((y.value - r.2).abs() / big, y.error / big)
+                })
+                .fold((0.0f64, 0.0f64), |m, e| (m.0.max(e.0), m.1.max(e.1)));
+            println!("  {a}: err {:.1e} est {:.1e} build {:?} at {:?}", e.0, e.1, el, i.elapsed() / 20);
         }
     }
-    for n in [100_000usize, 1_000_000] {
-        let h = 10.0 / n as f64;
-        let t: Vec<f64> = (0..n).map(|k| k as f64 * h).collect();
-        let x: Vec<f64> = t.iter().map(|t| fs[0].1(*t)).collect();
-        let s = Samples { t: &t, x: &x, rate: None };
-        for m in [Method::Spline, Method::Hermite, Method::Exponential] {
-            for a in [-0.5, 0.5, 1.5] {
-                let i = std::time::Instant::now();
-                let _ = derivative(&s, a, Definition::Caputo, m).unwrap();
-                println!("{n} {m} {a}: {:?}", i.elapsed());
+    for p in [0.5, 1.5, 2.5, 0.1, 0.0] {
+        let i = std::time::Instant::now();
+        let f = Piecewise::of(|t| t.powf(p), 0.0..=10.0, 1e-15).unwrap();
+        println!("t^{p}: {} pieces {:?}", f.pieces(), i.elapsed());
+        for a in [-1.5, -0.5, 0.1, 0.5, 0.99, 1.0, 1.5, 1.99] {
+            let d = f.derivative(a, Definition::RiemannLiouville).unwrap();
+            let e: Vec<(f64, f64)> = [1e-6, 1e-3, 0.01, 0.3, 1.0, 3.0, 10.0]
+                .iter()
+                .map(|&t| {
+                    let y = d.at(t);
+                    let ex = gamma::gamma(p + 1.0) * gamma::reciprocal_gamma(p + 1.0 - a) * f64::powf(t, p - a);
+                    ((y.value - ex).abs() / ex.abs().max(1.0), y.error / ex.abs().max(1.0))
+                })
+                .collect();
+            println!(
+                "   a={a}: err {:?} est {:?}",
+                e.iter().map(|e| format!("{:.0e}", e.0)).collect::<Vec<_>>().join(" "),
+                e.iter().map(|e| format!("{:.0e}", e.1)).collect::<Vec<_>>().join(" ")
+            );
+        }
+    }
+    // kink & step in closures
+    for (n, f) in [
+        ("kink", (|t: f64| (t - 1.0).abs()) as fn(f64) -> f64),
+        ("step", |t| if t > 1.0 { 1.0 } else { 0.0 }),
+        ("kink.3", |t| (t - 1.3).abs()),
+    ] {
+        let i = std::time::Instant::now();
+        let p = Piecewise::of(f, 0.0..=10.0, 1e-15).unwrap();
+        println!("{n}: {} pieces {:?}", p.pieces(), i.elapsed());
+        for a in [-0.5, 0.5, 0.99, 1.5] {
+            let d = p.derivative(a, Definition::Caputo).unwrap();
+            let s = if n == "kink.3" { 1.3 } else { 1.0 };
+            for t in [0.5, 1.31, 2.0, 9.0] {
+                let pw = |q: f64| if t > s { f64::powf(t - s, q) } else { 0.0 };
+                let r = gamma::reciprocal_gamma;
+                let ex = if n == "step" {
+                    pw(-a) * r(1.0 - a)
+                } else {
+                    let base = if a > 1.0 {
+                        0.0
+                    } else if a > 0.0 {
+                        -f64::powf(t, 1.0 - a) * r(2.0 - a)
+                    } else {
+                        s * f64::powf(t, -a) * r(1.0 - a) - f64::powf(t, 1.0 - a) * r(2.0 - a)
+                    };
+                    base + 2.0 * pw(1.0 - a) * r(2.0 - a)
+                };
+                let y = d.at(t);
+                println!("   a={a} t={t} err {:.1e} est {:.1e}", (y.value - ex).abs(), y.error);
             }
         }
     }

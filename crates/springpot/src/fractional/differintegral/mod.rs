@@ -1,6 +1,7 @@
 //! Derivatives and integrals of order −2 … 2 of samples, streams and closures.
 
 mod along;
+mod closure;
 mod definition;
 mod error;
 mod hermite;
@@ -8,6 +9,7 @@ mod march;
 mod method;
 mod order;
 mod past;
+mod piecewise;
 mod sampled;
 mod stencil;
 mod stream;
@@ -16,5 +18,6 @@ mod uniform;
 pub use definition::{Definition, DefinitionNameError};
 pub use error::{DerivativeError, FunctionError};
 pub use method::{Method, MethodNameError};
+pub use piecewise::{Differintegral, Estimate, Piecewise};
 pub use sampled::{Estimated, derivative, derivative_with_error};
 pub use stream::{RatedStream, Row, Stream};

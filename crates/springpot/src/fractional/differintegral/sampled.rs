@@ -146,7 +146,7 @@ impl Thinned {
 }
 
 /// x' and x'' at all samples.
-struct Nodes {
+pub(super) struct Nodes {
     /// The step, where all are equal.
     step: Option<f64>,
     slope: Vec<f64>,
@@ -155,7 +155,7 @@ struct Nodes {
 }
 
 impl Nodes {
-    fn of(samples: &Samples, form: Form) -> Self {
+    pub(super) fn of(samples: &Samples, form: Form) -> Self {
         let Samples { t, x, rate } = *samples;
         let rows = t.len();
         let equal = Equal::new(form.points().min(rows));
@@ -181,7 +181,7 @@ impl Nodes {
         Self { step, slope, bend, negligible_slope }
     }
 
-    fn at(&self, samples: &Samples, row: usize) -> Node {
+    pub(super) fn at(&self, samples: &Samples, row: usize) -> Node {
         Node { t: samples.t[row], x: samples.x[row], slope: self.slope[row], bend: self.bend[row] }
     }
 }
