@@ -99,12 +99,12 @@ impl Layout {
         self.columns.iter().map(|column| row.number(*column))
     }
 
-    /// Half a unit of the last digit that the row's time is written with.
-    fn half_digit(&self, row: &CsvRow) -> f64 {
+    /// A unit of the last digit that the row's time is written with: what two rounded times may differ by from their step.
+    fn last_digit(&self, row: &CsvRow) -> f64 {
         let Ok(text) = row.text(self.time) else { return 0.0 };
         let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
         let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len()) as i32;
-        0.5 * 10f64.powi(exponent.parse::<i32>().unwrap_or(0).saturating_sub(decimals))
+        10f64.powi(exponent.parse::<i32>().unwrap_or(0).saturating_sub(decimals))
     }
 }
 
@@ -118,7 +118,7 @@ pub(super) struct Sheet {
     lines: Vec<u64>,
     text: Vec<u8>,
     ends: Vec<usize>,
-    /// The largest half unit of a last digit of the times.
+    /// The largest unit of a last digit of the times.
     rounding: f64,
 }
 
@@ -132,7 +132,7 @@ impl Sheet {
         layout.text(row, &mut self.text);
         self.ends.push(self.text.len());
         self.lines.push(row.line());
-        self.rounding = self.rounding.max(layout.half_digit(row));
+        self.rounding = self.rounding.max(layout.last_digit(row));
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use super::hermite::{Form, Node};
 use super::order::Order;
 use super::sampled::negligible_slope;
 use super::stencil::{Equal, QUINTIC_POINTS};
-use super::{Definition, DerivativeError};
+use super::{Definition, DerivativeError, Method};
 
 /// One value of a stream.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,12 +98,13 @@ impl Stream {
     /// The rows that waited for samples after them: the last three, or all where there were fewer than seven samples.
     ///
     /// # Errors
-    /// `Kernel`. One sample alone has no derivative and no row.
+    /// `TooShort` where fewer samples came than the method needs, `Kernel`.
     pub fn finish(mut self) -> Result<Vec<Row>, DerivativeError> {
         self.rows.clear();
+        let (method, needed) = (Method::Exponential, Method::Exponential.min_rows());
         match self.taken {
-            0 | 1 => {}
-            2..QUINTIC_POINTS => {
+            found if found < needed => return Err(DerivativeError::TooShort { method, needed, found }),
+            ..QUINTIC_POINTS => {
                 self.equal = Equal::new(self.taken);
                 self.settle(0..self.taken)?;
             }
