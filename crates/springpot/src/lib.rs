@@ -12,7 +12,7 @@
 //! | [`spatial`] | vectors, rotations, spatial quantities, over one scalar | nothing |
 //! | [`model`] | the robot: bodies, joints, anchors, from code or a URDF file; constant once built | `spatial` |
 //! | [`dynamics`] | kinematics, RNEA, CRBA, ABA and their derivatives, Coriolis terms, pairs of anchors | `model` |
-//! | [`fractional`] | D^alpha: kernel, memory, streaming, named schemes | nothing |
+//! | [`fractional`] | derivatives and integrals of order −2 … 2: samples, streams, functions; kernel, memory, named schemes | nothing |
 //! | [`law`] | stroke history → force; the catalog of laws | `fractional` |
 //! | [`signal`] | functions of time with exact derivatives | nothing |
 //! | [`element`] | a law between two anchors | `model`, `law`, `signal` |

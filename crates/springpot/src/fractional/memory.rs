@@ -1,10 +1,37 @@
-//! The memory of one fractional derivative: what is kept of the past, and how a step adds to it.
+//! The memory of one fractional derivative in a time loop: what is kept of the past, and how a step adds to it.
 //!
 //! Within the current step the kernel is exact (see [`super::step`]); only the past goes through the exponentials of
 //! [`Kernel`], one lag z_k = ∫₀ᵗ e^{−λ_k(t−s)} x'(s) ds for each. Asking is pure; [`Memory::commit`] is the only mutation.
 //!
+//! A step from t_n to t_n + h has nodes c_1 … c_s. [`Memory::respond`] gives D^alpha x there as an affine map of what the step
+//! does not know yet, D_i = Σ_j stroke_ij (x_j − x_0) + Σ_j rate_ij x'_j + history_i, so that an implicit method solves for it at the
+//! cost of an ordinary dashpot; the number of modes does not appear in its unknowns. Along a known motion the same map is
+//! evaluated:
+//!
+//! ```
+//! use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
+//!
+//! // D^½ of x = t², from its rates at the three Radau nodes of every step; the steps may have any size.
+//! let mut memory = Memory::new(0.5, Kind::Caputo, 0.0, 0.0, 1e-11, 1e-3, 2.0)?;
+//! let mut t = 0.0;
+//! for h in [0.1, 0.3, 0.05, 0.55] {
+//!     let start = StepStart { t, h, stroke: t * t, rate: 2.0 * t };
+//!     let rates: Vec<f64> = [0.0].iter().chain(&RADAU_NODES).map(|c| 2.0 * (t + c * h)).collect();
+//!     let map = memory.respond(&start, Nodes::Radau, Form::Rates);
+//!     let end: f64 = (0..3).map(|j| map.rate[2][j] * rates[j + 1]).sum::<f64>() + map.history[2];
+//!     t += h;
+//!     // D^½ t² = 8/(3√π) t^{3/2}
+//!     assert!((end - 8.0 / (3.0 * std::f64::consts::PI.sqrt()) * t.powf(1.5)).abs() < 1e-9);
+//!     memory.commit(&RatePolynomial::through_rates(h, Nodes::Radau, &rates));
+//! }
+//! # Ok::<(), springpot::fractional::KernelError>(())
+//! ```
+//!
 //! There is no smallest step: where a lag shorter than the kernel's delta is asked for, faster modes are made for it from the
 //! last committed step alone. That is exact, since they have forgotten everything before it (λ·h > 100).
+//!
+//! For samples, streams and functions that are known, [`derivative`](super::derivative), [`Stream`](super::Stream) and
+//! [`Piecewise`](super::Piecewise) ask for less.
 
 use super::gamma::reciprocal_gamma;
 use super::kernel::{Kernel, KernelError};

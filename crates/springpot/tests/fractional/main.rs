@@ -1,3 +1,11 @@
 //! Derivatives and integrals of order −2 … 2 of samples, streams and closures.
 
-mod probe;
+mod closures;
+mod convergence;
+mod estimates;
+mod exactness;
+mod identities;
+mod oracle;
+mod refusals;
+mod streams;
+mod support;

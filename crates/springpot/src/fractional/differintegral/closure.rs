@@ -53,7 +53,7 @@ impl Piecewise {
         open[0].1 = end;
         let mut pieces = Vec::new();
         while let Some((from, to)) = open.pop() {
-            let shortest = (0.5f64.powi(80) * (end - start)).max(0.5f64.powi(40) * from.abs().max(to.abs()));
+            let shortest = (0.5f64.powi(80) * (end - start)).max(0.5f64.powi(44) * from.abs().max(to.abs()));
             let may_divide = to - from > shortest;
             match fitted(&f, from, to, rtol)? {
                 Fit::Good(piece) => pieces.push(piece),
@@ -111,7 +111,7 @@ fn fitted(f: &impl Fn(f64) -> f64, from: f64, to: f64, rtol: f64) -> Result<Fit,
     let (before, tail) = (largest_of(DEGREE - 7..DEGREE - 3), largest_of(DEGREE - 3..POINTS));
     // Coefficients that are small and do not decay are rounding inside f, which shorter pieces only make more of.
     let allowed = if tail > 0.1 * before { allowed.max(PLATEAU * variation) } else { allowed };
-    let mut miss = tail;
+    let mut miss = tail.max(4.0 * f64::EPSILON * largest);
     for theta in PROBES {
         let there = x.iter().rev().fold(0.0, |sum, c| sum * theta + c);
         miss = miss.max((there - sample(theta)?).abs());

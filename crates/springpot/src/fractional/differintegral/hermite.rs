@@ -62,7 +62,8 @@ impl Form {
         let data = [to.x - from.x, h * from.slope, h * to.slope, h * h * from.bend, h * h * to.bend];
         let [[v0, v1], [w0, w1]] = [shapes.slope, shapes.bend];
         let mut polynomial = [0.0; 6];
-        for (factor, shape) in data.iter().zip([shapes.step, v0, v1, w0, w1]) {
+        let known = if self == Self::Cubic { 3 } else { 5 };
+        for (factor, shape) in data.iter().zip([shapes.step, v0, v1, w0, w1]).take(known) {
             for (c, s) in polynomial.iter_mut().zip(shape) {
                 *c += factor * s;
             }

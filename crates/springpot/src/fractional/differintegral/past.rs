@@ -124,9 +124,9 @@ pub(super) fn exponential_moments(x: f64, psi: &mut [f64]) {
     if meeting > last && x >= 1.0 {
         return;
     }
-    // ψ_P = 1/(P+1) (1 − X/(P+2) (1 − X/(P+3) (…))); with X ≤ P the factors left out multiply to less than one ulp.
+    // ψ_P = 1/(P+1) (1 − X/(P+2) (1 − X/(P+3) (…))); the factors left out multiply to less than one ulp.
     let mut series = 0.0;
-    for m in (0..20 + 2 * last).rev() {
+    for m in (0..16 + 3 * x as usize).rev() {
         series = (1.0 - x * series) / (last + 1 + m) as f64;
     }
     psi[last] = series;

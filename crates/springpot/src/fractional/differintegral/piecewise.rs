@@ -79,7 +79,7 @@ impl Piecewise {
             checked => checked?,
         }
         let form = Form::Quintic;
-        let nodes = Nodes::of(&samples, form);
+        let nodes = Nodes::of(&samples, form, None);
         let pieces = (1..t.len()).map(|row| {
             let [from, to]: [Node; 2] = [row - 1, row].map(|row| nodes.at(&samples, row));
             let x = form.between(&from, &to).to_vec();
@@ -251,6 +251,9 @@ impl Differintegral {
                 };
                 // A chord has the increments of x, so that later on nothing is missed of its derivatives.
                 let missed_later = if piece.is_chord() && order.whole > 0 { 0.0 } else { missed };
+                // What the kernel misses is in proportion to y.
+                let largest = [0.0, 0.25, 0.5, 0.75, 1.0].map(|theta| polynomial(&y, theta).abs());
+                let missed_later = missed_later + KERNEL_TOLERANCE * largest.into_iter().fold(0.0, f64::max);
                 Span { start: piece.start - origin, width: piece.width, y, missed, missed_later }
             })
             .collect();
@@ -348,15 +351,14 @@ impl Modes {
     /// Adds what lies before piece `place` at `lag` after its start, and returns what is missed of it.
     fn history(&self, place: usize, lag: f64, sum: &mut Sum) -> f64 {
         let [lags, missed] = &self.lags[place];
-        let mut past = Sum::default();
-        let mut bound = 0.0;
+        let (mut past, mut bound) = (0.0, 0.0);
         for ((lambda, weight), (z, missed)) in self.lambda.iter().zip(&self.weight).zip(lags.iter().zip(missed)) {
             let factor = weight * (-lambda * lag).exp();
-            past.add(factor * z);
+            past += factor * z;
             bound += factor * missed;
         }
-        sum.add(past.value);
-        bound + KERNEL_TOLERANCE * past.size
+        sum.add(past);
+        bound
     }
 }
 

@@ -50,10 +50,12 @@ pub fn derivative(
     };
     // Lengths, numbers and times, of which no scheme asks less.
     samples.check(Scheme::L1)?;
-    let nodes = Nodes::of(samples, form);
+    let prefix = samples.uniform_prefix();
+    // Streams know no common step, and arrays by the same name must give their numbers.
+    let step = (prefix.rows == found && method != Method::Exponential).then_some(prefix.step);
+    let nodes = Nodes::of(samples, form, step);
     let start = Start::new(&split, definition, &nodes.at(samples, 0), nodes.negligible_slope);
-    let step = nodes.step.filter(|_| method != Method::Exponential && !split.is_integer());
-    let mut y = match step {
+    let mut y = match step.filter(|_| !split.is_integer()) {
         Some(step) => {
             let scaled = |values: &[f64], factor: f64| -> Vec<f64> { values.iter().map(|v| v * factor).collect() };
             let (slope, bend) = (scaled(&nodes.slope, step), scaled(&nodes.bend, step * step));
@@ -147,21 +149,18 @@ impl Thinned {
 
 /// x' and x'' at all samples.
 pub(super) struct Nodes {
-    /// The step, where all are equal.
-    step: Option<f64>,
     slope: Vec<f64>,
     bend: Vec<f64>,
     negligible_slope: f64,
 }
 
 impl Nodes {
-    pub(super) fn of(samples: &Samples, form: Form) -> Self {
+    /// `step` where all are known to be equal.
+    pub(super) fn of(samples: &Samples, form: Form, step: Option<f64>) -> Self {
         let Samples { t, x, rate } = *samples;
         let rows = t.len();
         let equal = Equal::new(form.points().min(rows));
         let width = equal.width();
-        let prefix = samples.uniform_prefix();
-        let step = (prefix.rows == rows).then_some(prefix.step);
         let (mut slope, mut bend) = (Vec::with_capacity(rows), Vec::with_capacity(rows));
         for row in 0..rows {
             let first = first_point(row, width, rows);
@@ -178,7 +177,7 @@ impl Nodes {
             slope.copy_from_slice(rate);
         }
         let negligible_slope = if given.is_some() { 0.0 } else { negligible_slope(&t[..width], &x[..width]) };
-        Self { step, slope, bend, negligible_slope }
+        Self { slope, bend, negligible_slope }
     }
 
     pub(super) fn at(&self, samples: &Samples, row: usize) -> Node {
