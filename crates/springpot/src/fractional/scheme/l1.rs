@@ -71,6 +71,9 @@ fn change_of_mean(k: f64, alpha: f64) -> f64 {
         let j = f64::from(2 * i);
         term *= (p - j + 2.0) * (p - j + 1.0) / ((j - 1.0) * j) * small;
         sum += term;
+        if term.abs() <= 1e-17 * sum.abs() {
+            break;
+        }
     }
     2.0 * k.powf(p) * sum
 }

@@ -67,12 +67,16 @@ fn skew(k: f64, alpha: f64) -> f64 {
     if k < 4.0 {
         return direct_skew(k, alpha);
     }
+    // Two terms at a time: Σ C(−alpha, i) small^i/(i+2) over odd i.
     let small = 1.0 / (2.0 * k + 1.0);
-    let (mut term, mut sum) = (1.0, 0.0);
-    for i in 1..=17 {
-        term *= -(alpha + (i - 1) as f64) / i as f64 * small;
-        if i % 2 == 1 {
-            sum += term / (i + 2) as f64;
+    let mut term = -alpha * small;
+    let mut sum = term / 3.0;
+    for i in (3..=17).step_by(2) {
+        let i = f64::from(i);
+        term *= (alpha + i - 2.0) * (alpha + i - 1.0) / ((i - 1.0) * i) * (small * small);
+        sum += term / (i + 2.0);
+        if term.abs() <= 1e-17 * sum.abs() {
+            break;
         }
     }
     -0.5 * (2.0 - alpha) * (1.0 - alpha) * (k + 0.5).powf(-alpha) * sum
