@@ -3,8 +3,10 @@
 use springpot::fractional::Kind;
 use springpot::fractional::scheme::{Samples, Scheme, SchemeError, SchemeNameError};
 
-const SCHEMES: [(&str, Scheme); 12] = [
+const SCHEMES: [(&str, Scheme); 14] = [
     ("grunwald-letnikov", Scheme::GrunwaldLetnikov),
+    ("grunwald-letnikov(50)", Scheme::ShortGrunwaldLetnikov(50)),
+    ("grunwald-letnikov(1000000000)", Scheme::ShortGrunwaldLetnikov(1_000_000_000)),
     ("l1", Scheme::L1),
     ("l1-2", Scheme::L12),
     ("fbdf-1", Scheme::Fbdf(1)),
@@ -38,17 +40,43 @@ fn the_list_of_names_is_the_parsers() {
 
 #[test]
 fn wrong_names_say_what_is_right() {
-    for name in ["", "L1", "l2", "fbdf", "fbdf-", "fbdf-+2", "fbdf-2.5", "expansion-2004", "expansion-2004()"] {
+    for name in [
+        "",
+        "L1",
+        "l2",
+        "fbdf",
+        "fbdf-",
+        "fbdf-+2",
+        "fbdf-2.5",
+        "expansion-2004",
+        "expansion-2004()",
+        "grunwald-letnikov()",
+    ] {
         assert_eq!(name.parse::<Scheme>(), Err(SchemeNameError::Unknown(name.into())));
     }
     for name in ["expansion-2004(-3)", "expansion-2008( 7)", "expansion-2008(7", "expansion-2012(7)", " l1"] {
         let message = name.parse::<Scheme>().unwrap_err().to_string();
-        for right in ["grunwald-letnikov", "l1-2", "fbdf-6", "expansion-2004(N)", "from 2 to 5000", "from 1 to 5000"] {
+        for right in [
+            "grunwald-letnikov, ",
+            "grunwald-letnikov(N) with N ≥ 2",
+            "l1-2",
+            "fbdf-6",
+            "expansion-2004(N)",
+            "from 2 to 5000",
+            "from 1 to 5000",
+        ] {
             assert!(message.contains(right), "{message}");
         }
     }
     for (name, order) in [("fbdf-0", 0), ("fbdf-7", 7), ("fbdf-256", 256), ("fbdf-99999999999", u32::MAX)] {
         assert_eq!(name.parse::<Scheme>(), Err(SchemeNameError::Order(order)));
+    }
+    for (name, samples) in
+        [("grunwald-letnikov(0)", 0), ("grunwald-letnikov(1)", 1), ("grunwald-letnikov(99999999999)", u32::MAX)]
+    {
+        let error = name.parse::<Scheme>().unwrap_err();
+        assert_eq!(error, SchemeNameError::Memory(samples));
+        assert!(error.to_string().contains("2 to 1000000000 samples"), "{error}");
     }
     for (name, form, terms, min) in [
         ("expansion-2004(1)", 2004, 1, 2),
@@ -69,11 +97,14 @@ fn bad_samples_are_refused_by_row() {
     let t: Vec<f64> = (0..20).map(|k| f64::from(k) * 0.1).collect();
     let x = vec![1.0; 20];
     for (_, scheme) in SCHEMES {
-        for alpha in [-0.1, 1.1, f64::NAN] {
-            assert!(matches!(refusal(scheme, &t, &x, None, alpha), SchemeError::Alpha(_)), "{scheme}");
+        for alpha in [-2.1, 2.1, f64::INFINITY, f64::NAN] {
+            assert!(matches!(refusal(scheme, &t, &x, None, alpha), SchemeError::Order(_)), "{scheme}");
         }
-        // The same at alpha = 0, where no formula is needed.
-        for alpha in [0.0, 0.5, 1.0] {
+        // The same at order 0, where no formula is needed.
+        for alpha in [-2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0] {
+            if !scheme.orders().contains(&alpha) {
+                continue;
+            }
             assert_eq!(
                 refusal(scheme, &t, &x[..19], None, alpha),
                 SchemeError::Length { column: "x", expected: 20, found: 19 }
@@ -82,7 +113,7 @@ fn bad_samples_are_refused_by_row() {
                 refusal(scheme, &t, &x, Some(&x[..3]), alpha),
                 SchemeError::Length { column: "rate", expected: 20, found: 3 }
             );
-            let needed = scheme.min_rows();
+            let needed = scheme.min_rows(alpha);
             assert_eq!(
                 refusal(scheme, &t[..needed - 1], &x[..needed - 1], None, alpha),
                 SchemeError::TooShort { scheme, needed, found: needed - 1 }
@@ -112,6 +143,29 @@ fn bad_samples_are_refused_by_row() {
             );
         }
     }
+}
+
+#[test]
+fn orders_that_a_scheme_lacks_are_refused_with_those_that_have_them() {
+    let t: Vec<f64> = (0..20).map(|k| f64::from(k) * 0.1).collect();
+    let mut refused = 0;
+    for (_, scheme) in SCHEMES {
+        for order in [-2.0, -1.5, -0.1, 0.0, 0.5, 1.0, 1.1, 2.0] {
+            let result = scheme.differentiate(&Samples { t: &t, x: &t, rate: None }, order, Kind::Caputo);
+            assert_eq!(result.is_ok(), scheme.orders().contains(&order), "{scheme}, order {order}");
+            assert_eq!(scheme.order(order).is_nan(), result.is_err());
+            if let Err(error) = result {
+                let (min, max) = scheme.orders().into_inner();
+                assert_eq!(error, SchemeError::OrderOfScheme { scheme, order, min, max });
+                let message = error.to_string();
+                assert!(message.contains(&format!("from {min} to {max}, not {order}")), "{message}");
+                assert!(message.contains("l1-2"), "{message}");
+                refused += 1;
+            }
+        }
+    }
+    // Two short memories lack three of them, l1 two, three expansions five each.
+    assert_eq!(refused, 2 * 3 + 2 + 3 * 5);
 }
 
 #[test]
@@ -162,6 +216,7 @@ fn schemes_built_by_hand_are_checked_too() {
     for (scheme, error) in [
         (Scheme::Fbdf(0), SchemeNameError::Order(0)),
         (Scheme::Fbdf(9), SchemeNameError::Order(9)),
+        (Scheme::ShortGrunwaldLetnikov(1), SchemeNameError::Memory(1)),
         (Scheme::Expansion2004(1), SchemeNameError::Terms { form: 2004, terms: 1, min: 2, max: 5000 }),
         (Scheme::Expansion2008(0), SchemeNameError::Terms { form: 2008, terms: 0, min: 1, max: 5000 }),
     ] {

@@ -7,9 +7,10 @@ const DIRECT_LENGTH: usize = 64;
 
 /// y_n = Σ_{k=0}^n w_{n−k} x_k for n = 0 … len(x) − 1, by zero-padded FFT in O(N log N).
 ///
-/// `weights` holds at least as many numbers as `x`. The rounding error is a few ulp of ‖w‖₂‖x‖₂, the same for every n.
+/// Weights beyond the last one given are 0. The rounding error is a few ulp of ‖w‖₂‖x‖₂, the same for every n.
 pub fn causal_convolution(weights: &[f64], x: &[f64]) -> Vec<f64> {
-    if x.len() <= DIRECT_LENGTH {
+    let weights = &weights[..weights.len().min(x.len())];
+    if weights.len() <= DIRECT_LENGTH {
         return direct_convolution(weights, x);
     }
     // The transform refuses nothing but buffers of a wrong length, and these are its own.
@@ -22,8 +23,8 @@ pub fn direct_convolution(weights: &[f64], x: &[f64]) -> Vec<f64> {
 }
 
 fn fft_convolution(weights: &[f64], x: &[f64]) -> Result<Vec<f64>, FftError> {
-    // Twice the length, so that the circular convolution's wrap-around falls on zeros.
-    let size = (2 * x.len()).next_power_of_two();
+    // So long that the circular convolution's wrap-around falls on zeros.
+    let size = (x.len() + weights.len()).next_power_of_two();
     let mut planner = RealFftPlanner::<f64>::new();
     let forward = planner.plan_fft_forward(size);
     let inverse = planner.plan_fft_inverse(size);
@@ -36,7 +37,7 @@ fn fft_convolution(weights: &[f64], x: &[f64]) -> Result<Vec<f64>, FftError> {
 
     let mut spectrum = forward.make_output_vec();
     real.fill(0.0);
-    real[..x.len()].copy_from_slice(&weights[..x.len()]);
+    real[..weights.len()].copy_from_slice(weights);
     forward.process_with_scratch(&mut real, &mut spectrum, &mut scratch)?;
 
     for (a, b) in product.iter_mut().zip(&spectrum) {
@@ -49,4 +50,17 @@ fn fft_convolution(weights: &[f64], x: &[f64]) -> Result<Vec<f64>, FftError> {
         *y *= scale;
     }
     Ok(real)
+}
+
+/// x_n − x_{n−1} with x_{−1} = `before`.
+pub(super) fn differences(x: &[f64], before: f64) -> Vec<f64> {
+    let previous = std::iter::once(&before).chain(x);
+    x.iter().zip(previous).map(|(x, p)| x - p).collect()
+}
+
+/// What the weights of order `alpha` act on: the differences of x for derivatives, x − x(0) for integrals.
+///
+/// So neither small differences of large numbers nor long sums of small ones are formed.
+pub(super) fn from_start(x: &[f64], alpha: f64) -> Vec<f64> {
+    if alpha > 0.0 { differences(x, x[0]) } else { x.iter().map(|value| value - x[0]).collect() }
 }

@@ -7,14 +7,22 @@ use super::Scheme;
 pub enum SchemeNameError {
     /// No scheme has this name.
     #[error(
-        "unknown scheme \"{0}\": right are grunwald-letnikov, l1, l1-2, fbdf-1 to fbdf-6, \
-         expansion-2004(N) with N from {min_2004} to {max} and expansion-2008(N) with N from {min_2008} to {max}",
+        "unknown scheme \"{0}\": right are grunwald-letnikov, grunwald-letnikov(N) with N ≥ {memory}, l1, l1-2, \
+         fbdf-1 to fbdf-6, expansion-2004(N) with N from {min_2004} to {max} and expansion-2008(N) with N from \
+         {min_2008} to {max}",
+        memory = Scheme::MEMORY.start(),
         min_2004 = Scheme::TERMS_2004.start(), min_2008 = Scheme::TERMS_2008.start(), max = Scheme::TERMS_2008.end()
     )]
     Unknown(String),
     /// Fractional backward differences have order 1 to 6.
     #[error("fbdf-{0} does not exist: the order of the fractional backward difference is 1 to 6")]
     Order(u32),
+    /// The short memory's number of samples is out of range.
+    #[error(
+        "grunwald-letnikov({0}): the memory must have {min} to {max} samples",
+        min = Scheme::MEMORY.start(), max = Scheme::MEMORY.end()
+    )]
+    Memory(u32),
     /// The expansion's number of terms is out of range.
     #[error("expansion-{form}({terms}): the number of terms must lie between {min} and {max}")]
     Terms {
@@ -32,9 +40,24 @@ pub enum SchemeNameError {
 /// Why samples were not differentiated. Rows count from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SchemeError {
-    /// The order is NaN or outside [0, 1].
-    #[error("the order alpha = {0} must lie in [0, 1]")]
-    Alpha(f64),
+    /// The order of the derivative is NaN or outside [−2, 2].
+    #[error("the order {0} must lie in [-2, 2]")]
+    Order(f64),
+    /// The scheme does not have this order.
+    #[error(
+        "{scheme} has orders from {min} to {max}, not {order}: \
+         grunwald-letnikov, l1-2 and fbdf-1 to fbdf-6 have all from -2 to 2"
+    )]
+    OrderOfScheme {
+        /// The scheme.
+        scheme: Scheme,
+        /// What was asked for.
+        order: f64,
+        /// Lowest order of the scheme.
+        min: f64,
+        /// Highest order of the scheme.
+        max: f64,
+    },
     /// The scheme itself does not exist.
     #[error(transparent)]
     Scheme(#[from] SchemeNameError),

@@ -17,10 +17,22 @@ pub fn differenced_rates(t: &[f64], x: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// x'(t\[0\]) of the polynomial through the first `points` samples (all, when there are fewer).
-pub(crate) fn initial_rate(t: &[f64], x: &[f64], points: usize) -> f64 {
-    let width = points.min(t.len());
-    slope_at(0, &t[..width], &x[..width])
+/// Coefficients in powers of t − t\[0\] of the polynomial through all of (t, x).
+pub(super) fn start_polynomial(t: &[f64], x: &[f64]) -> Vec<f64> {
+    let mut table = x.to_vec();
+    // Newton's divided differences …
+    for j in 1..x.len() {
+        for i in (j..x.len()).rev() {
+            table[i] = (table[i] - table[i - 1]) / (t[i] - t[i - j]);
+        }
+    }
+    // … and Horner's rule from the factors (t − t_j) to powers.
+    for j in (0..x.len().saturating_sub(1)).rev() {
+        for i in j..x.len() - 1 {
+            table[i] -= (t[j] - t[0]) * table[i + 1];
+        }
+    }
+    table
 }
 
 /// Slope at node i of the polynomial through all of (t, x): Σ_{j≠i} r_j (x_j − x_i)/(t_j − t_i) with
@@ -30,4 +42,21 @@ fn slope_at(node: usize, t: &[f64], x: &[f64]) -> f64 {
         (0..t.len()).filter(|&m| m != j && m != node).map(|m| (t[node] - t[m]) / (t[j] - t[m])).product()
     };
     (0..t.len()).filter(|&j| j != node).map(|j| ratio(j) * (x[j] - x[node]) / (t[j] - t[node])).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn start_polynomial_recovers_coefficients() {
+        let wanted = [0.3, -1.0, 2.0, 0.5, -0.25, 0.125, -0.0625, 0.03125];
+        for warp in [0.0, 0.3] {
+            let t: Vec<f64> = (0..8).map(|n| f64::from(n) + warp * f64::from(n).sin()).collect();
+            let x: Vec<f64> = t.iter().map(|t| wanted.iter().rev().fold(0.0, |s, c| s * t + c)).collect();
+            for (got, wanted) in start_polynomial(&t, &x).iter().zip(wanted) {
+                assert!((got - wanted).abs() < 1e-10, "{got} {wanted}");
+            }
+        }
+    }
 }

@@ -4,8 +4,8 @@ use super::{Scheme, SchemeError};
 
 /// Samples of x(t) at increasing times, the first at t = 0.
 ///
-/// The rate x', where it is known, serves the expansions (moments by cubic Hermite interpolation) and the row t = 0 at
-/// alpha = 1; without it, five-point differences stand in.
+/// The rate x', where it is known, serves the expansions (moments by cubic Hermite interpolation; without it, five-point
+/// differences stand in). The others take x'(0) from it at order 1 and above, else a one-sided difference.
 #[derive(Debug, Clone, Copy)]
 pub struct Samples<'a> {
     /// Times, s; t\[0\] = 0, strictly increasing.
@@ -26,11 +26,11 @@ pub struct UniformPrefix {
 }
 
 impl Samples<'_> {
-    /// Checks lengths, numbers and times.
+    /// Checks lengths, numbers and times for the derivative of this order by this scheme.
     ///
     /// # Errors
-    /// `Length`, `TooShort` (fewer than two rows), `NotFinite`, `Start`, `NotIncreasing`.
-    pub fn check(&self, scheme: Scheme) -> Result<(), SchemeError> {
+    /// `Length`, `TooShort` (fewer than [`Scheme::min_rows`]), `NotFinite`, `Start`, `NotIncreasing`.
+    pub fn check(&self, scheme: Scheme, order: f64) -> Result<(), SchemeError> {
         let rows = self.t.len();
         let columns = [("t", Some(self.t)), ("x", Some(self.x)), ("rate", self.rate)];
         for (column, values) in columns.iter().filter_map(|(name, values)| values.map(|v| (*name, v))) {
@@ -38,7 +38,7 @@ impl Samples<'_> {
                 return Err(SchemeError::Length { column, expected: rows, found: values.len() });
             }
         }
-        let needed = scheme.min_rows();
+        let needed = scheme.min_rows(order);
         if rows < needed {
             return Err(SchemeError::TooShort { scheme, needed, found: rows });
         }
