@@ -10,7 +10,10 @@ mod excerpt;
 mod figures;
 mod grid;
 mod info;
+mod init;
 mod labels;
+mod laws;
+mod manual;
 mod numbers;
 mod progress;
 mod robot;
@@ -71,6 +74,10 @@ pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(options) => check::check(&options),
         Command::Info(options) => info::info(&options),
         Command::Dynamics(options) => dynamics::dynamics(&options),
+        Command::Laws(options) => laws::laws(&options),
+        Command::Init(options) => init::init(&options),
+        Command::Completions(options) => manual::completions(&options),
+        Command::Man(options) => manual::man(&options),
     };
     ending.into()
 }

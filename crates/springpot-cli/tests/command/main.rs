@@ -7,10 +7,16 @@ mod dynamics_refusals;
 mod equation;
 mod failures;
 mod figures;
+mod formats;
 mod help;
 mod info;
+mod init;
 #[cfg(unix)]
 mod interrupted;
+mod laws;
+mod manual;
+#[cfg(unix)]
+mod pipes;
 mod results;
 #[cfg(unix)]
 mod resume;
