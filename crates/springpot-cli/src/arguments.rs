@@ -80,6 +80,17 @@ given, else 0. Without NAME the law is the one that the data determine.
 
 Exit codes: 0 done, 2 no such law, or the data determine none.")]
     Laws(LawsOptions),
+    /// Draw columns of a finished run.
+    #[command(after_help = "\
+Examples:
+  springpot plot results/arm strut.force
+  springpot plot results/arm 'strut.Q.*' --where element.strut.alpha=0.4 --title 'Generalized forces'
+  springpot plot results/arm strut.force --x strut.stroke --unit strut.stroke=mm --out loop.svg
+
+The cases of a first sweep make curves, those of others panels. Columns may be globs: * stands for any text, ? for one character.
+
+Exit codes: 0 done, 1 the figure cannot be drawn or written, 2 the results, a column or a value is not there.")]
+    Plot(PlotOptions),
     /// Write a commented scenario to start from.
     #[command(after_help = "\
 Examples:
@@ -118,6 +129,31 @@ pub(crate) struct LawsOptions {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlotOptions {
+    /// Folder of the results of a run, or its results.csv
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    /// Columns to draw
+    #[arg(value_name = "COLUMN", required = true)]
+    pub(crate) y: Vec<String>,
+    /// Column of the abscissa
+    #[arg(long, value_name = "COLUMN", default_value = "t")]
+    pub(crate) x: String,
+    /// Draw only the cases with this value of a swept parameter; may be given several times
+    #[arg(long = "where", value_name = "PATH=VALUE")]
+    pub(crate) selection: Vec<String>,
+    /// Unit to draw a column in, such as strut.stroke=mm; may be given several times
+    #[arg(long = "unit", value_name = "COLUMN=UNIT")]
+    pub(crate) units: Vec<String>,
+    /// File to write, .svg or .png [default: both, in the figures/ of the results]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Title of the figure
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) title: Option<String>,
 }
 
 #[derive(Debug, Args)]

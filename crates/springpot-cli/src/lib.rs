@@ -15,6 +15,7 @@ mod labels;
 mod laws;
 mod manual;
 mod numbers;
+mod plot;
 mod progress;
 mod robot;
 mod run;
@@ -75,6 +76,7 @@ pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Info(options) => info::info(&options),
         Command::Dynamics(options) => dynamics::dynamics(&options),
         Command::Laws(options) => laws::laws(&options),
+        Command::Plot(options) => plot::plot(&options),
         Command::Init(options) => init::init(&options),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),

@@ -17,6 +17,7 @@ mod laws;
 mod manual;
 #[cfg(unix)]
 mod pipes;
+mod plot;
 mod results;
 #[cfg(unix)]
 mod resume;
