@@ -13,10 +13,9 @@ use std::io::{BufRead, BufReader, Lines, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Instant;
 
-use springpot::fractional::Kind;
 use springpot::fractional::gamma::gamma;
 use springpot::fractional::scheme::{Samples, Scheme};
-use springpot::fractional::stream::derivative_of_samples;
+use springpot::fractional::{Definition, Method as Rule, derivative};
 use springpot_report::{Curve, Panel, Plot};
 
 const ALPHA: f64 = 0.5;
@@ -98,27 +97,23 @@ fn repeats(seconds: f64) -> usize {
     ((REPEATING / seconds.max(1e-6)) as usize).clamp(1, REPEATS)
 }
 
-type Own = (&'static str, fn(&[f64], &[f64]) -> Vec<f64>);
+type Own = (&'static str, Rule);
 
-fn scheme(scheme: Scheme, t: &[f64], x: &[f64]) -> Vec<f64> {
-    scheme.differentiate(&Samples { t, x, rate: None }, ALPHA, Kind::Caputo).expect("the samples are right")
-}
-
-fn hermite(x: &[f64], tolerance: f64) -> Vec<f64> {
-    derivative_of_samples(x, END / (x.len() - 1) as f64, ALPHA, tolerance).expect("a kernel exists")
-}
-
-/// Our methods: cubic Hermite interpolation with a kernel of exponentials of two tolerances, and those of the literature.
-const OWN: [Own; 6] = [
-    ("Springpot Hermite, 1e-8", |_, x| hermite(x, 1e-8)),
-    ("Springpot Hermite, 1e-12", |_, x| hermite(x, 1e-12)),
-    ("Springpot GL", |t, x| scheme(Scheme::GrunwaldLetnikov, t, x)),
-    ("Springpot L1", |t, x| scheme(Scheme::L1, t, x)),
-    ("Springpot L1-2", |t, x| scheme(Scheme::L12, t, x)),
-    ("Springpot FBDF 2", |t, x| scheme(Scheme::Fbdf(2), t, x)),
+const OWN: [Own; 7] = [
+    ("Springpot spline", Rule::Spline),
+    ("Springpot Hermite", Rule::Hermite),
+    ("Springpot exponential", Rule::Exponential),
+    ("Springpot GL", Rule::Scheme(Scheme::GrunwaldLetnikov)),
+    ("Springpot L1", Rule::Scheme(Scheme::L1)),
+    ("Springpot L1-2", Rule::Scheme(Scheme::L12)),
+    ("Springpot FBDF 2", Rule::Scheme(Scheme::Fbdf(2))),
 ];
 
-fn own((label, run): Own, exact: &[f64]) -> Method {
+fn own((label, rule): Own, exact: &[f64]) -> Method {
+    let run = |t: &[f64], x: &[f64]| -> Vec<f64> {
+        let samples = Samples { t, x, rate: None };
+        derivative(&samples, ALPHA, Definition::Caputo, rule).expect("the samples are right")
+    };
     let mut points = Vec::new();
     for steps in STEPS {
         let (t, x) = samples(steps);

@@ -28,17 +28,19 @@ pub(crate) enum Command {
 Examples:
   springpot run scenarios/thermoviscoelastic_order.toml
   springpot run arm.toml --set element.strut.alpha=0.3 --set 'element.strut.T=40 degC' --out warm
+  springpot run arm.toml --format parquet
   springpot run arm.toml --checkpoint-every '10 s'
   springpot run --resume results/arm
 
-Writes results.csv, summary.csv, figures/ and run.json. A rerun replaces the last run's files and nothing else. \
+Writes results.csv (or .parquet, .npz), summary.csv, figures/ and run.json. A rerun replaces the last run's files and nothing else. \
 Ctrl-C ends a run early; the rows so far are kept, all of them complete. With --checkpoint-every a run that was interrupted or \
 killed goes on with --resume, and its results are those of an uninterrupted run.")]
     Run(RunOptions),
     /// Read and check a scenario without running it.
     #[command(after_help = "\
-Example:
+Examples:
   springpot check scenarios/magnetorheological_order.toml
+  springpot check --schema > springpot.schema.json
 
 Prints, per element, the length l(0), the stroke x(0) and dl/dq at t = 0, and warns of a large initial stroke and of a \
 singular Riemann-Liouville start, in any case of a sweep. Exit code 1 where a run is known to fail, as on a gripper path \
@@ -77,6 +79,118 @@ infinite stay empty. The lower terminal is the first time. spline (smooth sample
 samples) and the names of the literature want all rows at once; exponential writes each row three rows later, and large files \
 take it in place of spline: the numbers are the same to 1e-12. l1 is exact for broken lines.")]
     Derivative(DerivativeOptions),
+    /// Show the laws of elements, or find the parameters of one from a data sheet.
+    #[command(after_help = "\
+Examples:
+  springpot laws
+  springpot laws thermoviscoelastic
+  springpot laws --from 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m'
+  springpot laws kelvin-voigt --from 'stiffness = 2 kN/m at 0, damping = 40 N*s/m'
+
+--from reads NAME = VALUE [at FREQUENCY], ..., where NAME is tan_delta (or loss_factor), stiffness (dynamic, |k*|), storage, loss or \
+damping, and FREQUENCY is in Hz or rad/s, or 0 for a static value. Where a frequency is left out, it is the only other one that is \
+given, else 0. Without NAME the law is the one that the data determine.
+
+Exit codes: 0 done, 2 no such law, or the data determine none.")]
+    Laws(LawsOptions),
+    /// Draw columns of a finished run.
+    #[command(after_help = "\
+Examples:
+  springpot plot results/arm strut.force
+  springpot plot results/arm 'strut.Q.*' --where element.strut.alpha=0.4 --title 'Generalized forces'
+  springpot plot results/arm strut.force --x strut.stroke --unit strut.stroke=mm --out loop.svg
+
+The cases of a first sweep make curves, those of others panels. Columns may be globs: * stands for any text, ? for one character.
+
+Exit codes: 0 done, 1 the figure cannot be drawn or written, 2 the results, a column or a value is not there.")]
+    Plot(PlotOptions),
+    /// Write a commented scenario to start from.
+    #[command(after_help = "\
+Examples:
+  springpot init
+  springpot init panda.urdf --out panda_mount.toml
+
+Without a robot: an arm with one element, in scenario.toml. With one: its joints and an element between two of its links, in \
+ROBOT.toml. A file that is there is never overwritten. What is written runs as it is.
+
+Exit codes: 0 done, 1 the file cannot be written, 2 it is there, or the robot was refused.")]
+    Init(InitOptions),
+    /// Print a script that completes commands and options in a shell.
+    #[command(after_help = "\
+Examples:
+  springpot completions bash > ~/.local/share/bash-completion/completions/springpot
+  springpot completions zsh > ~/.zfunc/_springpot
+  springpot completions fish > ~/.config/fish/completions/springpot.fish
+  springpot completions powershell >> $PROFILE")]
+    Completions(CompletionsOptions),
+    /// Print the manual page, or write the pages of all commands.
+    #[command(after_help = "\
+Examples:
+  springpot man | man -l -
+  springpot man --out ~/.local/share/man/man1")]
+    Man(ManOptions),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LawsOptions {
+    /// Law to describe, or to find parameters of [default: all]
+    #[arg(value_name = "NAME")]
+    pub(crate) name: Option<String>,
+    /// Values of a data sheet, such as 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m'
+    #[arg(long, value_name = "DATA")]
+    pub(crate) from: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlotOptions {
+    /// Folder of the results of a run, or its results.csv
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    /// Columns to draw
+    #[arg(value_name = "COLUMN", required = true)]
+    pub(crate) y: Vec<String>,
+    /// Column of the abscissa
+    #[arg(long, value_name = "COLUMN", default_value = "t")]
+    pub(crate) x: String,
+    /// Draw only the cases with this value of a swept parameter; may be given several times
+    #[arg(long = "where", value_name = "PATH=VALUE")]
+    pub(crate) selection: Vec<String>,
+    /// Unit to draw a column in, such as strut.stroke=mm; may be given several times
+    #[arg(long = "unit", value_name = "COLUMN=UNIT")]
+    pub(crate) units: Vec<String>,
+    /// File to write, .svg or .png [default: both, in the figures/ of the results]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Title of the figure
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) title: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InitOptions {
+    /// Robot (URDF file)
+    #[arg(value_name = "ROBOT")]
+    pub(crate) robot: Option<PathBuf>,
+    /// File to write [default: scenario.toml, or the name of the robot's file with .toml]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsOptions {
+    /// Shell
+    #[arg(value_name = "SHELL")]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ManOptions {
+    /// Folder to write springpot.1 and a page for every command into
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -90,6 +204,10 @@ pub(crate) struct RunOptions {
     /// Folder of the results [default: results/<file stem>]
     #[arg(long, value_name = "DIR", conflicts_with = "resume")]
     pub(crate) out: Option<PathBuf>,
+    /// Format of the rows: csv, parquet or npz (NumPy)
+    #[arg(long, value_name = "FORMAT", value_parser = ["csv", "parquet", "npz"], default_value = "csv", hide_possible_values = true)]
+    #[arg(conflicts_with = "resume")]
+    pub(crate) format: String,
     /// Keep the state of the run every so much simulated time, in s or with a unit
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub(crate) checkpoint_every: Option<String>,
@@ -109,8 +227,15 @@ pub(crate) struct RunOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckOptions {
-    #[command(flatten)]
-    pub(crate) scenario: ScenarioOptions,
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO", required_unless_present = "schema")]
+    pub(crate) file: Option<PathBuf>,
+    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Print the JSON schema of scenario files, with which editors complete them
+    #[arg(long, conflicts_with_all = ["file", "overrides", "quiet"])]
+    pub(crate) schema: bool,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     pub(crate) quiet: bool,

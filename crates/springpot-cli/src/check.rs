@@ -5,12 +5,13 @@ mod warnings;
 use crate::arguments::CheckOptions;
 use crate::numbers::{count, short};
 use crate::run::in_case;
-use crate::{Ending, diagnostic, terminal};
-use springpot::law::Entry;
-use springpot::scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan};
+use crate::{Ending, diagnostic, printed, terminal};
+use springpot::law::{Catalog, Entry};
+use springpot::scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan, json_schema};
 use springpot::simulate::{ElementStart, RowTimes, RunError, System};
 use springpot::sweep::Layout;
 use std::ops::RangeInclusive;
+use std::path::Path;
 use warnings::Warnings;
 
 /// Values of each sweep that are looked at; fewer where a gripper path must be followed for each.
@@ -28,7 +29,11 @@ const ROUNDING: f64 = 1e-12;
 const NAMED_JOINTS: usize = 100;
 
 pub(crate) fn check(options: &CheckOptions) -> Ending {
-    match describe(options) {
+    let Some(file) = &options.file else {
+        let schema = json_schema(&Catalog::standard());
+        return printed(terminal::try_print(&format!("{schema:#}\n")));
+    };
+    match describe(file, options) {
         Ok(ending) => ending,
         Err(refused) => {
             diagnostic::refused(&refused);
@@ -38,8 +43,8 @@ pub(crate) fn check(options: &CheckOptions) -> Ending {
 }
 
 /// Prints the plan of the first case, and what is known to fail or deserves a warning in any.
-fn describe(options: &CheckOptions) -> Result<Ending, Refusals> {
-    let cases = diagnostic::open(&options.scenario)?;
+fn describe(file: &Path, options: &CheckOptions) -> Result<Ending, Refusals> {
+    let cases = diagnostic::open(file, &options.overrides)?;
     let plan = cases.plan(0)?;
     let system = plan.system();
     Layout::new(&cases, &system)?;

@@ -1,6 +1,5 @@
 //! Errors and warnings as they appear in the terminal: what is wrong, the offending line with a caret, what would be right.
 
-use crate::arguments::ScenarioOptions;
 use crate::excerpt::Excerpt;
 use crate::terminal;
 use miette::ThemeStyles;
@@ -16,8 +15,8 @@ use std::sync::Arc;
 const EXCERPT: usize = 200;
 
 /// Reads the scenario, applies the overrides and checks everything.
-pub(crate) fn open(options: &ScenarioOptions) -> Result<Cases, Refusals> {
-    scenario(&options.file, &options.overrides)?.cases(&Catalog::standard())
+pub(crate) fn open(file: &Path, overrides: &[String]) -> Result<Cases, Refusals> {
+    scenario(file, overrides)?.cases(&Catalog::standard())
 }
 
 /// Reads the scenario and applies the overrides.

@@ -11,8 +11,12 @@ mod excerpt;
 mod figures;
 mod grid;
 mod info;
+mod init;
 mod labels;
+mod laws;
+mod manual;
 mod numbers;
+mod plot;
 mod progress;
 mod robot;
 mod run;
@@ -73,6 +77,11 @@ pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Info(options) => info::info(&options),
         Command::Dynamics(options) => dynamics::dynamics(&options),
         Command::Derivative(options) => derivative::derivative(&options),
+        Command::Laws(options) => laws::laws(&options),
+        Command::Plot(options) => plot::plot(&options),
+        Command::Init(options) => init::init(&options),
+        Command::Completions(options) => manual::completions(&options),
+        Command::Man(options) => manual::man(&options),
     };
     ending.into()
 }

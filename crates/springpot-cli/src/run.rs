@@ -8,6 +8,7 @@ use crate::numbers::{brief, count, rough, short};
 use crate::{Ending, diagnostic, figures, progress, terminal};
 use springpot::scenario::Cases;
 use springpot::sweep::{self, CaseResult, CasesPassing, Options, Outcome, Status, SweepError};
+use springpot::table::Format;
 use springpot::table::folder::Folder;
 use std::io;
 use std::path::Path;
@@ -82,7 +83,7 @@ fn to_go_on(out: &Path) -> String {
 
 /// Runs all cases, draws the figures, and writes the record.
 fn execute(options: &RunOptions, prepared: Prepared) -> Result<Finished, SweepError> {
-    let Prepared { cases, plan, system, layout, mut folder, checkpoints, figures } = prepared;
+    let Prepared { cases, plan, system, layout, mut folder, checkpoints, figures, format } = prepared;
     let rows = AtomicU64::new(0);
     let wanted = (cases.len() as u64).saturating_mul(plan.time.rows.count() as u64);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -97,7 +98,14 @@ fn execute(options: &RunOptions, prepared: Prepared) -> Result<Finished, SweepEr
             diagnostic::warning(warning, None);
         }
     }
-    folder.write_run(outcome.record(&cases, &plan, &layout))?;
+    // What is gone on with goes on as text.
+    let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
+    let written = if goes_on { Format::Csv } else { format };
+    let converted = folder.convert_rows(written, layout.written(), layout.swept());
+    let mut record = outcome.record(&cases, &plan, &layout);
+    record.insert("format".to_owned(), if converted.is_ok() { written } else { Format::Csv }.name().into());
+    folder.write_run(record)?;
+    converted?;
     if let Some(checkpoints) = checkpoints.filter(|_| outcome.status != Status::Interrupted) {
         checkpoints.remove()?;
     }
@@ -183,7 +191,9 @@ impl Finished {
         let mut lines = terminal::hanging("", &work, width);
         lines.push_str(&terminal::hanging("energy   ", &self.balance(), width));
         let figures = folder.files().iter().filter(|name| name.ends_with(".svg")).count();
-        let mut files = "results.csv, summary.csv, run.json".to_owned();
+        let rows =
+            folder.files().iter().find(|name| name.starts_with("results.")).map_or("results.csv", String::as_str);
+        let mut files = format!("{rows}, summary.csv, run.json");
         if figures > 0 {
             files.push_str(&format!(", {} (SVG and PNG)", count(figures, "figure", "figures")));
         }

@@ -28,9 +28,13 @@ pub(crate) fn print_error(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Whether stderr takes colours.
+/// Whether stderr takes colours: a terminal does, unless NO_COLOR is set; with CLICOLOR_FORCE everything does.
 pub(crate) fn is_coloured() -> bool {
-    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+    let value = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
+    let is_on = |name: &str| value(name).is_some_and(|value| value != "0");
+    let is_dumb = value("TERM").is_some_and(|terminal| terminal == "dumb");
+    let is_off = is_dumb || value("CLICOLOR").is_some_and(|value| value == "0");
+    value("NO_COLOR").is_none() && (is_on("CLICOLOR_FORCE") || (io::stderr().is_terminal() && !is_off))
 }
 
 /// Columns for running text on stdout; `None` where it is no terminal.

@@ -1,7 +1,7 @@
 //! `springpot dynamics SCENARIO --at TIME`: the equations of motion term by term.
 
 use super::terms;
-use crate::arguments::{DynamicsOptions, ScenarioOptions};
+use crate::arguments::DynamicsOptions;
 use crate::robot::{Refused, is_scenario, refuse_urdf_flags};
 use crate::run::{case_name, in_case};
 use crate::{Ending, diagnostic, printed, terminal};
@@ -27,8 +27,7 @@ pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused>
         diagnostic::refused(&refusals);
         Refused
     };
-    let scenario = ScenarioOptions { file: file.clone(), overrides: options.overrides.clone() };
-    let cases = diagnostic::open(&scenario).map_err(refused)?;
+    let cases = diagnostic::open(file, &options.overrides).map_err(refused)?;
     let index = options.case.unwrap_or(0);
     if index >= cases.len() {
         let message = format!("--case {index}: the last case of {} is {}", file.display(), cases.len() - 1);

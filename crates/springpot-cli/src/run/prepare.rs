@@ -7,6 +7,7 @@ use springpot::scenario::units::parse_quantity;
 use springpot::scenario::{Cases, Plan, Refusals, Scenario};
 use springpot::simulate::System;
 use springpot::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
+use springpot::table::Format;
 use springpot::table::folder::Folder;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,8 @@ pub(super) struct Prepared {
     pub(super) checkpoints: Option<Checkpoints>,
     /// Whether figures are drawn.
     pub(super) figures: bool,
+    /// The format of the rows at the end.
+    pub(super) format: Format,
 }
 
 /// Why nothing is run.
@@ -73,14 +76,15 @@ fn begin(options: &RunOptions, file: &Path, every: Option<f64>) -> Result<Prepar
     let out = options.out.clone().unwrap_or_else(|| default_folder(file));
     let scenario = diagnostic::scenario(file, &options.overrides)?;
     let Read { cases, plan, system, layout } = read(&scenario)?;
+    let format = Format::named(&options.format).unwrap_or_default();
     let (figures, not_written) = (!options.no_figures, |error| Unprepared::Output(out.clone(), error));
     let folder = Folder::prepare(&out).map_err(not_written)?;
     let checkpoints = every.map(|every| {
         let origin = Origin::of(file, &scenario, &options.overrides, figures, every)?;
-        Checkpoints::begin(&folder, origin, &cases, &plan, &system)
+        Checkpoints::begin(&folder, Origin { format, ..origin }, &cases, &plan, &system)
     });
     let checkpoints = checkpoints.transpose().map_err(not_written)?;
-    Ok(Prepared { cases, plan, system, layout, folder, checkpoints, figures })
+    Ok(Prepared { cases, plan, system, layout, folder, checkpoints, figures, format })
 }
 
 fn go_on(options: &RunOptions, folder: &Path, every: Option<f64>) -> Result<Prepared, CheckpointError> {
@@ -91,7 +95,8 @@ fn go_on(options: &RunOptions, folder: &Path, every: Option<f64>) -> Result<Prep
     let Read { cases, plan, system, layout } = read(&scenario)?;
     let (checkpoints, folder) = unfinished.take_up(&cases, (&plan, &system), &layout, every)?;
     let figures = origin.figures && !options.no_figures;
-    Ok(Prepared { cases, plan, system, layout, folder, checkpoints: Some(checkpoints), figures })
+    let (checkpoints, format) = (Some(checkpoints), origin.format);
+    Ok(Prepared { cases, plan, system, layout, folder, checkpoints, figures, format })
 }
 
 /// Says why a run cannot go on, and what can be done.

@@ -9,10 +9,15 @@ fn help_is_where_it_is_looked_for() {
     assert_eq!(place.done(&["help"]).stdout, help);
     for line in [
         "Usage: springpot <COMMAND>",
-        "  run       Run a scenario",
-        "  check     Read and check",
-        "  info      Describe a robot",
-        "  dynamics  Compute the dynamics",
+        "  run          Run a scenario",
+        "  check        Read and check",
+        "  info         Describe a robot",
+        "  dynamics     Compute the dynamics",
+        "  laws         Show the laws",
+        "  plot         Draw columns",
+        "  init         Write a commented scenario",
+        "  completions  Print a script",
+        "  man          Print the manual page",
         "Exit codes: 0 done",
     ] {
         assert!(help.contains(line), "{help}");
@@ -29,12 +34,13 @@ fn help_is_where_it_is_looked_for() {
                 "--out <DIR>",
                 "--checkpoint-every <TIME>",
                 "--resume <DIR>",
+                "--format <FORMAT>",
                 "--jobs <N>",
                 "--no-figures",
                 "--quiet",
             ][..],
         ),
-        ("check", &["--set <PATH=VALUE>", "--quiet"]),
+        ("check", &["--set <PATH=VALUE>", "--schema", "--quiet"]),
         ("info", &["--json", "--floating-base", "--ignore-mimic", "--package-path <DIR>"]),
         (
             "dynamics",
@@ -51,6 +57,11 @@ fn help_is_where_it_is_looked_for() {
                 "--package-path <DIR>",
             ],
         ),
+        ("laws", &["--from <DATA>", "--json"]),
+        ("plot", &["--x <COLUMN>", "--where <PATH=VALUE>", "--unit <COLUMN=UNIT>", "--out <FILE>", "--title <TEXT>"]),
+        ("init", &["--out <FILE>"]),
+        ("completions", &["<SHELL>"]),
+        ("man", &["--out <DIR>"]),
     ] {
         let help = place.done(&[command, "--help"]).stdout;
         assert_eq!(place.done(&["help", command]).stdout, help);

@@ -8,10 +8,17 @@ mod dynamics_refusals;
 mod equation;
 mod failures;
 mod figures;
+mod formats;
 mod help;
 mod info;
+mod init;
 #[cfg(unix)]
 mod interrupted;
+mod laws;
+mod manual;
+#[cfg(unix)]
+mod pipes;
+mod plot;
 mod results;
 #[cfg(unix)]
 mod resume;

@@ -24,6 +24,13 @@ fn messages_fit_and_are_coloured_where_that_is_wanted() {
     assert!(!plain.contains('\u{1b}') && plain.contains("warning: element"), "{plain}");
     assert!(plain.lines().all(|line| line.trim_end().chars().count() <= 60), "{plain}");
 
+    for off in ["CLICOLOR=0", "TERM=dumb", "CLICOLOR_FORCE=1 NO_COLOR=1"] {
+        assert!(!shown(&place, off, &arguments).unwrap().contains('\u{1b}'), "{off}");
+    }
+    // Into a pipe, where colours are asked for.
+    let forced = place.command(&arguments).env("CLICOLOR_FORCE", "1").output().unwrap();
+    assert!(String::from_utf8(forced.stderr).unwrap().contains("\u{1b}[33mwarning:"));
+
     let refused = shown(
         &place,
         "NO_COLOR=1",

@@ -22,6 +22,7 @@
 //! ```
 
 pub mod catalog;
+pub mod datasheet;
 pub mod leaf;
 pub mod parallel;
 

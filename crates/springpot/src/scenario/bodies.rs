@@ -12,11 +12,11 @@ use std::sync::Arc;
 
 /// Most bodies of a robot.
 const MAX_BODIES: usize = 1_000;
-const BODY_KEYS: [&str; 6] = ["name", "parent", "joint", "mass", "com", "inertia"];
-const JOINT_KEYS: [&str; 7] = ["name", "kind", "origin", "rpy", "axis", "damping", "friction"];
+pub(super) const BODY_KEYS: [&str; 6] = ["name", "parent", "joint", "mass", "com", "inertia"];
+pub(super) const JOINT_KEYS: [&str; 7] = ["name", "kind", "origin", "rpy", "axis", "damping", "friction"];
 /// Those of them that a joint without an axis takes.
-const PLAIN_JOINT_KEYS: usize = 4;
-const INERTIA_KEYS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
+pub(super) const PLAIN_JOINT_KEYS: usize = 4;
+pub(super) const INERTIA_KEYS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
 
 /// Reads every `[[robot.body]]`; `table` is `[robot]`.
 pub(super) fn read(table: &Table<'_>, bodies: &Field<'_>, gravity: Read<[f64; 3]>) -> Read<Parts> {

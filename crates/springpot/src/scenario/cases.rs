@@ -19,7 +19,8 @@ use std::sync::Arc;
 
 /// Values of a sweep that are tried before the first run; of longer ones the first of them and the last.
 const TRIED: usize = 1_000;
-const ROOT_KEYS: [&str; 9] = ["title", "robot", "element", "motion", "time", "solver", "sweep", "figure", "output"];
+pub(super) const ROOT_KEYS: [&str; 9] =
+    ["title", "robot", "element", "motion", "time", "solver", "sweep", "figure", "output"];
 
 /// A value of a swept parameter, as a column of the results shows it.
 #[derive(Debug, Clone, PartialEq)]

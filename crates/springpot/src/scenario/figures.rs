@@ -12,7 +12,11 @@ use std::sync::Arc;
 
 /// Most figures.
 const MAX_FIGURES: usize = 1_000;
-const KEYS: [&str; 7] = ["name", "title", "x", "y", "units", "where", "kind"];
+pub(super) const KEYS: [&str; 7] = ["name", "title", "x", "y", "units", "where", "kind"];
+
+/// Kinds of figures.
+pub(super) const KINDS: [&str; 2] = ["curves", "robot"];
+pub(super) const OUTPUT_KEYS: [&str; 1] = ["columns"];
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,7 +112,7 @@ fn figure(root: &Table<'_>, item: &Field<'_>, i: usize, axes: &[Axis], find: &Fi
             "robot" => robot(&table),
             other => {
                 let message = format!("is {:?}, which is no kind of figure", shorten(other));
-                let help = names::suggest(other, ["curves", "robot"]);
+                let help = names::suggest(other, KINDS);
                 Err(field.refuse(RefusalKind::UnknownName, message, Some(help)))
             }
         },
@@ -226,7 +230,7 @@ fn selection(root: &Table<'_>, field: &Field<'_>, axes: &[Axis], find: &Finder<'
 /// Reads `[output]`: globs of the columns to write.
 pub(crate) fn read_columns(root: &Table<'_>) -> Read<Option<Arc<[ColumnGlob]>>> {
     let Some(field) = root.get("output") else { return Ok(None) };
-    let table = Table::open(root.ctx, field.node, "[output]", &["columns"])?;
+    let table = Table::open(root.ctx, field.node, "[output]", &OUTPUT_KEYS)?;
     let Some(field) = table.get("columns") else { return Ok(None) };
     Ok(Some(globs(&field)?.into()))
 }

@@ -1,7 +1,7 @@
 //! `[motion] kind = "forward"`: where the robot starts and what drives its joints.
 
 use super::document::shorten;
-use super::motion::{open_joints, path_of_joint};
+use super::motion::{POSE_KEYS, open_joints, path_of_joint};
 use super::names;
 use super::plan::{DrivePlan, ForwardPlan, MotionPlan, SignalPlan};
 use super::reader::{Field, Read, Table, all};
@@ -15,11 +15,14 @@ use crate::spatial::Quaternion;
 use std::collections::HashSet;
 
 /// Velocities of a floating joint, as in the columns of the results.
-const VELOCITIES: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
+pub(super) const VELOCITIES: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
+
+pub(super) const KEYS: [&str; 5] = ["kind", "start", "torque", "prescribed", "locked"];
+pub(super) const START_KEYS: [&str; 2] = ["q", "v"];
 
 /// Reads a motion of kind "forward".
 pub(super) fn read(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let table = Table::open(field.ctx, field.node, "[motion]", &["kind", "start", "torque", "prescribed", "locked"])?;
+    let table = Table::open(field.ctx, field.node, "[motion]", &KEYS)?;
     let start = table.get("start").map(|field| start(&field, robot)).transpose();
     let torque = table.get("torque").map(|field| open_joints(&field, robot)).transpose();
     let prescribed = table.get("prescribed").map(|field| open_joints(&field, robot)).transpose();
@@ -54,7 +57,7 @@ pub(super) fn read(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<M
 
 /// `start = { q = {…}, v = {…} }`; what is left out is 0.
 fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
-    let table = field.table(&["q", "v"])?;
+    let table = field.table(&START_KEYS)?;
     let model = robot.model();
     let (mut q, mut v) = (model.neutral(), vec![0.0; model.nv()]);
     let positions = table.get("q").map(|field| open_joints(&field, robot)).transpose();
@@ -88,7 +91,7 @@ fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
 
 /// `{ x = …, y = …, z = …, rpy = […] }`, all numbers.
 fn start_pose(field: &Field<'_>, q: &mut [f64]) -> Read<()> {
-    let table = field.table(&["x", "y", "z", "rpy"])?;
+    let table = field.table(&POSE_KEYS)?;
     for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
         q[k] = table.get(axis).map_or(Ok(0.0), |field| field.number("m"))?;
     }

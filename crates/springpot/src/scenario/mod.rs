@@ -48,6 +48,7 @@ mod reader;
 mod refusal;
 mod resolved;
 mod robot;
+mod schema;
 mod signals;
 mod sweep;
 mod system;
@@ -63,6 +64,7 @@ pub use plan::{
     SignalPlan, SolverPlan, TimePlan, UrdfPlan,
 };
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
+pub use schema::json_schema;
 pub use sweep::MAX_CASES;
 
 use crate::law::Catalog;

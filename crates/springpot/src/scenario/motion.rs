@@ -14,7 +14,11 @@ use crate::model::JointKind;
 use crate::model::urdf::FLOATING_BASE;
 use std::collections::HashSet;
 
-const KINDS: [&str; 3] = ["prescribed", "gripper-path", "forward"];
+pub(super) const KINDS: [&str; 3] = ["prescribed", "gripper-path", "forward"];
+pub(super) const PRESCRIBED_KEYS: [&str; 3] = ["kind", "joints", "csv"];
+pub(super) const GRIPPER_PATH_KEYS: [&str; 6] = ["kind", "x", "y", "z", "rpy", "guess"];
+/// Keys of the pose of a floating joint.
+pub(super) const POSE_KEYS: [&str; 4] = ["x", "y", "z", "rpy"];
 /// What follows the name of a floating joint in the columns of a motion.
 const POSE_COLUMNS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 
@@ -46,7 +50,7 @@ fn wanted(unit: &str, end: Option<f64>) -> Wanted<'_> {
 }
 
 fn prescribed(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let table = Table::open(field.ctx, field.node, "[motion]", &["kind", "joints", "csv"])?;
+    let table = Table::open(field.ctx, field.node, "[motion]", &PRESCRIBED_KEYS)?;
     let joints: Vec<OwnJoint<'_>> = robot.own_joints().collect();
     let joints = match (table.get("joints"), table.get("csv")) {
         (Some(field), None) => {
@@ -84,7 +88,7 @@ fn pose(field: &Field<'_>, end: Option<f64>) -> Read<PosePlan> {
         let right = "a table { x = …, y = …, z = …, rpy = [roll, pitch, yaw] }, since the joint is floating";
         return Err(field.wrong_type(right));
     }
-    let table = field.table(&["x", "y", "z", "rpy"])?;
+    let table = field.table(&POSE_KEYS)?;
     let zero = || forward::zero(field);
     let axis = |key| table.get(key).map_or_else(|| Ok(zero()), |field| signals::read(&field, wanted("m", end)));
     let position = [axis("x"), axis("y"), axis("z")];
@@ -147,7 +151,7 @@ fn columns_of(joint: &OwnJoint<'_>) -> Vec<String> {
 }
 
 fn gripper_path(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let table = Table::open(field.ctx, field.node, "[motion]", &["kind", "x", "y", "z", "rpy", "guess"])?;
+    let table = Table::open(field.ctx, field.node, "[motion]", &GRIPPER_PATH_KEYS)?;
     if robot.gripper.is_none() {
         let message = "kind = \"gripper-path\" needs a gripper, but the robot has none";
         let place = table.get("kind").map_or(&table.node.place, |field| &field.node.place);

@@ -12,9 +12,12 @@ use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
-const KEYS: [&str; 7] = ["gravity", "body", "gripper", "urdf", "floating_base", "ignore_mimic", "package_path"];
+pub(super) const KEYS: [&str; 7] =
+    ["gravity", "body", "gripper", "urdf", "floating_base", "ignore_mimic", "package_path"];
 /// Keys that say how a URDF file is read.
-const URDF_KEYS: [&str; 3] = ["floating_base", "ignore_mimic", "package_path"];
+pub(super) const URDF_KEYS: [&str; 3] = ["floating_base", "ignore_mimic", "package_path"];
+/// Keys of a point on a body.
+pub(super) const ANCHOR_KEYS: [&str; 2] = ["body", "point"];
 const RIGHT: &str = "urdf = \"arm.urdf\", or a [[robot.body]] for each body";
 
 /// The robot as it is described.
@@ -87,7 +90,7 @@ impl Robot {
 
     /// Reads `{ body = …, point = … }`, where the body may be the world.
     pub(crate) fn anchor(&self, field: &Field<'_>) -> Read<(String, Anchor)> {
-        let table = field.table(&["body", "point"])?;
+        let table = field.table(&ANCHOR_KEYS)?;
         let body = table.require("body", "body = \"NAME\" or body = \"world\"").and_then(|body| {
             let name = body.text()?;
             match self.model().find_body(name) {

@@ -13,6 +13,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+pub(super) const KEYS: [&str; 4] = ["expression", "csv", "column", "unit"];
 /// Times at which a signal is looked at before the run, besides 0 and the end.
 const PROBES: usize = 31;
 const NO_EXPONENTS: &dyn Fn(&str) -> Option<f64> = &|_| None;
@@ -113,7 +114,7 @@ fn expression(field: &Field<'_>, text: &str) -> Read<Expression> {
 }
 
 fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
-    let table = field.table(&["expression", "csv", "column", "unit"])?;
+    let table = field.table(&KEYS)?;
     let signal = match (table.get("expression"), table.get("csv")) {
         (Some(text), None) => {
             if let Some(column) = table.get("column") {

@@ -10,10 +10,13 @@ use std::sync::Arc;
 
 /// Most values of one sweep, and most cases of a grid.
 pub const MAX_CASES: usize = 10_000_000;
+pub(super) const KEYS: [&str; 2] = ["parameter", "values"];
+pub(super) const SPAN_KEYS: [&str; 4] = ["from", "to", "count", "scale"];
+pub(super) const SCALES: [&str; 2] = ["linear", "log"];
 /// Most blocks.
-const MAX_BLOCKS: usize = 16;
+pub(super) const MAX_BLOCKS: usize = 16;
 /// Most parameters that move together.
-const MAX_TOGETHER: usize = 64;
+pub(super) const MAX_TOGETHER: usize = 64;
 
 /// One `[[sweep]]`: parameters that move together, and their values.
 #[derive(Debug, Clone)]
@@ -177,7 +180,7 @@ fn axis(root: &Table<'_>, item: &Field<'_>, i: usize) -> Read<Axis> {
         })
     };
     let what = format!("[[sweep]] {}", i + 1);
-    let table = Table::open_with(item.ctx, item.node, what, &["parameter", "values"], direct)?;
+    let table = Table::open_with(item.ctx, item.node, what, &KEYS, direct)?;
     let targets = table
         .require("parameter", "parameter = \"element.NAME.PARAMETER\"")
         .and_then(|field| targets(&field, root.node));
@@ -232,7 +235,7 @@ fn values(field: &Field<'_>) -> Read<Values> {
 }
 
 fn span(field: &Field<'_>) -> Read<Span> {
-    let table = field.table(&["from", "to", "count", "scale"])?;
+    let table = field.table(&SPAN_KEYS)?;
     let end = |key| table.require(key, "from, to and count").and_then(|field| end_of_span(&field));
     let (from, to) = (end("from"), end("to"));
     let count = table.require("count", "from, to and count").and_then(|field| field.integer(2, MAX_CASES as i64));

@@ -11,14 +11,21 @@ use crate::simulate::{FixedStep, RowTimes};
 /// The method that chooses its steps.
 pub(super) const ADAPTIVE: &str = "radau";
 
+pub(super) const KEYS: [&str; 3] = ["end", "output_step", "output_times"];
+pub(super) const SOLVER_KEYS: [&str; 8] =
+    ["rtol", "atol", "memory_rtol", "first_step", "max_step", "max_steps", "method", "step"];
+/// Those of them that every kind of motion takes.
+const COMMON_SOLVER_KEYS: usize = 6;
+/// Methods with steps of one size.
+pub(super) const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
 /// Most rows of one run.
 const MAX_ROWS: f64 = 2e7;
 const DEFAULT_RTOL: f64 = 1e-9;
 /// Smallest default error of the memory's kernel; the default is this share of `rtol`.
-const SMALLEST_MEMORY_RTOL: f64 = 1e-12;
+pub(super) const SMALLEST_MEMORY_RTOL: f64 = 1e-12;
 const MEMORY_SHARE: f64 = 100.0;
 const DEFAULT_MAX_STEPS: i64 = 10_000_000;
-const TOLERANCES: (f64, f64) = (1e-13, 0.1);
+pub(super) const TOLERANCES: (f64, f64) = (1e-13, 0.1);
 
 /// Duration and rows, for the readers that need them.
 pub(crate) type Duration = TimePlan;
@@ -26,7 +33,7 @@ pub(crate) type Duration = TimePlan;
 /// Reads `[time]`.
 pub(crate) fn read(root: &Table<'_>) -> Read<TimePlan> {
     let field = root.require("time", "[time] with end = \"10 s\" and output_step = \"10 ms\"")?;
-    let table = Table::open(root.ctx, field.node, "[time]", &["end", "output_step", "output_times"])?;
+    let table = Table::open(root.ctx, field.node, "[time]", &KEYS)?;
     let end = table.require("end", "end = \"10 s\"").and_then(|field| field.positive("s"));
     match (table.get("output_step"), table.get("output_times")) {
         (Some(step), None) => {
@@ -80,8 +87,7 @@ fn output_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
 
 /// Reads `[solver]`.
 pub(crate) fn read_solver(root: &Table<'_>) -> Read<SolverPlan> {
-    const KEYS: [&str; 8] = ["rtol", "atol", "memory_rtol", "first_step", "max_step", "max_steps", "method", "step"];
-    let known = if moves_by_itself(root) { &KEYS[..] } else { &KEYS[..6] };
+    let known = if moves_by_itself(root) { &SOLVER_KEYS[..] } else { &SOLVER_KEYS[..COMMON_SOLVER_KEYS] };
     let forward_only = |key: &str| {
         matches!(key, "method" | "step").then(|| {
             let why = "belongs to forward runs; along a prescribed motion or a gripper path the run chooses its steps";
@@ -148,7 +154,6 @@ fn fixed_step(table: Option<&Table<'_>>) -> Read<Option<FixedStep>> {
 
 /// The method by its name; `None`: the adaptive one.
 fn method(field: &Field<'_>) -> Read<Option<Method>> {
-    const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
     let name = field.text()?;
     if name == ADAPTIVE {
         return Ok(None);

@@ -87,6 +87,11 @@ impl Layout {
         &self.written
     }
 
+    /// How many of them, the first ones, are swept parameters.
+    pub fn swept(&self) -> usize {
+        self.swept
+    }
+
     /// Columns of summary.csv.
     pub(super) fn summary_columns(&self) -> Vec<Column> {
         let plain = |name: &str| Column::new(name, "", "");

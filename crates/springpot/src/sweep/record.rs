@@ -31,6 +31,7 @@ impl Outcome {
             "limits": self.limits,
             "plan": plan.resolved(),
             "columns": layout.written(),
+            "sweeps": sweeps(cases),
             "cases": listed,
         });
         match record {
@@ -45,12 +46,36 @@ impl Outcome {
     }
 }
 
-fn one(cases: &Cases, case: &CaseResult) -> Value {
-    let values = cases.values(case.index).into_iter().map(|value| match value {
+/// Values of a sweep that are listed.
+const MAX_VALUES: usize = 1_000;
+
+/// What is swept: the paths that move together, the values as written, and as the rows have them.
+fn sweeps(cases: &Cases) -> Value {
+    let mut stride = cases.len();
+    let mut first = 0;
+    let sweeps = (0..cases.axis_count()).map(|axis| {
+        let (count, shown) = (cases.axis_len(axis), cases.axis_len(axis).min(MAX_VALUES));
+        stride /= count;
+        let parameters: Vec<&str> = cases.axis_parameters(axis).collect();
+        let columns = first..first + parameters.len();
+        first = columns.end;
+        let labels: Vec<String> = (0..shown).map(|k| cases.axis_label(axis, k)).collect();
+        let values = (0..shown).map(|k| cases.values(k * stride)[columns.clone()].iter().map(value).collect::<Value>());
+        json!({ "parameters": parameters, "count": count, "labels": labels, "values": values.collect::<Value>() })
+    });
+    sweeps.collect()
+}
+
+fn value(value: &SweptValue) -> Value {
+    match value {
         SweptValue::Number(number) => json!(number),
         SweptValue::Text(text) => json!(text),
-    });
-    let parameters: Map<String, Value> = cases.parameters().iter().cloned().zip(values).collect();
+    }
+}
+
+fn one(cases: &Cases, case: &CaseResult) -> Value {
+    let values = cases.values(case.index);
+    let parameters: Map<String, Value> = cases.parameters().iter().cloned().zip(values.iter().map(value)).collect();
     let status = match (&case.error, case.interrupted) {
         (None, _) => "done",
         (_, true) => "interrupted",

@@ -1,5 +1,7 @@
 //! The folder of a run's results.
 
+use super::Column;
+use super::format::{self, Format};
 use std::fs::{self, File};
 use std::io::{self, Read as _, Seek as _};
 use std::path::{Component, Path, PathBuf};
@@ -7,6 +9,8 @@ use std::path::{Component, Path, PathBuf};
 /// The rows while they are written, and at the end.
 const PART: &str = "results.csv.part";
 const RESULTS: &str = "results.csv";
+/// The rows in another format, while they are written and at the end.
+const OTHER_RESULTS: [&str; 4] = ["results.parquet.part", "results.parquet", "results.npz.part", "results.npz"];
 /// Statistics per case and column, while they are written and at the end.
 const SUMMARY_PART: &str = "summary.csv.part";
 const SUMMARY: &str = "summary.csv";
@@ -39,6 +43,7 @@ impl Folder {
         fs::create_dir_all(path)?;
         remove_checkpoint(path)?;
         take_away(path, &[PART, SUMMARY_PART, RESULTS, SUMMARY, RUN])?;
+        take_away(path, &OTHER_RESULTS)?;
         Ok(Self { path: path.to_owned(), files: Vec::new() })
     }
 
@@ -68,6 +73,7 @@ impl Folder {
             fs::rename(path.join(RESULTS), path.join(PART))?;
         }
         take_away(path, &[SUMMARY_PART, RESULTS, SUMMARY, RUN])?;
+        take_away(path, &OTHER_RESULTS)?;
         Ok(Self { path: path.to_owned(), files: Vec::new() })
     }
 
@@ -128,6 +134,26 @@ impl Folder {
         }
         file.set_len(end)?;
         self.close_rows()
+    }
+
+    /// Writes the rows, which are complete, in another format in place of results.csv; their first `swept` columns may hold texts.
+    ///
+    /// # Errors
+    /// The file system's; results.csv is there then.
+    pub fn convert_rows(&mut self, format: Format, columns: &[Column], swept: usize) -> io::Result<()> {
+        if format == Format::Csv {
+            return Ok(());
+        }
+        let (rows, name) = (self.path.join(RESULTS), format!("results.{}", format.name()));
+        let part = self.path.join(format!("{name}.part"));
+        if let Err(error) = format::convert(&rows, &part, format, columns, swept) {
+            // What keeps it from being written may keep it from being removed; the first error is the one to tell.
+            let _ = remove_if_there(&part);
+            return Err(error);
+        }
+        fs::rename(&part, self.path.join(&name))?;
+        self.files.iter_mut().filter(|file| *file == RESULTS).for_each(|file| file.clone_from(&name));
+        remove_if_there(&rows)
     }
 
     /// Opens the file of the statistics.

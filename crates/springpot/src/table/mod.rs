@@ -2,12 +2,20 @@
 
 #[cfg(feature = "scenario")]
 pub mod folder;
+#[cfg(feature = "scenario")]
+mod format;
+#[cfg(feature = "scenario")]
+mod npz;
 pub mod number;
 pub mod ordered;
+#[cfg(feature = "scenario")]
+mod parquet;
 #[cfg(feature = "scenario")]
 pub(crate) mod sealed;
 pub mod statistics;
 
+#[cfg(feature = "scenario")]
+pub use format::Format;
 pub use number::push_number;
 pub use statistics::Statistics;
 

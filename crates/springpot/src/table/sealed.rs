@@ -6,7 +6,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// The first line of a sealed file: who wrote it, in which format.
-const TAG: &str = concat!("springpot ", env!("CARGO_PKG_VERSION"), " checkpoint 1\n");
+const TAG: &str = concat!("springpot ", env!("CARGO_PKG_VERSION"), " checkpoint 2\n");
 
 /// Longest first line that is looked at.
 const LONGEST_TAG: usize = 100;

@@ -41,11 +41,11 @@ impl Method {
         names
     };
 
-    /// Fewest rows the method can work on.
-    pub fn min_rows(self) -> usize {
+    /// Fewest rows the method can work on at this order.
+    pub fn min_rows(self, order: f64) -> usize {
         match self {
             Self::Spline | Self::Hermite | Self::Exponential => 3,
-            Self::Scheme(scheme) => scheme.min_rows(),
+            Self::Scheme(scheme) => scheme.min_rows(order),
         }
     }
 

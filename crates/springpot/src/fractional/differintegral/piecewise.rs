@@ -69,7 +69,7 @@ impl Piecewise {
     /// `Samples`: fewer than two, unequal lengths, numbers that are not finite, times that do not increase.
     pub fn spline(t: &[f64], x: &[f64]) -> Result<Self, FunctionError> {
         let samples = Samples { t, x, rate: None };
-        match samples.check(Scheme::L1) {
+        match samples.check(Scheme::L1, 0.5) {
             // Any start will do, but the times must still increase.
             Err(SchemeError::Start(_)) => {
                 if let Some(row) = (1..t.len()).find(|&k| t[k] <= t[k - 1]) {

@@ -40,7 +40,7 @@ pub fn derivative(
     method: Method,
 ) -> Result<Vec<f64>, DerivativeError> {
     let split = Order::new(order)?;
-    let (needed, found) = (method.min_rows(), samples.t.len());
+    let (needed, found) = (method.min_rows(order), samples.t.len());
     if found < needed {
         return Err(DerivativeError::TooShort { method, needed, found });
     }
@@ -49,7 +49,7 @@ pub fn derivative(
         Err(scheme) => return Ok(scheme.differentiate(samples, order, definition.kind())?),
     };
     // Lengths, numbers and times, of which no scheme asks less.
-    samples.check(Scheme::L1)?;
+    samples.check(Scheme::L1, 0.5)?;
     let prefix = samples.uniform_prefix();
     // Streams know no common step, and arrays by the same name must give their numbers.
     let step = (prefix.rows == found && method != Method::Exponential).then_some(prefix.step);
@@ -101,7 +101,7 @@ pub fn derivative_with_error(
     let values = derivative(samples, order, definition, method)?;
     let half = thinned(samples, 2);
     let quarter = thinned(samples, 4);
-    if quarter.t.len() < method.min_rows().max(3) {
+    if quarter.t.len() < method.min_rows(order).max(3) {
         let error = vec![f64::NAN; values.len()];
         return Ok(Estimated { values, error });
     }

@@ -96,7 +96,7 @@ mod tests {
             let t = points[at];
             for degree in 0..7 {
                 let n = degree as f64;
-                let x: Vec<f64> = points.iter().map(|t| t.powi(degree)).collect();
+                let x: Vec<f64> = points.iter().map(|t: &f64| t.powi(degree)).collect();
                 let [first, second] = apply(&weights(&points, at), &x, at);
                 let exact = [n * t.powi(degree - 1), n * (n - 1.0) * t.powi(degree - 2)];
                 let exact = exact.map(|value| if value.is_nan() { 0.0 } else { value });

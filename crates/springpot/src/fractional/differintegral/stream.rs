@@ -101,7 +101,7 @@ impl Stream {
     /// `TooShort` where fewer samples came than the method needs, `Kernel`.
     pub fn finish(mut self) -> Result<Vec<Row>, DerivativeError> {
         self.rows.clear();
-        let (method, needed) = (Method::Exponential, Method::Exponential.min_rows());
+        let (method, needed) = (Method::Exponential, Method::Exponential.min_rows(0.0));
         match self.taken {
             found if found < needed => return Err(DerivativeError::TooShort { method, needed, found }),
             ..QUINTIC_POINTS => {

@@ -2,8 +2,8 @@
 
 use crate::scenario::{Cases, Plan, RefusalKind, Scenario};
 use crate::simulate::{Checkpoint, PassedLimit, Report, ReportFields, System, Watch};
-use crate::table::Statistics;
 use crate::table::sealed::{Fnv, SealError};
+use crate::table::{Format, Statistics};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -26,6 +26,8 @@ pub struct Origin {
     pub figures: bool,
     /// Simulated time from one checkpoint to the next, s.
     pub every: f64,
+    /// The format of the rows at the end.
+    pub format: Format,
 }
 
 /// What all cases share.
@@ -89,6 +91,7 @@ impl Origin {
             overrides: overrides.to_vec(),
             figures,
             every,
+            format: Format::Csv,
         })
     }
 

@@ -1,0 +1,62 @@
+//! `springpot init`: a commented scenario to start from.
+
+mod robot;
+
+use crate::arguments::InitOptions;
+use crate::{Ending, diagnostic, printed, terminal};
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// The starter without a robot: every line of it is admissible, and the file runs as it is.
+const STARTER: &str = include_str!("starter.toml");
+
+pub(crate) fn init(options: &InitOptions) -> Ending {
+    let out = options.out.clone().unwrap_or_else(|| default_file(options.robot.as_deref()));
+    // Before anything is read: a file that is there is its author's.
+    if out.exists() {
+        return is_there(&out);
+    }
+    let text = match &options.robot {
+        None => STARTER.to_owned(),
+        Some(robot) => match robot::scenario(robot, &out) {
+            Ok(text) => text,
+            Err(ending) => return ending,
+        },
+    };
+    match write(&out, &text) {
+        Ok(()) => printed(terminal::try_print(&next_steps(&out))),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => is_there(&out),
+        Err(error) => {
+            diagnostic::error(format!("{} cannot be written: {error}", out.display()));
+            Ending::Failed
+        }
+    }
+}
+
+fn is_there(out: &Path) -> Ending {
+    let help = "choose another name with --out; nothing is overwritten".to_owned();
+    diagnostic::error_with_help(format!("{} is there already", out.display()), help);
+    Ending::Refused
+}
+
+/// `scenario.toml`, or the name of the robot's file with the ending `.toml`, in the current folder.
+fn default_file(robot: Option<&Path>) -> PathBuf {
+    let mut name = robot.and_then(Path::file_stem).unwrap_or("scenario".as_ref()).to_owned();
+    name.push(".toml");
+    name.into()
+}
+
+fn write(out: &Path, text: &str) -> io::Result<()> {
+    File::options().write(true).create_new(true).open(out)?.write_all(text.as_bytes())
+}
+
+fn next_steps(out: &Path) -> String {
+    let file = out.display();
+    format!(
+        "wrote {file}\n\n\
+         springpot check {file}   what it says: robot, elements, rows, figures\n\
+         springpot run {file}     rows, statistics and figures into results/{}/\n",
+        out.file_stem().unwrap_or_default().to_string_lossy()
+    )
+}

@@ -1,0 +1,264 @@
+//! A starter for a robot from a URDF file: its joints, and an element between two of its links.
+
+use crate::{Ending, diagnostic};
+use springpot::law::Catalog;
+use springpot::model::urdf::{Urdf, UrdfOptions};
+use springpot::model::{BodySpec, JointKind, Limits, Model, Parent};
+use springpot::scenario::Scenario;
+use std::fmt::Write as _;
+use std::path::{Component, Path, PathBuf};
+
+const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+
+/// Pairs of links that are looked at.
+const MOST_PAIRS: usize = 60;
+/// An element is good enough when it is as long as this, m, and its length changes as fast with a joint, m/rad or 1.
+const LENGTH: f64 = 0.03;
+const CHANGE: f64 = 0.02;
+/// Where the point of the first link may be, beside its centre of mass, m.
+const OFFSETS: [[f64; 3]; 4] = [[0.0; 3], [0.0, 0.0, 0.05], [0.0, 0.05, 0.0], [0.05, 0.0, 0.0]];
+/// How far joints swing, rad and m.
+const SWING: f64 = 0.2;
+const SLIDE: f64 = 0.02;
+
+/// The starter for `robot`, to be written to `out`; what is wrong with the robot goes to stderr.
+pub(super) fn scenario(robot: &Path, out: &Path) -> Result<String, Ending> {
+    let read = Urdf::read(robot, &UrdfOptions::default()).and_then(|urdf| {
+        let model = urdf.model(GRAVITY)?;
+        Ok((urdf, model))
+    });
+    let (urdf, model) = read.map_err(|error| {
+        diagnostic::urdf_refused(&error);
+        Ending::Refused
+    })?;
+    if model.joint_count() == 0 {
+        let message = format!("{}: no joint moves: all are fixed", robot.display());
+        let help = "write a scenario by hand with floating_base = true in its [robot]".to_owned();
+        diagnostic::error_with_help(message, help);
+        return Err(Ending::Refused);
+    }
+    let starter = Starter { urdf: &urdf, model: &model, path: relative(robot, out), folder: folder(out) };
+    Ok(starter.text(&starter.best_strut()))
+}
+
+/// Two points, and the joints between them.
+struct Strut {
+    from: (Parent, [f64; 3]),
+    to: (Parent, [f64; 3]),
+    /// Joints whose coordinates change its length.
+    joints: Vec<usize>,
+    rest_length: f64,
+}
+
+struct Starter<'a> {
+    urdf: &'a Urdf,
+    model: &'a Model,
+    /// The robot's file as the scenario names it.
+    path: String,
+    folder: PathBuf,
+}
+
+impl Starter<'_> {
+    /// The first pair of links across two joints, else across one, whose distance changes well.
+    fn best_strut(&self) -> Strut {
+        let mut best: Option<(f64, Strut)> = None;
+        for (from, joints) in self.pairs().into_iter().take(MOST_PAIRS) {
+            for offset in OFFSETS {
+                let to = Parent::Body(self.model.joint_body(joints[joints.len() - 1]));
+                let at = |k: usize| round(self.com(from)[k] + offset[k]);
+                let strut = Strut {
+                    from: (from, [0, 1, 2].map(at)),
+                    to: (to, self.com(to).map(round)),
+                    joints: joints.clone(),
+                    rest_length: 0.0,
+                };
+                let Some((length, change)) = self.measured(&strut) else { continue };
+                let strut = Strut { rest_length: round(length), ..strut };
+                if length >= LENGTH && change >= CHANGE {
+                    return strut;
+                }
+                let score = (length / LENGTH).min(change / CHANGE);
+                if best.as_ref().is_none_or(|(most, _)| score > *most) {
+                    best = Some((score, strut));
+                }
+            }
+        }
+        let any = || Strut {
+            from: (Parent::World, OFFSETS[1]),
+            to: (Parent::Body(self.model.joint_body(0)), [0.05, 0.0, 0.0]),
+            joints: vec![0],
+            rest_length: 0.1,
+        };
+        best.map_or_else(any, |(_, strut)| strut)
+    }
+
+    /// Links to begin at, with the joints from there to the other end: two joints apart first, moving links before the world.
+    fn pairs(&self) -> Vec<(Parent, Vec<usize>)> {
+        let parent = |joint: usize| self.model.parent_link(joint).checked_sub(1);
+        let body = |link: Option<usize>| link.map_or(Parent::World, |joint| Parent::Body(self.model.joint_body(joint)));
+        let joints = 0..self.model.joint_count();
+        let two = joints.clone().filter_map(|j| parent(j).map(|above| (body(parent(above)), vec![above, j])));
+        let one = joints.map(|j| (body(parent(j)), vec![j]));
+        let (moving, fixed): (Vec<_>, Vec<_>) = two.partition(|(from, _)| *from != Parent::World);
+        moving.into_iter().chain(fixed).chain(one).collect()
+    }
+
+    /// l(0) and the largest |∂l/∂q|; `None` where the scenario is not admissible.
+    fn measured(&self, strut: &Strut) -> Option<(f64, f64)> {
+        let text = self.text(&Strut { rest_length: 1.0, joints: strut.joints.clone(), ..*strut });
+        let cases = Scenario::parse(&text, "", &self.folder).ok()?.cases(&Catalog::standard()).ok()?;
+        let starts = cases.plan(0).ok()?.system().element_starts().ok()?;
+        let start = starts.first()?;
+        Some((start.length, start.gradient.iter().map(|g| g.abs()).fold(0.0, f64::max)))
+    }
+
+    fn com(&self, link: Parent) -> [f64; 3] {
+        match link {
+            Parent::World => [0.0; 3],
+            Parent::Body(index) => self.bodies()[index].com,
+        }
+    }
+
+    fn bodies(&self) -> &[BodySpec] {
+        &self.urdf.bodies
+    }
+
+    fn name(&self, link: Parent) -> &str {
+        match link {
+            Parent::World => "world",
+            Parent::Body(index) => &self.bodies()[index].name,
+        }
+    }
+
+    fn text(&self, strut: &Strut) -> String {
+        let name = if self.urdf.name.is_empty() { "The robot" } else { &self.urdf.name };
+        let anchor = |(link, point): (Parent, [f64; 3])| {
+            format!("{{ body = {}, point = [{}] }}", quoted(self.name(link)), point.map(|x| format!("{x}")).join(", "))
+        };
+        format!(
+            "# A scenario: a robot, elements between its links, a motion, and what to draw.\n\
+             # Plain numbers are in SI units, angles in radians; \"30 cm\" and \"25 degC\" carry their own.\n\
+             # docs/SCENARIO.md describes every key; an editor completes them with the schema of `springpot check --schema`.\n\
+             title = {title}\n\
+             \n\
+             # The root link is the world; with floating_base = true it floats. `springpot info` shows links, joints and limits.\n\
+             [robot]\n\
+             urdf = {urdf}\n\
+             \n\
+             # A material between two points, each in the frame of its link.\n\
+             # `springpot laws` lists the laws, `springpot laws --from DATA` reads a data sheet.\n\
+             [[element]]\n\
+             name = \"strut\"\n\
+             from = {from}\n\
+             to = {to}\n\
+             rest_length = \"{rest} cm\"   # its length at t = 0, nearly; the stroke is length less rest length\n\
+             law = \"fractional-kelvin-voigt\"   # F = k·x + c·D^alpha x\n\
+             parameters = {{ k = \"2 N/cm\", c = \"50 N*s^alpha/m\", alpha = 0.4 }}\n\
+             \n\
+             # Every joint follows a function of t; here those move that the strut crosses.\n\
+             # With kind = \"forward\" the robot moves by itself.\n\
+             [motion]\n\
+             kind = \"prescribed\"\n\
+             \n\
+             [motion.joints]\n\
+             {joints}\
+             \n\
+             [time]\n\
+             end = \"2 s\"\n\
+             output_step = \"10 ms\"\n\
+             \n\
+             # Every combination of the values of all [[sweep]] blocks is a case.\n\
+             [[sweep]]\n\
+             parameter = \"element.strut.alpha\"\n\
+             values = [0.2, 0.4, 0.8]\n\
+             \n\
+             # Columns over columns; the first sweep makes the curves.\n\
+             [[figure]]\n\
+             name = \"force\"\n\
+             title = \"Force of the strut\"\n\
+             y = \"strut.force\"\n\
+             \n\
+             [[figure]]\n\
+             name = \"robot\"\n\
+             kind = \"robot\"\n",
+            title = quoted(&format!("{name} with a strut")),
+            urdf = quoted(&self.path),
+            from = anchor(strut.from),
+            to = anchor(strut.to),
+            rest = round(100.0 * strut.rest_length),
+            joints = self.joints(&strut.joints),
+        )
+    }
+
+    /// A line for every joint that has a coordinate of its own.
+    fn joints(&self, moving: &[usize]) -> String {
+        let names = self.model.joint_names();
+        // A joint that follows another one moves with it.
+        let moving: Vec<usize> =
+            moving.iter().map(|&j| self.model.followed(j).map_or(j, |(leader, ..)| leader)).collect();
+        let mut text = String::new();
+        for j in (0..names.len()).filter(|&j| self.model.followed(j).is_none()) {
+            let signal = match self.model.joint_kind(j) {
+                JointKind::Floating => "{}".to_owned(),
+                kind => signal(kind, self.model.limits(j), moving.contains(&j)),
+            };
+            let _ = writeln!(text, "{} = {signal}", key(&names[j]));
+        }
+        text
+    }
+}
+
+/// A swing within the limits, or rest, about 0 or, where the limits leave that out, about their middle.
+fn signal(kind: JointKind, limits: &Limits, moves: bool) -> String {
+    let most = if kind == JointKind::Prismatic { SLIDE } else { SWING };
+    let finite = limits.lower.is_finite() && limits.upper.is_finite() && limits.lower < limits.upper;
+    let middle = match finite {
+        true if limits.lower + most > 0.0 || limits.upper - most < 0.0 => round(0.5 * (limits.lower + limits.upper)),
+        _ => 0.0,
+    };
+    let room = if finite { 0.4 * (limits.upper - limits.lower) } else { f64::INFINITY };
+    // At 1 Hz the speed is 2π times the swing.
+    let speed = if limits.velocity > 0.0 { 0.9 * limits.velocity / std::f64::consts::TAU } else { f64::INFINITY };
+    let swing = round(most.min(room).min(speed));
+    match (moves && swing > 0.0, middle) {
+        (false, middle) => format!("{middle}"),
+        (true, 0.0) => format!("\"{swing}*sin(2*pi*t)\""),
+        (true, middle) => format!("\"{middle} + {swing}*sin(2*pi*t)\""),
+    }
+}
+
+/// To the millimetre, or the milliradian.
+fn round(value: f64) -> f64 {
+    // Adding 0 makes −0 a 0.
+    (value * 1000.0).round() / 1000.0 + 0.0
+}
+
+/// A key of TOML.
+fn key(name: &str) -> String {
+    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    if bare { name.to_owned() } else { quoted(name) }
+}
+
+/// A text of TOML, whose escapes are those of JSON but for DEL.
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007F")
+}
+
+fn folder(out: &Path) -> PathBuf {
+    out.parent().unwrap_or(Path::new("")).to_owned()
+}
+
+/// The path of the robot's file from the folder of `out`.
+fn relative(robot: &Path, out: &Path) -> String {
+    let folder = folder(out);
+    let typed = || robot.to_string_lossy().into_owned();
+    if robot.is_absolute() || folder.as_os_str().is_empty() {
+        return typed();
+    }
+    let (Ok(robot), Ok(folder)) = (robot.canonicalize(), folder.canonicalize()) else { return typed() };
+    let (robot_parts, folder_parts): (Vec<_>, Vec<_>) = (robot.components().collect(), folder.components().collect());
+    let common = robot_parts.iter().zip(&folder_parts).take_while(|(a, b)| a == b).count();
+    let up = folder_parts[common..].iter().map(|_| Component::ParentDir);
+    let path: PathBuf = up.chain(robot_parts[common..].iter().copied()).collect();
+    path.to_string_lossy().into_owned()
+}

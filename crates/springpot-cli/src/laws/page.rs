@@ -1,0 +1,123 @@
+//! One law: equation, parameters, inputs, source, and an element to start from.
+
+use crate::grid::{Grid, Set};
+use crate::terminal;
+use serde_json::{Value, json};
+use springpot::law::{Entry, Input, Param, Range};
+
+/// The page of a law.
+pub(super) fn text(law: &Entry) -> String {
+    let width = terminal::stdout_width().or(Some(80));
+    let mut text = format!("{}\n", law.name);
+    text.push_str(&terminal::hanging("  ", law.equation, width));
+    text.push_str("\nparameters\n");
+    let mut grid = Grid::new(["name", "unit", "range", "default", "meaning"].map(|title| (title, Set::Text)));
+    for Param { name, unit, meaning, range, default } in law.params {
+        let default = default.map_or_else(|| "required".to_owned(), |value| format!("{value}"));
+        grid.row([*name, unit_or_one(unit), &interval(*range), &default, meaning].map(str::to_owned).to_vec());
+    }
+    text.push_str(&indented(&grid));
+    if !law.inputs.is_empty() {
+        text.push_str("\ninputs, functions of time\n");
+        let mut grid = Grid::new(["name", "unit", "range", "meaning"].map(|title| (title, Set::Text)));
+        for Input { name, unit, meaning, range } in law.inputs {
+            grid.row([*name, unit_or_one(unit), &interval(*range), meaning].map(str::to_owned).to_vec());
+        }
+        text.push_str(&indented(&grid));
+    }
+    text.push('\n');
+    text.push_str(&terminal::hanging("source  ", law.source, width));
+    text.push_str("\nan element of this law in a scenario\n\n");
+    text.push_str(&example(law));
+    text
+}
+
+/// The catalog's row.
+pub(super) fn json(law: &Entry) -> Value {
+    let bound = |value: f64| (value.abs() < f64::MAX).then_some(value);
+    let params = law.params.iter().map(|param| {
+        json!({
+            "name": param.name, "unit": param.unit, "meaning": param.meaning,
+            "minimum": bound(param.range.low), "maximum": bound(param.range.high), "default": param.default,
+        })
+    });
+    let inputs = law.inputs.iter().map(|input| {
+        json!({
+            "name": input.name, "unit": input.unit, "meaning": input.meaning,
+            "minimum": bound(input.range.low), "maximum": bound(input.range.high),
+        })
+    });
+    json!({
+        "name": law.name, "equation": law.equation, "source": law.source,
+        "parameters": params.collect::<Vec<_>>(), "inputs": inputs.collect::<Vec<_>>(), "example": example(law),
+    })
+}
+
+/// An element of the law with parameters of a usual size.
+fn example(law: &Entry) -> String {
+    let params: Vec<String> =
+        law.params.iter().map(|param| format!("{} = {}", param.name, usual(param.unit, param.range))).collect();
+    let inputs: Vec<String> =
+        law.inputs.iter().map(|input| format!("{} = {}", input.name, usual(input.unit, input.range))).collect();
+    element(law.name, &params, &inputs)
+}
+
+/// An `[[element]]` between the world and a body; the parameters are written as `name = value`.
+pub(super) fn element(law: &str, params: &[String], inputs: &[String]) -> String {
+    let mut text = format!(
+        "[[element]]\n\
+         name = \"strut\"\n\
+         from = {{ body = \"world\", point = [0, 0, \"-30 cm\"] }}\n\
+         to = {{ body = \"arm\", point = [\"30 cm\", 0, 0] }}\n\
+         rest_length = \"42 cm\"\n\
+         law = \"{law}\"\n\
+         parameters = {{ {} }}\n",
+        params.join(", ")
+    );
+    if !inputs.is_empty() {
+        text.push_str(&format!("inputs = {{ {} }}\n", inputs.join(", ")));
+    }
+    text
+}
+
+/// A value of a usual size, as TOML.
+fn usual(unit: &str, range: Range) -> String {
+    let written = match unit {
+        "" => return if range.contains(0.4) { "0.4".to_owned() } else { format!("{}", range.low.max(0.0)) },
+        "N/m" => "5 N/cm",
+        "N*s/m" => "20 N*s/m",
+        "N*s^alpha/m" => "50 N*s^alpha/m",
+        "m/K" => "0.7 mm/degC",
+        "K" => "25 degC",
+        "m/V" => "10 um/V",
+        "V" => "5 V",
+        other => return format!("\"1 {other}\""),
+    };
+    format!("\"{written}\"")
+}
+
+fn unit_or_one(unit: &'static str) -> &'static str {
+    if unit.is_empty() { "1" } else { unit }
+}
+
+fn interval(range: Range) -> String {
+    match (range.low > f64::MIN, range.high < f64::MAX) {
+        (true, true) => format!("{} … {}", range.low, range.high),
+        (true, false) => format!("≥ {}", range.low),
+        (false, true) => format!("≤ {}", range.high),
+        (false, false) => "any".to_owned(),
+    }
+}
+
+/// The lines of a table, indented; the last column is broken rather than cut.
+fn indented(grid: &Grid) -> String {
+    let width = terminal::stdout_width().or(Some(80));
+    let lines = grid.text(None);
+    let meaning = lines.lines().next().and_then(|head| head.find("meaning")).unwrap_or(0);
+    let split = |line: &str| {
+        let at = line.char_indices().nth(meaning).map_or(line.len(), |(at, _)| at);
+        let (lead, words) = line.split_at(at);
+        terminal::hanging(&format!("  {lead}"), words, width)
+    };
+    lines.lines().map(split).collect()
+}

@@ -1,0 +1,263 @@
+//! A law from the values of a data sheet.
+
+use super::page;
+use crate::diagnostic;
+use crate::numbers::{rough, short};
+use serde_json::{Map, Value, json};
+use springpot::law::datasheet::{DatasheetError, Datum, Identified, Model, Quantity, identify};
+use springpot::law::{Catalog, Entry};
+use springpot::scenario::units::{UnitError, parse_quantity, split_quantity};
+use springpot::scenario::{Place, RefusalKind, Source, suggest};
+use std::f64::consts::TAU;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A deviation below this is that of the digits shown.
+const SHOWN: f64 = 1e-5;
+
+/// Why data are refused, and where they stand.
+pub(super) struct Refused {
+    message: String,
+    help: Option<String>,
+    at: Option<Range<usize>>,
+}
+
+impl Refused {
+    fn at(at: Range<usize>, message: String, help: impl Into<Option<String>>) -> Self {
+        Self { message, help: help.into(), at: Some(at) }
+    }
+
+    /// Prints it on stderr, with the place in `data`.
+    pub(super) fn show(self, data: &str) {
+        match (self.at, self.help) {
+            (Some(span), help) => {
+                let source = Source { name: "--from".to_owned(), text: data.into() };
+                let refusal = Place { source: Arc::new(source), span }.refuse(RefusalKind::BadQuantity, self.message);
+                diagnostic::refused(&refusal.help_if(help).into());
+            }
+            (None, Some(help)) => diagnostic::error_with_help(self.message, help),
+            (None, None) => diagnostic::error(self.message),
+        }
+    }
+}
+
+/// One value and how it was written.
+struct Item {
+    datum: Datum,
+    /// `stiffness at 10 Hz`.
+    written: String,
+    value: String,
+}
+
+/// The law, its parameters, an element, and how well it meets the data.
+pub(super) fn text(catalog: &Catalog, data: &str, law: Option<&Entry>, as_json: bool) -> Result<String, Refused> {
+    let items = items(data)?;
+    let values: Vec<Datum> = items.iter().map(|item| item.datum).collect();
+    let model = match law {
+        None => Model::for_data(&values),
+        Some(law) => Model::ALL.into_iter().find(|model| model.name() == law.name).ok_or_else(|| {
+            let names = Model::ALL.map(Model::name);
+            let message = format!("the law {:?} has parameters that such data say nothing about", law.name);
+            Refused { message, help: Some(format!("choose one of {}", names.join(", "))), at: None }
+        })?,
+    };
+    let found = identify(model, &values).map_err(|error| refused(&error, &values))?;
+    let row = catalog.get(model.name()).expect("every model is in the catalog");
+    Ok(if as_json { json(row, &found, &items) } else { page(row, &found, &items) })
+}
+
+fn refused(error: &DatasheetError, data: &[Datum]) -> Refused {
+    let help = match error {
+        DatasheetError::TooFew { model, .. } => Some(missing(*model, data)),
+        DatasheetError::NoStiffness => Some("add stiffness, storage, loss or damping".to_owned()),
+        DatasheetError::NeedsFrequency { quantity } => Some(format!("write {quantity} = … at 10 Hz")),
+        DatasheetError::NoStaticStiffness { .. } => {
+            Some("a static stiffness makes it kelvin-voigt or fractional-kelvin-voigt".to_owned())
+        }
+        DatasheetError::Undetermined { .. } => {
+            Some("add tan_delta, loss or damping, or values at another frequency".to_owned())
+        }
+        DatasheetError::Unreachable { model: Model::FractionalKelvinVoigt, .. } => Some(
+            "its dynamic stiffness rises with the frequency, from k at rest; look at units and frequencies".to_owned(),
+        ),
+        DatasheetError::Unreachable { .. } => Some("look at units and frequencies, or name another law".to_owned()),
+        DatasheetError::NotPositive { .. } | DatasheetError::Twice { .. } => None,
+    };
+    Refused { message: error.to_string(), help, at: None }
+}
+
+/// What would be enough for a law.
+fn missing(model: Model, data: &[Datum]) -> String {
+    let has_losses = data.iter().any(|datum| datum.quantity.is_of_losses());
+    match (model, has_losses) {
+        (Model::FractionalKelvinVoigt, _) => {
+            "it needs three values, such as a static stiffness, and stiffness and tan_delta at one \
+                                              frequency"
+                .to_owned()
+        }
+        (_, true) => "add a stiffness: stiffness = 5 kN/m".to_owned(),
+        (_, false) => "add the losses: tan_delta = 0.3 at 10 Hz".to_owned(),
+    }
+}
+
+/// Reads `NAME = VALUE [at FREQUENCY], …`.
+fn items(data: &str) -> Result<Vec<Item>, Refused> {
+    let mut read = Vec::new();
+    let mut start = 0;
+    for part in data.split([',', ';']) {
+        let at = start + (part.len() - part.trim_start().len());
+        start += part.len() + 1;
+        let part = part.trim();
+        if !part.is_empty() {
+            read.push(item(data, at, part)?);
+        }
+    }
+    if read.is_empty() {
+        let help = "write --from 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m'".to_owned();
+        return Err(Refused { message: "--from holds no data".to_owned(), help: Some(help), at: None });
+    }
+    // What has no frequency of its own has the only one there is.
+    let mut told: Vec<(f64, String)> = read.iter().filter_map(|(_, frequency)| frequency.clone()).collect();
+    told.sort_by(|a, b| a.0.total_cmp(&b.0));
+    told.dedup_by(|a, b| a.0 == b.0);
+    let moving: Vec<&(f64, String)> = told.iter().filter(|(omega, _)| *omega > 0.0).collect();
+    let only = match moving[..] {
+        [] => (0.0, "0".to_owned()),
+        [only] => only.clone(),
+        _ => {
+            let Some((item, _)) = read.iter().find(|(_, frequency)| frequency.is_none()) else {
+                return Ok(read
+                    .into_iter()
+                    .map(|(item, frequency)| item.with(frequency.unwrap_or_default()))
+                    .collect());
+            };
+            let message = format!("{} has no frequency, and the data have several", item.written);
+            return Err(Refused { message, help: Some(format!("write {} = … at 10 Hz", item.written)), at: None });
+        }
+    };
+    Ok(read.into_iter().map(|(item, frequency)| item.with(frequency.unwrap_or_else(|| only.clone()))).collect())
+}
+
+impl Item {
+    fn with(mut self, (omega, written): (f64, String)) -> Self {
+        self.datum.omega = omega;
+        self.written.push_str(&if omega == 0.0 { " at rest".to_owned() } else { format!(" at {written}") });
+        self
+    }
+}
+
+type Frequency = Option<(f64, String)>;
+
+/// `stiffness = 5 kN/m at 10 Hz`, which stands at byte `start` of `data`.
+fn item(data: &str, start: usize, part: &str) -> Result<(Item, Frequency), Refused> {
+    let place = |text: &str| {
+        let at = text.as_ptr() as usize - data.as_ptr() as usize;
+        at..at + text.len()
+    };
+    debug_assert_eq!(place(part).start, start);
+    let Some((name, rest)) = part.split_once(['=', ':']) else {
+        let help = "write NAME = VALUE, as in tan_delta = 0.3".to_owned();
+        return Err(Refused::at(place(part), format!("{part:?} has no `=`"), help));
+    };
+    let (name, rest) = (name.trim(), rest.trim());
+    let names = Quantity::ALL.map(Quantity::name);
+    let wanted = if name == "loss_factor" { Quantity::LossFactor.name() } else { name };
+    let Some(quantity) = Quantity::ALL.into_iter().find(|quantity| quantity.name() == wanted) else {
+        let help = suggest(name, names.into_iter().chain(["loss_factor"]));
+        return Err(Refused::at(place(name), format!("there is no quantity {name:?}"), help));
+    };
+    let (value, frequency) = match rest.rsplit_once(" at ") {
+        Some((value, frequency)) => (value.trim(), Some(frequency.trim())),
+        None => (rest, None),
+    };
+    let read = parse_quantity(value, quantity.unit(), &|_| None).map_err(|error| {
+        let right = match quantity.unit() {
+            "" => "write a number".to_owned(),
+            unit => format!("write a number in {unit}, or with a unit: 5 k{unit}"),
+        };
+        misread(place(value), &error, right)
+    })?;
+    if read <= 0.0 {
+        return Err(Refused::at(place(value), format!("{name} is {value}, but must be positive"), None));
+    }
+    let frequency = frequency.map(|text| omega(text, place(text)).map(|omega| (omega, text.to_owned()))).transpose()?;
+    let datum = Datum { quantity, value: read, omega: 0.0 };
+    Ok((Item { datum, written: name.to_owned(), value: value.to_owned() }, frequency))
+}
+
+fn misread(at: Range<usize>, error: &UnitError, help: String) -> Refused {
+    let span = error.span().map_or(at.clone(), |span| at.start + span.start..at.start + span.end);
+    Refused::at(span, error.to_string(), help)
+}
+
+/// An angular frequency, rad/s.
+fn omega(text: &str, at: Range<usize>) -> Result<f64, Refused> {
+    let help = || "write a frequency such as 10 Hz or 63 rad/s, or 0 for a static value".to_owned();
+    if text == "rest" {
+        return Ok(0.0);
+    }
+    let value = parse_quantity(text, "1/s", &|_| None).map_err(|error| misread(at.clone(), &error, help()))?;
+    let unit = split_quantity(text).map_or("", |(_, unit)| unit);
+    // Hertz and radians per second are one dimension; only their author knows which of them a bare number is in.
+    if value < 0.0 || (unit.is_empty() && value != 0.0) {
+        return Err(Refused::at(at, format!("{text:?} is no frequency"), help()));
+    }
+    Ok(if unit.ends_with("Hz") { TAU * value } else { value })
+}
+
+/// The parameters as they are shown, and the law that has them.
+fn rounded(row: &Entry, found: &Identified) -> (Vec<(&'static str, &'static str, f64)>, Identified) {
+    let round = |value: f64| short(value).parse().unwrap_or(value);
+    let shown = Identified {
+        stiffness: round(found.stiffness),
+        coefficient: round(found.coefficient),
+        order: round(found.order),
+        ..*found
+    };
+    let value = |name: &str| shown.parameter(name).unwrap_or(f64::NAN);
+    (row.params.iter().map(|param| (param.name, param.unit, value(param.name))).collect(), shown)
+}
+
+fn page(row: &Entry, found: &Identified, items: &[Item]) -> String {
+    let (params, shown) = rounded(row, found);
+    let mut text = format!("{}   {}\n\n", row.name, row.equation);
+    for (name, unit, value) in &params {
+        text.push_str(format!("  {name:<5} = {} {unit}", short(*value)).trim_end());
+        text.push('\n');
+    }
+    text.push('\n');
+    let widest = items.iter().map(|item| item.written.chars().count()).max().unwrap_or(0);
+    for Item { datum, written, value } in items {
+        let reached = format!("{} {}", short(shown.predict(datum)), datum.quantity.unit());
+        text.push_str(&format!("  {written:<widest$}  {value} wanted, {} reached\n", reached.trim_end()));
+    }
+    let data: Vec<Datum> = items.iter().map(|item| item.datum).collect();
+    let deviation = shown.deviation(&data);
+    if deviation > SHOWN {
+        text.push_str(&format!("  largest deviation {} %\n", rough(100.0 * deviation)));
+    }
+    let written = |(name, unit, value): &(&str, &str, f64)| match *unit {
+        "" => format!("{name} = {}", short(*value)),
+        unit => format!("{name} = \"{} {unit}\"", short(*value)),
+    };
+    text.push('\n');
+    text.push_str(&page::element(row.name, &params.iter().map(written).collect::<Vec<_>>(), &[]));
+    text
+}
+
+fn json(row: &Entry, found: &Identified, items: &[Item]) -> String {
+    let params: Map<String, Value> =
+        row.params.iter().map(|param| (param.name.to_owned(), found.parameter(param.name).into())).collect();
+    let check: Vec<Value> = items
+        .iter()
+        .map(|Item { datum, .. }| {
+            json!({
+                "quantity": datum.quantity.name(), "unit": datum.quantity.unit(), "omega": datum.omega,
+                "wanted": datum.value, "reached": found.predict(datum),
+            })
+        })
+        .collect();
+    let data: Vec<Datum> = items.iter().map(|item| item.datum).collect();
+    let value = json!({ "law": row.name, "parameters": params, "deviation": found.deviation(&data), "check": check });
+    format!("{value:#}\n")
+}

@@ -1,0 +1,240 @@
+//! Which columns and cases are drawn, and the curves that they make.
+
+use super::Refused;
+use super::points::Points;
+use super::table::Table;
+use crate::arguments::PlotOptions;
+use crate::labels;
+use springpot::scenario::suggest;
+use springpot::scenario::units::Unit;
+use springpot::sweep::MAX_CURVES;
+use springpot::table::{Column, matches};
+use springpot_report::{Curve, Panel, Plot};
+
+/// Values of a sweep that are listed.
+const LISTED: usize = 12;
+
+/// A column and the unit that it is drawn in.
+struct Drawn {
+    at: usize,
+    column: Column,
+    unit: Option<(String, Unit)>,
+}
+
+/// What is asked for.
+pub(super) struct Wanted {
+    x: Drawn,
+    y: Vec<Drawn>,
+    /// For each sweep the value that is chosen.
+    chosen: Vec<Option<String>>,
+}
+
+impl Wanted {
+    pub(super) fn new(table: &Table, options: &PlotOptions) -> Result<Self, Refused> {
+        let units = units(table, &options.units)?;
+        let drawn = |at: usize| {
+            let column = table.columns[at].clone();
+            let unit = units.iter().rev().find(|(glob, ..)| matches(glob, &column.name));
+            let unit = match unit {
+                None => None,
+                Some((_, text, unit)) => Some(fitting(&column, text, unit)?),
+            };
+            Ok(Drawn { at, column, unit })
+        };
+        let x = match found(table, &options.x)?[..] {
+            [only] => drawn(only)?,
+            _ => return Err(Refused::new(format!("--x {:?} matches several columns; it takes one", options.x), None)),
+        };
+        let mut ordinates = Vec::new();
+        for glob in &options.y {
+            for at in found(table, glob)? {
+                if !ordinates.contains(&at) {
+                    ordinates.push(at);
+                }
+            }
+        }
+        let y = ordinates.into_iter().map(drawn).collect::<Result<_, _>>()?;
+        Ok(Self { x, y, chosen: chosen(table, &options.selection)? })
+    }
+}
+
+/// Columns that a glob matches; at least one.
+fn found(table: &Table, glob: &str) -> Result<Vec<usize>, Refused> {
+    let found: Vec<usize> = (0..table.columns.len()).filter(|&k| matches(glob, &table.columns[k].name)).collect();
+    if found.is_empty() {
+        let help = suggest(glob, table.columns.iter().map(|column| column.name.as_str()));
+        return Err(Refused::new(format!("{glob:?} matches no column"), help));
+    }
+    Ok(found)
+}
+
+type Units = Vec<(String, String, Unit)>;
+
+/// Reads `COLUMN=UNIT`.
+fn units(table: &Table, assignments: &[String]) -> Result<Units, Refused> {
+    let read = assignments.iter().map(|assignment| {
+        let Some((glob, unit)) = assignment.split_once('=') else {
+            return Err(Refused::new(format!("--unit {assignment:?} has no `=`"), "write COLUMN=UNIT".to_owned()));
+        };
+        found(table, glob)?;
+        match Unit::parse(unit, &|_| None) {
+            Ok(parsed) => Ok((glob.to_owned(), unit.to_owned(), parsed)),
+            Err(error) => Err(Refused::new(format!("--unit {assignment}: {error}"), None)),
+        }
+    });
+    read.collect()
+}
+
+fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), Refused> {
+    let own = Unit::parse(if column.unit.is_empty() { "1" } else { &column.unit }, &|_| None);
+    match own {
+        Ok(own) if own.dimension() == unit.dimension() => Ok((text.to_owned(), unit.clone())),
+        _ => {
+            let own = if column.unit.is_empty() { "a pure number" } else { &column.unit };
+            Err(Refused::new(format!("{} is in {own}, which does not convert to {text}", column.name), None))
+        }
+    }
+}
+
+/// The value of each sweep that `--where` chooses.
+fn chosen(table: &Table, selection: &[String]) -> Result<Vec<Option<String>>, Refused> {
+    let mut chosen = vec![None; table.sweeps.len()];
+    for assignment in selection {
+        let Some((path, value)) = assignment.rsplit_once('=') else {
+            return Err(Refused::new(format!("--where {assignment:?} has no `=`"), "write PATH=VALUE".to_owned()));
+        };
+        let (path, value) = (path.trim(), value.trim().trim_matches('"'));
+        let names = || table.sweeps.iter().flat_map(|sweep| &sweep.parameters).map(String::as_str);
+        let sweep = table.sweeps.iter().position(|sweep| sweep.parameters.iter().any(|name| name == path));
+        let Some(at) = sweep else {
+            let help = if table.sweeps.is_empty() { "nothing is".to_owned() } else { suggest(path, names()) };
+            return Err(Refused::new(format!("--where {assignment}: {path} is not swept"), help));
+        };
+        let labels = &table.sweeps[at].labels;
+        let same = |label: &&String| {
+            let equal = |label: f64| value.parse::<f64>().is_ok_and(|value| value == label);
+            label.as_str() == value || label.parse().is_ok_and(equal)
+        };
+        let Some(label) = labels.iter().find(same) else {
+            let mut help = format!("values: {}", labels.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", "));
+            if labels.len() > LISTED {
+                help.push_str(", …");
+            }
+            return Err(Refused::new(format!("--where {assignment}: no case has this value"), help));
+        };
+        chosen[at] = Some(label.clone());
+    }
+    Ok(chosen)
+}
+
+/// One curve under way: which case, and one run of points for each ordinate.
+struct Case {
+    position: Vec<usize>,
+    curves: Vec<Points>,
+}
+
+/// Reads the rows and makes the figure: the first sweep that is not fixed makes curves, the others panels.
+pub(super) fn plot(table: &Table, wanted: &Wanted, title: Option<String>) -> Result<Plot, Refused> {
+    let (cases, sweeps) = cases(table, wanted)?;
+    let free: Vec<usize> = (0..sweeps.len()).filter(|&k| wanted.chosen[k].is_none()).collect();
+    let several = wanted.y.len() > 1;
+    let alike = common_unit(&wanted.y).is_some();
+    let value = |axis: usize, position: &[usize], named: bool| {
+        let value = labels::written_unit(&sweeps[axis].1[position[axis]]);
+        if named { format!("{} = {value}", sweeps[axis].0) } else { value }
+    };
+    let mut panels: Vec<(Vec<usize>, Panel)> = Vec::new();
+    for Case { position, curves } in cases {
+        let key: Vec<usize> = free.iter().skip(1).map(|axis| position[*axis]).collect();
+        let at = panels.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
+            let named: Vec<String> = free.iter().skip(1).map(|axis| value(*axis, &position, true)).collect();
+            let title = (!named.is_empty()).then(|| named.join(", "));
+            panels.push((key, Panel { title, curves: Vec::new() }));
+            panels.len() - 1
+        });
+        let swept = free.first().map(|axis| value(*axis, &position, several));
+        for (column, Points { x, y }) in wanted.y.iter().zip(curves) {
+            let own = several.then(|| if alike { labels::quantity(&column.column.name) } else { axis_label(column) });
+            let label = own.into_iter().chain(swept.clone()).collect::<Vec<_>>().join(", ");
+            panels[at].1.curves.push(Curve { label, x, y });
+        }
+    }
+    let mut panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
+    if let [only] = &mut panels[..]
+        && let [curve] = &mut only.curves[..]
+    {
+        // The ordinate's label says all about a single curve.
+        curve.label.clear();
+    }
+    let y_label = match &wanted.y[..] {
+        [only] => axis_label(only),
+        several => common_unit(several).map_or(String::new(), |unit| labels::written_unit(&unit)),
+    };
+    let legend_title = free.first().filter(|_| !several).map(|axis| sweeps[*axis].0.clone());
+    Ok(Plot { title, x_label: axis_label(&wanted.x), y_label, legend_title, panels })
+}
+
+/// Title and labels of every sweep.
+type Sweeps = Vec<(String, Vec<String>)>;
+
+/// The points of every case that is drawn, in the order of the rows.
+fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused> {
+    let mut cases: Vec<Case> = Vec::new();
+    let mut last: Option<(Vec<usize>, Option<usize>)> = None;
+    let names: Vec<Vec<String>> = table.sweeps.iter().map(|sweep| sweep.labels.clone()).collect();
+    let sweeps = table.visit(&mut |record, line, position| {
+        let case = match &last {
+            Some((other, case)) if other == position => *case,
+            _ => {
+                let drawn =
+                    wanted.chosen.iter().zip(position).zip(&names).all(|((chosen, &at), labels)| {
+                        chosen.as_ref().is_none_or(|chosen| labels.get(at) == Some(chosen))
+                    });
+                let case = drawn.then(|| {
+                    let curves = vec![Points::default(); wanted.y.len()];
+                    cases.push(Case { position: position.to_vec(), curves });
+                    cases.len() - 1
+                });
+                last = Some((position.to_vec(), case));
+                case
+            }
+        };
+        let Some(case) = case else { return Ok(()) };
+        if cases.len() * wanted.y.len() > MAX_CURVES {
+            let message = format!("the figure would hold more than {MAX_CURVES} curves");
+            let help = "choose fewer columns, or some of the cases with --where PATH=VALUE".to_owned();
+            return Err(Refused::new(message, help));
+        }
+        let number = |drawn: &Drawn| {
+            let field = record.get(drawn.at).unwrap_or_default();
+            let text = std::str::from_utf8(field).unwrap_or("?");
+            let value = if text.is_empty() { Some(f64::NAN) } else { text.parse::<f64>().ok() };
+            let value = value.ok_or_else(|| table.no_number(drawn.at, line, field))?;
+            Ok(drawn.unit.as_ref().map_or(value, |(_, unit)| unit.from_si(value)))
+        };
+        let x = number(&wanted.x)?;
+        for (column, points) in wanted.y.iter().zip(&mut cases[case].curves) {
+            points.push(x, number(column)?);
+        }
+        Ok(())
+    })?;
+    if cases.is_empty() {
+        return Err(Refused::new("there are no rows to draw", None));
+    }
+    let sweeps = sweeps.into_iter().map(|sweep| {
+        let names: Vec<String> = sweep.parameters.iter().map(|path| labels::parameter(path)).collect();
+        (names.join(", "), sweep.labels)
+    });
+    Ok((cases, sweeps.collect()))
+}
+
+fn axis_label(drawn: &Drawn) -> String {
+    labels::axis(&drawn.column, drawn.unit.as_ref().map(|(text, _)| text.as_str()))
+}
+
+/// The unit that all columns are drawn in; `None` where they differ.
+fn common_unit(columns: &[Drawn]) -> Option<String> {
+    let unit = |drawn: &Drawn| drawn.unit.as_ref().map_or_else(|| drawn.column.unit.clone(), |(text, _)| text.clone());
+    let first = unit(columns.first()?);
+    columns.iter().all(|column| unit(column) == first).then_some(first)
+}

@@ -1,0 +1,399 @@
+//! From the values of data sheets to the parameters of a law.
+//!
+//! Under x = X·cos(ωt) the law F = k·x + c·D^alpha x answers, once the start has faded, with the complex stiffness
+//! K(ω) = k + c·(iω)^alpha. Data sheets tell parts of it:
+//!
+//! | quantity | meaning | unit |
+//! |---|---|---|
+//! | [`Quantity::LossFactor`] | tan δ = Im K/Re K | 1 |
+//! | [`Quantity::Stiffness`] | dynamic stiffness \|K\| | N/m |
+//! | [`Quantity::Storage`] | storage stiffness Re K | N/m |
+//! | [`Quantity::Loss`] | loss stiffness Im K | N/m |
+//! | [`Quantity::Damping`] | equivalent viscosity Im K/ω | N·s/m |
+//!
+//! A springpot has tan δ = tan(alpha·π/2) at every frequency, so that one loss factor and one stiffness are enough for it. Where two
+//! data make K known at one frequency, springpot and Kelvin–Voigt element follow in closed form, and with the static stiffness the
+//! fractional Kelvin–Voigt element too. Everything else is solved for the smallest sum of squares of relative deviations, which is 0
+//! where the data determine the law exactly.
+//!
+//! Source: R. L. Bagley, P. J. Torvik, *Fractional calculus — a different approach to the analysis of viscoelastically damped
+//! structures*, AIAA J. 21 (1983) 741–748.
+//!
+//! ```
+//! use springpot::law::datasheet::{Datum, Model, Quantity, identify};
+//! let omega = 2.0 * std::f64::consts::PI * 10.0;
+//! let data = [
+//!     Datum { quantity: Quantity::LossFactor, value: 0.3, omega },
+//!     Datum { quantity: Quantity::Stiffness, value: 5000.0, omega },
+//! ];
+//! let mount = identify(Model::Springpot, &data)?;
+//! assert!((mount.order - 2.0 / std::f64::consts::PI * 0.3_f64.atan()).abs() < 1e-15);
+//! assert!((mount.predict(&data[1]) - 5000.0).abs() < 1e-9);
+//! # Ok::<(), springpot::law::datasheet::DatasheetError>(())
+//! ```
+
+mod fit;
+
+use std::f64::consts::FRAC_PI_2;
+use std::fmt;
+
+/// What a data sheet tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// tan δ = Im K/Re K.
+    LossFactor,
+    /// |K|, N/m.
+    Stiffness,
+    /// Re K, N/m.
+    Storage,
+    /// Im K, N/m.
+    Loss,
+    /// Im K/ω, N·s/m.
+    Damping,
+}
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::LossFactor, Self::Stiffness, Self::Storage, Self::Loss, Self::Damping];
+
+    /// Its name, as in `springpot laws --from`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LossFactor => "tan_delta",
+            Self::Stiffness => "stiffness",
+            Self::Storage => "storage",
+            Self::Loss => "loss",
+            Self::Damping => "damping",
+        }
+    }
+
+    /// Its unit in the grammar of quantities; empty for a pure number.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::LossFactor => "",
+            Self::Stiffness | Self::Storage | Self::Loss => "N/m",
+            Self::Damping => "N*s/m",
+        }
+    }
+
+    /// Whether it tells of dissipation.
+    pub fn is_of_losses(self) -> bool {
+        matches!(self, Self::LossFactor | Self::Loss | Self::Damping)
+    }
+
+    /// Its value for K at ω.
+    fn of(self, k: [f64; 2], omega: f64) -> f64 {
+        match self {
+            Self::LossFactor => k[1] / k[0],
+            Self::Stiffness => k[0].hypot(k[1]),
+            Self::Storage => k[0],
+            Self::Loss => k[1],
+            Self::Damping => k[1] / omega,
+        }
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// One value of a data sheet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Datum {
+    /// What it is.
+    pub quantity: Quantity,
+    /// Its value, SI; positive.
+    pub value: f64,
+    /// At which angular frequency, rad/s; 0: static.
+    pub omega: f64,
+}
+
+/// A law that data can determine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// F = k·x.
+    Spring,
+    /// F = c·x'.
+    Dashpot,
+    /// F = c·D^alpha x.
+    Springpot,
+    /// F = k·x + c·x'.
+    KelvinVoigt,
+    /// F = k·x + c·D^alpha x.
+    FractionalKelvinVoigt,
+}
+
+impl Model {
+    /// All of them, those of few parameters first.
+    pub const ALL: [Self; 5] =
+        [Self::Spring, Self::Dashpot, Self::Springpot, Self::KelvinVoigt, Self::FractionalKelvinVoigt];
+
+    /// Its name in scenario files and in the catalog.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Spring => "spring",
+            Self::Dashpot => "dashpot",
+            Self::Springpot => "springpot",
+            Self::KelvinVoigt => "kelvin-voigt",
+            Self::FractionalKelvinVoigt => "fractional-kelvin-voigt",
+        }
+    }
+
+    /// The law that data of this kind determine: no losses, a spring; two data, a springpot, or a Kelvin–Voigt element where one of
+    /// them is static; more, a fractional Kelvin–Voigt element, or a springpot where all of them are of one frequency.
+    pub fn for_data(data: &[Datum]) -> Self {
+        let losses = data.iter().any(|datum| datum.quantity.is_of_losses());
+        let is_static = data.iter().any(|datum| datum.omega == 0.0);
+        let mut frequencies: Vec<f64> = data.iter().map(|datum| datum.omega).collect();
+        frequencies.sort_by(f64::total_cmp);
+        frequencies.dedup();
+        match (data.len(), losses, frequencies.len()) {
+            (0 | 1, true, _) if data.iter().all(|datum| datum.quantity == Quantity::Damping) => Self::Dashpot,
+            (0 | 1, _, _) | (_, false, 1) => Self::Spring,
+            (2, ..) if is_static => Self::KelvinVoigt,
+            (2, ..) | (_, _, 1) => Self::Springpot,
+            _ => Self::FractionalKelvinVoigt,
+        }
+    }
+
+    /// Whether k, c and alpha are free.
+    fn free(self) -> [bool; 3] {
+        match self {
+            Self::Spring => [true, false, false],
+            Self::Dashpot => [false, true, false],
+            Self::Springpot => [false, true, true],
+            Self::KelvinVoigt => [true, true, false],
+            Self::FractionalKelvinVoigt => [true, true, true],
+        }
+    }
+
+    /// Number of its parameters.
+    pub fn parameter_count(self) -> usize {
+        self.free().into_iter().filter(|free| *free).count()
+    }
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Why data determine no law.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DatasheetError {
+    /// A value is not a positive number, or a frequency is negative or infinite.
+    #[error("{quantity} = {value} at {omega} rad/s: values must be positive and finite, frequencies not negative")]
+    NotPositive {
+        /// Of what.
+        quantity: Quantity,
+        /// The value.
+        value: f64,
+        /// Its frequency, rad/s.
+        omega: f64,
+    },
+    /// A quantity of losses without a frequency.
+    #[error("{quantity} needs a frequency other than 0: at rest nothing is lost")]
+    NeedsFrequency {
+        /// Which.
+        quantity: Quantity,
+    },
+    /// One quantity twice at the same frequency.
+    #[error("{quantity} is given twice at {omega} rad/s")]
+    Twice {
+        /// Which.
+        quantity: Quantity,
+        /// Where, rad/s.
+        omega: f64,
+    },
+    /// A static stiffness for a law that has none.
+    #[error("the law {model} has no static stiffness")]
+    NoStaticStiffness {
+        /// The law.
+        model: Model,
+    },
+    /// Fewer data than parameters.
+    #[error("the law {model} has {needed} parameters, and {given} data are given")]
+    TooFew {
+        /// The law.
+        model: Model,
+        /// Its parameters.
+        needed: usize,
+        /// Data given.
+        given: usize,
+    },
+    /// Losses alone say nothing of how stiff it is.
+    #[error("no stiffness is given: a loss factor alone does not say how stiff the element is")]
+    NoStiffness,
+    /// The data leave a parameter open.
+    #[error("the data leave the law {model} open: they say the same thing more than once, or nothing about losses")]
+    Undetermined {
+        /// The law.
+        model: Model,
+    },
+    /// No admissible parameters have these values.
+    #[error(
+        "no law {model} with k ≥ 0, c ≥ 0 and 0 ≤ alpha ≤ 1 has these values; the nearest is off by {percent:.3} %"
+    )]
+    Unreachable {
+        /// The law.
+        model: Model,
+        /// Largest relative deviation of the nearest one, in percent.
+        percent: f64,
+    },
+}
+
+/// A law whose parameters were found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Identified {
+    /// The law.
+    pub model: Model,
+    /// k, N/m; 0 where the law has none.
+    pub stiffness: f64,
+    /// c, N·s^alpha/m; 0 where the law has none.
+    pub coefficient: f64,
+    /// alpha; 1 where the law has a dashpot.
+    pub order: f64,
+}
+
+impl Identified {
+    /// K(ω) = k + c·(iω)^alpha as real and imaginary part, N/m.
+    pub fn complex_stiffness(&self, omega: f64) -> [f64; 2] {
+        let magnitude = if omega == 0.0 && self.order > 0.0 { 0.0 } else { self.coefficient * omega.powf(self.order) };
+        let (sin, cos) = sin_cos(self.order);
+        [self.stiffness + magnitude * cos, magnitude * sin]
+    }
+
+    /// What this law has in the place of `datum`.
+    pub fn predict(&self, datum: &Datum) -> f64 {
+        if datum.quantity == Quantity::Damping && datum.omega == 0.0 && self.order == 1.0 {
+            return self.coefficient;
+        }
+        datum.quantity.of(self.complex_stiffness(datum.omega), datum.omega)
+    }
+
+    /// The parameter of that name in the catalog's row; `None` for a name that the law does not have.
+    pub fn parameter(&self, name: &str) -> Option<f64> {
+        let [k, c, alpha] = self.model.free();
+        match name {
+            "k" if k => Some(self.stiffness),
+            "c" if c => Some(self.coefficient),
+            "alpha" if alpha => Some(self.order),
+            _ => None,
+        }
+    }
+
+    /// Largest relative deviation from `data`; 0 without any.
+    pub fn deviation(&self, data: &[Datum]) -> f64 {
+        data.iter().map(|datum| (self.predict(datum) / datum.value - 1.0).abs()).fold(0.0, f64::max)
+    }
+}
+
+/// sin and cos of order·π/2, exact at the ends.
+fn sin_cos(order: f64) -> (f64, f64) {
+    match order {
+        0.0 => (0.0, 1.0),
+        1.0 => (1.0, 0.0),
+        _ => (FRAC_PI_2 * order).sin_cos(),
+    }
+}
+
+/// Finds the parameters of `model` from `data`: exactly where there are as many data as parameters, else with the smallest sum of
+/// squares of relative deviations.
+///
+/// A [`Quantity::Damping`] at ω = 0 is the c of a dashpot.
+///
+/// # Errors
+/// [`DatasheetError`]: data that make no sense, too few of them, or none that the law can have.
+pub fn identify(model: Model, data: &[Datum]) -> Result<Identified, DatasheetError> {
+    check(model, data)?;
+    let (given, needed) = (data.len(), model.parameter_count());
+    if given < needed {
+        return Err(DatasheetError::TooFew { model, needed, given });
+    }
+    if data.iter().all(|datum| datum.quantity == Quantity::LossFactor) {
+        return Err(DatasheetError::NoStiffness);
+    }
+    let closed = if given == needed { closed_form(model, data) } else { None };
+    let found = match closed {
+        Some(found) => found,
+        None => fit::nearest(model, data).ok_or(DatasheetError::Undetermined { model })?,
+    };
+    let deviation = found.deviation(data);
+    if given == needed && deviation.is_nan() | (deviation > fit::EXACT) {
+        return Err(DatasheetError::Unreachable { model, percent: 100.0 * deviation });
+    }
+    Ok(found)
+}
+
+fn check(model: Model, data: &[Datum]) -> Result<(), DatasheetError> {
+    for (i, &Datum { quantity, value, omega }) in data.iter().enumerate() {
+        let admissible = value > 0.0 && value.is_finite() && omega >= 0.0 && omega.is_finite();
+        if !admissible {
+            return Err(DatasheetError::NotPositive { quantity, value, omega });
+        }
+        let of_a_dashpot = quantity == Quantity::Damping && matches!(model, Model::Dashpot | Model::KelvinVoigt);
+        if omega == 0.0 && quantity.is_of_losses() && !of_a_dashpot {
+            return Err(DatasheetError::NeedsFrequency { quantity });
+        }
+        if omega == 0.0 && !quantity.is_of_losses() && matches!(model, Model::Springpot | Model::Dashpot) {
+            return Err(DatasheetError::NoStaticStiffness { model });
+        }
+        if data[..i].iter().any(|other| other.quantity == quantity && other.omega == omega) {
+            return Err(DatasheetError::Twice { quantity, omega });
+        }
+    }
+    Ok(())
+}
+
+/// The law where K is known at one frequency, and beside it at most k.
+fn closed_form(model: Model, data: &[Datum]) -> Option<Identified> {
+    let (at_rest, moving): (Vec<&Datum>, Vec<&Datum>) = data.iter().partition(|datum| datum.omega == 0.0);
+    let k_known = match at_rest[..] {
+        [] => 0.0,
+        [one] if !one.quantity.is_of_losses() => one.value,
+        _ => return None,
+    };
+    let [first, second] = moving[..] else { return None };
+    if first.omega != second.omega {
+        return None;
+    }
+    let omega = first.omega;
+    let [re, im] = complex(first, second).or_else(|| complex(second, first))?;
+    let (stiffness, order) = match (model, at_rest.len()) {
+        (Model::Springpot, 0) => (0.0, im.atan2(re) / FRAC_PI_2),
+        (Model::KelvinVoigt, 0) => (re, 1.0),
+        (Model::FractionalKelvinVoigt, 1) => (k_known, im.atan2(re - k_known) / FRAC_PI_2),
+        _ => return None,
+    };
+    let rest = if model == Model::KelvinVoigt { im } else { (re - stiffness).hypot(im) };
+    // Beyond alpha = 1 the nearest admissible one is looked for, to say how far off it is.
+    (order <= 1.0).then(|| Identified { model, stiffness, coefficient: rest / omega.powf(order), order })
+}
+
+/// K from two quantities at one frequency; `None` where this pair in this order does not tell it.
+fn complex(first: &Datum, second: &Datum) -> Option<[f64; 2]> {
+    let in_stiffness = |datum: &Datum| match datum.quantity {
+        Quantity::Damping => (Quantity::Loss, datum.value * datum.omega),
+        quantity => (quantity, datum.value),
+    };
+    let ((first, a), (second, b)) = (in_stiffness(first), in_stiffness(second));
+    let leg = |hypotenuse: f64, leg: f64| {
+        let square = (hypotenuse - leg) * (hypotenuse + leg);
+        (square >= 0.0).then(|| square.sqrt())
+    };
+    match (first, second) {
+        (Quantity::LossFactor, Quantity::Stiffness) => Some([b / a.hypot(1.0), a * b / a.hypot(1.0)]),
+        (Quantity::LossFactor, Quantity::Storage) => Some([b, a * b]),
+        (Quantity::LossFactor, Quantity::Loss) => Some([b / a, b]),
+        (Quantity::Stiffness, Quantity::Storage) => leg(a, b).map(|im| [b, im]),
+        (Quantity::Stiffness, Quantity::Loss) => leg(a, b).map(|re| [re, b]),
+        (Quantity::Storage, Quantity::Loss) => Some([a, b]),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests;
