@@ -45,7 +45,10 @@ pub enum KernelError {
     #[error("the kernel tolerance must lie between 1e-13 and 0.1, not {0}")]
     Tolerance(f64),
     /// The interval is empty or not finite.
-    #[error("the kernel needs 0 < delta < horizon, both finite, not delta = {delta} s and horizon = {horizon} s")]
+    #[error(
+        "the kernel needs 0 < delta < horizon, both finite and less than 200 decades apart, \
+         not delta = {delta} s and horizon = {horizon} s"
+    )]
     Interval {
         /// Shortest lag, s.
         delta: f64,
@@ -89,6 +92,10 @@ const SAMPLES: usize = 8;
 /// Orders below are taken for this one: t^−alpha is then 1 to rounding for any lag there is.
 const SMALLEST_ORDER: f64 = f64::EPSILON;
 
+/// Shortest delta, s, and longest horizon in units of delta: beyond them the rates overflow.
+const SHORTEST: f64 = 1e-200;
+const LONGEST: f64 = 1e200;
+
 /// Rate of the fastest mode times delta, at least: what is faster must follow the shortest step, also where alpha is so small
 /// that the bound needs no fast modes.
 const SLOWEST_TOP: f64 = 2.0;
@@ -106,7 +113,7 @@ impl Kernel {
         if !(1e-13..=0.1).contains(&tolerance) {
             return Err(KernelError::Tolerance(tolerance));
         }
-        if !(delta > 0.0 && delta < horizon && horizon.is_finite()) {
+        if !(delta > 0.0 && delta < horizon && horizon.is_finite()) || delta < SHORTEST || horizon / delta > LONGEST {
             return Err(KernelError::Interval { delta, horizon });
         }
         let alpha = alpha.max(SMALLEST_ORDER);
@@ -405,6 +412,8 @@ mod tests {
         assert_eq!(Kernel::new(1.0, 1e-8, 1e-3, 1.0), Err(KernelError::Order(1.0)));
         assert!(matches!(Kernel::new(f64::NAN, 1e-8, 1e-3, 1.0), Err(KernelError::Order(_))));
         assert_eq!(Kernel::new(0.5, 1e-14, 1e-3, 1.0), Err(KernelError::Tolerance(1e-14)));
-        assert!(matches!(Kernel::new(0.5, 1e-8, 1.0, 1.0), Err(KernelError::Interval { .. })));
+        for (delta, horizon) in [(1.0, 1.0), (0.0, 1.0), (1e-310, 1.0), (1e-150, 1e60), (1.0, f64::INFINITY)] {
+            assert!(matches!(Kernel::new(0.5, 1e-8, delta, horizon), Err(KernelError::Interval { .. })));
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Closures: rough starts, unknown kinks, noise.
 
-use super::support::of_power;
+use super::support::{Function, of_power};
 use springpot::fractional::{Definition, DerivativeError, FunctionError, Piecewise};
 
 #[test]
@@ -29,7 +29,7 @@ fn powers_that_are_no_polynomials_at_the_start() {
 /// Below order 1 kinks and jumps at unknown times are closed in; above it the estimate says that they were not.
 #[test]
 fn unknown_kinks_and_jumps() {
-    let functions: [(fn(f64) -> f64, f64); 2] =
+    let functions: [(Function, f64); 2] =
         [(|t| (t - 1.3).abs() + t - 1.3, 1.0), (|t| if t > 1.3 { 2.0 } else { 0.0 }, 0.0)];
     for (function, power) in functions {
         let x = Piecewise::of(function, 0.0..=10.0, 1e-15).unwrap();

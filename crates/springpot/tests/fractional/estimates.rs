@@ -1,6 +1,6 @@
 //! Error estimates of samples.
 
-use super::support::{FUNCTIONS, even, largest, of_power};
+use super::support::{FUNCTIONS, Function, even, largest, of_power};
 use springpot::fractional::scheme::{Samples, Scheme};
 use springpot::fractional::{Definition, Method, Piecewise, derivative_with_error};
 
@@ -41,7 +41,7 @@ fn smooth_functions() {
 #[test]
 fn kinks_and_jumps_show() {
     let t = even(1000, 3.0);
-    let cases: [(fn(f64) -> f64, f64, f64); 2] =
+    let cases: [(Function, f64, f64); 2] =
         [(|t| (t - 1.2337).max(0.0), 1.2337, 1.0), (|t| if t > 1.2337 { 1.0 } else { 0.0 }, 1.2337, 0.0)];
     for (function, at, power) in cases {
         let x: Vec<f64> = t.iter().map(|t| function(*t)).collect();

@@ -1,7 +1,10 @@
 //! Bad samples, orders and names.
 
+use super::support::Random;
 use springpot::fractional::scheme::{Samples, Scheme, SchemeError};
-use springpot::fractional::{Definition, DerivativeError, Method, derivative};
+use springpot::fractional::{
+    Definition, DerivativeError, Method, Piecewise, Stream, derivative, derivative_with_error,
+};
 
 const GOOD: [f64; 4] = [0.0, 0.1, 0.2, 0.3];
 
@@ -50,6 +53,50 @@ fn schemes_answer_for_themselves() {
     assert!(matches!(scheme(Scheme::GrunwaldLetnikov), Err(DerivativeError::Samples(SchemeError::NotUniform { .. }))));
     assert!(matches!(scheme(Scheme::Fbdf(6)), Err(DerivativeError::TooShort { needed: 7, found: 3, .. })));
     assert!(scheme(Scheme::L1).is_ok());
+}
+
+/// Any numbers at all: an answer or an error, never a panic.
+#[test]
+fn random_samples() {
+    let mut random = Random(17);
+    let mut answered = 0;
+    for _ in 0..300 {
+        let rows = (random.next() * 14.0) as usize;
+        let mut wild = || match (random.next() * 40.0) as usize {
+            0 => f64::NAN,
+            1 => f64::INFINITY,
+            2 => -0.0,
+            3 => 10f64.powf(600.0 * random.next() - 300.0),
+            _ => 10f64.powf(8.0 * random.next() - 4.0),
+        };
+        let mut t: Vec<f64> = (0..rows).map(|_| wild()).collect();
+        let x: Vec<f64> = (0..rows).map(|_| wild()).collect();
+        if let Some(first) = t.first_mut() {
+            *first = 0.0;
+        }
+        if random.next() < 0.9 {
+            t.sort_by(f64::total_cmp);
+        }
+        let order = 4.4 * random.next() - 2.2;
+        let definition = Definition::ALL[(random.next() * 3.0) as usize];
+        let samples = Samples { t: &t, x: &x, rate: None };
+        for method in [Method::Spline, Method::Hermite, Method::Exponential, Method::Scheme(Scheme::L1)] {
+            if let Ok(found) = derivative_with_error(&samples, order, definition, method) {
+                assert_eq!((found.values.len(), found.error.len()), (rows, rows));
+                answered += 1;
+            }
+        }
+        if let Ok(mut stream) = Stream::new(order, definition) {
+            for (t, x) in t.iter().zip(&x) {
+                let _ = stream.push(*t, *x);
+            }
+            let _ = stream.finish();
+        }
+        if let Ok(d) = Piecewise::spline(&t, &x).map(|x| x.derivative(order, definition)) {
+            let _ = d.map(|d| d.at(t[rows / 2]));
+        }
+    }
+    assert!(answered > 200, "{answered}");
 }
 
 #[test]

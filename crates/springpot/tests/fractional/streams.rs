@@ -1,6 +1,6 @@
 //! Streams give the numbers of arrays.
 
-use super::support::{FUNCTIONS, ORDERS, distance, even, of, uneven};
+use super::support::{FUNCTIONS, Function, ORDERS, distance, even, of, uneven};
 use springpot::fractional::scheme::Samples;
 use springpot::fractional::{Definition, DerivativeError, Method, RatedStream, Row, Stream, derivative};
 
@@ -57,7 +57,7 @@ fn few_samples_come_at_the_end() {
 
 #[test]
 fn rates_answer_at_once() {
-    let (f, v): (fn(f64) -> f64, fn(f64) -> f64) = (|t| (3.0 * t).cos(), |t| -3.0 * (3.0 * t).sin());
+    let (f, v): (Function, Function) = (|t| (3.0 * t).cos(), |t| -3.0 * (3.0 * t).sin());
     for t in [even(3000, 10.0), uneven(1500, 10.0, 9)] {
         let (x, rate): (Vec<f64>, Vec<f64>) = t.iter().map(|t| (f(*t), v(*t))).unzip();
         for order in ORDERS {

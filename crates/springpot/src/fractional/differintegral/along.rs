@@ -12,7 +12,6 @@ pub(super) struct Along {
     form: Form,
     start: Start,
     last: Node,
-    horizon: Option<f64>,
     march: Option<March>,
 }
 
@@ -48,21 +47,14 @@ impl Start {
     }
 }
 
-/// Steps that a memory without a given horizon holds.
-const BOUNDLESS: f64 = 1e12;
-
 impl Along {
-    pub(super) fn new(order: Order, form: Form, start: Start, node: Node, horizon: Option<f64>) -> Self {
-        Self { order, form, start, last: node, horizon, march: None }
+    pub(super) fn new(order: Order, form: Form, start: Start, node: Node) -> Self {
+        Self { order, form, start, last: node, march: None }
     }
 
-    /// D^a x at the next node.
-    pub(super) fn row(&mut self, node: Node) -> Result<f64, DerivativeError> {
+    /// D^a x at the next node; the memory holds times up to `horizon`.
+    pub(super) fn row(&mut self, node: Node, horizon: f64) -> Result<f64, DerivativeError> {
         let width = node.t - self.last.t;
-        let horizon = *self.horizon.get_or_insert(BOUNDLESS * width);
-        if node.t > horizon * (1.0 + 1e-9) {
-            return Err(DerivativeError::Horizon { t: node.t, horizon });
-        }
         let march = match &mut self.march {
             Some(march) => march,
             none => none.insert(March::new(self.order, width, horizon)?),

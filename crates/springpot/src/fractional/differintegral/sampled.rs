@@ -65,8 +65,8 @@ pub fn derivative(
             y
         }
         None => {
-            let mut along = Along::new(split, form, start, nodes.at(samples, 0), samples.t.last().copied());
-            let rest = (1..found).map(|row| along.row(nodes.at(samples, row)));
+            let mut along = Along::new(split, form, start, nodes.at(samples, 0));
+            let rest = (1..found).map(|row| along.row(nodes.at(samples, row), samples.t[found - 1]));
             std::iter::once(Ok(0.0)).chain(rest).collect::<Result<Vec<f64>, _>>()?
         }
     };

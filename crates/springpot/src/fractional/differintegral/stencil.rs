@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn polynomials_are_differentiated_exactly() {
-        let points = [0.0, 0.3, 0.35, 1.0, 1.8, 2.0, 2.6];
+        let points: [f64; 7] = [0.0, 0.3, 0.35, 1.0, 1.8, 2.0, 2.6];
         for at in 0..7 {
             let t = points[at];
             for degree in 0..7 {

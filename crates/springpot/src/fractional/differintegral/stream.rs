@@ -48,7 +48,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// A stream that may go on for 10¹² of its first steps.
+    /// A stream that may go on for 10¹² of its steps, by the mean of the first six.
     ///
     /// # Errors
     /// `Order`.
@@ -74,7 +74,8 @@ impl Stream {
     /// Takes the next sample and returns the rows that are known by it: none for the first six, four then, one for each later.
     ///
     /// # Errors
-    /// `NotFinite`, `OutOfOrder`, `Horizon`, `Kernel`. The stream then stands where it stood, and may go on with a better sample.
+    /// `NotFinite`, `OutOfOrder` and `Horizon`, after which the stream stands where it stood and may go on with a better sample;
+    /// `Kernel`, after which it may not.
     pub fn push(&mut self, t: f64, x: f64) -> Result<&[Row], DerivativeError> {
         check(self.taken, self.t.last().copied(), &[("t", t), ("x", x)])?;
         self.spline.check(t)?;
@@ -115,6 +116,8 @@ impl Stream {
 
     /// Makes nodes of these places in the window.
     fn settle(&mut self, places: std::ops::Range<usize>) -> Result<(), DerivativeError> {
+        let span = self.t[self.t.len() - 1] - self.t[0];
+        self.spline.horizon.get_or_insert(BOUNDLESS * span / (self.t.len() - 1) as f64);
         for at in places {
             let [slope, bend] = self.equal.derivatives_at(&self.t, &self.x, at);
             let node = Node { t: self.t[at], x: self.x[at], slope, bend };
@@ -151,7 +154,7 @@ pub struct RatedStream {
 }
 
 impl RatedStream {
-    /// A stream that may go on for 10¹² of its first steps.
+    /// A stream that may go on for 10¹² times its first step.
     ///
     /// # Errors
     /// `Order`.
@@ -171,16 +174,22 @@ impl RatedStream {
     /// Takes x and x' of the next sample and returns D^a x there; NaN where it is infinite.
     ///
     /// # Errors
-    /// `NotFinite`, `OutOfOrder`, `Horizon`, `Kernel`. The stream then stands where it stood.
+    /// As [`Stream::push`].
     pub fn push(&mut self, t: f64, x: f64, rate: f64) -> Result<f64, DerivativeError> {
         check(self.taken, self.last, &[("t", t), ("x", x), ("rate", rate)])?;
         self.spline.check(t)?;
+        if t > 0.0 {
+            self.spline.horizon.get_or_insert(BOUNDLESS * t);
+        }
         let value = self.spline.row(Node { t, x, slope: rate, bend: f64::NAN }, 0.0)?;
         self.last = Some(t);
         self.taken += 1;
         Ok(value)
     }
 }
+
+/// Steps that a memory without a given horizon holds.
+const BOUNDLESS: f64 = 1e12;
 
 /// A spline before and after its first node.
 #[derive(Debug, Clone)]
@@ -206,10 +215,10 @@ impl Growing {
 
     fn row(&mut self, node: Node, negligible_slope: f64) -> Result<f64, DerivativeError> {
         match &mut self.along {
-            Some(along) => along.row(node),
+            Some(along) => along.row(node, self.horizon.unwrap_or(BOUNDLESS * node.t)),
             none => {
                 let start = Start::new(&self.order, self.definition, &node, negligible_slope);
-                *none = Some(Along::new(self.order, self.form, start, node, self.horizon));
+                *none = Some(Along::new(self.order, self.form, start, node));
                 Ok(start.value)
             }
         }

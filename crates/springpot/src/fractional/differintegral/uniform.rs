@@ -62,26 +62,29 @@ type Columns = [Vec<f64>; 2];
 
 /// All moments of all channels.
 fn weights(exponent: f64, channels: &[Channel], rows: usize) -> Vec<Columns> {
-    let shapes: Vec<Moment> =
-        channels.iter().flat_map(|c| [c.left, c.right]).map(|shape| Moment::new(exponent, shape)).collect();
-    let mut columns: Vec<Columns> = channels.iter().map(|_| [Vec::new(), Vec::new()]).collect();
-    let mut flat: Vec<&mut Vec<f64>> = columns.iter_mut().flatten().collect();
     let rule = GaussLegendre::new();
-    for k in 0..rows {
-        let middle = k as f64 + 0.5;
-        let nodes = (1..SERIES_FROM).contains(&k).then(|| rule.nodes.map(|u| (middle - u).powf(exponent - 1.0)));
-        let power = if k < SERIES_FROM { 0.0 } else { middle.powf(exponent - 1.0) };
-        for (column, moment) in flat.iter_mut().zip(&shapes) {
-            column.push(match nodes {
-                _ if moment.is_zero => 0.0,
-                None if k == 0 => moment.at_zero,
-                None => power * moment.series(k, 1.0 / middle),
-                Some(kernel) => (0..POINTS).map(|i| rule.weights[i] * kernel[i] * moment.shape_at(rule.nodes[i])).sum(),
-            });
+    let inverses: Vec<f64> = (0..rows).map(|k| 1.0 / (k as f64 + 0.5)).collect();
+    let powers: Vec<f64> = (0..rows).map(|k| (k as f64 + 0.5).powf(exponent - 1.0)).collect();
+    let column = |shape: Polynomial| -> Vec<f64> {
+        if shape == [0.0; 6] {
+            return vec![0.0; rows];
         }
-    }
-    columns
+        let moment = Moment::new(exponent, shape);
+        let mut column = Vec::with_capacity(rows);
+        column.push(moment.at_zero);
+        column.extend((1..rows.min(SERIES_FROM)).map(|k| rule.integral(exponent, &moment, k as f64 + 0.5)));
+        let far = powers.iter().zip(&inverses).skip(column.len()).map(|(power, inverse)| (*power, *inverse));
+        let near = 256 - SERIES_FROM;
+        column.extend(far.clone().take(near).map(|(power, inverse)| power * moment.series::<TERMS>(inverse)));
+        column.extend(far.clone().skip(near).take(FAR).map(|(power, inverse)| power * moment.series::<7>(inverse)));
+        column.extend(far.skip(near + FAR).map(|(power, inverse)| power * moment.series::<4>(inverse)));
+        column
+    };
+    channels.iter().map(|channel| [column(channel.left), column(channel.right)]).collect()
 }
+
+/// Rows between k = 256 and k = 65 536.
+const FAR: usize = 65_536 - 256;
 
 /// From this k on the kernel is a binomial series about the middle of the piece.
 const SERIES_FROM: usize = 16;
@@ -90,7 +93,6 @@ const TERMS: usize = 13;
 
 /// 1/Γ(b) ∫₀¹ (k+1−θ)^{b−1} s(θ) dθ of one shape s for all k.
 struct Moment {
-    is_zero: bool,
     at_zero: f64,
     /// s/Γ(b) in powers of u = θ − ½.
     centred: Polynomial,
@@ -127,20 +129,16 @@ impl Moment {
                 |q: usize| if (i + q) % 2 == 1 { 0.0 } else { 0.5f64.powi((i + q) as i32) / (i + q + 1) as f64 };
             binomial * (0..6).map(|q| centred[q] * integral(q)).sum::<f64>()
         });
-        Self { is_zero: shape == [0.0; 6], at_zero, centred, series }
+        Self { at_zero, centred, series }
     }
 
     fn shape_at(&self, u: f64) -> f64 {
         self.centred.iter().rev().fold(0.0, |sum, c| sum * u + c)
     }
 
-    fn series(&self, k: usize, inverse: f64) -> f64 {
-        let terms = match k {
-            ..256 => TERMS,
-            256..65_536 => 7,
-            _ => 4,
-        };
-        self.series[..terms].iter().rev().fold(0.0, |sum, a| sum * inverse + a)
+    /// The first `N` terms: 13 from k = 16 on, 7 from 256, 4 from 65 536.
+    fn series<const N: usize>(&self, inverse: f64) -> f64 {
+        (0..N).rev().fold(0.0, |sum, i| sum * inverse + self.series[i])
     }
 }
 
@@ -169,6 +167,12 @@ impl GaussLegendre {
             rule.weights[i] = 1.0 / ((1.0 - z * z) * slope * slope);
         }
         rule
+    }
+
+    /// 1/Γ(b) ∫ (middle − u)^{b−1} s(u) du.
+    fn integral(&self, exponent: f64, moment: &Moment, middle: f64) -> f64 {
+        let term = |(u, weight): (&f64, &f64)| weight * (middle - u).powf(exponent - 1.0) * moment.shape_at(*u);
+        self.nodes.iter().zip(&self.weights).map(term).sum()
     }
 }
 
@@ -259,18 +263,16 @@ mod tests {
                 let mut shape = [0.0; 6];
                 shape[power] = 1.0;
                 let moment = Moment::new(exponent, shape);
-                let gauss = |middle: f64| -> f64 {
-                    (0..POINTS)
-                        .map(|i| {
-                            let u = rule.nodes[i];
-                            rule.weights[i] * (middle - u).powf(exponent - 1.0) * moment.shape_at(u)
-                        })
-                        .sum()
-                };
                 for k in [16, 40, 255, 256, 3000, 65_535, 65_536, 1_000_000] {
                     let middle = k as f64 + 0.5;
-                    let series = middle.powf(exponent - 1.0) * moment.series(k, 1.0 / middle);
-                    assert!((series / gauss(middle) - 1.0).abs() < 1e-14, "b {exponent}, θ^{power}, k {k}");
+                    let series = match k {
+                        ..256 => moment.series::<TERMS>(1.0 / middle),
+                        256..65_536 => moment.series::<7>(1.0 / middle),
+                        _ => moment.series::<4>(1.0 / middle),
+                    };
+                    let gauss = rule.integral(exponent, &moment, middle);
+                    let ratio = middle.powf(exponent - 1.0) * series / gauss;
+                    assert!((ratio - 1.0).abs() < 1e-14, "b {exponent}, θ^{power}, k {k}");
                 }
             }
         }
@@ -280,7 +282,7 @@ mod tests {
     fn a_transform_is_never_too_short() {
         for least in [2, 128, 129, 200_000, 1_000_001] {
             let size = transform_length(least);
-            assert!(size >= least && size % 2 == 0 && size < 2 * least, "{least}: {size}");
+            assert!(size >= least && size.is_multiple_of(2) && size < 2 * least, "{least}: {size}");
         }
     }
 }
