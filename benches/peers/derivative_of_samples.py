@@ -1,10 +1,11 @@
 """D^alpha of 0.7 sin 8t + 0.1 t by the PyPI packages pycaputo and differint, each method that gives a whole series.
 
-Writes a line of JSON: {"versions": {PACKAGE: VERSION}, "missing": [PACKAGE, …], "methods": [NAME, …]}. Then answers requests: a line
-{"method": NAME, "end": T, "alpha": ALPHA, "rows": R, "repeats": K, "checks": [ROW, …]} and R numbers of 8 bytes, little endian: the
-samples, equally spaced from 0 to T. The answer is a line {"seconds": MEDIAN, "values": [D^alpha x at the rows asked for]}, or
-{"error": TEXT}. Times are those of the one call that takes the samples and gives the series; grids are built before. Methods that take
-functions instead of samples are given x (and x') exactly. Needs numpy, scipy and one of the packages.
+Writes a line of JSON: {"versions": {PACKAGE: VERSION}, "missing": [PACKAGE, …], "methods": [NAME, …]}. Then answers
+requests: a line {"method": NAME, "end": T, "alpha": ALPHA, "rows": R, "repeats": K, "checks": [ROW, …]} and R numbers
+of 8 bytes, little endian: the samples, equally spaced from 0 to T. The answer is a line {"seconds": MEDIAN, "values":
+[D^alpha x at the rows asked for]}, or {"error": TEXT}. Times are those of the one call that takes the samples and gives
+the series; grids are built before. Methods that take functions instead of samples are given x (and x') exactly. Needs
+numpy, scipy and one of the packages.
 """
 
 import importlib

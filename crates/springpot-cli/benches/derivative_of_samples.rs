@@ -1,12 +1,12 @@
-//! The half derivative of 0.7 sin 8t + 0.1 t over 10 s from equally spaced samples, by Springpot and by the PyPI packages
-//! pycaputo and differint, side by side in one run: time and error over the number of samples.
+//! The half derivative of 0.7 sin 8t + 0.1 t over 10 s from equally spaced samples, by Springpot and by the PyPI
+//! packages pycaputo and differint, side by side in one run: time and error over the number of samples.
 //!
-//! The rivals run in `benches/peers/derivative_of_samples.py`, by `python3` or the interpreter that the variable PYTHON names; a
-//! package that is missing is named and left out. All take the same samples, but for the methods of pycaputo that take functions: they
-//! are given x exactly. A rival stops at the length that would take longer than `--limit SECONDS` (60) by its growth so far. Times
-//! are medians; a method is run once before it is timed. The error is the largest one at 200 times, relative to the largest value; the
-//! exact values come from a closed form with an integral that is checked against the reference values of `testdata`.
-//! `-- --figure FILE.svg` (or .png) writes the figure.
+//! The rivals run in `benches/peers/derivative_of_samples.py`, by `python3` or the interpreter that the variable PYTHON
+//! names; a package that is missing is named and left out. All take the same samples, but for the methods of pycaputo
+//! that take functions: they are given x exactly. A rival stops at the length that would take longer than `--limit
+//! SECONDS` (60) by its growth so far. Times are medians; a method is run once before it is timed. The error is the
+//! largest one at 200 times, relative to the largest value; the exact values come from a closed form with an integral
+//! that is checked against the reference values of `testdata`. `-- --figure FILE.svg` (or .png) writes the figure.
 
 use std::f64::consts::PI;
 use std::io::{BufRead, BufReader, Lines, Write};
@@ -243,7 +243,8 @@ fn print(method: &Method) {
     }
 }
 
-/// How much longer every rival takes than the first of ours at one length, and than whichever of ours reaches its error soonest.
+/// How much longer every rival takes than the first of ours at one length, and than whichever of ours reaches its error
+/// soonest.
 fn compare(own: &[Method], rivals: &[Method], steps: usize) {
     for rival in rivals {
         let at = |method: &Method| method.points.iter().find(|p| p.steps == steps).copied();

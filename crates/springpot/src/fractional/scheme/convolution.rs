@@ -1,6 +1,8 @@
 //! Causal convolution of two sequences.
 
-use realfft::{FftError, RealFftPlanner};
+use realfft::{FftError, RealFftPlanner, RealToComplex};
+use std::cell::RefCell;
+use std::sync::Arc;
 
 /// Below this length the direct sum is quicker than three transforms.
 const DIRECT_LENGTH: usize = 64;
@@ -22,34 +24,56 @@ pub fn direct_convolution(weights: &[f64], x: &[f64]) -> Vec<f64> {
     (0..x.len()).map(|n| x[..=n].iter().rev().zip(weights).map(|(x, w)| w * x).sum()).collect()
 }
 
+/// The inverse transform is a forward one too, by Hartley's: with Y the spectrum of y of size M and h_k = Re Y_k − Im
+/// Y_k, y_n = (Re H_n − Im H_n)/M. So there is one plan, and planning takes as long as all transforms.
 fn fft_convolution(weights: &[f64], x: &[f64]) -> Result<Vec<f64>, FftError> {
     // So long that the circular convolution's wrap-around falls on zeros.
     let size = (x.len() + weights.len()).next_power_of_two();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let forward = planner.plan_fft_forward(size);
-    let inverse = planner.plan_fft_inverse(size);
-
-    let mut real = forward.make_input_vec();
-    let mut scratch = forward.make_scratch_vec();
-    let mut product = forward.make_output_vec();
+    let transform = plan(size);
+    let mut real = transform.make_input_vec();
+    let mut scratch = transform.make_scratch_vec();
+    let mut product = transform.make_output_vec();
     real[..x.len()].copy_from_slice(x);
-    forward.process_with_scratch(&mut real, &mut product, &mut scratch)?;
+    transform.process_with_scratch(&mut real, &mut product, &mut scratch)?;
 
-    let mut spectrum = forward.make_output_vec();
+    let mut spectrum = transform.make_output_vec();
     real.fill(0.0);
     real[..weights.len()].copy_from_slice(weights);
-    forward.process_with_scratch(&mut real, &mut spectrum, &mut scratch)?;
+    transform.process_with_scratch(&mut real, &mut spectrum, &mut scratch)?;
 
-    for (a, b) in product.iter_mut().zip(&spectrum) {
-        *a *= *b;
+    for (k, (a, b)) in product.iter().zip(&spectrum).enumerate() {
+        let y = a * b;
+        // Y_{M−k} is the conjugate; at k = 0 and M/2 it is Y_k, which is real.
+        real[(size - k) % size] = y.re + y.im;
+        real[k] = y.re - y.im;
     }
-    inverse.process(&mut product, &mut real)?;
-    real.truncate(x.len());
+    transform.process_with_scratch(&mut real, &mut spectrum, &mut scratch)?;
     let scale = 1.0 / size as f64;
-    for y in &mut real {
-        *y *= scale;
+    let value = |n: usize| match spectrum.get(n) {
+        Some(h) => h.re - h.im,
+        None => spectrum[size - n].re + spectrum[size - n].im,
+    };
+    Ok((0..x.len()).map(|n| value(n) * scale).collect())
+}
+
+/// Longest transform whose plan is kept, some 4 MB of it per thread.
+const KEPT_SIZE: usize = 1 << 18;
+
+/// The transform of this size. The last one of a thread is kept: columns of one file have one length.
+fn plan(size: usize) -> Arc<dyn RealToComplex<f64>> {
+    thread_local! {
+        static LAST: RefCell<Option<Arc<dyn RealToComplex<f64>>>> = const { RefCell::new(None) };
     }
-    Ok(real)
+    LAST.with_borrow_mut(|last| {
+        if let Some(plan) = last.as_ref().filter(|plan| plan.len() == size) {
+            return Arc::clone(plan);
+        }
+        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
+        if size <= KEPT_SIZE {
+            *last = Some(Arc::clone(&plan));
+        }
+        plan
+    })
 }
 
 /// x_n − x_{n−1} with x_{−1} = `before`.

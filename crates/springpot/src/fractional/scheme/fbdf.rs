@@ -18,7 +18,8 @@ pub(super) fn degree(order: usize, alpha: f64) -> usize {
 
 /// Riemann–Liouville derivative or integral of x − x(0) on equal steps, for x.len() > [`degree`]:
 ///
-/// y(t_n) = h^−alpha ( Σ_k w_k x̃_{n−k} + Σ_{k=1}^d c_k e_{n,k} ), x̃ = x − x(0), Σ w_k z^k = (Σ_{m=1}^p (1−z)^m/m)^alpha.
+/// y(t_n) = h^−alpha ( Σ_k w_k x̃_{n−k} + Σ_{k=1}^d c_k e_{n,k} ), x̃ = x − x(0), Σ w_k z^k = (Σ_{m=1}^p
+/// (1−z)^m/m)^alpha.
 ///
 /// c_k are the coefficients, in powers of t/h, of the polynomial through the first d + 1 samples, d the [`degree`], and
 /// e_{n,k} = D^alpha n^k − Σ_j w_{n−j} j^k is what the convolution misses on a power. So polynomials up to degree d are
@@ -79,7 +80,8 @@ impl Correction {
 /// to r = p), and u^β is the generating function of n^{−β−1}/Γ(−β) near z = 1. The exact derivative is k! u^{alpha−k−1}
 /// and analytic terms, so
 ///
-/// e_{n,k} ~ −Σ_{r≥p} k! d_r n^{k−alpha−r}/Γ(k+1−alpha−r) − Σ_{m≥0} Σ_{i+r=m} d_r ζ(−k−i) (−1)^i/i! n^{−alpha−m−1}/Γ(−alpha−m).
+/// e_{n,k} ~ −Σ_{r≥p} k! d_r n^{k−alpha−r}/Γ(k+1−alpha−r) − Σ_{m≥0} Σ_{i+r=m} d_r ζ(−k−i) (−1)^i/i!
+/// n^{−alpha−m−1}/Γ(−alpha−m).
 fn asymptotic_series(order: usize, power: usize, alpha: f64) -> Vec<f64> {
     let leading = order.min(power + 1);
     let count = leading + SERIES_TERMS + 1;

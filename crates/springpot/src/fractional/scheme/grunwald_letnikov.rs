@@ -6,8 +6,8 @@ use crate::fractional::Kind;
 
 /// h^−alpha Σ_k w_k x̃_{n−k} with (1−z)^alpha = Σ w_k z^k, on equal steps; k runs to `memory` where there is one.
 ///
-/// x̃ is x with Riemann–Liouville or in an integral; Caputo takes x − x(0) and, above alpha = 1, subtracts what the whole
-/// sum makes of x'(0) t, x'(0) = `rate`.
+/// x̃ is x with Riemann–Liouville or in an integral; Caputo takes x − x(0) and, above alpha = 1, subtracts what the
+/// whole sum makes of x'(0) t, x'(0) = `rate`.
 ///
 /// Derivatives are summed by parts, Σ_k W_k (x̃_{n−k} − x̃_{n−k−1}) with W_k = w_0 + … + w_k: the same numbers, but the
 /// rounding error is that of the small differences. A sum cut after w_m leaves W_m x̃_{n−m−1}.

@@ -44,7 +44,8 @@ pub(super) fn row_sum(t: &[f64], pieces: &[f64], n: usize, alpha: f64) -> f64 {
     (1..=n).map(|j| pieces[j - 1] * mean((t[n] - t[j]) / (t[j] - t[j - 1]), alpha)).sum()
 }
 
-/// a(k) = (1−alpha) ∫₀¹ (k+φ)^−alpha dφ = (k+1)^{1−alpha} − k^{1−alpha}, without cancellation; 1 and 0, 0, … at alpha = 1.
+/// a(k) = (1−alpha) ∫₀¹ (k+φ)^−alpha dφ = (k+1)^{1−alpha} − k^{1−alpha}, without cancellation; 1 and 0, 0, … at alpha =
+/// 1.
 ///
 /// Above alpha = 1 it is the integral's finite part, which is 1 at k = 0.
 pub(super) fn mean(k: f64, alpha: f64) -> f64 {

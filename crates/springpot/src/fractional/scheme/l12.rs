@@ -9,8 +9,8 @@ use crate::fractional::gamma::reciprocal_gamma;
 /// Derivative or integral of x − x(0): L1 plus, for every step but the first, the parabola through its ends and the
 /// sample before:
 ///
-/// y(t_n) = L1 + 1/Γ(3−alpha) Σ_{j=2}^n 2 x\[t_{j−2}, t_{j−1}, t_j\] h_j^{2−alpha} b(k_j), x\[·,·,·\] the second divided
-/// difference. On equal steps both sums are one convolution.
+/// y(t_n) = L1 + 1/Γ(3−alpha) Σ_{j=2}^n 2 x\[t_{j−2}, t_{j−1}, t_j\] h_j^{2−alpha} b(k_j), x\[·,·,·\] the second
+/// divided difference. On equal steps both sums are one convolution.
 ///
 /// Above alpha = 1 the integrals are finite parts: y is the Riemann–Liouville derivative of the chain of parabolas, the
 /// jumps of its slope at the samples before t_n included. (Without them the order would fall to 1.) At alpha = 2 only

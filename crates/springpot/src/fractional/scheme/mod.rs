@@ -50,11 +50,11 @@ pub enum Scheme {
     ///
     /// This is the derivative with the lower terminal t − L, L = N h. What was before costs up to max|x| L^−a/|Γ(1−a)|
     /// where Caputo counts x from x(0); 0 at a = 1 and 2. Work: rows × log rows, less for short memories. The principle
-    /// of short memory: I. Podlubny, *Fractional Differential Equations*, 1999, §7.3. Integrals have no such limit: what
-    /// is long past does not fade in them.
+    /// of short memory: I. Podlubny, *Fractional Differential Equations*, 1999, §7.3. Integrals have no such limit:
+    /// what is long past does not fade in them.
     ShortGrunwaldLetnikov(u32),
-    /// `l1`: exact for the broken line through the samples; order 2 − a, integrals (the product trapezoidal rule) 2; any
-    /// grid.
+    /// `l1`: exact for the broken line through the samples; order 2 − a, integrals (the product trapezoidal rule) 2;
+    /// any grid.
     ///
     /// Above a = 1 a broken line has no derivative at its kinks. Y. Lin, C. Xu, J. Comput. Phys. 225 (2007) 1533.
     L1,
@@ -100,8 +100,8 @@ impl Scheme {
         }
     }
 
-    /// Theoretical order of convergence of D^a, a = `order`, for smooth x at fixed t > 0: in the step, for the expansions
-    /// in 1/N; NaN outside [`Scheme::orders`].
+    /// Theoretical order of convergence of D^a, a = `order`, for smooth x at fixed t > 0: in the step, for the
+    /// expansions in 1/N; NaN outside [`Scheme::orders`].
     ///
     /// The error of the short memory does not fall with the step and is not counted. At a = 0 every scheme is exact. At
     /// a = 1 the expansions no longer expand: they are x', to order 4 in the step where no rates are given, while this
@@ -144,15 +144,15 @@ impl Scheme {
     /// - 1 < a < 2: Caputo is the integral of order 2 − a of x''; Riemann–Liouville adds
     ///   x(0) t^−a/Γ(1−a) + x'(0) t^{1−a}/Γ(2−a). x'(0) is the rate where it is given, else a one-sided difference of
     ///   matching order.
-    /// - a = 2: x'' by backward differences of the scheme's order. In row 0, of Grünwald–Letnikov and L1-2 in row 1 too,
-    ///   they are one-sided.
+    /// - a = 2: x'' by backward differences of the scheme's order, one-sided in row 0 and, of Grünwald–Letnikov and L1-2,
+    ///   in row 1.
     ///
     /// Row 0 of a derivative that is no whole one is 0 with Caputo. With Riemann–Liouville it is NaN where the
     /// derivative is singular: x(0) ≠ 0 or, above a = 1, x'(0) ≠ 0. The test is to the bit: round what counts as 0
     /// before. All schemes but Grünwald–Letnikov have the singular terms in closed form.
     ///
-    /// `l1` and `l1-2` sum rows off the leading uniform grid directly, in O(rows) each, up to 2·10⁸ terms in all: 20 000
-    /// rows at random times, or any number of equal steps and one shorter last step.
+    /// `l1` and `l1-2` sum rows off the leading uniform grid directly, in O(rows) each, up to 2·10⁸ terms in all:
+    /// 20 000 rows at random times, or any number of equal steps and one shorter last step.
     ///
     /// Rounding: samples that are right to ε leave errors of some ε h^−a in a derivative and of some ε t^−a in an
     /// integral; the sums themselves add less.

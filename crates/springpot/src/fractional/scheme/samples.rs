@@ -4,8 +4,8 @@ use super::{Scheme, SchemeError};
 
 /// Samples of x(t) at increasing times, the first at t = 0.
 ///
-/// The rate x', where it is known, serves the expansions (moments by cubic Hermite interpolation; without it, five-point
-/// differences stand in). The others take x'(0) from it at order 1 and above, else a one-sided difference.
+/// The rate x', where it is known, serves the expansions (moments by cubic Hermite interpolation; without it,
+/// five-point differences stand in). The others take x'(0) from it at order 1 and above, else a one-sided difference.
 #[derive(Debug, Clone, Copy)]
 pub struct Samples<'a> {
     /// Times, s; t\[0\] = 0, strictly increasing.

@@ -57,8 +57,8 @@ fn generator(order: usize) -> ([f64; MAX_ORDER + 1], [f64; MAX_ORDER + 1]) {
     (delta, quotient)
 }
 
-/// Coefficients of n^{sums−1−alpha−r}, r = 0, 1, …, in the weights as n → ∞: of u^alpha Σ d_r u^r/(1 − e^−u)^sums, where
-/// 1/(1 − e^−u) is 1/u + 1/2 + Σ_{i≥2} ζ(1−i) (−u)^{i−1}/(i−1)!.
+/// Coefficients of n^{sums−1−alpha−r}, r = 0, 1, …, in the weights as n → ∞: of u^alpha Σ d_r u^r/(1 − e^−u)^sums,
+/// where 1/(1 − e^−u) is 1/u + 1/2 + Σ_{i≥2} ζ(1−i) (−u)^{i−1}/(i−1)!.
 fn weight_series(order: usize, alpha: f64, sums: usize) -> Vec<f64> {
     let count = SERIES_TERMS + 1;
     let quotient: Vec<f64> = (0..count)
