@@ -13,6 +13,7 @@ mod info;
 mod labels;
 mod numbers;
 mod progress;
+mod prony;
 mod robot;
 mod run;
 mod terminal;
@@ -71,6 +72,7 @@ pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(options) => check::check(&options),
         Command::Info(options) => info::info(&options),
         Command::Dynamics(options) => dynamics::dynamics(&options),
+        Command::Prony(options) => prony::prony(&options),
     };
     ending.into()
 }

@@ -11,6 +11,7 @@ mod help;
 mod info;
 #[cfg(unix)]
 mod interrupted;
+mod prony;
 mod results;
 #[cfg(unix)]
 mod resume;

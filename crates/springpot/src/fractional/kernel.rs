@@ -219,7 +219,7 @@ fn geometric_measure(alpha: f64, eta: f64) -> (Vec<f64>, Vec<f64>) {
 
 /// `size`-point Gauss rule of a discrete positive measure: Lanczos with full reorthogonalisation, then the eigenvalues of the
 /// Jacobi matrix (Golub & Welsch 1969).
-fn gauss_rule(points: &[f64], masses: &[f64], size: usize) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn gauss_rule(points: &[f64], masses: &[f64], size: usize) -> (Vec<f64>, Vec<f64>) {
     let total: f64 = masses.iter().sum();
     let mut basis: Vec<Vec<f64>> = vec![masses.iter().map(|m| (m / total).sqrt()).collect()];
     let mut jacobi = vec![vec![0.0; size]; size];

@@ -22,6 +22,8 @@ pub mod gamma;
 pub mod kernel;
 pub mod kind;
 pub mod memory;
+pub mod mittag_leffler;
+pub mod prony;
 pub mod scheme;
 pub mod step;
 pub mod stream;
