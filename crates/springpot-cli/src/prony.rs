@@ -138,6 +138,9 @@ fn refuse(options: &PronyOptions, error: &PronyError) -> Refused {
     let help = match error {
         PronyError::Tolerance(_) => format!("--rtol {}: write a number such as 1e-4", options.rtol),
         PronyError::Bound { .. } => "ask for a larger --rtol or a shorter window".to_owned(),
+        PronyError::NoEquilibrium | PronyError::Digits(_) => {
+            "name a shorter window, or take --format csv, whose moduli are not normalised".to_owned()
+        }
         PronyError::Window { .. } => "name a shorter window with --from and --to".to_owned(),
         _ => "springpot prony --help tells the ranges".to_owned(),
     };

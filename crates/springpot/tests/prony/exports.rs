@@ -38,6 +38,9 @@ fn abaqus_reads_back_the_same_modulus() {
         let mut lines = text.lines().filter(|line| !line.starts_with("**"));
         assert_eq!(lines.next(), Some("*VISCOELASTIC, TIME=PRONY"));
         let rows: Vec<Vec<f64>> = lines.map(|line| line.split(", ").map(|n| n.parse().unwrap()).collect()).collect();
+        assert!(
+            text.lines().filter(|line| !line.starts_with('*')).flat_map(|line| line.split(", ")).all(|n| n.len() <= 20)
+        );
         assert!(rows.iter().all(|row| row.len() == 3 && row[1] == if relaxes { row[0] } else { 0.0 }), "{text}");
         let pairs: Vec<(f64, f64)> = rows.iter().map(|row| (row[0], row[2])).collect();
         same(&series, &rebuilt(&series, commented(&text, "Instantaneous modulus"), &pairs));
@@ -95,4 +98,9 @@ fn codes_that_need_a_long_term_modulus_get_none_without_one() {
     let series = series(Slowest::Relaxes);
     assert_eq!(series.abaqus(Bulk::Elastic), Err(PronyError::NoEquilibrium));
     assert_eq!(series.ansys(Bulk::Elastic), Err(PronyError::NoEquilibrium));
+    // Nearly a dashpot over twelve decades: G falls by more than doubles can tell from 1.
+    let springpot = Springpot::new(1.0, 0.99, 0.0).unwrap();
+    let window = Window::Times { from: 1e-6, to: 1e6 };
+    let series = PronySeries::new(&springpot, window, 1e-5, Slowest::Stays).unwrap();
+    assert!(matches!(series.abaqus(Bulk::Elastic), Err(PronyError::Digits(lost)) if lost > 1e-5));
 }

@@ -40,9 +40,9 @@ impl Contours {
         let by_depth = |depth: f64| ((DIGITS + exponent * (1.0 / depth).ln()) / (1.0 - depth), depth);
         let depths = (1..=35).map(|k| by_depth(0.02 * k as f64));
         let (frequency, deepest) = depths.min_by(|x, y| x.0.total_cmp(&y.0)).expect("35 depths");
-        // Largest μ that the lower half of the strip allows; the saddles of e^s s^{−b} and e^s s^{−b−na} are at b and b + na.
+        // Largest μ that the lower half of the strip allows.
         let largest = frequency * frequency / (4.0 * (DIGITS + frequency));
-        // Below them the sum cancels least, at the price of more nodes.
+        // The saddles of e^s s^{−b} and e^s s^{−b−na} are at b and b + na: the sum cancels least near them or below.
         let mu = (0.5 + b + 0.5 * n as f64 * a).clamp(1.0, largest);
         let count = a.ceil() as i32 + 1;
         let parabola = |k: i32| Parabola::new(a, b, n, mu * SHRINK.powi(-k), frequency, deepest);

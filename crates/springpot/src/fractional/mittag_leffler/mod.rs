@@ -21,29 +21,31 @@
 //!
 //! E_{a,b}^{(n)}(z) = n!/(2πi) ∫ e^s s^{a−b} (s^a − z)^{−n−1} ds.
 //!
-//! On the parabola s = μ(1 + iu)² the trapezoidal rule of step h in u converges geometrically (Weideman & Trefethen 2007). A pole
-//! w of the integrand, w^a = z with |arg w| < π, would spoil that when it comes near the parabola. Its share of the rule's error is
-//! known in closed form (the residue of the integrand times 1/(1 − e^{−2πi u/h}), Trefethen & Weideman 2014, §5), so that, with nodes
-//! at odd multiples of h/2,
+//! On the parabola s = μ(1 + iu)² the trapezoidal rule of step h in u converges geometrically (Weideman & Trefethen
+//! 2007). A pole w of the integrand, w^a = z with |arg w| < π, would spoil that when it comes near the parabola. Its
+//! share of the rule's error is known in closed form (the residue of the integrand times 1/(1 − e^{−2πi u/h}),
+//! Trefethen & Weideman 2014, §5), so that, with nodes at odd multiples of h/2,
 //!
 //! E_{a,b}(z) = h Σ_k f(u_k) + Σ_w w^{1−b} e^w/a / (1 + e^{−(2π/h)(√(w/μ) − 1)}).
 //!
-//! The logistic factor is 1 for poles outside the parabola and 0 for those deep inside. Nodes and weights thus depend on a and b
-//! alone, and one sum serves every z, however large. Where a pole comes close to the parabola, a smaller one is used, since a node
-//! close to a pole costs digits. The derivatives of the pole terms are taken by truncated power series. Below |z| = 0.05 the series
-//! of the definition is shorter.
+//! The logistic factor is 1 for poles outside the parabola and 0 for those deep inside. Nodes and weights thus depend
+//! on a and b alone, and one sum serves every z, however large. Where a pole comes close to the parabola, a smaller one
+//! is used, since a node close to a pole costs digits. The derivatives of the pole terms are taken by truncated power
+//! series. Below |z| = 0.05 the series of the definition is shorter.
 //!
 //! # Accuracy
 //!
-//! The error is below 1e-12·max(|E|, 1e-3) in the admissible range; `tests/mittag_leffler` measures it. One thing
-//! no method in double precision escapes: where a term w^{1−b} e^w/a is much larger than the sum, as near zeros of oscillating E_{2,b}(−x),
-//! the error is a few roundings of w times that term.
+//! The error is below 1e-12·max(|E|, 1e-3) in the admissible range; `tests/mittag_leffler` measures it. One thing no
+//! method in double precision escapes: where a term w^{1−b} e^w/a is much larger than the sum, as near zeros of
+//! oscillating E_{2,b}(−x), the error is a few roundings of w times that term.
 //!
 //! # Sources
 //!
-//! - J. A. C. Weideman, L. N. Trefethen, Parabolic and hyperbolic contours for computing the Bromwich integral, Math. Comp. 76 (2007) 1341.
+//! - J. A. C. Weideman, L. N. Trefethen, Parabolic and hyperbolic contours for computing the Bromwich integral, Math.
+//!   Comp. 76 (2007) 1341.
 //! - L. N. Trefethen, J. A. C. Weideman, The exponentially convergent trapezoidal rule, SIAM Review 56 (2014) 385.
-//! - R. Garrappa, Numerical evaluation of two and three parameter Mittag-Leffler functions, SIAM J. Numer. Anal. 53 (2015) 1350.
+//! - R. Garrappa, Numerical evaluation of two and three parameter Mittag-Leffler functions, SIAM J. Numer. Anal. 53
+//!   (2015) 1350.
 
 mod contour;
 mod pole;
@@ -78,8 +80,8 @@ pub const MAX_DERIVATIVE: usize = 10;
 
 /// E_{a,b}, or its n-th derivative with respect to z, prepared for many arguments.
 ///
-/// 0 < a ≤ [`MAX_A`], |b| ≤ [`MAX_B`], n ≤ [`MAX_DERIVATIVE`]; any finite z. The value is infinite where it exceeds the range of f64
-/// (for complex z both parts are then infinite or not defined) and NaN where z is not finite.
+/// 0 < a ≤ [`MAX_A`], |b| ≤ [`MAX_B`], n ≤ [`MAX_DERIVATIVE`]; any finite z. The value is infinite where it exceeds the
+/// range of f64 (for complex z both parts are then infinite or not defined) and NaN where z is not finite.
 #[derive(Debug, Clone)]
 pub struct MittagLeffler {
     a: f64,

@@ -171,7 +171,7 @@ fn reciprocal(x: &Series, n: usize) -> Series {
     series
 }
 
-/// r^{1/a} and its logarithm, for r(1 + lost): what the roundings of r and of 1/a would cost is multiplied by up to 1/a.
+/// r^{1/a} and its logarithm, for r(1 + lost): the power would multiply the roundings of r and 1/a by up to 1/a.
 fn root(a: f64, r: f64, lost: f64) -> (f64, f64) {
     let power = a.recip();
     let logarithm = (r.ln() + lost) / a;

@@ -1,4 +1,5 @@
-//! Prony series: springs and Maxwell branches that stand for a completely monotone relaxation modulus, with a verified error.
+//! Prony series: springs and Maxwell branches that stand for a completely monotone relaxation modulus, with a verified
+//! error.
 //!
 //! ```
 //! use springpot::fractional::prony::{PronySeries, Slowest, Springpot, Window};
@@ -13,18 +14,20 @@
 //!
 //! # Method
 //!
-//! G(t) = G_e + ∫ H(τ) e^{−t/τ} d ln τ. The trapezoidal rule in ln τ converges geometrically for a smooth spectrum H, and every one of
-//! its terms is a Maxwell branch of modulus ηH(τ_k) ≥ 0. Its step η is the largest that meets its share of the tolerance on the window.
-//! What relaxes more slowly than the window sees is a discrete measure in 1/τ, of which the Gauss rule takes the place, with as few
-//! branches as the tolerance allows; what is faster than a frequency band sees is treated alike in τ, what is faster than a time window
-//! sees is left out. Gauss rules of a positive measure have positive weights, so the series is passive whatever the tolerance.
-//! [`Slowest::Stays`] takes the Radau rule with a node at 1/τ = 0 for the slow part: a spring that keeps, within the bound, what has
-//! not relaxed by the end of the window. Finite-element codes want such a long-term modulus.
+//! G(t) = G_e + ∫ H(τ) e^{−t/τ} d ln τ. The trapezoidal rule in ln τ converges geometrically for a smooth spectrum H,
+//! and every one of its terms is a Maxwell branch of modulus ηH(τ_k) ≥ 0. Its step η is the largest that meets its
+//! share of the tolerance on the window. What relaxes more slowly than the window sees is a discrete measure in 1/τ, of
+//! which the Gauss rule takes the place, with as few branches as the tolerance allows; what is faster than a frequency
+//! band sees is treated alike in τ, what is faster than a time window sees is left out. Gauss rules of a positive
+//! measure have positive weights, so the series is passive whatever the tolerance. [`Slowest::Stays`] takes the Radau
+//! rule with a node at 1/τ = 0 for the slow part: a spring that keeps, within the bound, what has not relaxed by the
+//! end of the window. Finite-element codes want such a long-term modulus.
 //!
 //! At last the whole series is compared with G (or G*) at points that had no part in building it.
 //!
-//! Sources: W. McLean, Exponential sum approximations for t^−β (2018); G. H. Golub, J. H. Welsch, Calculation of Gauss quadrature
-//! rules, Math. Comp. 23 (1969) 221; F. Mainardi, Fractional Calculus and Waves in Linear Viscoelasticity (2010).
+//! Sources: W. McLean, Exponential sum approximations for t^−β (2018); G. H. Golub, J. H. Welsch, Calculation of Gauss
+//! quadrature rules, Math. Comp. 23 (1969) 221; F. Mainardi, Fractional Calculus and Waves in Linear Viscoelasticity
+//! (2010).
 
 mod build;
 mod export;
@@ -78,6 +81,11 @@ pub enum PronyError {
     /// A finite-element code needs a modulus that stays.
     #[error("the normalised moduli add up to 1: without an equilibrium modulus the long-term modulus is 0")]
     NoEquilibrium,
+    /// Normalised moduli cannot hold the smallest modulus of the window.
+    #[error(
+        "normalised moduli lose the bound: rounding their sum changes the smallest modulus of the window by {0:.1e}"
+    )]
+    Digits(f64),
 }
 
 /// Where a Prony series holds.

@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 
 /// A completely monotone relaxation modulus, G(t) = G_e + ∫ H(τ) e^{−t/τ} d ln τ with G_e ≥ 0 and H ≥ 0.
 ///
-/// By Bernstein's theorem every completely monotone G has this form. G(t) is the stress (or force) at time t after a unit step of
-/// strain (or stroke), in any unit of modulus or stiffness; H and G_e are in the same unit.
+/// By Bernstein's theorem every completely monotone G has this form. G(t) is the stress (or force) at time t after a
+/// unit step of strain (or stroke), in any unit of modulus or stiffness; H and G_e are in the same unit.
 pub trait Relaxation {
     /// G_e, what never relaxes.
     fn equilibrium(&self) -> f64;
@@ -23,7 +23,9 @@ pub trait Relaxation {
     fn complex_modulus(&self, omega: f64) -> Complex64;
 }
 
-/// A springpot beside a spring: G(t) = G_e + c t^−alpha/Γ(1−alpha), G* = G_e + c (iω)^alpha, H(τ) = c sin(π alpha)/π τ^−alpha.
+/// A springpot beside a spring: G(t) = G_e + c t^−alpha/Γ(1−alpha) and G* = G_e + c (iω)^alpha.
+///
+/// H(τ) = c sin(π alpha)/π τ^−alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Springpot {
     coefficient: f64,
@@ -61,11 +63,11 @@ impl Relaxation for Springpot {
     }
 }
 
-/// The fractional Zener (standard linear) model, a spring beside a spring and a springpot in series:
-/// G(t) = G_e + G_1 E_alpha(−(t/τ_1)^alpha), G* = G_e + G_1 (iωτ_1)^alpha/(1 + (iωτ_1)^alpha).
+/// The fractional Zener (standard linear) model, a spring beside a spring and a springpot in series.
 ///
-/// H(τ) = G_1 sin(π alpha)/π / (x + 2 cos π alpha + 1/x) with x = (τ/τ_1)^alpha (Caputo & Mainardi 1971). With G_e = 0 it is the
-/// fractional Maxwell model.
+/// With the Mittag-Leffler function, G(t) = G_e + G_1 E_alpha(−(t/τ_1)^alpha); G* = G_e + G_1 x/(1 + x), x = (iωτ_1)^alpha.
+/// H(τ) = G_1 sin(π alpha)/π / (y + 2 cos π alpha + 1/y), y = (τ/τ_1)^alpha (Caputo & Mainardi 1971). With G_e = 0 it is
+/// the fractional Maxwell model.
 #[derive(Debug, Clone)]
 pub struct FractionalZener {
     equilibrium: f64,
@@ -117,8 +119,8 @@ impl Relaxation for FractionalZener {
 
 /// A modulus given by its spectrum alone: G_e and a function H(τ) ≥ 0.
 ///
-/// G and G* are integrals over ln τ by the trapezoidal rule, whose step is halved until nothing changes: H should be smooth on the
-/// scale of ln τ. Beyond a factor of 1e20 around the time asked for, H is taken for a power of τ.
+/// G and G* are integrals over ln τ by the trapezoidal rule, whose step is halved until nothing changes: H should be
+/// smooth on the scale of ln τ. Beyond a factor of 1e20 around the time asked for, H is taken for a power of τ.
 #[derive(Debug, Clone, Copy)]
 pub struct Spectrum<F> {
     equilibrium: f64,
