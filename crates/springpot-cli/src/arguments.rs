@@ -1,6 +1,6 @@
 //! What the command line takes.
 
-use clap::{ArgGroup, Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use springpot::fractional::{Definition, Method};
 use std::path::PathBuf;
 
@@ -79,6 +79,19 @@ infinite stay empty. The lower terminal is the first time. spline (smooth sample
 samples) and the names of the literature want all rows at once; exponential writes each row three rows later, and large files \
 take it in place of spline: the numbers are the same to 1e-12. l1 is exact for broken lines.")]
     Derivative(DerivativeOptions),
+    /// Turn a springpot into a Prony series with a verified error, for codes that know no fractional order.
+    #[command(after_help = "\
+Examples:
+  springpot prony --order 0.5 --coefficient '50 N*s^alpha/m' --from '1 ms' --to '10 s'
+  springpot prony --order 0.3 --coefficient '2 MPa*s^alpha' --band --from '0.1 Hz' --to '1 kHz' --format abaqus
+
+The series G_e + sum of g_k exp(-t/tau_k) stands for the relaxation G(t) = G_e + c t^-alpha/Gamma(1 - alpha) between two times, or, \
+with --band, for the complex modulus G_e + c (i omega)^alpha between two frequencies. All g_k are positive: springs g_k, each in \
+series with a damper g_k tau_k. The error is verified after building. Numbers without a unit are SI (frequencies Hz).
+
+Abaqus and Ansys need a long-term modulus above 0. Without --equilibrium a spring takes the place of what relaxes after the \
+window; the bound includes it, and a comment says so.")]
+    Prony(PronyOptions),
     /// Show the laws of elements, or find the parameters of one from a data sheet.
     #[command(after_help = "\
 Examples:
@@ -330,4 +343,62 @@ pub(crate) struct ScenarioOptions {
     /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PronyOptions {
+    /// Order alpha of the springpot, above 0 and below 1
+    #[arg(long, value_name = "ALPHA", allow_hyphen_values = true)]
+    pub(crate) order: f64,
+    /// Coefficient c, such as '50 N*s^alpha/m' or '2 MPa*s^alpha'
+    #[arg(long, value_name = "C", allow_hyphen_values = true)]
+    pub(crate) coefficient: String,
+    /// Shortest time, in s or with a unit; with --band the lowest frequency
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(crate) from: String,
+    /// Longest time; with --band the highest frequency
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(crate) to: String,
+    /// --from and --to are frequencies, in Hz or with a unit (rad/s is an angular frequency)
+    #[arg(long)]
+    pub(crate) band: bool,
+    /// Largest relative error on the window
+    #[arg(long, value_name = "ERROR", default_value_t = 1e-4, allow_hyphen_values = true)]
+    pub(crate) rtol: f64,
+    /// Modulus of a spring beside the springpot, such as '200 N/m' [default: 0]
+    #[arg(long, value_name = "MODULUS", allow_hyphen_values = true)]
+    pub(crate) equilibrium: Option<String>,
+    /// What to print
+    #[arg(long, value_enum, default_value_t = PronyFormat::Table)]
+    pub(crate) format: PronyFormat,
+    /// With --format abaqus or ansys: what the bulk modulus does
+    #[arg(long, value_enum, default_value_t = BulkModulus::Elastic)]
+    pub(crate) bulk: BulkModulus,
+    /// Write a file instead of the standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// How a Prony series is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PronyFormat {
+    /// A table to read
+    Table,
+    /// Comma-separated values: modulus, relaxation time, viscosity
+    Csv,
+    /// Everything, with the window and the error
+    Json,
+    /// Abaqus keywords (*VISCOELASTIC, TIME=PRONY)
+    Abaqus,
+    /// Ansys Mechanical APDL commands (TB,PRONY)
+    Ansys,
+}
+
+/// The bulk modulus where a series is taken for a shear modulus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BulkModulus {
+    /// It does not relax
+    Elastic,
+    /// It relaxes like the shear modulus
+    Relaxes,
 }

@@ -18,6 +18,7 @@ mod manual;
 mod numbers;
 mod plot;
 mod progress;
+mod prony;
 mod robot;
 mod run;
 mod terminal;
@@ -82,6 +83,7 @@ pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Init(options) => init::init(&options),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),
+        Command::Prony(options) => prony::prony(&options),
     };
     ending.into()
 }

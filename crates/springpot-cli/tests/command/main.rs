@@ -19,6 +19,7 @@ mod manual;
 #[cfg(unix)]
 mod pipes;
 mod plot;
+mod prony;
 mod results;
 #[cfg(unix)]
 mod resume;

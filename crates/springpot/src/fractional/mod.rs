@@ -59,9 +59,12 @@
 
 mod differintegral;
 pub mod gamma;
+mod gauss;
 pub mod kernel;
 pub mod kind;
 pub mod memory;
+pub mod mittag_leffler;
+pub mod prony;
 pub mod scheme;
 pub mod step;
 

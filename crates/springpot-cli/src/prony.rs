@@ -1,0 +1,191 @@
+//! `springpot prony`.
+
+use crate::arguments::{BulkModulus, PronyFormat, PronyOptions};
+use crate::grid::{Grid, Set};
+use crate::numbers::{count, rough, short};
+use crate::robot::Refused;
+use crate::{Ending, diagnostic, printed, terminal};
+use springpot::fractional::prony::{Bulk, PronyError, PronySeries, Slowest, Springpot, Window};
+use springpot::scenario::units::{UnitError, parse_quantity};
+use std::f64::consts::TAU;
+
+pub(crate) fn prony(options: &PronyOptions) -> Ending {
+    match text(options) {
+        Err(Refused) => Ending::Refused,
+        Ok(text) => match &options.out {
+            None => printed(terminal::try_print(&text)),
+            Some(file) => match std::fs::write(file, text) {
+                Ok(()) => Ending::Done,
+                Err(error) => {
+                    diagnostic::error(format!("{} cannot be written: {error}", file.display()));
+                    Ending::Failed
+                }
+            },
+        },
+    }
+}
+
+fn text(options: &PronyOptions) -> Result<String, Refused> {
+    let asked = Asked::read(options)?;
+    let Asked { material, window, own_equilibrium, .. } = &asked;
+    let for_elements = matches!(options.format, PronyFormat::Abaqus | PronyFormat::Ansys);
+    let slowest = if for_elements && !own_equilibrium { Slowest::Stays } else { Slowest::Relaxes };
+    let series = PronySeries::new(material, *window, options.rtol, slowest).map_err(|error| refuse(options, &error))?;
+    let bulk = match options.bulk {
+        BulkModulus::Elastic => Bulk::Elastic,
+        BulkModulus::Relaxes => Bulk::Relaxes,
+    };
+    match options.format {
+        PronyFormat::Table => Ok(table(options, &asked, &series)),
+        PronyFormat::Csv => Ok(series.csv()),
+        PronyFormat::Json => Ok(json(&series)),
+        PronyFormat::Abaqus => series.abaqus(bulk).map_err(|error| refuse(options, &error)),
+        PronyFormat::Ansys => series.ansys(bulk).map_err(|error| refuse(options, &error)),
+    }
+}
+
+/// What the options say, in SI.
+struct Asked {
+    material: Springpot,
+    window: Window,
+    /// Unit of the moduli.
+    unit: &'static str,
+    own_equilibrium: bool,
+}
+
+impl Asked {
+    fn read(options: &PronyOptions) -> Result<Self, Refused> {
+        if !(options.order > 0.0 && options.order < 1.0) {
+            let help = "write an order above 0 and below 1; 0 is a spring and 1 a dashpot, which need no series";
+            return refused(format!("--order {}: out of range", options.order), help);
+        }
+        let (coefficient, unit) = coefficient(&options.coefficient, options.order)?;
+        let equilibrium = match &options.equilibrium {
+            None => 0.0,
+            Some(text) => modulus(text, unit)?,
+        };
+        let ends = [("--from", &options.from), ("--to", &options.to)];
+        let [from, to] = match options.band {
+            false => ends.map(|(name, text)| time(name, text)),
+            true => ends.map(|(name, text)| frequency(name, text)),
+        };
+        let (from, to) = (from?, to?);
+        if from >= to {
+            let help = "--from is the lower end of the window and --to the upper one";
+            return refused(format!("--from {} is not below --to {}", options.from, options.to), help);
+        }
+        let window = if options.band { Window::Frequencies { from, to } } else { Window::Times { from, to } };
+        let material =
+            Springpot::new(coefficient, options.order, equilibrium).map_err(|error| refuse(options, &error))?;
+        Ok(Self { material, window, unit, own_equilibrium: equilibrium > 0.0 })
+    }
+}
+
+/// c in SI and the unit of its moduli: a stiffness or a modulus of elasticity.
+fn coefficient(text: &str, order: f64) -> Result<(f64, &'static str), Refused> {
+    let alpha = |name: &str| (name == "alpha").then_some(order);
+    let read = |unit: &str| parse_quantity(text, unit, &alpha);
+    let help = "write a positive coefficient such as \"50 N*s^alpha/m\" or \"2 MPa*s^alpha\"";
+    let (read, unit) = match read("N*s^alpha/m") {
+        Err(error) => match read("Pa*s^alpha") {
+            Ok(value) => (Ok(value), "Pa"),
+            Err(_) => (Err(error), "N/m"),
+        },
+        stiffness => (stiffness, "N/m"),
+    };
+    positive("--coefficient", text, read, help).map(|value| (value, unit))
+}
+
+fn modulus(text: &str, unit: &str) -> Result<f64, Refused> {
+    match parse_quantity(text, unit, &|_| None) {
+        Ok(value) if value == 0.0 => Ok(value),
+        read => {
+            let help = format!(
+                "write a modulus in {unit}, the unit of the coefficient without s^alpha, such as \"200 {unit}\""
+            );
+            positive("--equilibrium", text, read, &help)
+        }
+    }
+}
+
+fn time(name: &str, text: &str) -> Result<f64, Refused> {
+    let read = parse_quantity(text, "s", &|_| None);
+    positive(name, text, read, "write a time such as 0.5 or \"500 ms\"; with --band, a frequency")
+}
+
+/// The angular frequency, rad/s.
+fn frequency(name: &str, text: &str) -> Result<f64, Refused> {
+    let read = parse_quantity(text, "Hz", &|_| None);
+    let value = positive(name, text, read, "write a frequency such as 10, \"0.5 kHz\" or \"3 rad/s\"")?;
+    Ok(if text.contains("rad") { value } else { TAU * value })
+}
+
+fn positive(name: &str, text: &str, read: Result<f64, UnitError>, help: &str) -> Result<f64, Refused> {
+    match read {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        Ok(_) => refused(format!("{name} {text}: not a positive number"), help),
+        Err(error) => refused(format!("{name} {text}: {error}"), help),
+    }
+}
+
+fn refused<T>(message: String, help: &str) -> Result<T, Refused> {
+    diagnostic::error_with_help(message, help.to_owned());
+    Err(Refused)
+}
+
+/// Says what the library refused.
+fn refuse(options: &PronyOptions, error: &PronyError) -> Refused {
+    let help = match error {
+        PronyError::Tolerance(_) => format!("--rtol {}: write a number such as 1e-4", options.rtol),
+        PronyError::Bound { .. } => "ask for a larger --rtol or a shorter window".to_owned(),
+        PronyError::NoEquilibrium | PronyError::Digits(_) => {
+            "name a shorter window, or take --format csv, whose moduli are not normalised".to_owned()
+        }
+        PronyError::Window { .. } => "name a shorter window with --from and --to".to_owned(),
+        _ => "springpot prony --help tells the ranges".to_owned(),
+    };
+    diagnostic::error_with_help(error.to_string(), help);
+    Refused
+}
+
+fn json(series: &PronySeries) -> String {
+    let mut text = serde_json::to_string_pretty(series).expect("a series is numbers and names");
+    text.push('\n');
+    text
+}
+
+fn table(options: &PronyOptions, asked: &Asked, series: &PronySeries) -> String {
+    let unit = asked.unit;
+    let beside = match &options.equilibrium {
+        Some(equilibrium) if asked.own_equilibrium => format!(", beside a spring of {equilibrium}"),
+        _ => String::new(),
+    };
+    let (what, window) = match series.window {
+        Window::Times { from, to } => ("G(t)", format!("{} s to {} s", short(from), short(to))),
+        Window::Frequencies { from, to } => ("G*", format!("{} Hz to {} Hz", short(from / TAU), short(to / TAU))),
+    };
+    let lines = [
+        ("springpot", format!("{}, alpha = {}{beside}", options.coefficient, options.order)),
+        ("window", window),
+        ("series", format!("{}, all moduli positive", count(series.terms.len(), "branch", "branches"))),
+        ("error", format!("{} of {what}, verified; at most {:e} was asked for", rough(series.error), series.tolerance)),
+        ("G(0)", format!("{} {unit}, all branches together", short(series.instantaneous()))),
+        ("G_e", format!("{} {unit}, what stays", short(series.equilibrium))),
+    ];
+    let width = terminal::stdout_width();
+    let mut text: String =
+        lines.iter().map(|(lead, line)| terminal::hanging(&format!("{lead:<11}"), line, width)).collect();
+    text.push('\n');
+    let mut grid = Grid::new([
+        ("k".to_owned(), Set::Number),
+        (format!("g_k, {unit}"), Set::Number),
+        ("tau_k, s".to_owned(), Set::Number),
+        (format!("g_k tau_k, {}", if unit == "Pa" { "Pa*s" } else { "N*s/m" }), Set::Number),
+    ]);
+    for (k, term) in (1..).zip(&series.terms) {
+        let numbers = [term.modulus, term.relaxation_time, term.viscosity()].map(short);
+        grid.row([format!("{k}")].into_iter().chain(numbers).collect());
+    }
+    text.push_str(&grid.text(terminal::stdout_columns()));
+    text
+}

@@ -1,0 +1,5 @@
+//! The Mittag-Leffler function: reference values, identities, bad input.
+
+mod identities;
+mod references;
+mod refusals;

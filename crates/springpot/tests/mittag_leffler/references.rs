@@ -1,0 +1,67 @@
+//! Against the files of reference values, read whole.
+
+use serde_json::Value;
+use springpot::fractional::mittag_leffler::{Complex64, MittagLeffler, mittag_leffler};
+use std::collections::HashSet;
+
+fn file(name: &str) -> Value {
+    let path = format!("{}/../../testdata/fractional/{name}", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_str().unwrap().parse().unwrap()
+}
+
+/// |error| over max(|E|, 1e-3).
+fn defect(computed: Complex64, exact: Complex64) -> f64 {
+    let error = (computed - exact).norm();
+    if error.is_nan() { f64::INFINITY } else { error / exact.norm().max(1e-3) }
+}
+
+#[test]
+fn the_table_of_common_parameters_is_met() {
+    let table = file("mittag_leffler.json");
+    let mut count = 0;
+    for row in table["rows"].as_array().unwrap() {
+        let complex = |key: &str| Complex64::new(number(&row[key][0]), number(&row[key][1]));
+        let (a, b, z, exact) = (number(&row["a"]), number(&row["b"]), complex("z"), complex("re_im"));
+        let error = defect(mittag_leffler(a, b, z).unwrap(), exact);
+        assert!(error <= 1e-12, "E_{{{a},{b}}}({z}): {error:e}");
+        if z.im == 0.0 {
+            let error = defect(MittagLeffler::new(a, b).unwrap().real(z.re).into(), exact);
+            assert!(error <= 1e-12, "E_{{{a},{b}}}({}): {error:e}", z.re);
+        }
+        count += 1;
+    }
+    assert_eq!(count, 238);
+}
+
+#[test]
+fn the_whole_plane_is_met() {
+    let table = file("mittag_leffler_plane.json");
+    let mut parameters = HashSet::new();
+    let mut counts = Vec::new();
+    for (name, group) in table["groups"].as_object().unwrap() {
+        let rows = group.as_array().unwrap();
+        for row in rows {
+            let [a, b, n, re, im, exact_re, exact_im] = std::array::from_fn(|k| number(&row[k]));
+            let (z, exact) = (Complex64::new(re, im), Complex64::new(exact_re, exact_im));
+            let error = defect(MittagLeffler::derivative(a, b, n as usize).unwrap().complex(z), exact);
+            assert!(error <= 1e-12, "{name}: derivative {n} of E_{{{a},{b}}} at {z}: {error:e}");
+            parameters.insert((a.to_bits(), b.to_bits()));
+        }
+        counts.push((name.as_str(), rows.len()));
+    }
+    assert_eq!(counts, COUNTS);
+    assert!(parameters.len() > 500, "{}", parameters.len());
+}
+
+const COUNTS: [(&str, usize); 6] = [
+    ("derivatives", 160),
+    ("negative axis", 100),
+    ("orders above two", 100),
+    ("plane", 400),
+    ("small orders", 60),
+    ("wide b", 100),
+];

@@ -1,0 +1,5 @@
+//! Prony series: the bound, the number of branches, passivity, exports, refusals.
+
+mod bounds;
+mod exports;
+mod refusals;
