@@ -27,7 +27,8 @@ pub(crate) enum Command {
     #[command(after_help = "\
 Examples:
   springpot run scenarios/thermoviscoelastic_order.toml
-  springpot run arm.toml --set element.strut.alpha=0.3 --set 'element.strut.T=40 degC' --out warm
+  springpot run arm.toml --set element.strut.alpha=0.3 --out soft
+  springpot run arm.toml --set 'element.strut.T=40 degC' --out warm
   springpot run arm.toml --format parquet
   springpot run arm.toml --checkpoint-every '10 s'
   springpot run --resume results/arm
@@ -71,8 +72,9 @@ Exit codes: 0 done, 1 some numbers are not finite or the motion does not come as
     #[command(after_help = "\
 Examples:
   springpot derivative motion.csv --column x --order 0.5
-  springpot derivative results/arm/results.csv --column q.q2 --column q.q3 --order 0.5 --error --out half.csv
-  sensor | springpot derivative --column force --order -0.5 --scheme exponential
+  springpot derivative motion.csv --column x --column y --order 0.5 --order -1
+  springpot derivative motion.csv --column x --order 1.5 --error --out bend.csv
+  springpot derivative - --column force --order -0.5 --scheme exponential
 
 Writes the columns of the file, time first, then one called \"D^0.5 x\" for every column and order; rows where the derivative is \
 infinite stay empty. The lower terminal is the first time. spline (smooth samples), hermite (follows kinks and noise over fewer \
@@ -82,8 +84,9 @@ take it in place of spline: the numbers are the same to 1e-12. l1 is exact for b
     /// Turn a springpot into a Prony series with a verified error, for codes that know no fractional order.
     #[command(after_help = "\
 Examples:
-  springpot prony --order 0.5 --coefficient '50 N*s^alpha/m' --from '1 ms' --to '10 s'
-  springpot prony --order 0.3 --coefficient '2 MPa*s^alpha' --band --from '0.1 Hz' --to '1 kHz' --format abaqus
+  springpot prony --order 0.5 --coefficient '50 N*s^alpha/m' --from 1e-3 --to 10
+  springpot prony --order 0.5 --coefficient 50 --from 1e-3 --to 10 --format csv
+  springpot prony --order 0.3 --coefficient 2e6 --band --from 0.1 --to 1e3
 
 The series G_e + sum of g_k exp(-t/tau_k) stands for the relaxation G(t) = G_e + c t^-alpha/Gamma(1 - alpha) between two times, or, \
 with --band, for the complex modulus G_e + c (i omega)^alpha between two frequencies. All g_k are positive: springs g_k, each in \
@@ -98,7 +101,7 @@ Examples:
   springpot laws
   springpot laws thermoviscoelastic
   springpot laws --from 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m'
-  springpot laws kelvin-voigt --from 'stiffness = 2 kN/m at 0, damping = 40 N*s/m'
+  springpot laws kelvin-voigt --from 'stiffness = 2 kN/m, damping = 40 N*s/m'
 
 --from reads NAME = VALUE [at FREQUENCY], ..., where NAME is tan_delta (or loss_factor), stiffness (dynamic, |k*|), storage, loss or \
 damping, and FREQUENCY is in Hz or rad/s, or 0 for a static value. Where a frequency is left out, it is the only other one that is \
@@ -110,8 +113,9 @@ Exit codes: 0 done, 2 no such law, or the data determine none.")]
     #[command(after_help = "\
 Examples:
   springpot plot results/arm strut.force
-  springpot plot results/arm 'strut.Q.*' --where element.strut.alpha=0.4 --title 'Generalized forces'
-  springpot plot results/arm strut.force --x strut.stroke --unit strut.stroke=mm --out loop.svg
+  springpot plot results/arm 'strut.Q.*' --where element.strut.alpha=0.4
+  springpot plot results/arm strut.force --x strut.stroke --out loop.svg
+  springpot plot results/arm strut.force --unit strut.force=kN
 
 The cases of a first sweep make curves, those of others panels. Columns may be globs: * stands for any text, ? for one character.
 
@@ -131,7 +135,7 @@ Exit codes: 0 done, 1 the file cannot be written, 2 it is there, or the robot wa
     /// Print a script that completes commands and options in a shell.
     #[command(after_help = "\
 Examples:
-  springpot completions bash > ~/.local/share/bash-completion/completions/springpot
+  springpot completions bash > springpot.bash
   springpot completions zsh > ~/.zfunc/_springpot
   springpot completions fish > ~/.config/fish/completions/springpot.fish
   springpot completions powershell >> $PROFILE")]
@@ -401,4 +405,65 @@ pub(crate) enum BulkModulus {
     Elastic,
     /// It relaxes like the shear modulus
     Relaxes,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    /// The words of a line of a shell, up to what the shell does with the output.
+    fn words(line: &str) -> Vec<String> {
+        let (mut words, mut word, mut quoted) = (Vec::new(), String::new(), false);
+        for c in line.chars().chain([' ']) {
+            match c {
+                '\'' => quoted = !quoted,
+                '#' | '>' | '|' if !quoted && word.is_empty() => break,
+                ' ' if !quoted => words.extend(Some(std::mem::take(&mut word)).filter(|word| !word.is_empty())),
+                c => word.push(c),
+            }
+        }
+        words
+    }
+
+    fn parses(line: &str) {
+        let read = Arguments::try_parse_from(words(line));
+        let help = read.as_ref().err().is_some_and(|error| !error.use_stderr());
+        assert!(help || read.is_ok(), "{line}: {}", read.err().unwrap());
+    }
+
+    #[test]
+    fn examples_of_the_help_are_admissible() {
+        let program = Arguments::command();
+        for command in program.get_subcommands() {
+            let text = command.get_after_help().unwrap().to_string();
+            let examples = text.lines().skip(1).take_while(|line| !line.is_empty());
+            assert!(text.starts_with("Example") && examples.clone().count() > 0, "{}", command.get_name());
+            for line in examples {
+                assert!(line.chars().count() <= 80, "{line}");
+                parses(line.trim());
+            }
+        }
+    }
+
+    #[test]
+    fn commands_of_the_documents_are_admissible() {
+        let mut seen = Vec::new();
+        for document in ["README.md", "docs/COMMANDS.md", "docs/SCENARIO.md", "docs/ROBOTS.md"] {
+            let path = format!("{}/../../{document}", env!("CARGO_MANIFEST_DIR"));
+            let text = std::fs::read_to_string(path).unwrap();
+            for line in text.split("\n```sh\n").skip(1).flat_map(|rest| rest.split("\n```").next().unwrap().lines()) {
+                let line = line.replace("cargo run --release -- ", "springpot ");
+                if line.starts_with("springpot ") {
+                    parses(&line);
+                    seen.push(words(&line)[1].clone());
+                }
+            }
+        }
+        let program = Arguments::command();
+        for command in program.get_subcommands() {
+            assert!(seen.iter().any(|name| name == command.get_name()), "no document shows {}", command.get_name());
+        }
+        assert!(seen.len() > 35, "{}", seen.len());
+    }
 }

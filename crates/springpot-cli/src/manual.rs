@@ -30,11 +30,28 @@ pub(crate) fn man(options: &ManOptions) -> Ending {
 /// Writes springpot.1 and springpot-COMMAND.1 for every command.
 fn write_all(folder: &Path) -> io::Result<()> {
     fs::create_dir_all(folder)?;
-    clap_mangen::generate_to(Arguments::command(), folder)
+    let mut program = Arguments::command();
+    // Commands learn their full names.
+    program.build();
+    let commands = program.get_subcommands().filter(|command| command.get_name() != "help");
+    for command in commands.cloned() {
+        let file = Man::new(command.clone()).get_filename();
+        fs::write(folder.join(file), page(command)?)?;
+    }
+    fs::write(folder.join("springpot.1"), page(Arguments::command())?)
 }
 
 fn page(command: clap::Command) -> io::Result<String> {
     let mut page = Vec::new();
     Man::new(command).render(&mut page)?;
-    Ok(String::from_utf8_lossy(&page).into_owned())
+    Ok(with_examples(&String::from_utf8_lossy(&page)))
+}
+
+/// The page with its examples, which stand first in what follows the options, as lines of their own under a heading.
+fn with_examples(page: &str) -> String {
+    let Some((before, rest)) = page.split_once(".SH EXTRA\n") else { return page.to_owned() };
+    let (examples, notes) = rest.split_once("\n\n").unwrap_or((rest.trim_end(), ""));
+    let lines: String = examples.lines().skip(1).map(|line| format!("{}\n", line.trim_start())).collect();
+    let notes = if notes.is_empty() { String::new() } else { format!(".SH NOTES\n{notes}") };
+    format!("{before}.SH EXAMPLES\n.nf\n{lines}.fi\n{notes}")
 }

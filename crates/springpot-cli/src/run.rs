@@ -195,7 +195,8 @@ impl Finished {
             folder.files().iter().find(|name| name.starts_with("results.")).map_or("results.csv", String::as_str);
         let mut files = format!("{rows}, summary.csv, run.json");
         if figures > 0 {
-            files.push_str(&format!(", {} (SVG and PNG)", count(figures, "figure", "figures")));
+            let figures = count(figures, "figure", "figures").replace(' ', terminal::NO_BREAK);
+            files.push_str(&format!(", {figures} (SVG and PNG)"));
         }
         lines.push_str(&terminal::hanging("results  ", &format!("{}: {files}", folder.path().display()), width));
         if let Some(iterations) = outcome.newton_iterations {

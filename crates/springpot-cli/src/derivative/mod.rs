@@ -16,6 +16,9 @@ use std::path::{Path, PathBuf};
 /// Most bytes of rows that are held at a time; what is larger is streamed.
 const HELD: usize = 256 << 20;
 
+/// Fewest rows.
+const FEWEST: usize = 3;
+
 /// Why there is no derivative of a file.
 #[derive(Debug, thiserror::Error)]
 enum Problem {
@@ -31,7 +34,10 @@ enum Problem {
     /// An order asked for twice.
     #[error("--order {0} is given twice")]
     OrderTwice(f64),
-    /// The order, or too few rows.
+    /// Two points make a line, whatever x does between them.
+    #[error("{0} rows of numbers; at least three are needed")]
+    TooFewRows(usize),
+    /// The order, or too few rows for it.
     #[error(transparent)]
     Derivative(#[from] DerivativeError),
     /// What a scheme asks of the row on this line.

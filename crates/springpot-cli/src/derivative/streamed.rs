@@ -1,9 +1,9 @@
 //! Derivatives of rows as they come.
 
-use super::Problem;
 use super::sheet::{Layout, Sheet};
+use super::{FEWEST, Problem};
 use springpot::fractional::{DerivativeError, Stream};
-use springpot::signal::csv::{CsvProblem, CsvRows};
+use springpot::signal::csv::CsvRows;
 use springpot::table::push_number;
 use std::collections::VecDeque;
 use std::io::{Read, Write};
@@ -82,8 +82,8 @@ impl<'a> Writer<'a> {
     }
 
     fn finish(mut self) -> Result<(), Problem> {
-        if self.taken < 2 {
-            return Err(CsvProblem::TooFewRows { given: self.taken }.into());
+        if self.taken < FEWEST {
+            return Err(Problem::TooFewRows(self.taken));
         }
         let rests = std::mem::take(&mut self.streams).into_iter().map(Stream::finish);
         let rests = rests.collect::<Result<Vec<_>, DerivativeError>>()?;

@@ -1,10 +1,9 @@
 //! Derivatives of all rows at once.
 
-use super::Problem;
 use super::sheet::{Layout, Sheet};
+use super::{FEWEST, Problem};
 use springpot::fractional::scheme::{Samples, SchemeError};
 use springpot::fractional::{DerivativeError, Method, derivative, derivative_with_error};
-use springpot::signal::csv::CsvProblem;
 use springpot::table::push_number;
 use std::io::Write;
 
@@ -15,8 +14,8 @@ pub(super) fn differentiate(
     with_error: bool,
     output: &mut dyn Write,
 ) -> Result<(), Problem> {
-    if sheet.times.len() < 2 {
-        return Err(CsvProblem::TooFewRows { given: sheet.times.len() }.into());
+    if sheet.times.len() < FEWEST {
+        return Err(Problem::TooFewRows(sheet.times.len()));
     }
     let times = sheet.times_from_start();
     let mut results: Vec<Vec<f64>> = Vec::new();

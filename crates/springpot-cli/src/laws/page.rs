@@ -62,7 +62,10 @@ fn example(law: &Entry) -> String {
     element(law.name, &params, &inputs)
 }
 
-/// An `[[element]]` between the world and a body; the parameters are written as `name = value`.
+/// Tables that make a longer line are written with a line for each value.
+const LONGEST_LINE: usize = 80;
+
+/// An `[[element]]` between the world and a body; parameters and inputs are written as `name = value`.
 pub(super) fn element(law: &str, params: &[String], inputs: &[String]) -> String {
     let mut text = format!(
         "[[element]]\n\
@@ -70,12 +73,18 @@ pub(super) fn element(law: &str, params: &[String], inputs: &[String]) -> String
          from = {{ body = \"world\", point = [0, 0, \"-30 cm\"] }}\n\
          to = {{ body = \"arm\", point = [\"30 cm\", 0, 0] }}\n\
          rest_length = \"42 cm\"\n\
-         law = \"{law}\"\n\
-         parameters = {{ {} }}\n",
-        params.join(", ")
+         law = \"{law}\"\n"
     );
-    if !inputs.is_empty() {
-        text.push_str(&format!("inputs = {{ {} }}\n", inputs.join(", ")));
+    let sections = [("parameters", params), ("inputs", inputs)].into_iter().filter(|(_, values)| !values.is_empty());
+    let lines: Vec<_> =
+        sections.map(|(name, values)| (name, values, format!("{name} = {{ {} }}\n", values.join(", ")))).collect();
+    // What stands behind the head of a table belongs to it, so that either all are lines or none.
+    let fits = lines.iter().all(|(.., line)| line.chars().count() <= LONGEST_LINE);
+    for (name, values, line) in lines {
+        match fits {
+            true => text.push_str(&line),
+            false => text.push_str(&format!("\n[element.{name}]\n{}\n", values.join("\n"))),
+        }
     }
     text
 }

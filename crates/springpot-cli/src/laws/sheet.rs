@@ -261,3 +261,55 @@ fn json(row: &Entry, found: &Identified, items: &[Item]) -> String {
     let value = json!({ "law": row.name, "parameters": params, "deviation": found.deviation(&data), "check": check });
     format!("{value:#}\n")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Words of the grammar and what may be written in their place.
+    const WORDS: [&str; 20] = [
+        "tan_delta = 0.3",
+        "stiffness = 3 kN/m",
+        "storage=",
+        "loss: 2",
+        "damping = 4 N*s/m",
+        " at 3 Hz",
+        " at 50 rad/s",
+        " at ",
+        ",",
+        ", ",
+        "; ",
+        "=",
+        "0",
+        "-1",
+        "1e400",
+        "kN/m",
+        "rest",
+        "µ",
+        "\u{0}",
+        "(",
+    ];
+
+    #[test]
+    fn no_text_breaks_the_reader() {
+        let catalog = Catalog::standard();
+        let (mut state, mut read) = (1_u64, 0);
+        for _ in 0..30_000 {
+            let mut data = String::new();
+            for _ in 0..state >> 33 & 15 {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                data.push_str(WORDS[(state >> 33) as usize % WORDS.len()]);
+            }
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            match text(&catalog, &data, None, false) {
+                Ok(page) => {
+                    read += 1;
+                    assert!(page.contains("[[element]]") && !page.contains("NaN"), "{data}: {page}");
+                }
+                Err(Refused { at: Some(at), .. }) => assert!(data.get(at.clone()).is_some(), "{data:?} {at:?}"),
+                Err(Refused { message, .. }) => assert!(!message.is_empty()),
+            }
+        }
+        assert!(read > 200, "{read}");
+    }
+}

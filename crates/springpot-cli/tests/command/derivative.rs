@@ -184,7 +184,7 @@ fn mistakes_name_the_line() {
         ("", "x.csv: the file is empty"),
         ("t,x\n", "x.csv: 0 rows of numbers"),
         ("t,x\n0,1\n", "x.csv: 1 rows of numbers"),
-        ("t,x\n0,1\n1,2\n", "x.csv: "), // needs at least 3 rows
+        ("t,x\n0,1\n1,2\n", "x.csv: 2 rows of numbers; at least three are needed"),
         ("0,1\n1,2\n", "x.csv: the first row must name the columns"),
         ("t;x\n0;1\n", "x.csv: columns must be separated by commas"),
         ("t,y\n0,1\n", "x.csv: no column `x`"),

@@ -26,7 +26,13 @@ fn pages_are_printed_or_written() {
     assert!(COMMANDS.iter().all(|command| files.contains(&format!("springpot-{command}.1"))), "{files:?}");
     assert!(files.contains(&"springpot.1".to_owned()) && !files.iter().any(|file| file.contains("help")), "{files:?}");
     let run = place.read("man/springpot-run.1");
-    assert!(run.contains("checkpoint\\-every") && run.contains("Examples:"), "{run}");
+    assert!(run.contains("checkpoint\\-every") && run.contains(".SH EXAMPLES\n.nf\nspringpot run scenarios/"), "{run}");
+    assert!(run.contains(".fi\n.SH NOTES\nWrites results.csv"), "{run}");
+    // Every page has its examples as lines of their own.
+    for file in files {
+        let page = place.read(format!("man/{file}"));
+        assert!(page.contains(".SH EXAMPLES\n.nf\nspringpot ") && !page.contains("EXTRA"), "{file}: {page}");
+    }
     place.write("file", "");
     let failed = place.springpot(&["man", "--out", "file/man"]);
     assert!(failed.code == Some(1) && failed.stderr.contains("cannot be written"), "{}", failed.stderr);

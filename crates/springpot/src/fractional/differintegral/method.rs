@@ -44,7 +44,7 @@ impl Method {
     /// Fewest rows the method can work on at this order.
     pub fn min_rows(self, order: f64) -> usize {
         match self {
-            Self::Spline | Self::Hermite | Self::Exponential => 3,
+            Self::Spline | Self::Hermite | Self::Exponential => 2,
             Self::Scheme(scheme) => scheme.min_rows(order),
         }
     }
