@@ -2,6 +2,7 @@
 
 mod exactness;
 mod expansion;
+mod limits;
 mod orders;
 mod refusals;
 mod support;

@@ -1,11 +1,10 @@
 //! Measured orders of convergence of the grid schemes against independent reference values and closed forms.
 
-use crate::support::{derivative_of_sine, file, number, references};
+use crate::support::{KINDS, derivative, derivative_of_sine, file, number, references};
 use springpot::fractional::Kind;
 use springpot::fractional::gamma::{gamma, reciprocal_gamma};
-use springpot::fractional::scheme::{Samples, Scheme};
+use springpot::fractional::scheme::Scheme;
 
-const KINDS: [Kind; 2] = [Kind::Caputo, Kind::RiemannLiouville];
 const ALPHAS: [f64; 3] = [0.1, 0.5, 0.9];
 
 type Function = (&'static str, fn(f64) -> f64, usize);
@@ -23,10 +22,6 @@ fn grid_schemes() -> Vec<(Scheme, usize)> {
     let low = [Scheme::GrunwaldLetnikov, Scheme::L1, Scheme::L12, Scheme::Fbdf(1), Scheme::Fbdf(2), Scheme::Fbdf(3)];
     let high = [(Scheme::Fbdf(4), 80), (Scheme::Fbdf(5), 48), (Scheme::Fbdf(6), 40)];
     low.map(|scheme| (scheme, 320)).into_iter().chain(high).collect()
-}
-
-fn derivative(scheme: Scheme, t: &[f64], x: &[f64], alpha: f64, kind: Kind) -> Vec<f64> {
-    scheme.differentiate(&Samples { t, x, rate: None }, alpha, kind).unwrap()
 }
 
 fn uniform(end: f64, steps: usize) -> Vec<f64> {
