@@ -1,4 +1,5 @@
-//! The past of y = x⁽ᵐ⁾ as exponentials: I^beta y at the end of a piece is its own exact share and Σ_k w_k e^{−λ_k h} z_k.
+//! The past of y = x⁽ᵐ⁾ as exponentials: I^beta y at the end of a piece is its own exact share and Σ_k w_k e^{−λ_k h}
+//! z_k.
 
 use super::order::Order;
 use crate::fractional::kernel::{Kernel, KernelError};
@@ -37,7 +38,8 @@ impl Past {
         Ok(Self { kernel, z, last: (0.0, Vec::new()), table: Table::default() })
     }
 
-    /// Σ_k w_k e^{−λ_k h} z_k at the end of a piece, which it then takes into the past; `slack` is the rounding of its width.
+    /// Σ_k w_k e^{−λ_k h} z_k at the end of a piece, which it then takes into the past; `slack` is the rounding of its
+    /// width.
     pub(super) fn advance(&mut self, width: f64, y: &[f64], slack: f64) -> f64 {
         self.extend(width);
         self.table.set(&self.kernel, width, y.len(), slack);
@@ -109,8 +111,8 @@ impl Table {
 
 /// ψ_p(X) = ∫₀¹ e^{−X(1−θ)} θ^p dθ for X ≥ 0 and p = 0 … psi.len() − 1.
 ///
-/// ψ_p = (1 − pψ_{p−1})/X upwards while p ≤ X, ψ_{p−1} = (1 − Xψ_p)/p downwards from the series of the last one while p > X:
-/// no step enlarges an error.
+/// ψ_p = (1 − pψ_{p−1})/X upwards while p ≤ X, ψ_{p−1} = (1 − Xψ_p)/p downwards from the series of the last one while p
+/// > X: no step enlarges an error.
 pub(super) fn exponential_moments(x: f64, psi: &mut [f64]) {
     let Some(last) = psi.len().checked_sub(1) else { return };
     // First p that comes from above.
