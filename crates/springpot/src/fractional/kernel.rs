@@ -2,10 +2,10 @@
 //!
 //! # Why exponentials
 //!
-//! D^alpha x(t) = ∫₀ᵗ k(t−s) x'(s) ds with k(t) = t^−alpha/Γ(1−alpha) asks for the whole past at every time. An exponential does
-//! not: ∫₀ᵗ e^{−λ(t−s)} x'(s) ds at t + h is e^{−λh} times what it was at t, and the share of the last step. So with
-//! k(t) ≈ Σ_k w_k e^{−λ_k t} the past is one number for each k. Power laws need few: 36 exponentials hold six decades of t to
-//! 1e-8.
+//! D^alpha x(t) = ∫₀ᵗ k(t−s) x'(s) ds with k(t) = t^−alpha/Γ(1−alpha) asks for the whole past at every time. An
+//! exponential does not: ∫₀ᵗ e^{−λ(t−s)} x'(s) ds at t + h is e^{−λh} times what it was at t, and the share of the last
+//! step. So with k(t) ≈ Σ_k w_k e^{−λ_k t} the past is one number for each k. Power laws need few: 36 exponentials hold
+//! six decades of t to 1e-8.
 //!
 //! ```
 //! use springpot::fractional::{Kernel, gamma::gamma};
@@ -21,15 +21,15 @@
 //!
 //! # How they are found
 //!
-//! With λ = e^y, t^−alpha/Γ(1−alpha) = (sin πα/π) ∫ e^{αy} exp(−e^y t) dy. The trapezoidal rule in y with step `eta` errs by
-//! 2|Γ(α + 2πi/eta)|/Γ(α), relative and uniformly in t (Poisson summation). The fast end is cut where the incomplete gamma
-//! function says that nothing is lost for t ≥ delta; the slow end, a geometric measure, is replaced by its own Gauss rule.
-//! The number of modes grows like ln(horizon/delta)·ln(1/tolerance)/π².
+//! With λ = e^y, t^−alpha/Γ(1−alpha) = (sin πα/π) ∫ e^{αy} exp(−e^y t) dy. The trapezoidal rule in y with step `eta`
+//! errs by 2|Γ(α + 2πi/eta)|/Γ(α), relative and uniformly in t (Poisson summation). The fast end is cut where the
+//! incomplete gamma function says that nothing is lost for t ≥ delta; the slow end, a geometric measure, is replaced by
+//! its own Gauss rule. The number of modes grows like ln(horizon/delta)·ln(1/tolerance)/π².
 //!
 //! # What they mean
 //!
-//! Every weight is positive, so that each term is a Maxwell branch, a spring w_k in series with a dashpot w_k/λ_k, and the whole is
-//! passive: what the sum misses of the kernel can never make energy.
+//! Every weight is positive, so that each term is a Maxwell branch, a spring w_k in series with a dashpot w_k/λ_k, and
+//! the whole is passive: what the sum misses of the kernel can never make energy.
 
 use super::gamma::{gamma, ln_abs_gamma, ln_gamma, upper_gamma_ratio, upper_gamma_ratio_inverse};
 use super::gauss::gauss_rules;

@@ -1,12 +1,13 @@
 //! The memory of one fractional derivative in a time loop: what is kept of the past, and how a step adds to it.
 //!
 //! Within the current step the kernel is exact (see [`super::step`]); only the past goes through the exponentials of
-//! [`Kernel`], one lag z_k = ∫₀ᵗ e^{−λ_k(t−s)} x'(s) ds for each. Asking is pure; [`Memory::commit`] is the only mutation.
+//! [`Kernel`], one lag z_k = ∫₀ᵗ e^{−λ_k(t−s)} x'(s) ds for each. Asking is pure; [`Memory::commit`] is the only
+//! mutation.
 //!
-//! A step from t_n to t_n + h has nodes c_1 … c_s. [`Memory::respond`] gives D^alpha x there as an affine map of what the step
-//! does not know yet, D_i = Σ_j stroke_ij (x_j − x_0) + Σ_j rate_ij x'_j + history_i, so that an implicit method solves for it at the
-//! cost of an ordinary dashpot; the number of modes does not appear in its unknowns. Along a known motion the same map is
-//! evaluated:
+//! A step from t_n to t_n + h has nodes c_1 … c_s. [`Memory::respond`] gives D^alpha x there as an affine map of what
+//! the step does not know yet, D_i = Σ_j stroke_ij (x_j − x_0) + Σ_j rate_ij x'_j + history_i, so that an implicit
+//! method solves for it at the cost of an ordinary dashpot; the number of modes does not appear in its unknowns. Along
+//! a known motion the same map is evaluated:
 //!
 //! ```
 //! use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
@@ -27,8 +28,8 @@
 //! # Ok::<(), springpot::fractional::KernelError>(())
 //! ```
 //!
-//! There is no smallest step: where a lag shorter than the kernel's delta is asked for, faster modes are made for it from the
-//! last committed step alone. That is exact, since they have forgotten everything before it (λ·h > 100).
+//! There is no smallest step: where a lag shorter than the kernel's delta is asked for, faster modes are made for it
+//! from the last committed step alone. That is exact, since they have forgotten everything before it (λ·h > 100).
 //!
 //! For samples, streams and functions that are known, [`derivative`](super::derivative), [`Stream`](super::Stream) and
 //! [`Piecewise`](super::Piecewise) ask for less.

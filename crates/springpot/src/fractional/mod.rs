@@ -4,15 +4,15 @@
 //!
 //! D^a x(t) = I^{n−a} x⁽ⁿ⁾(t), I^b y(t) = 1/Γ(b) ∫₀ᵗ (t−s)^{b−1} y(s) ds (Caputo),
 //!
-//! and D^{−b} = I^b is the integral of order b. [`Definition`] says how Riemann–Liouville and Grünwald–Letnikov differ from it. All
-//! orders from −2 to 2 are here, for three kinds of x:
+//! and D^{−b} = I^b is the integral of order b. [`Definition`] says how Riemann–Liouville and Grünwald–Letnikov differ
+//! from it. All orders from −2 to 2 are here, for three kinds of x:
 //!
 //! | x is given as | use | error on smooth x |
 //! |---|---|---|
-//! | samples in an array | [`derivative`], [`derivative_with_error`] | h^{7−a} by [`Method::Spline`], h^{4−a} by [`Method::Hermite`] |
+//! | samples in an array | [`derivative`], [`derivative_with_error`] | h^{7−a}, or by [`Method`] |
 //! | samples that come one by one | [`Stream`], [`RatedStream`] with rates | h^{7−a}, h^{4−a} |
 //! | a function of time | [`Piecewise::of`], asked at any time | 1e-10 of the largest value, with an estimate |
-//! | samples with kinks and jumps at known times | [`Piecewise::spline`], [`Piecewise::then`] | h^{7−a} on either side |
+//! | samples with known kinks and jumps | [`Piecewise::spline`], [`Piecewise::then`] | h^{7−a} |
 //!
 //! # Samples
 //!
@@ -30,10 +30,10 @@
 //! # Ok::<(), springpot::fractional::DerivativeError>(())
 //! ```
 //!
-//! Which method? [`Method::Spline`] for anything smooth. [`Method::Hermite`] where rates were measured too. A kink costs every
-//! spline its order: cut the samples there ([`Piecewise::then`]), or take the broken line, [`scheme::Scheme::L1`]. Noise is
-//! amplified like h^−a by all of them; filter first. The schemes of the literature are there for comparison and for those who need
-//! one of them: see [`scheme`].
+//! Which method? [`Method::Spline`] for anything smooth. [`Method::Hermite`] where rates were measured too. A kink
+//! costs every spline its order: cut the samples there ([`Piecewise::then`]), or take the broken line,
+//! [`scheme::Scheme::L1`]. Noise is amplified like h^−a by all of them; filter first. The schemes of the literature are
+//! there for comparison and for those who need one of them: see [`scheme`].
 //!
 //! # Functions
 //!
@@ -51,11 +51,11 @@
 //!
 //! # How it works
 //!
-//! Every order is an integral of an order below 1 of a piecewise polynomial y, a derivative of x or its running integral.
-//! On equal steps the moments of (t−s)^{b−1} against the polynomials are exact, and the sum over the past is a convolution, done
-//! by FFT. On other steps, in streams and for functions, only the newest piece meets the exact kernel; the past goes through a
-//! [`kernel`] of exponentials, each with one number that is carried from step to step. [`Memory`] is the same mathematics for
-//! a time loop that asks for implicit answers: [`memory`] tells of it.
+//! Every order is an integral of an order below 1 of a piecewise polynomial y, a derivative of x or its running
+//! integral. On equal steps the moments of (t−s)^{b−1} against the polynomials are exact, and the sum over the past is
+//! a convolution, done by FFT. On other steps, in streams and for functions, only the newest piece meets the exact
+//! kernel; the past goes through a [`kernel`] of exponentials, each with one number that is carried from step to step.
+//! [`Memory`] is the same mathematics for a time loop that asks for implicit answers: [`memory`] tells of it.
 
 mod differintegral;
 pub mod gamma;

@@ -17,13 +17,14 @@ const FIRST_PIECES: usize = 8;
 const MOST_PIECES: usize = 10_000;
 
 impl Piecewise {
-    /// The function `f` on an interval, to a relative accuracy of `rtol` on every piece; 1e-15 for functions in closed form,
-    /// their own error for others.
+    /// The function `f` on an interval, to a relative accuracy of `rtol` on every piece; 1e-15 for functions in closed
+    /// form, their own error for others.
     ///
-    /// Chebyshev interpolation of degree 16 on pieces that are halved until their last coefficients are below `rtol` times
-    /// the variation of f on the piece. Kinks, jumps and singularities like √t are closed in until they matter no more, at
-    /// the start down to 10⁻²⁴ of the interval; what is left of them is in the error of
-    /// [`Differintegral::at`](super::Differintegral::at). Where kinks and jumps are known, [`Self::then`] makes them exact.
+    /// Chebyshev interpolation of degree 16 on pieces that are halved until their last coefficients are below `rtol`
+    /// times the variation of f on the piece. Kinks, jumps and singularities like √t are closed in until they matter no
+    /// more, at the start down to 10⁻²⁴ of the interval; what is left of them is in the error of
+    /// [`Differintegral::at`](super::Differintegral::at). Where kinks and jumps are known, [`Self::then`] makes them
+    /// exact.
     ///
     /// ```
     /// use springpot::fractional::{Definition, Piecewise};

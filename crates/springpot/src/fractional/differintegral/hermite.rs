@@ -1,7 +1,7 @@
 //! Polynomials between two samples, from what is known at them.
 //!
-//! With θ = (t − t_j)/h the quintic is x₀ + Δ·S + h v₀·V₀ + h v₁·V₁ + h² w₀·W₀ + h² w₁·W₁, Δ = x₁ − x₀, v = x', w = x'' at both
-//! ends; the cubic has no w.
+//! With θ = (t − t_j)/h the quintic is x₀ + Δ·S + h v₀·V₀ + h v₁·V₁ + h² w₀·W₀ + h² w₁·W₁, Δ = x₁ − x₀, v = x', w = x''
+//! at both ends; the cubic has no w.
 
 /// Coefficients of θ^p, p = 0 … 5.
 pub(super) type Polynomial = [f64; 6];

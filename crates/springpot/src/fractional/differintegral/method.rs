@@ -10,8 +10,8 @@ use std::str::FromStr;
 /// Orders of convergence are those in the step for smooth x at 0 ≤ a ≤ 2; integrals gain until rounding ends it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Method {
-    /// `spline`: quintic Hermite spline, with x' and x'' of the samples from seven of them; the default. Order 7 − a, until
-    /// rounding takes over (in the limit 6 − a, by a term 10⁴ times smaller).
+    /// `spline`: quintic Hermite spline, with x' and x'' of the samples from seven of them; the default. Order 7 − a,
+    /// until rounding takes over (in the limit 6 − a, by a term 10⁴ times smaller).
     ///
     /// Exact for polynomials up to degree 5. Equal steps take exact moments of the kernel and O(N log N) by FFT, other
     /// steps exponentials.
@@ -21,8 +21,8 @@ pub enum Method {
     ///
     /// Exact for cubics. It follows noise and kinks over fewer samples than `spline`.
     Hermite,
-    /// `exponential`: the spline, its past through a sum of exponentials on any steps: O(log N) per sample, and the same
-    /// numbers as [`Stream`](super::Stream).
+    /// `exponential`: the spline, its past through a sum of exponentials on any steps: O(log N) per sample, and the
+    /// same numbers as [`Stream`](super::Stream).
     Exponential,
     /// A scheme of the literature by its name.
     Scheme(Scheme),

@@ -53,8 +53,8 @@ impl Order {
             .collect()
     }
 
-    /// Coefficients of y on a piece of width h from those of x; `running` holds ∫x and ∫∫x up to its start and is moved on
-    /// to its end.
+    /// Coefficients of y on a piece of width h from those of x; `running` holds ∫x and ∫∫x up to its start and is moved
+    /// on to its end.
     pub(super) fn lower(&self, h: f64, x: &[f64], running: &mut [f64; 2], y: &mut Vec<f64>) {
         y.clear();
         match self.whole {

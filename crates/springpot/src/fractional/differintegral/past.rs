@@ -1,4 +1,5 @@
-//! The past of y = x⁽ᵐ⁾ as exponentials: I^beta y at the end of a piece is its own exact share and Σ_k w_k e^{−λ_k h} z_k.
+//! The past of y = x⁽ᵐ⁾ as exponentials: I^beta y at the end of a piece is its own exact share and Σ_k w_k e^{−λ_k h}
+//! z_k.
 
 use super::order::Order;
 use crate::fractional::kernel::{Kernel, KernelError};
@@ -6,8 +7,9 @@ use crate::fractional::kernel::{Kernel, KernelError};
 /// Relative error of the kernel t^{beta−1}/Γ(beta) as a sum of exponentials.
 pub(super) const KERNEL_TOLERANCE: f64 = 1e-12;
 
-/// Modes side by side.
+/// Modes side by side; what is missing to a whole block has weight 0.
 const LANES: usize = 8;
+type Block = [f64; LANES];
 
 /// Exponentials with their lags z_k = ∫ e^{−λ_k(t−s)} y(s) ds.
 #[derive(Debug, Clone)]
@@ -19,13 +21,13 @@ pub(super) struct Past {
     table: Table,
 }
 
-/// e^{−λh}, w e^{−λh} and h ψ_p(λh) of every mode for one width h.
+/// e^{−λh}, w e^{−λh} and h ψ_p(λh) of every mode for one width h; the moments of a block stand together.
 #[derive(Debug, Clone, Default)]
 struct Table {
     width: f64,
-    decay: Vec<f64>,
-    weighted: Vec<f64>,
-    moments: Vec<Vec<f64>>,
+    decay: Vec<Block>,
+    weighted: Vec<Block>,
+    moments: Vec<Block>,
 }
 
 impl Past {
@@ -37,23 +39,27 @@ impl Past {
         Ok(Self { kernel, z, last: (0.0, Vec::new()), table: Table::default() })
     }
 
-    /// Σ_k w_k e^{−λ_k h} z_k at the end of a piece, which it then takes into the past; `slack` is the rounding of its width.
+    /// Σ_k w_k e^{−λ_k h} z_k at the end of a piece, which it then takes into the past; `slack` is the rounding of its
+    /// width.
     pub(super) fn advance(&mut self, width: f64, y: &[f64], slack: f64) -> f64 {
         self.extend(width);
         self.table.set(&self.kernel, width, y.len(), slack);
         let Table { decay, weighted, moments, .. } = &self.table;
+        self.z.resize(LANES * decay.len(), 0.0);
         let mut sums = [0.0; LANES];
-        let z = self.z.chunks_mut(LANES).zip(decay.chunks(LANES)).zip(weighted.chunks(LANES));
-        for ((z, decay), weighted) in z {
-            for (((z, decay), weighted), sum) in z.iter_mut().zip(decay).zip(weighted).zip(&mut sums) {
-                *sum += weighted * *z;
-                *z *= decay;
+        let blocks = self.z.as_chunks_mut().0.iter_mut().zip(decay).zip(weighted).zip(moments.chunks(y.len()));
+        for (((z, decay), weighted), moments) in blocks {
+            let mut next = [0.0; LANES];
+            for l in 0..LANES {
+                sums[l] += weighted[l] * z[l];
+                next[l] = decay[l] * z[l];
             }
-        }
-        for (c, moments) in y.iter().zip(moments) {
-            for (z, moment) in self.z.iter_mut().zip(moments) {
-                *z += c * moment;
+            for (c, moment) in y.iter().zip(moments) {
+                for l in 0..LANES {
+                    next[l] += c * moment[l];
+                }
             }
+            *z = next;
         }
         self.last.0 = width;
         self.last.1.clear();
@@ -77,6 +83,7 @@ impl Past {
                 width * psi.iter().zip(y).map(|(psi, c)| psi * c).sum::<f64>()
             })
             .collect();
+        self.z.truncate(self.kernel.modes());
         self.z.splice(0..0, lags);
         self.kernel.lambda.splice(0..0, front.iter().map(|(lambda, _)| *lambda));
         self.kernel.weight.splice(0..0, front.iter().map(|(_, weight)| *weight));
@@ -86,22 +93,25 @@ impl Past {
 }
 
 impl Table {
-    fn set(&mut self, kernel: &Kernel, width: f64, moments: usize, slack: f64) {
-        if (width - self.width).abs() <= slack + 1e-12 * width && self.moments.len() == moments {
+    fn set(&mut self, kernel: &Kernel, width: f64, count: usize, slack: f64) {
+        let blocks = kernel.modes().div_ceil(LANES);
+        if (width - self.width).abs() <= slack + 1e-12 * width && self.moments.len() == blocks * count {
             return;
         }
         self.width = width;
-        self.decay.clear();
-        self.decay.extend(kernel.lambda.iter().map(|l| (-l * width).exp()));
-        self.weighted.clear();
-        self.weighted.extend(self.decay.iter().zip(&kernel.weight).map(|(decay, weight)| decay * weight));
-        self.moments.resize(moments, Vec::new());
-        self.moments.iter_mut().for_each(|column| column.resize(kernel.modes(), 0.0));
-        let mut psi = vec![0.0; moments];
-        for (k, lambda) in kernel.lambda.iter().enumerate() {
+        for (column, length) in [(&mut self.decay, 1), (&mut self.weighted, 1), (&mut self.moments, count)] {
+            column.clear();
+            column.resize(blocks * length, [0.0; LANES]);
+        }
+        let mut psi = vec![0.0; count];
+        for (k, (lambda, weight)) in kernel.lambda.iter().zip(&kernel.weight).enumerate() {
+            let (block, lane) = (k / LANES, k % LANES);
+            let decay = (-lambda * width).exp();
+            self.decay[block][lane] = decay;
+            self.weighted[block][lane] = weight * decay;
             exponential_moments(lambda * width, &mut psi);
-            for (column, psi) in self.moments.iter_mut().zip(&psi) {
-                column[k] = width * psi;
+            for (moments, psi) in self.moments[block * count..].iter_mut().zip(&psi) {
+                moments[lane] = width * psi;
             }
         }
     }
@@ -109,8 +119,8 @@ impl Table {
 
 /// ψ_p(X) = ∫₀¹ e^{−X(1−θ)} θ^p dθ for X ≥ 0 and p = 0 … psi.len() − 1.
 ///
-/// ψ_p = (1 − pψ_{p−1})/X upwards while p ≤ X, ψ_{p−1} = (1 − Xψ_p)/p downwards from the series of the last one while p > X:
-/// no step enlarges an error.
+/// ψ_p = (1 − pψ_{p−1})/X upwards while p ≤ X, ψ_{p−1} = (1 − Xψ_p)/p downwards from the series of the last one while p
+/// > X: no step enlarges an error.
 pub(super) fn exponential_moments(x: f64, psi: &mut [f64]) {
     let Some(last) = psi.len().checked_sub(1) else { return };
     // First p that comes from above.

@@ -10,8 +10,8 @@ use crate::fractional::scheme::{Samples, Scheme, SchemeError};
 
 /// A function of time made of polynomials, from samples or from a closure.
 ///
-/// It lives on [start, end], and start is the lower terminal of its derivatives. A kink or a jump is where one function ends and
-/// the [next](Self::then) begins; there D^a is exact, and so it is for polynomials up to degree 5.
+/// It lives on [start, end], and start is the lower terminal of its derivatives. A kink or a jump is where one function
+/// ends and the [next](Self::then) begins; there D^a is exact, and so it is for polynomials up to degree 5.
 ///
 /// ```
 /// use springpot::fractional::{Definition, Piecewise};
@@ -63,7 +63,8 @@ pub struct Estimate {
 }
 
 impl Piecewise {
-    /// The quintic Hermite spline through samples, as [`Method::Spline`](super::Method::Spline); `t` may start anywhere.
+    /// The quintic Hermite spline through samples, as [`Method::Spline`](super::Method::Spline); `t` may start
+    /// anywhere.
     ///
     /// # Errors
     /// `Samples`: fewer than two, unequal lengths, numbers that are not finite, times that do not increase.
@@ -292,8 +293,8 @@ impl Differintegral {
         self.piece(&mut sum, &span.y, span.width, theta, 1.0);
         let mut missed = span.missed * tau.powf(self.order.beta()) * self.factors[0];
         if tau < modes.shortest && place > 0 {
-            // Too near to the piece before for the exponentials: its share is that of its polynomial up to here less that of
-            // the same polynomial from its end on.
+            // Too near to the piece before for the exponentials: its share is that of its polynomial up to here less
+            // that of the same polynomial from its end on.
             let before = &self.spans[place - 1];
             let beyond = tau / before.width;
             self.piece(&mut sum, &before.y, before.width, 1.0 + beyond, 1.0);

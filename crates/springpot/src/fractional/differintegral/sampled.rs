@@ -10,13 +10,13 @@ use crate::fractional::scheme::{Samples, Scheme};
 
 /// D^a x at every sample for −2 ≤ a ≤ 2, lower terminal t = 0.
 ///
-/// `samples.t` starts at 0 and increases strictly, in s; the result has the unit of x per s^a. Rows at t = 0 where D^a x is
-/// infinite (Riemann–Liouville and Grünwald–Letnikov, 0 < a < 2 not an integer, x(0) ≠ 0, for a > 1 also x'(0) ≠ 0) are NaN;
-/// the test of x(0) is to the bit, that of x'(0) to the rounding of its differences. Values at order 1 and 2 are the
-/// method's x' and x''. Rates that come with the samples serve `hermite` and some schemes.
+/// `samples.t` starts at 0 and increases strictly, in s; the result has the unit of x per s^a. Rows at t = 0 where D^a
+/// x is infinite (Riemann–Liouville and Grünwald–Letnikov, 0 < a < 2 not an integer, x(0) ≠ 0, for a > 1 also x'(0) ≠
+/// 0) are NaN; the test of x(0) is to the bit, that of x'(0) to the rounding of its differences. Values at order 1 and
+/// 2 are the method's x' and x''. Rates that come with the samples serve `hermite` and some schemes.
 ///
-/// On equal steps (see [`Samples::uniform_prefix`]) this takes O(N log N) operations, on any others O(N log T/h), the latter
-/// with a kernel that errs by 1e-12.
+/// On equal steps (see [`Samples::uniform_prefix`]) this takes O(N log N) operations, on any others O(N log T/h), the
+/// latter with a kernel that errs by 1e-12.
 ///
 /// ```
 /// use springpot::fractional::{Definition, Method, derivative, scheme::Samples};
@@ -85,10 +85,10 @@ pub struct Estimated {
 
 /// As [`derivative`], with an estimate of the error in every row.
 ///
-/// The same is done with every second and with every fourth sample; the ratio r of the largest differences is the rate at
-/// which the method converges on this x, and the error is the difference to every second sample times r/(1 − r). So kinks and
-/// noise, on which every method converges slowly, show themselves: r is then near 1. It is an estimate, not a bound: what
-/// happens between samples is unknown to it. It costs three quarters more, and asks for nine rows.
+/// The same is done with every second and with every fourth sample; the ratio r of the largest differences is the rate
+/// at which the method converges on this x, and the error is the difference to every second sample times r/(1 − r). So
+/// kinks and noise, on which every method converges slowly, show themselves: r is then near 1. It is an estimate, not a
+/// bound: what happens between samples is unknown to it. It costs three quarters more, and asks for nine rows.
 ///
 /// # Errors
 /// As [`derivative`].

@@ -18,9 +18,9 @@ pub struct Row {
 
 /// D^a x for −2 ≤ a ≤ 2 of samples that come one by one, on any steps.
 ///
-/// The numbers are those of [`derivative`](super::derivative) with [`Method::Exponential`](super::Method::Exponential), up to
-/// the kernel's 1e-12. A row follows its sample after three more, since x' and x'' are taken from three samples on either side;
-/// [`Self::finish`] returns the last ones. [`RatedStream`] answers at once where rates are known.
+/// The numbers are those of [`derivative`](super::derivative) with [`Method::Exponential`](super::Method::Exponential),
+/// up to the kernel's 1e-12. A row follows its sample after three more, since x' and x'' are taken from three samples
+/// on either side; [`Self::finish`] returns the last ones. [`RatedStream`] answers at once where rates are known.
 ///
 /// ```
 /// use springpot::fractional::{Definition, Stream};
@@ -71,10 +71,12 @@ impl Stream {
         Ok(Self { spline, t, x, taken: 0, equal: Equal::new(QUINTIC_POINTS), rows: Vec::new() })
     }
 
-    /// Takes the next sample and returns the rows that are known by it: none for the first six, four then, one for each later.
+    /// Takes the next sample and returns the rows that are known by it: none for the first six, four then, one for each
+    /// later.
     ///
     /// # Errors
-    /// `NotFinite`, `OutOfOrder` and `Horizon`, after which the stream stands where it stood and may go on with a better sample;
+    /// `NotFinite`, `OutOfOrder` and `Horizon`, after which the stream stands where it stood and may go on with a
+    /// better sample;
     /// `Kernel`, after which it may not.
     pub fn push(&mut self, t: f64, x: f64) -> Result<&[Row], DerivativeError> {
         check(self.taken, self.t.last().copied(), &[("t", t), ("x", x)])?;
@@ -131,8 +133,8 @@ impl Stream {
 
 /// D^a x for −2 ≤ a ≤ 2 of samples that come with their rates, at once.
 ///
-/// The cubic Hermite spline through x and x': order 4 − a, as [`Method::Hermite`](super::Method::Hermite). At a = 2 the row
-/// t = 0 is NaN: x'' is not known before the second sample.
+/// The cubic Hermite spline through x and x': order 4 − a, as [`Method::Hermite`](super::Method::Hermite). At a = 2 the
+/// row t = 0 is NaN: x'' is not known before the second sample.
 ///
 /// ```
 /// use springpot::fractional::{Definition, RatedStream};

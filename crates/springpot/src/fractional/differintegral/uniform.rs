@@ -1,7 +1,7 @@
 //! Equal steps: D^a of a Hermite spline with exact moments of the kernel, as one convolution of each kind of data.
 //!
-//! Row n is the sum over the pieces j < n of 1/Γ(b) ∫₀¹ (k+1−θ)^{b−1} y_j(θ) dθ, k = n−1−j, in units of h^b, where y_j is a sum
-//! of shapes times Δ_j, h v_j, h v_{j+1}, … (see [`super::hermite`]).
+//! Row n is the sum over the pieces j < n of 1/Γ(b) ∫₀¹ (k+1−θ)^{b−1} y_j(θ) dθ, k = n−1−j, in units of h^b, where y_j
+//! is a sum of shapes times Δ_j, h v_j, h v_{j+1}, … (see [`super::hermite`]).
 
 use super::hermite::{Form, Polynomial, Shapes};
 use super::order::Order;
