@@ -33,7 +33,8 @@ Examples:
   springpot run arm.toml --checkpoint-every '10 s'
   springpot run --resume results/arm
 
-Writes results.csv (or .parquet, .npz), summary.csv, figures/ and run.json. A rerun replaces the last run's files and nothing else. \
+Writes results.csv (or .parquet, .npz), summary.csv, figures/ and run.json. \
+A rerun replaces the last run's files and nothing else. \
 Ctrl-C ends a run early; the rows so far are kept, all of them complete. With --checkpoint-every a run that was interrupted or \
 killed goes on with --resume, and its results are those of an uninterrupted run.")]
     Run(RunOptions),
@@ -103,8 +104,10 @@ Examples:
   springpot laws --from 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m'
   springpot laws kelvin-voigt --from 'stiffness = 2 kN/m, damping = 40 N*s/m'
 
---from reads NAME = VALUE [at FREQUENCY], ..., where NAME is tan_delta (or loss_factor), stiffness (dynamic, |k*|), storage, loss or \
-damping, and FREQUENCY is in Hz or rad/s, or 0 for a static value. Where a frequency is left out, it is the only other one that is \
+--from reads NAME = VALUE [at FREQUENCY], ..., where NAME is tan_delta (or loss_factor), \
+stiffness (dynamic, |k*|), storage, loss or \
+damping, and FREQUENCY is in Hz or rad/s, or 0 for a static value. \
+Where a frequency is left out, it is the only other one that is \
 given, else 0. Without NAME the law is the one that the data determine.
 
 Exit codes: 0 done, 2 no such law, or the data determine none.")]
@@ -117,7 +120,8 @@ Examples:
   springpot plot results/arm strut.force --x strut.stroke --out loop.svg
   springpot plot results/arm strut.force --unit strut.force=kN
 
-The cases of a first sweep make curves, those of others panels. Columns may be globs: * stands for any text, ? for one character.
+The cases of a first sweep make curves, those of others panels. \
+Columns may be globs: * stands for any text, ? for one character.
 
 Exit codes: 0 done, 1 the figure cannot be drawn or written, 2 the results, a column or a value is not there.")]
     Plot(PlotOptions),
@@ -127,7 +131,8 @@ Examples:
   springpot init
   springpot init panda.urdf --out panda_mount.toml
 
-Without a robot: an arm with one element, in scenario.toml. With one: its joints and an element between two of its links, in \
+Without a robot: an arm with one element, in scenario.toml. \
+With one: its joints and an element between two of its links, in \
 ROBOT.toml. A file that is there is never overwritten. What is written runs as it is.
 
 Exit codes: 0 done, 1 the file cannot be written, 2 it is there, or the robot was refused.")]
@@ -222,8 +227,8 @@ pub(crate) struct RunOptions {
     #[arg(long, value_name = "DIR", conflicts_with = "resume")]
     pub(crate) out: Option<PathBuf>,
     /// Format of the rows: csv, parquet or npz (NumPy)
-    #[arg(long, value_name = "FORMAT", value_parser = ["csv", "parquet", "npz"], default_value = "csv", hide_possible_values = true)]
-    #[arg(conflicts_with = "resume")]
+    #[arg(long, value_name = "FORMAT", value_parser = ["csv", "parquet", "npz"], default_value = "csv")]
+    #[arg(hide_possible_values = true, conflicts_with = "resume")]
     pub(crate) format: String,
     /// Keep the state of the run every so much simulated time, in s or with a unit
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]

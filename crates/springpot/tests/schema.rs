@@ -1,4 +1,5 @@
-//! The JSON schema of scenario files: it takes every file that is shown or shipped, and refuses what the reader refuses.
+//! The JSON schema of scenario files: it takes every file that is shown or shipped, and refuses what the reader
+//! refuses.
 
 use regex::Regex;
 use serde_json::{Map, Value, json};

@@ -92,7 +92,8 @@ impl Starter<'_> {
         best.map_or_else(any, |(_, strut)| strut)
     }
 
-    /// Links to begin at, with the joints from there to the other end: two joints apart first, moving links before the world.
+    /// Links to begin at, with the joints from there to the other end: two joints apart first, moving links before the
+    /// world.
     fn pairs(&self) -> Vec<(Parent, Vec<usize>)> {
         let parent = |joint: usize| self.model.parent_link(joint).checked_sub(1);
         let body = |link: Option<usize>| link.map_or(Parent::World, |joint| Parent::Body(self.model.joint_body(joint)));

@@ -11,13 +11,13 @@
 //! | [`Quantity::Loss`] | loss stiffness Im K | N/m |
 //! | [`Quantity::Damping`] | equivalent viscosity Im K/ω | N·s/m |
 //!
-//! A springpot has tan δ = tan(alpha·π/2) at every frequency, so that one loss factor and one stiffness are enough for it. Where two
-//! data make K known at one frequency, springpot and Kelvin–Voigt element follow in closed form, and with the static stiffness the
-//! fractional Kelvin–Voigt element too. Everything else is solved for the smallest sum of squares of relative deviations, which is 0
-//! where the data determine the law exactly.
+//! A springpot has tan δ = tan(alpha·π/2) at every frequency, so that one loss factor and one stiffness are enough for
+//! it. Where two data make K known at one frequency, springpot and Kelvin–Voigt element follow in closed form, and with
+//! the static stiffness the fractional Kelvin–Voigt element too. Everything else is solved for the smallest sum of
+//! squares of relative deviations, which is 0 where the data determine the law exactly.
 //!
-//! Source: R. L. Bagley, P. J. Torvik, *Fractional calculus — a different approach to the analysis of viscoelastically damped
-//! structures*, AIAA J. 21 (1983) 741–748.
+//! Source: R. L. Bagley, P. J. Torvik, *Fractional calculus — a different approach to the analysis of viscoelastically
+//! damped structures*, AIAA J. 21 (1983) 741–748.
 //!
 //! ```
 //! use springpot::law::datasheet::{Datum, Model, Quantity, identify};
@@ -32,6 +32,7 @@
 //! # Ok::<(), springpot::law::datasheet::DatasheetError>(())
 //! ```
 
+mod closed;
 mod fit;
 
 use std::f64::consts::FRAC_PI_2;
@@ -141,8 +142,9 @@ impl Model {
         }
     }
 
-    /// The law that data of this kind determine: no losses, a spring; two data, a springpot, or a Kelvin–Voigt element where one of
-    /// them is static; more, a fractional Kelvin–Voigt element, or a springpot where all of them are of one frequency.
+    /// The law that data of this kind determine: no losses, a spring; two data, a springpot, or a Kelvin–Voigt element
+    /// where one of them is static; more, a fractional Kelvin–Voigt element, or a springpot where all of them are of
+    /// one frequency.
     pub fn for_data(data: &[Datum]) -> Self {
         let losses = data.iter().any(|datum| datum.quantity.is_of_losses());
         let is_static = data.iter().any(|datum| datum.omega == 0.0);
@@ -300,8 +302,8 @@ fn sin_cos(order: f64) -> (f64, f64) {
     }
 }
 
-/// Finds the parameters of `model` from `data`: exactly where there are as many data as parameters, else with the smallest sum of
-/// squares of relative deviations.
+/// Finds the parameters of `model` from `data`: exactly where there are as many data as parameters, else with the
+/// smallest sum of squares of relative deviations.
 ///
 /// A [`Quantity::Damping`] at ω = 0 is the c of a dashpot.
 ///
@@ -316,7 +318,7 @@ pub fn identify(model: Model, data: &[Datum]) -> Result<Identified, DatasheetErr
     if data.iter().all(|datum| datum.quantity == Quantity::LossFactor) {
         return Err(DatasheetError::NoStiffness);
     }
-    let closed = if given == needed { closed_form(model, data) } else { None };
+    let closed = if given == needed { closed::form(model, data) } else { None };
     let found = match closed {
         Some(found) => found,
         None => fit::nearest(model, data).ok_or(DatasheetError::Undetermined { model })?,
@@ -346,53 +348,6 @@ fn check(model: Model, data: &[Datum]) -> Result<(), DatasheetError> {
         }
     }
     Ok(())
-}
-
-/// The law where K is known at one frequency, and beside it at most k.
-fn closed_form(model: Model, data: &[Datum]) -> Option<Identified> {
-    let (at_rest, moving): (Vec<&Datum>, Vec<&Datum>) = data.iter().partition(|datum| datum.omega == 0.0);
-    let k_known = match at_rest[..] {
-        [] => 0.0,
-        [one] if !one.quantity.is_of_losses() => one.value,
-        _ => return None,
-    };
-    let [first, second] = moving[..] else { return None };
-    if first.omega != second.omega {
-        return None;
-    }
-    let omega = first.omega;
-    let [re, im] = complex(first, second).or_else(|| complex(second, first))?;
-    let (stiffness, order) = match (model, at_rest.len()) {
-        (Model::Springpot, 0) => (0.0, im.atan2(re) / FRAC_PI_2),
-        (Model::KelvinVoigt, 0) => (re, 1.0),
-        (Model::FractionalKelvinVoigt, 1) => (k_known, im.atan2(re - k_known) / FRAC_PI_2),
-        _ => return None,
-    };
-    let rest = if model == Model::KelvinVoigt { im } else { (re - stiffness).hypot(im) };
-    // Beyond alpha = 1 the nearest admissible one is looked for, to say how far off it is.
-    (order <= 1.0).then(|| Identified { model, stiffness, coefficient: rest / omega.powf(order), order })
-}
-
-/// K from two quantities at one frequency; `None` where this pair in this order does not tell it.
-fn complex(first: &Datum, second: &Datum) -> Option<[f64; 2]> {
-    let in_stiffness = |datum: &Datum| match datum.quantity {
-        Quantity::Damping => (Quantity::Loss, datum.value * datum.omega),
-        quantity => (quantity, datum.value),
-    };
-    let ((first, a), (second, b)) = (in_stiffness(first), in_stiffness(second));
-    let leg = |hypotenuse: f64, leg: f64| {
-        let square = (hypotenuse - leg) * (hypotenuse + leg);
-        (square >= 0.0).then(|| square.sqrt())
-    };
-    match (first, second) {
-        (Quantity::LossFactor, Quantity::Stiffness) => Some([b / a.hypot(1.0), a * b / a.hypot(1.0)]),
-        (Quantity::LossFactor, Quantity::Storage) => Some([b, a * b]),
-        (Quantity::LossFactor, Quantity::Loss) => Some([b / a, b]),
-        (Quantity::Stiffness, Quantity::Storage) => leg(a, b).map(|im| [b, im]),
-        (Quantity::Stiffness, Quantity::Loss) => leg(a, b).map(|re| [re, b]),
-        (Quantity::Storage, Quantity::Loss) => Some([a, b]),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The JSON schema of scenario files, for editors that complete and check them.
 //!
-//! Keys come from the tables of the readers and laws from the catalog, so that the schema knows what the reader knows. It is
-//! weaker than the reader: units, names and physics are checked by `springpot check` alone.
+//! Keys come from the tables of the readers and laws from the catalog, so that the schema knows what the reader knows.
+//! It is weaker than the reader: units, names and physics are checked by `springpot check` alone.
 
 mod motion;
 mod parts;
@@ -15,8 +15,8 @@ use serde_json::{Map, Value, json};
 
 /// The schema (JSON Schema draft 7) of scenario files whose laws are those of `catalog`.
 ///
-/// It refuses keys that the reader does not know, values of another type, and, where nothing is swept, the absence of what is
-/// required; a sweep may bring what the file leaves out.
+/// It refuses keys that the reader does not know, values of another type, and, where nothing is swept, the absence of
+/// what is required; a sweep may bring what the file leaves out.
 ///
 /// ```
 /// use springpot::law::Catalog;

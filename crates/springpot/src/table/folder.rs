@@ -136,7 +136,8 @@ impl Folder {
         self.close_rows()
     }
 
-    /// Writes the rows, which are complete, in another format in place of results.csv; their first `swept` columns may hold texts.
+    /// Writes the rows, which are complete, in another format in place of results.csv; their first `swept` columns may
+    /// hold texts.
     ///
     /// # Errors
     /// The file system's; results.csv is there then.

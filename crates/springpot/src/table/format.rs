@@ -1,7 +1,8 @@
 //! Results in other formats than CSV, written from the rows when a run has ended.
 //!
-//! While a run goes on its rows stream to a CSV file, which can be read, cut and gone on with at any time. Numbers there are the
-//! shortest text that reads back to the same bits, so that what is made of it at the end has the same bits too.
+//! While a run goes on its rows stream to a CSV file, which can be read, cut and gone on with at any time. Numbers
+//! there are the shortest text that reads back to the same bits, so that what is made of it at the end has the same
+//! bits too.
 
 use super::{Column, npz, parquet};
 use csv::ByteRecord;

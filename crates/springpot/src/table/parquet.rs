@@ -1,7 +1,8 @@
 //! Apache Parquet, as much of it as a table of numbers needs: optional columns, plain values, no compression.
 //!
-//! Format: Apache Parquet 2.10, `parquet.thrift`, with data pages of version 1; the metadata in Thrift's compact protocol. Units and
-//! meanings of the columns stand under the key `springpot.columns` of the file's metadata, as in run.json.
+//! Format: Apache Parquet 2.10, `parquet.thrift`, with data pages of version 1; the metadata in Thrift's compact
+//! protocol. Units and meanings of the columns stand under the key `springpot.columns` of the file's metadata, as in
+//! run.json.
 
 use super::format::{Kind, Rows, number};
 use std::io::{self, Write};
