@@ -8,6 +8,8 @@ fn whoever_reads_may_stop() {
     let place = Place::new();
     let panda = testdata("multibody/panda.urdf");
     place.write("states.json", "{\"states\": [{\"q\": [0, 0], \"v\": [1, 1], \"a\": [0, 0], \"tau\": [0, 0]}]}");
+    let rows = (0..40_000).map(|k| format!("{k},{}\n", (0.001 * f64::from(k)).sin()));
+    place.write("motion.csv", format!("t,x\n{}", rows.collect::<String>()));
     for arguments in [
         &["--help"][..],
         &["--version"],
@@ -19,6 +21,9 @@ fn whoever_reads_may_stop() {
         &["info", &panda, "--json"],
         &["dynamics", "arm.toml", "--at", "0.1"],
         &["dynamics", "arm.toml", "--states", "states.json"],
+        &["derivative", "motion.csv", "--column", "x", "--order", "0.5"],
+        &["derivative", "motion.csv", "--column", "x", "--order", "0.5", "--scheme", "exponential"],
+        &["prony", "--order", "0.5", "--coefficient", "1", "--from", "1e-3", "--to", "10", "--format", "csv"],
         &["laws"],
         &["laws", "springpot"],
         &["laws", "--json"],
