@@ -333,7 +333,7 @@ pub(crate) struct DerivativeOptions {
     /// caputo, riemann-liouville or grunwald-letnikov
     #[arg(long, value_name = "KIND", default_value = "caputo")]
     pub(crate) kind: Definition,
-    /// spline, hermite, exponential, grunwald-letnikov, l1, l1-2, fbdf-1 to fbdf-6, expansion-2004(N), expansion-2008(N)
+    /// spline, hermite, exponential, grunwald-letnikov, grunwald-letnikov(N), l1, l1-2, fbdf-1 to fbdf-6, expansion-2004(N), expansion-2008(N)
     #[arg(long, value_name = "SCHEME", default_value = "spline")]
     pub(crate) scheme: Method,
     /// Add a column with an estimate of the error behind every derivative
@@ -423,7 +423,7 @@ mod tests {
         for c in line.chars().chain([' ']) {
             match c {
                 '\'' => quoted = !quoted,
-                '#' | '>' | '|' if !quoted && word.is_empty() => break,
+                '#' | '>' | '<' | '|' if !quoted && word.is_empty() => break,
                 ' ' if !quoted => words.extend(Some(std::mem::take(&mut word)).filter(|word| !word.is_empty())),
                 c => word.push(c),
             }

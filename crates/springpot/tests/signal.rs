@@ -518,7 +518,7 @@ mod tables {
             ("\n\nt,q1\n0,1\n\n1,2,3", "motion.csv:6: 3 cells"),
             ("t,q1\r\n0,1\r\n\r\n1,2,3\r\n", "motion.csv:4: 3 cells, but the header has 2"),
             ("t,q1\n0,1\n1,x\n", "motion.csv:3: `x` in column 2 (`q1`) is not a number"),
-            ("t,q1\n0,1\n1,\n", "motion.csv:3: `` in column 2 (`q1`) is not a number"),
+            ("t,q1\n0,1\n1,\n", "motion.csv:3: column 2 (`q1`) is empty"),
             ("t,q1\n0,NaN\n1,1\n", "motion.csv:2: `NaN` in column 2 (`q1`) is not a finite number"),
             ("t,q1\n0,1e999\n1,1\n", "`1e999` in column 2 (`q1`) is not a finite number"),
             ("t,q1\n0,1\ninf,1\n", "motion.csv:3: `inf` in column 1 (`t`) is not a finite number"),

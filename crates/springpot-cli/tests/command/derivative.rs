@@ -216,7 +216,10 @@ fn wrong_arguments() {
         (&["--column", "t", "--order", "1"], "`t` is the time"),
         (&["--column", "x", "--order", "1", "--time", "s"], "no column `s`"),
         (&["--column", "x", "--order", "1", "--kind", "capto"], "caputo, riemann-liouville and grunwald-letnikov"),
-        (&["--column", "x", "--order", "1", "--scheme", "l7"], "spline, hermite, exponential, grunwald-letnikov, l1"),
+        (
+            &["--column", "x", "--order", "1", "--scheme", "l7"],
+            "spline, hermite, exponential, grunwald-letnikov, grunwald-letnikov(N), l1",
+        ),
         (&["--column", "x", "--order", "1", "--scheme", "exponential", "--error"], "estimated from all rows at once"),
         (&["--order", "1"], "--column <NAME>"),
     ] {

@@ -110,7 +110,10 @@ fn names() {
         assert_eq!(serde_json::to_string(&definition).unwrap(), format!("\"{definition}\""));
     }
     let error = "splin".parse::<Method>().unwrap_err().to_string();
-    assert!(error.contains("\"splin\"") && error.contains("spline, hermite, exponential, grunwald-letnikov, l1"));
+    assert!(
+        error.contains("\"splin\"")
+            && error.contains("spline, hermite, exponential, grunwald-letnikov, grunwald-letnikov(N), l1")
+    );
     assert!("fbdf-9".parse::<Method>().unwrap_err().to_string().contains("1 to 6"));
     assert!("rl".parse::<Definition>().unwrap_err().to_string().contains("riemann-liouville"));
 }

@@ -46,12 +46,13 @@ fn few_samples_come_at_the_end() {
         for (t, x) in t.iter().zip(&x) {
             assert!(stream.push(*t, *x).unwrap().is_empty());
         }
-        let values: Vec<f64> = stream.finish().unwrap().iter().map(|row| row.value).collect();
+        let finished = stream.finish();
         if count == 1 {
-            assert!(values.is_empty());
-        } else {
-            assert!(distance(&values, &of(&t, &x, 0.5, Definition::Caputo, Method::Exponential)) < 1e-11, "{count}");
+            assert!(matches!(finished, Err(DerivativeError::TooShort { needed: 2, found: 1, .. })));
+            continue;
         }
+        let values: Vec<f64> = finished.unwrap().iter().map(|row| row.value).collect();
+        assert!(distance(&values, &of(&t, &x, 0.5, Definition::Caputo, Method::Exponential)) < 1e-11, "{count}");
     }
 }
 
