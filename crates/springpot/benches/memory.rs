@@ -3,7 +3,8 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use springpot::fractional::scheme::Samples;
 use springpot::fractional::{
-    Definition, Form, Kind, Memory, Method, Nodes, RatePolynomial, StepStart, derivative, step::RADAU_NODES,
+    Definition, Form, Kind, Memory, Method, Nodes, RatePolynomial, RatedStream, StepStart, derivative,
+    step::RADAU_NODES,
 };
 use std::hint::black_box;
 
@@ -36,6 +37,16 @@ fn samples(criterion: &mut Criterion) {
             });
         }
     }
+    let (count, h) = (1_000_000, 10.0 / 999_999.0);
+    let rated: Vec<[f64; 3]> = (0..count).map(|n| n as f64 * h).map(|t| [t, signal(t), rate(t)]).collect();
+    let stream = || RatedStream::until(10.0, 0.5, Definition::Caputo).unwrap().with_tolerance(1e-8);
+    let pass = |mut stream: RatedStream| -> f64 {
+        rated.iter().map(|[t, x, rate]| stream.push(*t, *x, *rate).unwrap()).last().unwrap()
+    };
+    let error = (pass(stream()) + 1.189_941_531_700_918).abs();
+    assert!(error <= 1e-8, "stream: error {error:e}");
+    println!("stream with rates, {count} samples, kernel 1e-8: error at t = 10 s {error:.1e}");
+    group.bench_function("stream with rates/1000000", |b| b.iter(|| pass(stream())));
     group.finish();
 }
 

@@ -12,6 +12,7 @@ pub(super) struct Along {
     form: Form,
     start: Start,
     last: Node,
+    tolerance: f64,
     march: Option<March>,
 }
 
@@ -48,8 +49,8 @@ impl Start {
 }
 
 impl Along {
-    pub(super) fn new(order: Order, form: Form, start: Start, node: Node) -> Self {
-        Self { order, form, start, last: node, march: None }
+    pub(super) fn new(order: Order, form: Form, start: Start, node: Node, tolerance: f64) -> Self {
+        Self { order, form, start, last: node, tolerance, march: None }
     }
 
     /// D^a x at the next node; the memory holds times up to `horizon`.
@@ -57,7 +58,7 @@ impl Along {
         let width = node.t - self.last.t;
         let march = match &mut self.march {
             Some(march) => march,
-            none => none.insert(March::new(self.order, width, horizon)?),
+            none => none.insert(March::new(self.order, width, horizon, self.tolerance)?),
         };
         let piece = self.form.between(&self.last, &node);
         let coefficients = if self.form == Form::Cubic { &piece[..4] } else { &piece[..] };

@@ -21,9 +21,9 @@ pub(super) struct March {
 }
 
 impl March {
-    /// For pieces from `shortest` on, up to `horizon`.
-    pub(super) fn new(order: Order, shortest: f64, horizon: f64) -> Result<Self, DerivativeError> {
-        let past = if order.is_integer() { None } else { Some(Past::new(&order, shortest, horizon)?) };
+    /// For pieces from `shortest` on, up to `horizon`, with a kernel that errs by `tolerance`.
+    pub(super) fn new(order: Order, shortest: f64, horizon: f64, tolerance: f64) -> Result<Self, DerivativeError> {
+        let past = if order.is_integer() { None } else { Some(Past::new(&order, shortest, horizon, tolerance)?) };
         let (factors, y) = (order.factors(MOST), Vec::with_capacity(MOST));
         Ok(Self { order, past, running: [0.0; 2], factors, y, scale: (0.0, 0.0) })
     }
@@ -32,10 +32,12 @@ impl March {
     pub(super) fn advance(&mut self, width: f64, x: &[f64], end: f64) -> f64 {
         self.order.lower(width, x, &mut self.running, &mut self.y);
         let Some(past) = &mut self.past else { return self.y.iter().sum() };
-        if self.scale.0 != width {
+        // Equal steps differ by the rounding of their times.
+        let slack = 4.0 * f64::EPSILON * end;
+        if (width - self.scale.0).abs() > slack {
             self.scale = (width, width.powf(self.order.beta()));
         }
         let local: f64 = self.y.iter().zip(&self.factors).map(|(c, factor)| c * factor).sum();
-        self.scale.1 * local + past.advance(width, &self.y, 4.0 * f64::EPSILON * end)
+        self.scale.1 * local + past.advance(width, &self.y, slack)
     }
 }

@@ -59,7 +59,10 @@ impl Order {
         y.clear();
         match self.whole {
             0 => y.extend_from_slice(x),
-            1 => y.extend(x.iter().enumerate().skip(1).map(|(p, c)| p as f64 * c / h)),
+            1 => {
+                let per_width = 1.0 / h;
+                y.extend(x.iter().enumerate().skip(1).map(|(p, c)| p as f64 * c * per_width));
+            }
             2 => y.extend(x.iter().enumerate().skip(2).map(|(p, c)| (p * (p - 1)) as f64 * c / (h * h))),
             -1 => {
                 y.push(running[0]);

@@ -4,7 +4,7 @@
 use super::order::Order;
 use crate::fractional::kernel::{Kernel, KernelError};
 
-/// Relative error of the kernel t^{beta−1}/Γ(beta) as a sum of exponentials.
+/// Relative error of the kernel t^{beta−1}/Γ(beta) as a sum of exponentials, where nothing else is asked for.
 pub(super) const KERNEL_TOLERANCE: f64 = 1e-12;
 
 /// Modes side by side; what is missing to a whole block has weight 0.
@@ -31,10 +31,10 @@ struct Table {
 }
 
 impl Past {
-    /// For pieces from `shortest` on, up to `horizon`.
-    pub(super) fn new(order: &Order, shortest: f64, horizon: f64) -> Result<Self, KernelError> {
+    /// For pieces from `shortest` on, up to `horizon`, with a kernel that errs by `tolerance`.
+    pub(super) fn new(order: &Order, shortest: f64, horizon: f64, tolerance: f64) -> Result<Self, KernelError> {
         // A single piece has no past, but the kernel wants an interval.
-        let kernel = Kernel::new(order.alpha, KERNEL_TOLERANCE, shortest, horizon.max(2.0 * shortest))?;
+        let kernel = Kernel::new(order.alpha, tolerance, shortest, horizon.max(2.0 * shortest))?;
         let z = vec![0.0; kernel.modes()];
         Ok(Self { kernel, z, last: (0.0, Vec::new()), table: Table::default() })
     }
@@ -44,27 +44,18 @@ impl Past {
     pub(super) fn advance(&mut self, width: f64, y: &[f64], slack: f64) -> f64 {
         self.extend(width);
         self.table.set(&self.kernel, width, y.len(), slack);
-        let Table { decay, weighted, moments, .. } = &self.table;
-        self.z.resize(LANES * decay.len(), 0.0);
-        let mut sums = [0.0; LANES];
-        let blocks = self.z.as_chunks_mut().0.iter_mut().zip(decay).zip(weighted).zip(moments.chunks(y.len()));
-        for (((z, decay), weighted), moments) in blocks {
-            let mut next = [0.0; LANES];
-            for l in 0..LANES {
-                sums[l] += weighted[l] * z[l];
-                next[l] = decay[l] * z[l];
-            }
-            for (c, moment) in y.iter().zip(moments) {
-                for l in 0..LANES {
-                    next[l] += c * moment[l];
-                }
-            }
-            *z = next;
-        }
+        self.z.resize(LANES * self.table.decay.len(), 0.0);
+        let z = self.z.as_chunks_mut().0;
+        // The lengths of the splines at orders below 1 and −1, unrolled; any other in a loop.
+        let history = match y.len() {
+            3 => self.table.advance::<3>(z, y),
+            5 => self.table.advance::<5>(z, y),
+            count => self.table.advance_by(count, z, y),
+        };
         self.last.0 = width;
         self.last.1.clear();
         self.last.1.extend_from_slice(y);
-        sums.iter().sum()
+        history
     }
 
     /// Puts the faster modes that shorter pieces need in front: what they remember lies within the last piece.
@@ -93,6 +84,31 @@ impl Past {
 }
 
 impl Table {
+    fn advance<const COUNT: usize>(&self, z: &mut [Block], y: &[f64]) -> f64 {
+        self.advance_by(COUNT, z, &y[..COUNT])
+    }
+
+    /// Σ w e^{−λh} z, and z of the end of a piece with `count` coefficients.
+    #[inline(always)]
+    fn advance_by(&self, count: usize, z: &mut [Block], y: &[f64]) -> f64 {
+        let mut sums = [0.0; LANES];
+        let blocks = z.iter_mut().zip(&self.decay).zip(&self.weighted).zip(self.moments.chunks_exact(count));
+        for (((z, decay), weighted), moments) in blocks {
+            let mut next = [0.0; LANES];
+            for l in 0..LANES {
+                sums[l] += weighted[l] * z[l];
+                next[l] = decay[l] * z[l];
+            }
+            for p in 0..count {
+                for l in 0..LANES {
+                    next[l] += y[p] * moments[p][l];
+                }
+            }
+            *z = next;
+        }
+        sums.iter().sum()
+    }
+
     fn set(&mut self, kernel: &Kernel, width: f64, count: usize, slack: f64) {
         let blocks = kernel.modes().div_ceil(LANES);
         if (width - self.width).abs() <= slack + 1e-12 * width && self.moments.len() == blocks * count {

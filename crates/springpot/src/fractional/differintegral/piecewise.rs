@@ -335,7 +335,7 @@ impl Modes {
     fn new(order: &Order, spans: &[Span]) -> Result<Self, DerivativeError> {
         let shortest = spans.iter().map(|span| span.width).fold(f64::INFINITY, f64::min);
         let last = &spans[spans.len() - 1];
-        let mut past = Past::new(order, shortest, last.start + last.width)?;
+        let mut past = Past::new(order, shortest, last.start + last.width, KERNEL_TOLERANCE)?;
         let mut missed = past.clone();
         let lags = spans
             .iter()

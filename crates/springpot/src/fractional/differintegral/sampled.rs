@@ -3,6 +3,7 @@
 use super::along::{Along, Start};
 use super::hermite::{Form, Node};
 use super::order::Order;
+use super::past::KERNEL_TOLERANCE;
 use super::stencil::{Equal, first_point};
 use super::uniform::{self, Grid};
 use super::{Definition, DerivativeError, Method};
@@ -65,7 +66,7 @@ pub fn derivative(
             y
         }
         None => {
-            let mut along = Along::new(split, form, start, nodes.at(samples, 0));
+            let mut along = Along::new(split, form, start, nodes.at(samples, 0), KERNEL_TOLERANCE);
             let rest = (1..found).map(|row| along.row(nodes.at(samples, row), samples.t[found - 1]));
             std::iter::once(Ok(0.0)).chain(rest).collect::<Result<Vec<f64>, _>>()?
         }
