@@ -69,7 +69,7 @@ With --at: prints the equations of motion at that time term by term, with the fo
 
 Exit codes: 0 done, 1 some numbers are not finite or the motion does not come as far, 2 the input was refused.")]
     Dynamics(DynamicsOptions),
-    /// Differentiate columns of a CSV file to any order from -2 to 2; negative orders integrate.
+    /// Differentiate columns of a CSV file to any order from -2 to 2.
     #[command(after_help = "\
 Examples:
   springpot derivative motion.csv --column x --order 0.5
@@ -77,19 +77,19 @@ Examples:
   springpot derivative motion.csv --column x --order 1.5 --error --out bend.csv
   springpot derivative - --column force --order -0.5 --scheme exponential
 
-Writes the columns of the file, time first, then one called \"D^0.5 x\" for every column and order; rows where the derivative is \
+Negative orders integrate. Writes the columns of the file, time first, then one called \"D^0.5 x\" for every column and order; rows where the derivative is \
 infinite stay empty. The lower terminal is the first time. spline (smooth samples), hermite (follows kinks and noise over fewer \
 samples) and the names of the literature want all rows at once; exponential writes each row three rows later, and large files \
 take it in place of spline: the numbers are the same to 1e-12. l1 is exact for broken lines.")]
     Derivative(DerivativeOptions),
-    /// Turn a springpot into a Prony series with a verified error, for codes that know no fractional order.
+    /// Turn a springpot into springs and dampers with a verified error.
     #[command(after_help = "\
 Examples:
   springpot prony --order 0.5 --coefficient '50 N*s^alpha/m' --from 1e-3 --to 10
   springpot prony --order 0.5 --coefficient 50 --from 1e-3 --to 10 --format csv
   springpot prony --order 0.3 --coefficient 2e6 --band --from 0.1 --to 1e3
 
-The series G_e + sum of g_k exp(-t/tau_k) stands for the relaxation G(t) = G_e + c t^-alpha/Gamma(1 - alpha) between two times, or, \
+For codes that know no fractional order. The series G_e + sum of g_k exp(-t/tau_k) stands for the relaxation G(t) = G_e + c t^-alpha/Gamma(1 - alpha) between two times, or, \
 with --band, for the complex modulus G_e + c (i omega)^alpha between two frequencies. All g_k are positive: springs g_k, each in \
 series with a damper g_k tau_k. The error is verified after building. Numbers without a unit are SI (frequencies Hz).
 
