@@ -105,6 +105,7 @@ fn names() {
         let name = name.replace('N', "30");
         assert_eq!(name.parse::<Method>().unwrap().to_string(), name);
     }
+    assert_eq!("exact".parse::<Method>(), Ok(Method::Exponential));
     for definition in Definition::ALL {
         assert_eq!(definition.to_string().parse::<Definition>(), Ok(definition));
         assert_eq!(serde_json::to_string(&definition).unwrap(), format!("\"{definition}\""));

@@ -21,7 +21,7 @@ pub enum Method {
     ///
     /// Exact for cubics. It follows noise and kinks over fewer samples than `spline`.
     Hermite,
-    /// `exponential`: the spline, its past through a sum of exponentials on any steps: O(log N) per sample, and the
+    /// `exponential`, also called `exact` as in scenario files: the spline, its past through a sum of exponentials on any steps: O(log N) per sample, and the
     /// same numbers as [`Stream`](super::Stream).
     Exponential,
     /// A scheme of the literature by its name.
@@ -88,7 +88,7 @@ impl FromStr for Method {
         Ok(match name {
             "spline" => Self::Spline,
             "hermite" => Self::Hermite,
-            "exponential" => Self::Exponential,
+            "exponential" | "exact" => Self::Exponential,
             _ => Self::Scheme(name.parse().map_err(|error| match error {
                 SchemeNameError::Unknown(name) => MethodNameError::Unknown(name),
                 error => MethodNameError::Scheme(error),
