@@ -21,8 +21,8 @@ pub enum Method {
     ///
     /// Exact for cubics. It follows noise and kinks over fewer samples than `spline`.
     Hermite,
-    /// `exponential`, also called `exact` as in scenario files: the spline, its past through a sum of exponentials on any steps: O(log N) per sample, and the
-    /// same numbers as [`Stream`](super::Stream).
+    /// `exponential`, also called `exact` as in scenario files: the spline, its past through a sum of exponentials on any
+    /// steps: O(log N) per sample, and the same numbers as [`Stream`](super::Stream).
     Exponential,
     /// A scheme of the literature by its name.
     Scheme(Scheme),
