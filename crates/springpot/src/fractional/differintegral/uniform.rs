@@ -6,7 +6,7 @@
 use super::hermite::{Form, Polynomial, Shapes};
 use super::order::Order;
 use crate::fractional::gamma::reciprocal_gamma;
-use realfft::{FftError, RealFftPlanner};
+use crate::fractional::scheme::sum_of_convolutions;
 
 /// Samples of one kind of data: its value at the left and the right end of a piece has these shapes.
 struct Channel<'a> {
@@ -186,69 +186,21 @@ fn legendre(z: f64) -> (f64, f64) {
     (p, POINTS as f64 * (z * p - before) / (z * z - 1.0))
 }
 
-/// Σ over the channels of Σ_{i≤n} C_{n−i} u_i − R_n u_0 with C_i = R_i + L_{i−1}, by one FFT for each sequence.
+/// Σ over the channels of Σ_{i≤n} C_{n−i} u_i − R_n u_0 with C_i = R_i + L_{i−1}.
 fn convolved(channels: &[Channel], weights: &[Columns], rows: usize) -> Vec<f64> {
-    let ready: Vec<(&[f64], Vec<f64>)> = channels
-        .iter()
-        .zip(weights)
-        .map(|(channel, [left, right])| {
-            let kernel = (0..rows).map(|i| right[i] + if i > 0 { left[i - 1] } else { 0.0 }).collect();
-            (channel.data, kernel)
-        })
-        .collect();
-    // The transform refuses nothing but buffers of a wrong length, and these are its own.
-    let mut y = if rows <= DIRECT_ROWS { direct(&ready, rows) } else { by_fft(&ready, rows).unwrap_or_default() };
+    let kernel = |[left, right]: &Columns| -> Vec<f64> {
+        (0..rows).map(|i| right[i] + if i > 0 { left[i - 1] } else { 0.0 }).collect()
+    };
+    let kernels: Vec<Vec<f64>> = weights.iter().map(kernel).collect();
+    let pairs: Vec<(&[f64], &[f64])> =
+        kernels.iter().zip(channels).map(|(kernel, channel)| (&kernel[..], channel.data)).collect();
+    let mut y = sum_of_convolutions(&pairs, rows);
     for (channel, [_, right]) in channels.iter().zip(weights) {
         for (y, weight) in y.iter_mut().zip(right) {
             *y -= weight * channel.data[0];
         }
     }
     y
-}
-
-/// Below this number of rows the direct sum is quicker.
-const DIRECT_ROWS: usize = 64;
-
-fn direct(pairs: &[(&[f64], Vec<f64>)], rows: usize) -> Vec<f64> {
-    let row = |n: usize, (data, kernel): &(&[f64], Vec<f64>)| -> f64 {
-        data.iter().take(n + 1).enumerate().map(|(i, u)| kernel[n - i] * u).sum()
-    };
-    (0..rows).map(|n| pairs.iter().map(|pair| row(n, pair)).sum()).collect()
-}
-
-fn by_fft(pairs: &[(&[f64], Vec<f64>)], rows: usize) -> Result<Vec<f64>, FftError> {
-    let size = transform_length(2 * rows);
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
-    let mut real = forward.make_input_vec();
-    let mut scratch = forward.make_scratch_vec();
-    let mut transform = |values: &[f64]| {
-        real.fill(0.0);
-        real[..values.len()].copy_from_slice(values);
-        let mut spectrum = forward.make_output_vec();
-        forward.process_with_scratch(&mut real, &mut spectrum, &mut scratch).map(|()| spectrum)
-    };
-    let mut total = forward.make_output_vec();
-    for (data, kernel) in pairs {
-        let (data, kernel) = (transform(data)?, transform(kernel)?);
-        for ((sum, a), b) in total.iter_mut().zip(&data).zip(&kernel) {
-            *sum += a * b;
-        }
-    }
-    let mut y = inverse.make_output_vec();
-    inverse.process(&mut total, &mut y)?;
-    y.truncate(rows);
-    let scale = 1.0 / size as f64;
-    for y in &mut y {
-        *y *= scale;
-    }
-    Ok(y)
-}
-
-/// The least 2^k, 3·2^k or 5·2^k that is not below `least`.
-fn transform_length(least: usize) -> usize {
-    let power = |factor: usize| factor * least.div_ceil(factor).next_power_of_two();
-    power(2).min(power(6)).min(power(10))
 }
 
 #[cfg(test)]
@@ -275,14 +227,6 @@ mod tests {
                     assert!((ratio - 1.0).abs() < 1e-14, "b {exponent}, θ^{power}, k {k}");
                 }
             }
-        }
-    }
-
-    #[test]
-    fn a_transform_is_never_too_short() {
-        for least in [2, 128, 129, 200_000, 1_000_001] {
-            let size = transform_length(least);
-            assert!(size >= least && size.is_multiple_of(2) && size < 2 * least, "{least}: {size}");
         }
     }
 }

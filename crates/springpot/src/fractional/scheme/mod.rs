@@ -54,6 +54,7 @@ mod rates;
 mod samples;
 mod weights;
 
+pub(super) use convolution::sum_of_convolutions;
 pub use convolution::{causal_convolution, direct_convolution};
 pub use error::{SchemeError, SchemeNameError};
 pub use rates::differenced_rates;
