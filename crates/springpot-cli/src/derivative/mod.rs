@@ -67,7 +67,7 @@ impl Problem {
 pub(crate) fn derivative(options: &DerivativeOptions) -> Ending {
     let file = options.file.as_deref().filter(|file| *file != Path::new("-"));
     let name = file.map_or_else(|| "standard input".to_owned(), |file| file.display().to_string());
-    if file.is_none() && options.file.is_none() && io::stdin().is_terminal() {
+    if options.file.is_none() && io::stdin().is_terminal() {
         diagnostic::error_with_help("no file to read", "name a CSV file, or pipe one in".to_owned());
         return Ending::Refused;
     }

@@ -4,7 +4,7 @@ use super::sheet::{Layout, Sheet};
 use super::{FEWEST, Problem};
 use springpot::fractional::{DerivativeError, Stream};
 use springpot::signal::csv::CsvRows;
-use springpot::table::push_number;
+use springpot::table::push_fields;
 use std::collections::VecDeque;
 use std::io::{Read, Write};
 
@@ -97,10 +97,7 @@ impl<'a> Writer<'a> {
         for row in 0..self.known[0].len() {
             let text = self.waiting.pop_front().expect("a row for every value");
             cells.clear();
-            for values in &self.known {
-                cells.push(',');
-                push_number(&mut cells, values[row]);
-            }
+            push_fields(&mut cells, self.known.iter().map(|values| values[row]));
             cells.push('\n');
             self.output.write_all(&text)?;
             self.output.write_all(cells.as_bytes())?;

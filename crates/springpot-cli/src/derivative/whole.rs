@@ -4,7 +4,7 @@ use super::sheet::{Layout, Sheet};
 use super::{FEWEST, Problem};
 use springpot::fractional::scheme::{Samples, SchemeError};
 use springpot::fractional::{DerivativeError, Method, derivative, derivative_with_error};
-use springpot::table::push_number;
+use springpot::table::push_fields;
 use std::io::Write;
 
 pub(super) fn differentiate(
@@ -39,10 +39,7 @@ pub(super) fn differentiate(
     for row in 0..times.len() {
         output.write_all(sheet.row_text(row))?;
         text.clear();
-        for result in &results {
-            text.push(',');
-            push_number(&mut text, result[row]);
-        }
+        push_fields(&mut text, results.iter().map(|result| result[row]));
         text.push('\n');
         output.write_all(text.as_bytes())?;
     }

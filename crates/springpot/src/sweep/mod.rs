@@ -14,9 +14,9 @@ pub use limits::{CasesPassing, LimitTally};
 
 use crate::scenario::{Cases, Refusals};
 use crate::simulate::Stop;
+use crate::table::Column;
 use crate::table::folder::Folder;
 use crate::table::ordered::Ordered;
-use crate::table::{Column, push_number};
 use std::fs::File;
 use std::io::{self, Seek as _, SeekFrom, Write as _};
 use std::panic::resume_unwind;
@@ -325,13 +325,5 @@ fn push_field(line: &mut String, text: &str) {
         line.push('"');
     } else {
         line.push_str(text);
-    }
-}
-
-/// Appends numbers as fields, each with its comma in front.
-fn push_fields(line: &mut String, values: impl Iterator<Item = f64>) {
-    for value in values {
-        line.push(',');
-        push_number(line, value);
     }
 }

@@ -1,11 +1,11 @@
 //! What one case writes: rows, statistics, values for figures, and what it takes to go on.
 
 use super::checkpoint::{CaseFiles, CaseState, Written};
-use super::{Sweep, push_field, push_fields};
+use super::{Sweep, push_field};
 use crate::scenario::{Plan, SweptValue};
 use crate::simulate::{Checkpoint, LimitWatch, Rows, System};
 use crate::table::ordered::Section;
-use crate::table::{Statistics, push_number};
+use crate::table::{Statistics, push_fields, push_number};
 use std::fs::File;
 use std::io;
 use std::sync::atomic::Ordering;

@@ -16,7 +16,7 @@ pub mod statistics;
 
 #[cfg(feature = "scenario")]
 pub use format::Format;
-pub use number::push_number;
+pub use number::{push_fields, push_number};
 pub use statistics::Statistics;
 
 use serde::Serialize;

@@ -14,6 +14,14 @@ pub fn push_number(text: &mut String, value: f64) {
     written.expect("writing to a string cannot fail");
 }
 
+/// Appends numbers as fields, each with its comma in front.
+pub fn push_fields(line: &mut String, values: impl Iterator<Item = f64>) {
+    for value in values {
+        line.push(',');
+        push_number(line, value);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
