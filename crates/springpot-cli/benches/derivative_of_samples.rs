@@ -8,6 +8,9 @@
 //! largest one at 200 times, relative to the largest value; the exact values come from a closed form with an integral
 //! that is checked against the reference values of `testdata`. `-- --figure FILE.svg` (or .png) writes the figure.
 
+mod comparison;
+
+use comparison::{Timed, best, curve, median, save};
 use std::f64::consts::PI;
 use std::io::{BufRead, BufReader, Lines, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -16,7 +19,7 @@ use std::time::Instant;
 use springpot::fractional::gamma::gamma;
 use springpot::fractional::scheme::{Samples, Scheme};
 use springpot::fractional::{Definition, Method as Rule, derivative};
-use springpot_report::{Curve, Panel, Plot};
+use springpot_report::{Panel, Plot};
 
 const ALPHA: f64 = 0.5;
 /// Length of the record, s.
@@ -35,6 +38,16 @@ struct Point {
     steps: usize,
     seconds: f64,
     error: f64,
+}
+
+impl Timed for Point {
+    fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    fn error(&self) -> f64 {
+        self.error
+    }
 }
 
 struct Method {
@@ -85,11 +98,6 @@ fn error(values: impl Iterator<Item = f64>, exact: &[f64]) -> f64 {
     let largest = exact.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let errors = values.zip(exact).map(|(value, exact)| (value - exact).abs() / largest);
     errors.fold(0.0, |m, e| if e.is_nan() { f64::NAN } else { m.max(e) })
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// Repetitions that fit into the time for them.
@@ -263,26 +271,6 @@ fn compare(own: &[Method], rivals: &[Method], steps: usize) {
     }
 }
 
-/// The points that no other one beats in both time and error, fastest first.
-fn best(mut points: Vec<Point>) -> Vec<Point> {
-    points.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-    let mut kept: Vec<Point> = Vec::new();
-    for point in points {
-        if kept.last().is_none_or(|last| point.error < last.error) {
-            kept.push(point);
-        }
-    }
-    kept
-}
-
-fn curve(label: &str, points: &[Point]) -> Curve {
-    Curve {
-        label: label.into(),
-        x: points.iter().map(|p| (1e3 * p.seconds).log10()).collect(),
-        y: points.iter().map(|p| p.error.log10()).collect(),
-    }
-}
-
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
     let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|k| arguments.get(k + 1));
@@ -320,8 +308,6 @@ fn main() {
             legend_title: None,
             panels: vec![Panel { title: None, curves }],
         };
-        let figure = plot.render().expect("finite points");
-        let bytes = if file.ends_with(".png") { figure.png } else { figure.svg.into_bytes() };
-        std::fs::write(file, bytes).expect("the file can be written");
+        save(&plot, file);
     }
 }

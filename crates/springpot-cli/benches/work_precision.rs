@@ -5,6 +5,9 @@
 //! with SciPy is found; another interpreter by the variable PYTHON). Every setting of the printed grids is run; the best ones of
 //! each rival make its curve. `-- --figure FILE.svg` (or .png) writes the figure.
 
+mod comparison;
+
+use comparison::{Timed, best, curve, median, save};
 use std::hint::black_box;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
@@ -17,7 +20,7 @@ use springpot::motion::{Drive, Forward, Motion};
 use springpot::scenario::Scenario;
 use springpot::signal::Signal;
 use springpot::simulate::{RowTimes, Settings, Stop, System, forward};
-use springpot_report::{Curve, Panel, Plot};
+use springpot_report::{Panel, Plot};
 
 /// Length of the run, s.
 const END: f64 = 2.0;
@@ -32,6 +35,16 @@ const KERNELS: [(f64, f64); 4] = [(1e-5, 1e-3), (1e-7, 1e-4), (1e-8, 1e-5), (1e-
 struct Point {
     seconds: f64,
     error: f64,
+}
+
+impl Timed for Point {
+    fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    fn error(&self) -> f64 {
+        self.error
+    }
 }
 
 /// The arm of the shipped scenario at the order `alpha`, left to itself at q = 0.
@@ -65,11 +78,6 @@ fn springpot(system: &System, settings: &Settings, rtol: f64, repeats: usize) ->
         times.push(begun.elapsed().as_secs_f64());
     }
     (median(times), last)
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// Average acceleration with D^alpha x by L1 over the whole past: q and v at the end.
@@ -180,32 +188,12 @@ fn distance(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
 }
 
-/// The points that no other one beats in both time and error, fastest first.
-fn best(mut points: Vec<Point>) -> Vec<Point> {
-    points.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-    let mut kept: Vec<Point> = Vec::new();
-    for point in points {
-        if kept.last().is_none_or(|last| point.error < last.error) {
-            kept.push(point);
-        }
-    }
-    kept
-}
-
 /// The time to reach `error`, by interpolation between the best points.
 fn time_at(points: &[Point], error: f64) -> Option<f64> {
     points.windows(2).find(|w| w[0].error >= error && w[1].error <= error).map(|w| {
         let [a, b] = [w[0], w[1]].map(|p| (p.error.ln(), p.seconds.ln()));
         (a.1 + (b.1 - a.1) * (error.ln() - a.0) / (b.0 - a.0)).exp()
     })
-}
-
-fn curve(label: &str, points: &[Point]) -> Curve {
-    Curve {
-        label: label.into(),
-        x: points.iter().map(|p| (1e3 * p.seconds).log10()).collect(),
-        y: points.iter().map(|p| p.error.log10()).collect(),
-    }
 }
 
 fn main() {
@@ -259,8 +247,6 @@ fn main() {
         panels,
     };
     if let Some(file) = figure {
-        let figure = plot.render().expect("finite points");
-        let bytes = if file.ends_with(".png") { figure.png } else { figure.svg.into_bytes() };
-        std::fs::write(file, bytes).expect("the file can be written");
+        save(&plot, file);
     }
 }
