@@ -197,6 +197,20 @@ impl Kernel {
         (lambda, strength(self.alpha) * self.eta * lambda.powf(self.alpha))
     }
 
+    /// Puts the modes in front that make the bound hold from `lag` on; their rates, none where it already does.
+    pub(super) fn extend(&mut self, lag: f64) -> Vec<f64> {
+        let missing = self.missing(lag);
+        if missing == 0 {
+            return Vec::new();
+        }
+        let front: Vec<(f64, f64)> = (1..=missing).rev().map(|k| self.faster(k)).collect();
+        let rates: Vec<f64> = front.iter().map(|(lambda, _)| *lambda).collect();
+        self.lambda.splice(0..0, rates.iter().copied());
+        self.weight.splice(0..0, front.iter().map(|(_, weight)| *weight));
+        self.delta *= (-self.eta * missing as f64).exp();
+        rates
+    }
+
     /// Σ w/λ^n, n = 1, 2, 3, over the geometric series of modes above λ_0: d1, d2, d3.
     ///
     /// Under a smooth rate x' the lag of such a mode is x'/λ − x''/λ² + …, so that together they store ½·d2·x'² and dissipate

@@ -477,16 +477,12 @@ impl Modes {
 
     /// Puts the faster modes that lags down to `lag` need in front, with the lags they have after the last committed step.
     fn extend(&mut self, lag: f64) {
-        let missing = self.kernel.missing(lag);
-        if missing == 0 {
+        let rates = self.kernel.extend(lag);
+        if rates.is_empty() {
             return;
         }
-        let front: Vec<(f64, f64)> = (1..=missing).rev().map(|k| self.kernel.faster(k)).collect();
         let lag_of = |lambda: f64| self.last.as_ref().map_or(0.0, |step| step.convolve(lambda, 1.0));
-        self.z.splice(0..0, front.iter().map(|(lambda, _)| lag_of(*lambda)));
-        self.kernel.lambda.splice(0..0, front.iter().map(|(lambda, _)| *lambda));
-        self.kernel.weight.splice(0..0, front.iter().map(|(_, weight)| *weight));
-        self.kernel.delta *= (-self.kernel.eta * missing as f64).exp();
+        self.z.splice(0..0, rates.into_iter().map(lag_of));
         self.tables.borrow_mut().slots.clear();
     }
 

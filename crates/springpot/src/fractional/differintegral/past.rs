@@ -60,25 +60,22 @@ impl Past {
 
     /// Puts the faster modes that shorter pieces need in front: what they remember lies within the last piece.
     fn extend(&mut self, lag: f64) {
-        let missing = self.kernel.missing(lag);
-        if missing == 0 {
+        let modes = self.kernel.modes();
+        let rates = self.kernel.extend(lag);
+        if rates.is_empty() {
             return;
         }
-        let front: Vec<(f64, f64)> = (1..=missing).rev().map(|k| self.kernel.faster(k)).collect();
         let (width, y) = &self.last;
         let mut psi = vec![0.0; y.len()];
-        let lags: Vec<f64> = front
+        let lags: Vec<f64> = rates
             .iter()
-            .map(|(lambda, _)| {
+            .map(|lambda| {
                 exponential_moments(lambda * width, &mut psi);
                 width * psi.iter().zip(y).map(|(psi, c)| psi * c).sum::<f64>()
             })
             .collect();
-        self.z.truncate(self.kernel.modes());
+        self.z.truncate(modes);
         self.z.splice(0..0, lags);
-        self.kernel.lambda.splice(0..0, front.iter().map(|(lambda, _)| *lambda));
-        self.kernel.weight.splice(0..0, front.iter().map(|(_, weight)| *weight));
-        self.kernel.delta *= (-self.kernel.eta * missing as f64).exp();
         self.table.width = 0.0;
     }
 }
