@@ -4,7 +4,7 @@ use crate::{Ending, diagnostic};
 use springpot::law::Catalog;
 use springpot::model::urdf::{Urdf, UrdfOptions};
 use springpot::model::{BodySpec, JointKind, Limits, Model, Parent};
-use springpot::scenario::Scenario;
+use springpot::scenario::{Scenario, toml_key};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 
@@ -203,7 +203,7 @@ impl Starter<'_> {
                 JointKind::Floating => "{}".to_owned(),
                 kind => signal(kind, self.model.limits(j), moving.contains(&j)),
             };
-            let _ = writeln!(text, "{} = {signal}", key(&names[j]));
+            let _ = writeln!(text, "{} = {signal}", toml_key(&names[j]));
         }
         text
     }
@@ -232,12 +232,6 @@ fn signal(kind: JointKind, limits: &Limits, moves: bool) -> String {
 fn round(value: f64) -> f64 {
     // Adding 0 makes −0 a 0.
     (value * 1000.0).round() / 1000.0 + 0.0
-}
-
-/// A key of TOML.
-fn key(name: &str) -> String {
-    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare { name.to_owned() } else { quoted(name) }
 }
 
 /// A text of TOML, whose escapes are those of JSON but for DEL.

@@ -59,6 +59,7 @@ mod urdf;
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
 pub use names::suggest;
+pub use path::toml_key;
 pub use plan::{
     BodyPlaces, DrivePlan, ElementPlan, ForwardPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan,
     SignalPlan, SolverPlan, TimePlan, UrdfPlan,

@@ -66,7 +66,7 @@ fn prescribed(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<Motion
         }
         (None, None) => {
             let all: Vec<String> =
-                joints.iter().map(|joint| format!("{} = …", path::quoted(joint.name))).take(12).collect();
+                joints.iter().map(|joint| format!("{} = …", path::toml_key(joint.name))).take(12).collect();
             let right = format!("joints = {{ {} }} or csv = \"motion.csv\"", all.join(", "));
             return Err(table.missing("joints", &right));
         }

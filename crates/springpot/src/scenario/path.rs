@@ -170,11 +170,11 @@ fn is_section(node: &Node) -> bool {
 }
 
 fn dotted(keys: &[String]) -> String {
-    keys.iter().map(|key| quoted(key)).collect::<Vec<_>>().join(".")
+    keys.iter().map(|key| toml_key(key)).collect::<Vec<_>>().join(".")
 }
 
 /// A key as TOML and the paths of `--set` take it: bare where it can be, else in quotes.
-pub(crate) fn quoted(key: &str) -> String {
+pub fn toml_key(key: &str) -> String {
     let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
     if bare {
         return key.to_owned();
@@ -260,10 +260,10 @@ mod tests {
     #[test]
     fn every_key_has_a_path() {
         for key in ["q1", "left knee", "a.b", "", "ü", "a\"b", "a\\b", "tab\tnull\0", "'", "a=b", "\u{7f}"] {
-            let path = format!("motion.joints.{}", quoted(key));
+            let path = format!("motion.joints.{}", toml_key(key));
             assert_eq!(keys(&path), Some(vec!["motion".into(), "joints".into(), key.to_owned()]), "{path}");
             assert_eq!(equals_sign(&format!("{path}=1")), Some(path.len()), "{path}");
         }
-        assert_eq!(["q1", "left knee", "a\"b"].map(quoted), ["q1", "\"left knee\"", "\"a\\\"b\""]);
+        assert_eq!(["q1", "left knee", "a\"b"].map(toml_key), ["q1", "\"left knee\"", "\"a\\\"b\""]);
     }
 }
