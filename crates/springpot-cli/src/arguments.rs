@@ -34,7 +34,8 @@ Examples:
   springpot run --resume results/arm
 
 Writes results.csv (or .parquet, .npz), summary.csv, figures/ and run.json. \
-A rerun replaces the last run's files and nothing else. \
+They take the place of the last run's files when the run ends, all or none, \
+and of nothing else; one run at a time writes to a folder. \
 Ctrl-C ends a run early; the rows so far are kept, all of them complete. With --checkpoint-every a run that was interrupted or \
 killed goes on with --resume, and its results are those of an uninterrupted run.")]
     Run(RunOptions),

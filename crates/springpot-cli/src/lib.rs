@@ -21,10 +21,12 @@ mod progress;
 mod prony;
 mod robot;
 mod run;
+mod signals;
 mod terminal;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
+use springpot::table::disk::Disk;
 use std::ffi::OsString;
 use std::io;
 use std::process::ExitCode;
@@ -64,6 +66,11 @@ fn printed(result: io::Result<()>) -> Ending {
 
 /// Runs the command that `arguments` ask for; the first of them is the program's name.
 pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    main_on(&Disk::default(), arguments)
+}
+
+/// As [`main_from`], with all results of runs on `disk`.
+pub fn main_on(disk: &Disk, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -73,7 +80,7 @@ pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let ending = match arguments.command {
-        Command::Run(options) => run::run(&options),
+        Command::Run(options) => run::run(&options, disk),
         Command::Check(options) => check::check(&options),
         Command::Info(options) => info::info(&options),
         Command::Dynamics(options) => dynamics::dynamics(&options),

@@ -1,33 +1,15 @@
-//! The progress bar on stderr, when it is a terminal, and the interrupt.
+//! The progress bar on stderr, when it is a terminal.
 
+use crate::signals;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use springpot::simulate::Stop;
 use std::fmt::Write;
 use std::io::IsTerminal;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
 /// Runs shorter than this show no bar.
 const PATIENCE: Duration = Duration::from_millis(300);
 const REFRESH: Duration = Duration::from_millis(100);
-
-/// Set by Ctrl-C.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
-/// The flag that Ctrl-C sets; a second Ctrl-C ends the process at once.
-pub(crate) fn interrupt_flag() -> &'static Stop {
-    static INSTALLED: OnceLock<()> = OnceLock::new();
-    INSTALLED.get_or_init(|| {
-        // Without a handler Ctrl-C still ends the process, only less tidily.
-        let _ = ctrlc::set_handler(|| {
-            if INTERRUPTED.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
-            }
-        });
-    });
-    &INTERRUPTED
-}
 
 /// Shows rows written of rows wanted while `work` runs.
 pub(crate) fn show_while<T>(wanted: u64, rows: &AtomicU64, quiet: bool, work: impl FnOnce() -> T) -> T {
@@ -57,7 +39,7 @@ fn watch(wanted: u64, rows: &AtomicU64, finished: &AtomicBool) {
     while !finished.load(Ordering::Relaxed) {
         // Cases of a sweep over the end or the output step have other numbers of rows than the first.
         bar.set_position(rows.load(Ordering::Relaxed).min(wanted));
-        if INTERRUPTED.load(Ordering::Relaxed) {
+        if signals::stop().load(Ordering::Relaxed) {
             bar.set_message(", stopping");
         }
         std::thread::park_timeout(REFRESH);

@@ -1,46 +1,52 @@
 //! `springpot run`.
 
+mod finished;
 mod prepare;
 
+use self::finished::Finished;
 use self::prepare::{Prepared, Unprepared, prepare};
 use crate::arguments::RunOptions;
-use crate::numbers::{brief, count, rough, short};
-use crate::{Ending, diagnostic, figures, progress, terminal};
+use crate::numbers::count;
+use crate::{Ending, diagnostic, figures, progress, signals, terminal};
 use springpot::scenario::Cases;
-use springpot::sweep::{self, CaseResult, CasesPassing, Options, Outcome, Status, SweepError};
+use springpot::sweep::{self, Options, Status, SweepError};
 use springpot::table::Format;
-use springpot::table::folder::Folder;
+use springpot::table::disk::Disk;
+use springpot::table::folder::FolderError;
 use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
-
-/// Failed cases that are named one by one.
-const NAMED: usize = 5;
+use std::time::Instant;
 
 /// Limits of joints that are named one by one.
 pub(crate) const NAMED_LIMITS: usize = 10;
 
-/// What a run that came to an end left behind.
-struct Finished {
-    cases: Cases,
-    outcome: Outcome,
-    folder: Folder,
-    rows: u64,
-    /// End of the first case, s.
-    end: f64,
+/// Why there are no results of a run.
+#[derive(Debug, thiserror::Error)]
+enum Stopped {
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    #[error(transparent)]
+    Folder(#[from] FolderError),
 }
 
-pub(crate) fn run(options: &RunOptions) -> Ending {
+impl From<io::Error> for Stopped {
+    fn from(error: io::Error) -> Self {
+        Self::Folder(error.into())
+    }
+}
+
+pub(crate) fn run(options: &RunOptions, disk: &Disk) -> Ending {
     let begun = Instant::now();
-    let prepared = match prepare(options) {
+    let prepared = match prepare(options, disk) {
         Ok(prepared) => prepared,
         Err(Unprepared::Refused(refused)) => {
             diagnostic::refused(&refused);
             return Ending::Refused;
         }
         Err(Unprepared::Shown) => return Ending::Refused,
-        Err(Unprepared::Output(out, error)) => return cannot_write(&out, &error, false),
+        Err(Unprepared::Settled(status)) => return if status == "done" { Ending::Done } else { Ending::Failed },
+        Err(Unprepared::Folder(out, error)) => return no_results(&out, error, None),
     };
     let (out, goes_on) = (prepared.folder.path().to_owned(), prepared.checkpoints.is_some());
     match execute(options, prepared) {
@@ -59,21 +65,46 @@ pub(crate) fn run(options: &RunOptions) -> Ending {
                 Status::Interrupted => Ending::Interrupted,
             }
         }
-        Err(SweepError::Refused(refused)) => {
+        Err(Stopped::Sweep(SweepError::Refused(refused))) => {
             diagnostic::refused(&refused);
             Ending::Refused
         }
-        Err(SweepError::Output(error)) => cannot_write(&out, &error, goes_on),
+        Err(Stopped::Sweep(SweepError::Output(error))) => no_results(&out, error.into(), Some(goes_on)),
+        Err(Stopped::Folder(error)) => no_results(&out, error, Some(goes_on)),
     }
 }
 
-fn cannot_write(out: &Path, error: &io::Error, goes_on: bool) -> Ending {
-    let message = format!("the results cannot be written to {}: {error}", out.display());
-    match goes_on {
-        true => diagnostic::error_with_help(message, format!("to go on once they can: {}", to_go_on(out))),
-        false => diagnostic::error(message),
+/// Says why there are no results, and what can be done; a run that was under way can be gone on with or not.
+fn no_results(out: &Path, error: FolderError, goes_on: Option<bool>) -> Ending {
+    let folder = out.display();
+    let (message, help, ending) = match error {
+        FolderError::Held { .. } => {
+            (error.to_string(), Some("wait for it, stop it, or name another folder with --out".into()), Ending::Failed)
+        }
+        FolderError::Foreign(_) | FolderError::Input(_) => {
+            let help = "nothing was changed; name another folder with --out, or move the file away";
+            (error.to_string(), Some(help.to_owned()), Ending::Refused)
+        }
+        FolderError::Damaged(ref file) => {
+            let help = format!("nothing was changed; look at {folder}, and then move {} away", file.display());
+            (error.to_string(), Some(help), Ending::Failed)
+        }
+        FolderError::Pending { .. } => {
+            (error.to_string(), Some(format!("to put them there once that can be: {}", to_go_on(out))), Ending::Failed)
+        }
+        FolderError::File(error) => {
+            let help = goes_on.map(|goes_on| match goes_on {
+                true => format!("to go on once they can: {}", to_go_on(out)),
+                false => format!("{folder}/results.csv.part holds its rows so far; earlier results are as they were"),
+            });
+            (format!("the results cannot be written to {folder}: {error}"), help, Ending::Failed)
+        }
+    };
+    match help {
+        Some(help) => diagnostic::error_with_help(message, help),
+        None => diagnostic::error(message),
     }
-    Ending::Failed
+    ending
 }
 
 /// The command that goes on with a run.
@@ -81,167 +112,44 @@ fn to_go_on(out: &Path) -> String {
     format!("springpot run --resume {}", out.display())
 }
 
-/// Runs all cases, draws the figures, and writes the record.
-fn execute(options: &RunOptions, prepared: Prepared) -> Result<Finished, SweepError> {
+/// Runs all cases, draws the figures, writes the record, and puts all of it in place.
+fn execute(options: &RunOptions, prepared: Prepared) -> Result<Finished, Stopped> {
     let Prepared { cases, plan, system, layout, mut folder, checkpoints, figures, format } = prepared;
     let rows = AtomicU64::new(0);
     let wanted = (cases.len() as u64).saturating_mul(plan.time.rows.count() as u64);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = options.jobs.map_or(cores, usize::from);
-    let stop = progress::interrupt_flag();
-    let sweep_options = Options { jobs, stop, rows: &rows, checkpoints: checkpoints.as_ref() };
+    let sweep_options = Options { jobs, stop: signals::stop(), rows: &rows, checkpoints: checkpoints.as_ref() };
     let outcome =
         progress::show_while(wanted, &rows, options.quiet, || sweep::run(&cases, &layout, &mut folder, sweep_options))?;
+    let (rows, end) = (rows.load(Ordering::Relaxed), plan.time.end);
 
+    let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
+    let is_put = match outcome.status {
+        Status::Done => true,
+        Status::Failed => rows > 0,
+        // Less than one row is no reason to lose an earlier result.
+        Status::Interrupted => rows > 0 || !folder.has_earlier(),
+    };
+    if !is_put {
+        // What a checkpoint goes on with stays beside the earlier results.
+        if !goes_on {
+            folder.discard()?;
+        }
+        return Ok(Finished { cases, outcome, folder, rows, end, is_put });
+    }
     if figures && outcome.status != Status::Interrupted {
         for warning in figures::draw(&cases, &system, &plan, &layout, &outcome, &mut folder)? {
             diagnostic::warning(warning, None);
         }
     }
     // What is gone on with goes on as text.
-    let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
     let written = if goes_on { Format::Csv } else { format };
-    let converted = folder.convert_rows(written, layout.written(), layout.swept());
+    folder.convert_rows(written, layout.written(), layout.swept())?;
     let mut record = outcome.record(&cases, &plan, &layout);
-    record.insert("format".to_owned(), if converted.is_ok() { written } else { Format::Csv }.name().into());
-    folder.write_run(record)?;
-    converted?;
-    if let Some(checkpoints) = checkpoints.filter(|_| outcome.status != Status::Interrupted) {
-        checkpoints.remove()?;
-    }
-    Ok(Finished { cases, outcome, folder, rows: rows.load(Ordering::Relaxed), end: plan.time.end })
-}
-
-impl Finished {
-    /// Which joints pass their limits, and where.
-    fn warn(&self) {
-        let Self { cases, outcome, .. } = self;
-        let ran = outcome.done + outcome.failed;
-        let passing = &outcome.limits;
-        for CasesPassing { passed, case, cases: found } in passing.iter().take(NAMED_LIMITS) {
-            diagnostic::warning(in_cases(cases, ran, *case, *found, &passed.to_string()), None);
-        }
-        if let Some(more @ 1..) = passing.len().checked_sub(NAMED_LIMITS) {
-            let more = count(more, "more limit of a joint is", "more limits of joints are");
-            diagnostic::warning(format!("{more} passed; run.json says which"), None);
-        }
-    }
-
-    /// What failed, and how far an interrupted run came.
-    fn complain(&self) {
-        let Self { cases, outcome, .. } = self;
-        let failed: Vec<&CaseResult> = outcome.cases.iter().filter(|c| c.error.is_some() && !c.interrupted).collect();
-        for case in failed.iter().take(NAMED) {
-            let error = case.error.as_deref().unwrap_or_default();
-            diagnostic::error(in_case(cases, case.index, error));
-        }
-        if outcome.failed > NAMED {
-            let more = count(outcome.failed - NAMED, "more case", "more cases");
-            diagnostic::error(format!("{more} failed; run.json says which and why"));
-        }
-        match outcome.status {
-            Status::Done => {}
-            Status::Failed => terminal::print_error(&format!("failed{}\n", self.how_far())),
-            Status::Interrupted => terminal::print_error(&format!("interrupted{}\n", self.how_far())),
-        }
-    }
-
-    /// How far a run came that did not come to its end; goes on after "failed" or "interrupted".
-    fn how_far(&self) -> String {
-        let Self { cases, outcome, end, .. } = self;
-        let stopped = outcome.cases.iter().filter(|case| case.error.is_some());
-        let reached = stopped.clone().map(|case| case.report.t_reached.unwrap_or(-1.0)).fold(f64::INFINITY, f64::min);
-        let rows = match reached {
-            t if t < 0.0 => "before the first row".to_owned(),
-            t => format!("after the row at t = {} s", short(t)),
-        };
-        if cases.len() == 1 {
-            return match outcome.cases.len() {
-                0 => " before anything was run".to_owned(),
-                _ => format!(" {rows} of {} s; all rows are complete", short(*end)),
-            };
-        }
-        let interrupted = stopped.filter(|case| case.interrupted).count();
-        let mut parts = vec![format!("{} of {} done", outcome.done, count(cases.len(), "case", "cases"))];
-        if outcome.failed > 0 {
-            parts.push(format!("{} failed", outcome.failed));
-        }
-        if interrupted > 0 {
-            parts.push(format!("{interrupted} stopped"));
-        }
-        if outcome.failed + interrupted > 0 {
-            parts.push(format!("the earliest {rows}"));
-        }
-        format!(": {}; all rows are complete", parts.join(", "))
-    }
-
-    /// The lines after a run: how much was done, how well the energy balance closes, where the results are.
-    fn summary(&self, wall: Duration) -> String {
-        let Self { cases, outcome, folder, rows, .. } = self;
-        let mut work = Vec::new();
-        if cases.len() > 1 {
-            work.push(count(outcome.done + outcome.failed, "case", "cases"));
-        }
-        work.push(count(*rows, "row", "rows"));
-        if outcome.newton_iterations.is_none() {
-            work.push(count(outcome.steps, "step", "steps"));
-        }
-        let work = format!("{} in {:.2} s", work.join(", "), wall.as_secs_f64());
-        let width = terminal::stdout_width();
-        let mut lines = terminal::hanging("", &work, width);
-        lines.push_str(&terminal::hanging("energy   ", &self.balance(), width));
-        let figures = folder.files().iter().filter(|name| name.ends_with(".svg")).count();
-        let rows =
-            folder.files().iter().find(|name| name.starts_with("results.")).map_or("results.csv", String::as_str);
-        let mut files = format!("{rows}, summary.csv, run.json");
-        if figures > 0 {
-            let figures = count(figures, "figure", "figures").replace(' ', terminal::NO_BREAK);
-            files.push_str(&format!(", {figures} (SVG and PNG)"));
-        }
-        lines.push_str(&terminal::hanging("results  ", &format!("{}: {files}", folder.path().display()), width));
-        if let Some(iterations) = outcome.newton_iterations {
-            lines.push_str(&terminal::hanging("forward  ", &self.effort(iterations), width));
-        }
-        lines
-    }
-
-    /// What robots that move by themselves took: work, wall time, how much faster than life, and how well the energy balance closes.
-    fn effort(&self, iterations: u64) -> String {
-        let outcome = &self.outcome;
-        let wall = outcome.wall.as_secs_f64();
-        let residual = match outcome.energy_residual {
-            Some((residual, turned_over)) if turned_over > 0.0 => rough(residual / turned_over),
-            Some(_) => "0".to_owned(),
-            None => "unknown".to_owned(),
-        };
-        format!(
-            "{}, {} rejected, {}, {} s, {} times real time, energy residual {residual}",
-            count(outcome.steps, "step", "steps"),
-            outcome.rejected_steps,
-            count(iterations, "Newton iteration", "Newton iterations"),
-            brief(wall),
-            brief(if wall > 0.0 { outcome.simulated / wall } else { 0.0 }),
-        )
-    }
-
-    /// How well the energy balance closes, and where it is not known.
-    fn balance(&self) -> String {
-        let outcome = &self.outcome;
-        let known = match outcome.energy_residual {
-            Some((residual, turned_over)) if turned_over > 0.0 => {
-                format!("balance closes to {} of {} J turned over", rough(residual / turned_over), rough(turned_over))
-            }
-            Some(_) => "no energy was turned over".into(),
-            None => String::new(),
-        };
-        match &outcome.no_ledger {
-            None if known.is_empty() => "balance unknown: nothing was run".into(),
-            None => known,
-            Some((_, why)) if known.is_empty() => format!("balance unknown: {why}"),
-            Some((1, why)) => format!("{known}; unknown in 1 case: {why}"),
-            Some((unknown, why)) => format!("{known}; unknown in {unknown} cases: {why}"),
-        }
-    }
+    record.insert("format".to_owned(), written.name().into());
+    folder.put(record, goes_on)?;
+    Ok(Finished { cases, outcome, folder, rows, end, is_put })
 }
 
 /// `message` with the swept values of its case in front, where anything is swept.

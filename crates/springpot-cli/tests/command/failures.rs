@@ -203,17 +203,88 @@ fn files_that_are_none_are_refused() {
 fn a_folder_that_cannot_be_written_is_said() {
     let place = Place::new();
     place.write("file", "in the way");
-    std::fs::create_dir_all(place.path("taken/results.csv")).unwrap();
-    for (out, named) in [("file", "file"), ("file/below", "file"), ("taken", "taken")] {
+    for out in ["file", "file/below"] {
         let ended = place.springpot(&["run", "arm.toml", "--out", out]);
         assert_eq!(ended.code, Some(1), "{out}");
         assert!(
-            ended.stderr.starts_with("error: the results cannot be written to ") && ended.stderr.contains(named),
+            ended.stderr.starts_with("error: the results cannot be written to ") && ended.stderr.contains(out),
             "{}",
             ended.stderr
         );
     }
     assert_eq!(place.read("file"), "in the way");
+}
+
+#[test]
+fn files_of_others_are_refused_and_stay() {
+    let figure = "[[figure]]\nname = \"motion\"\ny = \"damper.force\"\n";
+    for name in [
+        "results.csv",
+        "results.parquet",
+        "results.npz",
+        "results.csv.part",
+        "summary.csv",
+        "run.json",
+        "figures/motion.svg",
+        "checkpoint/run",
+        "checkpoint/case-7",
+    ] {
+        let place = Place::with(&format!("{ARM}{figure}"));
+        std::fs::create_dir_all(place.path("out").join(name).parent().unwrap()).unwrap();
+        place.write(&format!("out/{name}"), "mine");
+        let ended = place.springpot(&["run", "arm.toml", "--out", "out", "--checkpoint-every", "1"]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{name}: {}", ended.stderr);
+        let named = format!("error: out/{}", if name.starts_with("checkpoint") { "checkpoint" } else { name });
+        assert!(ended.stderr.starts_with(&named) && ended.stderr.contains("--out"), "{name}: {}", ended.stderr);
+        assert_eq!(place.files("out"), [name]);
+        assert_eq!(place.read(format!("out/{name}")), "mine");
+    }
+    // Others' files of other names are in nobody's way.
+    let place = Place::with(&format!("{ARM}{figure}"));
+    place.write("notes.txt", "mine");
+    std::fs::create_dir_all(place.path("checkpoint")).unwrap();
+    place.write("checkpoint/case-7", "mine");
+    place.done(&["run", "arm.toml", "--out", "."]);
+    assert_eq!((place.read("notes.txt"), place.read("checkpoint/case-7")), ("mine".into(), "mine".into()));
+}
+
+#[test]
+fn what_a_scenario_reads_is_not_replaced() {
+    let place = Place::new();
+    place.done(&["run", "arm.toml", "--out", "out", "--set", "time.output_step=0.01"]);
+    let rows = place.read("out/results.csv");
+    let signal = "inputs = { u = { csv = \"out/results.csv\", column = \"damper.u\" } }";
+    place.write("again.toml", edited("inputs = { u = \"1 + 0.5*sin(20*t)\" }", signal));
+    let ended = place.springpot(&["run", "again.toml", "--out", "out"]);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains("the scenario reads out/results.csv, which its results would replace"),
+        "{}",
+        ended.stderr
+    );
+    assert_eq!(place.read("out/results.csv"), rows);
+    place.done(&["run", "again.toml", "--out", "elsewhere"]);
+}
+
+#[test]
+fn a_failure_before_the_first_row_leaves_the_last_results() {
+    let place = Place::new();
+    let files = |place: &Place| {
+        place.files("results/arm").into_iter().map(|name| place.read(format!("results/arm/{name}"))).collect::<Vec<_>>()
+    };
+    let fails = ["run", "arm.toml", "--set", "element.damper.u=-3 V", "--checkpoint-every", "0.1"];
+    let ended = place.springpot(&fails);
+    assert_eq!((ended.code, files(&place).len()), (Some(1), 0), "{}", ended.stderr);
+    assert!(ended.stdout.contains("results/arm: no row was written, and nothing else"), "{}", ended.stdout);
+    place.done(&["run", "arm.toml"]);
+    let before = files(&place);
+    let ended = place.springpot(&fails);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    assert!(ended.stdout.contains("no row was written; the earlier ones are as they were"), "{}", ended.stdout);
+    assert_eq!(files(&place), before);
+    // A refusal, too.
+    assert_eq!(place.springpot(&["run", "arm.toml", "--set", "time.end=-1"]).code, Some(2));
+    assert_eq!(files(&place), before);
 }
 
 #[test]
@@ -284,14 +355,18 @@ fn with_little_memory(place: &Place, command: &str) -> std::process::Command {
     place.command(&[command, "arm.toml"])
 }
 
-/// A file system that takes no more: rows that stand there stay, whole ones alone.
+/// A file system that takes no more: rows that stand there stay, whole ones alone, and so does an earlier result. SIGXFSZ would end the
+/// process without a word.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_leaves_complete_rows() {
     let sweep = "[[sweep]]\nparameter = \"element.damper.mu\"\nvalues = { from = 1, to = 2, count = 60 }\n";
-    let place = Place::with(&format!("{ARM}{sweep}"));
+    let place = Place::new();
+    place.done(&["run", "arm.toml"]);
+    let before = ["results.csv", "summary.csv", "run.json"].map(|name| place.read(format!("results/arm/{name}")));
+    place.write("arm.toml", format!("{ARM}{sweep}"));
     let mut shell = std::process::Command::new("sh");
-    shell.current_dir(place.path("")).args(["-c", "trap '' XFSZ; ulimit -f 64; exec \"$0\" \"$@\""]).args([
+    shell.current_dir(place.path("")).args(["-c", "ulimit -f 64; exec \"$0\" \"$@\""]).args([
         env!("CARGO_BIN_EXE_springpot"),
         "run",
         "arm.toml",
@@ -307,8 +382,10 @@ fn a_full_disk_leaves_complete_rows() {
         "{}",
         ended.stderr
     );
-    let results = Csv::new(&place.read("results/arm/results.csv"));
-    assert!(results.rows.len() > 20);
+    assert!(ended.stderr.contains("results.csv.part holds its rows so far; earlier results are as they were"));
+    assert!(Csv::new(&place.read("results/arm/results.csv.part")).rows.len() > 20);
+    let after = ["results.csv", "summary.csv", "run.json"].map(|name| place.read(format!("results/arm/{name}")));
+    assert_eq!(after, before);
     // A run with room replaces what the failed one left.
     place.write("arm.toml", ARM);
     place.done(&["run", "arm.toml"]);

@@ -101,10 +101,13 @@ fn an_interrupted_sweep_keeps_what_is_done() {
 fn a_killed_run_leaves_parts_and_the_next_one_replaces_them() {
     let place = Place::new();
     place.done(&["run", "arm.toml"]);
+    let before = ["results.csv", "run.json", "summary.csv"].map(|name| place.read(format!("results/arm/{name}")));
     let child = started(&place, &[]);
     signal(&child, "-KILL");
     assert_eq!(ended(child).code, None);
-    assert_eq!(place.files("results/arm"), ["results.csv.part", "summary.csv.part"]);
+    // What was there before is there still.
+    let after = ["results.csv", "run.json", "summary.csv"].map(|name| place.read(format!("results/arm/{name}")));
+    assert_eq!(after, before);
     let text = place.read("results/arm/results.csv.part");
     let whole = &text[..text.rfind('\n').unwrap() + 1];
     assert!(Csv::new(whole).rows.len() > 5);
@@ -112,4 +115,113 @@ fn a_killed_run_leaves_parts_and_the_next_one_replaces_them() {
     place.done(&["run", "arm.toml"]);
     assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
     assert_eq!(place.table("results/arm/results.csv").rows.len(), 5);
+}
+
+#[test]
+fn sigterm_and_sighup_end_a_run_as_tidily() {
+    for name in ["-TERM", "-HUP"] {
+        let place = Place::new();
+        let child = started(&place, &[]);
+        signal(&child, name);
+        let ended = ended(child);
+        assert_eq!(ended.code, Some(130), "{name}: {}", ended.stderr);
+        assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
+        assert_eq!(place.record("results/arm")["status"], "interrupted");
+        assert!(place.table("results/arm/results.csv").rows.len() > 5);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_under_nohup_outlives_its_terminal() {
+    let place = Place::new();
+    let mut shell = Command::new("sh");
+    shell.current_dir(place.path("")).args(["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_springpot")]);
+    let mut child = shell.args(["run", "arm.toml", "--quiet"]).args(ENDLESS).stderr(Stdio::piped()).spawn().unwrap();
+    let part = place.path("results/arm/results.csv.part");
+    let rows = || std::fs::metadata(&part).map_or(0, |file| file.len());
+    let wait = |child: &mut Child, least: u64| {
+        let begun = Instant::now();
+        while rows() < least {
+            assert!(child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE);
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    };
+    wait(&mut child, 3_000);
+    signal(&child, "-HUP");
+    wait(&mut child, rows() + 3_000);
+    signal(&child, "-TERM");
+    assert_eq!(ended(child).code, Some(130));
+}
+
+#[test]
+fn a_second_run_into_a_folder_is_refused_and_the_first_is_named() {
+    let place = Place::new();
+    let first = started(&place, &["--set", "element.damper.mu=5"]);
+    let process = format!("springpot run arm.toml, process {} on ", first.id());
+    let rows = || place.read("results/arm/results.csv.part").len();
+    for arguments in
+        [&["run", "arm.toml"][..], &["run", "--resume", "results/arm"], &["run", "arm.toml", "--set", "time.end=1"]]
+    {
+        let before = rows();
+        let second = place.springpot(arguments);
+        assert_eq!((second.code, second.stdout.as_str()), (Some(1), ""), "{}", second.stderr);
+        let said = second.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.starts_with("error: another run writes to results/arm: ") && said.contains(&process), "{said}");
+        assert!(said.contains(", since 2") && said.contains("name another folder with --out"), "{said}");
+        assert!(rows() >= before && place.path("results/arm/.lock").exists());
+    }
+    // A killed run locks nobody out.
+    signal(&first, "-KILL");
+    ended(first);
+    assert!(place.path("results/arm/.lock").exists());
+    place.done(&["run", "arm.toml"]);
+    assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
+}
+
+/// Two at once, again and again: one of them runs, or both after each other, and rows and record are of one run.
+#[test]
+fn two_runs_at_once_never_mix() {
+    let place = Place::new();
+    let mut refused = 0;
+    for turn in 0..12 {
+        let set = |mu: &str| format!("element.damper.mu={mu}");
+        let children = ["4", "8"].map(|mu| {
+            let arguments = ["run", "arm.toml", "--quiet", "--set", &set(mu), "--set", "time.output_step=0.0005"];
+            let child = place.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+            std::thread::sleep(Duration::from_millis(turn));
+            child
+        });
+        let codes = children.map(|child| ended(child).code);
+        assert!(codes.contains(&Some(0)) && codes.iter().all(|code| [Some(0), Some(1)].contains(code)), "{codes:?}");
+        refused += codes.iter().filter(|code| **code == Some(1)).count();
+        let plan = place.record("results/arm")["plan"].clone();
+        let force = place.table("results/arm/results.csv").numbers("damper.force");
+        let alone = if codes[1] == Some(0) && codes[0] != Some(0) {
+            "8"
+        } else if codes[0] == Some(0) && codes[1] != Some(0) {
+            "4"
+        } else {
+            ""
+        };
+        for (value, out) in [("4", "four"), ("8", "eight")] {
+            if turn == 0 {
+                place.done(&[
+                    "run",
+                    "arm.toml",
+                    "--quiet",
+                    "--out",
+                    out,
+                    "--set",
+                    &set(value),
+                    "--set",
+                    "time.output_step=0.0005",
+                ]);
+            }
+            let same = place.table(format!("{out}/results.csv")).numbers("damper.force") == force;
+            assert_eq!(same, place.record(out)["plan"] == plan, "{codes:?}");
+            assert!(alone != value || same, "{codes:?}");
+        }
+    }
+    println!("{refused} of 12 turns refused one");
 }

@@ -294,7 +294,6 @@ fn a_rerun_replaces_its_own_files_and_no_others() {
     place.done(&["run", "arm.toml", "--out", out]);
     place.write("here/and there/notes.txt", "mine");
     place.write("here/and there/figures/mine.svg", "mine");
-    place.write("here/and there/results.csv.part", "of a killed run");
     place.write(
         "arm.toml",
         crate::support::ARM.replace("\n[motion]", "\n[[figure]]\nname = \"new\"\ny = \"t\"\n[motion]"),

@@ -40,6 +40,7 @@ mod document;
 mod elements;
 mod figures;
 mod forward;
+mod inputs;
 mod motion;
 mod names;
 mod path;

@@ -1,11 +1,11 @@
 //! One case of a sweep.
 
 use super::Sweep;
-use super::checkpoint::{CaseDone, Written};
+use super::checkpoint::CaseDone;
 use super::output::{self, CaseRows, Output};
 use crate::simulate::{self, LimitWatch, PassedLimit, Report, RunError, System};
+use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
-use std::fs::File;
 use std::io;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -32,7 +32,7 @@ pub struct CaseResult {
 }
 
 /// The rows and the statistics of one case, in the files that all cases share.
-pub(super) type Sections<'a> = (Section<'a, File>, Section<'a, File>);
+pub(super) type Sections<'a> = (Section<'a, DiskFile>, Section<'a, DiskFile>);
 
 /// Runs case `index`, or goes on with it.
 ///
@@ -74,11 +74,12 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
     let error = error.map(|error| error.to_string());
     let (wall, statistics) = (output.wall(), output.statistics.clone());
     let kept = output.close(|output| {
-        let (false, Some(files)) = (interrupted, output.files.take()) else { return Ok(()) };
+        if interrupted || output.files.is_none() {
+            return Ok(());
+        }
         let (error, no_ledger, limits) = (error.clone(), no_ledger.clone(), limits.clone());
-        let written = Written { aside: files.is_aside(), ..output.written() };
-        let done = CaseDone { index, written, report, error, no_ledger, limits };
-        files.end(&done, output.kept.as_deref(), || sweep.sync())
+        let done = CaseDone { index, written: output.written()?, report, error, no_ledger, limits };
+        output.files.take().map_or(Ok(()), |files| files.end(&done, || sweep.sync()))
     })?;
     summary.write(output::summary(sweep, index, &statistics).as_bytes())?;
     summary.finish()?;

@@ -15,9 +15,9 @@ pub use limits::{CasesPassing, LimitTally};
 use crate::scenario::{Cases, Refusals};
 use crate::simulate::Stop;
 use crate::table::Column;
+use crate::table::disk::DiskFile;
 use crate::table::folder::Folder;
 use crate::table::ordered::Ordered;
-use std::fs::File;
 use std::io::{self, Seek as _, SeekFrom, Write as _};
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -96,12 +96,13 @@ pub enum SweepError {
     Output(#[from] io::Error),
 }
 
-/// Runs every case and streams rows and statistics into `folder`, in case order for any number of jobs.
+/// Runs every case and streams rows and statistics into `folder`, in case order for any number of jobs; [`Folder::put`] then puts them in
+/// the place of the last run's.
 ///
 /// A case that fails does not stop the others; its rows up to the failure are written.
 ///
 /// # Errors
-/// [`SweepError::Output`] where the folder cannot be written; the complete rows that were written stay there.
+/// [`SweepError::Output`] where the folder cannot be written; the complete rows that were written stay in `results.csv.part`.
 pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options) -> Result<Outcome, SweepError> {
     let jobs = options.jobs.clamp(1, cases.len().max(1));
     let sweep = Sweep::open(cases, layout, folder, options, jobs)?;
@@ -138,12 +139,10 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         first_error(std::iter::once(own).chain(joined))
     });
     if let Err(error) = ended {
-        // What keeps rows from being written may keep them from being renamed too; the first error is the one to tell.
-        let _ = folder.rescue_rows();
+        // What keeps rows from being written may keep them from being cut too; the first error is the one to tell.
+        let _ = folder.cut_rows();
         return Err(error.into());
     }
-    folder.close_rows()?;
-    folder.close_summary()?;
 
     let mut tally = tally.into_inner().unwrap_or_else(PoisonError::into_inner);
     tally.cases.sort_by_key(|case| case.index);
@@ -177,10 +176,10 @@ struct Sweep<'a> {
     cases: &'a Cases,
     layout: &'a Layout,
     options: Options<'a>,
-    rows: Ordered<File>,
-    summary: Ordered<File>,
+    rows: Ordered<DiskFile>,
+    summary: Ordered<DiskFile>,
     /// The file of `rows`, to wait for the disk without keeping others from writing.
-    file: File,
+    file: DiskFile,
     /// The first case that has not ended.
     first: usize,
     begun: Instant,
@@ -191,21 +190,25 @@ impl<'a> Sweep<'a> {
     fn open(
         cases: &'a Cases,
         layout: &'a Layout,
-        folder: &Folder,
+        folder: &mut Folder,
         options: Options<'a>,
         jobs: usize,
     ) -> io::Result<Self> {
         let begun = Instant::now();
         let first = options.checkpoints.and_then(Checkpoints::first);
-        let mut summary = folder.open_summary()?;
+        let mut summary = folder.create_summary()?;
         summary.write_all(header(&layout.summary_columns()).as_bytes())?;
         let rows = if first.is_some() {
             let mut rows = folder.reopen_rows()?;
             rows.seek(SeekFrom::End(0))?;
             rows
         } else {
-            let mut rows = folder.open_rows()?;
+            let mut rows = folder.create_rows()?;
             rows.write_all(header(layout.written()).as_bytes())?;
+            if options.checkpoints.is_some() {
+                rows.sync()?;
+                folder.disk().sync_folder(folder.path())?;
+            }
             rows
         };
         let first = first.unwrap_or(0);
@@ -226,7 +229,7 @@ impl<'a> Sweep<'a> {
     /// Makes the rows safe from the loss of power; returns the first case whose rows may not all be there.
     fn sync(&self) -> io::Result<usize> {
         let turn = self.rows.turn();
-        self.file.sync_data()?;
+        self.file.sync()?;
         // Once interrupted, cases may end without rows.
         Ok(if self.options.stop.load(Ordering::Relaxed) { 0 } else { turn })
     }

@@ -4,9 +4,9 @@ use super::checkpoint::{CaseFiles, CaseState, Written};
 use super::{Sweep, push_field};
 use crate::scenario::{Plan, SweptValue};
 use crate::simulate::{Checkpoint, LimitWatch, Rows, System};
+use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_number};
-use std::fs::File;
 use std::io;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -28,9 +28,7 @@ pub(super) struct Output<'a> {
     pub(super) kept: Option<Vec<Vec<f64>>>,
     text: String,
     handed_over: Instant,
-    /// Bytes handed over.
-    bytes: u64,
-    rows: Section<'a, File>,
+    rows: Section<'a, DiskFile>,
     pub(super) files: Option<CaseFiles<'a>>,
     begun: Instant,
     earlier_wall: Duration,
@@ -50,7 +48,7 @@ impl<'a> Output<'a> {
     pub(super) fn open(
         sweep: &'a Sweep<'a>,
         index: usize,
-        rows: Section<'a, File>,
+        rows: Section<'a, DiskFile>,
         state: Option<&CaseState>,
     ) -> io::Result<Self> {
         let selected: Vec<usize> = sweep.layout.selected().map(|(k, _)| k).collect();
@@ -65,7 +63,6 @@ impl<'a> Output<'a> {
             kept: kept_columns.map(|columns| vec![Vec::new(); columns.len()]),
             text: String::with_capacity(2 * CHUNK),
             handed_over: Instant::now(),
-            bytes: 0,
             rows,
             files: None,
             begun: Instant::now(),
@@ -79,8 +76,8 @@ impl<'a> Output<'a> {
         };
         let section = &output.rows;
         output.files = Some(CaseFiles::go_on(checkpoints, state, &mut |text| section.write(text))?);
-        let Written { bytes, kept, ref statistics, wall, .. } = state.written;
-        (output.bytes, output.earlier_wall) = (bytes, wall);
+        let Written { kept, ref statistics, wall, .. } = state.written;
+        output.earlier_wall = wall;
         output.statistics.clone_from(statistics);
         output.kept = kept_columns.map(|columns| checkpoints.kept(index, kept, columns.len())).transpose()?;
         sweep.options.rows.fetch_add(state.run.rows() as u64, Ordering::Relaxed);
@@ -91,22 +88,23 @@ impl<'a> Output<'a> {
         let text = self.text.as_bytes();
         self.files.as_mut().map_or(Ok(()), |files| files.take(text))?;
         self.rows.write(text)?;
-        self.bytes += text.len() as u64;
         self.text.clear();
         self.handed_over = Instant::now();
         Ok(())
     }
 
-    /// How far the case has written; all its rows are handed over.
-    pub(super) fn written(&self) -> Written {
-        Written {
-            bytes: self.bytes,
+    /// How far the case has written; all its rows are handed over, and its values for figures are written.
+    pub(super) fn written(&mut self) -> io::Result<Written> {
+        let files = self.files.as_mut();
+        let (rows, kept) = files.map_or(Ok(Default::default()), |files| files.written(self.kept.as_deref()))?;
+        Ok(Written {
+            rows,
             aside: self.files.as_ref().is_some_and(CaseFiles::is_aside),
-            kept: self.kept.as_ref().and_then(|columns| columns.first()).map_or(0, Vec::len) as u64,
+            kept,
             statistics: self.statistics.clone(),
             wall: self.wall(),
             wall_of_run: self.sweep.wall(),
-        }
+        })
     }
 
     /// Wall time of the case.
@@ -151,11 +149,11 @@ impl Rows for CaseRows<'_, '_> {
 
     fn checkpoint(&mut self, run: Checkpoint) -> io::Result<()> {
         self.output.hand_over()?;
-        let written = self.output.written();
-        let Output { sweep, index, kept, files: Some(files), .. } = &mut *self.output else { return Ok(()) };
+        let written = self.output.written()?;
+        let Output { sweep, index, files: Some(files), .. } = &mut *self.output else { return Ok(()) };
         let digest = files.digest(self.plan, self.system);
         let state = CaseState { index: *index, digest, written, watch: self.watch.seen(), run };
-        files.keep(&state, kept.as_deref(), || sweep.file.sync_data())
+        files.keep(&state, || sweep.file.sync())
     }
 }
 

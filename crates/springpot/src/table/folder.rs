@@ -1,85 +1,184 @@
 //! The folder of a run's results.
+//!
+//! One run at a time writes into a folder. What it writes waits beside the last run's files and takes their place when it has come to its
+//! end, all of it or nothing; files that no run wrote are never touched.
+
+mod lock;
+mod owned;
+mod settle;
+
+pub(crate) use owned::{CASE, HEAD, JOURNAL, checkpoint_folder};
 
 use super::Column;
+use super::disk::{Disk, DiskFile, Entry};
 use super::format::{self, Format};
-use std::fs::{self, File};
-use std::io::{self, Read as _, Seek as _};
-use std::path::{Component, Path, PathBuf};
+use lock::{Lock, Taken};
+use owned::{Checkpoint, Claims, FIGURES, FIXED, PART, RESULTS, RUN, SUMMARY, UNFINISHED};
+use settle::{Commit, waiting};
+use std::io::{self, Read as _, Seek as _, Write as _};
+use std::path::{Path, PathBuf};
 
-/// The rows while they are written, and at the end.
-const PART: &str = "results.csv.part";
-const RESULTS: &str = "results.csv";
-/// The rows in another format, while they are written and at the end.
-const OTHER_RESULTS: [&str; 4] = ["results.parquet.part", "results.parquet", "results.npz.part", "results.npz"];
-/// Statistics per case and column, while they are written and at the end.
-const SUMMARY_PART: &str = "summary.csv.part";
-const SUMMARY: &str = "summary.csv";
-/// What was run and how it went.
-const RUN: &str = "run.json";
-/// The folder of the figures, and what their names end with.
-const FIGURES: &str = "figures";
-const FIGURE_ENDINGS: [&str; 2] = ["svg", "png"];
+/// Why a folder takes no results.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// Another run writes to it.
+    #[error("another run writes to {}: {holder}", folder.display())]
+    Held {
+        /// The folder.
+        folder: PathBuf,
+        /// Its command, process, and beginning.
+        holder: String,
+    },
+    /// A file that no run wrote stands where one of the results is to be.
+    #[error("{} was not written by a run that is known here: it would be replaced, or taken for a result", .0.display())]
+    Foreign(PathBuf),
+    /// The scenario reads one of the files that its results would replace.
+    #[error("the scenario reads {}, which its results would replace", .0.display())]
+    Input(PathBuf),
+    /// What tells how to put an earlier run's files in place is not what was written.
+    #[error("{} is damaged: the results of the last run cannot be put in their place", .0.display())]
+    Damaged(PathBuf),
+    /// The results are complete and safe, and not in their place.
+    #[error("the results in {} are complete, but cannot be put in their place: {source}", folder.display())]
+    Pending {
+        /// The folder.
+        folder: PathBuf,
+        /// What is in the way.
+        source: Box<FolderError>,
+    },
+    /// The file system's reason.
+    #[error(transparent)]
+    File(#[from] io::Error),
+}
 
-/// The folder of the checkpoint; what its files are called.
-const CHECKPOINT: &str = "checkpoint";
-pub(crate) const HEAD: &str = "run";
-pub(crate) const JOURNAL: &str = "done";
-pub(crate) const CASE: &str = "case-";
-pub(crate) const CASE_ENDINGS: [&str; 3] = ["", ".rows", ".kept"];
+/// What a run is going to write into a folder, beside its rows and what is always there.
+#[derive(Clone, Copy)]
+pub struct Targets<'a> {
+    /// The names of the files in `figures/`.
+    pub figures: &'a [String],
+    /// Whether there will be checkpoints.
+    pub checkpoints: bool,
+    /// Whether the scenario reads a file.
+    pub is_input: &'a dyn Fn(&Path) -> bool,
+}
 
-/// A folder into which one run writes; a new run replaces the last run's files and nothing else.
+/// A folder into which one run writes, and no other while this is held.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
+    disk: Disk,
+    lock: Option<Lock>,
+    /// How a run ended whose files were put in place when the folder was opened.
+    settled: Option<String>,
+    /// The last run's files.
+    last: Vec<String>,
+    /// The files of this run, as names in the folder.
     files: Vec<String>,
+    checkpoints: bool,
 }
 
 impl Folder {
-    /// Makes the folder and takes the last run's files away: the fixed ones, and those that its run.json lists.
+    /// Makes the folder, locks it for `holder` (a few words about the run), and puts the last run's files in place where that was
+    /// broken off.
     ///
     /// # Errors
-    /// The file system's.
-    pub fn prepare(path: &Path) -> io::Result<Self> {
-        fs::create_dir_all(path)?;
-        remove_checkpoint(path)?;
-        take_away(path, &[PART, SUMMARY_PART, RESULTS, SUMMARY, RUN])?;
-        take_away(path, &OTHER_RESULTS)?;
-        Ok(Self { path: path.to_owned(), files: Vec::new() })
-    }
-
-    /// The file of the rows of a run that has not come to its end, and its first bytes, `count` of them or fewer where it is
-    /// shorter or not there.
-    ///
-    /// # Errors
-    /// The file system's.
-    pub(crate) fn rows_of(path: &Path, count: usize) -> io::Result<(PathBuf, Vec<u8>)> {
-        let part = path.join(PART);
-        let file = if part.exists() { part } else { path.join(RESULTS) };
-        let mut beginning = Vec::new();
-        match File::open(&file) {
-            Ok(open) => open.take(count as u64).read_to_end(&mut beginning)?,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => 0,
-            Err(error) => return Err(error),
+    /// [`FolderError`]; nothing was changed then, but for [`FolderError::Pending`].
+    pub fn open(path: &Path, disk: Disk, holder: &str) -> Result<Self, FolderError> {
+        disk.create_folder(path)?;
+        let lock = match lock::take(&disk, path, holder)? {
+            Taken::Lock(lock) => Some(lock),
+            Taken::Unknown => None,
+            Taken::Held(holder) => return Err(FolderError::Held { folder: path.to_owned(), holder }),
+            Taken::Foreign(file) => return Err(FolderError::Foreign(file)),
         };
-        Ok((file, beginning))
+        let mut folder = Self {
+            path: path.to_owned(),
+            disk,
+            lock,
+            settled: None,
+            last: Vec::new(),
+            files: Vec::new(),
+            checkpoints: false,
+        };
+        if let Some(commit) = Commit::read(&folder.disk, path)? {
+            folder.carry_out(&commit)?;
+            folder.settled = folder.status()?;
+        }
+        folder.last = owned::listed(&folder.disk, path)?;
+        Ok(folder)
     }
 
-    /// Opens the folder of a run that is to go on: its rows are kept, what else it wrote at its end is taken away.
+    /// Begins a run: forgets an earlier one that has not come to its end; its results, where it has, stay until there are new ones.
     ///
     /// # Errors
-    /// The file system's.
-    pub(crate) fn reopen(path: &Path) -> io::Result<Self> {
-        if !path.join(PART).exists() && path.join(RESULTS).exists() {
-            fs::rename(path.join(RESULTS), path.join(PART))?;
+    /// [`FolderError::Foreign`] and [`FolderError::Input`], where nothing was changed; the file system's.
+    pub fn begin(&mut self, targets: Targets<'_>) -> Result<(), FolderError> {
+        let claims = Claims::read(&self.disk, &self.path)?;
+        let checkpoint = Checkpoint::of(&self.disk, &self.path, claims)?;
+        // Rows that a checkpoint goes on with are a run's, too.
+        let claims = Claims { rows: claims.rows || checkpoint == Checkpoint::Ours, ..claims };
+        self.refuse_foreign(targets, claims, checkpoint)?;
+        if checkpoint == Checkpoint::Ours {
+            owned::remove_checkpoint(&self.disk, &self.path)?;
         }
-        take_away(path, &[SUMMARY_PART, RESULTS, SUMMARY, RUN])?;
-        take_away(path, &OTHER_RESULTS)?;
-        Ok(Self { path: path.to_owned(), files: Vec::new() })
+        self.disk.remove(&self.path.join(PART))?;
+        owned::clear_unfinished(&self.disk, &self.path)?;
+        self.claim(targets.checkpoints)
     }
 
-    /// The files written so far, as names in the folder.
-    pub fn files(&self) -> &[String] {
-        &self.files
+    /// Goes on with a run whose checkpoint is sound; its rows are in results.csv.part, or in results.csv where it was interrupted.
+    ///
+    /// # Errors
+    /// As [`Self::begin`].
+    pub(crate) fn go_on(&mut self, targets: Targets<'_>) -> Result<(), FolderError> {
+        let claims = Claims { rows: true, checkpoint: true };
+        self.refuse_foreign(targets, claims, Checkpoint::Ours)?;
+        owned::clear_unfinished(&self.disk, &self.path)?;
+        self.claim(true)
+    }
+
+    /// Notes what the run is about to write, so that the next one knows whose it is.
+    fn claim(&mut self, checkpoints: bool) -> Result<(), FolderError> {
+        (self.files, self.checkpoints) = (vec![RESULTS.to_owned()], checkpoints);
+        Ok(Claims { rows: true, checkpoint: checkpoints }.write(&self.disk, &self.path)?)
+    }
+
+    fn refuse_foreign(&self, targets: Targets<'_>, claims: Claims, checkpoint: Checkpoint) -> Result<(), FolderError> {
+        let figures = targets.figures.iter().map(|name| format!("{FIGURES}/{name}"));
+        let names: Vec<String> = FIXED.iter().map(|name| (*name).to_owned()).chain(figures).collect();
+        for name in &names {
+            let path = self.path.join(name);
+            match self.disk.look(&path)? {
+                None => {}
+                Some(Entry::File(_) | Entry::Other) if self.last.contains(name) => {}
+                Some(_) => return Err(FolderError::Foreign(path)),
+            }
+        }
+        let folder = self.path.join(FIGURES);
+        let has_figures = self.last.iter().chain(&names).any(|name| owned::is_figure(name));
+        if has_figures && !matches!(self.disk.look(&folder)?, None | Some(Entry::Folder)) {
+            return Err(FolderError::Foreign(folder));
+        }
+        for name in self.last.iter().chain(names.iter().filter(|name| !self.last.contains(name))) {
+            let path = self.path.join(name);
+            if self.disk.look(&path)?.is_some() && (targets.is_input)(&path) {
+                return Err(FolderError::Input(path));
+            }
+        }
+        let part = self.path.join(PART);
+        match self.disk.look(&part)? {
+            Some(_) if (targets.is_input)(&part) => return Err(FolderError::Input(part)),
+            None => {}
+            Some(Entry::File(_)) if claims.rows => {}
+            Some(_) => return Err(FolderError::Foreign(part)),
+        }
+        if owned::is_foreign_unfinished(&self.disk, &self.path)? {
+            return Err(FolderError::Foreign(self.path.join(UNFINISHED)));
+        }
+        if targets.checkpoints && checkpoint == Checkpoint::Foreign {
+            return Err(FolderError::Foreign(checkpoint_folder(&self.path)));
+        }
+        Ok(())
     }
 
     /// The folder.
@@ -87,38 +186,57 @@ impl Folder {
         &self.path
     }
 
-    /// Opens the file that the rows stream to.
+    /// The file system that it is on.
+    pub fn disk(&self) -> &Disk {
+        &self.disk
+    }
+
+    /// Whether another run is kept out: false where the file system knows no locks.
+    pub fn is_locked(&self) -> bool {
+        self.lock.is_some()
+    }
+
+    /// The files of this run, as names in the folder.
+    pub fn files(&self) -> &[String] {
+        &self.files
+    }
+
+    /// Whether the results of an earlier run are there.
+    pub fn has_earlier(&self) -> bool {
+        !self.last.is_empty()
+    }
+
+    /// How the run ended, as its run.json says, whose files were put in place when the folder was opened; `None` where none waited.
+    pub fn settled(&self) -> Option<&str> {
+        self.settled.as_deref()
+    }
+
+    /// How the last run ended, as its run.json says; `None` where none has.
     ///
     /// # Errors
     /// The file system's.
-    pub fn open_rows(&self) -> io::Result<File> {
-        File::create(self.path.join(PART))
+    pub(crate) fn status(&self) -> io::Result<Option<String>> {
+        Ok(owned::record(&self.disk, &self.path)?.map(|record| record.status))
+    }
+
+    /// Makes the file that the rows stream to.
+    pub(crate) fn create_rows(&self) -> io::Result<DiskFile> {
+        self.disk.create(&self.path.join(PART))
     }
 
     /// Opens the file of the rows to go on with it.
-    ///
-    /// # Errors
-    /// The file system's.
-    pub(crate) fn reopen_rows(&self) -> io::Result<File> {
-        File::options().read(true).write(true).create(true).truncate(false).open(self.path.join(PART))
+    pub(crate) fn reopen_rows(&self) -> io::Result<DiskFile> {
+        self.disk.edit(&self.path.join(PART))
     }
 
-    /// Gives the rows their name; to be called at every end of a run.
-    ///
-    /// # Errors
-    /// The file system's.
-    pub fn close_rows(&mut self) -> io::Result<()> {
-        fs::rename(self.path.join(PART), self.path.join(RESULTS))?;
-        self.files.push(RESULTS.into());
-        Ok(())
+    /// Where rows may stand that were written so far: in the file that they stream to, or in that of an interrupted run.
+    pub(crate) fn rows(&self) -> [PathBuf; 2] {
+        [PART, RESULTS].map(|name| self.path.join(name))
     }
 
-    /// Gives the rows their name after an error: what stands behind the last complete row is cut off.
-    ///
-    /// # Errors
-    /// The file system's.
-    pub fn rescue_rows(&mut self) -> io::Result<()> {
-        let mut file = File::options().read(true).write(true).open(self.path.join(PART))?;
+    /// Cuts off what stands behind the last complete row.
+    pub(crate) fn cut_rows(&self) -> io::Result<()> {
+        let mut file = self.reopen_rows()?;
         let mut end = file.seek(io::SeekFrom::End(0))?;
         let mut piece = [0; 1 << 14];
         while end > 0 {
@@ -132,228 +250,96 @@ impl Folder {
             }
             end = from;
         }
-        file.set_len(end)?;
-        self.close_rows()
+        file.set_length(end)
     }
 
-    /// Writes the rows, which are complete, in another format in place of results.csv; their first `swept` columns may
-    /// hold texts.
+    /// Writes the rows, which are complete, in another format; their first `swept` columns may hold texts.
     ///
     /// # Errors
-    /// The file system's; results.csv is there then.
+    /// The file system's.
     pub fn convert_rows(&mut self, format: Format, columns: &[Column], swept: usize) -> io::Result<()> {
         if format == Format::Csv {
             return Ok(());
         }
-        let (rows, name) = (self.path.join(RESULTS), format!("results.{}", format.name()));
-        let part = self.path.join(format!("{name}.part"));
-        if let Err(error) = format::convert(&rows, &part, format, columns, swept) {
-            // What keeps it from being written may keep it from being removed; the first error is the one to tell.
-            let _ = remove_if_there(&part);
-            return Err(error);
-        }
-        fs::rename(&part, self.path.join(&name))?;
+        let name = format!("results.{}", format.name());
+        let (rows, new) = (self.path.join(PART), waiting(&self.path, &name));
+        format::convert(&self.disk, &rows, &new, format, columns, swept)?;
         self.files.iter_mut().filter(|file| *file == RESULTS).for_each(|file| file.clone_from(&name));
-        remove_if_there(&rows)
-    }
-
-    /// Opens the file of the statistics.
-    ///
-    /// # Errors
-    /// The file system's.
-    pub fn open_summary(&self) -> io::Result<File> {
-        File::create(self.path.join(SUMMARY_PART))
-    }
-
-    /// Gives the statistics their name.
-    ///
-    /// # Errors
-    /// The file system's.
-    pub fn close_summary(&mut self) -> io::Result<()> {
-        fs::rename(self.path.join(SUMMARY_PART), self.path.join(SUMMARY))?;
-        self.files.push(SUMMARY.into());
         Ok(())
     }
 
-    /// Writes a figure's file into `figures/`.
+    /// Makes the file of the statistics.
+    pub(crate) fn create_summary(&mut self) -> io::Result<DiskFile> {
+        self.create(SUMMARY)
+    }
+
+    /// Writes a figure's file for `figures/`.
     ///
     /// # Errors
     /// The file system's.
     pub fn write_figure(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
-        fs::create_dir_all(self.path.join(FIGURES))?;
-        self.write(&format!("{FIGURES}/{name}"), bytes)
+        self.disk.create_folder(&self.path.join(UNFINISHED).join(FIGURES))?;
+        self.create(&format!("{FIGURES}/{name}"))?.write_all(bytes)
     }
 
-    /// Writes run.json, with the list of all files.
+    /// Writes run.json, with the list of all files, and puts the files in the place of the last run's, all or none; with `goes_on` the
+    /// checkpoint stays.
     ///
     /// # Errors
-    /// The file system's.
-    pub fn write_run(&mut self, mut run: serde_json::Map<String, serde_json::Value>) -> io::Result<()> {
-        self.files.push(RUN.into());
+    /// [`FolderError::Pending`] where that was begun and cannot be finished: [`Self::open`] does it later. The file system's, where
+    /// the last run's files are as they were.
+    pub fn put(
+        &mut self,
+        mut run: serde_json::Map<String, serde_json::Value>,
+        goes_on: bool,
+    ) -> Result<(), FolderError> {
+        let mut file = self.create(RUN)?;
         run.insert("files".into(), self.files.clone().into());
         let mut text = serde_json::to_string_pretty(&run).map_err(io::Error::other)?;
         text.push('\n');
-        fs::write(self.path.join(RUN), text)
-    }
-
-    fn write(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
-        fs::write(self.path.join(name), bytes)?;
-        self.files.push(name.into());
-        Ok(())
-    }
-}
-
-/// Removes the last run's files by their fixed names, and the figures that its run.json lists.
-fn take_away(path: &Path, fixed: &[&str]) -> io::Result<()> {
-    let listed = fs::read_to_string(path.join(RUN)).ok();
-    let listed = listed.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
-    let listed = listed.as_ref().and_then(|run| run["files"].as_array());
-    let listed = listed.into_iter().flatten().filter_map(|name| name.as_str());
-    let figures = listed.filter(|name| is_figure(name));
-    figures.chain(fixed.iter().copied()).try_for_each(|name| remove_if_there(&path.join(name)))
-}
-
-/// Removes a file; one that is not there is no error.
-pub(crate) fn remove_if_there(path: &Path) -> io::Result<()> {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
-    }
-}
-
-/// The folder of the checkpoint among the results in `path`.
-pub(crate) fn checkpoint_folder(path: &Path) -> PathBuf {
-    path.join(CHECKPOINT)
-}
-
-/// How the last run in a folder ended, as its run.json says.
-pub(crate) fn last_status(path: &Path) -> Option<String> {
-    let text = fs::read_to_string(path.join(RUN)).ok()?;
-    let run: serde_json::Value = serde_json::from_str(&text).ok()?;
-    run["status"].as_str().map(str::to_owned)
-}
-
-/// Removes the checkpoint among the results in `path`, its head first: without it nothing is taken for a checkpoint.
-pub(crate) fn remove_checkpoint(path: &Path) -> io::Result<()> {
-    let folder = checkpoint_folder(path);
-    let Ok(entries) = fs::read_dir(&folder) else { return Ok(()) };
-    remove_if_there(&folder.join(HEAD))?;
-    for entry in entries {
-        let entry = entry?;
-        if entry.file_name().to_str().is_some_and(is_of_checkpoint) {
-            remove_if_there(&entry.path())?;
+        file.write_all(text.as_bytes())?;
+        let (files, last) = (self.files.clone(), self.last.clone());
+        let commit = Commit { files, last, drop_checkpoint: self.checkpoints && !goes_on };
+        if let Err(error) = commit.write(&self.disk, &self.path) {
+            // Its last call may have failed where it is there all the same.
+            return match Commit::read(&self.disk, &self.path) {
+                Ok(None) => Err(error.into()),
+                _ => Err(self.pending(error.into())),
+            };
         }
+        self.carry_out(&commit)
     }
-    match fs::remove_dir(&folder) {
-        // Somebody else's files stay.
-        Err(error) if error.kind() != io::ErrorKind::DirectoryNotEmpty => Err(error),
-        _ => Ok(()),
+
+    fn carry_out(&self, commit: &Commit) -> Result<(), FolderError> {
+        commit.carry_out(&self.disk, &self.path).map_err(|error| self.pending(error))
     }
-}
 
-/// Whether a file in the folder of the checkpoint is one of its own.
-fn is_of_checkpoint(name: &str) -> bool {
-    let name = name.strip_suffix(".new").unwrap_or(name);
-    let of_case = |name: &str| {
-        let mut ends = CASE_ENDINGS.iter().filter_map(|ending| name.strip_suffix(ending));
-        ends.any(|digits| !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()))
-    };
-    [HEAD, JOURNAL].contains(&name) || name.strip_prefix(CASE).is_some_and(of_case)
-}
+    fn pending(&self, source: FolderError) -> FolderError {
+        FolderError::Pending { folder: self.path.clone(), source: Box::new(source) }
+    }
 
-/// Whether a name listed in run.json is that of a figure: a file right in `figures/`. Nothing else is taken away by name.
-fn is_figure(name: &str) -> bool {
-    let path = Path::new(name);
-    let mut components = path.components();
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    components.next() == Some(Component::Normal(FIGURES.as_ref()))
-        && matches!(components.next(), Some(Component::Normal(_)))
-        && components.next().is_none()
-        && ending.is_some_and(|ending| FIGURE_ENDINGS.contains(&ending))
+    /// Takes away what the run wrote; the last run's results stay.
+    ///
+    /// # Errors
+    /// The file system's.
+    pub fn discard(&mut self) -> io::Result<()> {
+        self.files.clear();
+        if self.checkpoints {
+            owned::remove_checkpoint(&self.disk, &self.path)?;
+        }
+        self.disk.remove(&self.path.join(PART))?;
+        owned::clear_unfinished(&self.disk, &self.path)
+    }
+
+    /// Makes a file that waits for its place.
+    fn create(&mut self, name: &str) -> io::Result<DiskFile> {
+        let file = self.disk.create(&waiting(&self.path, name))?;
+        if !self.files.iter().any(|file| file == name) {
+            self.files.push(name.to_owned());
+        }
+        Ok(file)
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_rerun_replaces_its_own_files_only() {
-        let temporary = tempfile::tempdir().unwrap();
-        let path = temporary.path().join("results");
-        let mut folder = Folder::prepare(&path).unwrap();
-        folder.open_rows().unwrap();
-        folder.close_rows().unwrap();
-        folder.write_figure("old.svg", b"<svg/>").unwrap();
-        folder.write_run(serde_json::Map::new()).unwrap();
-        fs::write(path.join("notes.txt"), "mine").unwrap();
-        fs::write(path.join("figures/mine.svg"), "mine").unwrap();
-
-        Folder::prepare(&path).unwrap();
-        assert!(path.join("notes.txt").exists() && path.join("figures/mine.svg").exists());
-        for gone in ["results.csv", "run.json", "figures/old.svg"] {
-            assert!(!path.join(gone).exists(), "{gone}");
-        }
-    }
-
-    #[test]
-    fn only_figures_are_taken_away_by_name() {
-        for good in ["figures/order.svg", "figures/a.b.png", "figures/figure-1.svg"] {
-            assert!(is_figure(good), "{good}");
-        }
-        for bad in [
-            "figures",
-            "figures/",
-            "figures/notes.txt",
-            "figures/.svg",
-            "figures/../a.svg",
-            "figures/sub/a.svg",
-            "figures/../../a.svg",
-            "../figures/a.svg",
-            "/figures/a.svg",
-            "/etc/a.svg",
-            "./figures/a.svg",
-            "a.svg",
-            "",
-        ] {
-            assert!(!is_figure(bad), "{bad}");
-        }
-    }
-
-    #[test]
-    fn a_record_from_elsewhere_harms_nothing() {
-        let temporary = tempfile::tempdir().unwrap();
-        let path = temporary.path().join("results");
-        fs::create_dir_all(path.join("figures/sub")).unwrap();
-        let outside = temporary.path().join("keep.svg");
-        let kept = [outside.clone(), path.join("figures/notes.txt"), path.join("figures/sub/a.svg")];
-        for file in &kept {
-            fs::write(file, "mine").unwrap();
-        }
-        for record in [
-            format!(r#"{{"files": ["figures/../../keep.svg", "../keep.svg", {outside:?}, "figures/notes.txt", 3]}}"#),
-            r#"{"files": ["figures/sub/a.svg", "figures/sub", "figures"]}"#.into(),
-            r#"{"files": "figures/notes.txt"}"#.into(),
-            "[]".into(),
-            "not JSON".into(),
-        ] {
-            fs::write(path.join(RUN), record).unwrap();
-            Folder::prepare(&path).unwrap();
-            assert!(kept.iter().all(|file| file.exists()));
-        }
-    }
-
-    #[test]
-    fn half_a_row_is_cut_off() {
-        let temporary = tempfile::tempdir().unwrap();
-        let long = "x".repeat(40_000);
-        for (written, kept) in
-            [("a\nb\nhal", "a\nb\n"), ("a\n", "a\n"), ("hal", ""), ("", ""), (&*format!("a\n{long}"), "a\n")]
-        {
-            let mut folder = Folder::prepare(temporary.path()).unwrap();
-            fs::write(temporary.path().join(PART), written).unwrap();
-            folder.rescue_rows().unwrap();
-            assert_eq!(fs::read_to_string(temporary.path().join(RESULTS)).unwrap(), kept);
-            assert!(!temporary.path().join(PART).exists());
-        }
-    }
-}
+mod tests;

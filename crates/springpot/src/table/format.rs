@@ -4,10 +4,10 @@
 //! there are the shortest text that reads back to the same bits, so that what is made of it at the end has the same
 //! bits too.
 
+use super::disk::Disk;
 use super::{Column, npz, parquet};
 use csv::ByteRecord;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Write as _};
 use std::path::Path;
 
@@ -58,6 +58,7 @@ pub(super) enum Kind {
 /// The rows of a CSV file that a run wrote.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
+    disk: &'a Disk,
     file: &'a Path,
     pub(super) columns: &'a [Column],
     pub(super) kinds: Vec<Kind>,
@@ -66,8 +67,8 @@ pub(super) struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// Looks at every row once; the first `swept` columns may hold texts.
-    fn survey(file: &'a Path, columns: &'a [Column], swept: usize) -> io::Result<Self> {
-        let mut rows = Self { file, columns, kinds: vec![Kind::Number; columns.len()], count: 0 };
+    fn survey(disk: &'a Disk, file: &'a Path, columns: &'a [Column], swept: usize) -> io::Result<Self> {
+        let mut rows = Self { disk, file, columns, kinds: vec![Kind::Number; columns.len()], count: 0 };
         let mut longest = vec![0; swept];
         let mut is_text = vec![false; swept];
         let mut count = 0;
@@ -89,7 +90,7 @@ impl<'a> Rows<'a> {
 
     /// Calls `visit` with every row.
     pub(super) fn visit(&self, visit: &mut dyn FnMut(&ByteRecord) -> io::Result<()>) -> io::Result<()> {
-        let file = BufReader::with_capacity(CHUNK, File::open(self.file)?);
+        let file = BufReader::with_capacity(CHUNK, self.disk.open(self.file)?);
         let mut reader = csv::Reader::from_reader(file);
         if reader.byte_headers().map_err(io::Error::from)?.len() != self.columns.len() {
             return Err(damaged());
@@ -119,18 +120,24 @@ fn damaged() -> io::Error {
 ///
 /// # Errors
 /// The file system's; [`io::ErrorKind::InvalidData`] where the rows are not those of `columns`.
-pub(super) fn convert(from: &Path, to: &Path, format: Format, columns: &[Column], swept: usize) -> io::Result<()> {
-    let rows = Rows::survey(from, columns, swept)?;
-    let mut file = BufWriter::with_capacity(CHUNK, File::create(to)?);
+pub(super) fn convert(
+    disk: &Disk,
+    from: &Path,
+    to: &Path,
+    format: Format,
+    columns: &[Column],
+    swept: usize,
+) -> io::Result<()> {
+    let rows = Rows::survey(disk, from, columns, swept)?;
+    let mut file = BufWriter::with_capacity(CHUNK, disk.create(to)?);
     match format {
         Format::Csv => {
-            io::copy(&mut File::open(from)?, &mut file)?;
+            io::copy(&mut disk.open(from)?, &mut file)?;
         }
         Format::Parquet => parquet::write(&rows, &mut file)?,
         Format::Npz => npz::write(&rows, &mut file)?,
     }
-    file.flush()?;
-    file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+    file.flush()
 }
 
 #[cfg(test)]
@@ -140,7 +147,7 @@ mod tests {
 
     #[test]
     fn what_is_no_table_of_a_run_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
+        let (folder, disk) = (tempfile::tempdir().unwrap(), Disk::default());
         let (from, to) = (folder.path().join("a.csv"), folder.path().join("b"));
         let columns = [Column::new("law", "", ""), Column::new("t", "s", "")];
         for format in [Format::Parquet, Format::Npz] {
@@ -154,11 +161,11 @@ mod tests {
                 ("law,t\nspr\"ing,0,1\n", false),
             ] {
                 fs::write(&from, text).unwrap();
-                let converted = convert(&from, &to, format, &columns, 1);
+                let converted = convert(&disk, &from, &to, format, &columns, 1);
                 assert_eq!(converted.is_ok(), good, "{format:?} {text:?} {converted:?}");
             }
             fs::write(&from, b"law,t\n\xff,0\n").unwrap();
-            assert!(convert(&from, &to, format, &columns, 1).is_err());
+            assert!(convert(&disk, &from, &to, format, &columns, 1).is_err());
         }
     }
 

@@ -1,6 +1,8 @@
 //! Results: columns with units, numbers as text, statistics.
 
 #[cfg(feature = "scenario")]
+pub mod disk;
+#[cfg(feature = "scenario")]
 pub mod folder;
 #[cfg(feature = "scenario")]
 mod format;

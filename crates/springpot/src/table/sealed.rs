@@ -1,12 +1,16 @@
 //! Files that are there as a whole or not at all, and whose damage is noticed.
 
+use super::disk::{Disk, DiskFile};
 use std::fmt;
-use std::fs::{self, File};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// The first line of a sealed file: who wrote it, in which format.
-const TAG: &str = concat!("springpot ", env!("CARGO_PKG_VERSION"), " checkpoint 2\n");
+/// The first line of a file of a checkpoint: who wrote it, in which format. Another build may round differently.
+pub(crate) const CHECKPOINT: &str =
+    concat!("springpot ", env!("CARGO_PKG_VERSION"), " checkpoint 3, build ", env!("SPRINGPOT_BUILD"), "\n");
+
+/// What every first line says of its file.
+const TAGGED: [&str; 2] = [" checkpoint ", " commit "];
 
 /// Longest first line that is looked at.
 const LONGEST_TAG: usize = 100;
@@ -58,35 +62,34 @@ impl fmt::Write for Fnv {
     }
 }
 
-/// Writes `bytes` to `path`. Whenever this is broken off, by the loss of power too, the file holds either these bytes or those before.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+/// Writes `bytes` to `path` behind the line `tag`. Whenever this is broken off, by the loss of power too, the file holds either these
+/// bytes or those before.
+pub(crate) fn write(disk: &Disk, path: &Path, tag: &str, bytes: &[u8]) -> io::Result<()> {
     let new = path.with_extension("new");
-    let mut file = File::create(&new)?;
-    file.write_all(TAG.as_bytes())?;
-    file.write_all(&frame(bytes)?)?;
-    file.write_all(bytes)?;
-    file.sync_all()?;
-    fs::rename(&new, path)?;
-    // The name is safe once the folder is; not every system opens folders.
-    if let Some(folder) = path.parent().and_then(|folder| File::open(folder).ok()) {
-        let _ = folder.sync_all();
-    }
-    Ok(())
+    let mut file = disk.create(&new)?;
+    file.write_all(&[tag.as_bytes(), &frame(bytes)?, bytes].concat())?;
+    file.sync()?;
+    disk.rename(&new, path)?;
+    path.parent().map_or(Ok(()), |folder| disk.sync_folder(folder))
 }
 
-/// The bytes that [`write`] wrote.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, SealError> {
-    let bytes = fs::read(path)?;
-    let Some(rest) = bytes.strip_prefix(TAG.as_bytes()) else {
-        let line = bytes.iter().take(LONGEST_TAG).position(|byte| *byte == b'\n').map(|end| &bytes[..end]);
-        let line = line.and_then(|line| std::str::from_utf8(line).ok());
-        let tag = line.filter(|line| line.starts_with("springpot ") && line.contains(" checkpoint "));
-        return Err(tag.map_or(SealError::Damaged, |tag| SealError::OtherVersion(tag.to_owned())));
+/// The bytes that [`write()`] wrote behind the line `tag`.
+pub(crate) fn read(disk: &Disk, path: &Path, tag: &str) -> Result<Vec<u8>, SealError> {
+    let bytes = disk.read(path)?;
+    let Some(rest) = bytes.strip_prefix(tag.as_bytes()) else {
+        return Err(first_line(&bytes).map_or(SealError::Damaged, |line| SealError::OtherVersion(line.to_owned())));
     };
     match take_record(&mut &*rest)? {
         Taken::Record(record) if record.len() + FRAME == rest.len() => Ok(record),
         _ => Err(SealError::Damaged),
     }
+}
+
+/// The first line of a sealed file, whoever sealed it; `None` where it is something else.
+pub(crate) fn first_line(bytes: &[u8]) -> Option<&str> {
+    let end = bytes.iter().take(LONGEST_TAG).position(|byte| *byte == b'\n')?;
+    let line = std::str::from_utf8(&bytes[..end]).ok()?;
+    (line.starts_with("springpot ") && TAGGED.iter().any(|word| line.contains(word))).then_some(line)
 }
 
 /// Length, its complement, and hash.
@@ -106,10 +109,12 @@ enum Taken {
     Record(Vec<u8>),
     /// Less than was to be written.
     Half,
+    /// Other bytes than were written.
+    Other,
     Nothing,
 }
 
-fn take_record(from: &mut impl Read) -> Result<Taken, SealError> {
+fn take_record(from: &mut impl Read) -> io::Result<Taken> {
     let mut frame = Vec::new();
     from.by_ref().take(FRAME as u64).read_to_end(&mut frame)?;
     if frame.len() < FRAME {
@@ -118,17 +123,14 @@ fn take_record(from: &mut impl Read) -> Result<Taken, SealError> {
     let number = |at: usize| u32::from_le_bytes([frame[at], frame[at + 1], frame[at + 2], frame[at + 3]]);
     let length = number(0);
     if length != !number(4) {
-        return Err(SealError::Damaged);
+        return Ok(Taken::Other);
     }
     let mut record = Vec::new();
     from.by_ref().take(length.into()).read_to_end(&mut record)?;
     if record.len() < length as usize {
         return Ok(Taken::Half);
     }
-    if Fnv::of(&record).to_le_bytes() != frame[8..] {
-        return Err(SealError::Damaged);
-    }
-    Ok(Taken::Record(record))
+    Ok(if Fnv::of(&record).to_le_bytes() == frame[8..] { Taken::Record(record) } else { Taken::Other })
 }
 
 /// Takes a record and its place.
@@ -137,35 +139,72 @@ type Visit<'a> = &'a mut dyn FnMut(u64, &[u8]) -> Result<(), SealError>;
 /// Records, one after the other.
 #[derive(Debug)]
 pub(crate) struct Journal {
-    file: File,
+    file: DiskFile,
     path: PathBuf,
+    disk: Disk,
+}
+
+/// A journal that was read, and is not yet gone on with.
+#[derive(Debug)]
+pub(crate) struct Recorded {
+    path: PathBuf,
+    /// Where its sound records end.
+    end: u64,
+}
+
+impl Recorded {
+    /// Hands every record and its place to `visit`, in their order. A last record that is not whole, or not what was written, as a kill
+    /// or a loss of power leaves it, counts as not there.
+    pub(crate) fn read(disk: &Disk, path: &Path, visit: Visit<'_>) -> Result<Self, SealError> {
+        let mut reader = BufReader::new(disk.open(path)?);
+        let mut end = 0;
+        loop {
+            match take_record(&mut reader)? {
+                Taken::Record(record) => {
+                    visit(end, &record)?;
+                    end += (FRAME + record.len()) as u64;
+                }
+                Taken::Nothing => break,
+                Taken::Half | Taken::Other => {
+                    reader.seek(SeekFrom::Start(end))?;
+                    let mut rest = Vec::new();
+                    reader.read_to_end(&mut rest)?;
+                    if holds_a_record(&rest[1..])? {
+                        return Err(SealError::Damaged);
+                    }
+                    break;
+                }
+            }
+        }
+        Ok(Self { path: path.to_owned(), end })
+    }
+
+    /// Goes on behind the last sound record; what stands there is cut off.
+    pub(crate) fn go_on(self, disk: &Disk) -> io::Result<Journal> {
+        let mut file = disk.edit(&self.path)?;
+        file.set_length(self.end)?;
+        file.seek(SeekFrom::Start(self.end))?;
+        Ok(Journal { file, path: self.path, disk: disk.clone() })
+    }
+}
+
+/// Whether a sound record of any length but 0 begins anywhere: then what stands before it is no torn end.
+fn holds_a_record(bytes: &[u8]) -> io::Result<bool> {
+    for at in 0..bytes.len() {
+        let Some(frame) = bytes.get(at..at + 8) else { break };
+        // Records that do not end in the file, and nearly all other places, are seen here.
+        let complements = (0..4).all(|k| frame[k] == !frame[k + 4]);
+        if complements && matches!(take_record(&mut &bytes[at..])?, Taken::Record(record) if !record.is_empty()) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 impl Journal {
     /// An empty journal.
-    pub(crate) fn create(path: &Path) -> io::Result<Self> {
-        File::create(path)?;
-        Ok(Self { file: File::options().append(true).open(path)?, path: path.to_owned() })
-    }
-
-    /// Hands every record and its place to `visit`, in their order. Half a record at the end, which a kill may leave, is cut off.
-    pub(crate) fn open(path: &Path, visit: Visit<'_>) -> Result<Self, SealError> {
-        let mut reader = BufReader::new(File::open(path)?);
-        let mut at = 0;
-        loop {
-            match take_record(&mut reader)? {
-                Taken::Record(record) => {
-                    visit(at, &record)?;
-                    at += (FRAME + record.len()) as u64;
-                }
-                Taken::Half => {
-                    File::options().write(true).open(path)?.set_len(at)?;
-                    break;
-                }
-                Taken::Nothing => break,
-            }
-        }
-        Ok(Self { file: File::options().append(true).open(path)?, path: path.to_owned() })
+    pub(crate) fn create(disk: &Disk, path: &Path) -> io::Result<Self> {
+        Ok(Self { file: disk.create(path)?, path: path.to_owned(), disk: disk.clone() })
     }
 
     /// Adds one record.
@@ -176,12 +215,12 @@ impl Journal {
 
     /// Waits until all records are safe from the loss of power.
     pub(crate) fn sync(&self) -> io::Result<()> {
-        self.file.sync_data()
+        self.file.sync()
     }
 
-    /// The record at a place that [`Self::open`] told.
+    /// The record at a place that [`Recorded::read`] told.
     pub(crate) fn record(&self, at: u64) -> Result<Vec<u8>, SealError> {
-        let mut file = File::open(&self.path)?;
+        let mut file = self.disk.open(&self.path)?;
         file.seek(SeekFrom::Start(at))?;
         match take_record(&mut file)? {
             Taken::Record(record) => Ok(record),
@@ -193,66 +232,80 @@ impl Journal {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn what_is_cut_or_changed_is_never_read() {
-        let folder = tempfile::tempdir().unwrap();
+        let (folder, disk) = (tempfile::tempdir().unwrap(), Disk::default());
         let path = folder.path().join("case-1");
-        write(&path, b"old").unwrap();
-        write(&path, b"the state of a run").unwrap();
-        assert_eq!(read(&path).unwrap(), b"the state of a run");
+        let write = |bytes: &[u8]| super::write(&disk, &path, CHECKPOINT, bytes).unwrap();
+        let read = || super::read(&disk, &path, CHECKPOINT);
+        write(b"old");
+        write(b"the state of a run");
+        assert_eq!(read().unwrap(), b"the state of a run");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
         let good = fs::read(&path).unwrap();
         for length in 0..good.len() {
             fs::write(&path, &good[..length]).unwrap();
-            assert!(matches!(read(&path), Err(SealError::Damaged)), "{length}");
+            assert!(matches!(read(), Err(SealError::Damaged)), "{length}");
         }
         for at in 0..good.len() {
             for bit in 0..8 {
                 let mut bad = good.clone();
                 bad[at] ^= 1 << bit;
                 fs::write(&path, &bad).unwrap();
-                let refused = matches!(read(&path), Err(SealError::Damaged | SealError::OtherVersion(_)));
+                let refused = matches!(read(), Err(SealError::Damaged | SealError::OtherVersion(_)));
                 assert!(refused, "byte {at}, bit {bit}");
             }
         }
         fs::write(&path, [&good[..], b"x"].concat()).unwrap();
-        assert!(matches!(read(&path), Err(SealError::Damaged)));
+        assert!(matches!(read(), Err(SealError::Damaged)));
         fs::write(&path, "springpot 99.1.0 checkpoint 7\nwhatever").unwrap();
-        assert!(matches!(read(&path), Err(SealError::OtherVersion(tag)) if tag == "springpot 99.1.0 checkpoint 7"));
+        assert!(matches!(read(), Err(SealError::OtherVersion(tag)) if tag == "springpot 99.1.0 checkpoint 7"));
+    }
+
+    /// What a journal holds; every record is found at its place again.
+    fn records(path: &Path) -> Result<Vec<Vec<u8>>, SealError> {
+        let (disk, mut found) = (Disk::default(), Vec::<(u64, Vec<u8>)>::new());
+        let recorded = Recorded::read(&disk, path, &mut |at, record| {
+            found.push((at, record.to_vec()));
+            Ok(())
+        })?;
+        let journal = recorded.go_on(&disk)?;
+        for (at, record) in &found {
+            assert_eq!(&journal.record(*at)?, record);
+        }
+        Ok(found.into_iter().map(|(_, record)| record).collect())
     }
 
     #[test]
-    fn half_a_record_is_cut_off_and_a_changed_one_is_noticed() {
-        let folder = tempfile::tempdir().unwrap();
+    fn a_torn_end_is_cut_off_and_a_changed_record_is_noticed() {
+        let (folder, disk) = (tempfile::tempdir().unwrap(), Disk::default());
         let path = folder.path().join("done");
-        let mut journal = Journal::create(&path).unwrap();
+        let mut journal = Journal::create(&disk, &path).unwrap();
         ["first", "", "third"].iter().for_each(|text| journal.append(text.as_bytes()).unwrap());
         let good = fs::read(&path).unwrap();
-        let records = |path: &Path| {
-            let mut found: Vec<(u64, Vec<u8>)> = Vec::new();
-            let journal = Journal::open(path, &mut |at, record| {
-                found.push((at, record.to_vec()));
-                Ok(())
-            })?;
-            for (at, record) in &found {
-                assert_eq!(&journal.record(*at)?, record);
-            }
-            Ok::<_, SealError>(found.into_iter().map(|(_, record)| record).collect::<Vec<_>>())
-        };
         assert_eq!(records(&path).unwrap(), [&b"first"[..], b"", b"third"]);
         for length in 0..good.len() {
-            fs::write(&path, &good[..length]).unwrap();
-            let whole = records(&path).unwrap();
-            assert!(whole.len() < 3);
-            Journal::open(&path, &mut |_, _| Ok(())).unwrap().append(b"new").unwrap();
-            assert_eq!(records(&path).unwrap(), [whole, vec![b"new".to_vec()]].concat());
+            // What is lost at the end is missing, or is zeros, or others follow it.
+            for (more, with) in [(0, 0), (good.len() - length, 0), (40, 0), (40, 0xff)] {
+                fs::write(&path, [&good[..length], &vec![with; more]].concat()).unwrap();
+                let whole = records(&path).unwrap();
+                assert!(whole.len() < 3, "{length} {more}");
+                assert!(whole.iter().zip([&b"first"[..], b"", b"third"]).all(|(found, wrote)| found == wrote));
+                Recorded::read(&disk, &path, &mut |_, _| Ok(())).unwrap().go_on(&disk).unwrap().append(b"new").unwrap();
+                assert_eq!(records(&path).unwrap(), [whole, vec![b"new".to_vec()]].concat());
+            }
         }
+        let last = good.len() - FRAME - "third".len();
         for at in 0..good.len() {
             let mut bad = good.clone();
             bad[at] ^= 0x10;
             fs::write(&path, &bad).unwrap();
-            assert!(matches!(records(&path), Err(SealError::Damaged)), "byte {at}");
+            match records(&path) {
+                Err(SealError::Damaged) => assert!(at < last, "byte {at}"),
+                found => assert!(at >= last && found.unwrap().len() == 2, "byte {at}"),
+            }
         }
     }
 }

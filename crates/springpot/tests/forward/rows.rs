@@ -2,7 +2,8 @@
 
 use crate::support::{cases, every, falling};
 use springpot::sweep::{self, Layout, Options};
-use springpot::table::folder::Folder;
+use springpot::table::disk::Disk;
+use springpot::table::folder::{Folder, Targets};
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 #[test]
@@ -20,13 +21,14 @@ fn a_sweep_gives_the_same_bytes_for_any_number_of_threads() {
         .into_iter()
         .map(|jobs| {
             let out = tempfile::tempdir().unwrap();
-            let mut folder = Folder::prepare(out.path()).unwrap();
+            let mut folder = Folder::open(out.path(), Disk::default(), "a test").unwrap();
+            folder.begin(Targets { figures: &[], checkpoints: false, is_input: &|_| false }).unwrap();
             let (stop, rows) = (AtomicBool::new(false), AtomicU64::new(0));
             let outcome =
                 sweep::run(&cases, &layout, &mut folder, Options { jobs, stop: &stop, rows: &rows, checkpoints: None })
                     .unwrap();
             assert_eq!(outcome.done, 18);
-            std::fs::read(out.path().join("results.csv")).unwrap()
+            std::fs::read(out.path().join("results.csv.part")).unwrap()
         })
         .collect();
     assert!(results[0].len() > 10_000);

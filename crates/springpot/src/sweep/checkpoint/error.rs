@@ -1,6 +1,7 @@
 //! Why a run cannot go on.
 
 use crate::scenario::Refusals;
+use crate::table::folder::FolderError;
 use crate::table::sealed::SealError;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,14 +15,25 @@ pub enum CheckpointError {
     /// The run came to its end.
     #[error("the run in {} has come to its end: nothing is left to do", .0.display())]
     Finished(PathBuf),
+    /// The run had come to its end, and its results were put in their place just now.
+    #[error("the results in {} were complete, and are in their place now: nothing is left to do", results.display())]
+    Settled {
+        /// The folder.
+        results: PathBuf,
+        /// How it ended, as run.json says.
+        status: String,
+    },
+    /// The folder takes no results.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// A file of the checkpoint is not what was written.
     #[error("the checkpoint is damaged: {}", .0.display())]
     Damaged(PathBuf),
-    /// The rows end before the checkpoint, or begin differently.
+    /// The rows end before the checkpoint, or are not those that were written.
     #[error("the rows do not belong to the checkpoint: {}", .0.display())]
     Rows(PathBuf),
-    /// Another version wrote it.
-    #[error("the checkpoint was written by another version ({found}): {}", file.display())]
+    /// Another version or build wrote it.
+    #[error("the checkpoint was written by another version or build ({found}): {}", file.display())]
     OtherVersion {
         /// Its file.
         file: PathBuf,

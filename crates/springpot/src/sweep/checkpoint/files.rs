@@ -1,27 +1,28 @@
 //! The files of one case.
 
-use super::record::{bytes, digest};
+use super::record::{Stretch, bytes, digest};
 use super::rows::copy_aside;
 use super::{CaseDone, CaseState, Checkpoints};
 use crate::scenario::Plan;
 use crate::simulate::System;
-use crate::table::folder;
-use crate::table::sealed;
-use std::fs::File;
+use crate::table::disk::{Disk, DiskFile};
+use crate::table::sealed::{self, CHECKPOINT};
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
 
 /// What a case keeps while it is under way.
 #[derive(Debug)]
 pub(in crate::sweep) struct CaseFiles<'a> {
     checkpoints: &'a Checkpoints,
     index: usize,
+    /// All its rows.
+    rows: Stretch,
     /// Its rows, where its turn had not come when it began.
-    aside: Option<File>,
+    aside: Option<DiskFile>,
     /// Whether rows that an earlier run kept aside are still there.
     outdated: bool,
-    kept: Option<File>,
-    /// Rows in `kept`.
-    kept_rows: usize,
+    kept_file: Option<DiskFile>,
+    kept: Stretch,
     /// Time of the next checkpoint, s.
     next: f64,
     digest: Option<u64>,
@@ -30,9 +31,9 @@ pub(in crate::sweep) struct CaseFiles<'a> {
 impl<'a> CaseFiles<'a> {
     /// The files of a case that begins, in the first file of all rows or aside.
     pub(in crate::sweep) fn begin(checkpoints: &'a Checkpoints, index: usize, aside: bool) -> io::Result<Self> {
-        let aside = aside.then(|| File::create(checkpoints.file(index, ".rows"))).transpose()?;
-        let next = checkpoints.head.origin.every;
-        Ok(Self { checkpoints, index, aside, outdated: false, kept: None, kept_rows: 0, next, digest: None })
+        let aside = aside.then(|| checkpoints.disk.create(&checkpoints.file(index, ".rows"))).transpose()?;
+        let (rows, kept, next) = (Stretch::default(), Stretch::default(), checkpoints.head.origin.every);
+        Ok(Self { checkpoints, index, rows, aside, outdated: false, kept_file: None, kept, next, digest: None })
     }
 
     /// The files of a case that goes on from `state`; rows that were kept aside go to `take`, but for the first case, whose rows
@@ -44,15 +45,15 @@ impl<'a> CaseFiles<'a> {
     ) -> io::Result<Self> {
         let mut files = Self::begin(checkpoints, state.index, false)?;
         files.digest = Some(state.digest);
-        files.kept_rows = state.written.kept as usize;
+        (files.rows, files.kept) = (state.written.rows, state.written.kept);
         files.plan_next(state.run.t());
         if checkpoints.first() == Some(state.index) {
             files.outdated = state.written.aside;
             return Ok(files);
         }
         let path = checkpoints.file(state.index, ".rows");
-        copy_aside(&path, state.written.bytes, take)?;
-        files.aside = Some(cut(&path, state.written.bytes)?);
+        copy_aside(&checkpoints.disk, &path, state.written.rows, take)?;
+        files.aside = Some(cut(&checkpoints.disk, &path, state.written.rows.bytes)?);
         Ok(files)
     }
 
@@ -68,6 +69,7 @@ impl<'a> CaseFiles<'a> {
 
     /// Takes whole rows.
     pub(in crate::sweep) fn take(&mut self, text: &[u8]) -> io::Result<()> {
+        self.rows.take(text);
         self.aside.as_mut().map_or(Ok(()), |file| file.write_all(text))
     }
 
@@ -76,34 +78,33 @@ impl<'a> CaseFiles<'a> {
         *self.digest.get_or_insert_with(|| digest(plan, system))
     }
 
-    /// Writes the state of the case; `sync` makes the shared rows safe.
+    /// How far rows and values for figures have come; the values, given column by column, are written that far.
+    pub(in crate::sweep) fn written(&mut self, kept: Option<&[Vec<f64>]>) -> io::Result<(Stretch, Stretch)> {
+        self.write_kept(kept)?;
+        Ok((self.rows, self.kept))
+    }
+
+    /// Writes the state of the case, once all that it speaks of is safe; `sync` makes the shared rows so.
     pub(in crate::sweep) fn keep(
         &mut self,
         state: &CaseState,
-        kept: Option<&[Vec<f64>]>,
         sync: impl FnOnce() -> io::Result<()>,
     ) -> io::Result<()> {
-        self.write_kept(kept)?;
-        self.kept.iter().chain(&self.aside).try_for_each(File::sync_data)?;
-        self.checkpoints.growing().journal.sync()?;
+        self.kept_file.iter().chain(&self.aside).try_for_each(DiskFile::sync)?;
         sync()?;
-        sealed::write(&self.checkpoints.file(self.index, ""), &bytes(state)?)?;
+        self.checkpoints.growing().journal.sync()?;
+        let path = self.checkpoints.file(self.index, "");
+        sealed::write(&self.checkpoints.disk, &path, CHECKPOINT, &bytes(state)?)?;
         self.plan_next(state.run.t());
         self.drop_outdated()
     }
 
     /// Writes down that the case has ended; `sync` makes the shared rows safe and tells before which case all are there.
-    pub(in crate::sweep) fn end(
-        mut self,
-        done: &CaseDone,
-        kept: Option<&[Vec<f64>]>,
-        sync: impl FnOnce() -> io::Result<usize>,
-    ) -> io::Result<()> {
-        self.write_kept(kept)?;
-        self.kept.iter().try_for_each(File::sync_data)?;
+    pub(in crate::sweep) fn end(mut self, done: &CaseDone, sync: impl FnOnce() -> io::Result<usize>) -> io::Result<()> {
+        self.kept_file.iter().try_for_each(DiskFile::sync)?;
         self.checkpoints.add(done, sync)?;
         self.drop_outdated()?;
-        folder::remove_if_there(&self.checkpoints.file(self.index, ""))
+        self.checkpoints.disk.remove(&self.checkpoints.file(self.index, ""))
     }
 
     /// The first multiple of the spacing after t.
@@ -114,24 +115,24 @@ impl<'a> CaseFiles<'a> {
 
     fn drop_outdated(&mut self) -> io::Result<()> {
         if std::mem::take(&mut self.outdated) {
-            folder::remove_if_there(&self.checkpoints.file(self.index, ".rows"))?;
+            self.checkpoints.disk.remove(&self.checkpoints.file(self.index, ".rows"))?;
         }
         Ok(())
     }
 
     /// Adds the values of new rows, row by row.
     fn write_kept(&mut self, columns: Option<&[Vec<f64>]>) -> io::Result<()> {
-        let Some(columns) = columns else { return Ok(()) };
-        let rows = columns.first().map_or(0, Vec::len);
-        let new = self.kept_rows..rows;
+        let Some(columns) = columns.filter(|columns| !columns.is_empty()) else { return Ok(()) };
+        let new = (self.kept.bytes / (8 * columns.len() as u64)) as usize..columns[0].len();
         let values = new.flat_map(|row| columns.iter().map(move |column| column[row]));
         let text: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
-        if self.kept.is_none() {
+        if self.kept_file.is_none() {
             let path = self.checkpoints.file(self.index, ".kept");
-            self.kept = Some(cut(&path, (8 * columns.len() * self.kept_rows) as u64)?);
+            self.kept_file = Some(cut(&self.checkpoints.disk, &path, self.kept.bytes)?);
         }
-        self.kept_rows = rows;
-        self.kept.as_mut().map_or(Ok(()), |file| file.write_all(&text))
+        self.kept_file.as_mut().map_or(Ok(()), |file| file.write_all(&text))?;
+        self.kept.take(&text);
+        Ok(())
     }
 }
 
@@ -142,31 +143,35 @@ impl Checkpoints {
         done: &CaseDone,
         take: &mut dyn FnMut(&[u8]) -> io::Result<()>,
     ) -> io::Result<()> {
-        copy_aside(&self.file(done.index, ".rows"), done.written.bytes, take)
+        copy_aside(&self.disk, &self.file(done.index, ".rows"), done.written.rows, take)
     }
 
-    /// The values of `rows` rows that a case kept for figures, column by column.
-    pub(in crate::sweep) fn kept(&self, case: usize, rows: u64, columns: usize) -> io::Result<Vec<Vec<f64>>> {
-        let mut kept = vec![Vec::with_capacity(rows as usize); columns];
-        if rows == 0 || columns == 0 {
-            return Ok(kept);
+    /// The values that a case kept for figures, column by column.
+    pub(in crate::sweep) fn kept(&self, case: usize, kept: Stretch, columns: usize) -> io::Result<Vec<Vec<f64>>> {
+        let rows = if columns == 0 { 0 } else { kept.bytes / (8 * columns as u64) };
+        let mut values = vec![Vec::with_capacity(rows as usize); columns];
+        if rows == 0 {
+            return Ok(values);
         }
-        let mut file = io::BufReader::new(File::open(self.file(case, ".kept"))?);
+        let mut file = io::BufReader::new(self.disk.open(&self.file(case, ".kept"))?);
         let mut value = [0; 8];
         for _ in 0..rows {
-            for column in &mut kept {
+            for column in &mut values {
                 file.read_exact(&mut value)?;
                 column.push(f64::from_le_bytes(value));
             }
         }
-        Ok(kept)
+        Ok(values)
     }
 }
 
 /// A file that is to grow from its first `bytes` on.
-fn cut(path: &std::path::Path, bytes: u64) -> io::Result<File> {
-    let mut file = File::options().write(true).create(true).truncate(false).open(path)?;
-    file.set_len(bytes)?;
-    file.seek(SeekFrom::End(0))?;
+fn cut(disk: &Disk, path: &Path, bytes: u64) -> io::Result<DiskFile> {
+    if bytes == 0 {
+        return disk.create(path);
+    }
+    let mut file = disk.edit(path)?;
+    file.set_length(bytes)?;
+    file.seek(SeekFrom::Start(bytes))?;
     Ok(file)
 }

@@ -2,8 +2,9 @@
 //!
 //! In the folder `checkpoint/` of the results: `run`, where the run comes from; `done`, a journal of the cases that have ended; and
 //! for each case under way `case-N`, its state, with `case-N.kept`, its values for figures, and `case-N.rows`, its rows where it began
-//! before its turn in results.csv had come. `run` and `case-N` are replaced as a whole; the others only grow, and the state says how
-//! much of them belongs to it. Numbers keep their bits, and everything but rows and kept values carries a hash.
+//! before its turn in results.csv had come. `run` and `case-N` are replaced as a whole; the others only grow, and states and journal say
+//! how much of them, and of the rows, belongs to them, and its hash. Numbers keep their bits, and everything carries a hash. Rows and kept
+//! values are safe from the loss of power before a state speaks of them.
 
 mod error;
 mod files;
@@ -19,12 +20,12 @@ pub(super) use record::{CaseDone, CaseState, Written};
 use super::layout::Layout;
 use crate::scenario::{Cases, Plan};
 use crate::simulate::System;
-use crate::table::folder::{self, CASE, Folder, HEAD, JOURNAL, checkpoint_folder};
-use crate::table::sealed::{self, Journal, SealError};
+use crate::table::disk::Disk;
+use crate::table::folder::{CASE, Folder, HEAD, JOURNAL, Targets, checkpoint_folder};
+use crate::table::sealed::{self, CHECKPOINT, Journal, Recorded, SealError};
 use error::at;
-use record::{Head, bytes, digest, digest_of, value};
+use record::{Head, Stretch, bytes, digest, digest_of, value};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -36,6 +37,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// The checkpoint of a run.
 #[derive(Debug)]
 pub struct Checkpoints {
+    disk: Disk,
     /// The folder of the results.
     results: PathBuf,
     head: Head,
@@ -66,29 +68,36 @@ struct Earlier {
 #[derive(Debug, Clone, Copy)]
 struct Ended {
     at: u64,
-    bytes: u64,
+    rows: Stretch,
     aside: bool,
-    kept: u64,
+    kept: Stretch,
 }
 
 /// A run that has not come to its end.
 #[derive(Debug)]
 pub struct Unfinished {
-    results: PathBuf,
+    folder: Folder,
     head: Head,
 }
 
 impl Unfinished {
-    /// Looks for a checkpoint among the results in a folder.
+    /// Looks for a checkpoint among the results in a folder, which is locked for `holder` as [`Folder::open`] does.
     ///
     /// # Errors
-    /// [`CheckpointError`] where there is none that this version can read.
-    pub fn read(results: &Path) -> Result<Self, CheckpointError> {
+    /// [`CheckpointError`] where there is none that this build can read.
+    pub fn read(results: &Path, disk: Disk, holder: &str) -> Result<Self, CheckpointError> {
+        if !disk.is_folder(results) {
+            return Err(CheckpointError::Missing(results.to_owned()));
+        }
+        let folder = Folder::open(results, disk, holder)?;
         let file = checkpoint_folder(results).join(HEAD);
-        match sealed::read(&file).and_then(|bytes| value(&bytes)) {
-            Ok(head) => Ok(Self { results: results.to_owned(), head }),
+        match sealed::read(folder.disk(), &file, CHECKPOINT).and_then(|bytes| value(&bytes)) {
+            Ok(head) => Ok(Self { folder, head }),
             Err(SealError::File(error)) if error.kind() == io::ErrorKind::NotFound => {
-                let ended = folder::last_status(results).is_some_and(|status| status != "interrupted");
+                if let Some(status) = folder.settled() {
+                    return Err(CheckpointError::Settled { results: results.to_owned(), status: status.to_owned() });
+                }
+                let ended = folder.status().map_err(at(results))?.is_some_and(|status| status != "interrupted");
                 let why = if ended { CheckpointError::Finished } else { CheckpointError::Missing };
                 Err(why(results.to_owned()))
             }
@@ -99,6 +108,11 @@ impl Unfinished {
     /// Where it comes from.
     pub fn origin(&self) -> &Origin {
         &self.head.origin
+    }
+
+    /// The folder of the results.
+    pub fn folder(&self) -> &Folder {
+        &self.folder
     }
 
     /// Reads how far it came, and cuts its rows back to there; `cases` are those of its origin, `first` plan and system of the first
@@ -112,59 +126,79 @@ impl Unfinished {
         (plan, system): (&Plan, &System),
         layout: &Layout,
         every: Option<f64>,
+        targets: Targets<'_>,
     ) -> Result<(Checkpoints, Folder), CheckpointError> {
-        let Self { results, mut head } = self;
-        let changed = |what: String| CheckpointError::OtherScenario { what };
-        let files = || format!("a file that {} names", head.origin.typed);
+        let Self { mut folder, mut head } = self;
+        let (disk, results) = (folder.disk().clone(), folder.path().to_owned());
         if head.cases != cases.len() || head.digest != digest(plan, system) {
-            return Err(changed(files()));
+            return Err(changed(&head));
         }
-        let folder = checkpoint_folder(&results);
         let mut earlier = Earlier::default();
-        let file = folder.join(JOURNAL);
-        let journal = Journal::open(&file, &mut |at, record| {
+        let file = checkpoint_folder(&results).join(JOURNAL);
+        let journal = Recorded::read(&disk, &file, &mut |at, record| {
             let CaseDone { index, written, .. } = value(record)?;
             earlier.wall = earlier.wall.max(written.wall_of_run);
-            let Written { bytes, aside, kept, .. } = written;
-            earlier.done.insert(index, Ended { at, bytes, aside, kept });
+            let Written { rows, aside, kept, .. } = written;
+            earlier.done.insert(index, Ended { at, rows, aside, kept });
             Ok(())
         });
         let journal = journal.map_err(|error| CheckpointError::of(&file, error))?;
-        let (mut found, mut states) = (Vec::new(), BTreeMap::new());
-        for entry in fs::read_dir(&folder).map_err(at(&folder))? {
-            let file = entry.map_err(at(&folder))?.path();
-            let name = file.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_prefix(CASE));
-            let Some(index) = name.and_then(|digits| digits.parse::<usize>().ok()) else { continue };
-            found.push((index, file.clone()));
-            if earlier.done.contains_key(&index) {
-                continue;
-            }
-            let state = sealed::read(&file).and_then(|bytes| value::<CaseState>(&bytes));
-            let state = state.map_err(|error| CheckpointError::of(&file, error))?;
-            if state.index != index || index >= head.cases {
-                return Err(CheckpointError::Damaged(file));
-            }
-            let digest = if index == 0 { Some(head.digest) } else { digest_of(cases, index) };
-            if digest != Some(state.digest) {
-                return Err(changed(files()));
-            }
-            earlier.wall = earlier.wall.max(state.written.wall_of_run);
-            states.insert(index, state);
-        }
-        let restored = rows::restore(&results, &mut earlier, &mut states, layout)?;
-        for (index, file) in found {
-            if !states.contains_key(&index) {
-                folder::remove_if_there(&file).map_err(at(&file))?;
-            }
+        let (mut states, outdated) = under_way(&disk, &results, &head, cases, &mut earlier)?;
+        let sound = rows::survey(&folder, &mut earlier, &mut states, layout)?;
+
+        folder.go_on(targets)?;
+        rows::restore(&folder, &sound, layout).map_err(at(&results))?;
+        let journal = journal.go_on(&disk).map_err(at(&file))?;
+        for index in outdated.into_iter().filter(|index| !states.contains_key(index)) {
+            let file = file_of(&results, index, "");
+            disk.remove(&file).map_err(at(&file))?;
         }
         if let Some(every) = every.filter(|every| *every != head.origin.every) {
             head.origin.every = every;
-            let file = folder.join(HEAD);
-            let written = bytes(&head).and_then(|bytes| sealed::write(&file, &bytes));
+            let file = checkpoint_folder(&results).join(HEAD);
+            let written = bytes(&head).and_then(|bytes| sealed::write(&disk, &file, CHECKPOINT, &bytes));
             written.map_err(at(&file))?;
         }
-        Ok((Checkpoints::new(results, head, journal, earlier, states), restored))
+        Ok((Checkpoints::new(disk, results, head, journal, earlier, states), folder))
     }
+}
+
+/// The states of cases under way, and all cases that have the file of one.
+type UnderWay = (BTreeMap<usize, CaseState>, Vec<usize>);
+
+fn under_way(
+    disk: &Disk,
+    results: &Path,
+    head: &Head,
+    cases: &Cases,
+    earlier: &mut Earlier,
+) -> Result<UnderWay, CheckpointError> {
+    let folder = checkpoint_folder(results);
+    let (mut states, mut found) = (BTreeMap::new(), Vec::new());
+    for name in disk.list(&folder).map_err(at(&folder))? {
+        let Some(index) = name.strip_prefix(CASE).and_then(|digits| digits.parse::<usize>().ok()) else { continue };
+        let file = folder.join(&name);
+        found.push(index);
+        if earlier.done.contains_key(&index) {
+            continue;
+        }
+        let state = sealed::read(disk, &file, CHECKPOINT).and_then(|bytes| value::<CaseState>(&bytes));
+        let state = state.map_err(|error| CheckpointError::of(&file, error))?;
+        if state.index != index || index >= head.cases {
+            return Err(CheckpointError::Damaged(file));
+        }
+        let digest = if index == 0 { Some(head.digest) } else { digest_of(cases, index) };
+        if digest != Some(state.digest) {
+            return Err(changed(head));
+        }
+        earlier.wall = earlier.wall.max(state.written.wall_of_run);
+        states.insert(index, state);
+    }
+    Ok((states, found))
+}
+
+fn changed(head: &Head) -> CheckpointError {
+    CheckpointError::OtherScenario { what: format!("a file that {} names", head.origin.typed) }
 }
 
 impl Checkpoints {
@@ -173,17 +207,19 @@ impl Checkpoints {
     /// # Errors
     /// The file system's.
     pub fn begin(folder: &Folder, origin: Origin, cases: &Cases, plan: &Plan, system: &System) -> io::Result<Self> {
-        let results = folder.path();
-        let folder = checkpoint_folder(results);
-        fs::create_dir_all(&folder)?;
-        let journal = Journal::create(&folder.join(JOURNAL))?;
+        let (disk, results) = (folder.disk().clone(), folder.path().to_owned());
+        let folder = checkpoint_folder(&results);
+        disk.create_folder(&folder)?;
+        let journal = Journal::create(&disk, &folder.join(JOURNAL))?;
         let head = Head { origin, cases: cases.len(), digest: digest(plan, system) };
         // Last, since it is what makes the others a checkpoint.
-        sealed::write(&folder.join(HEAD), &bytes(&head)?)?;
-        Ok(Self::new(results.to_owned(), head, journal, Earlier::default(), BTreeMap::new()))
+        sealed::write(&disk, &folder.join(HEAD), CHECKPOINT, &bytes(&head)?)?;
+        disk.sync_folder(&results)?;
+        Ok(Self::new(disk, results, head, journal, Earlier::default(), BTreeMap::new()))
     }
 
     fn new(
+        disk: Disk,
         results: PathBuf,
         head: Head,
         journal: Journal,
@@ -191,15 +227,7 @@ impl Checkpoints {
         states: BTreeMap<usize, CaseState>,
     ) -> Self {
         let journal = Growing { journal, synced: Instant::now(), cleared: 0 };
-        Self { results, head, journal: Mutex::new(journal), states: Mutex::new(states), earlier }
-    }
-
-    /// Removes the checkpoint, once the run has come to its end and its results are written.
-    ///
-    /// # Errors
-    /// The file system's.
-    pub fn remove(self) -> io::Result<()> {
-        folder::remove_checkpoint(&self.results)
+        Self { disk, results, head, journal: Mutex::new(journal), states: Mutex::new(states), earlier }
     }
 
     /// The first case that has not ended, where an earlier run goes on: results.csv ends with its rows.
@@ -239,7 +267,7 @@ impl Checkpoints {
         let cleared = growing.cleared;
         growing.cleared = cleared.max(safe);
         drop(growing);
-        (cleared..safe).try_for_each(|case| folder::remove_if_there(&self.file(case, ".rows")))
+        (cleared..safe).try_for_each(|case| self.disk.remove(&self.file(case, ".rows")))
     }
 
     fn file(&self, case: usize, ending: &str) -> PathBuf {
@@ -254,9 +282,4 @@ impl Checkpoints {
 /// A file of one case.
 fn file_of(results: &Path, case: usize, ending: &str) -> PathBuf {
     checkpoint_folder(results).join(format!("{CASE}{case}{ending}"))
-}
-
-/// Its length; 0 where it is not there.
-fn length(file: &Path) -> u64 {
-    fs::metadata(file).map_or(0, |file| file.len())
 }

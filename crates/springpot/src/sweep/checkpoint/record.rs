@@ -39,15 +39,32 @@ pub(super) struct Head {
     pub(super) digest: u64,
 }
 
+/// A beginning of a file, or a part of one: how long it is, and what its bytes are.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(in crate::sweep) struct Stretch {
+    pub(in crate::sweep) bytes: u64,
+    /// CRC-32 of the bytes.
+    pub(in crate::sweep) sum: u32,
+}
+
+impl Stretch {
+    /// The stretch with `bytes` behind it.
+    pub(in crate::sweep) fn take(&mut self, bytes: &[u8]) {
+        let mut hasher = crc32fast::Hasher::new_with_initial_len(self.sum, self.bytes);
+        hasher.update(bytes);
+        *self = Self { bytes: self.bytes + bytes.len() as u64, sum: hasher.finalize() };
+    }
+}
+
 /// How far a case has written.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(in crate::sweep) struct Written {
-    /// Bytes of its rows.
-    pub(in crate::sweep) bytes: u64,
+    /// Its rows.
+    pub(in crate::sweep) rows: Stretch,
     /// Whether its rows are in a file of their own too, since its turn had not come when it began.
     pub(in crate::sweep) aside: bool,
-    /// Rows whose values are kept for figures.
-    pub(in crate::sweep) kept: u64,
+    /// Its values that are kept for figures.
+    pub(in crate::sweep) kept: Stretch,
     /// One for each selected column.
     pub(in crate::sweep) statistics: Vec<Statistics>,
     /// Wall time of the case.

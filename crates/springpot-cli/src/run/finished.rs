@@ -1,0 +1,162 @@
+//! What is said of a run that came to an end.
+
+use super::{NAMED_LIMITS, in_case, in_cases};
+use crate::numbers::{brief, count, rough, short};
+use crate::{diagnostic, terminal};
+use springpot::scenario::Cases;
+use springpot::sweep::{CaseResult, CasesPassing, Outcome, Status};
+use springpot::table::folder::Folder;
+use std::time::Duration;
+
+/// Failed cases that are named one by one.
+const NAMED: usize = 5;
+
+/// What a run that came to an end left behind.
+pub(super) struct Finished {
+    pub(super) cases: Cases,
+    pub(super) outcome: Outcome,
+    pub(super) folder: Folder,
+    pub(super) rows: u64,
+    /// End of the first case, s.
+    pub(super) end: f64,
+    /// Whether its results were put in place.
+    pub(super) is_put: bool,
+}
+
+impl Finished {
+    /// Which joints pass their limits, and where.
+    pub(super) fn warn(&self) {
+        let Self { cases, outcome, .. } = self;
+        let ran = outcome.done + outcome.failed;
+        let passing = &outcome.limits;
+        for CasesPassing { passed, case, cases: found } in passing.iter().take(NAMED_LIMITS) {
+            diagnostic::warning(in_cases(cases, ran, *case, *found, &passed.to_string()), None);
+        }
+        if let Some(more @ 1..) = passing.len().checked_sub(NAMED_LIMITS) {
+            let more = count(more, "more limit of a joint is", "more limits of joints are");
+            diagnostic::warning(format!("{more} passed; run.json says which"), None);
+        }
+    }
+
+    /// What failed, and how far an interrupted run came.
+    pub(super) fn complain(&self) {
+        let Self { cases, outcome, .. } = self;
+        let failed: Vec<&CaseResult> = outcome.cases.iter().filter(|c| c.error.is_some() && !c.interrupted).collect();
+        for case in failed.iter().take(NAMED) {
+            let error = case.error.as_deref().unwrap_or_default();
+            diagnostic::error(in_case(cases, case.index, error));
+        }
+        if outcome.failed > NAMED {
+            let more = count(outcome.failed - NAMED, "more case", "more cases");
+            diagnostic::error(format!("{more} failed; run.json says which and why"));
+        }
+        match outcome.status {
+            Status::Done => {}
+            Status::Failed => terminal::print_error(&format!("failed{}\n", self.how_far())),
+            Status::Interrupted => terminal::print_error(&format!("interrupted{}\n", self.how_far())),
+        }
+    }
+
+    /// How far a run came that did not come to its end; goes on after "failed" or "interrupted".
+    fn how_far(&self) -> String {
+        let Self { cases, outcome, end, .. } = self;
+        let stopped = outcome.cases.iter().filter(|case| case.error.is_some());
+        let reached = stopped.clone().map(|case| case.report.t_reached.unwrap_or(-1.0)).fold(f64::INFINITY, f64::min);
+        let rows = match reached {
+            t if t < 0.0 => "before the first row".to_owned(),
+            t => format!("after the row at t = {} s", short(t)),
+        };
+        if cases.len() == 1 {
+            return match outcome.cases.len() {
+                0 => " before anything was run".to_owned(),
+                _ => format!(" {rows} of {} s; all rows are complete", short(*end)),
+            };
+        }
+        let interrupted = stopped.filter(|case| case.interrupted).count();
+        let mut parts = vec![format!("{} of {} done", outcome.done, count(cases.len(), "case", "cases"))];
+        if outcome.failed > 0 {
+            parts.push(format!("{} failed", outcome.failed));
+        }
+        if interrupted > 0 {
+            parts.push(format!("{interrupted} stopped"));
+        }
+        if outcome.failed + interrupted > 0 {
+            parts.push(format!("the earliest {rows}"));
+        }
+        format!(": {}; all rows are complete", parts.join(", "))
+    }
+
+    /// The lines after a run: how much was done, how well the energy balance closes, where the results are.
+    pub(super) fn summary(&self, wall: Duration) -> String {
+        let Self { cases, outcome, folder, rows, .. } = self;
+        let mut work = Vec::new();
+        if cases.len() > 1 {
+            work.push(count(outcome.done + outcome.failed, "case", "cases"));
+        }
+        work.push(count(*rows, "row", "rows"));
+        if outcome.newton_iterations.is_none() {
+            work.push(count(outcome.steps, "step", "steps"));
+        }
+        let work = format!("{} in {:.2} s", work.join(", "), wall.as_secs_f64());
+        let width = terminal::stdout_width();
+        let mut lines = terminal::hanging("", &work, width);
+        lines.push_str(&terminal::hanging("energy   ", &self.balance(), width));
+        let figures = folder.files().iter().filter(|name| name.ends_with(".svg")).count();
+        let rows =
+            folder.files().iter().find(|name| name.starts_with("results.")).map_or("results.csv", String::as_str);
+        let mut files = format!("{rows}, summary.csv, run.json");
+        if figures > 0 {
+            let figures = count(figures, "figure", "figures").replace(' ', terminal::NO_BREAK);
+            files.push_str(&format!(", {figures} (SVG and PNG)"));
+        }
+        let path = folder.path().display();
+        let results = match (self.is_put, folder.has_earlier()) {
+            (true, _) => format!("{path}: {files}"),
+            (false, true) => format!("{path}: no row was written; the earlier ones are as they were"),
+            (false, false) => format!("{path}: no row was written, and nothing else"),
+        };
+        lines.push_str(&terminal::hanging("results  ", &results, width));
+        if let Some(iterations) = outcome.newton_iterations {
+            lines.push_str(&terminal::hanging("forward  ", &self.effort(iterations), width));
+        }
+        lines
+    }
+
+    /// What robots that move by themselves took: work, wall time, how much faster than life, and how well the energy balance closes.
+    fn effort(&self, iterations: u64) -> String {
+        let outcome = &self.outcome;
+        let wall = outcome.wall.as_secs_f64();
+        let residual = match outcome.energy_residual {
+            Some((residual, turned_over)) if turned_over > 0.0 => rough(residual / turned_over),
+            Some(_) => "0".to_owned(),
+            None => "unknown".to_owned(),
+        };
+        format!(
+            "{}, {} rejected, {}, {} s, {} times real time, energy residual {residual}",
+            count(outcome.steps, "step", "steps"),
+            outcome.rejected_steps,
+            count(iterations, "Newton iteration", "Newton iterations"),
+            brief(wall),
+            brief(if wall > 0.0 { outcome.simulated / wall } else { 0.0 }),
+        )
+    }
+
+    /// How well the energy balance closes, and where it is not known.
+    fn balance(&self) -> String {
+        let outcome = &self.outcome;
+        let known = match outcome.energy_residual {
+            Some((residual, turned_over)) if turned_over > 0.0 => {
+                format!("balance closes to {} of {} J turned over", rough(residual / turned_over), rough(turned_over))
+            }
+            Some(_) => "no energy was turned over".into(),
+            None => String::new(),
+        };
+        match &outcome.no_ledger {
+            None if known.is_empty() => "balance unknown: nothing was run".into(),
+            None => known,
+            Some((_, why)) if known.is_empty() => format!("balance unknown: {why}"),
+            Some((1, why)) => format!("{known}; unknown in 1 case: {why}"),
+            Some((unknown, why)) => format!("{known}; unknown in {unknown} cases: {why}"),
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! What the system tells a run: to stop, or that a file is as large as it may be.
+
+use springpot::simulate::Stop;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, OnceLock};
+
+/// The flag that Ctrl-C, SIGTERM and SIGHUP set; a second one ends the process at once.
+///
+/// The first call installs the handlers. Where that fails the signals still end the process, only less tidily.
+pub(crate) fn stop() -> &'static Stop {
+    static STOP: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+    STOP.get_or_init(|| {
+        let flag = Arc::new(AtomicBool::new(false));
+        let _ = install(&flag);
+        flag
+    })
+}
+
+#[cfg(unix)]
+fn install(stop: &Arc<AtomicBool>) -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    use signal_hook::flag;
+    // Writes beyond the largest size then fail, as they do on a full disk, and do not end the process without a word.
+    flag::register(SIGXFSZ, Arc::default())?;
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        // Under nohup a run outlives its terminal.
+        if signal == SIGHUP && is_ignored(SIGHUP) {
+            continue;
+        }
+        flag::register_conditional_shutdown(signal, INTERRUPTED, stop.clone())?;
+        flag::register(signal, stop.clone())?;
+    }
+    Ok(())
+}
+
+/// The exit code of a run that was interrupted.
+#[cfg(unix)]
+const INTERRUPTED: i32 = 130;
+
+/// Whether a signal is ignored, as far as the system tells: Linux does.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}
+
+#[cfg(not(unix))]
+fn install(stop: &Arc<AtomicBool>) -> Result<(), ctrlc::Error> {
+    let stop = stop.clone();
+    ctrlc::set_handler(move || {
+        if stop.swap(true, std::sync::atomic::Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    })
+}
