@@ -185,9 +185,9 @@ fn mistakes_name_the_line() {
         ("t,x\n", "x.csv: 0 rows of numbers"),
         ("t,x\n0,1\n", "x.csv: 1 rows of numbers"),
         ("t,x\n0,1\n1,2\n", "x.csv: 2 rows of numbers; at least three are needed"),
-        ("0,1\n1,2\n", "x.csv: the first row must name the columns"),
-        ("t;x\n0;1\n", "x.csv: columns must be separated by commas"),
-        ("t,y\n0,1\n", "x.csv: no column `x`"),
+        ("0,1\n1,2\n", "x.csv:1: the first row must name the columns"),
+        ("t;x\n0;1\n", "x.csv:1: columns must be separated by commas"),
+        ("t,y\n0,1\n", "x.csv:1: no column `x`"),
     ];
     for (text, message) in cases {
         place.write("x.csv", text);
