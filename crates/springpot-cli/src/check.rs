@@ -5,7 +5,7 @@ mod warnings;
 use crate::arguments::CheckOptions;
 use crate::numbers::{count, short};
 use crate::run::in_case;
-use crate::{Ending, diagnostic, printed, terminal};
+use crate::{Ending, diagnostic, plain, printed, terminal};
 use springpot::law::{Catalog, Entry};
 use springpot::scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan, json_schema};
 use springpot::simulate::{ElementStart, RowTimes, RunError, System};
@@ -108,7 +108,7 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, warnings: &W
     let mut text = String::new();
     let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, width));
     if let Some(title) = &plan.title {
-        line("title", title);
+        line("title", &plain::title(title));
     }
     line("robot", &robot(plan));
     for joint in followers(plan) {

@@ -5,6 +5,7 @@ mod streamed;
 mod whole;
 
 use crate::arguments::DerivativeOptions;
+use crate::plain::Plain;
 use crate::{Ending, diagnostic, printed};
 use sheet::{Layout, Sheet};
 use springpot::fractional::{DerivativeError, Method};
@@ -93,7 +94,11 @@ pub(crate) fn derivative(options: &DerivativeOptions) -> Ending {
 /// Writes to where the options say; a file is there whole or not at all.
 fn write(options: &DerivativeOptions, input: Box<dyn Read>) -> Result<(), Problem> {
     let Some(out) = &options.out else {
-        let mut output = BufWriter::new(io::stdout().lock());
+        let stdout = io::stdout().lock();
+        let mut output: Box<dyn Write> = match stdout.is_terminal() {
+            true => Box::new(Plain(BufWriter::new(stdout))),
+            false => Box::new(BufWriter::new(stdout)),
+        };
         let ended = differentiate(options, input, &mut output);
         output.flush()?;
         return ended;

@@ -1,7 +1,7 @@
 //! The rows of a run, and what run.json says of them.
 
 use super::Refused;
-use crate::diagnostic;
+use crate::{diagnostic, plain};
 use csv::{ByteRecord, Reader};
 use serde_json::Value;
 use springpot::table::{Column, push_number};
@@ -93,8 +93,8 @@ impl Table {
 
     /// What a field that is no number is refused with.
     pub(super) fn no_number(&self, column: usize, line: u64, field: &[u8]) -> Refused {
-        let (file, name, field) = (self.file.display(), &self.columns[column].name, String::from_utf8_lossy(field));
-        Refused::new(format!("{file}:{line}: {field:?} in column {name:?} is not a number"), None)
+        let (file, name, field) = (self.file.display(), &self.columns[column].name, plain::field(field));
+        Refused::new(format!("{file}:{line}: {field} in column {name:?} is not a number"), None)
     }
 }
 

@@ -16,6 +16,7 @@ mod init;
 mod interrupted;
 mod laws;
 mod manual;
+mod messages;
 #[cfg(unix)]
 mod pipes;
 mod plot;
