@@ -16,6 +16,7 @@ mod labels;
 mod laws;
 mod manual;
 mod numbers;
+mod output;
 mod plain;
 mod plot;
 mod progress;

@@ -4,7 +4,7 @@ use crate::arguments::{BulkModulus, PronyFormat, PronyOptions};
 use crate::grid::{Grid, Set};
 use crate::numbers::{count, rough, short};
 use crate::robot::Refused;
-use crate::{Ending, diagnostic, printed, terminal};
+use crate::{Ending, diagnostic, output, printed, terminal};
 use springpot::fractional::prony::{Bulk, PronyError, PronySeries, Slowest, Springpot, Window};
 use springpot::scenario::units::{UnitError, parse_quantity};
 use std::f64::consts::TAU;
@@ -14,13 +14,7 @@ pub(crate) fn prony(options: &PronyOptions) -> Ending {
         Err(Refused) => Ending::Refused,
         Ok(text) => match &options.out {
             None => printed(terminal::try_print(&text)),
-            Some(file) => match std::fs::write(file, text) {
-                Ok(()) => Ending::Done,
-                Err(error) => {
-                    diagnostic::error(format!("{} cannot be written: {error}", file.display()));
-                    Ending::Failed
-                }
-            },
+            Some(file) => output::written(file, output::write(file, text.as_bytes())),
         },
     }
 }

@@ -28,3 +28,5 @@ mod robots;
 mod support;
 #[cfg(target_os = "linux")]
 mod terminal;
+#[cfg(unix)]
+mod written;
