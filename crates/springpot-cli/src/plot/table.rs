@@ -49,7 +49,8 @@ impl Table {
         if names.is_empty() || names.iter().all(String::is_empty) {
             return Err(Refused::new(format!("{} has no columns", file.display()), None));
         }
-        let run = fs::read_to_string(folder.join("run.json")).ok();
+        let record = folder.join("run.json");
+        let run = record.is_file().then(|| fs::read_to_string(record).ok()).flatten();
         if run.is_none() {
             let message = format!("there is no run.json beside {}: the labels have no units", file.display());
             diagnostic::warning(message, None);
@@ -158,10 +159,15 @@ fn rows_in(folder: &Path) -> Result<PathBuf, Refused> {
 }
 
 fn reader(file: &Path) -> Result<Reader<BufReader<File>>, Refused> {
-    let open = File::open(file).map_err(|error| {
+    let refused = |why: String| {
         let help = "name the folder of the results of a run, such as results/arm, or its results.csv".to_owned();
-        Refused::new(format!("{} cannot be opened: {error}", file.display()), help)
-    })?;
+        Refused::new(format!("{} cannot be opened: {why}", file.display()), help)
+    };
+    // The rows are read twice, and opening a pipe would wait for its other end.
+    if !fs::metadata(file).map_err(|error| refused(error.to_string()))?.is_file() {
+        return Err(refused("not a regular file".to_owned()));
+    }
+    let open = File::open(file).map_err(|error| refused(error.to_string()))?;
     Ok(Reader::from_reader(BufReader::with_capacity(CHUNK, open)))
 }
 

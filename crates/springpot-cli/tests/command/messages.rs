@@ -1,4 +1,4 @@
-//! What is read out of files and off the command line, as messages and tables repeat it: nothing
+//! What is read out of files and off the command line, as messages and tables repeat it: negative numbers are numbers, nothing
 //! steers the terminal, nothing is too long to be read, and every mistake has its place.
 
 use crate::support::{ARM, Ended, Place, testdata};
@@ -15,6 +15,41 @@ fn is_plain(ended: &Ended) {
     for text in [&ended.stdout, &ended.stderr] {
         let found = text.chars().find(|c| STEERS.contains(c) || c.is_control() && *c != '\n');
         assert!(found.is_none(), "{found:?} in {text:?}");
+    }
+}
+
+#[test]
+fn negative_numbers_are_numbers() {
+    let place = Place::new();
+    place.write("x.csv", "t,x\n0,1\n1,2\n2,4\n3,7\n");
+    for (order, name) in [("-1e-3", "-0.001"), ("-5e-1", "-0.5"), ("-.5", "-0.5"), ("-1", "-1"), ("-2E0", "-2")] {
+        let ended = place.done(&["derivative", "x.csv", "--column", "x", "--order", order]);
+        assert!(ended.stdout.starts_with(&format!("t,x,D^{name} x\n")), "{order}: {}", ended.stdout);
+    }
+    let prony = ["prony", "--order", "0.5", "--coefficient", "5", "--from", "1e-3", "--to", "1"];
+    let with = |option: &str, value: &'static str| {
+        let mut arguments = prony.to_vec();
+        match arguments.iter().position(|argument| *argument == option) {
+            Some(at) => arguments[at + 1] = value,
+            None => arguments.extend([Box::leak(option.to_owned().into_boxed_str()), value]),
+        }
+        arguments
+    };
+    for (arguments, words) in [
+        (with("--from", "-1e-3"), "--from -1e-3: not a positive number"),
+        (with("--to", "-.5"), "--to -.5: not a positive number"),
+        (with("--coefficient", "-5e-1"), "--coefficient -5e-1: not a positive number"),
+        (with("--equilibrium", "-.5 N/m"), "--equilibrium -.5 N/m: not a positive number"),
+        (with("--rtol", "-1e-3"), "the tolerance must lie between"),
+        (with("--order", "-.5"), "--order -0.5: out of range"),
+        (vec!["dynamics", "arm.toml", "--at", "-1e-3"], "--at -1e-3: "),
+        (vec!["dynamics", "arm.toml", "--at", "-.5 s"], "--at -.5 s: "),
+        (vec!["dynamics", "arm.toml", "--at", "0", "--case", "-1"], "invalid value '-1' for '--case <N>'"),
+        (vec!["run", "arm.toml", "--checkpoint-every", "-.5"], "--checkpoint-every -.5: not a positive time"),
+        (vec!["run", "arm.toml", "--jobs", "-1"], "invalid value '-1' for '--jobs <N>'"),
+    ] {
+        let refused = place.springpot(&arguments);
+        assert!(refused.code == Some(2) && refused.stderr.contains(words), "{arguments:?}: {}", refused.stderr);
     }
 }
 

@@ -227,3 +227,74 @@ fn an_end_on_the_way_leaves_what_was_there() {
     place.done(&[&DERIVATIVE[..], &["--out", "d.csv"]].concat());
     assert_eq!(place.table("d.csv").rows.len(), 400);
 }
+
+#[test]
+fn a_pipe_where_a_file_should_be_is_refused_at_once() {
+    let place = with_samples();
+    pipe(&place, "pipe");
+    pipe(&place, "pipe.toml");
+    place.write("urdf.toml", "[robot]\nurdf = \"pipe\"\n");
+    let robot = crate::support::testdata("multibody/double_pendulum.urdf");
+    let motion = "motion.joints.q1={csv=\"pipe\", column=\"x\"}";
+    for arguments in [
+        &["check", "arm.toml", "--set", motion][..],
+        &["run", "arm.toml", "--set", motion],
+        &["check", "pipe"],
+        &["run", "pipe"],
+        &["info", "urdf.toml"],
+        &["info", "pipe"],
+        &["init", "pipe"],
+        &["dynamics", "pipe.toml", "--at", "0"],
+        &["dynamics", &robot, "--states", "pipe"],
+        &["dynamics", &robot, "--states", "/dev/zero"],
+        &["plot", "pipe", "x"],
+    ] {
+        let refused = in_time(&place, arguments);
+        assert_eq!((refused.code, refused.stdout.as_str()), (Some(2), ""), "{arguments:?}: {}", refused.stderr);
+        assert!(refused.stderr.contains("not a regular file"), "{arguments:?}: {}", refused.stderr);
+    }
+    // Results whose record is a pipe have none.
+    fs::create_dir(place.path("r")).unwrap();
+    place.write("r/results.csv", "t,x\n0,1\n1,2\n");
+    pipe(&place, "r/run.json");
+    let drawn = in_time(&place, &["plot", "r", "x"]);
+    assert!(drawn.code == Some(0) && drawn.stderr.contains("no run.json"), "{}", drawn.stderr);
+}
+
+#[test]
+fn states_without_end_are_refused() {
+    let place = Place::new();
+    let robot = crate::support::testdata("multibody/double_pendulum.urdf");
+    let mut command = place.command(&["dynamics", &robot, "--states", "-"]);
+    let zeros = fs::File::open("/dev/zero").unwrap();
+    let refused = ended(command.stdin(zeros).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert!(refused.stderr.starts_with("error: standard input: larger than 256 MiB"), "{}", refused.stderr);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_printed_is_a_failure() {
+    let place = with_samples();
+    for arguments in [
+        &["--help"][..],
+        &["--version"],
+        &["run", "--help"],
+        &["help", "check"],
+        &["check", "arm.toml"],
+        &["check", "--schema"],
+        &["info", "arm.toml"],
+        &["dynamics", "arm.toml", "--at", "0.1"],
+        &DERIVATIVE,
+        &PRONY,
+        &["laws"],
+        &["init"],
+        &["completions", "zsh"],
+        &["man"],
+    ] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let failed = Ended::from(place.command(arguments).stdout(full).stderr(Stdio::piped()).output().unwrap());
+        assert_eq!(failed.code, Some(1), "{arguments:?}: {}", failed.stderr);
+        assert!(failed.stderr.contains("error: the results cannot be written: "), "{arguments:?}: {}", failed.stderr);
+    }
+}
