@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 /// −ln of the relative error of the trapezoidal rule.
 const DIGITS: f64 = 39.0;
 
-/// Turns of the ray, of which that is taken which keeps farthest from all poles; also their negatives.
-const TURNS: [f64; 3] = [0.0, 0.35, 0.7];
+/// Turns of the ray, and their negatives: near a pole the integrand is large, and where e^{−r} turns it is so everywhere.
+const TURNS: [f64; 4] = [0.0, 0.35, 0.7, 1.0];
 
 /// Poles with |arg w| below this many π: farther ones are beyond the strip in which the integrand decays.
 const SHEET: f64 = 1.5;
@@ -28,7 +28,8 @@ const SHEET: f64 = 1.5;
 #[derive(Debug, Clone)]
 pub(super) struct Rays {
     n: usize,
-    step: f64,
+    /// Of r in the integrand, as far as no pole takes over.
+    exponent: f64,
     /// sin πa and 1 − cos πa.
     sine: f64,
     versine: f64,
@@ -41,6 +42,8 @@ pub(super) struct Rays {
 /// Nodes of one turn.
 #[derive(Debug, Clone)]
 struct Ray {
+    turn: f64,
+    step: f64,
     /// r^a − 1.
     power: Vec<Complex64>,
     /// n! h e^{−r} r^{a−b+1}/π.
@@ -53,17 +56,13 @@ impl Rays {
 
     pub(super) fn new(a: f64, b: f64, n: usize) -> Self {
         let exponent = a - b + 1.0;
-        let turn = TURNS[TURNS.len() - 1];
-        // Where the strip ends, towards the imaginary axis, e^{−r} decays more slowly.
-        let frequency = |depth: f64| (DIGITS + exponent * (turn.cos() / (turn + depth).cos()).ln()) / depth;
-        let strips = (4..=42).map(|k| frequency(0.02 * f64::from(k)));
-        let step = 2.0 * PI / strips.fold(f64::INFINITY, f64::min);
         let (sine, cosine) = Exact::new(a, 1, 0.0).sin_cos_pi();
         let (s, c) = Exact::new(a, n, b).sin_cos_pi();
-        let rays = TURNS.map(|turn| Ray::new(a, exponent, n, step, turn));
+        let rays = TURNS.map(|turn| Ray::new(a, exponent, n, turn));
         let half_sine = (0.5 * PI * a).sin();
         let versine = if cosine > 0.0 && a < 0.5 { 2.0 * half_sine * half_sine } else { 1.0 - cosine };
-        Self { n, step, sine, versine, mixture: [s, c], rays, series: LongSeries::new(a, b, n) }
+        let exponent = (exponent - a * (n + 1) as f64).max(0.0);
+        Self { n, exponent, sine, versine, mixture: [s, c], rays, series: LongSeries::new(a, b, n) }
     }
 
     /// dⁿE/dzⁿ at z ≠ 0.
@@ -72,18 +71,23 @@ impl Rays {
             return value;
         }
         let poles = Poles::of(a, z, SHEET);
-        let clearance = |turn: f64| poles.all().map(|pole| (pole.beyond_cut() - turn).abs()).fold(ENOUGH, f64::min);
-        let turn = TURNS
-            .iter()
-            .flat_map(|turn| [*turn, -turn])
-            .fold(0.0, |best, turn| if clearance(turn) > clearance(best) { turn } else { best });
+        // ln of what the sum may lose.
+        let loss = |turn: f64| {
+            let distances = poles.all().map(|pole| (pole.beyond_cut() - turn).abs());
+            let clearance = distances.fold(ENOUGH, f64::min);
+            -self.exponent * turn.cos().ln() - (self.n + 1) as f64 * clearance.ln()
+        };
+        let turns = self.rays.iter().flat_map(|ray| [(ray, ray.turn), (ray, -ray.turn)]);
+        let (ray, turn, _) = turns.fold((&self.rays[0], 0.0, loss(0.0)), |best, (ray, turn)| {
+            let loss = loss(turn);
+            if loss < best.2 { (ray, turn, loss) } else { best }
+        });
         poles
             .all()
-            .fold(self.cut(z, turn), |sum, pole| sum + pole.term(b, self.n, &pole.switch_at_cut(turn, self.step)).0)
+            .fold(self.cut(z, ray, turn), |sum, pole| sum + pole.term(b, self.n, &pole.switch_at_cut(turn, ray.step)).0)
     }
 
-    fn cut(&self, z: Complex64, turn: f64) -> Complex64 {
-        let ray = &self.rays[TURNS.iter().position(|t| *t == turn.abs()).unwrap_or(0)];
+    fn cut(&self, z: Complex64, ray: &Ray, turn: f64) -> Complex64 {
         let m = self.n as u32 + 1;
         let inverse = z.inv();
         // (r^a − z cos πa)/z from what is exact near r^a = 1 = z.
@@ -106,7 +110,11 @@ impl Rays {
 }
 
 impl Ray {
-    fn new(a: f64, exponent: f64, n: usize, step: f64, turn: f64) -> Self {
+    fn new(a: f64, exponent: f64, n: usize, turn: f64) -> Self {
+        // Where the strip ends, towards the imaginary axis, e^{−r} decays more slowly.
+        let frequency = |depth: f64| (DIGITS + exponent * (turn.cos() / (turn + depth).cos()).ln()) / depth;
+        let depths = (1..=19).map(|k| 0.05 * f64::from(k) * (0.5 * PI - turn));
+        let step = 2.0 * PI / depths.map(frequency).fold(f64::INFINITY, f64::min);
         let factorial: f64 = (1..=n).map(|k| k as f64).product();
         // From where r^exponent is nothing up to where e^{−r} is.
         let first = (-(DIGITS / exponent + 1.0) / step).floor();
@@ -121,9 +129,9 @@ impl Ray {
             power.push(super::contour::exp_m1(a * ln_r));
             weight.push((exponent * ln_r - ln_r.exp()).exp() * (factorial * step / PI));
         }
-        Self { power, weight }
+        Self { turn, step, power, weight }
     }
 }
 
-/// A pole farther than this from the ray, in radians, does no harm.
-const ENOUGH: f64 = 0.8;
+/// A pole farther than this from the ray, in radians, makes nothing better.
+const ENOUGH: f64 = 2.0;

@@ -43,7 +43,7 @@ impl LongSeries {
         Self { coefficients: (0..MOST_TERMS).map(|k| coefficient(a, b, n, k)).collect() }
     }
 
-    /// The value where rounding and the terms left out stay below 1e-13·max(|value|, 1e-3).
+    /// The value where rounding and the terms left out stay some times below 1e-12·max(|value|, 1e-3).
     pub(super) fn value(&self, z: Complex64) -> Option<Complex64> {
         let radius = z.norm();
         let last = self.coefficients[MOST_TERMS - 1].abs() * radius.powi(MOST_TERMS as i32 - 1);
@@ -52,8 +52,8 @@ impl LongSeries {
             value = value * z + c;
             size = size * radius + c.abs();
         }
-        let allowed = 1e-13 * value.norm().max(1e-3);
-        let met = size.is_finite() && 8.0 * f64::EPSILON * size <= allowed && 1e2 * last <= allowed;
+        let least = value.norm().max(1e-3);
+        let met = size.is_finite() && size <= 300.0 * least && last <= 1e-15 * least;
         met.then_some(value)
     }
 }
