@@ -19,7 +19,9 @@ impl Exact {
         let high = product + b;
         let from_b = high - product;
         let low = (product - (high - from_b)) + (b - from_b) + lost;
-        Self { high, low }
+        // Where product and b cancel, what was lost is all that remains.
+        let sum = high + low;
+        Self { high: sum, low: (high - sum) + low }
     }
 
     /// sin πx and cos πx, to a relative accuracy.
@@ -52,7 +54,7 @@ mod tests {
         // 1/Γ(−m + ε) = (−1)^m m! ε (1 − ψ(m+1) ε + …).
         for (m, factorial) in [(0usize, 1.0), (1, 1.0), (4, 24.0), (10, 3_628_800.0)] {
             for epsilon in [1e-9, -1e-12, 1e-200, 0.0] {
-                // −m from a k with a = −1/3 − …: m + ε is no f64, the sum of both parts is.
+                // −m + ε may be no f64; the sum of both parts is.
                 let x = Exact { high: -(m as f64), low: epsilon };
                 let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
                 let expected = sign * factorial * epsilon;
