@@ -49,7 +49,8 @@
 //!
 //! The error is below 1e-12·max(|E|, 1e-3) in the admissible range; `tests/mittag_leffler` measures it. One thing no
 //! method in double precision escapes: where parts of the sum, a term w^{1−b} e^w/a or the integral along the cut, are
-//! much larger than E, as near zeros of oscillating E_{2,b}(−x), the error is a few roundings of w times that part.
+//! much larger than E, as near zeros of oscillating E_{2,b}(−x), the error is a few roundings of w times that part. Ninth and
+//! tenth derivatives at b < −1 may reach twice the bound where a pole is beside the cut and nearer to 0 than 1.
 //!
 //! # Sources
 //!
