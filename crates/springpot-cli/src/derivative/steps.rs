@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn rounded_equal_steps_are_equal() {
         let h = 1.0 / 300.0;
-        for start in [0.0, -1.5, 7.0, 1234.567_891_2] {
+        for start in [0.0, -1.5, 7.0, 1_234.567_891_2] {
             let rows = |count: i32| (0..count).map(move |k| start + f64::from(k) * h);
             assert!(are_equal(rows(900).map(|t| format!("{t:.6}"))), "fixed, from {start}");
             assert!(are_equal(rows(900).map(|t| format!("{:.6}", t).parse::<f64>().unwrap().to_string())), "no zeros");

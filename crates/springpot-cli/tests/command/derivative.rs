@@ -171,6 +171,9 @@ fn a_round_time_changes_nothing() {
     }
 }
 
+/// The text of the time of a row, from its number and a draw below 7.
+type TimeText = fn(u64, u64) -> String;
+
 /// Whatever text stands for a number, as fixed decimals, exponents, trailing zeros, the derivative is the same to the bit.
 #[test]
 fn other_texts_of_the_same_times_change_nothing() {
@@ -194,14 +197,13 @@ fn other_texts_of_the_same_times_change_nothing() {
             _ => format!("{number:.30}"),
         }
     };
-    let h = 1.0 / 300.0;
-    // Rounded, jittered by 3 units, by a tenth of a step, whole, shortest.
-    let times: [(&str, Box<dyn Fn(u64, u64) -> String>, bool); 5] = [
-        ("rounded", Box::new(|k, _| format!("{:.6}", k as f64 * h)), true),
-        ("jittered", Box::new(|k, off| format!("{:.6}", 0.004 * k as f64 + 1e-6 * (off as f64 - 3.0) + 1.0)), false),
-        ("random", Box::new(|k, off| format!("{:.2}", k as f64 + 0.1 * (off as f64 - 3.0))), false),
-        ("whole", Box::new(|k, _| (500 + 20 * k).to_string()), true),
-        ("shortest", Box::new(|k, _| (0.1 * k as f64).to_string()), true),
+    // Rounded, jittered by 3 units, by tenths of a step, whole, shortest.
+    let times: [(&str, TimeText, bool); 5] = [
+        ("rounded", |k, _| format!("{:.6}", k as f64 / 300.0), true),
+        ("jittered", |k, off| format!("{:.6}", 0.004 * k as f64 + 1e-6 * (off as f64 - 3.0) + 1.0), false),
+        ("random", |k, off| format!("{:.2}", k as f64 + 0.1 * (off as f64 - 3.0)), false),
+        ("whole", |k, _| (500 + 20 * k).to_string(), true),
+        ("shortest", |k, _| (0.1 * k as f64).to_string(), true),
     ];
     for (name, time, is_equal) in times {
         let texts: Vec<String> = (0..300).map(|k| time(k, draw(7))).collect();
