@@ -51,7 +51,9 @@ pub enum LeftOut {
         curves: usize,
     },
     /// With those before it, it has more than [`MAX_CURVES_IN_ALL`]: choose columns or cases here or there.
-    #[error("it and the figures before it would hold {curves} curves; choose some with `where` (at most {MAX_CURVES_IN_ALL})")]
+    #[error(
+        "it and the figures before it would hold {curves} curves; choose some with `where` (at most {MAX_CURVES_IN_ALL})"
+    )]
     InAll {
         /// Curves that they would have.
         curves: usize,

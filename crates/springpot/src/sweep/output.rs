@@ -124,7 +124,10 @@ impl<'a> Output<'a> {
     }
 
     /// Hands over the last rows, writes down how the case ended, and lets the next case write.
-    pub(super) fn close(mut self, end: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<Option<BTreeMap<usize, KeptCurve>>> {
+    pub(super) fn close(
+        mut self,
+        end: impl FnOnce(&mut Self) -> io::Result<()>,
+    ) -> io::Result<Option<BTreeMap<usize, KeptCurve>>> {
         self.hand_over()?;
         end(&mut self)?;
         self.rows.finish()?;

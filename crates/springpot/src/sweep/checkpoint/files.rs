@@ -104,11 +104,7 @@ impl<'a> CaseFiles<'a> {
     }
 
     /// Writes down that the case has ended; `sync` makes the shared rows safe and tells before which case all are there.
-    pub(in crate::sweep) fn end(
-        mut self,
-        done: &CaseDone,
-        sync: impl FnOnce() -> io::Result<usize>,
-    ) -> io::Result<()> {
+    pub(in crate::sweep) fn end(mut self, done: &CaseDone, sync: impl FnOnce() -> io::Result<usize>) -> io::Result<()> {
         self.kept.iter().try_for_each(File::sync_data)?;
         self.checkpoints.add(done, sync)?;
         self.drop_outdated()?;

@@ -1,5 +1,6 @@
 //! The parts of a curve that pass new cells of a picture.
 
+use super::cone::Cone;
 use super::{Extent, Point, is_gap};
 
 /// Cells that a curve passes, those that it passes again included.
@@ -8,54 +9,134 @@ pub(super) fn passed(points: &[Point], size: [f64; 2]) -> f64 {
     points.windows(2).map(|pair| steps(&pair[0], &pair[1])).filter(|steps| steps.is_finite()).sum()
 }
 
-/// Leaves out the stretches of a curve all of whose cells it has passed before, and of the points that stay within one cell all but
-/// the first; extremes, gaps and the last stretch, from which the curve goes on, are kept. Where something is left out between two
-/// points, a gap is between them. `None` where that is more than `wanted` points.
-pub(super) fn thin(points: &[Point], size: [f64; 2], extent: &Extent, wanted: usize) -> Option<Vec<Point>> {
-    let mut cells = Cells::new(size, extent);
-    let mut kept: Vec<Point> = Vec::with_capacity(wanted + 8);
-    // Where the next stretch begins, and whether that is the last point kept.
-    let (mut from, mut joined): (Option<usize>, bool) = (None, false);
-    for (k, point) in points.iter().enumerate() {
-        if kept.len() > wanted {
+/// What a thinned curve begins with, which is not looked at again with cells of the same size.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Settled {
+    /// Number of points.
+    points: usize,
+    /// The point from which the curve goes on; those between are left out from now on. `None` where the curve begins or goes on
+    /// behind a gap.
+    from: Option<usize>,
+}
+
+/// Draws straight lines through the points that are not settled, within half a cell of them, and leaves out the lines all of whose
+/// cells the curve has passed before; a gap takes their place. Extremes, gaps and the last point are kept. `None` where that is
+/// more than `wanted` points.
+pub(super) fn thin(
+    points: &[Point],
+    settled: Settled,
+    size: [f64; 2],
+    extent: &Extent,
+    wanted: usize,
+) -> Option<(Vec<Point>, Settled)> {
+    let mut lines = Lines::new(points, settled, size, extent, wanted);
+    let mut line = settled.from.map(|from| lines.start(from));
+    let mut settled = settled;
+    for k in settled.from.map_or(settled.points, |from| from + 1)..points.len() {
+        if lines.kept.len() > wanted {
             return None;
         }
-        if is_gap(point) {
-            part(&mut kept);
-            (from, joined) = (None, false);
+        if is_gap(&points[k]) {
+            lines.part();
+            (line, settled) = (None, Settled { points: lines.kept.len(), from: None });
             continue;
         }
         let ends = points.get(k + 1).is_none_or(is_gap);
-        let needed = |index: usize| extent.extremes.contains(&index) || k + 1 == points.len();
-        let Some(start) = from else {
-            // A point between two gaps is a stretch of its own.
-            if ends && (cells.pass(*point, *point) || needed(k)) {
-                part(&mut kept);
-                kept.push(*point);
+        match &mut line {
+            // A point between two gaps is a line of its own.
+            None if ends => settled = lines.draw(k, k),
+            None => line = Some(lines.start(k)),
+            Some(Line { from, through, cone }) => {
+                let position = lines.cells.position(points[k]);
+                if cone.take(position) {
+                    *through = k;
+                } else {
+                    let (from, end) = (*from, *through);
+                    lines.draw(from, end);
+                    let mut next = lines.start(end);
+                    next.cone.take(position);
+                    line = Some(Line { through: k, ..next });
+                }
             }
-            from = Some(k);
-            continue;
-        };
-        if !ends && !needed(k) && cells.of(*point) == cells.of(points[start]) {
-            continue;
         }
-        let stays = cells.pass(points[start], *point) || needed(start) || needed(k);
-        if stays {
-            if !joined {
-                part(&mut kept);
-                kept.push(points[start]);
-            }
-            kept.push(*point);
+        if (ends || extent.extremes.contains(&k))
+            && let Some(Line { from, .. }) = line
+        {
+            settled = lines.draw(from, k);
+            line = Some(lines.start(k));
         }
-        (from, joined) = (Some(k), stays);
     }
-    (kept.len() <= wanted).then_some(kept)
+    (lines.kept.len() <= wanted).then_some((lines.kept, settled))
 }
 
-/// Ends a line with a gap.
-fn part(kept: &mut Vec<Point>) {
-    if kept.last().is_some_and(|last| !is_gap(last)) {
-        kept.push([f64::NAN; 2]);
+/// A straight line that is under way.
+struct Line {
+    from: usize,
+    /// The last point that it passes.
+    through: usize,
+    cone: Cone,
+}
+
+/// A curve that is drawn line by line.
+struct Lines<'a> {
+    points: &'a [Point],
+    extremes: [usize; 4],
+    cells: Cells,
+    kept: Vec<Point>,
+    /// The last point kept, where a line may go on from it.
+    end: Option<usize>,
+}
+
+impl<'a> Lines<'a> {
+    /// Takes the settled points as they are.
+    fn new(points: &'a [Point], settled: Settled, size: [f64; 2], extent: &Extent, wanted: usize) -> Self {
+        let mut kept = Vec::with_capacity(wanted + 8);
+        kept.extend_from_slice(&points[..settled.points]);
+        let mut cells = Cells::new(size, extent);
+        let mut last = None;
+        for point in &kept {
+            if !is_gap(point) {
+                cells.pass(last.unwrap_or(*point), *point);
+            }
+            last = (!is_gap(point)).then_some(*point);
+        }
+        let end = settled.from.filter(|from| from + 1 == settled.points);
+        Self { points, extremes: extent.extremes, cells, kept, end }
+    }
+
+    /// A line that begins at a point.
+    fn start(&self, from: usize) -> Line {
+        Line { from, through: from, cone: Cone::new(self.cells.position(self.points[from])) }
+    }
+
+    /// Draws a line where it passes a new cell or has an extreme, and the last one; returns what is settled by then.
+    fn draw(&mut self, from: usize, to: usize) -> Settled {
+        let new = self.cells.pass(self.points[from], self.points[to]);
+        let stays = new || [from, to].iter().any(|k| self.extremes.contains(k));
+        let last = to + 1 == self.points.len();
+        if !stays && !last {
+            self.end = None;
+            return Settled { points: self.kept.len(), from: None };
+        }
+        let before = self.kept.len();
+        if self.end != Some(from) || from == to {
+            self.part();
+            self.kept.push(self.points[from]);
+        }
+        if from != to {
+            self.kept.push(self.points[to]);
+        }
+        self.end = Some(to);
+        let from = self.kept.len() - 1;
+        Settled { points: if stays { from + 1 } else { before }, from: Some(from) }
+    }
+
+    /// Ends a line with a gap.
+    fn part(&mut self) {
+        if self.kept.last().is_some_and(|last| !is_gap(last)) {
+            self.kept.push([f64::NAN; 2]);
+        }
+        self.end = None;
     }
 }
 
@@ -80,15 +161,14 @@ impl Cells {
         [0, 1].map(|axis| point[axis] / self.size[axis] - self.lowest[axis])
     }
 
-    fn of(&self, point: Point) -> [usize; 2] {
-        let position = self.position(point);
+    fn of(&self, position: [f64; 2]) -> [usize; 2] {
         [0, 1].map(|axis| (position[axis].floor() as usize).min(self.count[axis] - 1))
     }
 
     /// Passes the cells of a straight line; whether one of them is new.
     fn pass(&mut self, a: Point, b: Point) -> bool {
-        let (mut cell, end) = (self.of(a), self.of(b));
         let (from, to) = (self.position(a), self.position(b));
+        let (mut cell, end) = (self.of(from), self.of(to));
         let length = [to[0] - from[0], to[1] - from[1]];
         let mut left = [cell[0].abs_diff(end[0]), cell[1].abs_diff(end[1])];
         let mut new = self.enter(cell);
@@ -98,8 +178,7 @@ impl Cells {
                 let border = cell[axis] as f64 + if length[axis] > 0.0 { 1.0 } else { 0.0 };
                 if left[axis] == 0 { f64::INFINITY } else { (border - from[axis]) / length[axis] }
             });
-            let axis = usize::from(leaves[1] < leaves[0]);
-            let axis = if left[axis] == 0 { 1 - axis } else { axis };
+            let axis = usize::from(left[0] == 0 || leaves[1] < leaves[0]);
             if end[axis] > cell[axis] {
                 cell[axis] += 1;
             } else {

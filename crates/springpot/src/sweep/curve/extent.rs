@@ -19,14 +19,19 @@ pub(super) struct Extent {
     high: Point,
     /// Indices of the points with the lowest x and y, then of those with the highest.
     pub(super) extremes: [usize; 4],
+    /// Whether x never decreases.
+    pub(super) runs_on: bool,
 }
 
 impl Extent {
     /// The extent of a curve; `None` where it has no point but gaps.
     pub(super) fn of(points: &[Point]) -> Option<Self> {
         let first = points.iter().position(|point| !is_gap(point))?;
-        let mut extent = Self { low: points[first], high: points[first], extremes: [first; 4] };
+        let mut extent = Self { low: points[first], high: points[first], extremes: [first; 4], runs_on: true };
+        let mut before = f64::NEG_INFINITY;
         for (k, point) in points.iter().enumerate().skip(first).filter(|(_, point)| !is_gap(point)) {
+            extent.runs_on &= point[0] >= before;
+            before = point[0];
             for axis in 0..2 {
                 if point[axis] < extent.low[axis] {
                     extent.low[axis] = point[axis];
@@ -74,5 +79,6 @@ mod tests {
         }
         assert!(Extent::of(&[[1e301, 0.0], [0.0, f64::INFINITY]]).is_none());
         assert_eq!(Extent::of(&[[2.0, 1.0], [1.0, 3.0], [3.0, 0.0]]).unwrap().extremes, [1, 2, 2, 1]);
+        assert!(of(1.0, 1.0).runs_on && !of(1.0, 0.0).runs_on);
     }
 }

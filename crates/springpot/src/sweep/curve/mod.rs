@@ -2,8 +2,10 @@
 
 mod cells;
 mod columns;
+mod cone;
 mod extent;
 
+use cells::Settled;
 use extent::{Extent, Point, is_gap};
 
 /// Points that the curves of all figures keep together: 64 MiB.
@@ -29,14 +31,14 @@ pub fn most_points(figure: usize, all: usize) -> usize {
 /// A curve that grows point by point and never holds more than `most` points, however many are added.
 ///
 /// Up to `most` points it keeps all. Then it is thinned to half of them, whenever it is full, and never loses an extreme:
-/// - Where x runs on, or runs back few times, every column of the picture keeps its first, lowest, highest and last point. Columns
-///   are at most about 16/`most` of the extent in x wide, and what is left out is no farther than that from what is kept.
-/// - Of loops and scribbles, which have too many points even so, stretches are left out, with a gap in their place, all of whose
-///   cells others pass too. Cells are at most 1/(16·√`most`) of the extent in x and in y, larger only where the curve passes more
-///   of them than it may keep points.
+/// - Where x never runs back, every column of the picture keeps its first, lowest, highest and last point. Columns are at most some
+///   16/`most` of the extent in x wide, and neither curve is farther than that from the other.
+/// - Loops and scribbles become straight lines within half a cell of the points, and a line is left out, with a gap in its place, where
+///   others pass all of its cells. Cells are at most 1/(16·√`most`) of the extent in x and in y, and neither curve is farther than
+///   three of them from the other. Where the lines would be more than it may keep, cells are larger.
 ///
-/// With 65 536 points and the largest panel that figures have, 440 by 290 pixels, both are 0.11 pixels at most. A point with a
-/// coordinate that is NaN, infinite or beyond 1e300 is a gap; gaps are kept. What is kept follows from the points alone.
+/// With 65 536 points and the largest panel that figures have, 440 by 290 pixels, columns and cells are 0.11 pixels at most. A point
+/// with a coordinate that is NaN, infinite or beyond 1e300 is a gap; gaps are kept. What is kept follows from the points alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeptCurve {
     points: Vec<Point>,
@@ -51,7 +53,7 @@ enum Thinned {
     /// Into columns of this width; 0 before the first time.
     Columns(f64),
     /// Into cells of this size.
-    Cells([f64; 2]),
+    Cells([f64; 2], Settled),
 }
 
 impl KeptCurve {
@@ -80,8 +82,8 @@ impl KeptCurve {
         };
         let wanted = self.most / 2;
         let by_columns = match self.thinned {
-            Thinned::Columns(width) => self.columns(&extent, width, wanted),
-            Thinned::Cells(_) => None,
+            Thinned::Columns(width) if extent.runs_on => self.columns(&extent, width, wanted),
+            _ => None,
         };
         self.points = by_columns.unwrap_or_else(|| self.cells(&extent, wanted));
     }
@@ -105,18 +107,22 @@ impl KeptCurve {
     /// In the finest cells that leave no more than `wanted` points; fewer than `wanted`/4 cells always do.
     fn cells(&mut self, extent: &Extent, wanted: usize) -> Vec<Point> {
         let finest = [0, 1].map(|axis| extent.step(axis, 16 * self.most.isqrt()));
-        let mut size = match self.thinned {
-            Thinned::Cells(size) => [size[0].max(finest[0]), size[1].max(finest[1])],
-            Thinned::Columns(_) => finest,
+        let (before, mut settled) = match self.thinned {
+            Thinned::Cells(size, settled) => (size, settled),
+            Thinned::Columns(_) => (finest, Settled::default()),
         };
+        let mut size = [0, 1].map(|axis| before[axis].max(finest[axis]));
         let double = |size: [f64; 2]| size.map(|step| 2.0 * step);
         // A bound of the time that one thinning takes.
         while cells::passed(&self.points, size) > 64.0 * self.most as f64 {
             size = double(size);
         }
         loop {
-            if let Some(points) = cells::thin(&self.points, size, extent, wanted) {
-                self.thinned = Thinned::Cells(size);
+            if size != before {
+                settled = Settled::default();
+            }
+            if let Some((points, settled)) = cells::thin(&self.points, settled, size, extent, wanted) {
+                self.thinned = Thinned::Cells(size, settled);
                 return points;
             }
             size = double(size);
