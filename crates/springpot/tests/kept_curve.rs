@@ -1,6 +1,8 @@
 //! Curves that keep what can be seen of them: bounded points, and as near to the full curve as is said.
 
-use springpot::sweep::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
+use springpot::law::Catalog;
+use springpot::scenario::Scenario;
+use springpot::sweep::{KeptCurve, Layout, LeftOut, MAX_CURVES_IN_ALL, most_points};
 use std::f64::consts::TAU;
 
 type Points = Vec<[f64; 2]>;
@@ -217,4 +219,36 @@ fn all_curves_together_are_bounded() {
     for all in 1..=MAX_CURVES_IN_ALL {
         assert!(16 * all * most_points(1, all) <= 64 << 20, "{all}");
     }
+}
+
+#[test]
+fn figures_beyond_the_bound_are_left_out() {
+    let mut text = String::from(
+        r#"
+motion = { kind = "prescribed", joints = { q1 = "0.1*sin(t)" } }
+time = { end = 1, output_step = 1 }
+[[robot.body]]
+name = "arm"
+joint = { name = "q1", kind = "revolute", axis = [0, 1, 0] }
+mass = 1
+com = [0.2, 0, 0]
+[[sweep]]
+parameter = "robot.body.arm.mass"
+values = { from = 1, to = 2, count = 64 }
+"#,
+    );
+    let figure = "[[figure]]\ny = \"q.q1\"\n";
+    text.push_str(&figure.repeat(MAX_CURVES_IN_ALL / 64 + 1));
+    text.push_str(
+        "[[figure]]\ny = [\"q.q1\", \"v.q1\"]\n[[figure]]\ny = \"v.q1\"\nwhere = { \"robot.body.arm.mass\" = 1 }\n",
+    );
+    let cases = Scenario::parse(&text, "arm.toml", "").unwrap().cases(&Catalog::standard()).unwrap();
+    let layout = Layout::new(&cases, &cases.plan(0).unwrap().system()).unwrap();
+    let (drawn, left_out) = layout.figures().split_at(MAX_CURVES_IN_ALL / 64);
+    assert!(drawn.iter().all(|figure| figure.left_out.is_none() && figure.cases.len() == 64));
+    let why: Vec<_> = left_out.iter().map(|figure| figure.left_out.clone().unwrap()).collect();
+    let in_all = |curves: usize| LeftOut::InAll { curves: MAX_CURVES_IN_ALL + curves };
+    assert_eq!(why, [in_all(64), LeftOut::Curves { curves: 128 }, in_all(1)]);
+    assert!(left_out.iter().all(|figure| figure.cases.is_empty() && figure.curves.is_empty()));
+    assert_eq!(layout.most_points(), 1024);
 }
