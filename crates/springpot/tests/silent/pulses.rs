@@ -31,7 +31,7 @@ fn case(random: &mut Random) {
         0 => (
             springpot,
             format!("kind = \"prescribed\"\njoints = {{ q = \"1+0.1*{pulse}{ground}\" }}"),
-            &["e.derivative", "e.dissipated", "energy.actuators"],
+            &["e.derivative", "e.dissipated"],
         ),
         1 => (
             kelvin_voigt,

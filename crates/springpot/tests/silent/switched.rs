@@ -26,6 +26,7 @@ pub(crate) fn agrees_with_tiny_steps(text: &str, max_step: f64, columns: &[&str]
         assert!(error <= 1e-6 * scale, "{column}: {:e} of {scale:e}\n{text}", error / scale);
     };
     columns.iter().for_each(|column| compare(column, &plain, &fine));
+    assert!(plain.residual() < 1e-6, "{:e}\n{text}", plain.residual());
 }
 
 /// One of the random cases: a torque or a voltage in forward runs, or a voltage along a motion.
