@@ -6,7 +6,7 @@ mod cases;
 mod pulses;
 mod random;
 mod scales;
-#[allow(dead_code, reason = "a share of it")]
+#[allow(dead_code, unused_imports, reason = "a share of it")]
 #[path = "../forward/support.rs"]
 mod support;
 mod switched;
