@@ -33,9 +33,30 @@ fn install(stop: &Arc<AtomicBool>) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The exit code of a run that was interrupted.
-#[cfg(unix)]
+/// The exit code of what was interrupted.
 const INTERRUPTED: i32 = 130;
+
+/// Has `clean` called when Ctrl-C, SIGTERM or SIGHUP end the process. Where no handler can be installed they end it without.
+pub(crate) fn before_the_end(clean: impl Fn() + Send + 'static) {
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        let ending = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| signal != SIGHUP || !is_ignored(SIGHUP));
+        let Ok(mut signals) = signal_hook::iterator::Signals::new(ending) else { return };
+        // Without a thread to wait for them, signals are heard by nobody; the command then goes on to its end.
+        let _ = std::thread::Builder::new().spawn(move || {
+            if signals.forever().next().is_some() {
+                clean();
+                std::process::exit(INTERRUPTED);
+            }
+        });
+    }
+    #[cfg(not(unix))]
+    let _ = ctrlc::set_handler(move || {
+        clean();
+        std::process::exit(INTERRUPTED);
+    });
+}
 
 /// Whether a signal is ignored, as far as the system tells: Linux does.
 #[cfg(unix)]
@@ -50,7 +71,7 @@ fn install(stop: &Arc<AtomicBool>) -> Result<(), ctrlc::Error> {
     let stop = stop.clone();
     ctrlc::set_handler(move || {
         if stop.swap(true, std::sync::atomic::Ordering::Relaxed) {
-            std::process::exit(130);
+            std::process::exit(INTERRUPTED);
         }
     })
 }

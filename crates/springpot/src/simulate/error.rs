@@ -3,8 +3,8 @@
 use crate::fractional::KernelError;
 use crate::fractional::scheme::SchemeError;
 
-/// Why a run stopped; every variant but [`RunError::Output`], [`RunError::Scheme`] and [`RunError::OtherRun`]
-/// names the time.
+/// Why a run stopped; every variant but [`RunError::Output`], [`RunError::Scheme`], [`RunError::TooBusy`] and
+/// [`RunError::OtherRun`] names the time.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The points that an element joins met, so that its direction is undefined.
@@ -106,6 +106,42 @@ pub enum RunError {
         t: f64,
         /// The limit.
         limit: u64,
+    },
+    /// Signals change more often than the run may take steps.
+    #[error(
+        "{what} changes too often: it takes at least {times:.1e} steps, and {limit} are allowed; raise solver.max_steps or shorten the run"
+    )]
+    TooBusy {
+        /// Which signal, or all of them.
+        what: String,
+        /// Steps that it takes at least.
+        times: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// A row contradicts the step that it lies in.
+    #[error(
+        "t = {t} s: the steps missed what the motion does: at this row the rate of element \"{element}\" departs from its step by {departure:.1e} of its largest derivative; the rows are kept; give solver.max_step a time in which the motion changes little"
+    )]
+    Missed {
+        /// Time of the first such row, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Departure in units of the largest D^alpha x so far.
+        departure: f64,
+    },
+    /// The energies do not balance.
+    #[error(
+        "t = {t} s: the energy balance is off by {residual:.1e} J of {turned_over:.1e} J turned over: the results are wrong or the motion is not what it seems; the rows are kept; try a smaller solver.max_step"
+    )]
+    Unbalanced {
+        /// Time of the largest residual, s.
+        t: f64,
+        /// The residual, J.
+        residual: f64,
+        /// The energy turned over, J.
+        turned_over: f64,
     },
     /// The memory of an element could not be built.
     #[error("t = 0 s: element \"{element}\": {source}")]

@@ -13,6 +13,7 @@ mod equation;
 mod error;
 pub mod fixed;
 mod forward;
+mod jump;
 mod ledger;
 mod limits;
 mod lu;
@@ -22,6 +23,7 @@ mod pose;
 mod resistance;
 mod row;
 mod row_times;
+mod signals;
 
 pub use along::along;
 pub use checkpoint::Checkpoint;
@@ -75,7 +77,7 @@ pub struct Settings {
     pub first_step: Option<f64>,
     /// Longest inner step, s.
     pub max_step: Option<f64>,
-    /// Number of inner steps allowed.
+    /// Number of inner steps allowed; `None`: ten million, and a hundred more for every switch of the signals.
     pub max_steps: Option<u64>,
     /// Steps of one size, for robots that move by themselves; `None`: the run chooses its steps.
     pub fixed_step: Option<FixedStep>,
@@ -101,6 +103,12 @@ pub struct Report {
     pub energy_turned_over: Option<f64>,
     /// Exponentials of the memories at the end.
     pub modes: usize,
+    /// Kinks and jumps of the signals, each of which ends a step; `None` for steps of one size, which do not look ahead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub switches: Option<u64>,
+    /// What signals do in less time than this may be missed between steps, s; `None` for steps of one size.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<f64>,
 }
 
 /// Takes the rows of a run.

@@ -72,10 +72,15 @@ impl Run<'_> {
 
     /// Goes to the far side of a break or kink of the signals, where accelerations and prescribed velocities may jump.
     pub(super) fn cross(&mut self, after: f64) -> Result<(), RunError> {
+        self.restart_at(after)?;
+        // A little further, since a sign is 0 while it turns.
+        let start = self.book.system.past_turns(after);
+        if start == after { Ok(()) } else { self.restart_at(start) }
+    }
+
+    fn restart_at(&mut self, to: f64) -> Result<(), RunError> {
         let Self { book, stepper, forward, .. } = self;
         let system = book.system;
-        // One bit behind it, since a sign is 0 while it turns.
-        let to = if system.branch(after) == system.branch(after.next_up()) { after } else { after.next_up() };
         stepper.origin.t = to;
         stepper.restart();
         self.last = None;
@@ -92,7 +97,8 @@ impl Run<'_> {
         drive(&system.model, forward, to, &mut right);
         system.fill(to, to, None, &mut book.scratch, &mut right)?;
         book.jump([left, right]);
-        book.emit_rows_between_steps(to)
+        book.emit_rows_between_steps(to)?;
+        self.expect()
     }
 }
 

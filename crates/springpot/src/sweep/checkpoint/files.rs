@@ -73,15 +73,28 @@ impl<'a> CaseFiles<'a> {
         self.aside.as_mut().map_or(Ok(()), |file| file.write_all(text))
     }
 
+    /// Takes the values of whole rows for figures.
+    pub(in crate::sweep) fn take_kept(&mut self, values: &[f64]) -> io::Result<()> {
+        if values.is_empty() {
+            return Ok(());
+        }
+        if self.kept_file.is_none() {
+            let path = self.checkpoints.file(self.index, ".kept");
+            self.kept_file = Some(cut(&self.checkpoints.disk, &path, self.kept.bytes)?);
+        }
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        self.kept.take(&bytes);
+        self.kept_file.as_mut().map_or(Ok(()), |file| file.write_all(&bytes))
+    }
+
     /// What tells this case from others.
     pub(in crate::sweep) fn digest(&mut self, plan: &Plan, system: &System) -> u64 {
         *self.digest.get_or_insert_with(|| digest(plan, system))
     }
 
-    /// How far rows and values for figures have come; the values, given column by column, are written that far.
-    pub(in crate::sweep) fn written(&mut self, kept: Option<&[Vec<f64>]>) -> io::Result<(Stretch, Stretch)> {
-        self.write_kept(kept)?;
-        Ok((self.rows, self.kept))
+    /// How far rows and values for figures are written.
+    pub(in crate::sweep) fn written(&self) -> (Stretch, Stretch) {
+        (self.rows, self.kept)
     }
 
     /// Writes the state of the case, once all that it speaks of is safe; `sync` makes the shared rows so.
@@ -119,21 +132,6 @@ impl<'a> CaseFiles<'a> {
         }
         Ok(())
     }
-
-    /// Adds the values of new rows, row by row.
-    fn write_kept(&mut self, columns: Option<&[Vec<f64>]>) -> io::Result<()> {
-        let Some(columns) = columns.filter(|columns| !columns.is_empty()) else { return Ok(()) };
-        let new = (self.kept.bytes / (8 * columns.len() as u64)) as usize..columns[0].len();
-        let values = new.flat_map(|row| columns.iter().map(move |column| column[row]));
-        let text: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
-        if self.kept_file.is_none() {
-            let path = self.checkpoints.file(self.index, ".kept");
-            self.kept_file = Some(cut(&self.checkpoints.disk, &path, self.kept.bytes)?);
-        }
-        self.kept_file.as_mut().map_or(Ok(()), |file| file.write_all(&text))?;
-        self.kept.take(&text);
-        Ok(())
-    }
 }
 
 impl Checkpoints {
@@ -146,22 +144,28 @@ impl Checkpoints {
         copy_aside(&self.disk, &self.file(done.index, ".rows"), done.written.rows, take)
     }
 
-    /// The values that a case kept for figures, column by column.
-    pub(in crate::sweep) fn kept(&self, case: usize, kept: Stretch, columns: usize) -> io::Result<Vec<Vec<f64>>> {
+    /// Hands over the values that a case kept for figures, `columns` of each row, row by row.
+    pub(in crate::sweep) fn kept(
+        &self,
+        case: usize,
+        kept: Stretch,
+        columns: usize,
+        take: &mut dyn FnMut(&[f64]),
+    ) -> io::Result<()> {
         let rows = if columns == 0 { 0 } else { kept.bytes / (8 * columns as u64) };
-        let mut values = vec![Vec::with_capacity(rows as usize); columns];
         if rows == 0 {
-            return Ok(values);
+            return Ok(());
         }
         let mut file = io::BufReader::new(self.disk.open(&self.file(case, ".kept"))?);
-        let mut value = [0; 8];
+        let (mut bytes, mut values) = (vec![0; 8 * columns], vec![0.0; columns]);
         for _ in 0..rows {
-            for column in &mut values {
-                file.read_exact(&mut value)?;
-                column.push(f64::from_le_bytes(value));
+            file.read_exact(&mut bytes)?;
+            for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
+                *value = f64::from_le_bytes(*bytes);
             }
+            take(&values);
         }
-        Ok(values)
+        Ok(())
     }
 }
 
