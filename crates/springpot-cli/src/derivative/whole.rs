@@ -1,23 +1,24 @@
 //! Derivatives of all rows at once.
 
 use super::sheet::{Layout, Sheet};
-use super::{FEWEST, Problem};
+use super::{FEWEST, Problem, steps};
 use springpot::fractional::scheme::{Samples, SchemeError};
 use springpot::fractional::{DerivativeError, Method, derivative, derivative_with_error};
 use springpot::table::push_fields;
 use std::io::Write;
 
+/// The derivatives of all rows, or nothing; `last_line` is that of the last row.
 pub(super) fn differentiate(
     layout: &Layout,
     sheet: &Sheet,
-    method: Method,
-    with_error: bool,
+    (method, with_error): (Method, bool),
+    last_line: u64,
     output: &mut dyn Write,
 ) -> Result<(), Problem> {
     if sheet.times.len() < FEWEST {
-        return Err(Problem::TooFewRows(sheet.times.len()));
+        return Err(Problem::TooFewRows { line: last_line, given: sheet.times.len() });
     }
-    let times = sheet.times_from_start();
+    let times = steps::from_start(&sheet.times);
     let mut results: Vec<Vec<f64>> = Vec::new();
     for values in &sheet.values {
         let samples = Samples { t: &times, x: values, rate: None };

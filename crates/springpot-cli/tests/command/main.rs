@@ -16,6 +16,7 @@ mod init;
 mod interrupted;
 mod laws;
 mod manual;
+mod messages;
 #[cfg(unix)]
 mod pipes;
 mod plot;
@@ -27,3 +28,5 @@ mod robots;
 mod support;
 #[cfg(target_os = "linux")]
 mod terminal;
+#[cfg(unix)]
+mod written;
