@@ -69,7 +69,7 @@ struct Read {
 fn read(scenario: &Scenario) -> Result<Read, Refusals> {
     let cases = scenario.cases(&Catalog::standard())?;
     let plan = cases.plan(0)?;
-    let system = plan.system();
+    let system = plan.system_unless(signals::stop());
     diagnostic::robot_warnings(&cases);
     let layout = Layout::new(&cases, &system)?;
     Ok(Read { cases, plan, system, layout })

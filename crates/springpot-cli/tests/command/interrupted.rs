@@ -225,3 +225,23 @@ fn two_runs_at_once_never_mix() {
     }
     println!("{refused} of 12 turns refused one");
 }
+
+#[test]
+fn a_gripper_path_that_is_still_followed_hears_it() {
+    // Many seconds of inverse kinematics before the first step.
+    let at = ARM.find("[motion]").unwrap();
+    let path = "[motion]\nkind = \"gripper-path\"\nx = \"0.4 + 0.1*sin(t)\"\ny = 0\nz = 0.5\nguess = { x = 0.1 }\n";
+    let time = "[time]\nend = 45\noutput_step = 15\n[solver]\nmax_step = 1e-4\n";
+    let place = Place::with(&format!("{}{path}{time}", &ARM[..at]));
+    for (command, code) in [("run", Some(130)), ("check", None)] {
+        let child =
+            place.command(&[command, "arm.toml"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(500));
+        let begun = Instant::now();
+        signal(&child, "-INT");
+        let ended = ended(child);
+        assert!(begun.elapsed() < Duration::from_secs(5), "{command}: {:?}", begun.elapsed());
+        assert_eq!(ended.code, code, "{command}: {}", ended.stderr);
+        assert!(code.is_none() || ended.stderr.starts_with("interrupted before"), "{command}: {}", ended.stderr);
+    }
+}

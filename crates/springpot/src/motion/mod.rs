@@ -3,11 +3,7 @@
 mod attitude;
 mod forward;
 pub mod gripper_path;
-mod hermite;
-pub mod kinks;
 mod prescribed;
-mod pseudo_inverse;
-mod task;
 
 pub use forward::{Drive, Forward};
 pub use gripper_path::{GripperPath, PathError};
@@ -75,6 +71,15 @@ impl Motion {
     /// Whether the motion says where the gripper should be.
     pub fn has_path(&self) -> bool {
         matches!(self, Self::GripperPath(_))
+    }
+
+    /// How long a step from t may be, at most h, so that its nodes see what the coordinates do beyond what the signals do: near
+    /// singular configurations a gripper path turns joints at once.
+    pub fn reach(&self, t: f64, h: f64) -> f64 {
+        match self {
+            Self::Prescribed(_) | Self::Forward(_) => h,
+            Self::GripperPath(path) => path.reach(t, h),
+        }
     }
 
     /// Where and why the motion ends early, if it does.

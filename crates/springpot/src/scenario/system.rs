@@ -3,16 +3,22 @@
 use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan};
 use crate::element::Element;
 use crate::model::{Anchor, Model, Site};
-use crate::motion::{Drive, Forward, GripperPath, JointPath, Motion, PosePath, gripper_path::Task};
+use crate::motion::gripper_path::{Course, Task};
+use crate::motion::{Drive, Forward, GripperPath, JointPath, Motion, PosePath};
 use crate::signal::Signal;
-use crate::simulate::{Settings, System};
+use crate::simulate::{Settings, Stop, System};
 
 impl Plan {
     /// The robot, its elements and its motion. A gripper path is solved here, as far as it can be followed.
     pub fn system(&self) -> System {
+        self.system_unless(&Stop::new(false))
+    }
+
+    /// [`Self::system`], but a gripper path is followed until `stop` is set: it then ends there.
+    pub fn system_unless(&self, stop: &Stop) -> System {
         System {
             elements: self.elements.iter().map(|element| self.built_element(element)).collect(),
-            motion: self.solved_motion(),
+            motion: self.solved_motion(stop),
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: Model::clone(&self.model),
             tells_joint_losses: self.tells_joint_losses,
@@ -48,7 +54,7 @@ impl Plan {
         }
     }
 
-    fn solved_motion(&self) -> Motion {
+    fn solved_motion(&self, stop: &Stop) -> Motion {
         match &self.motion {
             MotionPlan::Prescribed { joints } => Motion::Prescribed(joints.iter().map(path).collect()),
             MotionPlan::GripperPath { position, rpy, guess, .. } => {
@@ -59,7 +65,8 @@ impl Plan {
                     position: position.each_ref().map(signal),
                     rpy: rpy.as_ref().map(|rpy| rpy.each_ref().map(signal)),
                 };
-                Motion::GripperPath(Box::new(GripperPath::new(&self.model, task, guess, self.time.end)))
+                let course = Course { end: self.time.end, max_step: self.solver.max_step, stop };
+                Motion::GripperPath(Box::new(GripperPath::new(&self.model, task, guess, &course)))
             }
             MotionPlan::Forward(plan) => Motion::Forward(Box::new(Forward {
                 q: plan.q.clone(),

@@ -2,6 +2,7 @@
 
 use crate::fractional::KernelError;
 use crate::fractional::scheme::SchemeError;
+use crate::motion::PathError;
 
 /// Why a run stopped; every variant but [`RunError::Output`], [`RunError::Scheme`], [`RunError::TooBusy`] and
 /// [`RunError::OtherRun`] names the time.
@@ -170,8 +171,17 @@ pub enum RunError {
     OtherRun,
     /// The motion cannot be followed.
     #[error("{0}")]
-    Path(#[from] crate::motion::PathError),
+    Path(PathError),
     /// Rows could not be written.
     #[error("rows could not be written: {0}")]
     Output(#[from] std::io::Error),
+}
+
+impl From<PathError> for RunError {
+    fn from(error: PathError) -> Self {
+        match error {
+            PathError::Interrupted { t } => Self::Interrupted { t },
+            error => Self::Path(error),
+        }
+    }
 }

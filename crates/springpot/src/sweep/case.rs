@@ -55,7 +55,8 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
             (Report::default(), why, Vec::new(), Err(CaseError::Refused(refusals.to_string())))
         }
         Ok(plan) => {
-            let (system, settings, stop) = (plan.system(), plan.settings(), sweep.options.stop);
+            let stop = sweep.options.stop;
+            let (system, settings) = (plan.system_unless(stop), plan.settings());
             let watch = LimitWatch::new(&system);
             let mut rows = CaseRows { output: &mut output, watch, plan: &plan, system: &system };
             let (report, outcome) = match state {

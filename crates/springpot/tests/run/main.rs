@@ -9,6 +9,8 @@ mod energy;
 mod equation;
 mod floating;
 mod gripper;
+mod gripper_bounds;
+mod gripper_singular;
 mod kinks;
 mod law;
 mod memory;

@@ -161,7 +161,8 @@ impl<'a> Run<'a> {
                 continue;
             }
             let stop_at = stop.map_or(end, |stop| stop.before);
-            let to = target(t, self.agenda.reach(t, h), stop_at);
+            let reach = self.book.system.motion.reach(t, self.agenda.reach(t, h));
+            let to = target(t, reach, stop_at);
             // Only one side of a kink belongs to the step.
             let far_side = stop.filter(|_| to == stop_at).and_then(|stop| stop.after);
             let size = to - t;
@@ -199,7 +200,7 @@ impl<'a> Run<'a> {
     fn step_too_small(&self, t: f64, h: f64, error: &StepError) -> RunError {
         // At the limit of its reach the robot's rates are infinite, so that the steps shrink before the path ends.
         if let Some(failure) =
-            self.book.system.motion.failure().filter(|failure| failure.t - t < NEAR * self.book.settings.end)
+            self.book.system.motion.failure().filter(|failure| failure.t() - t < NEAR * self.book.settings.end)
         {
             return failure.into();
         }

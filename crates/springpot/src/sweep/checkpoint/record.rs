@@ -1,7 +1,7 @@
 //! What a checkpoint holds, as it is written.
 
 use crate::scenario::{Cases, Plan, RefusalKind, Scenario};
-use crate::simulate::{Checkpoint, PassedLimit, Report, ReportFields, System, Watch};
+use crate::simulate::{Checkpoint, PassedLimit, Report, ReportFields, Stop, System, Watch};
 use crate::table::sealed::{Fnv, SealError};
 use crate::table::{Format, Statistics};
 use serde::de::DeserializeOwned;
@@ -143,7 +143,9 @@ pub(super) fn digest(plan: &Plan, system: &System) -> u64 {
 
 /// As [`digest`], of case `index`; `None` where its plan is refused.
 pub(super) fn digest_of(cases: &Cases, index: usize) -> Option<u64> {
-    cases.plan(index).ok().map(|plan| digest(&plan, &plan.system()))
+    // What a gripper path leads to follows from what is asked of it.
+    let unsolved = Stop::new(true);
+    cases.plan(index).ok().map(|plan| digest(&plan, &plan.system_unless(&unsolved)))
 }
 
 /// Bytes that hold every number to the bit.

@@ -1,12 +1,15 @@
 //! What a gripper path asks of the robot at one time: residual, Jacobian and their rates.
 
-use super::attitude::Attitude;
 use crate::dynamics::{
     Kinematics, angular_jacobian_into, angular_jacobian_rate_into, point_jacobian_into, point_jacobian_rate_into,
 };
 use crate::model::{Frame, Model, Site};
+use crate::motion::attitude::Attitude;
 use crate::signal::Signal;
 use crate::spatial::{Rotation, Vec3};
+
+/// Most conditions of a task.
+pub(super) const CONDITIONS: usize = 6;
 
 /// A path of the gripper: its position and, if wanted, its orientation as signals of time.
 #[derive(Debug, Clone)]
@@ -22,21 +25,21 @@ pub struct Task {
 }
 
 /// Wanted motion: position and its derivatives; rotation, angular velocity and acceleration (world axes).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
     pub(super) position: Vec3,
     rotation: Option<Rotation>,
-    /// First derivative of the task, 3 or 6 values (linear first).
-    pub(super) rate: Vec<f64>,
+    /// First derivative of the task (linear first); 0 beyond its size.
+    pub(super) rate: [f64; CONDITIONS],
     /// Second derivative.
-    pub(super) acceleration: Vec<f64>,
+    pub(super) acceleration: [f64; CONDITIONS],
 }
 
 /// Residual of a task in one configuration.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Residual {
-    /// Wanted less actual: linear (m), then a rotation vector (rad).
-    pub(super) error: Vec<f64>,
+    /// Wanted less actual: linear (m), then a rotation vector (rad); 0 beyond the task's size.
+    pub(super) error: [f64; CONDITIONS],
     /// Distance to the wanted point, m.
     pub(super) distance: f64,
     /// Angle to the wanted orientation, rad; 0 where none is wanted.
@@ -54,53 +57,46 @@ impl Task {
         let mut target = Target {
             position: Vec3([x.value, y.value, z.value]),
             rotation: None,
-            rate: vec![x.first, y.first, z.first],
-            acceleration: vec![x.second, y.second, z.second],
+            rate: [x.first, y.first, z.first, 0.0, 0.0, 0.0],
+            acceleration: [x.second, y.second, z.second, 0.0, 0.0, 0.0],
         };
         if let Some(rpy) = &self.rpy {
             let Attitude { rotation, omega, alpha, .. } = Attitude::at(rpy, t);
             target.rotation = Some(rotation);
-            target.rate.extend(omega.0);
-            target.acceleration.extend(alpha.0);
+            target.rate[3..].copy_from_slice(&omega.0);
+            target.acceleration[3..].copy_from_slice(&alpha.0);
         }
         target
     }
 
     pub(super) fn residual(&self, kinematics: &Kinematics, target: &Target) -> Residual {
         let miss = target.position - kinematics.position(&self.site);
-        let mut residual = Residual { error: miss.0.to_vec(), distance: miss.norm(), angle: 0.0 };
+        let mut residual = Residual { error: [0.0; CONDITIONS], distance: miss.norm(), angle: 0.0 };
+        residual.error[..3].copy_from_slice(&miss.0);
         if let Some(wanted) = &target.rotation {
             let turn = rotation_vector(&(*wanted * kinematics.frame(&self.frame).rotation.transpose()));
             residual.angle = turn.norm();
-            residual.error.extend(turn.0);
+            residual.error[3..].copy_from_slice(&turn.0);
         }
         residual
     }
 
-    /// Rows of the task Jacobian.
-    pub(super) fn jacobian(&self, model: &Model, kinematics: &Kinematics) -> Vec<Vec<f64>> {
-        let n = model.nv();
-        let mut block = vec![0.0; 3 * n];
-        point_jacobian_into(model, kinematics, &self.site, &mut block);
-        let mut rows: Vec<Vec<f64>> = block.chunks(n).map(<[f64]>::to_vec).collect();
+    /// The task Jacobian, `size` × nv, row-major.
+    pub(super) fn jacobian_into(&self, model: &Model, kinematics: &Kinematics, jacobian: &mut [f64]) {
+        let (linear, angular) = jacobian.split_at_mut(3 * model.nv());
+        point_jacobian_into(model, kinematics, &self.site, linear);
         if self.rpy.is_some() {
-            angular_jacobian_into(model, kinematics, &self.site, &mut block);
-            rows.extend(block.chunks(n).map(<[f64]>::to_vec));
+            angular_jacobian_into(model, kinematics, &self.site, angular);
         }
-        rows
     }
 
-    /// Rows of its time derivative; needs velocities.
-    pub(super) fn jacobian_rate(&self, model: &Model, kinematics: &Kinematics) -> Vec<Vec<f64>> {
-        let n = model.nv();
-        let mut block = vec![0.0; 3 * n];
-        point_jacobian_rate_into(model, kinematics, &self.site, &mut block);
-        let mut rows: Vec<Vec<f64>> = block.chunks(n).map(<[f64]>::to_vec).collect();
+    /// Its time derivative; needs velocities.
+    pub(super) fn jacobian_rate_into(&self, model: &Model, kinematics: &Kinematics, rate: &mut [f64]) {
+        let (linear, angular) = rate.split_at_mut(3 * model.nv());
+        point_jacobian_rate_into(model, kinematics, &self.site, linear);
         if self.rpy.is_some() {
-            angular_jacobian_rate_into(model, kinematics, &self.site, &mut block);
-            rows.extend(block.chunks(n).map(<[f64]>::to_vec));
+            angular_jacobian_rate_into(model, kinematics, &self.site, angular);
         }
-        rows
     }
 
     pub(super) fn signals(&self) -> impl Iterator<Item = &Signal> {

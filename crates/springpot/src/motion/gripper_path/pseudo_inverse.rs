@@ -1,9 +1,11 @@
 //! Pseudo-inverse of a small Jacobian by its singular values.
 
+use super::task::CONDITIONS;
+
 /// Singular values below this share of the largest count as 0.
 const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Singular value decomposition of an m × n matrix J with small m: Jᵀ v_k = w_k, the w_k orthogonal with norms σ_k.
+/// Singular value decomposition of an m × n matrix J with m ≤ 6: Jᵀ v_k = w_k, the w_k orthogonal with norms σ_k.
 #[derive(Debug, Clone)]
 pub(super) struct PseudoInverse {
     /// w_k, n values each.
@@ -14,10 +16,10 @@ pub(super) struct PseudoInverse {
 }
 
 impl PseudoInverse {
-    /// One-sided Jacobi rotations on the rows of J, given row by row (Hestenes 1958).
-    pub(super) fn new(rows: &[Vec<f64>]) -> Self {
-        let m = rows.len();
-        let mut w = rows.to_vec();
+    /// One-sided Jacobi rotations on the rows of J, m × `n`, row-major (Hestenes 1958).
+    pub(super) fn new(jacobian: &[f64], n: usize) -> Self {
+        let mut w: Vec<Vec<f64>> = jacobian.chunks(n).map(<[f64]>::to_vec).collect();
+        let m = w.len();
         let mut v: Vec<Vec<f64>> = (0..m).map(|k| (0..m).map(|i| if i == k { 1.0 } else { 0.0 }).collect()).collect();
         for _ in 0..40 {
             let mut turned = false;
@@ -48,24 +50,29 @@ impl PseudoInverse {
         self.regular(0.0).count()
     }
 
-    /// Smallest over largest singular value.
-    pub(super) fn conditioning(&self) -> f64 {
-        self.sigma.iter().copied().fold(f64::INFINITY, f64::min) / self.largest()
+    /// (Σσ² Σσ⁻²)^−½ over the `rank` largest singular values; 0 where one of them is 0.
+    pub(super) fn conditioning(&self, rank: usize) -> f64 {
+        let mut sigma = self.sigma.clone();
+        sigma.sort_by(|a, b| b.total_cmp(a));
+        let used = &sigma[..rank.min(sigma.len())];
+        let squares: f64 = used.iter().map(|s| s * s).sum();
+        let inverses: f64 = used.iter().map(|s| 1.0 / (s * s)).sum();
+        let product = (squares * inverses).sqrt();
+        if product.is_finite() && product > 0.0 { 1.0 / product } else { 0.0 }
     }
 
     /// The x of least norm with J x = r as nearly as can be; `damping` (relative to the largest σ) bounds x near singularities.
-    pub(super) fn solve(&self, r: &[f64], damping: f64) -> Vec<f64> {
-        let mut x = vec![0.0; self.w[0].len()];
+    pub(super) fn solve_into(&self, r: &[f64], damping: f64, x: &mut [f64]) {
+        x.fill(0.0);
         for (k, inverse) in self.regular(damping) {
             let share = dot(&self.v[k], r) * inverse;
             x.iter_mut().zip(&self.w[k]).for_each(|(x, w)| *x += share * w);
         }
-        x
     }
 
     /// y with x = Jᵀ y for x in the row space of J.
-    pub(super) fn transpose_solve(&self, x: &[f64]) -> Vec<f64> {
-        let mut y = vec![0.0; self.v[0].len()];
+    pub(super) fn transpose_solve(&self, x: &[f64]) -> [f64; CONDITIONS] {
+        let mut y = [0.0; CONDITIONS];
         for (k, inverse) in self.regular(0.0) {
             let share = dot(&self.w[k], x) * inverse;
             y.iter_mut().zip(&self.v[k]).for_each(|(y, v)| *y += share * v);
@@ -111,25 +118,31 @@ fn rotate(columns: &mut [Vec<f64>], p: usize, q: usize, c: f64, s: f64) {
 mod tests {
     use super::*;
 
+    fn solved(inverse: &PseudoInverse, r: &[f64], n: usize) -> Vec<f64> {
+        let mut x = vec![f64::NAN; n];
+        inverse.solve_into(r, 0.0, &mut x);
+        x
+    }
+
     #[test]
     fn solves_wide_square_and_deficient_systems() {
-        let wide = [vec![1.0, 2.0, 3.0, 0.5], vec![0.0, -1.0, 1.0, 2.0]];
-        let inverse = PseudoInverse::new(&wide);
-        let x = inverse.solve(&[1.0, -2.0], 0.0);
-        assert!((dot(&wide[0], &x) - 1.0).abs() < 1e-14 && (dot(&wide[1], &x) + 2.0).abs() < 1e-14);
+        let wide = [1.0, 2.0, 3.0, 0.5, 0.0, -1.0, 1.0, 2.0];
+        let inverse = PseudoInverse::new(&wide, 4);
+        let x = solved(&inverse, &[1.0, -2.0], 4);
+        assert!((dot(&wide[..4], &x) - 1.0).abs() < 1e-14 && (dot(&wide[4..], &x) + 2.0).abs() < 1e-14);
         // Least norm: nothing of x lies in the null space.
         let mut rest = x.clone();
         inverse.project_to_null_space(&mut rest);
         assert!(dot(&rest, &rest).sqrt() < 1e-14);
         let y = inverse.transpose_solve(&x);
         for j in 0..4 {
-            assert!((wide[0][j] * y[0] + wide[1][j] * y[1] - x[j]).abs() < 1e-14);
+            assert!((wide[j] * y[0] + wide[4 + j] * y[1] - x[j]).abs() < 1e-14);
         }
         // The third row is the sum of the first two: consistent right-hand sides are met.
-        let deficient = [vec![1.0, 0.0], vec![0.0, 2.0], vec![1.0, 2.0]];
-        let inverse = PseudoInverse::new(&deficient);
+        let inverse = PseudoInverse::new(&[1.0, 0.0, 0.0, 2.0, 1.0, 2.0], 2);
         assert_eq!(inverse.rank(), 2);
-        let x = inverse.solve(&[3.0, 4.0, 7.0], 0.0);
+        assert!(inverse.conditioning(3) < 1e-15 && inverse.conditioning(2) > 0.1 && inverse.conditioning(0) == 0.0);
+        let x = solved(&inverse, &[3.0, 4.0, 7.0], 2);
         assert!((x[0] - 3.0).abs() < 1e-14 && (x[1] - 2.0).abs() < 1e-14);
     }
 }
