@@ -9,6 +9,7 @@ mod along;
 mod book;
 mod checkpoint;
 mod control;
+mod coulomb;
 mod equation;
 mod error;
 pub mod fixed;
@@ -31,13 +32,13 @@ pub use fixed::FixedStep;
 pub use forward::forward;
 pub use limits::{LimitKind, LimitWatch, PassedLimit, Watch};
 pub use pose::{ElementStart, Pose, State};
-pub use resistance::FRICTION_SPEED;
 pub use row_times::RowTimes;
 
 #[cfg(feature = "scenario")]
 pub(crate) use checkpoint::ReportFields;
 
 use crate::element::Element;
+pub use crate::model::FRICTION_SPEED;
 use crate::model::{Model, Site};
 use crate::motion::Motion;
 use checkpoint::Pace;

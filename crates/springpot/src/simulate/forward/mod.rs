@@ -11,12 +11,16 @@ pub(super) mod drives;
 mod estimate;
 mod keep;
 mod newton;
+mod settle;
 mod stages;
 mod start;
 mod stepper;
+mod stick;
 mod tableau;
+mod watch;
 
 use self::drives::drive;
+use self::settle::Settled;
 use self::stepper::{Carried, Stepper, Tolerance};
 use super::book::{Book, Books, target};
 use super::{Report, Rows, RunError, Settings, Stop, System};
@@ -129,7 +133,8 @@ impl<'a> Run<'a> {
     /// The first moment and its row; returns the first step.
     fn start(&mut self) -> Result<f64, RunError> {
         let (system, settings) = (self.book.system, self.book.settings);
-        let (origin, elements) = start::origin(system, self.forward)?;
+        let (origin, elements) = start::origin(system, self.forward, &mut self.stepper.stick)?;
+        self.stepper.free = self.stepper.stick.free();
         let strict = Tolerance { rtol: settings.rtol, atol: settings.atol.unwrap_or(settings.rtol) };
         let tolerances = [self.tolerance, strict];
         let chosen = start::first_step(system, self.forward, &origin, &elements, tolerances, settings.end);
@@ -198,10 +203,29 @@ impl<'a> Run<'a> {
                     h = smaller;
                 }
                 Ok(factor) => {
+                    let (whole, planned) = (size, to);
+                    let (to, size) = match self.settle(to, size)? {
+                        Settled::At { to, size } => (to, size),
+                        Settled::Shorter(smaller) => {
+                            self.book.report.rejected_steps += 1;
+                            h = smaller;
+                            continue;
+                        }
+                        Settled::AtStart => {
+                            self.stop_sliding()?;
+                            self.cross(t)?;
+                            continue;
+                        }
+                    };
+                    let (on_break, far_side) = if to == planned { (on_break, far_side) } else { (false, None) };
                     self.keep(to, size, on_break)?;
                     // A step cut short by a stop says nothing against the size chosen before.
-                    h = (size * factor).max(if size < h { h } else { 0.0 }).min(self.longest_step);
-                    if on_break || far_side.is_some() {
+                    h = (whole * factor).max(if size < h { h } else { 0.0 }).min(self.longest_step);
+                    let changes = self.stepper.stick.changes();
+                    if changes {
+                        self.stop_sliding()?;
+                    }
+                    if changes || on_break || far_side.is_some() {
                         self.cross(far_side.unwrap_or(to))?;
                     }
                 }

@@ -1,0 +1,199 @@
+//! Which joints friction holds and which slide against it, between two changes.
+
+use crate::model::Model;
+use crate::motion::{Drive, Forward};
+use crate::simulate::coulomb::Coulomb;
+use crate::simulate::moment::Moment;
+use crate::simulate::resistance::holding_forces;
+use serde::{Deserialize, Serialize};
+
+/// Changes between holding and sliding after which a run that does not get on stops.
+pub(super) const MOST_CHANGES: u32 = 1_000;
+
+/// What counts as not getting on: all those changes within this share of the run.
+pub(super) const CHATTER: f64 = 1e-9;
+
+/// What a force must exceed its limit by to move a joint that holds, in units of its rounding.
+const ROUNDINGS: f64 = 64.0;
+
+/// What is carried from step to step.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Sliding {
+    /// Of every velocity that rubs, in their order, −1, 0 (held) or 1: the direction in which it slides.
+    directions: Vec<i8>,
+    /// Changes since that time, s.
+    changes: u32,
+    since: f64,
+}
+
+/// Friction that sticks, at the velocities of a robot that moves by itself.
+pub(super) struct Stick {
+    /// What friction can hold at every velocity, N·m or N; 0 where nothing sticks.
+    limits: Vec<f64>,
+    /// Velocities that forces drive.
+    driven: Vec<usize>,
+    /// Those of them at which friction sticks.
+    rubbing: Vec<usize>,
+    /// Joints that signals move against friction that sticks.
+    led: Vec<usize>,
+    pub(super) sliding: Sliding,
+    /// Velocities that come to rest at the end of the step, those that are held from then on in any case, and whether any joint
+    /// breaks away there.
+    pub(super) stopping: Vec<usize>,
+    pub(super) caught: Vec<usize>,
+    pub(super) breaks_away: bool,
+    /// A moment to look into a step from.
+    pub(super) spare: Option<Moment>,
+    coulomb: Coulomb,
+}
+
+impl Stick {
+    pub(super) fn new(model: &Model, forward: &Forward) -> Self {
+        let limits = holding_forces(model);
+        let driven = forward.free_velocities(model);
+        let rubbing: Vec<usize> = driven.iter().copied().filter(|&k| limits[k] > 0.0).collect();
+        let drives = model.own_joints().zip(&forward.drives);
+        let led = drives
+            .filter(|(j, drive)| matches!(drive, Drive::Prescribed(_)) && model.v_range(*j).any(|k| limits[k] > 0.0));
+        let led = led.map(|(j, _)| j).collect();
+        let sliding = Sliding { directions: vec![0; rubbing.len()], ..Sliding::default() };
+        Self {
+            limits,
+            driven,
+            rubbing,
+            led,
+            sliding,
+            stopping: Vec::new(),
+            caught: Vec::new(),
+            breaks_away: false,
+            spare: None,
+            coulomb: Coulomb::default(),
+        }
+    }
+
+    /// Whether nothing sticks anywhere.
+    pub(super) fn is_idle(&self) -> bool {
+        self.rubbing.is_empty() && self.led.is_empty()
+    }
+
+    /// Whether the end of the step is a change between holding and sliding.
+    pub(super) fn changes(&self) -> bool {
+        self.breaks_away || !self.stopping.is_empty()
+    }
+
+    /// Forgets the changes at the end of a step.
+    pub(super) fn forget_changes(&mut self) {
+        self.stopping.clear();
+        self.caught.clear();
+        self.breaks_away = false;
+    }
+
+    /// Whether friction holds any joint.
+    pub(super) fn holds_any(&self) -> bool {
+        self.sliding.directions.contains(&0)
+    }
+
+    /// Whether friction holds velocity `k`.
+    pub(super) fn holds(&self, k: usize) -> bool {
+        self.limits[k] > 0.0 && self.rubbing().any(|(other, direction)| other == k && direction == 0)
+    }
+
+    /// The velocities at which friction sticks, with their directions of sliding; 0 where it holds.
+    pub(super) fn rubbing(&self) -> impl Iterator<Item = (usize, i8)> + '_ {
+        self.rubbing.iter().copied().zip(self.sliding.directions.iter().copied())
+    }
+
+    /// The joints that signals move against friction that sticks.
+    pub(super) fn led(&self) -> &[usize] {
+        &self.led
+    }
+
+    /// What friction can hold at velocity `k`, N·m or N.
+    pub(super) fn limit(&self, k: usize) -> f64 {
+        self.limits[k]
+    }
+
+    /// Velocities that forces drive and friction does not hold.
+    pub(super) fn free(&self) -> Vec<usize> {
+        self.driven.iter().copied().filter(|&k| !self.holds(k)).collect()
+    }
+
+    /// Adds what sliding asks of the actuators.
+    pub(super) fn add_sliding(&self, tau: &mut [f64]) {
+        for (k, direction) in self.rubbing() {
+            tau[k] += f64::from(direction) * self.limits[k];
+        }
+    }
+
+    /// Rounding of a force at velocity `k`; `size` is that of its terms.
+    fn slack(&self, k: usize, size: f64) -> f64 {
+        1e-13 * self.limits[k] + 16.0 * f64::EPSILON * size
+    }
+
+    /// The force at velocity `k` that moves a joint that holds, for sure.
+    pub(super) fn breaking(&self, k: usize, size: f64) -> f64 {
+        self.limits[k] + ROUNDINGS * self.slack(k, size)
+    }
+
+    /// Decides which joints hold at the velocities `v`. `residual` (nv) is what the accelerations of prescribed joints alone leave
+    /// over in the equations of motion without the friction that sticks, `sizes` (nv) how large its terms are, `mass` (nv × nv).
+    ///
+    /// # Errors
+    /// A velocity that finds no friction.
+    pub(super) fn decide(&mut self, v: &[f64], residual: &[f64], sizes: &[f64], mass: &[f64]) -> Result<(), usize> {
+        let nv = self.limits.len();
+        let mut candidates = Vec::new();
+        let mut push: Vec<f64> = self.driven.iter().map(|&k| -residual[k]).collect();
+        for (at, &k) in self.rubbing.iter().enumerate() {
+            self.sliding.directions[at] = if v[k] == 0.0 { 0 } else { v[k].signum() as i8 };
+            let place = self.driven.iter().position(|&driven| driven == k).unwrap_or(0);
+            push[place] -= f64::from(self.sliding.directions[at]) * self.limits[k];
+            if v[k] == 0.0 {
+                candidates.push((at, k, place));
+            }
+        }
+        let Some(&(_, first, _)) = candidates.first() else { return Ok(()) };
+        let mut lu = crate::simulate::lu::Lu::default();
+        if !lu.factor_part(nv, mass, &self.driven) {
+            return Err(first);
+        }
+        lu.solve(&mut push);
+        let n = candidates.len();
+        let mut coulomb = std::mem::take(&mut self.coulomb);
+        coulomb.resize(n);
+        let mut column = vec![0.0; self.driven.len()];
+        for (c, &(_, k, place)) in candidates.iter().enumerate() {
+            column.fill(0.0);
+            column[place] = 1.0;
+            lu.solve(&mut column);
+            for (r, &(_, _, row)) in candidates.iter().enumerate() {
+                coulomb.mobility[r * n + c] = column[row];
+            }
+            coulomb.pushed[c] = push[place];
+            coulomb.limits[c] = self.limits[k];
+            coulomb.slack[c] = self.slack(k, sizes[k]);
+            coulomb.directions[c] = 0;
+        }
+        let outcome = coulomb.solve();
+        for (&(at, ..), &direction) in candidates.iter().zip(&coulomb.directions) {
+            self.sliding.directions[at] = direction;
+        }
+        for k in self.caught.drain(..) {
+            if let Some(at) = self.rubbing.iter().position(|&other| other == k) {
+                self.sliding.directions[at] = 0;
+            }
+        }
+        self.coulomb = coulomb;
+        outcome.map_err(|c| candidates[c].1)
+    }
+
+    /// Counts a change at `t`; the count where there are too many of them within `span`, s.
+    pub(super) fn count_change(&mut self, t: f64, span: f64) -> Option<u32> {
+        let Sliding { changes, since, .. } = &mut self.sliding;
+        if t - *since > span {
+            (*changes, *since) = (0, t);
+        }
+        *changes += 1;
+        (*changes > MOST_CHANGES).then_some(*changes)
+    }
+}

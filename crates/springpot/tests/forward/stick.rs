@@ -1,0 +1,166 @@
+//! Friction that sticks, against closed forms: blocks, oscillators, belts, held loads.
+
+use crate::support::{Run, at, every, run};
+
+/// Sliders, one on the other along x; `joints` are the rests of their joints' tables.
+fn sliders(joints: &[(&str, &str)]) -> String {
+    let mut text = "[robot]\ngravity = [0, 0, -9.81]\n".to_owned();
+    for (k, (mass, joint)) in joints.iter().enumerate() {
+        text += &format!(
+            "[[robot.body]]\nname = \"b{k}\"\n\
+             joint = {{ name = \"q{k}\", kind = \"prismatic\", axis = [1, 0, 0], {joint} }}\nmass = {mass}\n"
+        );
+    }
+    text
+}
+
+/// A spring of the stiffness k between two points on the x axis, at length 8 where the sliders are at 0.
+fn spring(name: &str, from: &str, k: f64) -> String {
+    format!(
+        "[[element]]\nname = \"{name}\"\nfrom = {{ body = \"{from}\", point = [-8, 0, 0] }}\n\
+         to = {{ body = \"b0\", point = [0, 0, 0] }}\nrest_length = 8\nlaw = \"spring\"\nparameters = {{ k = {k} }}\n"
+    )
+}
+
+fn motion(rest: &str) -> String {
+    format!("[motion]\nkind = \"forward\"\n{rest}\n")
+}
+
+fn sticks(force: f64) -> String {
+    format!("friction = {{ force = {force}, stick = true }}")
+}
+
+/// Compares a column with a function of time; in units of its largest value.
+fn follows(run: &Run, column: &str, wanted: impl Fn(f64) -> f64, tolerance: f64) {
+    let (t, values) = (run.column("t"), run.column(column));
+    let wanted: Vec<f64> = t.iter().map(|t| wanted(*t)).collect();
+    let largest = wanted.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let (mut worst, mut when) = (0.0, 0.0);
+    for ((t, value), wanted) in t.iter().zip(&values).zip(&wanted) {
+        let off = (value - wanted).abs() / largest;
+        if !(off <= worst) {
+            (worst, when) = (off, *t);
+        }
+    }
+    println!("{column}: {worst:.2e} at t = {when}, {:?}", run.report);
+    assert!(worst <= tolerance, "{column}: {worst:e} at t = {when}");
+}
+
+/// From some row on the column has the same bits, and its velocity is 0.
+fn rests(run: &Run, joint: &str, from: f64) {
+    let (t, q, v) = (run.column("t"), run.column(&format!("q.{joint}")), run.column(&format!("v.{joint}")));
+    let first = t.iter().position(|t| *t > from).unwrap();
+    assert!(q[first..].iter().all(|x| x.to_bits() == q[first].to_bits()), "{joint} moves after {from}");
+    assert!(v[first..].iter().all(|v| *v == 0.0), "{joint} has a velocity after {from}");
+}
+
+#[test]
+fn a_block_on_a_rough_floor_stops_and_stays() {
+    // 2 kg, mu g = 3 m/s², v0 = 1.5 m/s.
+    let text = sliders(&[("2", &sticks(6.0))]) + &motion("start = { v = { q0 = 1.5 } }") + &every(2.0, 0.01, 1e-9);
+    let run = run(&text);
+    let (stop, rest) = (0.5, 1.5 * 1.5 / 6.0);
+    follows(&run, "q.q0", |t| if t < stop { 1.5 * t - 1.5 * t * t } else { rest }, 1e-9);
+    follows(&run, "v.q0", |t| if t < stop { 1.5 - 3.0 * t } else { 0.0 }, 1e-9);
+    follows(&run, "energy.joints", |t| if t < stop { 6.0 * (1.5 * t - 1.5 * t * t) } else { 6.0 * rest }, 1e-9);
+    rests(&run, "q0", 0.5);
+    assert!(run.report.energy_residual.unwrap() < 1e-11, "{:?}", run.report);
+}
+
+#[test]
+fn an_oscillator_loses_the_same_amplitude_every_half_cycle() {
+    // 1 kg on 100 N/m, 3 N of friction: dead zone 0.03 m, 0.06 m less every half cycle.
+    let (k, force, start) = (100.0, 3.0, 0.5);
+    let text = sliders(&[("1", &sticks(force))]) + &spring("s", "world", k) + &motion("start = { q = { q0 = 0.5 } }");
+    let run = run(&(text + &every(4.0, 0.01, 1e-9)));
+    let (omega, zone) = (10.0, force / k);
+    let half = std::f64::consts::PI / omega;
+    let exact = |t: f64| {
+        let (mut from, mut n, mut sign) = (start, 0.0, 1.0);
+        while from > zone && t > (n + 1.0) * half {
+            (from, n, sign) = (from - 2.0 * zone, n + 1.0, -sign);
+        }
+        let s = omega * (t - n * half);
+        if from.abs() <= zone { sign * from } else { sign * (zone + (from - zone) * s.cos()) }
+    };
+    follows(&run, "q.q0", exact, 1e-9);
+    rests(&run, "q0", 8.0 * half);
+    assert!(run.residual() < 1e-9, "{}", run.residual());
+}
+
+#[test]
+fn a_ramped_force_breaks_away_where_it_exceeds_friction() {
+    // 2 N/s against 3 N: away at 1.5 s, x''' = 2/4.
+    let text = sliders(&[("4", &sticks(3.0))]) + &motion("torque = { q0 = \"2*t\" }") + &every(3.0, 0.01, 1e-9);
+    let run = run(&text);
+    follows(&run, "q.q0", |t| if t < 1.5 { 0.0 } else { (t - 1.5).powi(3) / 12.0 }, 1e-9);
+    follows(&run, "v.q0", |t| if t < 1.5 { 0.0 } else { (t - 1.5).powi(2) / 4.0 }, 1e-9);
+}
+
+#[test]
+fn a_held_load_does_not_move_in_an_hour() {
+    let held = |friction: &str| {
+        format!(
+            "[robot]\n[[robot.body]]\nname = \"b\"\njoint = {{ name = \"q\", kind = \"prismatic\", axis = [0, 0, 1], {friction} }}\n\
+             mass = 1\n{}[time]\nend = 3600\noutput_step = 600\n",
+            motion("torque = { q = 4.81 }\nstart = { q = { q = 0.3 } }")
+        )
+    };
+    let sticking = run(&held(&sticks(10.0)));
+    assert!(sticking.column("q.q").iter().all(|q| *q == 0.3) && sticking.column("v.q").iter().all(|v| *v == 0.0));
+    assert!(sticking.report.steps < 100, "{:?}", sticking.report);
+    // The smooth law creeps at v_0 artanh(load/force).
+    let smooth = run(&held("friction = { force = 10, speed = \"0.1 mm/s\" }"));
+    let creep = 1e-4 * f64::atanh(0.5) * 3600.0;
+    let sunk = 0.3 - smooth.column("q.q").last().unwrap();
+    assert!((sunk / creep - 1.0).abs() < 1e-6, "{sunk} {creep}");
+}
+
+#[test]
+fn a_mass_on_a_pulled_belt_sticks_and_slips() {
+    // The belt pulls a spring of 50 N/m at 0.1 m/s; 1 kg, 2 N: away at t = 0.4 s, then x − ut + F/k = −(u/ω) sin ω(t − t0)
+    // until it stops again after one whole turn of the sine, 2π/ω.
+    let (k, u, force) = (50.0f64, 0.1, 2.0);
+    let text = sliders(&[("1", &sticks(force))])
+        + "[[robot.body]]\nname = \"belt\"\nparent = \"world\"\n\
+           joint = { name = \"p\", kind = \"prismatic\", axis = [1, 0, 0] }\nmass = 1\n"
+        + &spring("s", "belt", k)
+        + &motion("prescribed = { p = \"0.1*t\" }");
+    let run = run(&(text + &every(5.0, 0.01, 1e-9)));
+    let omega = k.sqrt();
+    let (load, turn) = (force / k / u, std::f64::consts::TAU / omega);
+    let exact = |t: f64| {
+        let (mut from, mut at) = (0.0, 0.0);
+        loop {
+            if t < at + load {
+                return from;
+            }
+            let s = t - at - load;
+            if s < turn {
+                return from + u * s - u / omega * (omega * s).sin();
+            }
+            (from, at) = (from + u * turn, at + turn);
+            // Only the first wait starts from a slack spring; the others end where the spring pulls with −F + ….
+            if at > 0.0 {
+                return f64::NAN;
+            }
+        }
+    };
+    let until = load + turn - 1e-9;
+    let q = run.column("q.q0");
+    for (t, q) in run.column("t").iter().zip(&q).filter(|(t, _)| **t < until) {
+        assert!((q - exact(*t)).abs() < 1e-10, "{t}: {q} {}", exact(*t));
+    }
+    assert!(run.residual() < 1e-9, "{}", run.residual());
+}
+
+#[test]
+fn rows_at_other_times_change_nothing() {
+    let text = sliders(&[("1", &sticks(3.0))]) + &spring("s", "world", 100.0) + &motion("start = { q = { q0 = 0.5 } }");
+    let fine = run(&(text.clone() + &at("2", "0.5, 1, 1.5, 2", 1e-9)));
+    let coarse = run(&(text + &every(2.0, 0.001, 1e-9)));
+    for (k, row) in [500, 1000, 1500, 2000].into_iter().enumerate() {
+        let (a, b) = (fine.column("q.q0")[k], coarse.column("q.q0")[row]);
+        assert!((a - b).abs() < 1e-10, "{a} {b}");
+    }
+}
