@@ -23,6 +23,7 @@ mod pose;
 mod resistance;
 mod row;
 mod row_times;
+mod zero;
 
 pub use along::along;
 pub use checkpoint::Checkpoint;

@@ -164,3 +164,115 @@ fn rows_at_other_times_change_nothing() {
         assert!((a - b).abs() < 1e-10, "{a} {b}");
     }
 }
+
+#[test]
+fn a_slider_on_a_sliding_one_sticks_until_it_is_pushed_too_hard() {
+    // 1 kg with 2 N against a carrier of 3 kg on a smooth floor that 4·t N push: together until the upper one needs 1·(t) > 2 N.
+    let text =
+        sliders(&[("3", ""), ("1", &sticks(2.0))]) + &motion("torque = { q0 = \"4*t\" }") + &every(4.0, 0.01, 1e-9);
+    let run = run(&text);
+    // Apart from t = 2 on: a_0 = (4t − 2)/3, a_1 = 2 − a_0.
+    let apart = |t: f64| -(t - 2.0).powi(3) * 2.0 / 9.0;
+    follows(&run, "q.q1", |t| if t < 2.0 { 0.0 } else { apart(t) }, 1e-9);
+    let together = |t: f64| t.powi(3) / 6.0;
+    let after = |t: f64| together(2.0) + 2.0 * (t - 2.0) + (t - 2.0).powi(2) + (t - 2.0).powi(3) * 2.0 / 9.0;
+    follows(&run, "q.q0", |t| if t < 2.0 { together(t) } else { after(t) }, 1e-9);
+    assert!(run.column("q.q1")[..=200].iter().all(|q| *q == 0.0));
+    assert!(run.residual() < 1e-9, "{}", run.residual());
+}
+
+#[test]
+fn a_block_that_a_push_and_pull_moves_reverses_and_sticks_again() {
+    // 5 sin t N against 3 N, 1 kg: slides while pushed, stops, is held until the other way.
+    let text = sliders(&[("1", &sticks(3.0))]) + &motion("torque = { q0 = \"5*sin(t)\" }") + &every(13.0, 0.01, 1e-9);
+    let run = run(&text);
+    let begin = f64::asin(0.6);
+    let v = |t: f64| 5.0 * (begin.cos() - t.cos()) - 3.0 * (t - begin);
+    let q = |t: f64| 5.0 * (begin.cos() * (t - begin) - (t.sin() - begin.sin())) - 1.5 * (t - begin).powi(2);
+    let (mut low, mut high) = (2.0, 4.5);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if v(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    // It is at rest for a while: 5 sin t is still above −3 N where it stops.
+    assert!(5.0 * f64::sin(low) > -3.0 && low > std::f64::consts::PI);
+    let pi = std::f64::consts::PI;
+    let reach = q(low);
+    let exact = |t: f64| {
+        // Half cycles of alternating sign.
+        let half = ((t - begin) / pi).floor();
+        if half < 0.0 {
+            return 0.0;
+        }
+        let sign = if half as i64 % 2 == 0 { 1.0 } else { -1.0 };
+        let start = if half as i64 % 2 == 0 { 0.0 } else { reach };
+        start + sign * q((t - half * pi).min(low))
+    };
+    follows(&run, "q.q0", exact, 1e-9);
+    assert!(run.column("v.q0").iter().filter(|v| **v == 0.0).count() > 100);
+    assert!(run.residual() < 1e-9, "{}", run.residual());
+}
+
+#[test]
+fn torques_that_jump_move_and_hold() {
+    // ±4 N in turns of 0.5 s against 3 N, 1 kg; then ±2 N, which hold.
+    let torque = "torque = { q0 = \"4*sign(sin(2*pi*t))*step(2 - t) + 2*sign(sin(2*pi*t))*step(t - 2)\" }";
+    let text = sliders(&[("1", &sticks(3.0))]) + &motion(torque) + &every(4.0, 0.005, 1e-9);
+    let run = run(&text);
+    // 1 m/s² for 0.5 s, then −7 m/s² until it stops 0.5/7 s later, then −1 m/s² the other way.
+    let first = |t: f64| if t < 0.5 { 0.5 * t * t } else { 0.125 + 0.5 * (t - 0.5) - 3.5 * (t - 0.5).powi(2) };
+    let stop = 0.5 + 0.5 / 7.0;
+    let q = run.column("q.q0");
+    for (t, q) in run.column("t").iter().zip(&q).filter(|(t, _)| **t < stop) {
+        assert!((q - first(*t)).abs() < 1e-10, "{t}");
+    }
+    let back = first(stop) - 0.5 * (1.0 - stop) * (1.0 - stop);
+    assert!((q[200] - back).abs() < 1e-10, "{} {back}", q[200]);
+    rests(&run, "q0", 2.2);
+    assert!(run.residual() < 1e-9, "{}", run.residual());
+}
+
+#[test]
+fn joints_that_signals_move_rub_both_ways() {
+    // The actuator of a prescribed joint makes up for friction: F·sign(v), 0 at rest, and loses F·|v|.
+    let text = sliders(&[("2", &sticks(3.0)), ("1", "damping = 1")])
+        + &motion("prescribed = { q0 = \"0.3*sin(4*t)\" }")
+        + &every(3.0, 0.01, 1e-9);
+    let run = run(&text);
+    assert!(run.residual() < 1e-9, "{}", run.residual());
+    let rubbing = |t: f64| {
+        let (quarter, phase) = ((4.0 * t / std::f64::consts::FRAC_PI_2).floor(), 4.0 * t);
+        let within = if quarter as i64 % 2 == 0 { phase.sin().abs() } else { 1.0 - phase.sin().abs() };
+        3.0 * 0.3 * (quarter + within)
+    };
+    let joints = run.column("energy.joints");
+    // The damper of the other joint takes its share, which is smooth; friction's alone is known.
+    let other = {
+        let text = sliders(&[("2", ""), ("1", "damping = 1")])
+            + &motion("prescribed = { q0 = \"0.3*sin(4*t)\" }")
+            + &every(3.0, 0.01, 1e-9);
+        crate::support::run(&text).column("energy.joints")
+    };
+    for ((t, all), damper) in run.column("t").iter().zip(&joints).zip(&other) {
+        assert!((all - damper - rubbing(*t)).abs() < 1e-8, "{t}: {all} {damper} {}", rubbing(*t));
+    }
+}
+
+#[test]
+fn a_joint_that_sticks_under_a_relaxing_element_is_let_go_in_time() {
+    // A springpot stretched at once by 0.1 m pulls with c·0.1·t^−α/Γ(1−α): more than 2 N at first, so that the slider leaves at once,
+    // and holds where it has come to.
+    let text = sliders(&[("1", &sticks(2.0))])
+        + "[[element]]\nname = \"e\"\nfrom = { body = \"world\", point = [-8, 0, 0] }\nto = { body = \"b0\", point = [0, 0, 0] }\n\
+           rest_length = 8\nlaw = \"springpot\"\nderivative = \"riemann-liouville\"\n\
+           parameters = { c = 10, alpha = 0.4 }\n"
+        + &motion("start = { q = { q0 = 0.1 } }")
+        + &every(2.0, 0.01, 1e-8);
+    let coarse = run(&text);
+    let fine = run(&text.replace("rtol = 1e-8", "rtol = 1e-10"));
+    let (a, b) = (coarse.column("q.q0"), fine.column("q.q0"));
+    assert!((b[0] - b.last().unwrap()).abs() > 1e-3 && fine.column("v.q0").last() == Some(&0.0));
+    for (a, b) in a.iter().zip(&b) {
+        assert!((a - b).abs() < 1e-8, "{a} {b}");
+    }
+}

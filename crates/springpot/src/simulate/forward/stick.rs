@@ -2,7 +2,8 @@
 
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
-use crate::simulate::coulomb::Coulomb;
+use crate::simulate::coulomb::{Candidate, Coulomb};
+use crate::simulate::lu::Lu;
 use crate::simulate::moment::Moment;
 use crate::simulate::resistance::holding_forces;
 use serde::{Deserialize, Serialize};
@@ -125,14 +126,9 @@ impl Stick {
         }
     }
 
-    /// Rounding of a force at velocity `k`; `size` is that of its terms.
-    fn slack(&self, k: usize, size: f64) -> f64 {
-        1e-13 * self.limits[k] + 16.0 * f64::EPSILON * size
-    }
-
     /// The force at velocity `k` that moves a joint that holds, for sure.
     pub(super) fn breaking(&self, k: usize, size: f64) -> f64 {
-        self.limits[k] + ROUNDINGS * self.slack(k, size)
+        self.limits[k] + ROUNDINGS * slack(self.limits[k], size)
     }
 
     /// Decides which joints hold at the velocities `v`. `residual` (nv) is what the accelerations of prescribed joints alone leave
@@ -141,50 +137,32 @@ impl Stick {
     /// # Errors
     /// A velocity that finds no friction.
     pub(super) fn decide(&mut self, v: &[f64], residual: &[f64], sizes: &[f64], mass: &[f64]) -> Result<(), usize> {
-        let nv = self.limits.len();
-        let mut candidates = Vec::new();
         let mut push: Vec<f64> = self.driven.iter().map(|&k| -residual[k]).collect();
-        for (at, &k) in self.rubbing.iter().enumerate() {
-            self.sliding.directions[at] = if v[k] == 0.0 { 0 } else { v[k].signum() as i8 };
-            let place = self.driven.iter().position(|&driven| driven == k).unwrap_or(0);
-            push[place] -= f64::from(self.sliding.directions[at]) * self.limits[k];
-            if v[k] == 0.0 {
-                candidates.push((at, k, place));
+        let Self { coulomb, limits, sliding, .. } = self;
+        coulomb.candidates.clear();
+        let mut at_rest = Vec::new();
+        for (at, (place, &k)) in self.driven.iter().enumerate().filter(|(_, k)| limits[**k] > 0.0).enumerate() {
+            let direction = if v[k] == 0.0 { 0 } else { v[k].signum() as i8 };
+            sliding.directions[at] = direction;
+            push[place] -= f64::from(direction) * limits[k];
+            if direction == 0 {
+                let slack = slack(limits[k], sizes[k]);
+                coulomb.candidates.push(Candidate { place, limit: limits[k], slack, offset: 0.0 });
+                at_rest.push((at, k));
             }
         }
-        let Some(&(_, first, _)) = candidates.first() else { return Ok(()) };
-        let mut lu = crate::simulate::lu::Lu::default();
-        if !lu.factor_part(nv, mass, &self.driven) {
+        let Some(&(_, first)) = at_rest.first() else { return Ok(()) };
+        let mut lu = Lu::default();
+        if !lu.factor_part(limits.len(), mass, &self.driven) {
             return Err(first);
         }
         lu.solve(&mut push);
-        let n = candidates.len();
-        let mut coulomb = std::mem::take(&mut self.coulomb);
-        coulomb.resize(n);
-        let mut column = vec![0.0; self.driven.len()];
-        for (c, &(_, k, place)) in candidates.iter().enumerate() {
-            column.fill(0.0);
-            column[place] = 1.0;
-            lu.solve(&mut column);
-            for (r, &(_, _, row)) in candidates.iter().enumerate() {
-                coulomb.mobility[r * n + c] = column[row];
-            }
-            coulomb.pushed[c] = push[place];
-            coulomb.limits[c] = self.limits[k];
-            coulomb.slack[c] = self.slack(k, sizes[k]);
-            coulomb.directions[c] = 0;
+        let outcome = coulomb.solve(&mut lu, &mut push);
+        for (&(at, k), &direction) in at_rest.iter().zip(&coulomb.directions) {
+            sliding.directions[at] = if self.caught.contains(&k) { 0 } else { direction };
         }
-        let outcome = coulomb.solve();
-        for (&(at, ..), &direction) in candidates.iter().zip(&coulomb.directions) {
-            self.sliding.directions[at] = direction;
-        }
-        for k in self.caught.drain(..) {
-            if let Some(at) = self.rubbing.iter().position(|&other| other == k) {
-                self.sliding.directions[at] = 0;
-            }
-        }
-        self.coulomb = coulomb;
-        outcome.map_err(|c| candidates[c].1)
+        self.caught.clear();
+        outcome.map_err(|c| at_rest[c].1)
     }
 
     /// Counts a change at `t`; the count where there are too many of them within `span`, s.
@@ -196,4 +174,9 @@ impl Stick {
         *changes += 1;
         (*changes > MOST_CHANGES).then_some(*changes)
     }
+}
+
+/// Rounding of a force that friction holds; `size` is that of its terms.
+fn slack(limit: f64, size: f64) -> f64 {
+    1e-13 * limit + 16.0 * f64::EPSILON * size
 }
