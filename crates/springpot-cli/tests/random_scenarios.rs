@@ -177,7 +177,7 @@ fn run(text: &str, limit: Option<u64>) -> Result<Ran, String> {
         return Err("too many rows for a test".into());
     }
     let system = plan.system();
-    let settings = Settings { max_steps: limit.or(Some(plan.solver.max_steps)), ..plan.settings() };
+    let settings = Settings { max_steps: limit.or(plan.solver.max_steps), ..plan.settings() };
     let mut rows = Vec::new();
     let mut keep = |row: &[f64]| -> std::io::Result<()> {
         rows.push(row.to_vec());

@@ -14,7 +14,6 @@ pub use gripper_path::{GripperPath, PathError};
 pub use prescribed::{JointPath, PosePath};
 
 use crate::model::Model;
-use crate::signal::Signal;
 
 /// Where the gripper should be, for motions that say so.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,28 +73,5 @@ impl Motion {
             Self::Prescribed(_) | Self::Forward(_) => None,
             Self::GripperPath(path) => path.failure(),
         }
-    }
-
-    fn signals(&self) -> Vec<&Signal> {
-        match self {
-            Self::Prescribed(joints) => joints.iter().flat_map(JointPath::signals).collect(),
-            Self::GripperPath(path) => path.signals().collect(),
-            Self::Forward(forward) => forward.drives.iter().flat_map(Drive::signals).collect(),
-        }
-    }
-
-    /// Signature of the branches that the signals are on at t.
-    pub fn branch(&self, t: f64) -> u64 {
-        kinks::branch(self.signals(), t)
-    }
-
-    /// Whether a signal has kinks.
-    pub fn has_kinks(&self) -> bool {
-        self.signals().iter().any(|signal| signal.has_kinks())
-    }
-
-    /// Break points of sampled signals, s.
-    pub fn break_points(&self) -> Vec<f64> {
-        self.signals().iter().flat_map(|signal| signal.break_points()).copied().collect()
     }
 }

@@ -24,7 +24,7 @@ pub struct PosePath {
 }
 
 impl JointPath {
-    pub(super) fn signals(&self) -> Vec<&Signal> {
+    pub(crate) fn signals(&self) -> Vec<&Signal> {
         match self {
             Self::Coordinate(signal) => vec![signal],
             Self::Pose(pose) => pose.position.iter().chain(&pose.rpy).collect(),

@@ -250,7 +250,7 @@ pub struct SolverPlan {
     /// Largest inner step, s; `None`: a five-hundredth of the motion.
     pub max_step: Option<f64>,
     /// Most inner steps of a run.
-    pub max_steps: u64,
+    pub max_steps: Option<u64>,
     /// Steps of one size; `None`: the run chooses its steps.
     pub fixed_step: Option<FixedStep>,
 }

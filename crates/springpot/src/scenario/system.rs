@@ -29,7 +29,7 @@ impl Plan {
             memory_rtol: self.solver.memory_rtol,
             first_step: self.solver.first_step,
             max_step: self.solver.max_step,
-            max_steps: Some(self.solver.max_steps),
+            max_steps: self.solver.max_steps,
             fixed_step: self.solver.fixed_step,
         }
     }

@@ -24,7 +24,6 @@ const DEFAULT_RTOL: f64 = 1e-9;
 /// Smallest default error of the memory's kernel; the default is this share of `rtol`.
 pub(super) const SMALLEST_MEMORY_RTOL: f64 = 1e-12;
 const MEMORY_SHARE: f64 = 100.0;
-const DEFAULT_MAX_STEPS: i64 = 10_000_000;
 pub(super) const TOLERANCES: (f64, f64) = (1e-13, 0.1);
 
 /// Duration and rows, for the readers that need them.
@@ -106,7 +105,7 @@ pub(crate) fn read_solver(root: &Table<'_>) -> Read<SolverPlan> {
         get("memory_rtol").map_or(Ok(default_memory), |field| tolerance(&field, (SMALLEST_MEMORY_RTOL, TOLERANCES.1)));
     let optional = |key| get(key).map(|field| field.positive("s")).transpose();
     let (first_step, max_step) = (optional("first_step"), optional("max_step"));
-    let max_steps = get("max_steps").map_or(Ok(DEFAULT_MAX_STEPS), |field| field.integer(1, i64::MAX));
+    let max_steps = get("max_steps").map(|field| field.integer(1, i64::MAX)).transpose();
     let fixed_step = fixed_step(table.as_ref());
     Ok(SolverPlan {
         rtol: rtol?,
@@ -114,7 +113,7 @@ pub(crate) fn read_solver(root: &Table<'_>) -> Read<SolverPlan> {
         memory_rtol: memory_rtol?,
         first_step: first_step?,
         max_step: max_step?,
-        max_steps: max_steps?.unsigned_abs(),
+        max_steps: max_steps?.map(i64::unsigned_abs),
         fixed_step: fixed_step?,
     })
 }

@@ -10,6 +10,7 @@
 //! exponent (`1e-3`). A product is always written out.
 
 mod error;
+mod look;
 mod parse;
 
 pub use error::ExpressionError;
@@ -18,6 +19,7 @@ pub(crate) use parse::number_length;
 
 use super::Jet;
 use super::jet::{Smooth, Value};
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::str::FromStr;
 
@@ -25,7 +27,7 @@ use std::str::FromStr;
 pub const MAX_LENGTH: usize = 4096;
 /// Deepest nesting of an expression.
 pub const MAX_DEPTH: usize = 64;
-/// Most functions with a kink (abs, sign, step, min, max, atan2) in one expression.
+/// Most functions that may have a kink (abs, sign, step, min, max, atan2, sqrt, asin, acos) in one expression.
 pub const MAX_KINKS: usize = 64;
 /// Most intermediate results at a time.
 const MAX_STACK: usize = 32;
@@ -48,20 +50,29 @@ enum Op {
     Min,
     Max,
     Atan2,
+    /// asin(sin u): a triangle wave.
+    AsinSin,
+    /// acos(cos u): a triangle wave.
+    AcosCos,
 }
 
 impl Op {
     fn operands(self) -> usize {
         match self {
             Self::Number(_) | Self::Time => 0,
-            Self::Negate | Self::Smooth(_) | Self::Abs | Self::Sign | Self::Step => 1,
+            Self::Negate | Self::Smooth(_) | Self::Abs | Self::Sign | Self::Step | Self::AsinSin | Self::AcosCos => 1,
             Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Power => 2,
             Self::Min | Self::Max | Self::Atan2 => 2,
         }
     }
 
     fn has_kink(self) -> bool {
-        matches!(self, Self::Abs | Self::Sign | Self::Step | Self::Min | Self::Max | Self::Atan2)
+        match self {
+            Self::Abs | Self::Sign | Self::Step | Self::Min | Self::Max | Self::Atan2 => true,
+            Self::AsinSin | Self::AcosCos => true,
+            Self::Smooth(function) => function.may_touch(),
+            _ => false,
+        }
     }
 }
 
@@ -140,23 +151,32 @@ impl Expression {
 
     /// The value at `t`: the same number as `at(t).value`. NaN and infinities are returned as they are.
     pub fn value(&self, t: f64) -> f64 {
-        run(&self.program, t, &mut 0)
+        run(&self.program, t, &mut Trace::default())
     }
 
     /// Value and exact first two derivatives at `t`; at a kink or jump the derivatives are those from the right.
     pub fn at(&self, t: f64) -> Jet {
-        run(&self.program, Jet::time(t), &mut 0)
+        run(&self.program, Jet::time(t), &mut Trace::default())
     }
 
-    /// One bit for each abs, sign, step (argument below zero), min, max (first argument below the second) and atan2 (below
-    /// the cut along the negative x axis), just after `t`: between two times with the same number none of them has
-    /// switched an odd number of times, and where it changes lies a kink or jump.
+    /// One bit for each abs, sign, step (argument below zero), min, max (first argument below the second), atan2 (below
+    /// the cut along the negative x axis), sqrt, asin, acos (argument falling) and triangle wave (falling), just after `t`:
+    /// between two times with the same number none of them has switched an odd number of times; kinks and jumps lie where it changes.
     pub fn branch(&self, t: f64) -> u64 {
-        let mut branch = 0;
+        self.trace(t).branch
+    }
+
+    /// Whether a sign, a step or an atan2 jumps at `t` itself, so that its value there is not that just after `t`.
+    pub fn turns_at(&self, t: f64) -> bool {
+        self.trace(t).turns
+    }
+
+    fn trace(&self, t: f64) -> Trace {
+        let mut trace = Trace::default();
         if self.has_kinks() {
-            run(&self.program, Jet::time(t), &mut branch);
+            run(&self.program, Jet::time(t), &mut trace);
         }
-        branch
+        trace
     }
 
     /// Whether [`branch`](Self::branch) can change.
@@ -188,8 +208,26 @@ impl fmt::Display for Expression {
     }
 }
 
+/// What kinks did while a program ran.
+#[derive(Debug, Clone, Copy, Default)]
+struct Trace {
+    branch: u64,
+    /// Bits in `branch`.
+    count: u32,
+    /// Whether the value is that of this instant alone.
+    turns: bool,
+}
+
+impl Trace {
+    fn take(&mut self, below: bool) -> bool {
+        self.branch |= u64::from(below) << self.count;
+        self.count = (self.count + 1) % u64::BITS;
+        below
+    }
+}
+
 /// Runs a program that `parse` has checked: operands present, at most `MAX_STACK` of them.
-fn run<V: Value>(program: &[Op], time: V, branch: &mut u64) -> V {
+fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace) -> V {
     let mut stack = [time; MAX_STACK];
     let mut top = 0;
     for &op in program {
@@ -200,11 +238,11 @@ fn run<V: Value>(program: &[Op], time: V, branch: &mut u64) -> V {
             },
             1 => {
                 top -= 1;
-                unary(op, stack[top], branch)
+                unary(op, stack[top], trace)
             }
             _ => {
                 top -= 2;
-                binary(op, stack[top], stack[top + 1], branch)
+                binary(op, stack[top], stack[top + 1], trace)
             }
         };
         stack[top] = result;
@@ -213,25 +251,50 @@ fn run<V: Value>(program: &[Op], time: V, branch: &mut u64) -> V {
     stack[0]
 }
 
-fn unary<V: Value>(op: Op, argument: V, branch: &mut u64) -> V {
+fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace) -> V {
     let u = argument.value();
     match op {
-        Op::Smooth(function) => function.apply(argument),
+        Op::Smooth(function) => {
+            if function.may_touch() {
+                trace.take(argument.is_falling());
+            }
+            function.apply(argument)
+        }
         Op::Negate => argument.neg(),
+        Op::AsinSin | Op::AcosCos => {
+            let (wave, value) = match op {
+                Op::AsinSin => (Smooth::Cos, triangle(u)),
+                _ => (Smooth::Sin, (u - TAU * (u / TAU).round()).abs()),
+            };
+            let falls = trace.take(wave.apply(argument).is_below_zero());
+            argument.apply(value, || (if falls { -1.0 } else { 1.0 }, 0.0))
+        }
         _ => {
-            let below = argument.is_below_zero();
-            *branch = *branch << 1 | u64::from(below);
+            let below = trace.take(argument.is_below_zero());
             match op {
                 Op::Abs => argument.apply(u.abs(), || (if below { -1.0 } else { 1.0 }, 0.0)),
                 _ if u.is_nan() => argument,
-                Op::Sign => V::constant(if u == 0.0 { 0.0 } else { u.signum() }),
-                _ => V::constant(if u >= 0.0 { 1.0 } else { 0.0 }),
+                Op::Sign => {
+                    trace.turns |= u == 0.0;
+                    V::constant(if u == 0.0 { 0.0 } else { u.signum() })
+                }
+                _ => {
+                    trace.turns |= u == 0.0 && below;
+                    V::constant(if u >= 0.0 { 1.0 } else { 0.0 })
+                }
             }
         }
     }
 }
 
-fn binary<V: Value>(op: Op, first: V, second: V, branch: &mut u64) -> V {
+/// asin(sin u) without the loss of digits at its crests.
+fn triangle(u: f64) -> f64 {
+    let turns = (u / PI).round();
+    let rest = u - PI * turns;
+    if turns % 2.0 == 0.0 { rest } else { -rest }
+}
+
+fn binary<V: Value>(op: Op, first: V, second: V, trace: &mut Trace) -> V {
     match op {
         Op::Add => first.add(second),
         Op::Subtract => first.sub(second),
@@ -239,12 +302,12 @@ fn binary<V: Value>(op: Op, first: V, second: V, branch: &mut u64) -> V {
         Op::Divide => first.div(second),
         Op::Power => first.pow(second),
         Op::Atan2 => {
-            *branch = *branch << 1 | u64::from(second.value() < 0.0 && first.is_below_zero());
+            let below = trace.take(second.value() < 0.0 && first.is_below_zero());
+            trace.turns |= below && first.value() == 0.0;
             first.atan2(second)
         }
         _ => {
-            let below = first.sub(second).is_below_zero();
-            *branch = *branch << 1 | u64::from(below);
+            let below = trace.take(first.sub(second).is_below_zero());
             let (u, v) = (first.value(), second.value());
             // A NaN must not be chosen away.
             let chosen = if u.is_nan() || (!v.is_nan() && below == (op == Op::Min)) { first } else { second };

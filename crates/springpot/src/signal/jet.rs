@@ -18,6 +18,8 @@ pub(super) trait Value: Copy {
     fn apply(self, value: f64, derivatives: impl FnOnce() -> (f64, f64)) -> Self;
     /// Whether it is below zero just after now, as far as this type can tell.
     fn is_below_zero(self) -> bool;
+    /// Whether it falls just after now, as far as this type can tell.
+    fn is_falling(self) -> bool;
 }
 
 /// x^n, exact where it can be; 0^0 = 1.
@@ -63,6 +65,9 @@ impl Value for f64 {
     }
     fn is_below_zero(self) -> bool {
         self < 0.0
+    }
+    fn is_falling(self) -> bool {
+        false
     }
 }
 
@@ -160,6 +165,10 @@ impl Value for Jet {
             self.second < 0.0
         }
     }
+
+    fn is_falling(self) -> bool {
+        if self.first != 0.0 { self.first < 0.0 } else { self.second < 0.0 }
+    }
 }
 
 fn reciprocal(u: f64) -> (f64, f64) {
@@ -184,6 +193,11 @@ pub(super) enum Smooth {
 }
 
 impl Smooth {
+    /// Whether it has a kink where its argument touches the end of its domain and turns.
+    pub(super) fn may_touch(self) -> bool {
+        matches!(self, Self::Sqrt | Self::Asin | Self::Acos)
+    }
+
     pub(super) fn apply<V: Value>(self, argument: V) -> V {
         let u = argument.value();
         match self {

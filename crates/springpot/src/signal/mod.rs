@@ -5,12 +5,16 @@
 //! derivatives are those from the right, so that a step may start there; [`Signal::branch`] tells when one is crossed and
 //! [`Signal::break_points`] where samples have theirs.
 
+pub mod agenda;
 #[cfg(feature = "scenario")]
 pub mod csv;
 pub mod expression;
+mod interval;
 mod jet;
 mod sampled;
+mod series;
 
+pub use agenda::{Agenda, AgendaError, Stop, Watched};
 pub use expression::{Expression, ExpressionError};
 pub use sampled::SampleError;
 
@@ -112,6 +116,11 @@ impl Signal {
             Kind::Expression(expression) => expression.branch(t),
             Kind::Constant(_) | Kind::Samples(_) => 0,
         }
+    }
+
+    /// Whether its value at `t` is that of this instant alone ([`Expression::turns_at`]).
+    pub fn turns_at(&self, t: f64) -> bool {
+        matches!(&self.kind, Kind::Expression(expression) if expression.turns_at(t))
     }
 
     /// Whether [`branch`](Self::branch) can change.

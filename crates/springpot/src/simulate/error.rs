@@ -3,8 +3,8 @@
 use crate::fractional::KernelError;
 use crate::fractional::scheme::SchemeError;
 
-/// Why a run stopped; every variant but [`RunError::Output`], [`RunError::Scheme`] and [`RunError::OtherRun`]
-/// names the time.
+/// Why a run stopped; every variant but [`RunError::Output`], [`RunError::Scheme`], [`RunError::TooBusy`] and
+/// [`RunError::OtherRun`] names the time.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The points that an element joins met, so that its direction is undefined.
@@ -130,6 +130,18 @@ pub enum RunError {
     TooManySteps {
         /// Time, s.
         t: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// Signals change more often than the run may take steps.
+    #[error(
+        "{what} changes too often: it takes at least {times:.1e} steps, and {limit} are allowed; raise solver.max_steps or shorten the run"
+    )]
+    TooBusy {
+        /// Which signal, or all of them.
+        what: String,
+        /// Steps that it takes at least.
+        times: f64,
         /// The limit.
         limit: u64,
     },

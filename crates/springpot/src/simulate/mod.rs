@@ -23,6 +23,7 @@ mod pose;
 mod resistance;
 mod row;
 mod row_times;
+mod signals;
 mod zero;
 
 pub use along::along;
@@ -77,7 +78,7 @@ pub struct Settings {
     pub first_step: Option<f64>,
     /// Longest inner step, s.
     pub max_step: Option<f64>,
-    /// Number of inner steps allowed.
+    /// Number of inner steps allowed; `None`: ten million, and a hundred more for every switch of the signals.
     pub max_steps: Option<u64>,
     /// Steps of one size, for robots that move by themselves; `None`: the run chooses its steps.
     pub fixed_step: Option<FixedStep>,

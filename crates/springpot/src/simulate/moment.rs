@@ -164,27 +164,6 @@ impl System {
         }
         Ok(())
     }
-
-    /// Signature of the branches that all signals are on at t: it changes at their kinks.
-    pub(super) fn branch(&self, t: f64) -> u64 {
-        let inputs = self.elements.iter().flat_map(|element| &element.inputs);
-        inputs.fold(self.motion.branch(t), |sum, signal| sum.rotate_left(7) ^ signal.branch(t))
-    }
-
-    /// Whether any signal has kinks.
-    pub(super) fn has_kinks(&self) -> bool {
-        self.motion.has_kinks() || self.elements.iter().flat_map(|e| &e.inputs).any(|signal| signal.has_kinks())
-    }
-
-    /// Times inside (0, end) at which steps must end, ascending.
-    pub(super) fn break_points(&self, end: f64) -> Vec<f64> {
-        let inputs = self.elements.iter().flat_map(|e| &e.inputs).flat_map(|signal| signal.break_points());
-        let mut points: Vec<f64> =
-            self.motion.break_points().into_iter().chain(inputs.copied()).filter(|t| 0.0 < *t && *t < end).collect();
-        points.sort_by(f64::total_cmp);
-        points.dedup();
-        points
-    }
 }
 
 impl Element {

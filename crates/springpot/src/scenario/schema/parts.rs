@@ -116,7 +116,7 @@ pub(super) fn solver() -> Value {
         "first_step" => positive("s", "First inner step."),
         "max_step" => positive("s", "Largest inner step."),
         "max_steps" => {
-            json!({ "type": "integer", "minimum": 1, "description": "Most inner steps of one case. Default: 10 000 000." })
+            json!({ "type": "integer", "minimum": 1, "description": "Most inner steps of one case. Default: 10 000 000, and 100 more for every switch of its signals." })
         }
         "method" => described(one_of(&methods), "forward: how it steps. Default: \"radau\", which chooses its steps."),
         "step" => positive("s", "forward: the step of \"backward-euler\" and \"midpoint\"."),

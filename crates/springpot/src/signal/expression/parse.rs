@@ -1,6 +1,7 @@
 //! Precedence climbing (V. R. Pratt, "Top down operator precedence", POPL 1973) from text to a postfix program.
 
-use super::{ExpressionError, MAX_DEPTH, MAX_LENGTH, MAX_STACK, NAMES, Name, Op, lookup, run};
+use super::{ExpressionError, MAX_DEPTH, MAX_LENGTH, MAX_STACK, NAMES, Name, Op, Smooth, Trace, lookup, run};
+use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
 const SIGN: u8 = 5;
@@ -184,11 +185,57 @@ impl Parser<'_> {
         let start = self.program.len() - 1 - op.operands();
         let operands = &self.program[start..self.program.len() - 1];
         if !operands.is_empty() && operands.iter().all(|op| matches!(op, Op::Number(_))) {
-            let value = run(&self.program[start..], 0.0_f64, &mut 0);
+            let value = run(&self.program[start..], 0.0_f64, &mut Trace::default());
             self.program.truncate(start);
             self.program.push(Op::Number(value));
         }
+        self.unfold();
         Ok(())
+    }
+
+    /// Inverse functions of what they undo lose half their digits at their kinks: asin(sin u), acos(cos u), sqrt(u^2) and their like
+    /// become the wave that they are.
+    fn unfold(&mut self) {
+        use Op::{AcosCos, AsinSin, Multiply, Negate, Number, Power};
+        use Smooth::{Acos, Asin, Cos, Sin, Sqrt};
+        // π/2 − wave.
+        let opposite = |wave: Op| vec![wave, Negate, Number(FRAC_PI_2), Op::Add];
+        let (count, instead) = match self.program[..] {
+            [.., Op::Smooth(Sin), Op::Smooth(Asin)] => (2, vec![AsinSin]),
+            [.., Op::Smooth(Cos), Op::Smooth(Acos)] => (2, vec![AcosCos]),
+            [.., Op::Smooth(Cos), Op::Smooth(Asin)] => (2, opposite(AcosCos)),
+            [.., Op::Smooth(Sin), Op::Smooth(Acos)] => (2, opposite(AsinSin)),
+            [.., Number(0.5), Power] => {
+                self.program.truncate(self.program.len() - 2);
+                self.program.push(Op::Smooth(Sqrt));
+                return self.unfold();
+            }
+            [.., Number(2.0), Power, Op::Smooth(Sqrt)] => (3, vec![Op::Abs]),
+            [.., Number(n), Power, Op::Smooth(Sqrt)] if n > 0.0 && n % 2.0 == 0.0 => {
+                (3, vec![Op::Abs, Number(0.5 * n), Power])
+            }
+            [.., Multiply, Op::Smooth(Sqrt)] => {
+                let second = self.operand_start(self.program.len() - 3);
+                let first = self.operand_start(second - 1);
+                if self.program[first..second] != self.program[second..self.program.len() - 2] {
+                    return;
+                }
+                (self.program.len() - second, vec![Op::Abs])
+            }
+            _ => return,
+        };
+        self.program.truncate(self.program.len() - count);
+        self.program.extend(instead);
+    }
+
+    /// Where the instructions begin whose result the instruction at `last` leaves.
+    fn operand_start(&self, last: usize) -> usize {
+        let (mut at, mut wanted) = (last, self.program[last].operands());
+        while wanted > 0 {
+            at -= 1;
+            wanted = wanted - 1 + self.program[at].operands();
+        }
+        at
     }
 
     /// The next character that is not blank.

@@ -29,6 +29,9 @@ impl Run<'_> {
         let [_, Moment { t: after, .. }] = sides;
         self.book.jump(sides);
         self.book.emit_rows_between_steps(after)?;
+        if !self.book.system.turns_at(after) {
+            return Ok(after);
+        }
         let start = after.next_up();
         let sides = self.look_across(after, start)?;
         self.book.jump(sides);

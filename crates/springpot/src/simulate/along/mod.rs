@@ -8,7 +8,7 @@ mod kink;
 mod reversal;
 
 use crate::fractional::step::RADAU_NODES;
-use crate::motion::kinks::locate;
+use crate::signal::{self, Agenda};
 use crate::simulate::book::{Book, Books, target};
 use crate::simulate::control::StepError;
 use crate::simulate::moment::{Moment, Scratch};
@@ -34,8 +34,7 @@ const NEAR: f64 = 1e-3;
 /// The report is true also where the run stops early: all rows up to `t_reached` were handed over.
 pub fn along(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
     let mut run = Run::new(system, settings, rows, stop);
-    let first = run.first_step();
-    let outcome = run.start().and_then(|()| run.march(0.0, first));
+    let outcome = run.look_ahead().and_then(|()| run.start()).and_then(|first| run.march(0.0, first));
     (run.book.finish(), outcome)
 }
 
@@ -51,7 +50,7 @@ pub(super) fn resume(
     let Pace { t, h, energy_floor } = pace;
     run.energy_floor = energy_floor;
     run.book.restore(books);
-    let outcome = run.differentiate_grid().and_then(|()| run.march(t, h));
+    let outcome = run.look_ahead().and_then(|()| run.differentiate_grid()).and_then(|()| run.march(t, h));
     (run.book.finish(), outcome)
 }
 
@@ -66,6 +65,8 @@ pub(super) struct Pace {
 struct Run<'a> {
     book: Book<'a>,
     stop: &'a Stop,
+    /// What the signals do.
+    agenda: Agenda,
     /// A lower bound of the energy turned over, from a glance at the motion.
     energy_floor: f64,
     /// Velocities at which friction sticks: their power has a kink where they turn round.
@@ -77,6 +78,7 @@ impl<'a> Run<'a> {
         Self {
             book: Book::new(system, settings, rows),
             stop,
+            agenda: Agenda::default(),
             energy_floor: 0.0,
             rubbing: reversal::rubbing(&system.model),
         }
@@ -87,16 +89,25 @@ impl<'a> Run<'a> {
     }
 
     fn first_step(&self) -> f64 {
-        self.book.settings.first_step.unwrap_or(self.longest_step() * FIRST_STEP).min(self.book.settings.end)
+        let first = self.book.settings.first_step.unwrap_or(self.longest_step() * FIRST_STEP);
+        self.agenda.reach(0.0, first.min(self.book.settings.end))
     }
 
-    fn start(&mut self) -> Result<(), RunError> {
-        let (system, delta) = (self.book.system, RADAU_NODES[0] * self.first_step());
+    /// What the signals will do.
+    fn look_ahead(&mut self) -> Result<(), RunError> {
+        self.agenda = self.book.system.agenda(self.book.settings, self.longest_step(), self.stop)?;
+        Ok(())
+    }
+
+    /// The first moment and its row; returns the first step.
+    fn start(&mut self) -> Result<f64, RunError> {
+        let (system, first) = (self.book.system, self.first_step());
         let [moment, ..] = &mut self.book.moments;
         system.evaluate(0.0, 0.0, &mut self.book.scratch, moment)?;
         self.differentiate_grid()?;
         self.energy_floor = self.glance();
-        self.book.open(delta)
+        self.book.open(RADAU_NODES[0] * first)?;
+        Ok(first)
     }
 
     /// The derivatives of elements with named schemes, at all rows.
@@ -132,35 +143,35 @@ impl<'a> Run<'a> {
     /// Takes step after step from t on, the first of size h.
     fn march(&mut self, mut t: f64, mut h: f64) -> Result<(), RunError> {
         let end = self.book.settings.end;
-        let breaks = self.book.system.break_points(end);
-        let mut breaks = breaks.into_iter().peekable();
-        let has_kinks = self.book.system.has_kinks();
+        let limit = self.book.settings.step_limit(self.agenda.switches());
         while t < end {
             let (stopped, energy_floor) = (self.stop.load(Ordering::Relaxed), self.energy_floor);
             self.book.keep(t, stopped, || simulate::Pace::Along(Pace { t, h, energy_floor }))?;
             if stopped {
                 return Err(RunError::Interrupted { t });
             }
-            if self.book.settings.max_steps.is_some_and(|limit| self.book.report.steps >= limit) {
+            if self.book.report.steps >= limit {
                 return Err(RunError::TooManySteps { t, limit: self.book.report.steps });
             }
-            while breaks.next_if(|b| *b <= t).is_some() {}
-            let stop = breaks.peek().copied().unwrap_or(end);
-            let mut to = target(t, h, stop);
-            // Only one side of a kink belongs to the step.
-            let mut far_side = None;
-            if has_kinks && let Some(node) = self.first_other_branch(t, to) {
-                let (before, after) = locate(|t| self.book.system.branch(t), t, node);
-                if before <= t {
-                    let sides = self.look_across(t, after)?;
-                    t = self.cross(sides)?;
-                    continue;
-                }
-                far_side = Some(after);
-                to = before;
+            if t == 0.0 && self.book.system.turns_at(t) {
+                let sides = self.look_across(t, f64::EPSILON * f64::EPSILON * end)?;
+                t = self.cross(sides)?;
+                continue;
             }
+            let stop = self.agenda.next_stop(t);
+            if let Some(signal::Stop { before, after: Some(after) }) = stop
+                && before <= t
+            {
+                let sides = self.look_across(t, after)?;
+                t = self.cross(sides)?;
+                continue;
+            }
+            let stop_at = stop.map_or(end, |stop| stop.before);
+            let to = target(t, self.agenda.reach(t, h), stop_at);
+            // Only one side of a kink belongs to the step.
+            let far_side = stop.filter(|_| to == stop_at).and_then(|stop| stop.after);
             let size = to - t;
-            let on_break = to == stop && to < end;
+            let on_break = stop.is_some() && to == stop_at && far_side.is_none();
             let mut error = self.attempt(t, to, on_break)?;
             let turn = self.first_reversal(t, to)?;
             let (to, size, on_break, far_side) =
@@ -195,13 +206,6 @@ impl<'a> Run<'a> {
             }
         }
         Ok(())
-    }
-
-    /// The first node of the step (or its end) at which the signals are on another branch than at its start.
-    fn first_other_branch(&self, t: f64, to: f64) -> Option<f64> {
-        let branch = self.book.system.branch(t);
-        let nodes = RADAU_NODES.map(|c| if c == 1.0 { to } else { t + c * (to - t) });
-        nodes.into_iter().find(|node| self.book.system.branch(*node) != branch)
     }
 
     fn step_too_small(&self, t: f64, h: f64, error: &StepError) -> RunError {

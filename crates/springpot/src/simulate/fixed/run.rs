@@ -129,7 +129,7 @@ impl Run<'_> {
             if stopped {
                 return Err(RunError::Interrupted { t });
             }
-            if book.settings.max_steps.is_some_and(|limit| book.report.steps >= limit) {
+            if book.report.steps >= book.settings.step_limit(0) {
                 return Err(RunError::TooManySteps { t, limit: book.report.steps });
             }
             // To the bit where it can be, so that the tables of the exponentials are made once.

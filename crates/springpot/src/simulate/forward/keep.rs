@@ -72,10 +72,14 @@ impl Run<'_> {
 
     /// Goes to the far side of a break or kink of the signals, where accelerations and prescribed velocities may jump.
     pub(super) fn cross(&mut self, after: f64) -> Result<(), RunError> {
+        self.restart_at(after)?;
+        // One bit further, since a sign is 0 while it turns.
+        if self.book.system.turns_at(after) { self.restart_at(after.next_up()) } else { Ok(()) }
+    }
+
+    fn restart_at(&mut self, to: f64) -> Result<(), RunError> {
         let Self { book, stepper, forward, .. } = self;
         let system = book.system;
-        // One bit behind it, since a sign is 0 while it turns.
-        let to = if system.branch(after) == system.branch(after.next_up()) { after } else { after.next_up() };
         stepper.origin.t = to;
         stepper.restart();
         self.last = None;

@@ -26,8 +26,8 @@ use super::book::{Book, Books, target};
 use super::{Report, Rows, RunError, Settings, Stop, System};
 use crate::fractional::step::RADAU_NODES;
 use crate::law::{Derivative, Singular};
-use crate::motion::kinks::locate;
 use crate::motion::{Drive, Forward, Motion};
+use crate::signal::{self, Agenda};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
@@ -50,7 +50,7 @@ pub fn forward(
 ) -> (Report, Result<(), RunError>) {
     let Motion::Forward(forward) = &system.motion else { panic!("the motion is given in advance") };
     let mut run = Run::new(system, forward, settings, rows, stop);
-    let outcome = run.start().and_then(|h| run.march(h));
+    let outcome = run.look_ahead().and_then(|()| run.start()).and_then(|h| run.march(h));
     (run.book.finish(), outcome)
 }
 
@@ -68,7 +68,7 @@ pub(super) fn resume(
     run.stepper.restore(pace.carried);
     run.find_starts();
     run.last = pace.last;
-    let outcome = run.march(pace.h);
+    let outcome = run.look_ahead().and_then(|()| run.march(pace.h));
     (run.book.finish(), outcome)
 }
 
@@ -87,6 +87,8 @@ struct Run<'a> {
     forward: &'a Forward,
     tolerance: Tolerance,
     stop: &'a Stop,
+    /// What the signals do.
+    agenda: Agenda,
     longest_step: f64,
     /// Whether signals prescribe joints.
     has_paths: bool,
@@ -122,12 +124,19 @@ impl<'a> Run<'a> {
             forward,
             tolerance,
             stop,
+            agenda: Agenda::default(),
             longest_step: settings.max_step.unwrap_or(settings.end * share).min(settings.end),
             has_paths: forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))),
             last: None,
             starts: Vec::new(),
             scratch: dense::Scratch::default(),
         }
+    }
+
+    /// What the signals will do.
+    fn look_ahead(&mut self) -> Result<(), RunError> {
+        self.agenda = self.book.system.agenda(self.book.settings, self.longest_step, self.stop)?;
+        Ok(())
     }
 
     /// The first moment and its row; returns the first step.
@@ -138,7 +147,7 @@ impl<'a> Run<'a> {
         let strict = Tolerance { rtol: settings.rtol, atol: settings.atol.unwrap_or(settings.rtol) };
         let tolerances = [self.tolerance, strict];
         let chosen = start::first_step(system, self.forward, &origin, &elements, tolerances, settings.end);
-        let h = settings.first_step.unwrap_or(chosen).min(self.longest_step);
+        let h = self.agenda.reach(0.0, settings.first_step.unwrap_or(chosen).min(self.longest_step));
         let [moment, ..] = &mut self.book.moments;
         moment.q.copy_from_slice(&origin.q);
         moment.v.copy_from_slice(&origin.v);
@@ -167,9 +176,7 @@ impl<'a> Run<'a> {
 
     fn march(&mut self, first: f64) -> Result<(), RunError> {
         let (system, end) = (self.book.system, self.book.settings.end);
-        let breaks = system.break_points(end);
-        let mut breaks = breaks.into_iter().peekable();
-        let has_kinks = system.has_kinks();
+        let limit = self.book.settings.step_limit(self.agenda.switches());
         let mut h = first;
         while self.stepper.origin.t < end {
             let t = self.stepper.origin.t;
@@ -179,24 +186,27 @@ impl<'a> Run<'a> {
             if stopped {
                 return Err(RunError::Interrupted { t });
             }
-            if self.book.settings.max_steps.is_some_and(|limit| self.book.report.steps >= limit) {
+            if self.book.report.steps >= limit {
                 return Err(RunError::TooManySteps { t, limit: self.book.report.steps });
             }
-            while breaks.next_if(|b| *b <= t).is_some() {}
-            let next_break = breaks.peek().copied().unwrap_or(end);
-            let mut to = target(t, h, self.next_sparse_row(h).map_or(next_break, |row| row.min(next_break)));
-            let mut far_side = None;
-            if has_kinks && let Some(node) = self.first_other_branch(t, to) {
-                let (before, after) = locate(|t| system.branch(t), t, node);
-                if before <= t {
-                    self.cross(after)?;
-                    continue;
-                }
-                (to, far_side) = (before, Some(after));
+            if t == 0.0 && system.turns_at(t) {
+                self.cross(f64::EPSILON * f64::EPSILON * end)?;
+                continue;
             }
+            let stop = self.agenda.next_stop(t);
+            if let Some(signal::Stop { before, after: Some(after) }) = stop
+                && before <= t
+            {
+                self.cross(after)?;
+                continue;
+            }
+            let stop_at = stop.map_or(end, |stop| stop.before);
+            let reach = self.agenda.reach(t, h);
+            let to = target(t, reach, self.next_sparse_row(reach).map_or(stop_at, |row| row.min(stop_at)));
+            let far_side = stop.filter(|_| to == stop_at).and_then(|stop| stop.after);
             // The size itself where it may be: a sum and a difference would change its last bits, and with them the tables of lags.
             let size = if to == t + h { h } else { to - t };
-            let on_break = to == next_break && to < end;
+            let on_break = stop.is_some() && to == stop_at && far_side.is_none();
             match self.attempt(to, size, on_break)? {
                 Err(smaller) => {
                     self.book.report.rejected_steps += 1;
@@ -239,14 +249,6 @@ impl<'a> Run<'a> {
         let next = self.book.next_row_until(f64::INFINITY)?;
         let last = self.book.report.t_reached.unwrap_or(0.0);
         (next > self.stepper.origin.t && next - last >= h).then_some(next)
-    }
-
-    /// The first node of the step (or its end) at which the signals are on another branch than at its start.
-    fn first_other_branch(&self, t: f64, to: f64) -> Option<f64> {
-        let system = self.book.system;
-        let branch = system.branch(t);
-        let nodes = RADAU_NODES.map(|c| if c == 1.0 { to } else { t + c * (to - t) });
-        nodes.into_iter().find(|node| system.branch(*node) != branch)
     }
 }
 

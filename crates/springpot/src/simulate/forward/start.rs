@@ -68,7 +68,7 @@ pub(super) fn decide(
         return Ok(());
     }
     let model = &system.model;
-    let Balance { kinematics, elements, residual, drives, .. } = balance(system, forward, stick, origin, derivative)?;
+    let Balance { kinematics, elements, residual, drives, .. } = balance(system, forward, origin, derivative)?;
     let sizes: Vec<f64> = (0..model.nv())
         .map(|k| {
             let pull = elements.iter().zip(&origin.forces).map(|(element, force)| (element.gradient[k] * force).abs());
@@ -89,7 +89,7 @@ pub(super) fn accelerate(
     derivative: impl Fn(usize, &Point) -> f64,
 ) -> Result<Vec<ElementStart>, RunError> {
     let Balance { kinematics, elements, mut residual, .. } =
-        balance(system, forward, stick, origin, |e, point, _| derivative(e, point))?;
+        balance(system, forward, origin, |e, point, _| derivative(e, point))?;
     stick.add_sliding(&mut residual);
     let free = stick.free();
     let mut change: Vec<f64> = free.iter().map(|&k| -residual[k]).collect();
@@ -114,13 +114,12 @@ struct Balance {
 fn balance(
     system: &System,
     forward: &Forward,
-    stick: &Stick,
     origin: &mut Origin,
     derivative: impl Fn(usize, &Point, f64) -> f64,
 ) -> Result<Balance, RunError> {
     let model = &system.model;
     let Origin { t, q, v, a, forces } = origin;
-    let t = stick.from_right(*t);
+    let t = *t;
     a.fill(0.0);
     for (j, drive) in model.own_joints().zip(&forward.drives) {
         if let Drive::Prescribed(path) = drive {

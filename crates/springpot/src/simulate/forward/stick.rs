@@ -77,11 +77,6 @@ impl Stick {
         self.rubbing.is_empty() && self.led.is_empty()
     }
 
-    /// When to look at what acts from `t` on: a sign may turn at the start of the run, and is 0 there.
-    pub(super) fn from_right(&self, t: f64) -> f64 {
-        if t == 0.0 && !self.rubbing.is_empty() { f64::MIN_POSITIVE } else { t }
-    }
-
     /// Whether the end of the step is a change between holding and sliding.
     pub(super) fn changes(&self) -> bool {
         self.breaks_away || !self.stopping.is_empty()

@@ -149,7 +149,7 @@ impl Run<'_> {
         let (book, elements) = (&self.book, &self.stepper.elements);
         let (mut values, mut size) = ([0.0; MAX_NODES + 1], 0.0f64);
         for (i, (value, moment)) in values.iter_mut().zip(&book.moments).enumerate() {
-            let driven = if moment.t == 0.0 { self.force_from_right(k) } else { moment.driven[k].unwrap_or(0.0) };
+            let driven = moment.driven[k].unwrap_or(0.0);
             let (mut pull, mut terms) = (0.0, driven.abs() + moment.rigid[k].abs());
             for (e, element) in book.system.elements.iter().enumerate() {
                 let force = match i {
@@ -172,17 +172,6 @@ impl Run<'_> {
         let stick = &self.stepper.stick;
         let tolerance = SHARE * self.book.settings.rtol * stick.limit(k);
         Holding { cubic, breaking: stick.breaking(k, size) + 0.5 * tolerance, tolerance }
-    }
-
-    /// The actuator force on velocity `k` at the start of the run.
-    fn force_from_right(&self, k: usize) -> f64 {
-        let stepper = &self.stepper;
-        let mut drives = stepper.model.own_joints().zip(&stepper.forward.drives);
-        let forces = drives.find_map(|(j, drive)| match drive {
-            Drive::Force(signals) => signals.get(k.checked_sub(stepper.model.v_range(j).start)?),
-            _ => None,
-        });
-        forces.map_or(0.0, |signal| signal.at(stepper.stick.from_right(0.0)).value)
     }
 
     /// The forces (nv) with which friction would hold every velocity, between the nodes.

@@ -1,0 +1,94 @@
+//! The signals that drive a run, and what they ask of its steps.
+
+use super::{RunError, Settings, System};
+use crate::motion::{Drive, Motion};
+use crate::signal::{Agenda, AgendaError, Signal, Watched};
+use std::sync::atomic::AtomicBool;
+
+/// Share of a signal's range that may stay unseen between the nodes of a step, in units of rtol and within these bounds: what is
+/// seen at all is met to rtol by the control of the steps.
+const UNSEEN: f64 = 1e2;
+const UNSEEN_BOUNDS: [f64; 2] = [1e-6, 1e-2];
+
+/// Steps that a run may take where nothing else is said, and how many more for every switch of its signals.
+const MAX_STEPS: u64 = 10_000_000;
+const STEPS_PER_SWITCH: u64 = 100;
+
+impl System {
+    /// Looks through all signals before a run whose own steps are at most `longest`.
+    ///
+    /// # Errors
+    /// [`RunError`] where a signal changes more often than the run may take steps, or the run is interrupted.
+    pub(super) fn agenda(&self, settings: &Settings, longest: f64, stop: &AtomicBool) -> Result<Agenda, RunError> {
+        let named = self.watched();
+        let watched: Vec<Watched> = named.iter().map(|(_, watched)| *watched).collect();
+        let [least, most] = UNSEEN_BOUNDS;
+        let tolerance = (UNSEEN * settings.rtol).clamp(least, most);
+        let agenda = Agenda::new(&watched, settings.end, tolerance, Some(stop)).map_err(|error| match error {
+            AgendaError::Interrupted => RunError::Interrupted { t: 0.0 },
+            AgendaError::TooBusy { signal, cells } => {
+                RunError::TooBusy { what: named[signal].0.clone(), times: cells as f64, limit: settings.step_limit(0) }
+            }
+        })?;
+        let (least, limit) = (agenda.least_steps(settings.end, longest), settings.step_limit(agenda.switches()));
+        if least > limit as f64 {
+            return Err(RunError::TooBusy { what: "the motion".to_owned(), times: least, limit });
+        }
+        Ok(agenda)
+    }
+
+    /// Whether a sign turns at t, so that its value belongs to no step.
+    pub(super) fn turns_at(&self, t: f64) -> bool {
+        self.watched().iter().any(|(_, watched)| watched.signal.turns_at(t))
+    }
+
+    /// Every signal with its name.
+    fn watched(&self) -> Vec<(String, Watched<'_>)> {
+        let position = |signal| Watched { signal, is_position: true };
+        let own = |signal| Watched { signal, is_position: false };
+        let mut watched: Vec<(String, Watched)> = Vec::new();
+        let labels = self.model.v_labels();
+        match &self.motion {
+            Motion::Prescribed(joints) => {
+                for (j, joint) in self.model.own_joints().zip(joints) {
+                    let name = format!("the motion of joint \"{}\"", self.model.joint_names()[j]);
+                    watched.extend(joint.signals().into_iter().map(|signal| (name.clone(), position(signal))));
+                }
+            }
+            Motion::GripperPath(path) => {
+                watched.extend(path.signals().map(|signal| ("the gripper's path".to_owned(), position(signal))));
+            }
+            Motion::Forward(forward) => {
+                for (j, drive) in self.model.own_joints().zip(&forward.drives) {
+                    let names = self.model.v_range(j).map(|k| format!("the torque on \"{}\"", labels[k].name));
+                    match drive {
+                        Drive::Force(signals) => watched.extend(names.zip(signals.iter().map(own))),
+                        Drive::Prescribed(joint) => {
+                            let name = format!("the motion of joint \"{}\"", self.model.joint_names()[j]);
+                            watched.extend(joint.signals().into_iter().map(|signal| (name.clone(), position(signal))));
+                        }
+                        Drive::Locked => {}
+                    }
+                }
+            }
+        }
+        for element in &self.elements {
+            for (entry, signal) in element.row.inputs.iter().zip(&element.inputs) {
+                watched.push((format!("input {} of element \"{}\"", entry.name, element.name), own(signal)));
+            }
+        }
+        watched.retain(|(_, watched): &(String, Watched<'_>)| is_function(watched.signal));
+        watched
+    }
+}
+
+fn is_function(signal: &Signal) -> bool {
+    signal.is_constant().is_none()
+}
+
+impl Settings {
+    /// Inner steps that a run may take whose signals switch that often.
+    pub(super) fn step_limit(&self, switches: u64) -> u64 {
+        self.max_steps.unwrap_or_else(|| MAX_STEPS.saturating_add(STEPS_PER_SWITCH.saturating_mul(switches)))
+    }
+}

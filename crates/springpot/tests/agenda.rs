@@ -1,0 +1,127 @@
+//! What is seen of signals before a run.
+
+use springpot::signal::{Agenda, AgendaError, Expression, Signal, Stop, Watched};
+
+fn watch(text: &str) -> Signal {
+    Signal::expression(Expression::parse(text).unwrap_or_else(|error| panic!("{text}: {error}")))
+}
+
+fn look(text: &str, end: f64, is_position: bool) -> Agenda {
+    let signal = watch(text);
+    Agenda::new(&[Watched { signal: &signal, is_position }], end, 1e-6, None).unwrap()
+}
+
+/// All stops up to `end`, as the first time after each.
+fn kinks(agenda: &Agenda, end: f64) -> Vec<f64> {
+    let (mut found, mut t) = (Vec::new(), 0.0);
+    while let Some(Stop { before, after: Some(after) }) = agenda.next_stop(t) {
+        assert!(t <= before && before < after && after <= end, "{t}: {before} {after}");
+        found.extend((after < end).then_some(after));
+        t = after;
+    }
+    found
+}
+
+/// The kinks of `text` are `expected`, each to 1e-12 of the end.
+fn has_kinks(text: &str, end: f64, expected: &[f64]) {
+    let found = kinks(&look(text, end, false), end);
+    assert_eq!(
+        found.len(),
+        expected.len(),
+        "{text}: {:?} {:?}",
+        &found[..found.len().min(9)],
+        &expected[..expected.len().min(9)]
+    );
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() <= 1e-12 * end, "{text}: {found} {expected}");
+    }
+}
+
+#[test]
+fn every_switch_of_a_square_wave_is_found() {
+    for (rate, end) in [(100.0, 10.0), (300.0, 10.0), (1000.0, 3.0), (1.0 / 7.0, 60.0)] {
+        let half: Vec<f64> = (1..).map(|k| 0.5 * f64::from(k) / rate).take_while(|t| *t < end - 1e-9).collect();
+        has_kinks(&format!("1+sign(sin(2*pi*{rate}*t))"), end, &half);
+    }
+}
+
+#[test]
+fn kinks_of_every_function_are_found() {
+    let tenths =
+        |from: f64, step: f64, count: i32| -> Vec<f64> { (0..count).map(|k| from + step * f64::from(k)).collect() };
+    has_kinks("abs(t-0.3)", 1.0, &[0.3]);
+    has_kinks("step(t^2-0.25)+sign(t-0.7)", 1.0, &[0.5, 0.7]);
+    has_kinks("min(t, 1-t, 0.4)", 1.0, &[0.4, 0.5, 0.6]);
+    has_kinks("max(0, 1-((t-3)/0.001)^2)^3", 60.0, &[2.999, 3.001]);
+    has_kinks("atan2(sin(pi*t), cos(pi*t))", 4.0, &[1.0, 3.0]);
+    // The usual triangle and rectified waves.
+    has_kinks("asin(sin(pi*t))", 4.0, &tenths(0.5, 1.0, 4));
+    has_kinks("acos(cos(pi*t))", 4.5, &tenths(1.0, 1.0, 4));
+    has_kinks("sqrt(sin(pi*t)^2)", 4.5, &tenths(1.0, 1.0, 4));
+    has_kinks("(sin(pi*t)*sin(pi*t))^0.5", 4.5, &tenths(1.0, 1.0, 4));
+    has_kinks("sqrt(1-cos(2*pi*t))", 3.5, &tenths(1.0, 1.0, 3));
+    // A kink inside a kink, two at one time, one that only touches, and none.
+    has_kinks(
+        "step(asin(sin(pi*t))-0.5)",
+        2.0,
+        &[0.5 / std::f64::consts::PI, 0.5, 1.0 - 0.5 / std::f64::consts::PI, 1.5],
+    );
+    has_kinks("abs(t-0.5)+step(t-0.5)", 1.0, &[0.5]);
+    has_kinks("abs(2+sin(9*t))+sqrt(2+cos(9*t))+max(3, sin(t))", 50.0, &[]);
+    has_kinks("step(t-t)+abs(0*t)+max(t, t)", 50.0, &[]);
+}
+
+#[test]
+fn square_waves_of_any_duty_and_rate() {
+    for k in 1..60 {
+        let (rate, level) = (17.3 * f64::from(k), -0.99 + 0.033 * f64::from(k));
+        let (end, omega) = (2.0, std::f64::consts::TAU * rate);
+        let up = level.asin();
+        let mut expected: Vec<f64> = (0..)
+            .flat_map(|n| [up, std::f64::consts::PI - up].map(|x| (x + std::f64::consts::TAU * f64::from(n)) / omega))
+            .take_while(|t| *t < end + 1.0 / rate)
+            .filter(|t| 0.0 < *t && *t < end)
+            .collect();
+        expected.sort_by(f64::total_cmp);
+        has_kinks(&format!("step(sin(2*pi*{rate}*t)-{level})"), end, &expected);
+    }
+}
+
+#[test]
+fn steps_are_short_where_a_pulse_is_and_nowhere_else() {
+    for (text, at, width) in [
+        ("1+0.01*exp(-((t-18.0048724)/0.01)^2)", 18.0048724, 0.01),
+        ("sin(t)+1e-3*exp(-((t-41.2345678)/0.00003)^2)", 41.2345678, 3e-5),
+        ("1e-8/(1+((t-33.333333)/1e-6)^2)", 33.333333, 1e-6),
+    ] {
+        let agenda = look(text, 60.0, true);
+        let inside = agenda.reach(at, 1.0);
+        assert!(inside < 0.5 * width && inside > 1e-3 * width, "{text}: {inside}");
+        assert_eq!(agenda.reach(at - 5.0, 0.1), 0.1, "{text}");
+        // No step may start before the pulse and end behind it.
+        for k in 0..200 {
+            let t = at - 0.5 * f64::from(k) * width;
+            let reach = agenda.reach(t, 0.12);
+            assert!(t + reach < at || reach < 0.5 * width, "{text}: {t} {reach}");
+        }
+    }
+}
+
+#[test]
+fn smooth_motions_ask_for_no_shorter_steps() {
+    for text in ["0.1*sin(8*t)", "0.1*t", "0.8+0.1*sin(0.4*pi*t)", "0.3*t^2-sqrt(1+t)", "tanh(t-5)+1/(1+t^2)", "7"] {
+        for is_position in [true, false] {
+            let agenda = look(text, 10.0, is_position);
+            assert_eq!(agenda.finest(), None, "{text}");
+            assert_eq!(agenda.reach(3.0, 0.02), 0.02);
+        }
+    }
+}
+
+#[test]
+fn what_no_run_can_follow_is_refused_and_an_interrupt_is_heard() {
+    let busy = watch("sign(sin(1e9*t))");
+    let watched = [Watched { signal: &busy, is_position: false }];
+    let stop = std::sync::atomic::AtomicBool::new(true);
+    assert_eq!(Agenda::new(&watched, 100.0, 1e-6, Some(&stop)).unwrap_err(), AgendaError::Interrupted);
+}
