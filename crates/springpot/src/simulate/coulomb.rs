@@ -212,4 +212,18 @@ mod tests {
         }
         assert!(held.iter().all(|count| *count > 300), "{held:?}");
     }
+
+    #[test]
+    fn what_is_not_finite_finds_no_friction() {
+        let mut lu = Lu::default();
+        assert!(lu.factor(1, |m| m[0] = 1.0));
+        let mut coulomb = Coulomb::default();
+        coulomb.candidates.push(Candidate { place: 0, limit: 1.0, slack: 0.0, offset: 0.0 });
+        assert_eq!(coulomb.solve(&mut lu, &mut [f64::NAN]), Err(0));
+        // At its limit a joint holds, a bit above it slides.
+        for (push, direction) in [(1.0, 0), (-1.0, 0), (1.0f64.next_up(), 1), (-1.0f64.next_up(), -1)] {
+            coulomb.solve(&mut lu, &mut [push]).unwrap();
+            assert_eq!(coulomb.directions, [direction], "{push}");
+        }
+    }
 }

@@ -180,3 +180,50 @@ impl Stick {
 fn slack(limit: f64, size: f64) -> f64 {
     1e-13 * limit + 16.0 * f64::EPSILON * size
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_CHANGES, Stick};
+    use crate::model::{BodySpec, FrictionLaw, JointSpec, ModelBuilder, Parent};
+    use crate::motion::{Drive, Forward};
+    use crate::signal::Signal;
+
+    /// A slider of 4 kg with 2 N of friction.
+    fn slider() -> Stick {
+        let mut builder = ModelBuilder::new([0.0; 3]);
+        let joint = JointSpec {
+            friction: 2.0,
+            friction_law: FrictionLaw::Sticking,
+            ..JointSpec::prismatic("q", [1.0, 0.0, 0.0], [0.0; 3])
+        };
+        let (name, parent) = ("b".to_owned(), Parent::World);
+        builder.push(BodySpec { name, parent, joint, mass: 4.0, com: [0.0; 3], inertia: [[0.0; 3]; 3] }).unwrap();
+        let drives = vec![Drive::Force(vec![Signal::constant(0.0)])];
+        Stick::new(&builder.finish().unwrap(), &Forward { q: vec![0.0], v: vec![0.0], drives })
+    }
+
+    #[test]
+    fn changes_that_do_not_get_on_are_counted() {
+        let mut stick = slider();
+        assert!(!stick.is_idle() && stick.holds(0) && stick.free().is_empty());
+        // Apart they may be as many as there are; together they are too many.
+        for k in 0..3 * MOST_CHANGES {
+            assert_eq!(stick.count_change(f64::from(k), 0.5), None);
+        }
+        let counts: Vec<_> = (0..MOST_CHANGES).map(|_| stick.count_change(f64::from(3 * MOST_CHANGES), 0.5)).collect();
+        assert!(counts.iter().all(Option::is_none));
+        assert_eq!(stick.count_change(f64::from(3 * MOST_CHANGES), 0.5), Some(MOST_CHANGES + 1));
+    }
+
+    #[test]
+    fn a_push_above_the_limit_moves() {
+        let mut stick = slider();
+        for (v, push, direction) in [(0.0, 1.9, 0), (0.0, 2.1, 1), (0.0, -2.1, -1), (0.3, -5.0, 1), (-1e-9, 5.0, -1)] {
+            stick.decide(&[v], &[-push], &[1.0], &[4.0]).unwrap();
+            assert_eq!(stick.rubbing().collect::<Vec<_>>(), [(0, direction)], "{v} {push}");
+        }
+        // What breaks it away is more than what decides that it does.
+        assert!(stick.breaking(0, 1.0) > 2.0 && stick.breaking(0, 1.0) < 2.0 + 1e-10);
+        assert_eq!(stick.decide(&[0.0], &[-f64::NAN], &[1.0], &[4.0]), Err(0));
+    }
+}
