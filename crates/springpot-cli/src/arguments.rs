@@ -237,7 +237,7 @@ pub(crate) struct RunOptions {
     #[arg(long, value_name = "DIR", conflicts_with = "file")]
     pub(crate) resume: Option<PathBuf>,
     /// Cases at a time [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     pub(crate) jobs: Option<u16>,
     /// Write no figures
     #[arg(long)]
@@ -306,7 +306,7 @@ pub(crate) struct DynamicsOptions {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub(crate) at: Option<String>,
     /// With --at: the case of a scenario with sweeps, counted from 0 as in run.json [default: 0]
-    #[arg(long, value_name = "N", conflicts_with = "states")]
+    #[arg(long, value_name = "N", conflicts_with = "states", allow_negative_numbers = true)]
     pub(crate) case: Option<usize>,
     /// With --at: print JSON
     #[arg(long)]
@@ -325,7 +325,7 @@ pub(crate) struct DerivativeOptions {
     #[arg(long = "column", value_name = "NAME", required = true)]
     pub(crate) columns: Vec<String>,
     /// Order of the derivative, -2 to 2; may be given several times
-    #[arg(long = "order", value_name = "ORDER", required = true, allow_negative_numbers = true)]
+    #[arg(long = "order", value_name = "ORDER", required = true, allow_hyphen_values = true)]
     pub(crate) orders: Vec<f64>,
     /// Column of the times [default: t, else the first]
     #[arg(long, value_name = "NAME")]

@@ -5,7 +5,7 @@ mod warnings;
 use crate::arguments::CheckOptions;
 use crate::numbers::{count, short};
 use crate::run::in_case;
-use crate::{Ending, diagnostic, printed, terminal};
+use crate::{Ending, diagnostic, plain, printed, terminal};
 use springpot::law::{Catalog, Entry};
 use springpot::scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan, json_schema};
 use springpot::simulate::{ElementStart, RowTimes, RunError, System};
@@ -68,9 +68,10 @@ fn describe(file: &Path, options: &CheckOptions) -> Result<Ending, Refusals> {
             Err(error) => failures.push((index, error)),
         }
     }
-    if !options.quiet {
-        terminal::print(&text(&cases, &plan, first.as_deref(), &warnings));
-    }
+    let ending = match options.quiet {
+        true => Ending::Done,
+        false => printed(terminal::try_print(&text(&cases, &plan, first.as_deref(), &warnings))),
+    };
     warnings.print(&cases);
     if let Some((index, failure)) = failures.first() {
         diagnostic::error(in_case(&cases, *index, &failure.to_string()));
@@ -78,7 +79,7 @@ fn describe(file: &Path, options: &CheckOptions) -> Result<Ending, Refusals> {
     if failures.len() > 1 {
         diagnostic::error(format!("{} of the {} cases looked at cannot run", failures.len(), warnings.looked_at));
     }
-    Ok(if failures.is_empty() { Ending::Done } else { Ending::Failed })
+    Ok(if failures.is_empty() { ending } else { Ending::Failed })
 }
 
 /// The first case, and each other value of each sweep with the rest at their first values.
@@ -108,7 +109,7 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, warnings: &W
     let mut text = String::new();
     let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, width));
     if let Some(title) = &plan.title {
-        line("title", title);
+        line("title", &plain::title(title));
     }
     line("robot", &robot(plan));
     for joint in followers(plan) {

@@ -1,7 +1,7 @@
 //! Errors and warnings as they appear in the terminal: what is wrong, the offending line with a caret, what would be right.
 
 use crate::excerpt::Excerpt;
-use crate::terminal;
+use crate::{plain, terminal};
 use miette::ThemeStyles;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Severity, SourceCode, ThemeCharacters};
 use springpot::law::Catalog;
@@ -32,7 +32,7 @@ pub(crate) fn refused(refusals: &Refusals) {
     let width = terminal::stderr_width().map_or(EXCERPT, |width| width - 10);
     for refusal in refusals.iter() {
         show(&Shown {
-            label: refusal.label.clone(),
+            label: plain::line(&refusal.label),
             excerpt: Excerpt::new(refusal, width),
             ..Shown::plain(Severity::Error, headline(refusal), refusal.help.clone())
         });
@@ -60,8 +60,10 @@ fn byte_at(text: &str, line: usize, column: usize) -> Option<usize> {
     for _ in 1..line {
         start += text[start..].find('\n')? + 1;
     }
-    let (byte, _) = text[start..].char_indices().nth(column - 1)?;
-    Some(start + byte)
+    let rest = &text[start..];
+    // Behind the last character too, where a text ends too early.
+    let mut bytes = rest.char_indices().map(|(byte, _)| byte).chain([rest.len()]);
+    bytes.nth(column - 1).map(|byte| start + byte)
 }
 
 /// Prints an error on stderr.
@@ -124,14 +126,9 @@ struct Shown {
 
 impl Shown {
     fn plain(severity: Severity, message: String, help: Option<String>) -> Self {
-        let help = help.map(|help| harmless(&help));
-        Self { severity, message: harmless(&message), help, label: String::new(), excerpt: None }
+        let help = help.map(|help| plain::help(&help));
+        Self { severity, message: plain::message(&message), help, label: String::new(), excerpt: None }
     }
-}
-
-/// A text without control characters, which would steer the terminal; names of a URDF may hold some.
-fn harmless(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 impl Display for Shown {
@@ -242,7 +239,7 @@ mod tests {
     #[test]
     fn messages_do_not_steer_it_either() {
         let shown = Shown::plain(Severity::Error, "joint \u{1b}[31m\u{7}".into(), Some("a\u{9b}\nb".into()));
-        assert_eq!(shown.message, "joint \u{fffd}[31m\u{fffd}");
+        assert_eq!(shown.message, "joint ␛[31m␇");
         assert_eq!(shown.help.as_deref(), Some("a\u{fffd}\nb"));
     }
 

@@ -1,11 +1,9 @@
 //! The line of a scenario file that a message is about, with its neighbours: no longer than a terminal is wide.
 
+use crate::plain::{CUT, picture};
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 use springpot::scenario::Refusal;
 use std::ops::Range;
-
-/// Stands where a line was cut.
-const CUT: char = '…';
 
 /// Up to three lines of a file.
 #[derive(Debug)]
@@ -62,10 +60,10 @@ fn line_range(text: &str, at: usize) -> Range<usize> {
     start..end
 }
 
-/// At most `width` characters of a line from character `from` on. Control characters would steer the terminal.
+/// At most `width` characters of a line from character `from` on, without those that would steer the terminal.
 fn push_line(excerpt: &mut String, line: &str, from: usize, width: usize) {
     let line = line.strip_suffix('\r').unwrap_or(line);
-    let clean = |c: char| if c.is_control() && c != '\t' { char::REPLACEMENT_CHARACTER } else { c };
+    let clean = |c: char| if c == '\t' { c } else { picture(c).unwrap_or(c) };
     let mut characters = line.chars().skip(from).map(clean);
     let mut shown: Vec<char> = characters.by_ref().take(width).collect();
     if from > 0

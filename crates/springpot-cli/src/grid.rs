@@ -1,10 +1,9 @@
 //! Tables of text: columns that line up, names cut where the terminal is too narrow.
 
+use crate::plain::{self, CUT};
 use std::cmp::Reverse;
 use std::collections::HashSet;
 
-/// Stands where a text was cut.
-const CUT: char = '…';
 /// Blanks between columns.
 const GAP: usize = 2;
 /// No column is cut below this.
@@ -43,9 +42,10 @@ impl Grid {
         Self { columns, rows: Vec::new() }
     }
 
+    /// Adds a row; every field is shown on one line.
     pub(crate) fn row(&mut self, fields: Vec<String>) {
         debug_assert_eq!(fields.len(), self.columns.len());
-        self.rows.push(fields);
+        self.rows.push(fields.iter().map(|field| plain::line(field)).collect());
     }
 
     /// Takes out the columns in which every row is empty.
@@ -141,11 +141,6 @@ pub(crate) fn width_of(text: &str) -> usize {
     text.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count()
 }
 
-/// A name on one line: control characters would steer the terminal.
-pub(crate) fn clean(name: &str) -> String {
-    name.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
-}
-
 /// A text of which `head` characters are kept before what is left out, where it is too long.
 fn cut(text: &str, width: usize, head: usize) -> String {
     if width_of(text) <= width {
@@ -207,6 +202,8 @@ q\u{308}            prismatic  -10
 
     #[test]
     fn names_are_one_line() {
-        assert_eq!(clean("a\nb\u{1b}[31m"), "a\u{fffd}b\u{fffd}[31m");
+        let mut grid = Grid::new([("", Set::Name)]);
+        grid.row(vec!["a\nb\u{1b}[31m".to_owned()]);
+        assert_eq!(grid.text(None), "a␊b␛[31m\n");
     }
 }

@@ -16,6 +16,8 @@ mod labels;
 mod laws;
 mod manual;
 mod numbers;
+mod output;
+mod plain;
 mod plot;
 mod progress;
 mod prony;
@@ -23,10 +25,10 @@ mod robot;
 mod run;
 mod terminal;
 
-use arguments::{Arguments, Command};
+use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;
 use std::ffi::OsString;
-use std::io;
+use std::io::{self, Write as _};
 use std::process::ExitCode;
 
 /// How a command ended.
@@ -62,18 +64,37 @@ fn printed(result: io::Result<()>) -> Ending {
     }
 }
 
+/// More jobs than this, and than cores, are not started: each takes memory, and none of them is sooner done.
+const MOST_JOBS: u16 = 64;
+
+/// The options with a sane number of jobs.
+fn with_fewer_jobs(options: RunOptions) -> RunOptions {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = u16::try_from(cores).unwrap_or(u16::MAX).max(MOST_JOBS);
+    match options.jobs {
+        Some(jobs) if jobs > most => {
+            diagnostic::warning(format!("--jobs {jobs}: no more than {most} cases run at a time here"), None);
+            RunOptions { jobs: Some(most), ..options }
+        }
+        _ => options,
+    }
+}
+
 /// Runs the command that `arguments` ask for; the first of them is the program's name.
 pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version go to stdout and are no error; a closed pipe is none either.
-            let _ = error.print();
-            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+            let printed_all = error.print();
+            if error.use_stderr() {
+                return Ending::Refused.into();
+            }
+            // Help and version are results, which go to stdout.
+            return printed(printed_all.and_then(|()| io::stdout().flush())).into();
         }
     };
     let ending = match arguments.command {
-        Command::Run(options) => run::run(&options),
+        Command::Run(options) => run::run(&with_fewer_jobs(options)),
         Command::Check(options) => check::check(&options),
         Command::Info(options) => info::info(&options),
         Command::Dynamics(options) => dynamics::dynamics(&options),

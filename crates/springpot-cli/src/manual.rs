@@ -1,7 +1,7 @@
 //! `springpot completions` and `springpot man`: what a shell and `man` know about the command.
 
 use crate::arguments::{Arguments, CompletionsOptions, ManOptions};
-use crate::{Ending, diagnostic, printed, terminal};
+use crate::{Ending, diagnostic, output, printed, terminal};
 use clap::CommandFactory;
 use clap_mangen::Man;
 use std::fs;
@@ -36,9 +36,9 @@ fn write_all(folder: &Path) -> io::Result<()> {
     let commands = program.get_subcommands().filter(|command| command.get_name() != "help");
     for command in commands.cloned() {
         let file = Man::new(command.clone()).get_filename();
-        fs::write(folder.join(file), page(command)?)?;
+        output::write(&folder.join(file), page(command)?.as_bytes())?;
     }
-    fs::write(folder.join("springpot.1"), page(Arguments::command())?)
+    output::write(&folder.join("springpot.1"), page(Arguments::command())?.as_bytes())
 }
 
 fn page(command: clap::Command) -> io::Result<String> {

@@ -4,8 +4,8 @@ use crate::arguments::{BulkModulus, PronyFormat, PronyOptions};
 use crate::grid::{Grid, Set};
 use crate::numbers::{count, rough, short};
 use crate::robot::Refused;
-use crate::{Ending, diagnostic, printed, terminal};
-use springpot::fractional::prony::{Bulk, PronyError, PronySeries, Slowest, Springpot, Window};
+use crate::{Ending, diagnostic, output, printed, terminal};
+use springpot::fractional::prony::{Bulk, PronyError, PronySeries, Slowest, Springpot, Term, Window};
 use springpot::scenario::units::{UnitError, parse_quantity};
 use std::f64::consts::TAU;
 
@@ -14,13 +14,7 @@ pub(crate) fn prony(options: &PronyOptions) -> Ending {
         Err(Refused) => Ending::Refused,
         Ok(text) => match &options.out {
             None => printed(terminal::try_print(&text)),
-            Some(file) => match std::fs::write(file, text) {
-                Ok(()) => Ending::Done,
-                Err(error) => {
-                    diagnostic::error(format!("{} cannot be written: {error}", file.display()));
-                    Ending::Failed
-                }
-            },
+            Some(file) => output::written(file, output::write(file, text.as_bytes())),
         },
     }
 }
@@ -31,6 +25,7 @@ fn text(options: &PronyOptions) -> Result<String, Refused> {
     let for_elements = matches!(options.format, PronyFormat::Abaqus | PronyFormat::Ansys);
     let slowest = if for_elements && !own_equilibrium { Slowest::Stays } else { Slowest::Relaxes };
     let series = PronySeries::new(material, *window, options.rtol, slowest).map_err(|error| refuse(options, &error))?;
+    check_finite(options, &series)?;
     let bulk = match options.bulk {
         BulkModulus::Elastic => Bulk::Elastic,
         BulkModulus::Relaxes => Bulk::Relaxes,
@@ -133,8 +128,15 @@ fn refused<T>(message: String, help: &str) -> Result<T, Refused> {
     Err(Refused)
 }
 
+/// What numbers can hold.
+const HOLD: &str = "64-bit numbers end at 1.8e308 and lose digits below 2.2e-308: take a coefficient nearer to 1, and times nearer to 1 s";
+
 /// Says what the library refused.
 fn refuse(options: &PronyOptions, error: &PronyError) -> Refused {
+    if let PronyError::Spectrum { .. } = error {
+        diagnostic::error_with_help(format!("--coefficient {}: {error}", options.coefficient), HOLD.to_owned());
+        return Refused;
+    }
     let help = match error {
         PronyError::Tolerance(_) => format!("--rtol {}: write a number such as 1e-4", options.rtol),
         PronyError::Bound { .. } => "ask for a larger --rtol or a shorter window".to_owned(),
@@ -146,6 +148,19 @@ fn refuse(options: &PronyOptions, error: &PronyError) -> Refused {
     };
     diagnostic::error_with_help(error.to_string(), help);
     Refused
+}
+
+/// Refuses a series of which some number is beyond all numbers of 64 bits, or so small that it has lost digits.
+fn check_finite(options: &PronyOptions, series: &PronySeries) -> Result<(), Refused> {
+    let of_term = |(k, term): (usize, &Term)| {
+        [("modulus", term.modulus), ("relaxation time", term.relaxation_time), ("viscosity", term.viscosity())]
+            .map(|(what, value)| (format!("the {what} of branch {k}"), value))
+    };
+    let sum = ("the sum of all moduli".to_owned(), series.instantaneous());
+    let all = (1..).zip(&series.terms).flat_map(of_term).chain([sum]);
+    let Some((what, value)) = all.into_iter().find(|(_, value)| !value.is_normal()) else { return Ok(()) };
+    let how = if value.is_finite() { "too small for" } else { "beyond all" };
+    refused(format!("--coefficient {}: {what} is {how} numbers of 64 bits", options.coefficient), HOLD)
 }
 
 fn json(series: &PronySeries) -> String {

@@ -1,5 +1,6 @@
 //! Text on stdout and stderr: as wide as the terminal, coloured where that is wanted, and never a panic.
 
+use crate::plain;
 use std::io::{self, IsTerminal, Write};
 use terminal_size::{Width, terminal_size_of};
 
@@ -17,10 +18,11 @@ pub(crate) fn print(text: &str) {
     let _ = try_print(text);
 }
 
-/// Prints on stdout what is the result of a command.
+/// Prints on stdout what is the result of a command. A terminal gets nothing that steers it.
 pub(crate) fn try_print(text: &str) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush())
+    let shown = if stdout.is_terminal() { plain::lines(text) } else { text.into() };
+    stdout.write_all(shown.as_bytes()).and_then(|()| stdout.flush())
 }
 
 /// Prints on stderr.
@@ -57,9 +59,9 @@ fn width(size: Option<Option<(Width, terminal_size::Height)>>) -> Option<usize> 
     size.map(|size| size.map_or(80, |(Width(columns), _)| usize::from(columns)).clamp(NARROWEST, WIDEST))
 }
 
-/// `text` behind `lead`, broken between words where it passes `width`, later lines indented by as much as `lead` is long.
+/// `text`, as one line is shown, behind `lead`, broken between words where it passes `width`, later lines indented by as much as `lead` is long.
 pub(crate) fn hanging(lead: &str, text: &str, width: Option<usize>) -> String {
-    let indent = lead.chars().count();
+    let (indent, text) = (lead.chars().count(), plain::line(text));
     let mut lines = lead.to_owned();
     let mut column = indent;
     for (k, word) in text.split(' ').enumerate() {

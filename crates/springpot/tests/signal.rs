@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
-use springpot::signal::csv::{CsvProblem, CsvTable};
+use springpot::signal::csv::{CsvProblem, CsvRows, CsvTable};
 use springpot::signal::expression::{MAX_DEPTH, MAX_KINKS, MAX_LENGTH};
 use springpot::signal::{Expression, ExpressionError, Jet, SampleError, Signal};
 use std::f64::consts::{E, PI};
@@ -506,13 +506,16 @@ mod tables {
         for (text, says) in [
             ("", "motion.csv: the file is empty"),
             ("\n\n", "motion.csv: the file is empty"),
-            ("t,q1\n", "0 rows of numbers; at least two"),
-            ("t,q1\n0,1\n", "1 rows of numbers; at least two"),
-            ("0,1\n1,2\n2,3\n", "the first row must name the columns, but it starts with the number 0"),
-            ("t;q1\n0;1\n1;2\n", "separated by commas, but the header has ';'"),
-            ("t,q1,\n0,1,\n1,2,\n", "column 3 has no name"),
-            ("t,q1,q1\n0,1,1\n1,2,2\n", "columns 2 and 3 are both called `q1`"),
-            ("time,q1\n0,1\n1,2\n", "no column `t`; did you mean `time`?; the columns are time, q1"),
+            ("t,q1\n", "motion.csv:1: 0 rows of numbers; at least two"),
+            ("\nt,q1\n0,1\n\n", "motion.csv:3: 1 rows of numbers; at least two"),
+            ("0,1\n1,2\n2,3\n", "motion.csv:1: the first row must name the columns, but it starts with the number 0"),
+            (
+                "t;q1\n0;1\n1;2\n",
+                "motion.csv:1: columns must be separated by commas, but the header has ';' as character 2",
+            ),
+            ("t,q1,\n0,1,\n1,2,\n", "motion.csv:1: column 3 has no name"),
+            ("\n\nt,q1,q1\n0,1,1\n1,2,2\n", "motion.csv:3: columns 2 and 3 are both called `q1`"),
+            ("time,q1\n0,1\n1,2\n", "motion.csv:1: no column `t`; did you mean `time`?; the columns are time, q1"),
             ("t,q1\n0,1\n1\n", "motion.csv:3: 1 cells, but the header has 2"),
             ("t,q1\n\n\n0,1\n\n1,2,3", "motion.csv:6: 3 cells"),
             ("\n\nt,q1\n0,1\n\n1,2,3", "motion.csv:6: 3 cells"),
@@ -524,7 +527,7 @@ mod tables {
             ("t,q1\n0,1\ninf,1\n", "motion.csv:3: `inf` in column 1 (`t`) is not a finite number"),
             ("t,q1\nzero,1\n1,1\n", "motion.csv:2: `zero` in column 1 (`t`) is not a number"),
             ("t,q1\n0,1\n1,1\n1,2\n", "motion.csv:4: times must increase, but 1 follows 1"),
-            ("t,q2\n0,1\n1,1\n", "no column `q1`; did you mean `q2`?; the columns are t, q2"),
+            ("t,q2\n0,1\n1,1\n", "motion.csv:1: no column `q1`; did you mean `q2`?; the columns are t, q2"),
         ] {
             let read = CsvTable::from_bytes("motion.csv", text.as_bytes(), "t");
             let error = read.and_then(|read| read.column("q1").map(<[f64]>::to_vec)).expect_err(text);
@@ -535,8 +538,10 @@ mod tables {
         assert!(matches!(latin.problem, CsvProblem::NotUtf8 { .. }));
         let utf16 = CsvTable::from_bytes("motion.csv", b"\xff\xfet\0,\0q\0\n\0", "t").unwrap_err();
         assert!(matches!(utf16.problem, CsvProblem::NotUtf8 { line: 1, column: 1 }));
-        let line = "t,".to_owned() + &"1".repeat(2 << 20);
-        assert!(matches!(table(&line), Err(CsvProblem::LongLine { .. })));
+        let line = "t,x\n\n0,".to_owned() + &"1".repeat(2 << 20);
+        assert!(matches!(table(&line), Err(CsvProblem::LongLine { line: 3, .. })));
+        let mut rows = CsvRows::new(line.as_bytes()).unwrap();
+        assert!(matches!(rows.next_row(), Err(CsvProblem::LongLine { line: 3, .. })));
     }
 
     #[test]

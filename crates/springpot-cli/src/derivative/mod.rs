@@ -5,13 +5,15 @@ mod streamed;
 mod whole;
 
 use crate::arguments::DerivativeOptions;
+use crate::output::{self, Output};
+use crate::plain::Plain;
 use crate::{Ending, diagnostic, printed};
 use sheet::{Layout, Sheet};
 use springpot::fractional::{DerivativeError, Method};
 use springpot::signal::csv::{CsvProblem, CsvRows};
 use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Most bytes of rows that are held at a time; what is larger is streamed.
 const HELD: usize = 256 << 20;
@@ -35,8 +37,8 @@ enum Problem {
     #[error("--order {0} is given twice")]
     OrderTwice(f64),
     /// Two points make a line, whatever x does between them.
-    #[error("{0} rows of numbers; at least three are needed")]
-    TooFewRows(usize),
+    #[error("{given} rows of numbers; at least three are needed")]
+    TooFewRows { line: u64, given: usize },
     /// The order, or too few rows for it.
     #[error(transparent)]
     Derivative(#[from] DerivativeError),
@@ -58,7 +60,7 @@ impl Problem {
     fn line(&self) -> Option<u64> {
         match self {
             Self::Csv(problem) => problem.line(),
-            Self::Row { line, .. } => Some(*line),
+            Self::Row { line, .. } | Self::TooFewRows { line, .. } => Some(*line),
             _ => None,
         }
     }
@@ -71,17 +73,14 @@ pub(crate) fn derivative(options: &DerivativeOptions) -> Ending {
         diagnostic::error_with_help("no file to read", "name a CSV file, or pipe one in".to_owned());
         return Ending::Refused;
     }
-    let input: io::Result<Box<dyn Read>> = match file {
-        Some(file) => File::open(file).map(|file| Box::new(file) as Box<dyn Read>),
-        None => Ok(Box::new(io::stdin().lock())),
-    };
-    let ended = match input {
-        Ok(input) => write(options, input),
-        Err(source) => Err(CsvProblem::Unreadable { source }.into()),
-    };
+    let ended = Input::open(file).map_err(|source| CsvProblem::Unreadable { source }.into());
+    let ended = ended.and_then(|input| write(options, input));
     match ended {
         Ok(()) => Ending::Done,
-        Err(Problem::Output(error)) => printed(Err(error)),
+        Err(Problem::Output(error)) => match &options.out {
+            Some(out) => output::written(out, Err(error)),
+            None => printed(Err(error)),
+        },
         Err(problem) => {
             let place = problem.line().map_or_else(String::new, |line| format!(":{line}"));
             diagnostic::error(format!("{name}{place}: {problem}"));
@@ -90,36 +89,63 @@ pub(crate) fn derivative(options: &DerivativeOptions) -> Ending {
     }
 }
 
+/// Where the rows come from.
+struct Input<'a> {
+    rows: Box<dyn Read>,
+    /// The regular file, which can be read twice.
+    file: Option<&'a Path>,
+}
+
+impl<'a> Input<'a> {
+    /// A file, or the standard input.
+    fn open(file: Option<&'a Path>) -> io::Result<Self> {
+        let Some(file) = file else { return Ok(Self { rows: Box::new(io::stdin().lock()), file: None }) };
+        let is_regular = std::fs::metadata(file)?.is_file();
+        Ok(Self { rows: Box::new(File::open(file)?), file: is_regular.then_some(file) })
+    }
+}
+
 /// Writes to where the options say; a file is there whole or not at all.
-fn write(options: &DerivativeOptions, input: Box<dyn Read>) -> Result<(), Problem> {
+fn write(options: &DerivativeOptions, input: Input<'_>) -> Result<(), Problem> {
     let Some(out) = &options.out else {
-        let mut output = BufWriter::new(io::stdout().lock());
-        let ended = differentiate(options, input, &mut output);
+        let stdout = io::stdout().lock();
+        let mut output: Box<dyn Write> = match stdout.is_terminal() {
+            true => Box::new(Plain(BufWriter::new(stdout))),
+            false => Box::new(BufWriter::new(stdout)),
+        };
+        let ended = differentiate(options, input, &mut output, true);
         output.flush()?;
         return ended;
     };
-    let part = PathBuf::from(format!("{}.part", out.display()));
-    let written = File::create(&part).map_err(Problem::from).and_then(|file| {
-        let mut output = BufWriter::new(file);
-        differentiate(options, input, &mut output)?;
-        output.flush()?;
-        Ok(std::fs::rename(&part, out)?)
-    });
-    if written.is_err() {
-        // Nothing but the part is lost with it.
-        let _ = std::fs::remove_file(&part);
-    }
-    written
+    let mut output = Output::open(out)?;
+    let is_stream = output.is_stream();
+    differentiate(options, input, &mut output, is_stream)?;
+    Ok(output.finish()?)
 }
 
-fn differentiate(options: &DerivativeOptions, input: impl Read, output: &mut dyn Write) -> Result<(), Problem> {
-    let mut rows = CsvRows::new(input)?;
+/// Writes the derivatives; where the output `is_stream`, what is written cannot be taken back.
+fn differentiate(
+    options: &DerivativeOptions,
+    Input { rows, file }: Input<'_>,
+    output: &mut dyn Write,
+    is_stream: bool,
+) -> Result<(), Problem> {
+    let mut rows = CsvRows::new(rows)?;
     let layout = Layout::new(options, &rows)?;
     layout.check_orders()?;
+    // What is wrong with a file is found before its first row is written.
+    let rehearse = || match file.filter(|_| is_stream) {
+        Some(file) => {
+            let again = File::open(file).map_err(|source| CsvProblem::Unreadable { source })?;
+            streamed::differentiate(&layout, Sheet::default(), &mut CsvRows::new(again)?, &mut io::sink())
+        }
+        None => Ok(()),
+    };
     if options.scheme == Method::Exponential {
         if options.error {
             return Err(Problem::NoEstimate);
         }
+        rehearse()?;
         return streamed::differentiate(&layout, Sheet::default(), &mut rows, output);
     }
     let mut sheet = Sheet::default();
@@ -127,10 +153,13 @@ fn differentiate(options: &DerivativeOptions, input: impl Read, output: &mut dyn
         sheet.push(&layout, &row)?;
         if sheet.size() > HELD {
             return match options.scheme {
-                Method::Spline if !options.error => streamed::differentiate(&layout, sheet, &mut rows, output),
+                Method::Spline if !options.error => {
+                    rehearse()?;
+                    streamed::differentiate(&layout, sheet, &mut rows, output)
+                }
                 scheme => Err(Problem::Large(scheme)),
             };
         }
     }
-    whole::differentiate(&layout, &sheet, options.scheme, options.error, output)
+    whole::differentiate(&layout, &sheet, (options.scheme, options.error), rows.line(), output)
 }

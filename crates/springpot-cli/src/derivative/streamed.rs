@@ -18,7 +18,8 @@ pub(super) fn differentiate(
     let mut writer = Writer::new(layout, output)?;
     for row in 0..held.times.len() {
         let values = held.values.iter().map(|column| column[row]);
-        writer.push(held.times[row], values, held.row_text(row).to_vec())?;
+        let pushed = writer.push(held.times[row], values, held.row_text(row).to_vec());
+        pushed.map_err(|problem| at_line(held.line(row), problem))?;
     }
     drop(held);
     while let Some(row) = rows.next_row()? {
@@ -26,14 +27,25 @@ pub(super) fn differentiate(
         let values = layout.values(&row).collect::<Result<Vec<_>, _>>()?;
         let mut text = Vec::new();
         layout.text(&row, &mut text);
-        writer.push(time, values.into_iter(), text)?;
+        let line = row.line();
+        writer.push(time, values.into_iter(), text).map_err(|problem| at_line(line, problem))?;
     }
-    writer.finish()
+    writer.finish(rows.line())
+}
+
+/// What a stream refuses, with the line of the row that it takes.
+fn at_line(line: u64, problem: Problem) -> Problem {
+    match problem {
+        Problem::Derivative(problem) => Problem::Row { line, problem },
+        other => other,
+    }
 }
 
 /// Rows wait here until their derivatives are known.
 struct Writer<'a> {
     output: &'a mut dyn Write,
+    /// Until the first row is known: a mistake before leaves no output.
+    header: Option<Vec<u8>>,
     /// One for each column and order.
     streams: Vec<Stream>,
     orders: usize,
@@ -47,13 +59,13 @@ struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     fn new(layout: &Layout, output: &'a mut dyn Write) -> Result<Self, Problem> {
-        output.write_all(&layout.header(false))?;
         let orders = layout.orders.iter().cycle().take(layout.orders.len() * layout.count());
         let streams = orders.map(|order| Stream::new(*order, layout.definition));
         let streams: Vec<Stream> = streams.collect::<Result<_, _>>()?;
         let known = vec![Vec::new(); streams.len()];
         Ok(Self {
             output,
+            header: Some(layout.header(false)),
             streams,
             orders: layout.orders.len(),
             known,
@@ -81,9 +93,9 @@ impl<'a> Writer<'a> {
         self.write()
     }
 
-    fn finish(mut self) -> Result<(), Problem> {
+    fn finish(mut self, line: u64) -> Result<(), Problem> {
         if self.taken < FEWEST {
-            return Err(Problem::TooFewRows(self.taken));
+            return Err(Problem::TooFewRows { line, given: self.taken });
         }
         let rests = std::mem::take(&mut self.streams).into_iter().map(Stream::finish);
         let rests = rests.collect::<Result<Vec<_>, DerivativeError>>()?;
@@ -95,6 +107,9 @@ impl<'a> Writer<'a> {
     fn write(&mut self) -> Result<(), Problem> {
         let mut cells = String::new();
         for row in 0..self.known[0].len() {
+            if let Some(header) = self.header.take() {
+                self.output.write_all(&header)?;
+            }
             let text = self.waiting.pop_front().expect("a row for every value");
             cells.clear();
             push_fields(&mut cells, self.known.iter().map(|values| values[row]));

@@ -7,15 +7,16 @@ use springpot::fractional::{DerivativeError, Method, derivative, derivative_with
 use springpot::table::push_fields;
 use std::io::Write;
 
+/// The derivatives of all rows, or nothing; `last_line` is that of the last row.
 pub(super) fn differentiate(
     layout: &Layout,
     sheet: &Sheet,
-    method: Method,
-    with_error: bool,
+    (method, with_error): (Method, bool),
+    last_line: u64,
     output: &mut dyn Write,
 ) -> Result<(), Problem> {
     if sheet.times.len() < FEWEST {
-        return Err(Problem::TooFewRows(sheet.times.len()));
+        return Err(Problem::TooFewRows { line: last_line, given: sheet.times.len() });
     }
     let times = sheet.times_from_start();
     let mut results: Vec<Vec<f64>> = Vec::new();

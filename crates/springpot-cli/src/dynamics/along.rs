@@ -4,7 +4,7 @@ use super::terms;
 use crate::arguments::DynamicsOptions;
 use crate::robot::{Refused, is_scenario, refuse_urdf_flags};
 use crate::run::{case_name, in_case};
-use crate::{Ending, diagnostic, printed, terminal};
+use crate::{Ending, diagnostic, plain, printed, terminal};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use springpot::scenario::units::parse_quantity;
@@ -145,7 +145,6 @@ fn json(cases: &Cases, index: usize, system: &System, equation: &Equation) -> St
             residual: equation.residual(),
         },
     };
-    let mut text = serde_json::to_string(&record).expect("names are text and numbers are numbers or null");
-    text.push('\n');
-    text
+    let text = serde_json::to_string(&record).expect("names are text and numbers are numbers or null");
+    format!("{}\n", plain::json(&text))
 }

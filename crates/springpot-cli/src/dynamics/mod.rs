@@ -10,7 +10,7 @@ mod terms;
 use crate::arguments::DynamicsOptions;
 use crate::numbers::{count, short};
 use crate::robot::{Refused, Robot};
-use crate::{Ending, diagnostic, printed, robot};
+use crate::{Ending, diagnostic, plain, printed, robot};
 use answer::Answers;
 use springpot::model::{Frame, JointKind};
 use springpot::scenario::suggest;
@@ -135,7 +135,7 @@ fn print(
     let mut out = io::BufWriter::new(out);
     let mut answers = Answers::new(&robot.model, order, christoffel, frame);
     let joints = serde_json::to_string(&order.joints)?;
-    write!(out, "{{\"joints\": {joints},\n\"states\": [")?;
+    write!(out, "{{\"joints\": {},\n\"states\": [", plain::json(&joints))?;
     let mut infinite = Vec::new();
     let mut text = String::new();
     for (k, state) in states.iter().enumerate() {

@@ -5,9 +5,13 @@ use super::order::Order;
 use crate::robot::Robot;
 use springpot::model::JointKind;
 use springpot::scenario::{Place, RefusalKind, Refusals, Source};
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
+
+/// Largest file, bytes.
+const MAX_BYTES: u64 = 256 << 20;
 
 const ROOT_KEYS: [&str; 2] = ["joints", "states"];
 const STATE_KEYS: [&str; 4] = ["q", "v", "a", "tau"];
@@ -32,20 +36,27 @@ pub(super) struct State {
     pub(super) tau: Vec<f64>,
 }
 
-/// Reads the text of a file; `-` is the standard input.
+/// Reads the text of a regular file; `-` is the standard input.
 pub(super) fn source(file: &Path) -> Result<Arc<Source>, Refusals> {
     let is_stdin = file == Path::new("-");
     let name = if is_stdin { "standard input".to_owned() } else { file.display().to_string() };
-    let mut bytes = Vec::new();
-    let read = if is_stdin {
-        io::stdin().lock().read_to_end(&mut bytes).map(drop)
-    } else {
-        std::fs::read(file).map(|read| bytes = read)
-    };
     let source = |text: String| Arc::new(Source { name: name.clone(), text: text.into() });
-    if let Err(error) = read {
-        let place = Place { source: source(String::new()), span: 0..0 };
-        return Err(place.refuse(RefusalKind::File, format!("cannot be read: {error}")).into());
+    let refuse = |kind, message: String| Place { source: source(String::new()), span: 0..0 }.refuse(kind, message);
+    let unreadable = |error: io::Error| refuse(RefusalKind::File, format!("cannot be read: {error}"));
+    let mut bytes = Vec::new();
+    if is_stdin {
+        io::stdin().lock().take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    } else {
+        // Looked at before it is opened: opening a pipe would wait for its other end.
+        if !fs::metadata(file).map_err(unreadable)?.is_file() {
+            let refusal = refuse(RefusalKind::File, "cannot be read: not a regular file".to_owned());
+            return Err(refusal.help("--states - reads the standard input").into());
+        }
+        File::open(file).map_err(unreadable)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    }
+    if bytes.len() as u64 > MAX_BYTES {
+        let refusal = refuse(RefusalKind::TooLarge, format!("larger than {} MiB", MAX_BYTES >> 20));
+        return Err(refusal.help("split the states over several files").into());
     }
     match String::from_utf8(bytes) {
         // Some editors begin their files with a byte order mark.

@@ -1,7 +1,8 @@
 //! The equations of motion as text.
 
-use crate::grid::{Grid, Set, clean, width_of};
+use crate::grid::{Grid, Set, width_of};
 use crate::numbers::{brief, rough, short};
+use crate::plain;
 use crate::terminal;
 use springpot::simulate::{ElementTerm, Equation, System};
 
@@ -18,14 +19,14 @@ const UNKNOWN: &str = "-";
 pub(super) fn text(title: Option<&str>, case: &str, system: &System, equation: &Equation) -> String {
     let running = terminal::stdout_width().or(Some(80));
     let page = Page { width: terminal::stdout_columns().unwrap_or(80) };
-    let names: Vec<String> = system.model.v_labels().iter().map(|label| clean(&label.name)).collect();
+    let names: Vec<String> = system.model.v_labels().iter().map(|label| plain::line(&label.name)).collect();
     let n = names.len();
     let numbered = names.iter().any(|name| width_of(name) > SHORT_NAME);
     let labels = if numbered { (1..=n).map(|number| number.to_string()).collect() } else { names.clone() };
     let mut text = String::new();
     let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, running));
     if let Some(title) = title {
-        line("title", title);
+        line("title", &plain::title(title));
     }
     if !case.is_empty() {
         line("case", case);
@@ -130,7 +131,7 @@ fn state(system: &System, equation: &Equation, names: &[String], labels: &[Strin
         let numbers: Vec<Vec<String>> = (0..names.len()).map(|k| [&q[k], &v[k], &a[k]].map(number).to_vec()).collect();
         return page.table("joint", &rows, &columns, &numbers);
     }
-    let q_names: Vec<String> = system.model.q_labels().iter().map(|label| clean(&label.name)).collect();
+    let q_names: Vec<String> = system.model.q_labels().iter().map(|label| plain::line(&label.name)).collect();
     let of_q: Vec<Vec<String>> = q.iter().map(|x| vec![number(x)]).collect();
     let of_v: Vec<Vec<String>> = v.iter().zip(a).map(|(v, a)| vec![number(v), number(a)]).collect();
     let first = page.table("joint", &q_names, &columns[..1], &of_q);

@@ -1,5 +1,6 @@
 //! `springpot info --json`: everything as data, SI.
 
+use crate::plain;
 use crate::robot::Robot;
 use serde::Serialize;
 use springpot::model::urdf::{Owner, UrdfWarning};
@@ -132,9 +133,8 @@ pub(super) fn text(robot: &Robot, file: &Path) -> String {
         links: robot.bodies.iter().map(link).collect(),
         warnings: robot.warnings.iter().map(warning).collect(),
     };
-    let mut text = serde_json::to_string(&info).expect("names are text and numbers are numbers or null");
-    text.push('\n');
-    text
+    let text = serde_json::to_string(&info).expect("names are text and numbers are numbers or null");
+    format!("{}\n", plain::json(&text))
 }
 
 fn joint(robot: &Robot, j: usize) -> Joint<'_> {

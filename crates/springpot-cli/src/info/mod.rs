@@ -4,10 +4,10 @@ mod json;
 mod tables;
 
 use crate::arguments::InfoOptions;
-use crate::grid::{clean, width_of};
+use crate::grid::width_of;
 use crate::numbers::brief;
 use crate::robot::{Refused, Robot};
-use crate::{Ending, printed, robot, terminal};
+use crate::{Ending, plain, printed, robot, terminal};
 use springpot::model::JointKind;
 
 /// Columns of the words that lead a line.
@@ -33,12 +33,12 @@ fn text(robot: &Robot) -> String {
     let mut line = |lead: &str, words: &str| {
         text.push_str(&terminal::hanging(&format!("{lead:<LEAD$}"), words, lines));
     };
-    line("robot", &clean(&robot.name));
+    line("robot", &plain::line(&robot.name));
     line("joints", &format!("{}; nq = {}, nv = {}", kinds(robot), model.nq(), model.nv()));
     line("mass", &masses(robot));
     line("gravity", &format!("{} m/s²", vector(model.gravity())));
     if let Some((body, point)) = &robot.gripper {
-        line("gripper", &format!("{} m of {}", vector(*point), clean(body)));
+        line("gripper", &format!("{} m of {}", vector(*point), plain::line(body)));
     }
 
     text.push('\n');
@@ -64,7 +64,7 @@ fn text(robot: &Robot) -> String {
             text.push_str(&terminal::hanging(&" ".repeat(widest + 4), &links, lines));
         }
     }
-    let warnings = robot.warnings.iter().map(|warning| clean(&warning.to_string())).collect();
+    let warnings = robot.warnings.iter().map(|warning| plain::line(&warning.to_string())).collect();
     text.push_str(&section("not used or assumed", "- ", warnings, lines));
     text
 }

@@ -1,7 +1,8 @@
 //! The tables of `springpot info`.
 
-use crate::grid::{Grid, Set, clean};
+use crate::grid::{Grid, Set};
 use crate::numbers::brief;
+use crate::plain;
 use crate::robot::Robot;
 use springpot::model::{JointKind, Limits, Parent};
 use std::ops::Range;
@@ -18,7 +19,7 @@ pub(super) fn tree(robot: &Robot) -> Grid {
     }
     let columns = [("joint", Set::Name), ("link", Set::Name), ("kind", Set::Text), ("axis", Set::Text)];
     let mut grid = Grid::new(columns.into_iter().chain([("mass, kg", Set::Number)]));
-    let base = clean(&robot.base.0);
+    let base = plain::line(&robot.base.0);
     let fixed = robot.fixed_mass();
     let mass = if fixed == 0.0 { String::new() } else { brief(fixed) };
     let is_named = base != "world";
@@ -46,8 +47,8 @@ pub(super) fn tree(robot: &Robot) -> Grid {
         let body = &robot.bodies[model.joint_body(joint)];
         let kind = body.joint.kind;
         grid.row(vec![
-            format!("{drawn}{branch}{}", clean(&body.joint.name)),
-            clean(&body.name),
+            format!("{drawn}{branch}{}", plain::line(&body.joint.name)),
+            plain::line(&body.name),
             kind.name().to_owned(),
             if kind.has_axis() { axis(body.joint.axis) } else { String::new() },
             brief(model.link_inertia(joint).mass),
@@ -75,7 +76,7 @@ pub(super) fn joints(robot: &Robot) -> Grid {
         let Limits { lower, upper, velocity, effort } = *model.limits(j);
         let shown = |shown: bool, value: f64| if shown && kind.nv() == 1 { limit(value) } else { String::new() };
         grid.row(vec![
-            clean(&model.joint_names()[j]),
+            plain::line(&model.joint_names()[j]),
             if own { numbers(model.q_range(j)) } else { String::new() },
             if own { numbers(model.v_range(j)) } else { String::new() },
             shown(ranges, lower),
@@ -135,7 +136,7 @@ pub(super) fn followers(robot: &Robot) -> Vec<String> {
             offset if offset < 0.0 => format!(" - {}", brief(-offset)),
             offset => format!(" + {}", brief(offset)),
         };
-        Some(format!("{} = {factor}{}{sum}", clean(&names[j]), clean(&names[leader])))
+        Some(format!("{} = {factor}{}{sum}", plain::line(&names[j]), plain::line(&names[leader])))
     };
     (0..model.joint_count()).filter_map(follower).collect()
 }
@@ -145,11 +146,11 @@ pub(super) fn frames(robot: &Robot) -> Vec<(String, String)> {
     let mut groups: Vec<Vec<String>> = vec![Vec::new(); robot.model.joint_count() + 1];
     for (index, body) in robot.fixed_bodies() {
         if let Ok(frame) = robot.model.frame(Parent::Body(index)) {
-            groups[frame.link()].push(clean(&body.name));
+            groups[frame.link()].push(plain::line(&body.name));
         }
     }
     let groups = groups.into_iter().enumerate().filter(|(_, links)| !links.is_empty());
-    groups.map(|(link, links)| (clean(robot.body_name(robot.carrier(link))), links.join(", "))).collect()
+    groups.map(|(link, links)| (plain::line(robot.body_name(robot.carrier(link))), links.join(", "))).collect()
 }
 
 /// `3`, or `0-6`.

@@ -3,9 +3,8 @@
 mod robot;
 
 use crate::arguments::InitOptions;
-use crate::{Ending, diagnostic, printed, terminal};
-use std::fs::File;
-use std::io::{self, Write as _};
+use crate::{Ending, diagnostic, output, printed, terminal};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The starter without a robot: every line of it is admissible, and the file runs as it is.
@@ -14,7 +13,7 @@ const STARTER: &str = include_str!("starter.toml");
 pub(crate) fn init(options: &InitOptions) -> Ending {
     let out = options.out.clone().unwrap_or_else(|| default_file(options.robot.as_deref()));
     // Before anything is read: a file that is there is its author's.
-    if out.exists() {
+    if output::is_taken(&out) {
         return is_there(&out);
     }
     let text = match &options.robot {
@@ -24,13 +23,11 @@ pub(crate) fn init(options: &InitOptions) -> Ending {
             Err(ending) => return ending,
         },
     };
-    match write(&out, &text) {
-        Ok(()) => printed(terminal::try_print(&next_steps(&out))),
+    match output::create(&out, text.as_bytes()) {
+        Ok(true) => printed(terminal::try_print(&next_steps(&out))),
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => is_there(&out),
-        Err(error) => {
-            diagnostic::error(format!("{} cannot be written: {error}", out.display()));
-            Ending::Failed
-        }
+        // What reads a pipe or a device has the scenario, and nothing that could be checked and run.
+        streamed => output::written(&out, streamed.map(drop)),
     }
 }
 
@@ -45,10 +42,6 @@ fn default_file(robot: Option<&Path>) -> PathBuf {
     let mut name = robot.and_then(Path::file_stem).unwrap_or("scenario".as_ref()).to_owned();
     name.push(".toml");
     name.into()
-}
-
-fn write(out: &Path, text: &str) -> io::Result<()> {
-    File::options().write(true).create_new(true).open(out)?.write_all(text.as_bytes())
 }
 
 fn next_steps(out: &Path) -> String {

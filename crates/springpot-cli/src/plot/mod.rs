@@ -7,7 +7,7 @@ mod table;
 use self::curves::Wanted;
 use self::table::Table;
 use crate::arguments::PlotOptions;
-use crate::{Ending, diagnostic, printed, terminal};
+use crate::{Ending, diagnostic, output, printed, terminal};
 use springpot_report::{Plot, Rendered};
 use std::fs;
 use std::io;
@@ -53,9 +53,9 @@ pub(crate) fn plot(options: &PlotOptions) -> Ending {
     });
     let mut lines = String::new();
     for (file, bytes) in files {
-        if let Err(error) = write(file, bytes) {
-            diagnostic::error(format!("{} cannot be written: {error}", file.display()));
-            return Ending::Failed;
+        match output::written(file, write(file, bytes)) {
+            Ending::Done => {}
+            ending => return ending,
         }
         lines.push_str(&format!("{}\n", file.display()));
     }
@@ -66,7 +66,7 @@ fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder)?;
     }
-    fs::write(file, bytes)
+    output::write(file, bytes)
 }
 
 struct Figure {

@@ -1,7 +1,7 @@
 //! The rows of a run, and what run.json says of them.
 
 use super::Refused;
-use crate::diagnostic;
+use crate::{diagnostic, plain};
 use csv::{ByteRecord, Reader};
 use serde_json::Value;
 use springpot::table::{Column, push_number};
@@ -49,7 +49,8 @@ impl Table {
         if names.is_empty() || names.iter().all(String::is_empty) {
             return Err(Refused::new(format!("{} has no columns", file.display()), None));
         }
-        let run = fs::read_to_string(folder.join("run.json")).ok();
+        let record = folder.join("run.json");
+        let run = record.is_file().then(|| fs::read_to_string(record).ok()).flatten();
         if run.is_none() {
             let message = format!("there is no run.json beside {}: the labels have no units", file.display());
             diagnostic::warning(message, None);
@@ -93,8 +94,8 @@ impl Table {
 
     /// What a field that is no number is refused with.
     pub(super) fn no_number(&self, column: usize, line: u64, field: &[u8]) -> Refused {
-        let (file, name, field) = (self.file.display(), &self.columns[column].name, String::from_utf8_lossy(field));
-        Refused::new(format!("{file}:{line}: {field:?} in column {name:?} is not a number"), None)
+        let (file, name, field) = (self.file.display(), &self.columns[column].name, plain::field(field));
+        Refused::new(format!("{file}:{line}: {field} in column {name:?} is not a number"), None)
     }
 }
 
@@ -158,10 +159,15 @@ fn rows_in(folder: &Path) -> Result<PathBuf, Refused> {
 }
 
 fn reader(file: &Path) -> Result<Reader<BufReader<File>>, Refused> {
-    let open = File::open(file).map_err(|error| {
+    let refused = |why: String| {
         let help = "name the folder of the results of a run, such as results/arm, or its results.csv".to_owned();
-        Refused::new(format!("{} cannot be opened: {error}", file.display()), help)
-    })?;
+        Refused::new(format!("{} cannot be opened: {why}", file.display()), help)
+    };
+    // The rows are read twice, and opening a pipe would wait for its other end.
+    if !fs::metadata(file).map_err(|error| refused(error.to_string()))?.is_file() {
+        return Err(refused("not a regular file".to_owned()));
+    }
+    let open = File::open(file).map_err(|error| refused(error.to_string()))?;
     Ok(Reader::from_reader(BufReader::with_capacity(CHUNK, open)))
 }
 

@@ -182,12 +182,12 @@ fn mistakes_name_the_line() {
         ("t,x\n0,1\n1,inf\n2,3\n", "x.csv:3: `inf` in column 2 (`x`) is not a finite number"),
         ("t,x\n0,1\n1,2,3\n", "x.csv:3: 3 cells, but the header has 2"),
         ("", "x.csv: the file is empty"),
-        ("t,x\n", "x.csv: 0 rows of numbers"),
-        ("t,x\n0,1\n", "x.csv: 1 rows of numbers"),
-        ("t,x\n0,1\n1,2\n", "x.csv: 2 rows of numbers; at least three are needed"),
-        ("0,1\n1,2\n", "x.csv: the first row must name the columns"),
-        ("t;x\n0;1\n", "x.csv: columns must be separated by commas"),
-        ("t,y\n0,1\n", "x.csv: no column `x`"),
+        ("t,x\n", "x.csv:1: 0 rows of numbers"),
+        ("t,x\n0,1\n", "x.csv:2: 1 rows of numbers"),
+        ("t,x\n0,1\n1,2\n", "x.csv:3: 2 rows of numbers; at least three are needed"),
+        ("0,1\n1,2\n", "x.csv:1: the first row must name the columns"),
+        ("t;x\n0;1\n", "x.csv:1: columns must be separated by commas"),
+        ("t,y\n0,1\n", "x.csv:1: no column `x`"),
     ];
     for (text, message) in cases {
         place.write("x.csv", text);
@@ -201,6 +201,37 @@ fn mistakes_name_the_line() {
     place.write("x.csv", "t,x\n0,1\n1,2\n2.5,3\n3,4\n");
     let ended = place.springpot(&["derivative", "x.csv", "--column", "x", "--order", "0.5", "--scheme", "fbdf-2"]);
     assert!(ended.code == Some(2) && ended.stderr.contains("x.csv:4: fbdf-2 needs equal steps"), "{}", ended.stderr);
+}
+
+#[test]
+fn a_file_is_refused_before_its_first_row_is_written() {
+    let place = Place::new();
+    let text = samples(3000, 0.003, f64::sin);
+    let arguments = ["derivative", "x.csv", "--column", "x", "--order", "0.7", "--scheme", "exponential"];
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("/dev/stdout", place.path("stdout")).unwrap();
+    for (mistake, words) in [
+        ("9.1,?\n", "x.csv:3002: `?` in column 2 (`x`) is not a number"),
+        ("1,1\n", "x.csv:3002: times must increase"),
+        ("9.1\n", "x.csv:3002: 1 cells"),
+        ("1e300,1\n", "x.csv:3002: "),
+    ] {
+        place.write("x.csv", format!("{text}{mistake}"));
+        let outs = [&[][..], &["--out", "stdout"]];
+        for out in &outs[..if cfg!(unix) { 2 } else { 1 }] {
+            let refused = place.springpot(&[&arguments[..], out].concat());
+            assert_eq!((refused.code, refused.stdout.as_str()), (Some(2), ""), "{mistake}: {}", refused.stderr);
+            assert!(refused.stderr.contains(words), "{mistake}: {}", refused.stderr);
+        }
+    }
+    // Of a pipe the rows before the mistake are out, whole ones alone.
+    let piped_arguments = [&["derivative"], &arguments[2..]].concat();
+    let refused = piped(&place, &piped_arguments, format!("{text}9.1,?\n").as_bytes());
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.starts_with("error: standard input:3002: `?`"), "{}", refused.stderr);
+    assert_eq!(Csv::new(&refused.stdout).rows.len(), 2997);
+    let refused = piped(&place, &piped_arguments, b"t,x\n0,1\n1,2\n2,?\n");
+    assert_eq!((refused.code, refused.stdout.as_str()), (Some(2), ""), "{}", refused.stderr);
 }
 
 #[test]

@@ -242,6 +242,14 @@ fn full_terminals_are_no_panic() {
 }
 
 #[test]
+fn more_jobs_than_make_sense_are_not_started() {
+    let place = Place::new();
+    let ended = place.done(&["run", "arm.toml", "--jobs", "65535"]);
+    assert!(ended.stderr.starts_with("warning: --jobs 65535: no more than "), "{}", ended.stderr);
+    assert_eq!(place.done(&["run", "arm.toml", "--jobs", "64"]).stderr, "");
+}
+
+#[test]
 fn absurd_counts_are_refused_at_once() {
     let sweep = |count: &str| {
         format!("{ARM}[[sweep]]\nparameter = \"element.damper.mu\"\nvalues = {{ from = 1, to = 2, count = {count} }}\n")

@@ -17,6 +17,7 @@ mod init;
 mod interrupted;
 mod laws;
 mod manual;
+mod messages;
 #[cfg(unix)]
 mod pipes;
 mod plot;
@@ -28,3 +29,5 @@ mod robots;
 mod support;
 #[cfg(target_os = "linux")]
 mod terminal;
+#[cfg(unix)]
+mod written;

@@ -160,6 +160,12 @@ fn mistakes_are_refused_with_what_would_be_right() {
         (&[("--equilibrium", "20 Pa")], "write a modulus in N/m"),
         (&[("--equilibrium", "-3")], "not a positive number"),
         (&[("--format", "ansyss")], "ansys"),
+        (
+            &[("--coefficient", "1e308"), ("--from", "1e5"), ("--to", "1e9")],
+            "--coefficient 1e308: the viscosity of branch ",
+        ),
+        (&[("--coefficient", "1e308"), ("--from", "1e-9")], "--coefficient 1e308: "),
+        (&[("--coefficient", "1e-310")], "is too small for numbers of 64 bits"),
     ] {
         let ended = with(change);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{change:?}: {}", ended.stderr);

@@ -56,6 +56,21 @@ fn a_long_run_shows_how_far_it_is() {
 }
 
 #[test]
+fn rows_do_not_steer_it() {
+    let place = Place::new();
+    place.write("x.csv", "t,x,note\n0,1,a\u{1b}]0;owned\u{7}\n1,2,\u{202e}b\n2,3,größe\n");
+    for scheme in ["spline", "exponential"] {
+        let arguments = ["derivative", "x.csv", "--column", "x", "--order", "1", "--scheme", scheme];
+        let Some(text) = shown(&place, "", &arguments) else { return };
+        assert!(
+            text.contains("0,1,a␛]0;owned␇,") && text.contains(",\u{fffd}b,") && text.contains(",größe,"),
+            "{text}"
+        );
+        assert!(!text.contains(['\u{1b}', '\u{7}', '\u{202e}']), "{text:?}");
+    }
+}
+
+#[test]
 fn wide_names_do_not_break_tables() {
     let place = Place::new();
     let joint = |side: &str, part: &str, parent: &str| {

@@ -96,7 +96,7 @@ impl Scenario {
     /// Reads a file. Paths that it names are relative to its folder.
     ///
     /// # Errors
-    /// A file that cannot be read, is larger than 4 MiB, not UTF-8, not TOML, or too deeply nested.
+    /// A path of something else than a regular file; a file that cannot be read, is larger than 4 MiB, not UTF-8, not TOML, or too deeply nested.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Refusals> {
         let path = path.as_ref();
         let name = path.display().to_string();
@@ -104,8 +104,14 @@ impl Scenario {
             let source = Source { name: name.clone(), text: "".into() };
             Place { source: Arc::new(source), span: 0..0 }.refuse(RefusalKind::File, message)
         };
+        let unopened = |error| refuse(format!("cannot be opened: {error}"));
+        // Looked at before it is opened: opening a pipe would wait for its other end.
+        if !std::fs::metadata(path).map_err(unopened)?.is_file() {
+            let refusal = refuse("cannot be read: not a regular file".to_owned());
+            return Err(refusal.help("a scenario is read from a file, which paths in it are relative to").into());
+        }
         let mut bytes = Vec::new();
-        let file = std::fs::File::open(path).map_err(|error| refuse(format!("cannot be opened: {error}")))?;
+        let file = std::fs::File::open(path).map_err(unopened)?;
         let read = file.take(MAX_BYTES + 1).read_to_end(&mut bytes);
         read.map_err(|error| refuse(format!("cannot be read: {error}")))?;
         if bytes.len() as u64 > MAX_BYTES {

@@ -80,7 +80,7 @@ pub enum RefusalKind {
 pub struct Refusal {
     /// What sort of mistake it is.
     pub kind: RefusalKind,
-    /// What is wrong, with the value.
+    /// What is wrong, with the value; of runs without a blank that are longer than 120 characters the ends alone.
     pub message: String,
     /// The file's path as it was given, or `--set`.
     pub file: String,
@@ -98,13 +98,33 @@ pub struct Refusal {
     pub help: Option<String>,
 }
 
+/// Longest run without a blank in a message, and what is kept of a longer one, in characters.
+const LONGEST_RUN: usize = 120;
+const HEAD: usize = 60;
+const TAIL: usize = 40;
+
+/// A message in which values and names that are too long to be read are cut in their middle.
+fn brief(message: String) -> String {
+    if message.len() <= LONGEST_RUN {
+        return message;
+    }
+    let cut = |run: &str| match run.chars().count() {
+        count if count > LONGEST_RUN => {
+            let tail = run.chars().skip(count - TAIL);
+            run.chars().take(HEAD).chain(['…']).chain(tail).collect()
+        }
+        _ => run.to_owned(),
+    };
+    message.split_inclusive(char::is_whitespace).map(cut).collect()
+}
+
 impl Refusal {
     fn new(place: &Place, kind: RefusalKind, message: String) -> Self {
         let (line, column) = place.position();
         let end = place.source.text.len();
         Self {
             kind,
-            message,
+            message: brief(message),
             file: place.source.name.clone(),
             line,
             column,

@@ -28,6 +28,7 @@ pub const TIME: &str = "t";
 pub struct CsvTable {
     file: std::path::PathBuf,
     headers: Vec<String>,
+    header_line: u64,
     time: usize,
     columns: Vec<Column>,
 }
@@ -51,13 +52,13 @@ impl CsvTable {
     pub fn read_with_time(path: impl AsRef<Path>, time: &str) -> Result<Self, CsvError> {
         let path = path.as_ref();
         let with_file = |problem: CsvProblem| CsvError { file: path.to_owned(), problem };
-        let open = || File::open(path).map_err(|source| with_file(CsvProblem::Unreadable { source }));
-        let file = open()?;
-        let is_file = file.metadata().map_err(|source| with_file(CsvProblem::Unreadable { source }))?.is_file();
-        if !is_file {
+        let unreadable = |source| with_file(CsvProblem::Unreadable { source });
+        let open = || File::open(path).map_err(unreadable);
+        // Looked at before it is opened: opening a pipe would wait for its other end.
+        if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
             return Err(with_file(CsvProblem::NotAFile));
         }
-        let lines = count_lines(BufReader::with_capacity(1 << 16, file)).map_err(with_file)?;
+        let lines = count_lines(BufReader::with_capacity(1 << 16, open()?)).map_err(with_file)?;
         parse(path, BufReader::with_capacity(1 << 16, open()?), time, lines).map_err(with_file)
     }
 
@@ -87,7 +88,7 @@ impl CsvTable {
     pub fn column(&self, name: &str) -> Result<&[f64], CsvError> {
         let with_file = |problem| CsvError { file: self.file.clone(), problem };
         let Some(index) = self.headers.iter().position(|header| header == name) else {
-            return Err(with_file(missing(name, &self.headers)));
+            return Err(with_file(missing(name, &self.headers, self.header_line)));
         };
         let column = &self.columns[index];
         match &column.flaw {
@@ -99,7 +100,7 @@ impl CsvTable {
 
 /// Lines that are not empty; refuses what no table may have.
 fn count_lines(mut reader: impl BufRead) -> Result<u64, CsvProblem> {
-    let (mut lines, mut length) = (0_u64, 0_u64);
+    let (mut lines, mut length, mut line) = (0_u64, 0_u64, 1_u64);
     loop {
         let chunk = reader.fill_buf().map_err(|source| CsvProblem::Unreadable { source })?;
         if chunk.is_empty() {
@@ -109,11 +110,12 @@ fn count_lines(mut reader: impl BufRead) -> Result<u64, CsvProblem> {
             if byte == b'\n' || byte == b'\r' {
                 lines += u64::from(length > 0);
                 length = 0;
+                line += u64::from(byte == b'\n');
             } else {
                 length += 1;
             }
             if length > MAX_LINE {
-                return Err(CsvProblem::LongLine { limit: MAX_LINE });
+                return Err(CsvProblem::LongLine { line, limit: MAX_LINE });
             }
         }
         if lines > MAX_ROWS + 1 {
@@ -137,11 +139,11 @@ fn parse(file: &Path, reader: impl Read, time_name: &str, lines: u64) -> Result<
     while let Some(row) = rows.next_row()? {
         read_row(&row, time, &mut columns)?;
     }
-    let rows = columns[time].numbers.len();
-    if rows < 2 {
-        return Err(CsvProblem::TooFewRows { given: rows });
+    let given = columns[time].numbers.len();
+    if given < 2 {
+        return Err(CsvProblem::TooFewRows { line: rows.line(), given });
     }
-    Ok(CsvTable { file: file.to_owned(), headers, time, columns })
+    Ok(CsvTable { file: file.to_owned(), headers, header_line: rows.header_line(), time, columns })
 }
 
 fn read_row(row: &CsvRow, time: usize, columns: &mut [Column]) -> Result<(), CsvProblem> {
@@ -177,7 +179,7 @@ fn not_a_number(text: &str, line: u64, index: usize, name: &str) -> CsvProblem {
     }
 }
 
-fn missing(name: &str, headers: &[String]) -> CsvProblem {
+fn missing(name: &str, headers: &[String], line: u64) -> CsvProblem {
     let lower = name.to_lowercase();
     let short = headers.iter().take(1000).filter(|header| header.len() <= 64);
     let distance = |header: &str| strsim::damerau_levenshtein(&lower, &header.to_lowercase());
@@ -190,7 +192,7 @@ fn missing(name: &str, headers: &[String]) -> CsvProblem {
     let time = headers.iter().find(|header| name == TIME && header.to_lowercase().starts_with("time"));
     let suggestion = near.map(|(_, header)| header).or(time).map(|header| shorten(header));
     let listed = headers.iter().take(20).map(|header| shorten(header)).collect();
-    CsvProblem::MissingColumn { name: name.to_owned(), suggestion, headers: listed }
+    CsvProblem::MissingColumn { line, name: shorten(name), suggestion, headers: listed }
 }
 
 /// At most 40 characters, for messages.

@@ -93,6 +93,10 @@ impl<'a> Source<'a> {
             } else {
                 let tag = Tag::at_start_of(rest);
                 namespaces += tag.namespaces;
+                if namespaces > MAX_NAMESPACES {
+                    let what = "declarations of namespaces";
+                    return Err(self.fail(at, UrdfProblem::TooLarge { limit: MAX_NAMESPACES, what }));
+                }
                 if tag.attributes > MAX_ATTRIBUTES_OF_TAG {
                     let what = "attributes in one tag";
                     return Err(self.fail(at, UrdfProblem::TooLarge { limit: MAX_ATTRIBUTES_OF_TAG, what }));
@@ -103,15 +107,35 @@ impl<'a> Source<'a> {
             let Some(length) = length else { break };
             at += length;
         }
-        if namespaces > MAX_NAMESPACES {
-            return Err(too_large(MAX_NAMESPACES, "declarations of namespaces"));
-        }
         Ok(())
+    }
+
+    /// The first `<` that opens no comment and no processing instruction, or else the end of the text.
+    fn first_tag(&self) -> usize {
+        let mut at = 0;
+        while let Some(start) = self.text[at..].find('<') {
+            at += start;
+            let rest = &self.text[at..];
+            let end = match rest {
+                _ if rest.starts_with("<!--") => "-->",
+                _ if rest.starts_with("<?") => "?>",
+                _ => return at,
+            };
+            let Some(length) = rest.find(end) else { break };
+            at += length;
+        }
+        self.text.len()
     }
 
     fn not_xml(&self, error: &XmlError) -> UrdfError {
         let at = error.pos();
-        let place = Some((at.row as usize, at.col as usize));
+        // The parser knows no place of these.
+        let place = match error {
+            XmlError::DtdDetected | XmlError::UnclosedRootNode => self.place(self.first_tag()),
+            XmlError::UnexpectedEndOfStream | XmlError::NoRootNode => self.place(self.text.trim_end().len()),
+            _ => (at.row as usize, at.col as usize),
+        };
+        let place = Some(place);
         // The parser ends its sentences with the place, which stands at the front here.
         let reason = match error {
             XmlError::DtdDetected => "it has a <!DOCTYPE>, which no robot needs".to_owned(),
@@ -130,11 +154,7 @@ impl<'a> Source<'a> {
             XmlError::InvalidChar2(wanted, found, _) => format!("expected {wanted}, found {}", shown(*found)),
             _ => error.to_string().replace(&format!(" at {at}"), "").chars().take(MAX_REASON).collect(),
         };
-        let has_place = !matches!(
-            error,
-            XmlError::DtdDetected | XmlError::UnexpectedEndOfStream | XmlError::NoRootNode | XmlError::UnclosedRootNode
-        );
-        UrdfError::new(self.file, place.filter(|_| has_place), UrdfProblem::NotXml { reason })
+        UrdfError::new(self.file, place, UrdfProblem::NotXml { reason })
     }
 }
 

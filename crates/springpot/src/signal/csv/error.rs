@@ -31,18 +31,24 @@ pub enum CsvProblem {
     /// The first row holds numbers.
     #[error("the first row must name the columns, but it starts with the number {first}")]
     NoHeader {
+        /// Its line.
+        line: u64,
         /// Its first cell.
         first: String,
     },
     /// A column without name.
     #[error("column {column} has no name in the header")]
     NoName {
+        /// The header's line.
+        line: u64,
         /// The column.
         column: usize,
     },
     /// Two columns of one name.
     #[error("columns {first} and {second} are both called `{name}`")]
     DuplicateName {
+        /// The header's line.
+        line: u64,
         /// The name.
         name: String,
         /// The first column.
@@ -51,14 +57,20 @@ pub enum CsvProblem {
         second: usize,
     },
     /// Cells separated by something else than commas.
-    #[error("columns must be separated by commas, but the header has {separator:?}")]
+    #[error("columns must be separated by commas, but the header has {separator:?} as character {at}")]
     OtherSeparator {
+        /// The header's line.
+        line: u64,
         /// What the header has.
         separator: char,
+        /// Where it stands in the header, in characters from 1.
+        at: usize,
     },
     /// No column of that name.
     #[error("no column `{name}`{}; the columns are {}", meant(suggestion), headers.join(", "))]
     MissingColumn {
+        /// The header's line.
+        line: u64,
         /// The name.
         name: String,
         /// What was probably meant.
@@ -123,6 +135,8 @@ pub enum CsvProblem {
     /// Fewer than two rows of numbers.
     #[error("{given} rows of numbers; at least two are needed")]
     TooFewRows {
+        /// The last line that is not blank.
+        line: u64,
         /// How many there are.
         given: usize,
     },
@@ -135,8 +149,10 @@ pub enum CsvProblem {
         column: usize,
     },
     /// A line that no table has.
-    #[error("a line is longer than {limit} bytes; this is not a table of numbers")]
+    #[error("the line is longer than {limit} bytes; this is not a table of numbers")]
     LongLine {
+        /// The line.
+        line: u64,
         /// The limit.
         limit: u64,
     },
@@ -154,7 +170,14 @@ impl CsvProblem {
     /// The line it is about, from 1.
     pub fn line(&self) -> Option<u64> {
         match self {
-            Self::NotANumber { line, .. }
+            Self::NoHeader { line, .. }
+            | Self::NoName { line, .. }
+            | Self::DuplicateName { line, .. }
+            | Self::OtherSeparator { line, .. }
+            | Self::MissingColumn { line, .. }
+            | Self::TooFewRows { line, .. }
+            | Self::LongLine { line, .. }
+            | Self::NotANumber { line, .. }
             | Self::NoNumber { line, .. }
             | Self::NotFinite { line, .. }
             | Self::TimeNotIncreasing { line, .. }
@@ -171,7 +194,9 @@ impl CsvProblem {
             | Self::NoNumber { column, .. }
             | Self::NotFinite { column, .. }
             | Self::NotUtf8 { column, .. }
-            | Self::NoName { column } => Some(*column),
+            | Self::NoName { column, .. } => Some(*column),
+            Self::DuplicateName { second, .. } => Some(*second),
+            Self::OtherSeparator { .. } => Some(1),
             _ => None,
         }
     }

@@ -23,6 +23,9 @@ use std::io::{self, Read};
 pub struct CsvRows<R> {
     reader: ::csv::Reader<io::Chain<Lines<R>, &'static [u8]>>,
     headers: Vec<String>,
+    header_line: u64,
+    /// Of the row that was read last.
+    line: u64,
     record: ::csv::ByteRecord,
 }
 
@@ -48,10 +51,11 @@ impl<R: Read> CsvRows<R> {
             .flexible(true)
             .trim(::csv::Trim::All)
             .terminator(::csv::Terminator::Any(b'\n'))
-            .from_reader(Lines { reader, length: 0 }.chain(&b"\n"[..]));
-        let mut rows = Self { reader, headers: Vec::new(), record: ::csv::ByteRecord::new() };
-        let line = rows.advance()?.ok_or(CsvProblem::Empty)?;
-        rows.headers = read_headers(&rows.record, line)?;
+            .from_reader(Lines { reader, line: 1, length: 0 }.chain(&b"\n"[..]));
+        let record = ::csv::ByteRecord::new();
+        let mut rows = Self { reader, headers: Vec::new(), header_line: 1, line: 1, record };
+        rows.header_line = rows.advance()?.ok_or(CsvProblem::Empty)?;
+        rows.headers = read_headers(&rows.record, rows.header_line)?;
         Ok(rows)
     }
 
@@ -60,13 +64,23 @@ impl<R: Read> CsvRows<R> {
         &self.headers
     }
 
+    /// Line of the row that was read last, from 1; at first that of the header.
+    pub fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// Line of the header, from 1.
+    pub fn header_line(&self) -> u64 {
+        self.header_line
+    }
+
     /// Where the column called `name` stands, from 0.
     ///
     /// # Errors
     /// `MissingColumn`, with the name that was probably meant.
     pub fn find(&self, name: &str) -> Result<usize, CsvProblem> {
         let found = self.headers.iter().position(|header| header == name);
-        found.ok_or_else(|| super::missing(name, &self.headers))
+        found.ok_or_else(|| super::missing(name, &self.headers, self.header_line))
     }
 
     /// The next row that is not blank; `None` at the end.
@@ -86,7 +100,8 @@ impl<R: Read> CsvRows<R> {
     fn advance(&mut self) -> Result<Option<u64>, CsvProblem> {
         while self.reader.read_byte_record(&mut self.record).map_err(unreadable)? {
             if !(self.record.len() == 1 && self.record[0].is_empty()) {
-                return Ok(Some(self.reader.position().line() - 1));
+                self.line = self.reader.position().line() - 1;
+                return Ok(Some(self.line));
             }
         }
         Ok(None)
@@ -132,20 +147,21 @@ fn read_headers(record: &::csv::ByteRecord, line: u64) -> Result<Vec<String>, Cs
         let column = index + 1;
         let name = std::str::from_utf8(cell).map_err(|_| CsvProblem::NotUtf8 { line, column })?;
         if name.is_empty() && record.len() > 1 {
-            return Err(CsvProblem::NoName { column });
+            return Err(CsvProblem::NoName { line, column });
         }
         if let Some(first) = names.iter().position(|other| other == name) {
-            return Err(CsvProblem::DuplicateName { name: super::shorten(name), first: first + 1, second: column });
+            let name = super::shorten(name);
+            return Err(CsvProblem::DuplicateName { line, name, first: first + 1, second: column });
         }
         names.push(name.to_owned());
     }
     if names.iter().all(|name| name.parse::<f64>().is_ok()) {
-        return Err(CsvProblem::NoHeader { first: super::shorten(&names[0]) });
+        return Err(CsvProblem::NoHeader { line, first: super::shorten(&names[0]) });
     }
     if let [only] = &names[..]
-        && let Some(separator) = only.chars().find(|c| matches!(c, ';' | '\t' | '|'))
+        && let Some((before, separator)) = only.chars().enumerate().find(|(_, c)| matches!(c, ';' | '\t' | '|'))
     {
-        return Err(CsvProblem::OtherSeparator { separator });
+        return Err(CsvProblem::OtherSeparator { line, separator, at: before + 1 });
     }
     Ok(names)
 }
@@ -153,12 +169,16 @@ fn read_headers(record: &::csv::ByteRecord, line: u64) -> Result<Vec<String>, Cs
 /// A file none of whose lines is longer than [`MAX_LINE`].
 struct Lines<R> {
     reader: R,
+    /// From 1.
+    line: u64,
     length: u64,
 }
 
 #[derive(Debug, thiserror::Error)]
-#[error("a line is too long")]
-struct TooLong;
+#[error("line {line} is too long")]
+struct TooLong {
+    line: u64,
+}
 
 impl<R: Read> Read for Lines<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
@@ -166,9 +186,10 @@ impl<R: Read> Read for Lines<R> {
         for part in buffer[..count].split_inclusive(|byte| *byte == b'\n') {
             self.length += part.len() as u64;
             if self.length > MAX_LINE {
-                return Err(io::Error::other(TooLong));
+                return Err(io::Error::other(TooLong { line: self.line }));
             }
             if part.ends_with(b"\n") {
+                self.line += 1;
                 self.length = 0;
             }
         }
@@ -181,8 +202,8 @@ fn unreadable(error: ::csv::Error) -> CsvProblem {
         ::csv::ErrorKind::Io(source) => source,
         other => io::Error::other(format!("{other:?}")),
     };
-    match source.get_ref().is_some_and(|inner| inner.is::<TooLong>()) {
-        true => CsvProblem::LongLine { limit: MAX_LINE },
-        false => CsvProblem::Unreadable { source },
+    match source.get_ref().and_then(|inner| inner.downcast_ref::<TooLong>()) {
+        Some(&TooLong { line }) => CsvProblem::LongLine { line, limit: MAX_LINE },
+        None => CsvProblem::Unreadable { source },
     }
 }
