@@ -36,7 +36,7 @@ fn a_load_creeps_or_is_held_as_the_file_says() {
     assert_eq!(place.read("set/results.csv"), place.read("held/results.csv"));
 
     let wrong = place.springpot(&["check", "arm.toml", "--set", "robot.body.b.joint.friction={ force = \"10 N*m\" }"]);
-    assert_eq!(wrong.code, 2, "{}", wrong.err);
-    assert!(wrong.err.contains("`force` of `friction` of the joint of body \"b\""), "{}", wrong.err);
-    assert!(wrong.err.contains("this place takes `N`"), "{}", wrong.err);
+    assert_eq!(wrong.code, Some(2), "{}", wrong.stderr);
+    assert!(wrong.stderr.contains("`force` of `friction` of the joint of body \"b\""), "{}", wrong.stderr);
+    assert!(wrong.stderr.contains("this place takes `N`"), "{}", wrong.stderr);
 }

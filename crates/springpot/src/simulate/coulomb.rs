@@ -196,9 +196,10 @@ mod tests {
             let mut a = push.clone();
             lu.solve(&mut a);
             let mut coulomb = Coulomb::default();
-            coulomb.candidates = (0..n)
-                .map(|place| Candidate { place, limit: 0.1 + random().abs(), slack: 1e-12, offset: 0.0 })
-                .collect();
+            coulomb.candidates.extend((0..n).map(|place| {
+                let limit = 0.1 + random().abs();
+                Candidate { place, limit, slack: 1e-12, offset: 0.0 }
+            }));
             coulomb.solve(&mut lu, &mut a).unwrap();
             for k in 0..n {
                 let friction = push[k] - (0..n).map(|c| mass(k, c) * a[c]).sum::<f64>();

@@ -63,7 +63,7 @@ mod tests {
     fn first_zeros() {
         let near = |found: Option<f64>, expected: f64| assert!((found.unwrap() - expected).abs() < 1e-12, "{found:?}");
         near(first_zero(|x| 0.3 - x), 0.3);
-        near(first_zero(|x| (x - 0.5) * (x - 0.7) * (x - 0.9) * -1.0), 0.5);
+        near(first_zero(|x| (0.5 - x) * (x - 0.7) * (x - 0.9)), 0.5);
         // A dip between two samples.
         near(first_zero(|x| (x - 0.51) * (x - 0.52)), 0.51);
         assert_eq!(first_zero(|x| (x - 0.5).powi(2) + 1e-9), None);

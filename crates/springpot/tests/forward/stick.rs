@@ -38,7 +38,7 @@ fn follows(run: &Run, column: &str, wanted: impl Fn(f64) -> f64, tolerance: f64)
     let (mut worst, mut when) = (0.0, 0.0);
     for ((t, value), wanted) in t.iter().zip(&values).zip(&wanted) {
         let off = (value - wanted).abs() / largest;
-        if !(off <= worst) {
+        if off > worst || off.is_nan() {
             (worst, when) = (off, *t);
         }
     }
