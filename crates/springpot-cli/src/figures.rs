@@ -3,9 +3,10 @@
 mod robot;
 
 use crate::labels;
+use springpot::scenario::units::Unit;
 use springpot::scenario::{Cases, FigureKind, FigurePlan, Plan};
 use springpot::simulate::System;
-use springpot::sweep::{CaseResult, FigureColumn, FigureData, Layout, MAX_CURVES, MAX_POINTS, Outcome};
+use springpot::sweep::{FigureColumn, FigureData, KeptCurve, Layout, Outcome};
 use springpot::table::folder::Folder;
 use springpot_report::{Curve, Panel, Plot, Rendered, ReportError};
 use std::io;
@@ -42,12 +43,8 @@ fn render(result: Result<Rendered, ReportError>) -> Result<Rendered, String> {
 
 /// One curve per swept value and column; a second sweep makes one panel per value.
 fn curves(cases: &Cases, figure: &FigurePlan, data: &FigureData, outcome: &Outcome) -> Result<Plot, String> {
-    if data.curves > MAX_CURVES {
-        return Err(format!("it would hold {} curves; choose some with `where` (at most {MAX_CURVES})", data.curves));
-    }
-    if data.points > MAX_POINTS {
-        let points = data.points;
-        return Err(format!("it would hold {points} values (at most {MAX_POINTS}); write a larger output_step"));
+    if let Some(why) = &data.left_out {
+        return Err(why.to_string());
     }
     // Sweeps that the figure does not fix: the first makes the curves, the others the panels.
     let free: Vec<usize> =
@@ -68,10 +65,11 @@ fn curves(cases: &Cases, figure: &FigurePlan, data: &FigureData, outcome: &Outco
         // Beside a column's name the value alone would not say what it is of.
         let several = data.y.len() > 1;
         let swept = free.first().map(|axis| axis_label(cases, *axis, position[*axis], several));
-        for column in &data.y {
+        for (column, index) in data.y.iter().zip(&data.curves) {
             let own = several.then(|| if alike { labels::quantity(&column.column.name) } else { axis(column) });
             let label = own.into_iter().chain(swept.clone()).collect::<Vec<_>>().join(", ");
-            panels[at].1.curves.push(curve(label, &data.x, column, case));
+            let kept = case.curves.as_ref().and_then(|curves| curves.get(index));
+            panels[at].1.curves.push(curve(label, &data.x, column, kept.map_or(&[], KeptCurve::points)));
         }
     }
     let mut panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
@@ -85,16 +83,11 @@ fn curves(cases: &Cases, figure: &FigurePlan, data: &FigureData, outcome: &Outco
     Ok(Plot { title: figure.title.clone(), x_label: axis(&data.x), y_label: ordinate(&data.y), legend_title, panels })
 }
 
-fn curve(label: String, x: &FigureColumn, y: &FigureColumn, case: &CaseResult) -> Curve {
-    Curve { label, x: values(x, case), y: values(y, case) }
-}
-
-fn values(column: &FigureColumn, case: &CaseResult) -> Vec<f64> {
-    let kept = case.kept.as_ref().map_or(&[][..], |kept| &kept[column.kept]);
-    match &column.unit {
-        Some((_, unit)) => kept.iter().map(|value| unit.from_si(*value)).collect(),
-        None => kept.to_vec(),
-    }
+fn curve(label: String, x: &FigureColumn, y: &FigureColumn, points: &[[f64; 2]]) -> Curve {
+    let (in_x, in_y) = (x.unit.as_ref(), y.unit.as_ref());
+    let number = |value: f64, unit: Option<&(String, Unit)>| unit.map_or(value, |(_, unit)| unit.from_si(value));
+    let (x, y) = points.iter().map(|[x, y]| (number(*x, in_x), number(*y, in_y))).unzip();
+    Curve { label, x, y }
 }
 
 fn axis(column: &FigureColumn) -> String {

@@ -125,3 +125,12 @@ fn what_no_run_can_follow_is_refused_and_an_interrupt_is_heard() {
     let stop = std::sync::atomic::AtomicBool::new(true);
     assert_eq!(Agenda::new(&watched, 100.0, 1e-6, Some(&stop)).unwrap_err(), AgendaError::Interrupted);
 }
+
+#[test]
+fn short_runs_are_looked_through_as_quickly_as_long_ones() {
+    for (text, is_position) in [("0.3*sin(4*t)", true), ("2*cos(3*t)", false), ("1e-9*exp(t)", true)] {
+        for end in [1e-6, 0.01, 0.5] {
+            assert_eq!(look(text, end, is_position).finest(), None, "{text} {end}");
+        }
+    }
+}

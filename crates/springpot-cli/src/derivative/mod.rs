@@ -1,6 +1,7 @@
 //! `springpot derivative`.
 
 mod sheet;
+mod steps;
 mod streamed;
 mod whole;
 

@@ -98,14 +98,6 @@ impl Layout {
     pub(super) fn values(&self, row: &CsvRow) -> impl Iterator<Item = Result<f64, CsvProblem>> {
         self.columns.iter().map(|column| row.number(*column))
     }
-
-    /// A unit of the last digit that the row's time is written with: what two rounded times may differ by from their step.
-    fn last_digit(&self, row: &CsvRow) -> f64 {
-        let Ok(text) = row.text(self.time) else { return 0.0 };
-        let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
-        let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len()) as i32;
-        10f64.powi(exponent.parse::<i32>().unwrap_or(0).saturating_sub(decimals))
-    }
 }
 
 /// Rows that are held.
@@ -118,8 +110,6 @@ pub(super) struct Sheet {
     lines: Vec<u64>,
     text: Vec<u8>,
     ends: Vec<usize>,
-    /// The largest unit of a last digit of the times.
-    rounding: f64,
 }
 
 impl Sheet {
@@ -132,7 +122,6 @@ impl Sheet {
         layout.text(row, &mut self.text);
         self.ends.push(self.text.len());
         self.lines.push(row.line());
-        self.rounding = self.rounding.max(layout.last_digit(row));
         Ok(())
     }
 
@@ -149,17 +138,6 @@ impl Sheet {
     pub(super) fn row_text(&self, row: usize) -> &[u8] {
         let start = if row == 0 { 0 } else { self.ends[row - 1] };
         &self.text[start..self.ends[row]]
-    }
-
-    /// Times from the first on; those that are equal steps to the rounding they are written with are equal steps.
-    pub(super) fn times_from_start(&self) -> Vec<f64> {
-        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
-        let step = (last - first) / (self.times.len() - 1).max(1) as f64;
-        let allowed = (self.rounding + 4.0 * f64::EPSILON * first.abs().max(last.abs())).min(1e-2 * step);
-        let equal = |k: usize, t: f64| (t - first - k as f64 * step).abs() <= allowed;
-        let is_equal = self.times.iter().enumerate().all(|(k, t)| equal(k, *t));
-        let times = self.times.iter().enumerate();
-        times.map(|(k, t)| if is_equal { k as f64 * step } else { t - first }).collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Derivatives of all rows at once.
 
 use super::sheet::{Layout, Sheet};
-use super::{FEWEST, Problem};
+use super::{FEWEST, Problem, steps};
 use springpot::fractional::scheme::{Samples, SchemeError};
 use springpot::fractional::{DerivativeError, Method, derivative, derivative_with_error};
 use springpot::table::push_fields;
@@ -18,7 +18,7 @@ pub(super) fn differentiate(
     if sheet.times.len() < FEWEST {
         return Err(Problem::TooFewRows { line: last_line, given: sheet.times.len() });
     }
-    let times = sheet.times_from_start();
+    let times = steps::from_start(&sheet.times);
     let mut results: Vec<Vec<f64>> = Vec::new();
     for values in &sheet.values {
         let samples = Samples { t: &times, x: values, rate: None };

@@ -1,13 +1,12 @@
 //! Which columns and cases are drawn, and the curves that they make.
 
 use super::Refused;
-use super::points::Points;
 use super::table::Table;
 use crate::arguments::PlotOptions;
 use crate::labels;
 use springpot::scenario::suggest;
 use springpot::scenario::units::Unit;
-use springpot::sweep::MAX_CURVES;
+use springpot::sweep::{KeptCurve, MAX_CURVES, most_points};
 use springpot::table::{Column, matches};
 use springpot_report::{Curve, Panel, Plot};
 
@@ -19,6 +18,13 @@ struct Drawn {
     at: usize,
     column: Column,
     unit: Option<(String, Unit)>,
+}
+
+impl Drawn {
+    /// A value of the column as it is drawn.
+    fn number(&self, value: f64) -> f64 {
+        self.unit.as_ref().map_or(value, |(_, unit)| unit.from_si(value))
+    }
 }
 
 /// What is asked for.
@@ -130,7 +136,7 @@ fn chosen(table: &Table, selection: &[String]) -> Result<Vec<Option<String>>, Re
 /// One curve under way: which case, and one run of points for each ordinate.
 struct Case {
     position: Vec<usize>,
-    curves: Vec<Points>,
+    curves: Vec<KeptCurve>,
 }
 
 /// Reads the rows and makes the figure: the first sweep that is not fixed makes curves, the others panels.
@@ -153,9 +159,10 @@ pub(super) fn plot(table: &Table, wanted: &Wanted, title: Option<String>) -> Res
             panels.len() - 1
         });
         let swept = free.first().map(|axis| value(*axis, &position, several));
-        for (column, Points { x, y }) in wanted.y.iter().zip(curves) {
+        for (column, curve) in wanted.y.iter().zip(curves) {
             let own = several.then(|| if alike { labels::quantity(&column.column.name) } else { axis_label(column) });
             let label = own.into_iter().chain(swept.clone()).collect::<Vec<_>>().join(", ");
+            let (x, y) = curve.points().iter().map(|[x, y]| (wanted.x.number(*x), column.number(*y))).unzip();
             panels[at].1.curves.push(Curve { label, x, y });
         }
     }
@@ -181,6 +188,11 @@ type Sweeps = Vec<(String, Vec<String>)>;
 fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused> {
     let mut cases: Vec<Case> = Vec::new();
     let mut last: Option<(Vec<usize>, Option<usize>)> = None;
+    // As many curves as run.json says; a run draws them from as many points.
+    let values = wanted.chosen.iter().zip(&table.sweeps);
+    let counts = values.map(|(chosen, sweep)| if chosen.is_some() { 1 } else { sweep.labels.len().max(1) });
+    let count = counts.fold(wanted.y.len(), usize::saturating_mul);
+    let most = most_points(count, count);
     let names: Vec<Vec<String>> = table.sweeps.iter().map(|sweep| sweep.labels.clone()).collect();
     let sweeps = table.visit(&mut |record, line, position| {
         let case = match &last {
@@ -191,7 +203,7 @@ fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused>
                         chosen.as_ref().is_none_or(|chosen| labels.get(at) == Some(chosen))
                     });
                 let case = drawn.then(|| {
-                    let curves = vec![Points::default(); wanted.y.len()];
+                    let curves = vec![KeptCurve::new(most); wanted.y.len()];
                     cases.push(Case { position: position.to_vec(), curves });
                     cases.len() - 1
                 });
@@ -209,8 +221,7 @@ fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused>
             let field = record.get(drawn.at).unwrap_or_default();
             let text = std::str::from_utf8(field).unwrap_or("?");
             let value = if text.is_empty() { Some(f64::NAN) } else { text.parse::<f64>().ok() };
-            let value = value.ok_or_else(|| table.no_number(drawn.at, line, field))?;
-            Ok(drawn.unit.as_ref().map_or(value, |(_, unit)| unit.from_si(value)))
+            value.ok_or_else(|| table.no_number(drawn.at, line, field))
         };
         let x = number(&wanted.x)?;
         for (column, points) in wanted.y.iter().zip(&mut cases[case].curves) {

@@ -1,7 +1,6 @@
 //! `springpot plot`: columns of a finished run as a figure.
 
 mod curves;
-mod points;
 mod table;
 
 use self::curves::Wanted;

@@ -140,6 +140,95 @@ fn equal_steps_may_be_rounded_and_start_anywhere() {
     assert!(error < 1e-7, "{error:e}");
 }
 
+/// sin 20t at steps of 1 ms that are up to 3 µs off, times with seven decimals: the first one is "0" in one file.
+#[test]
+fn a_round_time_changes_nothing() {
+    let place = Place::new();
+    let files = ["jitter_0.csv", "jitter_0.0000000.csv"].map(|name| testdata(&format!("silent/{name}")));
+    let texts = files.each_ref().map(|file| std::fs::read_to_string(file).unwrap());
+    assert!(texts[0].starts_with("t,x\n0,") && texts[1].starts_with("t,x\n0.0000000,"));
+    let exact = [("0.5", -4.392_917_638_728), ("1", -16.995_267_712_1), ("2", 210.865_715_937)];
+    let mut arguments = vec!["--column", "x"];
+    exact.iter().for_each(|(order, _)| arguments.extend(["--order", order]));
+    for scheme in ["spline", "hermite", "exponential"] {
+        let tables = files.each_ref().map(|file| {
+            let ended = place.done(&[&["derivative", file, "--scheme", scheme], &arguments[..]].concat());
+            Csv::new(&ended.stdout)
+        });
+        for (order, exact) in exact {
+            let [a, b] = tables.each_ref().map(|table| table.texts(&format!("D^{order} x")));
+            assert_eq!(a, b, "{scheme}, order {order}");
+            let row = tables[0].texts("t").iter().position(|t| *t == "0.4990019").unwrap();
+            let error = (a[row].parse::<f64>().unwrap() - exact).abs() / exact.abs();
+            // The cubic's order is 4 − a in ωh = 0.02.
+            let bound = if scheme == "hermite" { 0.02f64.powf(4.0 - order.parse::<f64>().unwrap()) } else { 1e-10 };
+            assert!(error < bound, "{scheme}, order {order}: {error:e}");
+        }
+    }
+    for file in &files {
+        let ended = place.springpot(&["derivative", file, "--column", "x", "--order", "0.5", "--scheme", "fbdf-3"]);
+        assert!(ended.code == Some(2) && ended.stderr.contains("fbdf-3 needs equal steps"), "{}", ended.stderr);
+    }
+}
+
+/// The text of the time of a row, from its number and a draw below 7.
+type TimeText = fn(u64, u64) -> String;
+
+/// Whatever text stands for a number, as fixed decimals, exponents, trailing zeros, the derivative is the same to the bit.
+#[test]
+fn other_texts_of_the_same_times_change_nothing() {
+    let place = Place::new();
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut draw = |below: u64| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        seed % below
+    };
+    let rewritten = |text: &str, choice: u64| {
+        let number: f64 = text.parse().unwrap();
+        match choice {
+            0 => text.to_owned(),
+            1 => number.to_string(),
+            2 => format!("{number:e}"),
+            3 if text.contains('.') => format!("{text}000"),
+            3 => format!("{text}.0"),
+            4 => format!("+{number:E}"),
+            _ => format!("{number:.30}"),
+        }
+    };
+    // Rounded, jittered by 3 units, by tenths of a step, whole, shortest.
+    let times: [(&str, TimeText, bool); 5] = [
+        ("rounded", |k, _| format!("{:.6}", k as f64 / 300.0), true),
+        ("jittered", |k, off| format!("{:.6}", 0.004 * k as f64 + 1e-6 * (off as f64 - 3.0) + 1.0), false),
+        ("random", |k, off| format!("{:.2}", k as f64 + 0.1 * (off as f64 - 3.0)), false),
+        ("whole", |k, _| (500 + 20 * k).to_string(), true),
+        ("shortest", |k, _| (0.1 * k as f64).to_string(), true),
+    ];
+    for (name, time, is_equal) in times {
+        let texts: Vec<String> = (0..300).map(|k| time(k, draw(7))).collect();
+        let mut results: Vec<(Option<i32>, Vec<String>)> = Vec::new();
+        for round in 0..4 {
+            let rows = texts.iter().enumerate().map(|(k, text)| {
+                let text = rewritten(text, if round == 0 { 0 } else { draw(6) });
+                format!("{text},{}\n", (0.05 * k as f64).sin())
+            });
+            place.write("x.csv", format!("t,x\n{}", rows.collect::<String>()));
+            for scheme in ["spline", "hermite", "fbdf-3"] {
+                let ended =
+                    place.springpot(&["derivative", "x.csv", "--column", "x", "--order", "0.5", "--scheme", scheme]);
+                assert_eq!(ended.code, Some(if is_equal || scheme != "fbdf-3" { 0 } else { 2 }), "{name}, {scheme}");
+                let done = (ended.code == Some(0)).then(|| Csv::new(&ended.stdout));
+                let column = done.iter().flat_map(|table| table.texts("D^0.5 x")).map(str::to_owned);
+                results.push((ended.code, column.collect()));
+            }
+        }
+        for round in results.chunks(3).skip(1) {
+            assert_eq!(round, &results[..3], "{name}");
+        }
+    }
+}
+
 #[test]
 fn an_estimate_stands_behind_every_derivative() {
     let place = Place::new();

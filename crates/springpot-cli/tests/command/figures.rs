@@ -131,3 +131,23 @@ fn figures_are_refused_before_anything_runs() {
         assert!(!place.path("results").exists());
     }
 }
+
+#[test]
+fn long_curves_are_thinned_alike_however_they_are_drawn() {
+    let sweep = "[[sweep]]\nparameter = \"element.damper.alpha\"\nvalues = [0.2, 0.5]\n";
+    let figures = "[[figure]]\nname = \"force\"\ny = \"damper.force\"\n\
+                   [[figure]]\nname = \"loop\"\nx = \"damper.stroke\"\ny = \"damper.force\"\n";
+    let output = "[output]\ncolumns = [\"t\", \"damper.force\", \"damper.stroke\"]\n";
+    let place = Place::with(&format!("{ARM}{sweep}{figures}{output}"));
+    // 87 501 rows a case, more than a curve keeps.
+    for jobs in ["1", "2"] {
+        place.done(&["run", "arm.toml", "--set", "time.output_step=4e-6", "--out", jobs, "--jobs", jobs, "--quiet"]);
+    }
+    place.done(&["plot", "2", "damper.force", "--out", "force.svg"]);
+    place.done(&["plot", "2", "damper.force", "--x", "damper.stroke", "--out", "loop.svg"]);
+    for name in ["force.svg", "loop.svg"] {
+        let svg = place.read(format!("1/figures/{name}"));
+        assert!(svg == place.read(format!("2/figures/{name}")) && svg == place.read(name), "{name}");
+        assert!(svg.len() > 20_000 && svg.len() < 600_000, "{name}: {}", svg.len());
+    }
+}

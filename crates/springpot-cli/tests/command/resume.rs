@@ -166,6 +166,15 @@ fn a_killed_prescribed_motion_goes_on() {
     assert!(kills > 0);
 }
 
+#[test]
+fn a_killed_run_thins_its_curves_as_if_it_were_not() {
+    let loops = "[[figure]]\nx = \"strut.stroke\"\ny = \"strut.force\"\n";
+    let place = Place::with(&format!("{FALLING}{loops}"));
+    // 100 001 rows, more than a curve keeps.
+    let kills = killed_and_equal(&place, &["--set", "time.output_step=0.0002"], "1 s", &mut Dice(4));
+    assert!(kills > 0);
+}
+
 /// A folder `out` with a killed run that has a checkpoint.
 fn killed(place: &Place) {
     let endless = ["--set", "time.end=100000", "--set", "time.output_step=0.5"];

@@ -83,8 +83,7 @@ impl Axes<'_> {
         for (runs, stroke) in &self.curves {
             let pixels = runs.iter().map(|run| run.iter().map(|[x, y]| [px(*x), py(*y)]).collect::<Vec<_>>());
             let (dots, lines): (Vec<_>, Vec<_>) = pixels.partition(|run| run.len() == 1);
-            let share = |run: &[Point]| self.points * run.len() / runs.iter().map(Vec::len).sum::<usize>();
-            let lines: Vec<_> = lines.iter().map(|run| decimate(run, column, share(run).max(8))).collect();
+            let lines = decimate(&lines, column, self.points.max(8));
             if !lines.is_empty() {
                 scene.lines(lines, *stroke);
             }

@@ -48,12 +48,11 @@ pub(super) struct Ranges {
 impl Ranges {
     /// `panels[i]` holds the runs of the curves of panel i.
     pub(super) fn new(panels: &[Vec<Runs>]) -> Self {
-        let points = |panel: &[Runs]| panel.iter().flatten().flatten().copied().collect::<Vec<_>>();
-        let points: Vec<Vec<[f64; 2]>> = panels.iter().map(|panel| points(panel)).collect();
+        let extent_of = |panel: &[Runs], axis: usize| extent(panel.iter().flatten().flatten().map(|point| point[axis]));
         let forward = panels.iter().flatten().flatten().all(|run| run.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
-        let x = extent(points.iter().flatten().map(|p| p[0]));
-        let each: Vec<Option<Range>> = points.iter().map(|panel| extent(panel.iter().map(|p| p[1]))).collect();
-        let all = extent(points.iter().flatten().map(|p| p[1]));
+        let x = panels.iter().filter_map(|panel| extent_of(panel, 0)).reduce(union);
+        let each: Vec<Option<Range>> = panels.iter().map(|panel| extent_of(panel, 1)).collect();
+        let all = each.iter().copied().flatten().reduce(union);
         let width = |(lo, hi): Range| hi - lo;
         let shared_y = all.is_none_or(|all| each.iter().flatten().all(|one| width(*one) >= SHARED_Y * width(all)));
         let y = each.iter().map(|one| one.and(if shared_y { all } else { *one }).map(|range| widen(range, MARGIN)));
@@ -62,7 +61,11 @@ impl Ranges {
 }
 
 fn extent(values: impl Iterator<Item = f64>) -> Option<Range> {
-    values.fold(None, |range, v| Some(range.map_or((v, v), |(lo, hi): Range| (lo.min(v), hi.max(v)))))
+    values.map(|v| (v, v)).reduce(union)
+}
+
+fn union((lo, hi): Range, (low, high): Range) -> Range {
+    (lo.min(low), hi.max(high))
 }
 
 fn widen((lo, hi): Range, margin: f64) -> Range {

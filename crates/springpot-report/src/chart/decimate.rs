@@ -6,17 +6,27 @@ use std::f64::consts::{PI, TAU};
 /// Points that are left of a curve without any shape.
 const ROUGH: usize = 8000;
 
-/// Of every stretch of a curve that stays within one column of `column` pixels keeps the first, lowest, highest and last point, in
-/// order, so that no extreme is lost and a steady curve costs at most four points a column. A curve that runs to and fro and has
-/// still more than `most` points loses those that lie within a fraction of a pixel of a straight line through others; a scribble
-/// that stays too long even so keeps the extremes of equal chunks.
-pub(super) fn decimate(points: &[Point], column: f64, most: usize) -> Vec<Point> {
-    let thin = columns(points, column);
-    if thin.len() <= most {
+/// Pixels by which a line may pass the points it leaves out, the finest that does first.
+const TOLERANCES: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
+
+/// Of every stretch of a curve, given as its unbroken runs, that stays within one column of `column` pixels keeps the first, lowest,
+/// highest and last point, in order, so that no extreme is lost and a steady curve costs at most four points a column. A curve that
+/// runs to and fro and has still more than `most` points loses those that lie within a fraction of a pixel, or a few, of a straight
+/// line through others; of a scribble that stays too long even so every run keeps the extremes of equal chunks.
+pub(super) fn decimate(runs: &[Vec<Point>], column: f64, most: usize) -> Vec<Vec<Point>> {
+    let count = |runs: &[Vec<Point>]| runs.iter().map(Vec::len).sum::<usize>();
+    let thin: Vec<Vec<Point>> = runs.iter().map(|run| columns(run, column)).collect();
+    let total = count(&thin);
+    if total <= most {
         return thin;
     }
-    let straightened = [0.1, 0.2, 0.4, 0.8].into_iter().map(|tolerance| straighten(&thin, tolerance));
-    straightened.into_iter().find(|points| points.len() <= most).unwrap_or_else(|| chunks(&thin, most.min(ROUGH)))
+    let straightened =
+        TOLERANCES.into_iter().map(|tolerance| thin.iter().map(|run| straighten(run, tolerance)).collect::<Vec<_>>());
+    straightened.into_iter().find(|runs| count(runs) <= most).unwrap_or_else(|| {
+        let share = |run: &[Point]| (most.min(ROUGH) * run.len() / total).max(8);
+        let rough = |run: &Vec<Point>| if run.len() <= share(run) { run.clone() } else { chunks(run, share(run)) };
+        thin.iter().map(rough).collect()
+    })
 }
 
 /// Leaves points out as long as one straight line from the last point kept passes all of them within `tolerance` and moves on.
@@ -108,6 +118,11 @@ fn keep_extremes(kept: &mut Vec<Point>, points: &[Point], start: usize, end: usi
 mod tests {
     use super::*;
 
+    /// A curve without gaps.
+    fn decimate(points: &[Point], column: f64, most: usize) -> Vec<Point> {
+        super::decimate(&[points.to_vec()], column, most).remove(0)
+    }
+
     fn extremes(points: &[Point]) -> (f64, f64) {
         points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p[1]), hi.max(p[1])))
     }
@@ -145,7 +160,12 @@ mod tests {
         let points: Vec<Point> = (0..90_000).map(|i| [200.0 * at(i).cos(), 100.0 * (at(i) + 0.4).sin()]).collect();
         let thin = decimate(&points, 0.4, 30_000);
         assert!(thin.len() <= 30_000 && thin.len() > 10_000, "{}", thin.len());
-        let mut next = 0;
+        assert!(farthest(&points, &thin) <= 0.81);
+    }
+
+    /// Largest distance of a point from the line through some of them, pixels.
+    fn farthest(points: &[Point], thin: &[Point]) -> f64 {
+        let (mut next, mut farthest) = (0, 0.0f64);
         for pair in thin.windows(2) {
             let (d, start) = ([pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]], next);
             while points[next] != pair[1] {
@@ -153,10 +173,27 @@ mod tests {
             }
             for point in &points[start..next] {
                 let off = (d[0] * (point[1] - pair[0][1]) - d[1] * (point[0] - pair[0][0])).abs() / d[0].hypot(d[1]);
-                assert!(off <= 0.81, "{off}");
+                farthest = farthest.max(off);
             }
         }
         assert_eq!(next, points.len() - 1);
+        farthest
+    }
+
+    #[test]
+    fn all_runs_of_a_curve_share_one_budget() {
+        // 100 turns of a slowly turning ellipse in pieces of all lengths, one far longer than the others.
+        let at = |i: u32| f64::from(i) * TAU / 150.3;
+        let points: Vec<Point> = (0..15_000).map(|i| [200.0 * at(i).cos(), 100.0 * (1.02 * at(i)).sin()]).collect();
+        let (long, short) = points.split_at(9_000);
+        let runs: Vec<Vec<Point>> = std::iter::once(long).chain(short.chunks(20)).map(<[Point]>::to_vec).collect();
+        let thin = super::decimate(&runs, 0.4, 6_000);
+        assert_eq!(thin.len(), runs.len());
+        assert!(thin.iter().map(Vec::len).sum::<usize>() <= 6_000);
+        for (full, thin) in runs.iter().zip(&thin) {
+            assert_eq!((full[0], full[full.len() - 1]), (thin[0], thin[thin.len() - 1]));
+            assert!(farthest(full, thin) <= 0.81);
+        }
     }
 
     #[test]

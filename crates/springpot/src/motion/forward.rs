@@ -33,3 +33,13 @@ pub enum Drive {
     /// The joint stays where it starts, whatever force that takes.
     Locked,
 }
+
+impl Drive {
+    pub(super) fn signals(&self) -> Vec<&Signal> {
+        match self {
+            Self::Force(signals) => signals.iter().collect(),
+            Self::Prescribed(path) => path.signals(),
+            Self::Locked => Vec::new(),
+        }
+    }
+}

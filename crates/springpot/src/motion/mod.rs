@@ -14,6 +14,7 @@ pub use gripper_path::{GripperPath, PathError};
 pub use prescribed::{JointPath, PosePath};
 
 use crate::model::Model;
+use crate::signal::Signal;
 
 /// Where the gripper should be, for motions that say so.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +60,15 @@ impl Motion {
                 a.fill(0.0);
                 Ok(None)
             }
+        }
+    }
+
+    /// The functions of time that it follows.
+    pub(crate) fn signals(&self) -> Vec<&Signal> {
+        match self {
+            Self::Prescribed(joints) => joints.iter().flat_map(JointPath::signals).collect(),
+            Self::GripperPath(path) => path.signals().collect(),
+            Self::Forward(forward) => forward.drives.iter().flat_map(Drive::signals).collect(),
         }
     }
 

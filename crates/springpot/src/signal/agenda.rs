@@ -21,7 +21,7 @@ pub const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
 const FINEST_KINK: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// Cells after which a signal is given up: a run would take as many steps.
-const MOST_CELLS: u64 = 60_000_000;
+const MOST_CELLS: u64 = 20_000_000;
 
 /// Cells between two looks at the flag that interrupts.
 const PATIENCE: u64 = 1 << 12;
@@ -197,16 +197,20 @@ fn meet(a: &[Window], b: &[Window]) -> Vec<Window> {
 /// How large a signal and its integral become.
 #[derive(Debug, Clone, Copy)]
 struct Scale {
+    first: f64,
     low: f64,
     high: f64,
     integral: f64,
 }
 
 impl Scale {
-    const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, integral: 0.0 };
+    const NONE: Self = Self { first: f64::NAN, low: f64::INFINITY, high: f64::NEG_INFINITY, integral: 0.0 };
 
     fn take(&mut self, value: f64) {
         if value.is_finite() {
+            if self.first.is_nan() {
+                self.first = value;
+            }
             (self.low, self.high) = (self.low.min(value), self.high.max(value));
         }
     }
@@ -275,7 +279,7 @@ impl<'a> Scan<'a> {
             self.used = Scale { integral: self.integral_scale(), ..self.seen };
             let outcome = self.look_through();
             let grew = self.seen.range() > 4.0 * self.used.range() || self.integral_scale() > 4.0 * self.used.integral;
-            if !grew || attempt == 4 || outcome == Err(AgendaError::Interrupted) {
+            if !grew || attempt == 3 || outcome == Err(AgendaError::Interrupted) {
                 return outcome;
             }
         }
@@ -296,9 +300,9 @@ impl<'a> Scan<'a> {
         self.positions.take(value);
         let counted = if self.is_position { rate } else { value };
         self.seen.take(counted);
-        let above = (counted - self.seen.low).abs();
-        if above.is_finite() {
-            self.seen.integral += width * above;
+        let changed = (counted - self.seen.first).abs();
+        if changed.is_finite() {
+            self.seen.integral += width * changed;
         }
     }
 
@@ -359,7 +363,12 @@ impl<'a> Scan<'a> {
             return self.close(a, f64::INFINITY);
         }
         let series = look.series.scaled(self.signal.scale, self.signal.offset);
-        let room = if look.is_unsettled { 0.0 } else { self.room(&series, width) };
+        // What is no number stops the run; nothing is to be seen there.
+        let room = match look.is_unsettled {
+            true => 0.0,
+            false if !self.signal.value(middle).is_finite() => f64::INFINITY,
+            false => self.room(&series, width),
+        };
         if look.is_unsettled || (room < 1.0 && halve(FINEST)) {
             let branch = if self.expression.has_kinks() { self.expression.branch(middle) } else { 0 };
             open.push(Cell { a: middle, b, sides: [branch, right] });
@@ -378,7 +387,11 @@ impl<'a> Scan<'a> {
     fn room(&self, series: &Series, width: f64) -> f64 {
         let first = usize::from(self.is_position);
         let bounds = |k: usize| series.at[k + first].scale(if self.is_position { (k + 1) as f64 } else { 1.0 });
+        let rounding = 64.0 * f64::EPSILON * bounds(0).magnitude();
         let room = |departs: f64, order: f64| {
+            if departs <= rounding {
+                return f64::INFINITY;
+            }
             let value = self.tolerance * self.used.range() / departs;
             let integral = self.tolerance * self.used.integral / (departs * width);
             if value < 1.0 || integral < 1.0 {

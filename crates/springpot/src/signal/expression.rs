@@ -275,7 +275,7 @@ fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace) -> V {
                 Op::Abs => argument.apply(u.abs(), || (if below { -1.0 } else { 1.0 }, 0.0)),
                 _ if u.is_nan() => argument,
                 Op::Sign => {
-                    trace.turns |= u == 0.0;
+                    trace.turns |= u == 0.0 && (below || argument.neg().is_below_zero());
                     V::constant(if u == 0.0 { 0.0 } else { u.signum() })
                 }
                 _ => {

@@ -116,8 +116,8 @@ impl Series {
             return Smooth::Exp.bound(&exponent.mul(&Smooth::Log.bound(self)));
         }
         let n = exponent.at[0].lo;
-        if n == 0.0 {
-            return self.constant(1.0);
+        if self.is_constant() && self.at[0].lo == self.at[0].hi {
+            return self.constant(self.at[0].lo.powf(n));
         }
         if n.fract() == 0.0 && n.abs() <= 1024.0 {
             let power = self.whole_power(n.abs() as u32);
@@ -213,6 +213,9 @@ impl Smooth {
     /// f(u) from the bounds of u.
     pub(super) fn bound(self, u: &Series) -> Series {
         use std::f64::consts::FRAC_PI_2;
+        if u.is_constant() && u.at[0].lo == u.at[0].hi {
+            return u.constant(self.apply(u.at[0].lo));
+        }
         let (a, value) = (&u.at, u.at[0]);
         let rate = slope(a);
         let one = u.constant(1.0).at;

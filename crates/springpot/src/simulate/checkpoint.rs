@@ -52,4 +52,6 @@ pub(crate) struct ReportFields {
     energy_residual: Option<f64>,
     energy_turned_over: Option<f64>,
     modes: usize,
+    switches: Option<u64>,
+    resolution: Option<f64>,
 }

@@ -145,6 +145,30 @@ pub enum RunError {
         /// The limit.
         limit: u64,
     },
+    /// A row contradicts the step that it lies in.
+    #[error(
+        "t = {t} s: the steps missed what the motion does: at this row the rate of element \"{element}\" departs from its step by {departure:.1e} of its largest derivative; the rows are kept; give solver.max_step a time in which the motion changes little"
+    )]
+    Missed {
+        /// Time of the first such row, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Departure in units of the largest D^alpha x so far.
+        departure: f64,
+    },
+    /// The energies do not balance.
+    #[error(
+        "t = {t} s: the energy balance is off by {residual:.1e} J of {turned_over:.1e} J turned over: the results are wrong or the motion is not what it seems; the rows are kept; try a smaller solver.max_step"
+    )]
+    Unbalanced {
+        /// Time of the largest residual, s.
+        t: f64,
+        /// The residual, J.
+        residual: f64,
+        /// The energy turned over, J.
+        turned_over: f64,
+    },
     /// The memory of an element could not be built.
     #[error("t = 0 s: element \"{element}\": {source}")]
     Kernel {

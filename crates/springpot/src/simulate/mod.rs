@@ -14,6 +14,7 @@ mod equation;
 mod error;
 pub mod fixed;
 mod forward;
+mod jump;
 mod ledger;
 mod limits;
 mod lu;
@@ -104,6 +105,12 @@ pub struct Report {
     pub energy_turned_over: Option<f64>,
     /// Exponentials of the memories at the end.
     pub modes: usize,
+    /// Kinks and jumps of the signals, each of which ends a step; `None` for steps of one size, which do not look ahead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub switches: Option<u64>,
+    /// What signals do in less time than this may be missed between steps, s; `None` for steps of one size.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<f64>,
 }
 
 /// Takes the rows of a run.

@@ -1,7 +1,8 @@
 //! The signals that drive a run, and what they ask of its steps.
 
-use super::{RunError, Settings, System};
+use super::{Report, RunError, Settings, System};
 use crate::motion::{Drive, Motion};
+use crate::signal::agenda::FINEST;
 use crate::signal::{Agenda, AgendaError, Signal, Watched};
 use std::sync::atomic::AtomicBool;
 
@@ -13,6 +14,9 @@ const UNSEEN_BOUNDS: [f64; 2] = [1e-6, 1e-2];
 /// Steps that a run may take where nothing else is said, and how many more for every switch of its signals.
 const MAX_STEPS: u64 = 10_000_000;
 const STEPS_PER_SWITCH: u64 = 100;
+
+/// Neighbouring times at which rounding may leave the argument of a sign 0.
+const MOST_TURNING: usize = 256;
 
 impl System {
     /// Looks through all signals before a run whose own steps are at most `longest`.
@@ -37,9 +41,27 @@ impl System {
         Ok(agenda)
     }
 
-    /// Whether a sign turns at t, so that its value belongs to no step.
+    /// The first time from t on at which no sign turns, whose value there belongs to no step.
+    pub(super) fn past_turns(&self, t: f64) -> f64 {
+        let turns = |t: f64| self.signals().any(|signal| signal.turns_at(t));
+        let mut past = t;
+        for _ in 0..MOST_TURNING {
+            if !turns(past) {
+                break;
+            }
+            past = past.next_up();
+        }
+        past
+    }
+
+    /// Whether a sign turns at t.
     pub(super) fn turns_at(&self, t: f64) -> bool {
-        self.watched().iter().any(|(_, watched)| watched.signal.turns_at(t))
+        self.signals().any(|signal| signal.turns_at(t))
+    }
+
+    fn signals(&self) -> impl Iterator<Item = &Signal> {
+        let inputs = self.elements.iter().flat_map(|element| &element.inputs);
+        self.motion.signals().into_iter().chain(inputs)
     }
 
     /// Every signal with its name.
@@ -79,6 +101,14 @@ impl System {
         }
         watched.retain(|(_, watched): &(String, Watched<'_>)| is_function(watched.signal));
         watched
+    }
+}
+
+impl Report {
+    /// Takes in what was seen of the signals of a run to `end`.
+    pub(super) fn take_agenda(&mut self, agenda: &Agenda, end: f64) {
+        self.switches = Some(agenda.switches());
+        self.resolution = Some(FINEST * end);
     }
 }
 

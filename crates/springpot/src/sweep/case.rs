@@ -2,9 +2,12 @@
 
 use super::Sweep;
 use super::checkpoint::{CaseDone, Written};
+use super::curve::KeptCurve;
+use super::kept::Kept;
 use super::output::{self, CaseRows, Output};
 use crate::simulate::{self, LimitWatch, PassedLimit, Report, RunError, System};
 use crate::table::ordered::Section;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io;
 use std::sync::atomic::Ordering;
@@ -27,8 +30,8 @@ pub struct CaseResult {
     pub no_ledger: Option<String>,
     /// The limits of joints that it passes.
     pub limits: Vec<PassedLimit>,
-    /// The columns that figures need, where this case is drawn.
-    pub kept: Option<Vec<Vec<f64>>>,
+    /// The curves that figures draw, by their index in [`super::FigureData`], where this case is drawn.
+    pub curves: Option<BTreeMap<usize, KeptCurve>>,
 }
 
 /// The rows and the statistics of one case, in the files that all cases share.
@@ -73,16 +76,16 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
     let interrupted = matches!(error, Some(CaseError::Run(RunError::Interrupted { .. })));
     let error = error.map(|error| error.to_string());
     let (wall, statistics) = (output.wall(), output.statistics.clone());
-    let kept = output.close(|output| {
+    let curves = output.close(|output| {
         let (false, Some(files)) = (interrupted, output.files.take()) else { return Ok(()) };
         let (error, no_ledger, limits) = (error.clone(), no_ledger.clone(), limits.clone());
         let written = Written { aside: files.is_aside(), ..output.written() };
         let done = CaseDone { index, written, report, error, no_ledger, limits };
-        files.end(&done, output.kept.as_deref(), || sweep.sync())
+        files.end(&done, || sweep.sync())
     })?;
     summary.write(output::summary(sweep, index, &statistics).as_bytes())?;
     summary.finish()?;
-    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, limits, kept })
+    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, limits, curves })
 }
 
 /// A case that an earlier run brought to its end, and whose rows stand where they belong.
@@ -111,11 +114,14 @@ fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<Ca
             summary.finish()?;
         }
     }
-    let columns = sweep.layout.kept(done.index);
-    let kept = columns.map(|columns| checkpoints.kept(done.index, done.written.kept, columns.len())).transpose()?;
+    let mut kept = Kept::of(sweep.layout, done.index);
+    if let Some(kept) = &mut kept {
+        checkpoints.kept(done.index, done.written.kept, kept.width(), &mut |values| kept.again(values))?;
+    }
+    let curves = kept.map(Kept::into_curves);
     let CaseDone { index, written, report, error, no_ledger, limits } = done;
     sweep.options.rows.fetch_add(report.rows, Ordering::Relaxed);
-    Ok(CaseResult { index, report, error, interrupted: false, wall: written.wall, no_ledger, limits, kept })
+    Ok(CaseResult { index, report, error, interrupted: false, wall: written.wall, no_ledger, limits, curves })
 }
 
 /// Why a case does not know its energies; `None` where it does.

@@ -1,5 +1,6 @@
 //! Which columns are written, and which are kept in memory for the figures.
 
+use super::curve::{MAX_CURVES_IN_ALL, most_points};
 use crate::scenario::units::Unit;
 use crate::scenario::{Cases, ColumnGlob, FigureKind, FigurePlan, RefusalKind, Refusals};
 use crate::simulate::System;
@@ -7,9 +8,6 @@ use crate::table::{Column, matches};
 
 /// Most curves of one figure; a figure of more is left out with a word.
 pub const MAX_CURVES: usize = 64;
-
-/// Most values that a figure keeps in memory; a figure of more is left out with a word.
-pub const MAX_POINTS: usize = 100_000_000;
 
 /// The columns of a sweep.
 #[derive(Debug, Clone)]
@@ -23,6 +21,8 @@ pub struct Layout {
     selected: Vec<usize>,
     /// Indices into `columns` of those that figures need.
     kept: Vec<usize>,
+    /// Curves of a case: indices into `kept` of x and y.
+    curves: Vec<[usize; 2]>,
     figures: Vec<FigureData>,
 }
 
@@ -35,10 +35,29 @@ pub struct FigureData {
     pub x: FigureColumn,
     /// The ordinates.
     pub y: Vec<FigureColumn>,
-    /// Curves it would have; where that is more than [`MAX_CURVES`], it has no cases.
-    pub curves: usize,
-    /// Values that it would keep; where that is more than [`MAX_POINTS`], it has no cases.
-    pub points: usize,
+    /// For each ordinate, the index of its curve in [`super::CaseResult`].
+    pub curves: Vec<usize>,
+    /// Why it is not drawn; it has no cases then.
+    pub left_out: Option<LeftOut>,
+}
+
+/// Why a figure is not drawn.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum LeftOut {
+    /// It has more than [`MAX_CURVES`]: choose columns or cases.
+    #[error("it would hold {curves} curves; choose some with `where` (at most {MAX_CURVES})")]
+    Curves {
+        /// Curves that it would have.
+        curves: usize,
+    },
+    /// With those before it, it has more than [`MAX_CURVES_IN_ALL`]: choose columns or cases here or there.
+    #[error(
+        "it and the figures before it would hold {curves} curves; choose some with `where` (at most {MAX_CURVES_IN_ALL})"
+    )]
+    InAll {
+        /// Curves that they would have.
+        curves: usize,
+    },
 }
 
 /// A column of a figure.
@@ -46,8 +65,6 @@ pub struct FigureData {
 pub struct FigureColumn {
     /// The column.
     pub column: Column,
-    /// Index into the kept columns of [`super::CaseResult`].
-    pub kept: usize,
     /// The unit it is drawn in and how SI values become numbers of it; `None`: SI.
     pub unit: Option<(String, Unit)>,
 }
@@ -74,7 +91,8 @@ impl Layout {
         };
         let parameters = cases.parameters().iter().map(|name| Column::new(name.as_str(), "", "swept parameter"));
         let written = parameters.chain(selected.iter().map(|&k| columns[k].clone())).collect();
-        let mut layout = Self { written, swept, columns, selected, kept: Vec::new(), figures: Vec::new() };
+        let (kept, curves, figures) = (Vec::new(), Vec::new(), Vec::new());
+        let mut layout = Self { written, swept, columns, selected, kept, curves, figures };
         for figure in cases.figures() {
             let data = layout.figure(cases, figure)?;
             layout.figures.push(data);
@@ -109,6 +127,18 @@ impl Layout {
         self.figures.iter().any(|figure| figure.cases.binary_search(&case).is_ok()).then_some(&self.kept[..])
     }
 
+    /// The curves that figures draw of `case`: their indices, and where x and y stand among the kept columns.
+    pub(super) fn drawn(&self, case: usize) -> impl Iterator<Item = (usize, [usize; 2])> {
+        let figures = self.figures.iter().filter(move |figure| figure.cases.binary_search(&case).is_ok());
+        figures.flat_map(|figure| &figure.curves).map(|&curve| (curve, self.curves[curve]))
+    }
+
+    /// Points that each curve keeps at most.
+    pub fn most_points(&self) -> usize {
+        let counts = || self.figures.iter().map(FigureData::count);
+        most_points(counts().max().unwrap_or(0), counts().sum())
+    }
+
     /// The data of the figures, in the order of the scenario; robots draw none.
     pub fn figures(&self) -> &[FigureData] {
         &self.figures
@@ -116,8 +146,8 @@ impl Layout {
 
     fn figure(&mut self, cases: &Cases, figure: &FigurePlan) -> Result<FigureData, Refusals> {
         let FigureKind::Curves { x, y } = &figure.kind else {
-            let x = FigureColumn { column: self.columns[0].clone(), kept: 0, unit: None };
-            return Ok(FigureData { cases: Vec::new(), x, y: Vec::new(), curves: 0, points: 0 });
+            let x = FigureColumn { column: self.columns[0].clone(), unit: None };
+            return Ok(FigureData { cases: Vec::new(), x, y: Vec::new(), curves: Vec::new(), left_out: None });
         };
         let abscissa = match found(x, &self.columns)?[..] {
             [only] => only,
@@ -134,37 +164,56 @@ impl Layout {
         for unit in &figure.units {
             found(&unit.column, &self.columns)?;
         }
-        let x = self.figure_column(figure, abscissa)?;
-        let y = ordinates.into_iter().map(|k| self.figure_column(figure, k)).collect::<Result<Vec<_>, _>>()?;
+        let column = |k: usize| figure_column(figure, &self.columns[k]);
+        let x = column(abscissa)?;
+        let y = ordinates.iter().map(|&k| column(k)).collect::<Result<Vec<_>, _>>()?;
         let fixed = |axis: usize| figure.selection.iter().find(|s| s.axis == axis).map(|s| s.value);
         let counts = (0..cases.axis_count()).map(|axis| if fixed(axis).is_some() { 1 } else { cases.axis_len(axis) });
-        let curves = counts.product::<usize>() * y.len();
-        let rows = cases.plan(0)?.time.rows.count();
-        let points = curves.saturating_add(curves / y.len().max(1)).saturating_mul(rows);
-        let too_large = curves > MAX_CURVES || points > MAX_POINTS;
-        let drawn = if too_large { Vec::new() } else { selected_cases(cases, &fixed) };
-        Ok(FigureData { cases: drawn, x, y, curves, points })
-    }
-
-    fn figure_column(&mut self, figure: &FigurePlan, index: usize) -> Result<FigureColumn, Refusals> {
-        let column = self.columns[index].clone();
-        let kept = self.kept.iter().position(|k| *k == index).unwrap_or_else(|| {
-            self.kept.push(index);
-            self.kept.len() - 1
-        });
-        let mut unit = None;
-        for wanted in figure.units.iter().filter(|unit| matches(&unit.column.text, &column.name)) {
-            let (own, parsed) = (si_unit(&column), Unit::parse(&wanted.unit, &|_| None));
-            let (Some(own), Ok(parsed)) = (own, parsed) else { continue };
-            if own.dimension() != parsed.dimension() {
-                let message =
-                    format!("{} is in {}, which does not convert to {}", column.name, column.unit, wanted.unit);
-                return Err(wanted.column.place.refuse(RefusalKind::BadQuantity, message).into());
-            }
-            unit = Some((wanted.unit.clone(), parsed));
+        let count = counts.product::<usize>().saturating_mul(y.len());
+        let in_all = self.figures.iter().map(FigureData::count).sum::<usize>().saturating_add(count);
+        let left_out = match count {
+            curves if curves > MAX_CURVES => Some(LeftOut::Curves { curves }),
+            _ if in_all > MAX_CURVES_IN_ALL => Some(LeftOut::InAll { curves: in_all }),
+            _ => None,
+        };
+        if left_out.is_some() {
+            return Ok(FigureData { cases: Vec::new(), x, y, curves: Vec::new(), left_out });
         }
-        Ok(FigureColumn { column, kept, unit })
+        let x_kept = place(&mut self.kept, abscissa);
+        let curves = ordinates.iter().map(|&k| [x_kept, place(&mut self.kept, k)]).collect::<Vec<_>>();
+        let curves = curves.into_iter().map(|curve| place(&mut self.curves, curve)).collect();
+        Ok(FigureData { cases: selected_cases(cases, &fixed), x, y, curves, left_out })
     }
+}
+
+impl FigureData {
+    /// Curves that are kept for it.
+    fn count(&self) -> usize {
+        self.cases.len() * self.curves.len()
+    }
+}
+
+/// A column with the unit that a figure draws it in.
+fn figure_column(figure: &FigurePlan, column: &Column) -> Result<FigureColumn, Refusals> {
+    let mut unit = None;
+    for wanted in figure.units.iter().filter(|unit| matches(&unit.column.text, &column.name)) {
+        let (own, parsed) = (si_unit(column), Unit::parse(&wanted.unit, &|_| None));
+        let (Some(own), Ok(parsed)) = (own, parsed) else { continue };
+        if own.dimension() != parsed.dimension() {
+            let message = format!("{} is in {}, which does not convert to {}", column.name, column.unit, wanted.unit);
+            return Err(wanted.column.place.refuse(RefusalKind::BadQuantity, message).into());
+        }
+        unit = Some((wanted.unit.clone(), parsed));
+    }
+    Ok(FigureColumn { column: column.clone(), unit })
+}
+
+/// Index of an item in a list, to which it is added where it is missing.
+fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
+    list.iter().position(|other| *other == item).unwrap_or_else(|| {
+        list.push(item);
+        list.len() - 1
+    })
 }
 
 /// The unit of a column, where it has a fixed one.

@@ -2,6 +2,8 @@
 
 mod case;
 mod checkpoint;
+mod curve;
+mod kept;
 mod layout;
 mod limits;
 mod output;
@@ -9,7 +11,8 @@ mod record;
 
 pub use case::CaseResult;
 pub use checkpoint::{CheckpointError, Checkpoints, Origin, Unfinished};
-pub use layout::{FigureColumn, FigureData, Layout, MAX_CURVES, MAX_POINTS};
+pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
+pub use layout::{FigureColumn, FigureData, Layout, LeftOut, MAX_CURVES};
 pub use limits::{CasesPassing, LimitTally};
 
 use crate::scenario::{Cases, Refusals};
@@ -297,7 +300,7 @@ impl Tally {
             }
         }
         let listed = &mut self.listed[usize::from(case.error.is_some())];
-        if case.kept.is_some() || *listed < MAX_LISTED {
+        if case.curves.is_some() || *listed < MAX_LISTED {
             *listed += 1;
             self.cases.push(case);
         }

@@ -1,11 +1,14 @@
 //! What one case writes: rows, statistics, values for figures, and what it takes to go on.
 
 use super::checkpoint::{CaseFiles, CaseState, Written};
+use super::curve::KeptCurve;
+use super::kept::Kept;
 use super::{Sweep, push_field};
 use crate::scenario::{Plan, SweptValue};
 use crate::simulate::{Checkpoint, LimitWatch, Rows, System};
 use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_number};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io;
 use std::sync::atomic::Ordering;
@@ -24,8 +27,9 @@ pub(super) struct Output<'a> {
     lead: String,
     selected: Vec<usize>,
     pub(super) statistics: Vec<Statistics>,
-    kept_columns: Option<&'a [usize]>,
-    pub(super) kept: Option<Vec<Vec<f64>>>,
+    kept: Option<Kept<'a>>,
+    /// Values for figures that are not handed over yet, where a checkpoint wants them.
+    values: Vec<f64>,
     text: String,
     handed_over: Instant,
     /// Bytes handed over.
@@ -54,15 +58,14 @@ impl<'a> Output<'a> {
         state: Option<&CaseState>,
     ) -> io::Result<Self> {
         let selected: Vec<usize> = sweep.layout.selected().map(|(k, _)| k).collect();
-        let kept_columns = sweep.layout.kept(index);
         let mut output = Self {
             sweep,
             index,
             lead: lead(sweep, index),
             statistics: vec![Statistics::default(); selected.len()],
             selected,
-            kept_columns,
-            kept: kept_columns.map(|columns| vec![Vec::new(); columns.len()]),
+            kept: Kept::of(sweep.layout, index),
+            values: Vec::new(),
             text: String::with_capacity(2 * CHUNK),
             handed_over: Instant::now(),
             bytes: 0,
@@ -82,14 +85,20 @@ impl<'a> Output<'a> {
         let Written { bytes, kept, ref statistics, wall, .. } = state.written;
         (output.bytes, output.earlier_wall) = (bytes, wall);
         output.statistics.clone_from(statistics);
-        output.kept = kept_columns.map(|columns| checkpoints.kept(index, kept, columns.len())).transpose()?;
+        if let Some(curves) = &mut output.kept {
+            checkpoints.kept(index, kept, curves.width(), &mut |values| curves.again(values))?;
+        }
         sweep.options.rows.fetch_add(state.run.rows() as u64, Ordering::Relaxed);
         Ok(output)
     }
 
     fn hand_over(&mut self) -> io::Result<()> {
         let text = self.text.as_bytes();
-        self.files.as_mut().map_or(Ok(()), |files| files.take(text))?;
+        if let Some(files) = &mut self.files {
+            files.take(text)?;
+            files.take_kept(&self.values, self.kept.as_ref().map_or(0, Kept::width))?;
+            self.values.clear();
+        }
         self.rows.write(text)?;
         self.bytes += text.len() as u64;
         self.text.clear();
@@ -102,7 +111,7 @@ impl<'a> Output<'a> {
         Written {
             bytes: self.bytes,
             aside: self.files.as_ref().is_some_and(CaseFiles::is_aside),
-            kept: self.kept.as_ref().and_then(|columns| columns.first()).map_or(0, Vec::len) as u64,
+            kept: self.kept.as_ref().map_or(0, Kept::rows),
             statistics: self.statistics.clone(),
             wall: self.wall(),
             wall_of_run: self.sweep.wall(),
@@ -115,17 +124,20 @@ impl<'a> Output<'a> {
     }
 
     /// Hands over the last rows, writes down how the case ended, and lets the next case write.
-    pub(super) fn close(mut self, end: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<Option<Vec<Vec<f64>>>> {
+    pub(super) fn close(
+        mut self,
+        end: impl FnOnce(&mut Self) -> io::Result<()>,
+    ) -> io::Result<Option<BTreeMap<usize, KeptCurve>>> {
         self.hand_over()?;
         end(&mut self)?;
         self.rows.finish()?;
-        Ok(self.kept)
+        Ok(self.kept.map(Kept::into_curves))
     }
 }
 
 impl Rows for CaseRows<'_, '_> {
     fn row(&mut self, row: &[f64]) -> io::Result<()> {
-        let Output { lead, selected, statistics, kept_columns, kept, text, .. } = &mut *self.output;
+        let Output { lead, selected, statistics, kept, values: for_files, files, text, .. } = &mut *self.output;
         text.push_str(lead);
         let mut values = selected.iter().map(|&k| row[k]);
         push_number(text, values.next().unwrap_or(f64::NAN));
@@ -134,8 +146,11 @@ impl Rows for CaseRows<'_, '_> {
         for (statistics, &k) in statistics.iter_mut().zip(&*selected) {
             statistics.add(row[k]);
         }
-        for (kept, &k) in kept.iter_mut().flatten().zip(kept_columns.iter().copied().flatten()) {
-            kept.push(row[k]);
+        if let Some(kept) = kept {
+            let values = kept.row(row);
+            if files.is_some() {
+                for_files.extend_from_slice(values);
+            }
         }
         self.watch.see(row);
         self.output.sweep.options.rows.fetch_add(1, Ordering::Relaxed);
@@ -152,10 +167,10 @@ impl Rows for CaseRows<'_, '_> {
     fn checkpoint(&mut self, run: Checkpoint) -> io::Result<()> {
         self.output.hand_over()?;
         let written = self.output.written();
-        let Output { sweep, index, kept, files: Some(files), .. } = &mut *self.output else { return Ok(()) };
+        let Output { sweep, index, files: Some(files), .. } = &mut *self.output else { return Ok(()) };
         let digest = files.digest(self.plan, self.system);
         let state = CaseState { index: *index, digest, written, watch: self.watch.seen(), run };
-        files.keep(&state, kept.as_deref(), || sweep.file.sync_data())
+        files.keep(&state, || sweep.file.sync_data())
     }
 }
 

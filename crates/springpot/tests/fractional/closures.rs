@@ -1,6 +1,6 @@
 //! Closures: rough starts, unknown kinks, noise.
 
-use super::support::{Function, of_power};
+use super::support::{Function, Random, of_power};
 use springpot::fractional::{Definition, DerivativeError, FunctionError, Piecewise};
 
 #[test]
@@ -23,6 +23,86 @@ fn powers_that_are_no_polynomials_at_the_start() {
                 assert!(error <= estimate.error && estimate.error <= 1e-8 * scale.max(1.0), "{estimate:?}");
             }
         }
+    }
+}
+
+/// D^order of t^power at a random time of a random interval, Caputo or Riemann–Liouville, where it is defined: the error
+/// stays below its estimate, and where x' is finite or asked for no more than once both are small.
+fn random_powers(count: usize, seed: u64) {
+    let mut random = Random(seed);
+    let (mut compared, mut worst) = (0, 0.0f64);
+    while compared < count {
+        let power = match (4.0 * random.next()) as u32 {
+            0 => 1.0 + 0.4 * random.next(),
+            1 => 2.0 + 0.2 * random.next(),
+            _ => 3.0 * random.next(),
+        };
+        let order = match (4.0 * random.next()) as u32 {
+            0 => 1.0 + 0.4 * random.next(),
+            1 => 1.0 + random.next(),
+            _ => 4.0 * random.next() - 2.0,
+        };
+        let end = 10f64.powf(3.0 * random.next() - 1.0);
+        let t = end * random.next();
+        let caputo = random.next() < 0.5;
+        if caputo && order > 1.0 && power < 1.0 {
+            continue;
+        }
+        let definition = if caputo { Definition::Caputo } else { Definition::RiemannLiouville };
+        let x = Piecewise::of(|t| t.powf(power), 0.0..=end, 1e-15).unwrap();
+        let (found, exact) = (x.derivative(order, definition).unwrap().at(t), of_power(power, order, t));
+        let error = (found.value - exact).abs();
+        let case = format!("{definition} D^{order} t^{power} at {t} of {end}: {found:?}, not {exact}");
+        assert!(error <= found.error, "{case}");
+        if power >= 1.0 || order <= 1.0 {
+            assert!(found.error <= 1e-5 * exact.abs().max(t.powf(power - order)), "{case}");
+        }
+        worst = worst.max(error / found.error);
+        compared += 1;
+    }
+    println!("{compared} powers, worst error over estimate {worst:.2}");
+}
+
+#[test]
+fn random_powers_stay_below_their_estimates() {
+    random_powers(150, 1);
+}
+
+/// Some ten seconds.
+#[test]
+#[ignore = "takes long"]
+fn three_thousand_random_powers_stay_below_their_estimates() {
+    random_powers(3000, 7);
+}
+
+/// t^1.05 has x'(0) = 0, but at no time that a computer can tell from 0.
+#[test]
+fn starts_that_are_almost_lines() {
+    for (power, order) in [(1.05, 1.02), (1.1, 1.05), (1.2, 1.1), (1.01, 1.005), (1.003, 1.5)] {
+        // A line, and a second power.
+        for (slope, other) in [(0.0, 0.0), (3.0, 0.0), (-1.0, 0.5)] {
+            let x =
+                Piecewise::of(|t| t.powf(power) + slope * t + other * t.powf(power + 0.7), 0.0..=2.0, 1e-15).unwrap();
+            let caputo = x.derivative(order, Definition::Caputo).unwrap();
+            for t in [0.01, 0.4, 1.0, 2.0] {
+                let exact = of_power(power, order, t) + other * of_power(power + 0.7, order, t);
+                let found = caputo.at(t);
+                let error = (found.value - exact).abs();
+                assert!(
+                    error <= found.error && found.error < 1e-5,
+                    "D^{order} t^{power} at {t}: {found:?}, not {exact}"
+                );
+            }
+            let rl = x.derivative(order, Definition::RiemannLiouville).unwrap();
+            let first = x.derivative(1.0, Definition::Caputo).unwrap().at(0.0).value;
+            assert!((first - slope).abs() < 1e-6, "x'(0) of t^{power} + {slope} t: {first}");
+            assert_eq!(rl.at(0.0).value.is_nan(), slope != 0.0, "t^{power} + {slope} t");
+        }
+    }
+    // x'(0) is infinite: there is no Caputo derivative above order 1, and the estimate says so.
+    for power in [0.1, 0.5, 0.99] {
+        let x = Piecewise::of(|t| t.powf(power), 0.0..=2.0, 1e-15).unwrap();
+        assert_eq!(x.derivative(1.3, Definition::Caputo).unwrap().at(1.0).error, f64::INFINITY);
     }
 }
 

@@ -1,14 +1,22 @@
 //! Error estimates of samples.
 
 use super::support::{FUNCTIONS, Function, even, largest, of_power};
+use springpot::fractional::mittag_leffler::{Complex64, MittagLeffler};
 use springpot::fractional::scheme::{Samples, Scheme};
 use springpot::fractional::{Definition, Method, Piecewise, derivative_with_error};
 
 /// The worst error over the worst estimate, and the share of rows whose error is more than ten times their estimate.
 fn judged(t: &[f64], x: &[f64], exact: &[f64], order: f64, method: Method) -> (f64, f64) {
+    // Below this, what is said to be exact is not.
+    judged_above(1e-12 * largest(exact), t, x, exact, order, method)
+}
+
+fn judged_whole(t: &[f64], x: &[f64], exact: &[f64], order: f64, method: Method) -> (f64, f64) {
+    judged_above(0.0, t, x, exact, order, method)
+}
+
+fn judged_above(floor: f64, t: &[f64], x: &[f64], exact: &[f64], order: f64, method: Method) -> (f64, f64) {
     let found = derivative_with_error(&Samples { t, x, rate: None }, order, Definition::Caputo, method).unwrap();
-    // Rounding is no part of it.
-    let floor = 1e-12 * largest(exact);
     let error = |k: usize| ((found.values[k] - exact[k]).abs() - floor).max(0.0);
     let worst = (1..t.len()).map(error).fold(0.0, f64::max) / largest(&found.error);
     let low = (1..t.len()).filter(|&k| error(k) > 10.0 * found.error[k]).count() as f64 / t.len() as f64;
@@ -32,6 +40,41 @@ fn smooth_functions() {
                 // 0: rounding is all that is left.
                 assert!(worst == 0.0 || (0.01..10.0).contains(&worst), "{name}, a = {order}, {method}: {worst}");
                 assert!(low < 0.05, "{name}, a = {order}, {method}: {low} of the rows");
+            }
+        }
+    }
+}
+
+/// Where the method has converged, the estimate is that of rounding: of x, also far from 0, of t, and of the sums.
+#[test]
+fn rounding_is_estimated() {
+    let c = Complex64::new(-0.1, 8.0);
+    for rows in [2000, 20_000] {
+        let even = even(rows, 10.0);
+        let step = 10.0 / rows as f64;
+        let jitter = |k: usize| if k == 0 { 0.0 } else { 0.003 * step * ((k * 7919 % 101) as f64 / 50.0 - 1.0) };
+        let uneven: Vec<f64> = even.iter().enumerate().map(|(k, t)| t + jitter(k)).collect();
+        for t in [&even, &uneven] {
+            for offset in [0.0, 100.0] {
+                let x: Vec<f64> = t.iter().map(|t| offset + (c * t).exp().im).collect();
+                for order in [-0.5, 0.5, 0.9, 1.0, 1.3, 2.0] {
+                    // D^a e^{ct} = c^m t^{m−a} E_{1,m−a+1}(ct), m = ⌈a⌉.
+                    let whole = f64::max(order, 0.0).ceil();
+                    let function = MittagLeffler::new(1.0, whole - order + 1.0).unwrap();
+                    let exact: Vec<f64> = t
+                        .iter()
+                        .map(|t| {
+                            let held = if order < 0.0 { offset * of_power(0.0, order, *t) } else { 0.0 };
+                            held + (c.powf(whole) * function.complex(c * t)).im * t.powf(whole - order)
+                        })
+                        .collect();
+                    for method in [Method::Spline, Method::Hermite, Method::Exponential] {
+                        let (worst, low) = judged_whole(t, &x, &exact, order, method);
+                        let case = format!("{rows} rows, a = {order}, offset {offset}, {method}");
+                        assert!((0.01..10.0).contains(&worst), "{case}: {worst}");
+                        assert!(low < 0.05, "{case}: {low} of the rows");
+                    }
+                }
             }
         }
     }

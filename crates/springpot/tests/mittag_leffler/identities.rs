@@ -32,6 +32,44 @@ fn elementary_functions_are_special_cases() {
     }
 }
 
+/// E_{1,−m}(z) = z^{m+1} e^z and E_{2,1−2m}(−z²) = (−z²)^m cos z: almost all of what other b would have cancels.
+#[test]
+fn whole_negative_parameters_are_elementary() {
+    for z in points() {
+        for m in 0..=20u32 {
+            let exact = z.powu(m + 1) * z.exp();
+            close(value(1.0, -f64::from(m), z), exact, 1e-12, &format!("E_{{1,-{m}}}({z})"));
+        }
+        for m in 0..=10u32 {
+            let square = -z * z;
+            let b = 1.0 - 2.0 * f64::from(m);
+            close(value(2.0, b, square), square.powu(m) * z.cos(), 1e-12, &format!("E_{{2,{b}}}({square})"));
+        }
+    }
+}
+
+/// dⁿ/dzⁿ z^{m+1} e^z by Leibniz' rule, on the positive axis, where its terms do not cancel, and beside it.
+#[test]
+fn derivatives_of_whole_negative_parameters() {
+    for radius in [0.01, 0.06, 0.3, 1.0, 3.0, 9.0] {
+        for angle in [0.0, 0.5, -1.2] {
+            let z = Complex64::from_polar(radius, angle);
+            for m in [1, 2, 5, 12, 20] {
+                for n in [1, 2, 5, 10] {
+                    let (mut sum, mut factor) = (Complex64::ZERO, 1.0);
+                    for j in 0..=n.min(m + 1) {
+                        sum += factor * z.powi(m + 1 - j);
+                        // Binomial coefficient times falling factorial.
+                        factor *= f64::from(n - j) / f64::from(j + 1) * f64::from(m + 1 - j);
+                    }
+                    let computed = MittagLeffler::derivative(1.0, -f64::from(m), n as usize).unwrap().complex(z);
+                    close(computed, sum * z.exp(), 1e-12, &format!("derivative {n} of E_{{1,-{m}}} at {z}"));
+                }
+            }
+        }
+    }
+}
+
 /// e^{x²} erfc x for x > 0: the series of positive terms below 1.5, the continued fraction above.
 fn scaled_erfc(x: f64) -> f64 {
     let root_pi = std::f64::consts::PI.sqrt();
@@ -86,8 +124,10 @@ fn relaxations_are_completely_monotone() {
 #[test]
 fn slices_and_single_arguments_agree_to_the_bit() {
     let x: Vec<f64> = (0..101).map(|k| -10f64.powf(-4.0 + 0.1 * k as f64)).chain([0.0, 2.0, f64::NAN, -1.0]).collect();
-    for (a, n) in [(0.5, 0), (1.0, 0), (1.7, 0), (0.5, 2)] {
-        let function = MittagLeffler::derivative(a, 1.0, n).unwrap();
+    for (a, b, n) in
+        [(0.5, 1.0, 0), (1.0, 1.0, 0), (1.7, 1.0, 0), (0.5, 1.0, 2), (0.5, 1.0, 6), (0.7, -3.5, 0), (0.7, -3.5, 3)]
+    {
+        let function = MittagLeffler::derivative(a, b, n).unwrap();
         let mut values = vec![0.0; x.len()];
         function.real_into(&x, &mut values);
         let z: Vec<Complex64> = x.iter().map(|x| Complex64::new(*x, 0.0)).collect();

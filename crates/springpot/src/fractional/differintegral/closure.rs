@@ -23,7 +23,8 @@ impl Piecewise {
     /// Chebyshev interpolation of degree 16 on pieces that are halved until their last coefficients are below `rtol`
     /// times the variation of f on the piece. Kinks, jumps and singularities like √t are closed in until they matter no
     /// more, at the start down to 10⁻²⁴ of the interval; what is left of them is in the error of
-    /// [`Differintegral::at`](super::Differintegral::at). Where kinks and jumps are known, [`Self::then`] makes them
+    /// [`Differintegral::at`](super::Differintegral::at); x'(0), which Caputo's definition asks for above order 1, is
+    /// extrapolated where x starts like t^1.05. Where kinks and jumps are known, [`Self::then`] makes them
     /// exact.
     ///
     /// ```

@@ -4,6 +4,7 @@ mod along;
 mod closure;
 mod definition;
 mod error;
+mod first_slope;
 mod hermite;
 mod march;
 mod method;

@@ -1,11 +1,13 @@
 //! Functions of time as polynomials between joints, and D^a of them at any time.
 
 use super::along::Start;
+use super::first_slope::FirstSlope;
 use super::hermite::{Form, Node};
 use super::order::{Jump, Order};
 use super::past::{KERNEL_TOLERANCE, Past};
 use super::sampled::{Nodes, negligible_slope};
 use super::{Definition, DerivativeError, FunctionError};
+use crate::fractional::gamma::reciprocal_gamma;
 use crate::fractional::scheme::{Samples, Scheme, SchemeError};
 
 /// A function of time made of polynomials, from samples or from a closure.
@@ -58,7 +60,7 @@ pub(super) enum Joint {
 pub struct Estimate {
     /// D^a x.
     pub value: f64,
-    /// Estimate of |error|: what the polynomials miss of the function, the kernel, rounding.
+    /// Estimate of |error|: what the polynomials miss of the function and of x'(0), the kernel, rounding.
     pub error: f64,
 }
 
@@ -150,18 +152,18 @@ fn polynomial(coefficients: &[f64], theta: f64) -> f64 {
 }
 
 impl Piece {
-    fn is_chord(&self) -> bool {
+    pub(super) fn is_chord(&self) -> bool {
         self.x.len() <= 2
     }
 
-    fn slope(&self, at_end: bool) -> f64 {
+    pub(super) fn slope(&self, at_end: bool) -> f64 {
         let terms = self.x.iter().enumerate().skip(1).map(|(p, c)| p as f64 * c);
         (if at_end { terms.sum() } else { self.x.get(1).copied().unwrap_or(0.0) }) / self.width
     }
 
-    /// By how much x⁽ᵐ⁾ may be missed, m = 0, 1, 2: Markov's bound for polynomials.
+    /// By how much x⁽ᵐ⁾ may be missed, m = 0, 1, 2: Markov's bound for polynomials, of degree 2 beside a chord.
     fn missed(&self, m: i32) -> f64 {
-        let n = (self.x.len() - 1) as f64;
+        let n = (self.x.len() - 1).max(2) as f64;
         let per_width = 2.0 / self.width;
         match m {
             ..=0 => self.miss,
@@ -177,6 +179,8 @@ pub struct Differintegral {
     order: Order,
     start: Start,
     jumps: Vec<Jump>,
+    /// Factor of t^{1−a} in the error: what is not known of x'(0).
+    doubt: f64,
     spans: Vec<Span>,
     factors: Vec<f64>,
     modes: Option<Modes>,
@@ -216,9 +220,19 @@ impl Differintegral {
         let largest = first.x.iter().map(|c| c.abs()).fold(0.0, f64::max);
         let rounding = negligible_slope(&[0.0, first.width], &[largest]);
         let negligible = if first.is_chord() { rounding } else { first.missed(1).max(rounding) };
-        let start = Start::new(&order, definition, &node, negligible);
-
+        let mut start = Start::new(&order, definition, &node, negligible);
         let mut jumps = Vec::new();
+        let mut doubt = 0.0;
+        if first.is_chord() {
+            // A chord's slope is not that of x at 0, which the first row and Caputo's definition ask for.
+            let slope = FirstSlope::of(function);
+            let there = Node { slope: slope.value, ..node };
+            start.value = Start::new(&order, definition, &there, negligible.max(slope.doubt)).value;
+            if definition == Definition::Caputo && order.whole == 2 && order.is_singular() {
+                jumps.extend(Jump::new(&order, 0.0, 0.0, node.slope - slope.value));
+                doubt = slope.doubt * reciprocal_gamma(2.0 - order.order);
+            }
+        }
         for pair in pieces.windows(2) {
             let kink = pair[1].slope(false) - pair[0].slope(true);
             let (value, slope) = match pair[1].joint {
@@ -260,12 +274,14 @@ impl Differintegral {
             .collect();
         let most = spans.iter().map(|span| span.y.len()).max().unwrap_or(1);
         let modes = if order.is_integer() { None } else { Some(Modes::new(&order, &spans)?) };
-        Ok(Self { order, start, jumps, spans, factors: order.factors(most), modes, origin, end })
+        Ok(Self { order, start, jumps, doubt, spans, factors: order.factors(most), modes, origin, end })
     }
 
     /// D^a x at time t, from the left where it jumps.
     ///
-    /// NaN outside the function's interval, and at its start where D^a x is infinite there.
+    /// NaN outside the function's interval, and at its start where D^a x is infinite there. The error is a bound as far as
+    /// the polynomials' own is known: for powers t^p, 0 ≤ p ≤ 3, none of 3000 random cases exceeds it. It is infinite for
+    /// Caputo's definition above order 1 where x'(0) is, since there is no such derivative then.
     pub fn at(&self, t: f64) -> Estimate {
         if !(self.origin..=self.end).contains(&t) {
             return Estimate { value: f64::NAN, error: f64::NAN };
@@ -303,6 +319,9 @@ impl Differintegral {
             missed += modes.history(place - 1, before.width + tau, &mut sum);
         } else {
             missed += modes.history(place, tau, &mut sum);
+        }
+        if self.doubt > 0.0 {
+            missed += self.doubt * t.powf(1.0 - self.order.order);
         }
         Estimate { value: sum.value, error: missed + 4.0 * f64::EPSILON * sum.size }
     }

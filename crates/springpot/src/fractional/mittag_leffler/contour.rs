@@ -13,6 +13,9 @@ const CLEARANCE: f64 = 0.18;
 /// Ratio of the μ of two neighbouring parabolas: no pole is too close to both.
 const SHRINK: f64 = ((1.0 + CLEARANCE) / (1.0 - CLEARANCE)) * ((1.0 + CLEARANCE) / (1.0 - CLEARANCE));
 
+/// Terms may be larger than their sum by this without harm.
+const FEW: f64 = 30.0;
+
 /// Parabolas of falling size, one more than there are poles.
 #[derive(Debug, Clone)]
 pub(super) struct Contours {
@@ -37,6 +40,8 @@ impl Contours {
     pub(super) fn new(a: f64, b: f64, n: usize) -> Self {
         // At the end of the strip of analyticity, u = i, s^{−b−na} s^½ stands against the accuracy.
         let exponent = (2.0 * (b + n as f64 * a) - 1.0).max(1.0);
+        // A pole just beyond the cut adds its own order.
+        let exponent = if n < Self::CAREFUL { exponent } else { exponent + n as f64 };
         let by_depth = |depth: f64| ((DIGITS + exponent * (1.0 / depth).ln()) / (1.0 - depth), depth);
         let depths = (1..=35).map(|k| by_depth(0.02 * k as f64));
         let (frequency, deepest) = depths.min_by(|x, y| x.0.total_cmp(&y.0)).expect("35 depths");
@@ -45,8 +50,41 @@ impl Contours {
         // The saddles of e^s s^{−b} and e^s s^{−b−na} are at b and b + na: the sum cancels least near them or below.
         let mu = (0.5 + b + 0.5 * n as f64 * a).clamp(1.0, largest);
         let count = a.ceil() as i32 + 1;
+        // Poles of high order want more room, and wider parabolas to find it.
+        let wider = if n < Self::CAREFUL { 0 } else { ((largest / mu).ln() / SHRINK.ln()) as i32 };
         let parabola = |k: i32| Parabola::new(a, b, n, mu * SHRINK.powi(-k), frequency, deepest);
-        Self { parabolas: (0..count).map(parabola).collect() }
+        Self { parabolas: (0..count).chain((1..=wider.min(2)).map(|k| -k)).map(parabola).collect() }
+    }
+
+    /// From this derivative on every value is judged by the size of its terms.
+    pub(super) const CAREFUL: usize = 3;
+
+    /// The value on the first parabola that loses no digits, or else on the one that loses the fewest.
+    pub(super) fn best(&self, a: f64, b: f64, n: usize, z: Complex64) -> Complex64 {
+        let poles = Poles::of(a, z, 1.0);
+        let first = self.clear_of(&poles);
+        let others = self.parabolas.iter().filter(|parabola| parabola.mu != first.mu);
+        let measured = |parabola: &Parabola| {
+            let (mut value, mut size) = parabola.measured(n, z);
+            for pole in poles.all() {
+                let (term, largest) = pole.on_parabola(b, n, parabola);
+                value += term;
+                size += largest;
+            }
+            (value, size / value.norm().max(1e-3))
+        };
+        let mut best = measured(first);
+        for parabola in others {
+            // Also where both are infinite and this is NaN.
+            if best.1 <= FEW || best.1.is_nan() {
+                break;
+            }
+            let next = measured(parabola);
+            if next.1 < best.1 {
+                best = next;
+            }
+        }
+        best.0
     }
 
     /// The largest parabola, which takes the fewest nodes.
@@ -72,11 +110,13 @@ impl Parabola {
         let h = 2.0 * PI / frequency;
         let growth = (a - b + 0.5).max(0.0);
         let factorial: f64 = (1..=n).map(|k| k as f64).product();
+        // Near a pole of high order beside the cut, far nodes weigh more than their exponentials say.
+        let digits = if n < Contours::CAREFUL { DIGITS } else { DIGITS + 2.5 * n as f64 };
         let (mut power, mut weight) = (Vec::new(), Vec::new());
         for k in 0.. {
             let u = (k as f64 + 0.5) * h;
             let norm = 1.0 + u * u;
-            if mu * (1.0 - u * u) + growth * (mu * norm).ln().max(0.0) < -DIGITS {
+            if mu * (1.0 - u * u) + growth * (mu * norm).ln().max(0.0) < -digits {
                 break;
             }
             let s = Complex64::new(mu * (1.0 - u * u), 2.0 * mu * u);
@@ -112,6 +152,17 @@ impl Parabola {
         sum.map(|sum| 2.0 * sum)
     }
 
+    /// The same at any argument with the sum of the sizes of its terms.
+    fn measured(&self, n: usize, z: Complex64) -> (Complex64, f64) {
+        let shift = 1.0 - z;
+        let order = n as u32 + 1;
+        let nodes = self.power.iter().zip(&self.weight);
+        nodes.fold((Complex64::ZERO, 0.0), |(sum, size), (p, w)| {
+            let (upper, lower) = (w * (p + shift).inv().powu(order), w.conj() * (p.conj() + shift).inv().powu(order));
+            (sum + upper + lower, size + upper.l1_norm() + lower.l1_norm())
+        })
+    }
+
     /// n!·h Σ_k f(u_k) at a complex argument.
     pub(super) fn complex(&self, n: usize, z: Complex64) -> Complex64 {
         let shift = Complex64::new(1.0 - z.re, -z.im);
@@ -135,7 +186,7 @@ fn real_term(power: &Complex64, weight: &Complex64, shift: f64) -> f64 {
 }
 
 /// e^z − 1 without cancellation near 0.
-fn exp_m1(z: Complex64) -> Complex64 {
+pub(super) fn exp_m1(z: Complex64) -> Complex64 {
     let half = (0.5 * z.im).sin();
     Complex64::new(z.re.exp_m1() * z.im.cos() - 2.0 * half * half, z.re.exp() * z.im.sin())
 }

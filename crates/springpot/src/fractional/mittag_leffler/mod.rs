@@ -30,14 +30,27 @@
 //!
 //! The logistic factor is 1 for poles outside the parabola and 0 for those deep inside. Nodes and weights thus depend
 //! on a and b alone, and one sum serves every z, however large. Where a pole comes close to the parabola, a smaller one
-//! is used, since a node close to a pole costs digits. The derivatives of the pole terms are taken by truncated power
-//! series. Below |z| = 0.05 the series of the definition is shorter.
+//! is used, since a node close to a pole costs digits; from the third derivative on, where poles are of high order, every
+//! value is judged by the size of its terms, and other parabolas are tried. The derivatives of the pole terms are taken by
+//! truncated power series. Below |z| = 0.05 the series of the definition is shorter.
+//!
+//! Below b = −1 the integrand e^s s^{a−b} is large on every parabola and cancels. There the contour is drawn onto both
+//! sides of the cut, r e^{±iπ}, and what is integrated is their difference,
+//!
+//! E_{a,b}(z) = 1/π ∫₀^∞ e^{−r} r^{a−b} (r^a sin πb + z sin π(a−b))/((r^a e^{iπa} − z)(r^a e^{−iπa} − z)) dr
+//!   + Σ_w w^{1−b} e^w/a,
+//!
+//! with sines of the exact distances to whole numbers: near whole a and b, where almost all of E_{a,b} cancels, the
+//! integrand is as small as it must be, and at whole ones it is 0. The trapezoidal rule in ln r, on a ray turned away from
+//! the poles, takes their terms in and out by the same closed form. Where the series of the definition loses no digits
+//! it is taken instead.
 //!
 //! # Accuracy
 //!
 //! The error is below 1e-12·max(|E|, 1e-3) in the admissible range; `tests/mittag_leffler` measures it. One thing no
-//! method in double precision escapes: where a term w^{1−b} e^w/a is much larger than the sum, as near zeros of
-//! oscillating E_{2,b}(−x), the error is a few roundings of w times that term.
+//! method in double precision escapes: where parts of the sum, a term w^{1−b} e^w/a or the integral along the cut, are
+//! much larger than E, as near zeros of oscillating E_{2,b}(−x), the error is a few roundings of w times that part. Ninth and
+//! tenth derivatives at b < −1 may reach twice the bound where a pole is beside the cut and nearer to 0 than 1.
 //!
 //! # Sources
 //!
@@ -48,11 +61,14 @@
 //!   (2015) 1350.
 
 mod contour;
+mod exact;
 mod pole;
+mod ray;
 mod series;
 
 use contour::Contours;
 use pole::Poles;
+use ray::Rays;
 use series::Series;
 
 pub use num_complex::Complex64;
@@ -78,6 +94,13 @@ pub const MAX_B: f64 = 20.0;
 /// Highest derivative.
 pub const MAX_DERIVATIVE: usize = 10;
 
+/// The contour beyond the reach of the series.
+#[derive(Debug, Clone)]
+enum Around {
+    Parabolas(Contours),
+    Cut(Box<Rays>),
+}
+
 /// E_{a,b}, or its n-th derivative with respect to z, prepared for many arguments.
 ///
 /// 0 < a ≤ [`MAX_A`], |b| ≤ [`MAX_B`], n ≤ [`MAX_DERIVATIVE`]; any finite z. The value is infinite where it exceeds the
@@ -87,7 +110,7 @@ pub struct MittagLeffler {
     a: f64,
     b: f64,
     n: usize,
-    contours: Contours,
+    around: Around,
     series: Series,
 }
 
@@ -114,7 +137,12 @@ impl MittagLeffler {
         if n > MAX_DERIVATIVE {
             return Err(MittagLefflerError::Derivative(n));
         }
-        Ok(Self { a, b, n, contours: Contours::new(a, b, n), series: Series::new(a, b, n) })
+        let around = if b < Rays::BELOW {
+            Around::Cut(Box::new(Rays::new(a, b, n)))
+        } else {
+            Around::Parabolas(Contours::new(a, b, n))
+        };
+        Ok(Self { a, b, n, around, series: Series::new(a, b, n) })
     }
 
     /// The value at a real argument.
@@ -125,11 +153,18 @@ impl MittagLeffler {
         if x.abs() <= Series::REACH {
             return self.series.real(x);
         }
-        let poles = Poles::of_real(self.a, x);
-        let contour = self.contours.clear_of(&poles);
+        let contours = match &self.around {
+            Around::Parabolas(contours) => contours,
+            Around::Cut(rays) => return rays.value(self.a, self.b, Complex64::from(x)).re,
+        };
+        if self.n >= Contours::CAREFUL {
+            return contours.best(self.a, self.b, self.n, Complex64::from(x)).re;
+        }
+        let poles = Poles::of_real(self.a, x, 1.0);
+        let contour = contours.clear_of(&poles);
         let around = contour.real(self.n, x);
         poles.iter().fold(around, |sum, pole| {
-            let term = pole.term(self.b, self.n, contour).re;
+            let term = pole.on_parabola(self.b, self.n, contour).0.re;
             // A pair of conjugate poles.
             sum + if pole.is_real() { term } else { 2.0 * term }
         })
@@ -146,9 +181,16 @@ impl MittagLeffler {
         if z.norm() <= Series::REACH {
             return self.series.complex(z);
         }
-        let poles = Poles::of_complex(self.a, z);
-        let contour = self.contours.clear_of(&poles);
-        poles.iter().fold(contour.complex(self.n, z), |sum, pole| sum + pole.term(self.b, self.n, contour))
+        let contours = match &self.around {
+            Around::Parabolas(contours) => contours,
+            Around::Cut(rays) => return rays.value(self.a, self.b, z),
+        };
+        if self.n >= Contours::CAREFUL {
+            return contours.best(self.a, self.b, self.n, z);
+        }
+        let poles = Poles::of_complex(self.a, z, 1.0);
+        let contour = contours.clear_of(&poles);
+        poles.iter().fold(contour.complex(self.n, z), |sum, pole| sum + pole.on_parabola(self.b, self.n, contour).0)
     }
 
     /// The values at real arguments, the same to the bit as those of [`Self::real`].
@@ -164,10 +206,10 @@ impl MittagLeffler {
         for block in &mut blocks {
             let block: &[f64; LANES] = block.try_into().expect("a whole block");
             let out = &mut values[done..done + LANES];
-            if self.n == 0 && self.a <= 1.0 && block.iter().all(|x| *x < -Series::REACH && x.is_finite()) {
-                out.copy_from_slice(&self.contours.widest().real_lanes(block));
-            } else {
-                out.iter_mut().zip(block).for_each(|(value, x)| *value = self.real(*x));
+            let free = self.n == 0 && self.a <= 1.0 && block.iter().all(|x| *x < -Series::REACH && x.is_finite());
+            match &self.around {
+                Around::Parabolas(contours) if free => out.copy_from_slice(&contours.widest().real_lanes(block)),
+                _ => out.iter_mut().zip(block).for_each(|(value, x)| *value = self.real(*x)),
             }
             done += LANES;
         }

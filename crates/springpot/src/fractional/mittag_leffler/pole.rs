@@ -4,8 +4,8 @@ use super::contour::Parabola;
 use super::{Complex64, MAX_A, MAX_DERIVATIVE};
 use std::f64::consts::PI;
 
-/// Most poles: |arg z + 2πk| < πa for one k more than a, at most.
-const MOST: usize = MAX_A as usize + 1;
+/// Most poles: |arg z + 2πk| < πa for one k more than a, at most, and for as many again beyond the cut.
+const MOST: usize = 2 * (MAX_A as usize + 1);
 
 /// Largest x with finite e^x, rounded down.
 const LARGEST_EXPONENT: f64 = 709.78;
@@ -49,15 +49,16 @@ impl Poles {
         self.count += 1;
     }
 
-    pub(super) fn of_real(a: f64, x: f64) -> Self {
+    /// Those with |arg w| < π·`sheet`, 1 or 3/2, for real z.
+    pub(super) fn of_real(a: f64, x: f64, sheet: f64) -> Self {
         // arg w = πj/a with even j for x > 0, odd j for x < 0.
         let first = if x > 0.0 { 0 } else { 1 };
         let mut poles = Self::NONE;
-        if x == 0.0 || f64::from(first) >= a {
+        if x == 0.0 || f64::from(first) >= sheet * a {
             return poles;
         }
         let (modulus, logarithm) = root(a, x.abs(), 0.0);
-        for j in (first..).step_by(2).map(f64::from).take_while(|j| *j < a) {
+        for j in (first..).step_by(2).map(f64::from).take_while(|j| *j < sheet * a) {
             // cos(πj/a) from its zero at 2j = a, near which the digits matter.
             let cosine = if j == 0.0 { 1.0 } else { (PI * (a - 2.0 * j) / (2.0 * a)).sin() };
             let argument = PI * j / a;
@@ -67,18 +68,29 @@ impl Poles {
         poles
     }
 
-    pub(super) fn of_complex(a: f64, z: Complex64) -> Self {
+    /// The same for other z.
+    pub(super) fn of_complex(a: f64, z: Complex64, sheet: f64) -> Self {
         let (theta, radius) = (z.arg(), z.norm());
         let (modulus, logarithm) = root(a, radius, lost_in_norm(z, radius));
-        let turns = (0.5 * (a + 1.0)).ceil() as i32;
+        let turns = (0.5 * (sheet * a + 1.0)).ceil() as i32;
         let mut poles = Self::NONE;
         for argument in (-turns..=turns).map(|k| (theta + 2.0 * PI * f64::from(k)) / a) {
-            if argument.abs() < PI && poles.count < MOST {
+            if argument.abs() < PI * sheet && poles.count < MOST {
                 let value = Complex64::new(modulus * argument.cos(), modulus * argument.sin());
                 poles.push(Pole { a, z, modulus, logarithm, argument, value });
             }
         }
         poles
+    }
+
+    pub(super) fn of(a: f64, z: Complex64, sheet: f64) -> Self {
+        if z.im == 0.0 { Self::of_real(a, z.re, sheet) } else { Self::of_complex(a, z, sheet) }
+    }
+
+    /// With the lower ones of conjugate pairs.
+    pub(super) fn all(&self) -> impl Iterator<Item = Pole> {
+        let twin = |pole: &Pole| (pole.z.im == 0.0 && !pole.is_real()).then(|| pole.conj());
+        self.iter().flat_map(move |pole| [Some(*pole), twin(pole)]).flatten()
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &Pole> {
@@ -97,55 +109,107 @@ impl Pole {
         (self.modulus / mu).sqrt() * (0.5 * self.argument).cos()
     }
 
-    /// dⁿ/dzⁿ of w^{1−b} e^w/a / (1 + e^{−(2π/h)(√(w/μ) − 1)}).
-    pub(super) fn term(&self, b: f64, n: usize, parabola: &Parabola) -> Complex64 {
+    /// arg w as seen from the nearer side of the cut: negative in front of the upper side, positive of the lower one.
+    pub(super) fn beyond_cut(&self) -> f64 {
+        if self.argument < 0.0 { self.argument + PI } else { self.argument - PI }
+    }
+
+    /// The pole of the conjugate z.
+    pub(super) fn conj(&self) -> Self {
+        Self { z: self.z.conj(), argument: -self.argument, value: self.value.conj(), ..*self }
+    }
+
+    /// The [`term`](Self::term) on a parabola.
+    pub(super) fn on_parabola(&self, b: f64, n: usize, parabola: &Parabola) -> (Complex64, f64) {
         if self.depth(parabola.mu) <= parabola.deepest {
-            return Complex64::ZERO;
+            return (Complex64::ZERO, 0.0);
         }
+        self.term(b, n, &self.switch_on(parabola))
+    }
+
+    /// On a parabola: −(2π/h)(√(w/μ) − 1).
+    fn switch_on(&self, parabola: &Parabola) -> Switch {
+        let root = (self.modulus / parabola.mu).sqrt() * Complex64::cis(0.5 * self.argument);
+        let slope = -parabola.frequency * root;
+        Switch { value: slope + parabola.frequency, slope, power: 0.5 / self.a, order: self.a }
+    }
+
+    /// On a ray beside the cut, its `turn` and step: ∓(2πi/h)(ln w ∓ πi − δi) + πi.
+    pub(super) fn switch_at_cut(&self, turn: f64, step: f64) -> Switch {
+        let frequency = if self.argument < 0.0 { 2.0 * PI / step } else { -2.0 * PI / step };
+        let from_ray = Complex64::new(self.logarithm, self.beyond_cut() - turn);
+        let value = Complex64::I * (frequency * from_ray + PI);
+        Switch { value, slope: Complex64::I * frequency, power: 0.0, order: self.a }
+    }
+
+    /// dⁿ/dzⁿ of w^{1−b} e^w/a / (1 + e^switch), and the largest that went into it.
+    pub(super) fn term(&self, b: f64, n: usize, switch: &Switch) -> (Complex64, f64) {
         let ln_w = Complex64::new(self.logarithm, self.argument);
         let exponent = self.value + (1.0 - b) * ln_w - self.a.ln();
         // A derivative multiplies by less than e^20 |w| each time.
         if exponent.re + n as f64 * (20.0 + self.logarithm.max(0.0)) < SMALLEST_EXPONENT {
-            return Complex64::ZERO;
+            return (Complex64::ZERO, 0.0);
         }
         if exponent.re > SURE_OVERFLOW {
-            return INFINITE;
+            return (INFINITE, f64::INFINITY);
         }
-        let root = (self.modulus / parabola.mu).sqrt() * Complex64::cis(0.5 * self.argument);
-        let switch = -parabola.frequency * (root - 1.0);
-        let factor = match n {
-            0 => (1.0 + switch.exp()).inv(),
-            n => self.derivative(b, n, switch, parabola.frequency * root),
+        let (factor, largest) = match n {
+            0 => ((1.0 + switch.value.exp()).inv(), 1.0),
+            n => self.derivative(b, n, switch),
         };
         let size = exponent.re + factor.norm().ln();
         if size >= LARGEST_EXPONENT || size.is_nan() {
-            return if exponent.re.is_nan() { exponent } else { INFINITE };
+            return (if exponent.re.is_nan() { exponent } else { INFINITE }, f64::INFINITY);
         }
         // Two halves, since one alone may overflow where the product does not.
         let half = Complex64::new(0.5 * exponent.re, exponent.im).exp();
-        half * factor * (0.5 * exponent.re).exp()
+        let rest = (0.5 * exponent.re).exp();
+        (half * factor * rest, half.norm() * largest * rest)
     }
 
     /// dⁿ/dzⁿ of the term, over e^exponent, by power series in ε/z.
-    fn derivative(&self, b: f64, n: usize, switch: Complex64, slope: Complex64) -> Complex64 {
-        let (mut inner, mut outer) = ([Complex64::ZERO; MAX_DERIVATIVE + 1], [Complex64::ZERO; MAX_DERIVATIVE + 1]);
-        let (mut of_root, mut of_square_root, mut sign) = (1.0, 1.0, 1.0);
+    fn derivative(&self, b: f64, n: usize, switch: &Switch) -> (Complex64, f64) {
+        let (mut inner, mut sign) = ([Complex64::ZERO; MAX_DERIVATIVE + 1], 1.0);
+        let mut of_root = 1.0;
         for k in 1..=n {
             let order = k as f64;
-            // Binomial coefficients of (1 + ε/z)^{1/a} and (1 + ε/z)^{1/2a}.
+            // Binomial coefficients of (1 + ε/z)^{1/a}.
             of_root *= (1.0 / self.a - order + 1.0) / order;
-            of_square_root *= (0.5 / self.a - order + 1.0) / order;
             inner[k] = self.value * of_root + (1.0 - b) / self.a * sign / order;
-            outer[k] = -slope * of_square_root;
             sign = -sign;
         }
         let growth = exponential(&inner, n);
-        let mut logistic = exponential(&outer, n).map(|c| c * switch.exp());
+        let mut logistic = exponential(&switch.series(n), n).map(|c| c * switch.value.exp());
         logistic[0] += 1.0;
         let logistic = reciprocal(&logistic, n);
-        let coefficient: Complex64 = (0..=n).map(|k| growth[k] * logistic[n - k]).sum();
+        let products = (0..=n).map(|k| growth[k] * logistic[n - k]);
+        let (sum, size) = products.fold((Complex64::ZERO, 0.0), |(sum, size), term| (sum + term, size + term.norm()));
         let factorial: f64 = (1..=n).map(|k| k as f64).product();
-        coefficient * factorial * self.z.inv().powu(n as u32)
+        let scale = factorial * self.z.inv().powu(n as u32);
+        (sum * scale, size * scale.norm())
+    }
+}
+
+/// What takes a pole in or out of the sum: its term is divided by 1 + e^value.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Switch {
+    value: Complex64,
+    /// The value grows by slope·((1 + ε/z)^power − 1) as z grows by ε, by slope·ln(1 + ε/z)/a where the power is 0.
+    slope: Complex64,
+    power: f64,
+    order: f64,
+}
+
+impl Switch {
+    /// Coefficients of (ε/z)^k in the value, k = 1 … n.
+    fn series(&self, n: usize) -> Series {
+        let mut series = [Complex64::ZERO; MAX_DERIVATIVE + 1];
+        let mut binomial = if self.power == 0.0 { 1.0 / self.order } else { self.power };
+        for k in 1..=n {
+            series[k] = self.slope * binomial;
+            binomial *= (self.power - k as f64) / (k + 1) as f64;
+        }
+        series
     }
 }
 

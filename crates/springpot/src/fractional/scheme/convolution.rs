@@ -9,7 +9,8 @@ const DIRECT_LENGTH: usize = 64;
 
 /// y_n = Σ_{k=0}^n w_{n−k} x_k for n = 0 … len(x) − 1, by zero-padded FFT in O(N log N).
 ///
-/// Weights beyond the last one given are 0. The rounding error is a few ulp of ‖w‖₂‖x‖₂, the same for every n.
+/// Weights beyond the last one given are 0. The rounding error of row n is a few ulp of ‖w‖₂‖x‖₂ of the first 2n rows, at
+/// most 64 times as large: a start that is much smaller than the rest has a transform of its own.
 pub fn causal_convolution(weights: &[f64], x: &[f64]) -> Vec<f64> {
     sum_of_convolutions(&[(weights, x)], x.len())
 }
@@ -26,7 +27,22 @@ pub(in crate::fractional) fn sum_of_convolutions(pairs: &[(&[f64], &[f64])], row
         return direct();
     }
     // The transform refuses nothing but buffers of a wrong length, and these are its own.
-    fft_convolution(&pairs, rows).unwrap_or_else(|_| direct())
+    let mut y = fft_convolution(&pairs, rows).unwrap_or_else(|_| direct());
+    if let Some(start) = quiet_start(&pairs, rows) {
+        y[..start].copy_from_slice(&sum_of_convolutions(&pairs, start));
+    }
+    y
+}
+
+/// Where ‖w‖₂‖x‖₂ of a start falls below that of all rows by this, the rounding of the rest would drown it.
+const QUIET: f64 = 64.0;
+
+/// The longest start, a half, a quarter, … of the rows, that is so quiet; each costs half of the one before at most.
+fn quiet_start(pairs: &[(&[f64], &[f64])], rows: usize) -> Option<usize> {
+    let norm = |values: &[f64], count: usize| -> f64 { values.iter().take(count).map(|v| v * v).sum() };
+    let size = |count: usize| -> f64 { pairs.iter().map(|(w, x)| (norm(w, count) * norm(x, count)).sqrt()).sum() };
+    let all = size(rows) / QUIET;
+    (1..usize::BITS).map(|k| rows >> k).take_while(|start| *start > 0).find(|start| size(*start) < all)
 }
 
 /// The same sum term by term, in O(N²).
@@ -86,18 +102,24 @@ fn transform_length(least: usize) -> usize {
 /// Longest transform whose plan is kept, some 4 MB of it per thread.
 const KEPT_SIZE: usize = 1 << 18;
 
-/// The transform of this size. The last one of a thread is kept: columns of one file have one length.
+/// Plans kept by a thread: columns of one file have one length, and quiet starts a few others.
+const KEPT_PLANS: usize = 6;
+
+/// The transform of this size; the last few of a thread are kept.
 fn plan(size: usize) -> Arc<dyn RealToComplex<f64>> {
     thread_local! {
-        static LAST: RefCell<Option<Arc<dyn RealToComplex<f64>>>> = const { RefCell::new(None) };
+        static KEPT: RefCell<Vec<Arc<dyn RealToComplex<f64>>>> = const { RefCell::new(Vec::new()) };
     }
-    LAST.with_borrow_mut(|last| {
-        if let Some(plan) = last.as_ref().filter(|plan| plan.len() == size) {
+    KEPT.with_borrow_mut(|kept| {
+        if let Some(plan) = kept.iter().find(|plan| plan.len() == size) {
             return Arc::clone(plan);
         }
         let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
         if size <= KEPT_SIZE {
-            *last = Some(Arc::clone(&plan));
+            if kept.len() == KEPT_PLANS {
+                kept.remove(0);
+            }
+            kept.push(Arc::clone(&plan));
         }
         plan
     })

@@ -35,6 +35,7 @@ const NEAR: f64 = 1e-3;
 pub fn along(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
     let mut run = Run::new(system, settings, rows, stop);
     let outcome = run.look_ahead().and_then(|()| run.start()).and_then(|first| run.march(0.0, first));
+    let outcome = outcome.and_then(|()| run.book.verdict());
     (run.book.finish(), outcome)
 }
 
@@ -51,6 +52,7 @@ pub(super) fn resume(
     run.energy_floor = energy_floor;
     run.book.restore(books);
     let outcome = run.look_ahead().and_then(|()| run.differentiate_grid()).and_then(|()| run.march(t, h));
+    let outcome = outcome.and_then(|()| run.book.verdict());
     (run.book.finish(), outcome)
 }
 
@@ -96,6 +98,7 @@ impl<'a> Run<'a> {
     /// What the signals will do.
     fn look_ahead(&mut self) -> Result<(), RunError> {
         self.agenda = self.book.system.agenda(self.book.settings, self.longest_step(), self.stop)?;
+        self.book.report.take_agenda(&self.agenda, self.book.settings.end);
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! What of the books must outlast a step.
 
-use super::{Account, Book};
+use super::{Account, Book, Findings};
 use crate::simulate::checkpoint::ReportFields;
 use crate::simulate::ledger::Turnover;
 use crate::simulate::moment::Moment;
@@ -20,6 +20,7 @@ pub(in crate::simulate) struct Books {
     origin: f64,
     turnover: Turnover,
     residual: f64,
+    findings: Findings,
     #[serde(with = "ReportFields")]
     report: Report,
 }
@@ -45,6 +46,7 @@ impl Book<'_> {
             origin: self.origin,
             turnover: self.turnover,
             residual: self.residual,
+            findings: self.findings,
             report: self.report,
         };
         self.rows.checkpoint(Checkpoint { books, pace: pace() })?;
@@ -63,6 +65,7 @@ impl Book<'_> {
             origin,
             turnover,
             residual,
+            findings,
             report,
         } = books;
         self.accounts = accounts;
@@ -74,6 +77,7 @@ impl Book<'_> {
         self.origin = origin;
         self.turnover = turnover;
         self.residual = residual;
+        self.findings = findings;
         self.report = report;
     }
 }

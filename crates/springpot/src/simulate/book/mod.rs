@@ -4,11 +4,13 @@
 //! under way, and commits it.
 
 mod between;
+mod check;
 mod defect;
 mod elements;
 mod kept;
 mod rows;
 
+use self::check::Findings;
 pub(in crate::simulate) use self::kept::Books;
 use self::rows::on_grid_observation;
 use super::ledger::{NodePower, Turnover};
@@ -88,6 +90,7 @@ pub(in crate::simulate) struct Book<'a> {
     origin: f64,
     pub(in crate::simulate) turnover: Turnover,
     residual: f64,
+    findings: Findings,
     pub(in crate::simulate) report: Report,
 }
 
@@ -124,6 +127,7 @@ impl<'a> Book<'a> {
             origin: 0.0,
             turnover: Turnover::default(),
             residual: 0.0,
+            findings: Findings::default(),
             report: Report::default(),
         }
     }

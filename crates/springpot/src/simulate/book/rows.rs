@@ -60,6 +60,7 @@ impl Book<'_> {
                 place(self.system, &mut self.scratch, at, theta, &mut moment)?;
             }
             let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.element_row(e, theta, &moment)).collect();
+            self.compare_with_step(theta, &moment, &rows);
             let (actuators, joints) = self.work_until(theta);
             self.write_row(&moment, &rows, actuators, joints)?;
             self.spare = Some(moment);
@@ -127,9 +128,13 @@ impl Book<'_> {
     ) -> Result<(), RunError> {
         let balance = self.balance(moment, rows, actuators, joints);
         let residual = balance.total() - self.origin;
-        self.residual = if residual.is_nan() { f64::NAN } else { self.residual.max(residual.abs()) };
+        self.take_residual(residual, moment, rows);
         let mut row = std::mem::take(&mut self.row);
         self.system.fill_row(moment, rows, &balance, self.joints + joints, residual, &mut row);
+        if let Some(k) = row.iter().position(|value| value.is_infinite()) {
+            let what = self.system.columns().swap_remove(k).name;
+            return Err(RunError::NotFinite { t: moment.t, what, value: row[k] });
+        }
         self.rows.row(&row)?;
         self.row = row;
         self.next_row += 1;

@@ -32,6 +32,7 @@ impl Run<'_> {
     pub(super) fn attempt(&mut self, to: f64, h: f64, on_break: bool) -> Result<Result<f64, f64>, RunError> {
         let t = self.stepper.origin.t;
         let t_end = if on_break { to.next_down() } else { to };
+        self.stepper.energy = self.book.turnover.total();
         let (mut error, mut worst, iterations) = match self.stepper.attempt(h, t_end, &self.book.accounts)? {
             Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
             Outcome::Converged { iterations } => {

@@ -82,14 +82,10 @@ impl Stepper<'_> {
 
     /// rms of the error in `scratch` in units of the tolerance.
     fn weigh(&self, step: f64) -> (f64, usize) {
-        let end = &self.stages[MAX_NODES - 1];
         let (mut sum, mut worst, mut largest) = (0.0, self.free[0], -1.0);
         for (r, &k) in self.free.iter().enumerate() {
             let (e_v, r_q) = (self.scratch.error[r], self.scratch.positions[r]);
-            // Steps of floating joints are measured from where they start.
-            let size = self.coordinates[k].map_or(1.0, |c| self.origin.q[c].abs().max(end.q[c].abs()));
-            let v = self.tolerance.of(self.origin.v[k].abs().max(end.v[k].abs()));
-            let q = self.tolerance.of(size);
+            let [v, q] = self.allowed[r];
             let square = (e_v / v).powi(2) + ((r_q + step * e_v) / q).powi(2);
             if square > largest {
                 (worst, largest) = (k, square);

@@ -73,8 +73,9 @@ impl Run<'_> {
     /// Goes to the far side of a break or kink of the signals, where accelerations and prescribed velocities may jump.
     pub(super) fn cross(&mut self, after: f64) -> Result<(), RunError> {
         self.restart_at(after)?;
-        // One bit further, since a sign is 0 while it turns.
-        if self.book.system.turns_at(after) { self.restart_at(after.next_up()) } else { Ok(()) }
+        // A little further, since a sign is 0 while it turns.
+        let start = self.book.system.past_turns(after);
+        if start == after { Ok(()) } else { self.restart_at(start) }
     }
 
     fn restart_at(&mut self, to: f64) -> Result<(), RunError> {
@@ -100,7 +101,8 @@ impl Run<'_> {
         drive(&system.model, forward, to, &mut right);
         system.fill(to, to, None, &mut book.scratch, &mut right)?;
         book.jump([left, right]);
-        book.emit_rows_between_steps(to)
+        book.emit_rows_between_steps(to)?;
+        self.expect()
     }
 }
 

@@ -11,6 +11,7 @@ pub(super) mod drives;
 mod estimate;
 mod keep;
 mod newton;
+mod scale;
 mod settle;
 mod stages;
 mod start;
@@ -20,8 +21,9 @@ mod tableau;
 mod watch;
 
 use self::drives::drive;
+use self::scale::Tolerance;
 use self::settle::Settled;
-use self::stepper::{Carried, Stepper, Tolerance};
+use self::stepper::{Carried, Stepper};
 use super::book::{Book, Books, target};
 use super::{Report, Rows, RunError, Settings, Stop, System};
 use crate::fractional::step::RADAU_NODES;
@@ -51,6 +53,7 @@ pub fn forward(
     let Motion::Forward(forward) = &system.motion else { panic!("the motion is given in advance") };
     let mut run = Run::new(system, forward, settings, rows, stop);
     let outcome = run.look_ahead().and_then(|()| run.start()).and_then(|h| run.march(h));
+    let outcome = outcome.and_then(|()| run.book.verdict());
     (run.book.finish(), outcome)
 }
 
@@ -68,7 +71,7 @@ pub(super) fn resume(
     run.stepper.restore(pace.carried);
     run.find_starts();
     run.last = pace.last;
-    let outcome = run.look_ahead().and_then(|()| run.march(pace.h));
+    let outcome = run.look_ahead().and_then(|()| run.march(pace.h)).and_then(|()| run.book.verdict());
     (run.book.finish(), outcome)
 }
 
@@ -85,7 +88,6 @@ struct Run<'a> {
     book: Book<'a>,
     stepper: Stepper<'a>,
     forward: &'a Forward,
-    tolerance: Tolerance,
     stop: &'a Stop,
     /// What the signals do.
     agenda: Agenda,
@@ -109,7 +111,7 @@ impl<'a> Run<'a> {
     ) -> Self {
         let rtol = settings.rtol;
         let mapped = ESTIMATE_SHARE * rtol.powf(2.0 / 3.0);
-        let tolerance = Tolerance { rtol: mapped, atol: settings.atol.unwrap_or(rtol) * mapped / rtol };
+        let tolerance = Tolerance { rtol: mapped, atol: settings.atol.unwrap_or(0.0) * mapped / rtol };
         let mut book = Book::new(system, settings, rows);
         book.takes_elements_work = false;
         book.report.newton_iterations = Some(0);
@@ -122,7 +124,6 @@ impl<'a> Run<'a> {
             book,
             stepper: Stepper::new(system, forward, tolerance, rtol),
             forward,
-            tolerance,
             stop,
             agenda: Agenda::default(),
             longest_step: settings.max_step.unwrap_or(settings.end * share).min(settings.end),
@@ -136,6 +137,7 @@ impl<'a> Run<'a> {
     /// What the signals will do.
     fn look_ahead(&mut self) -> Result<(), RunError> {
         self.agenda = self.book.system.agenda(self.book.settings, self.longest_step, self.stop)?;
+        self.book.report.take_agenda(&self.agenda, self.book.settings.end);
         Ok(())
     }
 
@@ -144,10 +146,6 @@ impl<'a> Run<'a> {
         let (system, settings) = (self.book.system, self.book.settings);
         let (origin, elements) = start::origin(system, self.forward, &mut self.stepper.stick)?;
         self.stepper.free = self.stepper.stick.free();
-        let strict = Tolerance { rtol: settings.rtol, atol: settings.atol.unwrap_or(settings.rtol) };
-        let tolerances = [self.tolerance, strict];
-        let chosen = start::first_step(system, self.forward, &origin, &elements, tolerances, settings.end);
-        let h = self.agenda.reach(0.0, settings.first_step.unwrap_or(chosen).min(self.longest_step));
         let [moment, ..] = &mut self.book.moments;
         moment.q.copy_from_slice(&origin.q);
         moment.v.copy_from_slice(&origin.v);
@@ -164,9 +162,23 @@ impl<'a> Run<'a> {
         system.fill(0.0, 0.0, None, &mut self.book.scratch, moment)?;
         self.stepper.origin = origin;
         self.stepper.is_singular = is_singular;
+        self.expect()?;
+        let strict = Tolerance { rtol: settings.rtol, atol: settings.atol.unwrap_or(0.0) };
+        let chosen = start::first_step(&self.stepper, &elements, strict, settings.end);
+        let h = self.agenda.reach(0.0, settings.first_step.unwrap_or(chosen).min(self.longest_step));
         self.book.open(RADAU_NODES[0] * h)?;
         self.find_starts();
         Ok(h)
+    }
+
+    /// How large a motion the forces at the origin begin.
+    fn expect(&mut self) -> Result<(), RunError> {
+        let t = self.stepper.origin.t;
+        self.stepper.take_inputs(0.0, t)?;
+        self.stepper.linearise()?;
+        self.stepper.sizes.take(&self.book.system.model, &self.stepper.origin.q, &self.stepper.origin.v);
+        self.stepper.expect(1.0 / self.book.settings.end);
+        Ok(())
     }
 
     fn find_starts(&mut self) {

@@ -28,6 +28,7 @@ impl Stepper<'_> {
         self.choose_forms(h);
         self.foretell(h);
         self.take_drives(h, t_end)?;
+        self.allow(h);
         let count = self.free.len();
         let (mut before, mut iterations) = (f64::INFINITY, 0);
         let mut worst = self.free.first().copied().unwrap_or(0);
@@ -143,7 +144,7 @@ impl Stepper<'_> {
         let count = self.free.len();
         let (mut sum, mut worst, mut largest) = (0.0, self.free[0], 0.0);
         for (r, &k) in self.free.iter().enumerate() {
-            let tolerance = self.tolerance.of(self.origin.v[k]);
+            let [tolerance, _] = self.allowed[r];
             for row in &A {
                 let moved: f64 = (0..MAX_NODES).map(|j| row[j] * self.residual[j * count + r]).sum();
                 let square = (h * moved / tolerance).powi(2);
@@ -158,7 +159,9 @@ impl Stepper<'_> {
 
     /// When the iteration may stop: a share of the tolerance, not below rounding.
     fn enough(&self, h: f64) -> f64 {
-        let largest = self.free.iter().fold(0.0, |m: f64, &k| m.max(self.stages[MAX_NODES - 1].a[k].abs()));
-        self.rtol.sqrt().min(0.03) + 2e-14 * (1.0 + h * largest) / self.tolerance.atol
+        let end = &self.stages[MAX_NODES - 1];
+        let moved = |k: usize| end.v[k].abs().max(self.origin.v[k].abs()) + h * end.a[k].abs();
+        let largest = self.free.iter().zip(&self.allowed).fold(0.0, |m: f64, (&k, [v, _])| m.max(moved(k) / v));
+        self.rtol.sqrt().min(0.03) + 2e-14 * largest
     }
 }

@@ -1,14 +1,15 @@
 //! The first moment and the first step.
 
 use super::drives::{force_at, take_path};
-use super::stepper::{Origin, Tolerance};
+use super::scale::{Tolerance, jump_travel};
+use super::stepper::{Origin, Stepper};
 use super::stick::Stick;
 use crate::dynamics::{Kinematics, PairForce, crba, rnea};
 use crate::element::Element;
 use crate::fractional::gamma::reciprocal_gamma;
 use crate::law::{Derivative, Point};
-use crate::model::Model;
 use crate::motion::{Drive, Forward};
+use crate::simulate::jump::refuse_jumps;
 use crate::simulate::lu::Lu;
 use crate::simulate::resistance::add_smooth_resistance;
 use crate::simulate::{RunError, System};
@@ -161,6 +162,9 @@ fn balance(
 /// Takes over what prescribed joints jump to at the origin's time. A velocity that jumps takes an impulse of its actuator, and the
 /// free joints get their share of it: M_ff Δv_f = −M_fp Δv_p.
 pub(super) fn take_jumps(system: &System, forward: &Forward, origin: &mut Origin) -> Result<(), RunError> {
+    if !forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))) {
+        return Ok(());
+    }
     let model = &system.model;
     let (before_q, before_v) = (origin.q.clone(), origin.v.clone());
     let Origin { t, q, v, a, .. } = origin;
@@ -169,7 +173,19 @@ pub(super) fn take_jumps(system: &System, forward: &Forward, origin: &mut Origin
             take_path(model, j, path, *t, q, v, a)?;
         }
     }
-    refuse_jumps(model, *t, &before_q, q, v)?;
+    let (now, q_now, v_now) = (*t, q.clone(), v.clone());
+    let (mut spare_v, mut spare_a) = (v.clone(), a.clone());
+    let speed = |k: usize| v_now[k].abs() + before_v[k].abs();
+    refuse_jumps(model, (now.next_down(), &before_q), (now, &q_now), speed, |at, places| {
+        places.clone_from(&before_q);
+        let drives = model.own_joints().zip(&forward.drives);
+        for (j, drive) in drives {
+            if let Drive::Prescribed(path) = drive {
+                take_path(model, j, path, at, places, &mut spare_v, &mut spare_a)?;
+            }
+        }
+        Ok(())
+    })?;
     let change: Vec<f64> = v.iter().zip(&before_v).map(|(after, before)| after - before).collect();
     if change.iter().all(|change| *change == 0.0) {
         return Ok(());
@@ -183,21 +199,6 @@ pub(super) fn take_jumps(system: &System, forward: &Forward, origin: &mut Origin
     Ok(())
 }
 
-/// Coordinates may have kinks, no jumps.
-fn refuse_jumps(model: &Model, t: f64, before: &[f64], after: &[f64], v: &[f64]) -> Result<(), RunError> {
-    let jumps = model.difference(before, after);
-    for j in model.own_joints() {
-        let size = after[model.q_range(j)].iter().fold(1.0, |largest: f64, q| largest.max(q.abs()));
-        for k in model.v_range(j) {
-            let reach = 8.0 * f64::EPSILON * t * v[k].abs();
-            if jumps[k].abs() > 2e-9 * size + reach {
-                return Err(RunError::Jump { t, joint: model.joint_names()[j].clone(), jump: jumps[k] });
-            }
-        }
-    }
-    Ok(())
-}
-
 /// x ← M⁻¹ x over the free velocities.
 fn solve_mass(system: &System, kinematics: &Kinematics, free: &[usize], x: &mut [f64]) {
     let mut lu = Lu::default();
@@ -206,29 +207,14 @@ fn solve_mass(system: &System, kinematics: &Kinematics, free: &[usize], x: &mut 
     }
 }
 
-/// The largest power-of-two share of a second whose step keeps the layer at t = 0 within the tolerance of the velocities:
-/// h max_i |(M⁻¹ g)_i|/tol_i |F(h) − F(0)| ≤ 1 with F(h) − F(0) ≈ c h^−alpha |x(h) − x(0)|, and no longer than
-/// (1/max(|v|/tol, |a|/tol))^¼. A singular start moves the positions by (M⁻¹ g)_i c x(0) h^{2−alpha}: that must stay within `strict`,
-/// the tolerance that the user asks for, since the estimate does not see it.
-pub(super) fn first_step(
-    system: &System,
-    forward: &Forward,
-    origin: &Origin,
-    elements: &[ElementStart],
-    [tolerance, strict]: [Tolerance; 2],
-    end: f64,
-) -> f64 {
-    let model = &system.model;
+/// The first step, s: a small share of the time in which the system answers its accelerations, a power-of-two share of it where
+/// the layer at t = 0 asks for less: h max_i |(M⁻¹ g)_i|/tol_i |F(h) − F(0)| ≤ 1 with F(h) − F(0) ≈ c h^−alpha |x(h) − x(0)|.
+/// A singular start moves the positions by (M⁻¹ g)_i c x(0) h^{2−alpha}: that must stay within `strict`, the tolerance that the user
+/// asks for, since the estimate does not see it.
+pub(super) fn first_step(stepper: &Stepper, elements: &[ElementStart], strict: Tolerance, end: f64) -> f64 {
+    let Stepper { system, model, origin, free, sizes, tolerance, .. } = stepper;
     let kinematics = Kinematics::at_velocity(model, &origin.q, &origin.v);
-    let free = forward.free_velocities(model);
-    let fastest = (0..model.nv()).fold(0.0, |m: f64, k| {
-        let (v, a) = (origin.v[k].abs(), origin.a[k].abs());
-        m.max(v / tolerance.of(if model.is_one_degree() { origin.q[k] } else { 1.0 })).max(a / tolerance.of(v))
-    });
-    let mut h = end.min(0.1);
-    if fastest > 0.0 {
-        h = h.min((1.0 / fastest).powf(0.25));
-    }
+    let mut h = (tolerance.rtol.powf(0.25) / stepper.answering_rate(1.0 / end)).min(0.1 * end);
     for (element, start) in system.elements.iter().zip(elements) {
         let order = element.law.order();
         if !(order > 0.0 && order < 1.0) {
@@ -239,16 +225,20 @@ pub(super) fn first_step(
         let point = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: &inputs };
         let coefficient = element.law.force(&point, 1.0) - element.law.force(&point, 0.0);
         let mut push: Vec<f64> = free.iter().map(|&k| start.gradient[k]).collect();
-        solve_mass(system, &kinematics, &free, &mut push);
+        solve_mass(system, &kinematics, free, &mut push);
+        // What does not move has no share of its own.
+        let largest = |share: &dyn Fn(usize, f64) -> f64| {
+            let shares = push.iter().zip(free).map(|(push, &k)| share(k, push.abs()));
+            shares.filter(|share| share.is_finite()).fold(0.0, f64::max)
+        };
         if element.derivative == Derivative::RiemannLiouville && start.jump != 0.0 {
-            let shares = push.iter().zip(&free).map(|(push, &k)| push.abs() / strict.of(origin.v[k]));
-            let kick = shares.fold(0.0, f64::max) * (coefficient * start.jump).abs();
+            let travel = |k: usize| sizes.travel(k).max(jump_travel(start.jump, &start.gradient, k));
+            let kick = largest(&|k, push| push / strict.of(travel(k))) * (coefficient * start.jump).abs();
             if kick > 0.0 {
                 h = h.min((1.0 / kick).powf(1.0 / (2.0 - order)));
             }
         }
-        let shares = push.iter().zip(&free).map(|(push, &k)| push.abs() / tolerance.of(origin.v[k]));
-        let reach = shares.fold(0.0, f64::max) * coefficient.abs();
+        let reach = largest(&|k, push| push / tolerance.of(sizes.speed(k))) * coefficient.abs();
         // x(h) − x(0) to second order, from the motion at the start.
         let slope: f64 = start.gradient.iter().zip(&origin.v).map(|(g, v)| g * v).sum();
         let bend: f64 = start.gradient.iter().zip(&origin.a).map(|(g, a)| g * a).sum();

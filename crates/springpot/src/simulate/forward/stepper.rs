@@ -1,5 +1,6 @@
 //! What one step of Radau IIA(5) in the accelerations works on: its start, its stages, its elements.
 
+use super::scale::{Sizes, Tolerance};
 use super::stick::{Sliding, Stick};
 use super::tableau::A;
 use crate::dynamics::{Kinematics, Pair, PairForce, RneaDerivatives, Workspace};
@@ -11,19 +12,6 @@ use crate::motion::Forward;
 use crate::simulate::System;
 use crate::simulate::lu::Lu;
 use serde::{Deserialize, Serialize};
-
-/// Tolerances of positions and velocities.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Tolerance {
-    pub(super) rtol: f64,
-    pub(super) atol: f64,
-}
-
-impl Tolerance {
-    pub(super) fn of(&self, size: f64) -> f64 {
-        self.atol + self.rtol * size.abs()
-    }
-}
 
 /// Where a step starts.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -112,6 +100,7 @@ pub(super) struct Carried {
     singular_before: Vec<f64>,
     contraction: f64,
     sliding: Sliding,
+    sizes: Sizes,
 }
 
 /// The step from an [`Origin`].
@@ -159,6 +148,12 @@ pub(super) struct Stepper<'a> {
     pub(super) drives: [Vec<f64>; MAX_NODES],
     /// Ratio of successive increments, carried from step to step.
     pub(super) contraction: f64,
+    /// How large the motion is.
+    pub(super) sizes: Sizes,
+    /// The energy turned over so far, J.
+    pub(super) energy: f64,
+    /// Errors that are allowed in this step, of each free velocity and of its coordinate.
+    pub(super) allowed: Vec<[f64; 2]>,
     pub(super) scratch: EstimateScratch,
 }
 
@@ -226,6 +221,9 @@ impl<'a> Stepper<'a> {
             pairs: Vec::new(),
             drives: Default::default(),
             contraction: 0.0,
+            sizes: Sizes::new(&forward.q, nv),
+            energy: 0.0,
+            allowed: Vec::new(),
             scratch: EstimateScratch::default(),
         }
     }
@@ -259,6 +257,7 @@ impl<'a> Stepper<'a> {
         self.origin.q.copy_from_slice(&end.q);
         self.origin.v.copy_from_slice(&end.v);
         self.origin.a.copy_from_slice(&end.a);
+        self.sizes.take(self.model, &self.origin.q, &self.origin.v);
         for (force, element) in self.origin.forces.iter_mut().zip(&mut self.elements) {
             let singular = element.response.singular[MAX_NODES - 1];
             *force = element.response.force[MAX_NODES - 1] - singular;
@@ -281,16 +280,18 @@ impl<'a> Stepper<'a> {
             singular_before: self.elements.iter().map(|element| element.singular_before).collect(),
             contraction: self.contraction,
             sliding: self.stick.sliding.clone(),
+            sizes: self.sizes.clone(),
         }
     }
 
     /// Goes on from what was carried.
     pub(super) fn restore(&mut self, carried: Carried) {
-        let Carried { origin, cubic, last, is_singular, singular_before, contraction, sliding } = carried;
+        let Carried { origin, cubic, last, is_singular, singular_before, contraction, sliding, sizes } = carried;
         (self.origin, self.cubic, self.last) = (origin, cubic, last);
         (self.is_singular, self.contraction, self.linearised) = (is_singular, contraction, false);
         self.stick.sliding = sliding;
         self.free = self.stick.free();
+        self.sizes = sizes;
         for (element, before) in self.elements.iter_mut().zip(singular_before) {
             element.singular_before = before;
         }

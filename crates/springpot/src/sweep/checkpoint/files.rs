@@ -20,7 +20,7 @@ pub(in crate::sweep) struct CaseFiles<'a> {
     /// Whether rows that an earlier run kept aside are still there.
     outdated: bool,
     kept: Option<File>,
-    /// Rows in `kept`.
+    /// Rows that an earlier run left in `kept`.
     kept_rows: usize,
     /// Time of the next checkpoint, s.
     next: f64,
@@ -71,6 +71,19 @@ impl<'a> CaseFiles<'a> {
         self.aside.as_mut().map_or(Ok(()), |file| file.write_all(text))
     }
 
+    /// Takes the values of whole rows for figures, `columns` of each.
+    pub(in crate::sweep) fn take_kept(&mut self, values: &[f64], columns: usize) -> io::Result<()> {
+        if values.is_empty() {
+            return Ok(());
+        }
+        if self.kept.is_none() {
+            let path = self.checkpoints.file(self.index, ".kept");
+            self.kept = Some(cut(&path, (8 * columns * self.kept_rows) as u64)?);
+        }
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        self.kept.as_mut().map_or(Ok(()), |file| file.write_all(&bytes))
+    }
+
     /// What tells this case from others.
     pub(in crate::sweep) fn digest(&mut self, plan: &Plan, system: &System) -> u64 {
         *self.digest.get_or_insert_with(|| digest(plan, system))
@@ -80,10 +93,8 @@ impl<'a> CaseFiles<'a> {
     pub(in crate::sweep) fn keep(
         &mut self,
         state: &CaseState,
-        kept: Option<&[Vec<f64>]>,
         sync: impl FnOnce() -> io::Result<()>,
     ) -> io::Result<()> {
-        self.write_kept(kept)?;
         self.kept.iter().chain(&self.aside).try_for_each(File::sync_data)?;
         self.checkpoints.growing().journal.sync()?;
         sync()?;
@@ -93,13 +104,7 @@ impl<'a> CaseFiles<'a> {
     }
 
     /// Writes down that the case has ended; `sync` makes the shared rows safe and tells before which case all are there.
-    pub(in crate::sweep) fn end(
-        mut self,
-        done: &CaseDone,
-        kept: Option<&[Vec<f64>]>,
-        sync: impl FnOnce() -> io::Result<usize>,
-    ) -> io::Result<()> {
-        self.write_kept(kept)?;
+    pub(in crate::sweep) fn end(mut self, done: &CaseDone, sync: impl FnOnce() -> io::Result<usize>) -> io::Result<()> {
         self.kept.iter().try_for_each(File::sync_data)?;
         self.checkpoints.add(done, sync)?;
         self.drop_outdated()?;
@@ -118,21 +123,6 @@ impl<'a> CaseFiles<'a> {
         }
         Ok(())
     }
-
-    /// Adds the values of new rows, row by row.
-    fn write_kept(&mut self, columns: Option<&[Vec<f64>]>) -> io::Result<()> {
-        let Some(columns) = columns else { return Ok(()) };
-        let rows = columns.first().map_or(0, Vec::len);
-        let new = self.kept_rows..rows;
-        let values = new.flat_map(|row| columns.iter().map(move |column| column[row]));
-        let text: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
-        if self.kept.is_none() {
-            let path = self.checkpoints.file(self.index, ".kept");
-            self.kept = Some(cut(&path, (8 * columns.len() * self.kept_rows) as u64)?);
-        }
-        self.kept_rows = rows;
-        self.kept.as_mut().map_or(Ok(()), |file| file.write_all(&text))
-    }
 }
 
 impl Checkpoints {
@@ -145,21 +135,27 @@ impl Checkpoints {
         copy_aside(&self.file(done.index, ".rows"), done.written.bytes, take)
     }
 
-    /// The values of `rows` rows that a case kept for figures, column by column.
-    pub(in crate::sweep) fn kept(&self, case: usize, rows: u64, columns: usize) -> io::Result<Vec<Vec<f64>>> {
-        let mut kept = vec![Vec::with_capacity(rows as usize); columns];
+    /// Hands over the values that a case kept for figures, `columns` of each of its `rows` rows, row by row.
+    pub(in crate::sweep) fn kept(
+        &self,
+        case: usize,
+        rows: u64,
+        columns: usize,
+        take: &mut dyn FnMut(&[f64]),
+    ) -> io::Result<()> {
         if rows == 0 || columns == 0 {
-            return Ok(kept);
+            return Ok(());
         }
         let mut file = io::BufReader::new(File::open(self.file(case, ".kept"))?);
-        let mut value = [0; 8];
+        let (mut bytes, mut values) = (vec![0; 8 * columns], vec![0.0; columns]);
         for _ in 0..rows {
-            for column in &mut kept {
-                file.read_exact(&mut value)?;
-                column.push(f64::from_le_bytes(value));
+            file.read_exact(&mut bytes)?;
+            for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
+                *value = f64::from_le_bytes(*bytes);
             }
+            take(&values);
         }
-        Ok(kept)
+        Ok(())
     }
 }
 

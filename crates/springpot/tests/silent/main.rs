@@ -1,0 +1,13 @@
+//! What a run must not miss: switched signals, pulses, small motions; and what it says of itself where it did.
+
+#![cfg(feature = "scenario")]
+
+mod cases;
+mod pulses;
+mod random;
+mod scales;
+#[allow(dead_code, reason = "a share of it")]
+#[path = "../forward/support.rs"]
+mod support;
+mod switched;
+mod verdicts;
