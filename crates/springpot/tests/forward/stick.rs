@@ -266,3 +266,13 @@ fn a_joint_that_sticks_under_a_relaxing_element_is_let_go_in_time() {
         assert!((a - b).abs() < 1e-8, "{a} {b}");
     }
 }
+
+#[test]
+fn a_force_that_grows_from_nothing_moves_what_nothing_holds() {
+    // 2 kg from rest under 4·t N, and under 1e-9 of it: x = t³/3.
+    for scale in [1.0, 1e-9] {
+        let torque = format!("torque = {{ q0 = \"4*{scale:e}*t\" }}");
+        let run = run(&(sliders(&[("2", "")]) + &motion(&torque) + &every(2.0, 0.01, 1e-9)));
+        follows(&run, "q.q0", |t| scale * t.powi(3) / 3.0, 1e-9);
+    }
+}

@@ -55,6 +55,9 @@ impl Stepper<'_> {
                     stage.a[k] -= delta;
                 }
             }
+            if iterations == 1 && self.allowed.iter().any(|[speed, _]| *speed <= f64::MIN_POSITIVE) {
+                self.allow(h);
+            }
             let size;
             (size, worst) = self.velocity_change(h);
             let placed = size.is_finite() && self.place_stages(h);
