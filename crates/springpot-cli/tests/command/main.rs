@@ -9,6 +9,7 @@ mod equation;
 mod failures;
 mod figures;
 mod formats;
+mod friction;
 mod help;
 mod info;
 mod init;

@@ -51,7 +51,7 @@ impl ModelBuilder {
     ///
     /// # Errors
     /// Names that are not unique identifiers, a parent that is not earlier, numbers that are not finite, a zero axis, a
-    /// negative mass, damping or friction, an inertia that no mass distribution has: a principal moment below −1e-12 of the
+    /// negative mass, damping or friction, a speed of friction that is not positive, an inertia that no mass distribution has: a principal moment below −1e-12 of the
     /// largest, or the largest above the sum of the others by more than 1e-9 of itself. The builder is then as it was.
     pub fn push(&mut self, spec: BodySpec) -> Result<usize, ModelError> {
         let body = self.model.body_names.len();
@@ -117,6 +117,7 @@ impl ModelBuilder {
         model.joint_names.push(joint.name);
         model.damping.push(joint.damping);
         model.friction.push(joint.friction);
+        model.friction_laws.push(joint.friction_law);
         model.limits.push(joint.limits);
         self.mimics.push(joint.mimic);
         Frame {

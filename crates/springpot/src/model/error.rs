@@ -99,6 +99,17 @@ pub enum ModelError {
         value: f64,
     },
 
+    /// The speed of smooth friction is not positive.
+    #[error("{} of body \"{name}\" is {speed}; it must be positive", Field::FrictionSpeed)]
+    FrictionSpeed {
+        /// Index of the body.
+        body: usize,
+        /// Its name.
+        name: String,
+        /// The speed, rad/s or m/s.
+        speed: f64,
+    },
+
     /// The inertia tensor is not symmetric.
     #[error(
         "inertia of body \"{name}\" is not symmetric: [{row}][{column}] is {upper} but [{column}][{row}] is {lower}"
@@ -244,6 +255,8 @@ pub enum Field {
     Damping,
     /// `joint.friction`
     Friction,
+    /// `joint.friction.speed`
+    FrictionSpeed,
     /// `joint.mimic`
     Mimic,
     /// `mass`
@@ -266,6 +279,7 @@ impl Field {
             Self::Rpy => "joint.rpy",
             Self::Damping => "joint.damping",
             Self::Friction => "joint.friction",
+            Self::FrictionSpeed => "joint.friction.speed",
             Self::Mimic => "joint.mimic",
             Self::Mass => "mass",
             Self::Com => "com",
@@ -303,6 +317,7 @@ impl ModelError {
             Self::MimicTarget { body, .. } | Self::MimicKind { body, .. } | Self::MimicCycle { body, .. } => {
                 (body, Field::Mimic)
             }
+            Self::FrictionSpeed { body, .. } => (body, Field::FrictionSpeed),
             Self::ReservedName { body } => (body, Field::Name),
             Self::ParentNotEarlier { body, .. } => (body, Field::Parent),
             Self::ZeroAxis { body, .. } => (body, Field::Axis),

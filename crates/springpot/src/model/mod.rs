@@ -41,5 +41,5 @@ pub use error::{Field, ModelError, Subject};
 pub use frame::{Frame, Site};
 pub use labels::{Label, Measure};
 pub use robot::Model;
-pub use spec::{Anchor, BodySpec, JointKind, JointSpec, Limits, Mimic, Parent};
+pub use spec::{Anchor, BodySpec, FRICTION_SPEED, FrictionLaw, JointKind, JointSpec, Limits, Mimic, Parent};
 pub use state::StateError;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::degree::{Coordinates, Degree, JointMotion};
 use super::error::ModelError;
 use super::frame::{Frame, Site};
-use super::spec::{Anchor, JointKind, Limits, Parent};
+use super::spec::{Anchor, FrictionLaw, JointKind, Limits, Parent};
 use crate::spatial::{Inertia, Placement, Vec3};
 use std::ops::Range;
 
@@ -36,6 +36,7 @@ pub struct Model {
     pub(super) joint_names: Vec<String>,
     pub(super) damping: Vec<f64>,
     pub(super) friction: Vec<f64>,
+    pub(super) friction_laws: Vec<FrictionLaw>,
     // One entry per degree of freedom, indexed by k; those of joint j follow those of joint j − 1.
     pub(super) degrees: Vec<Degree>,
     /// One more than the degree that carries degree k, or 0 where the world does.
@@ -71,6 +72,7 @@ impl Model {
             joint_names: Vec::new(),
             damping: Vec::new(),
             friction: Vec::new(),
+            friction_laws: Vec::new(),
             degrees: Vec::new(),
             carriers: Vec::new(),
             last_degrees: vec![0],
@@ -176,6 +178,11 @@ impl Model {
     /// Coulomb friction per moving joint, N·m or N; no algorithm of `dynamics` adds it by itself.
     pub fn friction(&self) -> &[f64] {
         &self.friction
+    }
+
+    /// What the friction of each moving joint does at and near rest.
+    pub fn friction_laws(&self) -> &[FrictionLaw] {
+        &self.friction_laws
     }
 
     /// Names of the described bodies, in the order in which they were pushed.

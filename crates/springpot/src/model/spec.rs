@@ -83,6 +83,28 @@ impl Limits {
         Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: f64::INFINITY, effort: f64::INFINITY };
 }
 
+/// Speed at which smooth friction has reached 76 % of its value where nothing else is said, rad/s or m/s.
+pub const FRICTION_SPEED: f64 = 1e-3;
+
+/// What Coulomb friction of the value f does at and near rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FrictionLaw {
+    /// f·tanh(v/speed), smooth: nothing is ever held, and a load below f creeps at speed·artanh(load/f).
+    Smooth {
+        /// Speed at which it has reached 76 % of f, rad/s or m/s, positive.
+        speed: f64,
+    },
+    /// Coulomb's law as it stands: f·sign(v) where the joint slides; at rest whatever holds it there, up to f.
+    Sticking,
+}
+
+impl Default for FrictionLaw {
+    /// Smooth, at [`FRICTION_SPEED`].
+    fn default() -> Self {
+        Self::Smooth { speed: FRICTION_SPEED }
+    }
+}
+
 /// A joint of one degree that follows another one: coordinate = multiplier · coordinate of `joint` + offset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mimic {
@@ -111,6 +133,8 @@ pub struct JointSpec {
     pub damping: f64,
     /// Coulomb friction, N·m or N, 0 or more.
     pub friction: f64,
+    /// What friction does at and near rest.
+    pub friction_law: FrictionLaw,
     /// What it is built for.
     pub limits: Limits,
     /// The joint that it follows, if it has no coordinate of its own.
@@ -139,7 +163,18 @@ impl JointSpec {
     }
 
     fn plain(name: String, kind: JointKind, axis: [f64; 3], origin: [f64; 3]) -> Self {
-        Self { name, kind, axis, origin, rpy: [0.0; 3], damping: 0.0, friction: 0.0, limits: Limits::NONE, mimic: None }
+        Self {
+            name,
+            kind,
+            axis,
+            origin,
+            rpy: [0.0; 3],
+            damping: 0.0,
+            friction: 0.0,
+            friction_law: FrictionLaw::default(),
+            limits: Limits::NONE,
+            mimic: None,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::error::{Field, ModelError};
 use super::principal::principal_moments;
-use super::spec::{BodySpec, JointKind, Parent};
+use super::spec::{BodySpec, FrictionLaw, JointKind, Parent};
 
 /// Refuses a principal moment below minus this share of the largest one.
 const POSITIVE_TOLERANCE: f64 = 1e-12;
@@ -63,12 +63,17 @@ fn names(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
 fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
     let joint = &spec.joint;
     let mimic = joint.mimic.as_ref().map_or([1.0, 0.0], |mimic| [mimic.multiplier, mimic.offset]);
-    let fields: [(Field, &[f64]); 9] = [
+    let speed = match joint.friction_law {
+        FrictionLaw::Smooth { speed } => speed,
+        FrictionLaw::Sticking => f64::MIN_POSITIVE,
+    };
+    let fields: [(Field, &[f64]); 10] = [
         (Field::Axis, &joint.axis),
         (Field::Origin, &joint.origin),
         (Field::Rpy, &joint.rpy),
         (Field::Damping, &[joint.damping]),
         (Field::Friction, &[joint.friction]),
+        (Field::FrictionSpeed, &[speed]),
         (Field::Mimic, &mimic),
         (Field::Mass, &[spec.mass]),
         (Field::Com, &spec.com),
@@ -84,6 +89,9 @@ fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
         if value < 0.0 {
             return Err(ModelError::Negative { body, name: spec.name.clone(), field, value });
         }
+    }
+    if speed <= 0.0 {
+        return Err(ModelError::FrictionSpeed { body, name: spec.name.clone(), speed });
     }
     Ok(())
 }

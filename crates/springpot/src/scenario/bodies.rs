@@ -6,7 +6,9 @@ use super::plan::BodyPlaces;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Parts, checked_name, unique, unknown_body};
-use crate::model::{BodySpec, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent};
+use crate::model::{
+    BodySpec, FRICTION_SPEED, FrictionLaw, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent,
+};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -14,6 +16,7 @@ use std::sync::Arc;
 const MAX_BODIES: usize = 1_000;
 pub(super) const BODY_KEYS: [&str; 6] = ["name", "parent", "joint", "mass", "com", "inertia"];
 pub(super) const JOINT_KEYS: [&str; 7] = ["name", "kind", "origin", "rpy", "axis", "damping", "friction"];
+pub(super) const FRICTION_KEYS: [&str; 3] = ["force", "speed", "stick"];
 /// Those of them that a joint without an axis takes.
 pub(super) const PLAIN_JOINT_KEYS: usize = 4;
 pub(super) const INERTIA_KEYS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
@@ -171,12 +174,14 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
     };
     let origin = table.get("origin").map_or(Ok([0.0; 3]), |field| field.vector("m"));
     let rpy = table.get("rpy").map_or(Ok([0.0; 3]), |field| field.vector("rad"));
-    let (damping_unit, friction_unit) = match kind {
-        Ok(JointKind::Prismatic) => ("N*s/m", "N"),
-        _ => ("N*m*s/rad", "N*m"),
-    };
+    let slides = matches!(kind, Ok(JointKind::Prismatic));
+    let damping_unit = if slides { "N*s/m" } else { "N*m*s/rad" };
     let damping = table.get("damping").map_or(Ok(0.0), |field| field.number(damping_unit));
-    let friction = table.get("friction").map_or(Ok(0.0), |field| field.number(friction_unit));
+    let friction = match table.get("friction") {
+        Some(field) => friction(&field, slides, places),
+        None => Ok((0.0, FrictionLaw::default())),
+    };
+    let (friction, friction_law) = friction?;
     Ok(JointSpec {
         name: name?.to_owned(),
         kind: kind?,
@@ -184,10 +189,31 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
         origin: origin?,
         rpy: rpy?,
         damping: damping?,
-        friction: friction?,
+        friction,
+        friction_law,
         limits: Limits::NONE,
         mimic: None,
     })
+}
+
+/// A number, or `{ force = …, speed = …, stick = … }`.
+fn friction(field: &Field<'_>, slides: bool, places: &mut BodyPlaces) -> Read<(f64, FrictionLaw)> {
+    let (force_unit, speed_unit) = if slides { ("N", "m/s") } else { ("N*m", "rad/s") };
+    if field.node.entries().is_none() {
+        return Ok((field.number(force_unit)?, FrictionLaw::default()));
+    }
+    let table = field.table(&FRICTION_KEYS)?;
+    for field in table.fields() {
+        // What is wrong with the force is said of the whole.
+        let key = if field.key == "force" { String::new() } else { format!(".{}", field.key) };
+        places.fields.insert(0, (format!("joint.friction{key}"), field.node.place.clone()));
+    }
+    let right = format!("force = \"0.2 {force_unit}\"");
+    let force = table.require("force", &right).and_then(|field| field.number(force_unit));
+    let speed = table.get("speed").map_or(Ok(FRICTION_SPEED), |field| field.positive(speed_unit));
+    let stick = table.get("stick").map_or(Ok(false), |field| field.boolean());
+    let (force, speed, stick) = (force?, speed?, stick?);
+    Ok((force, if stick { FrictionLaw::Sticking } else { FrictionLaw::Smooth { speed } }))
 }
 
 fn kind_named(name: &str) -> Option<JointKind> {

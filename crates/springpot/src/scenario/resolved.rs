@@ -3,7 +3,7 @@
 use super::figures::{FigureKind, FigurePlan};
 use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
 use super::time::ADAPTIVE;
-use crate::model::{Anchor, BodySpec, Limits, Mimic, Parent};
+use crate::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
 use crate::simulate::RowTimes;
 use serde_json::{Map, Value, json};
 
@@ -75,7 +75,7 @@ impl Plan {
                 "origin": joint.origin,
                 "rpy": joint.rpy,
                 "damping": joint.damping,
-                "friction": joint.friction,
+                "friction": friction(joint),
                 "limits": limits(&joint.limits),
                 "mimic": joint.mimic.as_ref().map(|Mimic { joint, multiplier, offset }| {
                     json!({ "joint": joint, "multiplier": multiplier, "offset": offset })
@@ -145,6 +145,15 @@ fn urdf(plan: &UrdfPlan) -> Value {
         "ignore_mimic": plan.ignore_mimic,
         "package_path": plan.package_path,
     })
+}
+
+/// Force, speed of a smooth law, and whether it sticks.
+fn friction(joint: &JointSpec) -> Value {
+    let (speed, stick) = match joint.friction_law {
+        FrictionLaw::Smooth { speed } => (Some(speed), false),
+        FrictionLaw::Sticking => (None, true),
+    };
+    json!({ "force": joint.friction, "speed": speed, "stick": stick })
 }
 
 /// The limits that there are.

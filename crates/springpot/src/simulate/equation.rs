@@ -1,6 +1,6 @@
 //! The equations of motion at one time, term by term.
 
-use super::resistance::add_resistance;
+use super::resistance::{add_resistance, holding_forces};
 use super::{Report, RowTimes, RunError, Settings, State, Stop, System, run};
 use crate::dynamics::{Kinematics, christoffel, coriolis, crba, gravity};
 use crate::motion::Motion;
@@ -33,7 +33,7 @@ pub struct Equation {
     pub gravity: Vec<f64>,
     /// The elements, in their order.
     pub elements: Vec<ElementTerm>,
-    /// Q of the joints' damping and friction.
+    /// Q of the joints' damping and friction; of a joint at rest that friction may hold, what closes the equation.
     pub joints: Vec<f64>,
     /// Q of the actuators.
     pub tau: Vec<f64>,
@@ -121,7 +121,7 @@ impl System {
         let velocity = christoffel.as_ref().map_or_else(|| times(&coriolis, &state.v), |gamma| twice(gamma, &state.v));
         let mut losses = vec![0.0; n];
         add_resistance(&self.model, &state.v, &mut losses);
-        Ok(Equation {
+        let mut equation = Equation {
             t,
             inertia: times(&mass, &state.a),
             velocity,
@@ -133,7 +133,27 @@ impl System {
             coriolis,
             elements,
             tau,
-        })
+        };
+        self.hold(&mut equation);
+        Ok(equation)
+    }
+
+    /// What holds a joint at rest by friction follows from all else.
+    fn hold(&self, equation: &mut Equation) {
+        let Motion::Forward(forward) = &self.motion else { return };
+        let limits = holding_forces(&self.model);
+        let at_rest = |k: &usize| limits[*k] > 0.0 && equation.state.v[*k] == 0.0;
+        let held: Vec<usize> = forward.free_velocities(&self.model).into_iter().filter(at_rest).collect();
+        if held.is_empty() {
+            return;
+        }
+        for &k in &held {
+            equation.joints[k] = 0.0;
+        }
+        let missing = equation.residual();
+        for &k in &held {
+            equation.joints[k] = missing[k];
+        }
     }
 
     /// The row of a run at time `t`.

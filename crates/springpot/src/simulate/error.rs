@@ -100,6 +100,32 @@ pub enum RunError {
         /// The joint that is farthest off.
         joint: String,
     },
+    /// Joints stick and slide without getting on.
+    #[error(
+        "t = {t} s: joint \"{joint}\" sticks and slides without getting on: {count} changes within {span:.1e} s; \
+         give its friction a speed in place of stick = true"
+    )]
+    Chatter {
+        /// Time, s.
+        t: f64,
+        /// The joint that changed last.
+        joint: String,
+        /// Changes between holding and sliding.
+        count: u32,
+        /// Within this time, s.
+        span: f64,
+    },
+    /// Which joints hold by friction and which slide has no answer.
+    #[error(
+        "t = {t} s: no friction between -force and force of joint \"{joint}\" goes with the forces on it; \
+         give its friction a speed in place of stick = true"
+    )]
+    NoHold {
+        /// Time, s.
+        t: f64,
+        /// A joint that finds no friction.
+        joint: String,
+    },
     /// More steps than allowed.
     #[error("t = {t} s: {limit} steps are used up (solver.max_steps)")]
     TooManySteps {

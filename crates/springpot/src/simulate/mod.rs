@@ -9,6 +9,7 @@ mod along;
 mod book;
 mod checkpoint;
 mod control;
+mod coulomb;
 mod equation;
 mod error;
 pub mod fixed;
@@ -24,6 +25,7 @@ mod resistance;
 mod row;
 mod row_times;
 mod signals;
+mod zero;
 
 pub use along::along;
 pub use checkpoint::Checkpoint;
@@ -33,13 +35,13 @@ pub use fixed::FixedStep;
 pub use forward::forward;
 pub use limits::{LimitKind, LimitWatch, PassedLimit, Watch};
 pub use pose::{ElementStart, Pose, State};
-pub use resistance::FRICTION_SPEED;
 pub use row_times::RowTimes;
 
 #[cfg(feature = "scenario")]
 pub(crate) use checkpoint::ReportFields;
 
 use crate::element::Element;
+pub use crate::model::FRICTION_SPEED;
 use crate::model::{Model, Site};
 use crate::motion::Motion;
 use checkpoint::Pace;

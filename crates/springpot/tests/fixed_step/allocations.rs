@@ -66,6 +66,10 @@ fn steps_do_not_allocate() {
     measure("singular start", &system(&arm(&(strut("riemann-liouville") + &free("start = { v = { q1 = 1 } }")))));
     let motion = "prescribed = { q1 = \"sin(t)\" }\nlocked = [\"q2\"]\ntorque = { q3 = \"cos(t)\" }";
     measure("prescribed and locked joints", &system(&arm(&(strut("caputo") + &free(motion)))));
+    let rubbing = arm(&(strut("caputo") + &free("start = { v = { q1 = 1 } }")))
+        .replace("name = \"q1\",", "name = \"q1\", friction = { force = 0.5, stick = true },")
+        .replace("name = \"q3\",", "name = \"q3\", friction = { force = 4, stick = true },");
+    measure("joints that stick", &system(&rubbing));
     let floating = arm(&(strut("caputo") + &free(""))).replacen(
         "kind = \"revolute\", axis = [0, 0, 1], origin = [0, 0, 0]",
         "kind = \"floating\"",

@@ -6,6 +6,7 @@ mod joints;
 mod memory;
 mod orders;
 mod refusals;
+mod rubbing;
 mod runs;
 mod stability;
 mod support;

@@ -10,4 +10,5 @@ mod random;
 mod references;
 mod rows;
 mod shipped;
+mod stick;
 mod support;

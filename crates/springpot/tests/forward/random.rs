@@ -1,6 +1,6 @@
 //! Random robots with everything that may act on them: the energy balance closes.
 
-use crate::support::{every, run};
+use crate::support::{distance, every, run};
 use std::fmt::Write as _;
 
 /// The next number in [0, 1) of splitmix64.
@@ -32,6 +32,7 @@ impl Random {
 struct Options {
     floating: bool,
     friction: bool,
+    sticks: bool,
     kinks: bool,
     held: bool,
     varying: bool,
@@ -87,7 +88,11 @@ fn robot(random: &mut Random, options: &Options) -> String {
         if kind != "floating" {
             let _ = write!(joint, ", axis = {:?}, damping = {}", random.vector(1.0), random.within(0.0, 0.5));
             if options.friction {
-                let _ = write!(joint, ", friction = {}", random.within(0.1, 2.0));
+                let force = random.within(0.1, 2.0) * if options.sticks { 5.0 } else { 1.0 };
+                let _ = match options.sticks {
+                    true => write!(joint, ", friction = {{ force = {force}, stick = true }}"),
+                    false => write!(joint, ", friction = {force}"),
+                };
             }
         }
         let inertia = [0; 3].map(|_| random.within(0.05, 0.08));
@@ -150,7 +155,8 @@ fn balances(name: &str, seed: u64, count: usize, options: &Options) {
     println!("{name}: worst {worst:.2} rtol of the energy turned over");
 }
 
-const PLAIN: Options = Options { floating: false, friction: false, kinks: false, held: false, varying: false };
+const PLAIN: Options =
+    Options { floating: false, friction: false, sticks: false, kinks: false, held: false, varying: false };
 
 #[test]
 fn the_balance_closes_with_damping_and_torques() {
@@ -176,5 +182,40 @@ fn the_balance_closes_with_prescribed_and_locked_joints() {
 #[test]
 fn the_balance_closes_with_floating_bases() {
     balances("floating", 6, 8, &Options { floating: true, ..PLAIN });
-    balances("everything", 7, 8, &Options { floating: true, friction: true, kinks: true, held: true, varying: true });
+    balances("everything", 7, 8, &EVERYTHING);
+}
+
+const EVERYTHING: Options =
+    Options { floating: true, friction: true, sticks: false, kinks: true, held: true, varying: true };
+
+#[test]
+fn the_balance_closes_with_friction_that_sticks() {
+    balances("sticking", 8, 12, &Options { friction: true, sticks: true, kinks: true, ..PLAIN });
+    balances("sticking with everything", 9, 16, &Options { sticks: true, ..EVERYTHING });
+}
+
+#[test]
+fn smooth_friction_tends_to_friction_that_sticks() {
+    let mut random = Random(10);
+    let (mut worst, mut stops) = (0.0f64, 0);
+    for _ in 0..6 {
+        let text = robot(&mut random, &Options { friction: true, sticks: true, kinks: true, ..PLAIN });
+        let text = text + &every(0.8, 0.01, 1e-8);
+        let sticking = run(&text);
+        let columns: Vec<&String> = sticking.names.iter().filter(|name| name.starts_with("q.")).collect();
+        let off = |speed: &str| {
+            let smooth = run(&text.replace("stick = true", &format!("speed = {speed}")));
+            columns.iter().map(|q| distance(&sticking.column(q), &smooth.column(q))).fold(0.0, f64::max)
+        };
+        let apart = ["1e-4", "1e-6"].map(off);
+        println!("{apart:?}");
+        // The smooth law creeps at its speed.
+        assert!(apart[0] < 3e-3 && apart[1] < 0.03 * apart[0] + 1e-7, "{apart:?}\n{text}");
+        worst = worst.max(apart[1]);
+        for name in sticking.names.iter().filter(|name| name.starts_with("v.")) {
+            stops += sticking.column(name).windows(2).filter(|v| v[0] != 0.0 && v[1] == 0.0).count();
+        }
+    }
+    println!("worst {worst:.1e}, {stops} stops");
+    assert!(stops > 5, "{stops}");
 }

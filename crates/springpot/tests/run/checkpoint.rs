@@ -101,6 +101,25 @@ fn robots_that_move_by_themselves() {
 }
 
 #[test]
+fn joints_that_stick() {
+    let arm = ARM
+        .replacen("kind = \"revolute\"", "friction = { force = 3, stick = true }, kind = \"revolute\"", 1)
+        .replace("name = \"q2\",", "name = \"q2\", friction = { force = 2, stick = true },")
+        .replace("name = \"q3\",", "name = \"q3\", friction = { force = 9, stick = true },");
+    let element = thermoviscoelastic(0.5, 25.0, "caputo");
+    let free = "torque = { q1 = \"4*sign(sin(9*t))\", q2 = \"20*sin(5*t)\" }";
+    let led = "start = { q = { q2 = 0.1 }, v = { q1 = 1 } }\nprescribed = { q3 = \"0.2 + 0.1*sin(3*t)\" }";
+    let mut states = 0;
+    for motion in [free, led] {
+        states += goes_on(&cases(&format!("{arm}{element}{}{}", forward(motion), every(1.2, 0.017))), 9);
+        let solver = "[solver]\nmethod = \"backward-euler\"\nstep = \"3 ms\"\n";
+        let motion = format!("\n[motion]\nkind = \"forward\"\n{motion}\n");
+        states += goes_on(&cases(&format!("{arm}{element}{motion}{}{solver}", every(0.3, 0.017))), 7);
+    }
+    assert!(states > 300, "{states} states");
+}
+
+#[test]
 fn steps_of_one_size() {
     let element = thermoviscoelastic(0.5, 25.0, "caputo");
     let singular = thermoviscoelastic(0.3, 25.0, "riemann-liouville");

@@ -15,6 +15,7 @@ mod kinks;
 mod law;
 mod memory;
 mod memory_support;
+mod rubbing;
 mod run_support;
 mod slider_drift;
 mod slider_energy;

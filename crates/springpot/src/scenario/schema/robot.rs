@@ -1,8 +1,8 @@
 //! `[robot]`.
 
-use super::super::bodies::{BODY_KEYS, INERTIA_KEYS, JOINT_KEYS, PLAIN_JOINT_KEYS};
+use super::super::bodies::{BODY_KEYS, FRICTION_KEYS, INERTIA_KEYS, JOINT_KEYS, PLAIN_JOINT_KEYS};
 use super::super::robot::{ANCHOR_KEYS, KEYS, URDF_KEYS};
-use super::{array_of, described, merge, not_negative, object, one_of, quantity, text, unknown, vector};
+use super::{array_of, described, merge, not_negative, object, one_of, positive, quantity, text, unknown, vector};
 use crate::model::JointKind;
 use serde_json::{Map, Value, json};
 
@@ -68,7 +68,7 @@ fn joint() -> Value {
         "rpy" => vector("rad", "Roll, pitch, yaw of the joint frame in the parent's, rad. Default: [0, 0, 0]."),
         "axis" => vector("", "Axis in the joint frame, of any length but 0."),
         "damping" => not_negative("N*m*s/rad (prismatic: N*s/m)", "Viscous damping. Default: 0."),
-        "friction" => not_negative("N*m (prismatic: N)", "Coulomb friction. Default: 0."),
+        "friction" => friction(),
         _ => unknown(),
     });
     let plain: Vec<&str> = JointKind::ALL.into_iter().filter(|kind| !kind.has_axis()).map(JointKind::name).collect();
@@ -78,6 +78,22 @@ fn joint() -> Value {
     });
     merge(&mut schema, json!({ "required": ["name"], "allOf": [without_axis] }));
     schema
+}
+
+fn friction() -> Value {
+    let force = || not_negative("N*m (prismatic: N)", "Coulomb friction. Default: 0.");
+    let mut table = object("Coulomb friction, and what it does near rest.", &FRICTION_KEYS, |key| match key {
+        "force" => force(),
+        "speed" => positive(
+            "rad/s (prismatic: m/s)",
+            "v_0 of force·tanh(v/v_0), at which a load below the force creeps. Default: 1e-3. Not used where it sticks.",
+        ),
+        "stick" => flag("Whether Coulomb's law holds as it stands, with rest. Default: false."),
+        _ => unknown(),
+    });
+    let description = "Coulomb friction: a number or quantity, or a table with `force`. Default: 0.";
+    merge(&mut table, json!({ "required": ["force"] }));
+    json!({ "description": description, "anyOf": [force(), table] })
 }
 
 /// A name of the scenario's own.

@@ -5,6 +5,7 @@
 
 mod attempt;
 mod kink;
+mod reversal;
 
 use crate::fractional::step::RADAU_NODES;
 use crate::signal::{self, Agenda};
@@ -70,11 +71,19 @@ struct Run<'a> {
     agenda: Agenda,
     /// A lower bound of the energy turned over, from a glance at the motion.
     energy_floor: f64,
+    /// Velocities at which friction sticks: their power has a kink where they turn round.
+    rubbing: Vec<usize>,
 }
 
 impl<'a> Run<'a> {
     fn new(system: &'a System, settings: &'a Settings, rows: &'a mut dyn Rows, stop: &'a Stop) -> Self {
-        Self { book: Book::new(system, settings, rows), stop, agenda: Agenda::default(), energy_floor: 0.0 }
+        Self {
+            book: Book::new(system, settings, rows),
+            stop,
+            agenda: Agenda::default(),
+            energy_floor: 0.0,
+            rubbing: reversal::rubbing(&system.model),
+        }
     }
 
     fn longest_step(&self) -> f64 {
@@ -167,7 +176,13 @@ impl<'a> Run<'a> {
             let far_side = stop.filter(|_| to == stop_at).and_then(|stop| stop.after);
             let size = to - t;
             let on_break = stop.is_some() && to == stop_at && far_side.is_none();
-            let error = self.attempt(t, to, on_break)?;
+            let mut error = self.attempt(t, to, on_break)?;
+            let turn = self.first_reversal(t, to)?;
+            let (to, size, on_break, far_side) =
+                turn.map_or((to, size, on_break, far_side), |turn| (turn, turn - t, false, None));
+            if turn.is_some() {
+                error = self.attempt(t, to, on_break)?;
+            }
             if !error.accepted() {
                 self.book.report.rejected_steps += 1;
                 h = size * error.factor().min(0.7);

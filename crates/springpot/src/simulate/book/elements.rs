@@ -77,7 +77,7 @@ impl ElementStep {
 
 impl Element {
     /// F at the start of a step, where D^alpha x is what the step before ended with; at alpha = 1 it follows the rate.
-    fn force_at_start(&self, at: &Point, derivative: f64) -> f64 {
+    pub(in crate::simulate) fn force_at_start(&self, at: &Point, derivative: f64) -> f64 {
         self.law.force(at, if self.law.order() == 1.0 { at.rate } else { derivative })
     }
 }

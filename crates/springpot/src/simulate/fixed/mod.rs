@@ -8,10 +8,14 @@
 //! takes what bends, to 1e-6 of a velocity on the falling arm at 1 ms; the third takes as much where an element of 10⁹ N/m
 //! turns, which two leave at 0.1. [`Loop::correction`] tells how far the last one went. The iterations start from v_0 and not from the last
 //! accelerations, so that a shock does not throw the next step off.
+//!
+//! Friction that sticks takes its value from the velocity at the end of the step: a joint that would turn round within the step and
+//! can be held is at rest at its end, and stays there to the bit. Which of several joints hold is found anew in every iteration.
 
 mod elements;
 mod place;
 mod real_time;
+mod rub;
 mod run;
 mod stepper;
 

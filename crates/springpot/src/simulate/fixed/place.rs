@@ -1,11 +1,15 @@
 //! Rows between the ends of a step, and accelerations that solve the equations of motion there.
 
+use super::rub::SLACK;
 use super::stepper::Place;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
+use crate::model::Model;
 use crate::motion::Forward;
+use crate::simulate::coulomb::{Candidate, Coulomb};
 use crate::simulate::forward::drives::drive;
 use crate::simulate::lu::Lu;
 use crate::simulate::moment::{Moment, Scratch};
+use crate::simulate::resistance::holding_forces;
 use crate::simulate::{RunError, System};
 
 /// A step between its ends: places by the cubic Hermite form in the tangent space of the start, velocities and accelerations by
@@ -62,6 +66,9 @@ pub(super) struct Accelerator {
     mass: Vec<f64>,
     lu: Lu,
     free: Vec<usize>,
+    /// What friction that sticks can hold at every velocity.
+    limits: Vec<f64>,
+    coulomb: Coulomb,
 }
 
 impl Accelerator {
@@ -73,6 +80,8 @@ impl Accelerator {
             mass: vec![0.0; model.nv() * model.nv()],
             lu: Lu::default(),
             free: forward.free_velocities(model),
+            limits: holding_forces(model),
+            coulomb: Coulomb::default(),
         }
     }
 
@@ -104,10 +113,28 @@ impl Accelerator {
         crba_into(model, &self.kinematics, &mut self.workspace, &mut self.mass);
         if self.lu.factor_part(model.nv(), &self.mass, &self.free) {
             self.lu.solve(&mut push);
+            self.hold(t, model, moment, &mut push)?;
         }
         for (push, &k) in push.iter().zip(&self.free) {
             moment.a[k] = *push;
         }
         system.fill(t, t, None, scratch, moment)
+    }
+
+    /// Takes the friction that sticks off the accelerations `a` of the joints at rest.
+    fn hold(&mut self, t: f64, model: &Model, moment: &Moment, a: &mut [f64]) -> Result<(), RunError> {
+        let Self { free, limits, coulomb, lu, .. } = self;
+        coulomb.candidates.clear();
+        for (place, &k) in free.iter().enumerate().filter(|(_, k)| limits[**k] > 0.0 && moment.v[**k] == 0.0) {
+            coulomb.candidates.push(Candidate { place, limit: limits[k], slack: SLACK * limits[k], offset: 0.0 });
+        }
+        if coulomb.candidates.is_empty() {
+            return Ok(());
+        }
+        let outcome = coulomb.solve(lu, a);
+        outcome.map_err(|c| {
+            let k = free[coulomb.candidates[c].place];
+            RunError::NoHold { t, joint: model.v_labels()[k].name.clone() }
+        })
     }
 }

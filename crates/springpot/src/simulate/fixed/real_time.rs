@@ -40,7 +40,7 @@ pub enum LoopError {
 /// A robot that moves by itself under its elements, step by step, at t = 0, h, 2h, …
 ///
 /// [`Loop::advance`] does not allocate (unless it fails), and its work is the same in every step: a fixed number of Newton
-/// iterations and a constant number of exponentials. Signals of the motion (actuator forces, prescribed joints) and inputs of
+/// iterations and a constant number of exponentials; where friction sticks, a few pivots in every iteration. Signals of the motion (actuator forces, prescribed joints) and inputs of
 /// the elements act as the [`System`] says, at the stage of the method; the controller's torques come on top. Kinks of signals and
 /// break points are stepped over.
 ///

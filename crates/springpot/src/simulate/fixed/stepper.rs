@@ -6,8 +6,9 @@ use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pair_in
 use crate::law::{Response, State};
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
+use crate::simulate::coulomb::Coulomb;
 use crate::simulate::lu::Lu;
-use crate::simulate::resistance::{add_resistance, add_secants};
+use crate::simulate::resistance::{add_secants, add_smooth_resistance, holding_forces};
 use crate::simulate::{RunError, System};
 
 /// The robot at one time.
@@ -30,7 +31,11 @@ pub(super) struct Stepper<'a> {
     forward: &'a Forward,
     pub(super) method: Method,
     /// Velocities that no signal prescribes.
-    free: Vec<usize>,
+    pub(super) free: Vec<usize>,
+    /// What friction that sticks can hold at every velocity, and whether it does so at the end of the step (nv).
+    pub(super) limits: Vec<f64>,
+    pub(super) held: Vec<bool>,
+    pub(super) coulomb: Coulomb,
     pub(super) origin: Place,
     pub(super) stage: Place,
     pub(super) end: Place,
@@ -43,8 +48,8 @@ pub(super) struct Stepper<'a> {
     drives: Vec<f64>,
     workspace: Workspace,
     slopes: RneaDerivatives,
-    newton: Lu,
-    residual: Vec<f64>,
+    pub(super) newton: Lu,
+    pub(super) residual: Vec<f64>,
     tau: Vec<f64>,
     pub(super) pairs: Vec<PairForce>,
     /// Largest change of a stage's velocity in the last iteration of the last step.
@@ -95,10 +100,14 @@ impl<'a> Stepper<'a> {
             correction: 0.0,
             elements,
             free,
+            limits: holding_forces(model),
+            held: vec![false; nv],
+            coulomb: Coulomb::default(),
         };
         // Room for the factors, so that no step allocates.
         let count = stepper.free.len();
         stepper.newton.factor(count, |matrix| (0..count).for_each(|k| matrix[k * count + k] = 1.0));
+        stepper.coulomb.reserve(stepper.rubbing().count(), count);
         stepper.take_inputs(0.0)?;
         Ok(stepper)
     }
@@ -127,6 +136,7 @@ impl<'a> Stepper<'a> {
             self.a[k] = 0.0;
         }
         self.correction = 0.0;
+        self.held.fill(false);
         self.place(kappa, h);
         self.respond(h, &law)?;
         for _ in 0..ITERATIONS {
@@ -202,6 +212,12 @@ impl<'a> Stepper<'a> {
         for &k in &self.free {
             self.stage.v[k] = self.origin.v[k] + kappa * self.a[k];
             self.end.v[k] = self.origin.v[k] + h * self.a[k];
+            if self.held[k] {
+                self.end.v[k] = 0.0;
+                if ends_at_stage {
+                    self.stage.v[k] = 0.0;
+                }
+            }
             self.xi[k] = kappa * self.stage.v[k];
         }
         model.integrate_into(&self.origin.q, &self.xi, &mut self.moved);
@@ -228,7 +244,7 @@ impl<'a> Stepper<'a> {
         }
         let (stage, workspace) = (&self.stage, &mut self.workspace);
         rnea_into(self.model, &stage.q, &stage.v, &self.a, &self.pairs, workspace, &mut self.tau);
-        add_resistance(self.model, &stage.v, &mut self.tau);
+        add_smooth_resistance(self.model, &stage.v, &mut self.tau);
         for ((r, &k), drive) in self.residual.iter_mut().zip(free).zip(&self.drives) {
             *r = drive - self.tau[k];
         }
@@ -258,9 +274,10 @@ impl<'a> Stepper<'a> {
         });
         if regular {
             self.newton.solve(&mut self.residual);
+            self.rub(h)?;
         }
         self.correction = 0.0;
-        for (&k, change) in free.iter().zip(&self.residual) {
+        for (&k, change) in self.free.iter().zip(&self.residual) {
             if !(regular && change.is_finite()) {
                 return Err(self.too_long(h, k));
             }

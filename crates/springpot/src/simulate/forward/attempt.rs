@@ -47,7 +47,7 @@ impl Run<'_> {
         self.refuse_overflow(t, h)?;
         if error <= 1.0 {
             self.take_stock(to, h, on_break)?;
-            if self.has_paths {
+            if self.has_paths || self.stepper.stick.holds_any() {
                 (error, worst) = self.books_error(h, error, worst);
             }
         }

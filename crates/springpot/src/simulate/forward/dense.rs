@@ -57,6 +57,16 @@ impl Dense<'_, '_> {
         drive(model, stepper.forward, t, moment);
     }
 
+    /// Velocity `k`, which a force drives, at t = t_n + θh.
+    pub(super) fn velocity(&mut self, k: usize, theta: f64) -> f64 {
+        let (stepper, h) = (self.stepper, self.h);
+        self.take_singular(stepper.origin.t + theta * h);
+        let [_, push, _] = integrals(stepper.cubic.each_ref().map(|u| u[k]), theta);
+        let singular = self.scratch.singular.iter().zip(&stepper.elements);
+        let extra: f64 = singular.map(|(part, element)| element.share[k] * part[1]).sum();
+        stepper.origin.v[k] + h * push + extra
+    }
+
     /// Of every element, the singular force at t, its integral from the start of the step, and the integral of that.
     fn take_singular(&mut self, t: f64) {
         let (stepper, scratch) = (self.stepper, &mut *self.scratch);

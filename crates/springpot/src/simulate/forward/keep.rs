@@ -85,8 +85,12 @@ impl Run<'_> {
         stepper.restart();
         self.last = None;
         start::take_jumps(system, forward, &mut stepper.origin)?;
+        start::decide(system, forward, &mut stepper.stick, &mut stepper.origin, |e, point, _| {
+            if system.elements[e].law.order() == 1.0 { point.rate } else { book.accounts[e].derivative }
+        })?;
+        stepper.free = stepper.stick.free();
         let derivatives = regular_derivatives(book, to);
-        start::accelerate(system, forward, &mut stepper.origin, |e, point| {
+        start::accelerate(system, forward, &stepper.stick, &mut stepper.origin, |e, point| {
             if system.elements[e].law.order() == 1.0 { point.rate } else { derivatives[e] }
         })?;
         let left = book.moments[0].clone();

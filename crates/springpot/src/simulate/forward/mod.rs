@@ -12,13 +12,17 @@ mod estimate;
 mod keep;
 mod newton;
 mod scale;
+mod settle;
 mod stages;
 mod start;
 mod stepper;
+mod stick;
 mod tableau;
+mod watch;
 
 use self::drives::drive;
 use self::scale::Tolerance;
+use self::settle::Settled;
 use self::stepper::{Carried, Stepper};
 use super::book::{Book, Books, target};
 use super::{Report, Rows, RunError, Settings, Stop, System};
@@ -140,7 +144,8 @@ impl<'a> Run<'a> {
     /// The first moment and its row; returns the first step.
     fn start(&mut self) -> Result<f64, RunError> {
         let (system, settings) = (self.book.system, self.book.settings);
-        let (origin, elements) = start::origin(system, self.forward)?;
+        let (origin, elements) = start::origin(system, self.forward, &mut self.stepper.stick)?;
+        self.stepper.free = self.stepper.stick.free();
         let [moment, ..] = &mut self.book.moments;
         moment.q.copy_from_slice(&origin.q);
         moment.v.copy_from_slice(&origin.v);
@@ -220,10 +225,29 @@ impl<'a> Run<'a> {
                     h = smaller;
                 }
                 Ok(factor) => {
+                    let (whole, planned) = (size, to);
+                    let (to, size) = match self.settle(to, size)? {
+                        Settled::At { to, size } => (to, size),
+                        Settled::Shorter(smaller) => {
+                            self.book.report.rejected_steps += 1;
+                            h = smaller;
+                            continue;
+                        }
+                        Settled::AtStart => {
+                            self.stop_sliding()?;
+                            self.cross(t)?;
+                            continue;
+                        }
+                    };
+                    let (on_break, far_side) = if to == planned { (on_break, far_side) } else { (false, None) };
                     self.keep(to, size, on_break)?;
                     // A step cut short by a stop says nothing against the size chosen before.
-                    h = (size * factor).max(if size < h { h } else { 0.0 }).min(self.longest_step);
-                    if on_break || far_side.is_some() {
+                    h = (whole * factor).max(if size < h { h } else { 0.0 }).min(self.longest_step);
+                    let changes = self.stepper.stick.changes();
+                    if changes {
+                        self.stop_sliding()?;
+                    }
+                    if changes || on_break || far_side.is_some() {
                         self.cross(far_side.unwrap_or(to))?;
                     }
                 }

@@ -6,7 +6,7 @@ use crate::dynamics::{PairForce, rnea_into};
 use crate::fractional::step::MAX_NODES;
 use crate::simulate::RunError;
 use crate::simulate::book::Account;
-use crate::simulate::resistance::add_resistance;
+use crate::simulate::resistance::add_smooth_resistance;
 
 /// Newton iterations after which a step is given up.
 const MOST_ITERATIONS: u32 = 10;
@@ -55,6 +55,9 @@ impl Stepper<'_> {
                     stage.a[k] -= delta;
                 }
             }
+            if iterations == 1 && self.allowed.iter().any(|[speed, _]| *speed <= f64::MIN_POSITIVE) {
+                self.allow(h);
+            }
             let size;
             (size, worst) = self.velocity_change(h);
             let placed = size.is_finite() && self.place_stages(h);
@@ -92,7 +95,8 @@ impl Stepper<'_> {
             }
             let stage = &self.stages[i];
             rnea_into(self.model, &stage.q, &stage.v, &stage.a, &self.pairs, &mut self.workspace, &mut self.tau);
-            add_resistance(self.model, &stage.v, &mut self.tau);
+            add_smooth_resistance(self.model, &stage.v, &mut self.tau);
+            self.stick.add_sliding(&mut self.tau);
             let forces = self.free.iter().zip(&self.drives[i]);
             self.residual.extend(forces.map(|(&k, drive)| self.tau[k] - drive));
         }

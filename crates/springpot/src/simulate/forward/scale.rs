@@ -79,6 +79,9 @@ impl Stepper<'_> {
             let mass = self.slopes.d_a[k * n + k];
             let of_energy = if mass > 0.0 { ENERGY_FLOOR * (2.0 * self.energy / mass).sqrt() } else { 0.0 };
             let speed = sizes.speed(k).max(self.origin.v[k].abs()).max(of_energy);
+            // A joint that no force moved yet is measured by what this very step does.
+            let own = || self.stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
+            let speed = if speed > 0.0 { speed } else { own() };
             let travel = sizes.travel(k).max(h * speed);
             // Strokes are differences of lengths: what they lose to rounding pushes the joints.
             let push: f64 = self

@@ -135,7 +135,13 @@ impl Stepper<'_> {
                 match drive {
                     Drive::Force(signals) => {
                         for (k, signal) in v.zip(signals) {
-                            drives.push(force_at(self.model, k, signal, at)?);
+                            let force = force_at(self.model, k, signal, at)?;
+                            if !self.stick.holds(k) {
+                                drives.push(force);
+                                continue;
+                            }
+                            stage.q[q.clone()].copy_from_slice(&self.origin.q[q.clone()]);
+                            (stage.v[k], stage.a[k], stage.xi[k]) = (0.0, 0.0, 0.0);
                         }
                     }
                     Drive::Prescribed(path) => {

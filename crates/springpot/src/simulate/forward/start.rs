@@ -3,13 +3,19 @@
 use super::drives::{force_at, take_path};
 use super::scale::{Tolerance, jump_travel};
 use super::stepper::{Origin, Stepper};
+use super::stick::Stick;
 use crate::dynamics::{Kinematics, PairForce, crba, rnea};
+use crate::element::Element;
+use crate::fractional::gamma::reciprocal_gamma;
 use crate::law::{Derivative, Point};
 use crate::motion::{Drive, Forward};
 use crate::simulate::jump::refuse_jumps;
 use crate::simulate::lu::Lu;
-use crate::simulate::resistance::add_resistance;
+use crate::simulate::resistance::add_smooth_resistance;
 use crate::simulate::{RunError, System};
+
+/// When the force of a singular start is looked at, s.
+const SOON: f64 = 1e-12;
 
 /// One element where a motion starts.
 pub(super) struct ElementStart {
@@ -20,7 +26,11 @@ pub(super) struct ElementStart {
 }
 
 /// The start: prescribed joints where their signals say, and accelerations.
-pub(super) fn origin(system: &System, forward: &Forward) -> Result<(Origin, Vec<ElementStart>), RunError> {
+pub(super) fn origin(
+    system: &System,
+    forward: &Forward,
+    stick: &mut Stick,
+) -> Result<(Origin, Vec<ElementStart>), RunError> {
     let model = &system.model;
     let mut origin = Origin::new(system, forward);
     for (j, drive) in model.own_joints().zip(&forward.drives) {
@@ -28,10 +38,46 @@ pub(super) fn origin(system: &System, forward: &Forward) -> Result<(Origin, Vec<
             origin.v[model.v_range(j)].fill(0.0);
         }
     }
-    let elements = accelerate(system, forward, &mut origin, |e, point| {
-        system.elements[e].law.start_derivative(point, system.elements[e].derivative)
+    let regular = |e: usize, point: &Point| {
+        let element: &Element = &system.elements[e];
+        element.law.start_derivative(point, element.derivative)
+    };
+    decide(system, forward, stick, &mut origin, |e, point, jump| {
+        let order = system.elements[e].law.order();
+        let is_singular = system.elements[e].derivative == Derivative::RiemannLiouville && order > 0.0 && order < 1.0;
+        // Infinite at t = 0: as it is soon after.
+        let singular = if is_singular { jump * SOON.powf(-order) * reciprocal_gamma(1.0 - order) } else { 0.0 };
+        regular(e, point) + singular
     })?;
+    let elements = accelerate(system, forward, stick, &mut origin, regular)?;
     Ok((origin, elements))
+}
+
+/// Decides which joints friction holds at the origin, with the whole `derivative` of each element, of which it is told the jump of
+/// the stroke at the start of the motion.
+///
+/// # Errors
+/// [`RunError::NoHold`].
+pub(super) fn decide(
+    system: &System,
+    forward: &Forward,
+    stick: &mut Stick,
+    origin: &mut Origin,
+    derivative: impl Fn(usize, &Point, f64) -> f64,
+) -> Result<(), RunError> {
+    if stick.rubbing().next().is_none() {
+        return Ok(());
+    }
+    let model = &system.model;
+    let Balance { kinematics, elements, residual, drives, .. } = balance(system, forward, origin, derivative)?;
+    let sizes: Vec<f64> = (0..model.nv())
+        .map(|k| {
+            let pull = elements.iter().zip(&origin.forces).map(|(element, force)| (element.gradient[k] * force).abs());
+            residual[k].abs() + drives[k].abs() + pull.sum::<f64>()
+        })
+        .collect();
+    let outcome = stick.decide(&origin.v, &residual, &sizes, &crba(model, &kinematics));
+    outcome.map_err(|k| RunError::NoHold { t: origin.t, joint: model.v_labels()[k].name.clone() })
 }
 
 /// Accelerations and forces of the elements at the origin's time, whatever came before: from M a = τ − nle − Σ g F with the
@@ -39,9 +85,39 @@ pub(super) fn origin(system: &System, forward: &Forward) -> Result<(Origin, Vec<
 pub(super) fn accelerate(
     system: &System,
     forward: &Forward,
+    stick: &Stick,
     origin: &mut Origin,
     derivative: impl Fn(usize, &Point) -> f64,
 ) -> Result<Vec<ElementStart>, RunError> {
+    let Balance { kinematics, elements, mut residual, .. } =
+        balance(system, forward, origin, |e, point, _| derivative(e, point))?;
+    stick.add_sliding(&mut residual);
+    let free = stick.free();
+    let mut change: Vec<f64> = free.iter().map(|&k| -residual[k]).collect();
+    solve_mass(system, &kinematics, &free, &mut change);
+    for (&k, change) in free.iter().zip(change) {
+        origin.a[k] += change;
+    }
+    Ok(elements)
+}
+
+/// What the accelerations of prescribed joints alone leave over in the equations of motion.
+struct Balance {
+    kinematics: Kinematics,
+    elements: Vec<ElementStart>,
+    /// nle + M a + Σ g F − τ without the friction that sticks (nv).
+    residual: Vec<f64>,
+    /// τ (nv).
+    drives: Vec<f64>,
+}
+
+/// Accelerations of prescribed joints and forces of the elements at the origin's time, and what they leave over.
+fn balance(
+    system: &System,
+    forward: &Forward,
+    origin: &mut Origin,
+    derivative: impl Fn(usize, &Point, f64) -> f64,
+) -> Result<Balance, RunError> {
     let model = &system.model;
     let Origin { t, q, v, a, forces } = origin;
     let t = *t;
@@ -51,7 +127,6 @@ pub(super) fn accelerate(
             take_path(model, j, path, t, q, v, a)?;
         }
     }
-    let free = forward.free_velocities(model);
     let kinematics = Kinematics::at_velocity(model, q, v);
     let (mut elements, mut pairs) = (Vec::new(), Vec::new());
     for (e, (element, known)) in system.elements.iter().zip(forces).enumerate() {
@@ -64,26 +139,24 @@ pub(super) fn accelerate(
         element.check_inputs(t, &inputs)?;
         let stroke = pair.length - element.rest_length;
         let point = Point { t, stroke, rate: pair.rate, inputs: &inputs };
-        let force = element.law.force(&point, derivative(e, &point));
+        let jump = element.jump(pair.length);
+        let force = element.law.force(&point, derivative(e, &point, jump));
         pairs.push(PairForce { from: element.from, to: element.to, force, d_length: 0.0, d_rate: 0.0 });
         *known = force;
-        elements.push(ElementStart { stroke, jump: element.jump(pair.length), gradient });
+        elements.push(ElementStart { stroke, jump, gradient });
     }
     let mut residual = rnea(model, q, v, a, &pairs);
-    add_resistance(model, v, &mut residual);
+    add_smooth_resistance(model, v, &mut residual);
+    let mut drives = vec![0.0; model.nv()];
     for (j, drive) in model.own_joints().zip(&forward.drives) {
         if let Drive::Force(signals) = drive {
             for (k, signal) in model.v_range(j).zip(signals) {
-                residual[k] -= force_at(model, k, signal, t)?;
+                drives[k] = force_at(model, k, signal, t)?;
+                residual[k] -= drives[k];
             }
         }
     }
-    let mut change: Vec<f64> = free.iter().map(|&k| -residual[k]).collect();
-    solve_mass(system, &kinematics, &free, &mut change);
-    for (&k, change) in free.iter().zip(change) {
-        a[k] += change;
-    }
-    Ok(elements)
+    Ok(Balance { kinematics, elements, residual, drives })
 }
 
 /// Takes over what prescribed joints jump to at the origin's time. A velocity that jumps takes an impulse of its actuator, and the

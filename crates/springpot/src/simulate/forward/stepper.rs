@@ -1,6 +1,7 @@
 //! What one step of Radau IIA(5) in the accelerations works on: its start, its stages, its elements.
 
 use super::scale::{Sizes, Tolerance};
+use super::stick::{Sliding, Stick};
 use super::tableau::A;
 use crate::dynamics::{Kinematics, Pair, PairForce, RneaDerivatives, Workspace};
 use crate::fractional::step::{MAX_NODES, lagrange_row};
@@ -98,6 +99,7 @@ pub(super) struct Carried {
     is_singular: bool,
     singular_before: Vec<f64>,
     contraction: f64,
+    sliding: Sliding,
     sizes: Sizes,
 }
 
@@ -108,7 +110,9 @@ pub(super) struct Stepper<'a> {
     pub(super) forward: &'a Forward,
     pub(super) tolerance: Tolerance,
     pub(super) rtol: f64,
-    /// Velocities that no signal prescribes.
+    /// Friction that sticks.
+    pub(super) stick: Stick,
+    /// Velocities that no signal prescribes and no friction holds.
     pub(super) free: Vec<usize>,
     /// The coordinate that each velocity moves; none for those of floating joints.
     pub(super) coordinates: Vec<Option<usize>>,
@@ -192,6 +196,7 @@ impl<'a> Stepper<'a> {
             forward,
             tolerance,
             rtol,
+            stick: Stick::new(model, forward),
             free: forward.free_velocities(model),
             coordinates: coordinates(model),
             origin: Origin::new(system, forward),
@@ -274,15 +279,18 @@ impl<'a> Stepper<'a> {
             is_singular: self.is_singular,
             singular_before: self.elements.iter().map(|element| element.singular_before).collect(),
             contraction: self.contraction,
+            sliding: self.stick.sliding.clone(),
             sizes: self.sizes.clone(),
         }
     }
 
     /// Goes on from what was carried.
     pub(super) fn restore(&mut self, carried: Carried) {
-        let Carried { origin, cubic, last, is_singular, singular_before, contraction, sizes } = carried;
+        let Carried { origin, cubic, last, is_singular, singular_before, contraction, sliding, sizes } = carried;
         (self.origin, self.cubic, self.last) = (origin, cubic, last);
         (self.is_singular, self.contraction, self.linearised) = (is_singular, contraction, false);
+        self.stick.sliding = sliding;
+        self.free = self.stick.free();
         self.sizes = sizes;
         for (element, before) in self.elements.iter_mut().zip(singular_before) {
             element.singular_before = before;

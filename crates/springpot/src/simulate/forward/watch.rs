@@ -1,0 +1,235 @@
+//! When joints stop, break away and turn round within a step that was just solved.
+
+use super::Run;
+use super::dense::Dense;
+use crate::fractional::step::{MAX_NODES, lagrange_row};
+use crate::motion::Drive;
+use crate::simulate::RunError;
+use crate::simulate::moment::Moment;
+use crate::simulate::zero::{SAMPLES, first_zero};
+
+/// Where holding forces are looked at besides the nodes: between them.
+const BETWEEN: [f64; 3] = [0.07, 0.4, 0.83];
+
+/// Steps this short, as a share of the run, are taken as they are.
+const SHORT: f64 = 1e-10;
+
+/// Share of rtol that a change may be off, in units of the largest velocity of the step or of the limit.
+const SHARE: f64 = 1e-3;
+
+/// A prescribed velocity below this share of its largest is at rest.
+const AT_REST: f64 = 1e-9;
+
+/// Where a velocity that leaves rest is first looked at.
+const START: f64 = 1e-9;
+
+/// What may happen to a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Change {
+    /// Velocity `k`, which has the sign `direction`, comes to rest.
+    Stop { k: usize, direction: f64 },
+    /// Velocity `k` is no longer held against a force of the sign `direction`.
+    BreakAway { k: usize, direction: f64 },
+    /// A joint that signals move turns round.
+    Reversal,
+}
+
+/// What is seen of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Look {
+    /// Nothing changes.
+    Nothing,
+    /// Holding forces cannot be followed over so long a step.
+    Unclear,
+    /// The first change is at θ.
+    Within(f64, Change),
+    /// What changes does so at the end, and is noted with the stick.
+    AtEnd,
+}
+
+/// A holding force at the start and at the nodes of a step.
+struct Holding {
+    /// Coefficients of θ^p of the cubic through the values.
+    cubic: [f64; MAX_NODES + 1],
+    /// The force that breaks it, and how near a change has to be.
+    breaking: f64,
+    tolerance: f64,
+}
+
+impl Run<'_> {
+    /// The first change in the step up to `to`, of size `h`; stock of it has been taken.
+    pub(super) fn look(&mut self, to: f64, h: f64) -> Result<Look, RunError> {
+        self.stepper.stick.forget_changes();
+        let mut first: Option<(f64, Change)> = None;
+        let mut note = |theta: f64, change: Change| {
+            if first.is_none_or(|(earliest, _)| theta < earliest) {
+                first = Some((theta, change));
+            }
+        };
+        let rubbing: Vec<(usize, i8)> = self.stepper.stick.rubbing().collect();
+        for &(k, direction) in rubbing.iter().filter(|(_, direction)| *direction != 0) {
+            let change = Change::Stop { k, direction: f64::from(direction) };
+            let (at_end, before) = (self.value(change, h, 1.0), self.value(change, h, 0.999));
+            if at_end.abs() <= self.near_rest(k) && at_end < before {
+                self.stepper.stick.stopping.push(k);
+            } else if let Some(theta) = self.first_zero_of(change, h) {
+                note(theta, change);
+            }
+        }
+        if rubbing.iter().any(|(_, direction)| *direction == 0) {
+            let between = self.look_between(to, h)?;
+            for &(k, _) in rubbing.iter().filter(|(_, direction)| *direction == 0) {
+                let holding = self.holding(k);
+                let limit = self.stepper.stick.limit(k);
+                let off = BETWEEN.iter().zip(&between).map(|(theta, forces)| (holding.at(*theta) - forces[k]).abs());
+                let off = off.fold(0.0, f64::max);
+                let largest = (0..=SAMPLES).map(|i| holding.at(i as f64 / SAMPLES as f64).abs()).fold(0.0, f64::max);
+                if largest + 4.0 * off <= limit {
+                    continue;
+                }
+                let clear = self.book.settings.rtol.sqrt().clamp(1e-6, 1e-2);
+                if !(off <= clear * limit || h <= SHORT * self.book.settings.end) {
+                    return Ok(Look::Unclear);
+                }
+                for direction in [1.0, -1.0] {
+                    let change = Change::BreakAway { k, direction };
+                    let at_end = holding.margin(direction, 1.0);
+                    if at_end.abs() <= 0.5 * holding.tolerance && holding.margin(direction, 0.999) > at_end {
+                        self.stepper.stick.breaks_away = true;
+                    } else if let Some(theta) = first_zero(|theta| holding.margin(direction, theta)) {
+                        note(theta, change);
+                    }
+                }
+            }
+        }
+        if let Some(theta) = self.first_reversal(h) {
+            note(theta, Change::Reversal);
+        }
+        Ok(match first {
+            Some((theta, change)) => Look::Within(theta, change),
+            None if self.stepper.stick.changes() => Look::AtEnd,
+            None => Look::Nothing,
+        })
+    }
+
+    /// How far from its change a joint is at θ; negative behind it.
+    pub(super) fn value(&mut self, change: Change, h: f64, theta: f64) -> f64 {
+        match change {
+            Change::Stop { k, direction } => {
+                let Self { stepper, starts, scratch, .. } = self;
+                direction * Dense { stepper, h, starts, scratch }.velocity(k, theta)
+            }
+            Change::BreakAway { k, direction } => self.holding(k).margin(direction, theta),
+            Change::Reversal => 0.0,
+        }
+    }
+
+    fn first_zero_of(&mut self, change: Change, h: f64) -> Option<f64> {
+        let Change::Stop { k, .. } = change else { return None };
+        // A joint that was at rest is to leave it: over θ, so that the start is no zero.
+        let from_rest = self.stepper.origin.v[k] == 0.0;
+        first_zero(|theta| {
+            if from_rest {
+                let theta = theta.max(START);
+                self.value(change, h, theta) / theta
+            } else {
+                self.value(change, h, theta)
+            }
+        })
+    }
+
+    /// A velocity of a joint that slides that counts as rest.
+    fn near_rest(&self, k: usize) -> f64 {
+        let nodes = self.stepper.stages.iter().map(|stage| stage.v[k].abs());
+        SHARE * self.book.settings.rtol * nodes.fold(self.stepper.origin.v[k].abs(), f64::max)
+    }
+
+    /// The force with which friction holds velocity `k` at the start and at the nodes.
+    fn holding(&self, k: usize) -> Holding {
+        let (book, elements) = (&self.book, &self.stepper.elements);
+        let (mut values, mut size) = ([0.0; MAX_NODES + 1], 0.0f64);
+        for (i, (value, moment)) in values.iter_mut().zip(&book.moments).enumerate() {
+            let driven = moment.driven[k].unwrap_or(0.0);
+            let (mut pull, mut terms) = (0.0, driven.abs() + moment.rigid[k].abs());
+            for (e, element) in book.system.elements.iter().enumerate() {
+                let force = match i {
+                    0 => element.force_at_start(&moment.elements[e].point(moment.t), book.accounts[e].derivative),
+                    MAX_NODES => book.steps[e].end.force,
+                    _ => elements[e].response.force[i - 1],
+                };
+                let share = force * moment.elements[e].gradient[k];
+                pull += share;
+                terms += share.abs();
+            }
+            *value = driven - moment.rigid[k] - pull;
+            size = if terms.is_finite() { size.max(terms) } else { size };
+        }
+        // At a singular start nothing is known.
+        if !values[0].is_finite() {
+            values[0] = values[1];
+        }
+        let cubic = std::array::from_fn(|p| (0..=MAX_NODES).map(|i| lagrange_row(i)[p] * values[i]).sum());
+        let stick = &self.stepper.stick;
+        let tolerance = SHARE * self.book.settings.rtol * stick.limit(k);
+        Holding { cubic, breaking: stick.breaking(k, size) + 0.5 * tolerance, tolerance }
+    }
+
+    /// The forces (nv) with which friction would hold every velocity, between the nodes.
+    fn look_between(&mut self, to: f64, h: f64) -> Result<[Vec<f64>; 3], RunError> {
+        let system = self.book.system;
+        let mut moment = self.stepper.stick.spare.take().unwrap_or_else(|| Moment::new(system));
+        let mut forces: [Vec<f64>; 3] = Default::default();
+        for (theta, forces) in BETWEEN.into_iter().zip(&mut forces) {
+            let Self { book, stepper, starts, scratch, .. } = self;
+            let at = (stepper.origin.t + theta * h).min(to);
+            Dense { stepper, h, starts, scratch }.place(at, theta, &mut moment);
+            system.fill(at, at, None, &mut book.scratch, &mut moment)?;
+            let pulls: Vec<f64> =
+                (0..system.elements.len()).map(|e| book.element_row(e, theta, &moment).observation.force).collect();
+            forces.extend((0..system.model.nv()).map(|k| {
+                let pull = pulls.iter().zip(&moment.elements).map(|(force, element)| force * element.gradient[k]);
+                moment.driven[k].unwrap_or(0.0) - moment.rigid[k] - pull.sum::<f64>()
+            }));
+        }
+        self.stepper.stick.spare = Some(moment);
+        Ok(forces)
+    }
+
+    /// Where the first joint turns round that signals move against friction that sticks.
+    fn first_reversal(&self, h: f64) -> Option<f64> {
+        let (t, stepper) = (self.stepper.origin.t, &self.stepper);
+        let mut first: Option<f64> = None;
+        for (j, drive) in stepper.model.own_joints().zip(&stepper.forward.drives) {
+            let Drive::Prescribed(path) = drive else { continue };
+            if !stepper.stick.led().contains(&j) {
+                continue;
+            }
+            let velocity = |theta: f64| {
+                let [mut q, mut v, mut a] = [[0.0]; 3];
+                path.at(t + theta * h, &mut q, &mut v, &mut a);
+                v[0]
+            };
+            let nodes = stepper.stages.each_ref().map(|stage| stage.v[stepper.model.v_range(j).start]);
+            let largest = nodes.into_iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
+            // At the start it may have turned round just now.
+            let early = velocity(0.25 / SAMPLES as f64);
+            if nodes[MAX_NODES - 1].abs() <= AT_REST * largest || early == 0.0 {
+                continue;
+            }
+            let zero = first_zero(|theta| early.signum() * velocity(theta.max(0.25 / SAMPLES as f64)));
+            first = first.into_iter().chain(zero).reduce(f64::min);
+        }
+        first
+    }
+}
+
+impl Holding {
+    fn at(&self, theta: f64) -> f64 {
+        self.cubic.iter().rev().fold(0.0, |sum, c| sum * theta + c)
+    }
+
+    /// What is missing to break away in a direction.
+    fn margin(&self, direction: f64, theta: f64) -> f64 {
+        self.breaking - direction * self.at(theta)
+    }
+}
