@@ -134,3 +134,17 @@ fn short_runs_are_looked_through_as_quickly_as_long_ones() {
         }
     }
 }
+
+#[test]
+fn steady_swings_are_seen_at_a_glance() {
+    let begun = std::time::Instant::now();
+    for (text, is_position) in
+        [("0.1*sin(5e5*t)", true), ("cos(3e6*t)*sin(t)", false), ("1e-6*sin(3e5*t)+sin(t)", true)]
+    {
+        let agenda = look(text, 100.0, is_position);
+        let step = agenda.finest().unwrap();
+        assert!(step > 1e-8 && step < 3e-6, "{text}: {step}");
+        assert!((0..50).all(|k| agenda.reach(2.0 * f64::from(k), 0.2) <= 4.0 * step), "{text}");
+    }
+    assert!(begun.elapsed().as_secs_f64() < 5.0);
+}

@@ -23,6 +23,10 @@ const FINEST_KINK: f64 = 1.0 / (1u64 << 42) as f64;
 /// Cells after which a signal is given up: a run would take as many steps.
 const MOST_CELLS: u64 = 20_000_000;
 
+/// A settled cell that asks for more steps than this is tried for evenness, and where in it.
+const MANY: f64 = 1.0 / 64.0;
+const PROBES: [f64; 5] = [0.13, 0.37, 0.61, 0.83, 0.97];
+
 /// Cells between two looks at the flag that interrupts.
 const PATIENCE: u64 = 1 << 12;
 
@@ -325,7 +329,7 @@ impl<'a> Scan<'a> {
             left = right;
             while let Some(cell) = open.pop() {
                 self.cells += 1;
-                if self.cells % PATIENCE == 0 && self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+                if self.cells.is_multiple_of(PATIENCE) && self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
                     return Err(AgendaError::Interrupted);
                 }
                 if self.cells > MOST_CELLS {
@@ -356,7 +360,8 @@ impl<'a> Scan<'a> {
             return;
         }
         let middle = a + 0.5 * width;
-        let halve = |finest: f64| width > finest * self.end && a < middle && middle < b;
+        let end = self.end;
+        let halve = |finest: f64| width > finest * end && a < middle && middle < b;
         if look.is_unsettled && !halve(FINEST_KINK) {
             // A kink that turns back at once, or several at the same time.
             self.kinks.push(b);
@@ -369,7 +374,7 @@ impl<'a> Scan<'a> {
             false if !self.signal.value(middle).is_finite() => f64::INFINITY,
             false => self.room(&series, width),
         };
-        if look.is_unsettled || (room < 1.0 && halve(FINEST)) {
+        if look.is_unsettled || (room < 1.0 && halve(FINEST) && !self.is_even(cell, room)) {
             let branch = if self.expression.has_kinks() { self.expression.branch(middle) } else { 0 };
             open.push(Cell { a: middle, b, sides: [branch, right] });
             open.push(Cell { a, b: middle, sides: [left, branch] });
@@ -377,37 +382,51 @@ impl<'a> Scan<'a> {
         }
         let [value, rate] = series.middle();
         self.take(value, rate, width);
-        self.close(a, width * room.max(1.0));
+        // What cannot be halved any more is stepped over as it is.
+        self.close(a, if room < 1.0 && !halve(FINEST) { width } else { width * room });
     }
 
-    /// The longest step, in units of the cell's width, from which the signal hides nothing; below 1 where the cell itself hides something.
+    /// The longest step, in units of the cell's width, from which the signal hides nothing.
     ///
     /// With f_k bounds of f^(k)/k! over a cell of width w, f departs by (w/2)^k·(width of f_k)/2 from a polynomial of degree k, and
-    /// by 2(w/4)^4·|f_4| from a cubic.
+    /// by 2(w/4)^4·|f_4| from a cubic; in shorter steps by as much less as the order says.
     fn room(&self, series: &Series, width: f64) -> f64 {
         let first = usize::from(self.is_position);
         let bounds = |k: usize| series.at[k + first].scale(if self.is_position { (k + 1) as f64 } else { 1.0 });
         let rounding = 64.0 * f64::EPSILON * bounds(0).magnitude();
         let room = |departs: f64, order: f64| {
-            if departs <= rounding {
-                return f64::INFINITY;
-            }
             let value = self.tolerance * self.used.range() / departs;
             let integral = self.tolerance * self.used.integral / (departs * width);
-            if value < 1.0 || integral < 1.0 {
-                value.min(integral)
+            if departs <= rounding {
+                f64::INFINITY
+            } else if order == 0.0 {
+                // Of the range alone nothing follows for other steps.
+                f64::from(value >= 1.0 && integral >= 1.0)
             } else {
-                // Bounds of a cell say nothing about others but through their order.
                 value.powf(1.0 / order).min(integral.powf(1.0 / (order + 1.0)))
             }
         };
-        let even = (0..4).map(|k| {
-            let departs = (0.5 * width).powi(k as i32) * bounds(k).radius();
-            if k == 0 && departs > 0.0 { room(departs, f64::INFINITY) } else { room(departs, (k as f64).max(1.0)) }
-        });
+        let even = (0..4).map(|k| room((0.5 * width).powi(k as i32) * bounds(k).radius(), k as f64));
         let cubic = room(2.0 * (0.25 * width).powi(4) * bounds(4).magnitude(), 4.0);
         // Of NaN, which stands for no bound, nothing is taken.
         even.fold(if cubic.is_nan() { 0.0 } else { cubic }, f64::max)
+    }
+
+    /// Whether the signal needs steps of about `room` of a settled cell nearly everywhere in it, as a steady swing does: then it need
+    /// not be looked at swing by swing.
+    fn is_even(&self, Cell { a, b, .. }: Cell, room: f64) -> bool {
+        if room > MANY || room == 0.0 {
+            return false;
+        }
+        let step = (b - a) * room;
+        let needs = PROBES.into_iter().filter(|share| {
+            let from = a + share * (b - a - step);
+            let sides = [from, from + step].map(|t| self.expression.branch(t));
+            let look = self.expression.look(from, from + step, sides);
+            let series = look.series.scaled(self.signal.scale, self.signal.offset);
+            self.room(&series, step) <= 3.0
+        });
+        needs.count() + 1 >= PROBES.len()
     }
 
     /// A cell that hides nothing, whose steps may be this long.

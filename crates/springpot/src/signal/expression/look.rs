@@ -106,8 +106,8 @@ impl Expression {
     pub(in crate::signal) fn kink_argument(&self, bit: u64, t: f64) -> (f64, f64) {
         // The argument is what stands on the stack when the kink's turn comes: the program up to there leaves it on top.
         let wanted = bit.trailing_zeros() as usize;
-        let kinks = self.program.iter().enumerate().filter(|(_, op)| op.has_kink());
-        let Some((at, &op)) = kinks.map(|(at, op)| (at, op)).nth(wanted) else { return (f64::NAN, f64::NAN) };
+        let mut kinks = self.program.iter().enumerate().filter(|(_, op)| op.has_kink());
+        let Some((at, &op)) = kinks.nth(wanted) else { return (f64::NAN, f64::NAN) };
         let mut stack = [Jet::time(t); MAX_STACK];
         let mut top = 0;
         for &op in &self.program[..at] {
