@@ -8,7 +8,7 @@ use crate::run::in_case;
 use crate::{Ending, diagnostic, plain, printed, terminal};
 use springpot::law::{Catalog, Entry};
 use springpot::scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan, json_schema};
-use springpot::simulate::{ElementStart, RowTimes, RunError, System};
+use springpot::simulate::{ElementStart, RowTimes, RunError, Stop, System};
 use springpot::sweep::Layout;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -52,6 +52,13 @@ fn describe(file: &Path, options: &CheckOptions) -> Result<Ending, Refusals> {
     let mut warnings = Warnings::new(&plan);
     let mut failures: Vec<(usize, RunError)> = Vec::new();
     let mut first: Option<Vec<ElementStart>> = None;
+    let switches = match plan.solver.fixed_step {
+        Some(_) => 0,
+        None => system.switches(&plan.settings(), &Stop::new(false)).unwrap_or_else(|error| {
+            failures.push((0, error));
+            0
+        }),
+    };
     for index in looked_at(&cases, &plan) {
         let case = if index == 0 { None } else { Some(cases.plan(index)?) };
         let case_system = case.as_ref().map(Plan::system);
@@ -70,7 +77,7 @@ fn describe(file: &Path, options: &CheckOptions) -> Result<Ending, Refusals> {
     }
     let ending = match options.quiet {
         true => Ending::Done,
-        false => printed(terminal::try_print(&text(&cases, &plan, first.as_deref(), &warnings))),
+        false => printed(terminal::try_print(&text(&cases, &plan, first.as_deref(), switches, &warnings))),
     };
     warnings.print(&cases);
     if let Some((index, failure)) = failures.first() {
@@ -104,7 +111,7 @@ fn path_failure(plan: &Plan, system: &System) -> Option<RunError> {
 }
 
 /// The description of a scenario.
-fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, warnings: &Warnings) -> String {
+fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u64, warnings: &Warnings) -> String {
     let width = terminal::stdout_width().or(Some(80));
     let mut text = String::new();
     let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, width));
@@ -116,6 +123,9 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, warnings: &W
         line("", &joint);
     }
     line("motion", &format!("{}, 0 to {} s", plan.motion.kind(), short(plan.time.end)));
+    if switches > 0 {
+        line("signals", &format!("{}, each of which ends a step", count(switches, "kink or jump", "kinks and jumps")));
+    }
     line("rows", &rows(&plan.time.rows));
     line("accuracy", &format!("rtol {}, memory_rtol {}", short(plan.solver.rtol), short(plan.solver.memory_rtol)));
     if cases.axis_count() > 0 {

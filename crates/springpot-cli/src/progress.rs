@@ -1,25 +1,30 @@
 //! The progress bar on stderr, when it is a terminal.
 
+use crate::numbers::brief;
 use crate::signals;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use springpot::sweep::Progress;
 use std::fmt::Write;
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Runs shorter than this show no bar.
 const PATIENCE: Duration = Duration::from_millis(300);
 const REFRESH: Duration = Duration::from_millis(100);
 
-/// Shows rows written of rows wanted while `work` runs.
-pub(crate) fn show_while<T>(wanted: u64, rows: &AtomicU64, quiet: bool, work: impl FnOnce() -> T) -> T {
+/// Switches of the signals from which on they are told: each ends a step.
+const MANY_SWITCHES: u64 = 10_000;
+
+/// Shows rows written of rows wanted while `work` runs, and how far it has come on the way to `end`, s, where signals switch often.
+pub(crate) fn show_while<T>(wanted: u64, end: f64, progress: &Progress, quiet: bool, work: impl FnOnce() -> T) -> T {
     if quiet || !std::io::stderr().is_terminal() {
         return work();
     }
     let finished = AtomicBool::new(false);
     std::thread::scope(|scope| {
         // Without a thread to show it, the work still goes on.
-        let watcher = std::thread::Builder::new().spawn_scoped(scope, || watch(wanted, rows, &finished)).ok();
+        let watcher = std::thread::Builder::new().spawn_scoped(scope, || watch(wanted, end, progress, &finished)).ok();
         let result = work();
         finished.store(true, Ordering::Relaxed);
         if let Some(watcher) = watcher {
@@ -29,7 +34,7 @@ pub(crate) fn show_while<T>(wanted: u64, rows: &AtomicU64, quiet: bool, work: im
     })
 }
 
-fn watch(wanted: u64, rows: &AtomicU64, finished: &AtomicBool) {
+fn watch(wanted: u64, end: f64, progress: &Progress, finished: &AtomicBool) {
     std::thread::park_timeout(PATIENCE);
     if finished.load(Ordering::Relaxed) {
         return;
@@ -38,9 +43,13 @@ fn watch(wanted: u64, rows: &AtomicU64, finished: &AtomicBool) {
     bar.set_style(style());
     while !finished.load(Ordering::Relaxed) {
         // Cases of a sweep over the end or the output step have other numbers of rows than the first.
-        bar.set_position(rows.load(Ordering::Relaxed).min(wanted));
+        bar.set_position(progress.rows.load(Ordering::Relaxed).min(wanted));
+        let switches = progress.switches.load(Ordering::Relaxed);
         if signals::stop().load(Ordering::Relaxed) {
             bar.set_message(", stopping");
+        } else if switches >= MANY_SWITCHES {
+            let (t, switches) = (brief(progress.t()), HumanCount(switches));
+            bar.set_message(format!(", t = {t} of {} s, {switches} switches to follow", brief(end)));
         }
         std::thread::park_timeout(REFRESH);
     }

@@ -9,13 +9,13 @@ use crate::arguments::RunOptions;
 use crate::numbers::count;
 use crate::{Ending, diagnostic, figures, progress, signals, terminal};
 use springpot::scenario::Cases;
-use springpot::sweep::{self, Options, Status, SweepError};
+use springpot::sweep::{self, Options, Progress, Status, SweepError};
 use springpot::table::Format;
 use springpot::table::disk::Disk;
 use springpot::table::folder::FolderError;
 use std::io;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Limits of joints that are named one by one.
@@ -115,14 +115,15 @@ fn to_go_on(out: &Path) -> String {
 /// Runs all cases, draws the figures, writes the record, and puts all of it in place.
 fn execute(options: &RunOptions, prepared: Prepared) -> Result<Finished, Stopped> {
     let Prepared { cases, plan, system, layout, mut folder, checkpoints, figures, format } = prepared;
-    let rows = AtomicU64::new(0);
+    let done = Progress::default();
     let wanted = (cases.len() as u64).saturating_mul(plan.time.rows.count() as u64);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = options.jobs.map_or(cores, usize::from);
-    let sweep_options = Options { jobs, stop: signals::stop(), rows: &rows, checkpoints: checkpoints.as_ref() };
-    let outcome =
-        progress::show_while(wanted, &rows, options.quiet, || sweep::run(&cases, &layout, &mut folder, sweep_options))?;
-    let (rows, end) = (rows.load(Ordering::Relaxed), plan.time.end);
+    let sweep_options = Options { jobs, stop: signals::stop(), progress: &done, checkpoints: checkpoints.as_ref() };
+    let outcome = progress::show_while(wanted, plan.time.end, &done, options.quiet, || {
+        sweep::run(&cases, &layout, &mut folder, sweep_options)
+    })?;
+    let (rows, end) = (done.rows.load(Ordering::Relaxed), plan.time.end);
 
     let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
     let is_put = match outcome.status {

@@ -36,6 +36,16 @@ impl Finished {
             let more = count(more, "more limit of a joint is", "more limits of joints are");
             diagnostic::warning(format!("{more} passed; run.json says which"), None);
         }
+        // Runs that choose their steps have failed by then.
+        let unbalanced = || outcome.cases.iter().filter(|case| case.error.is_none() && !case.report.is_balanced());
+        if let Some(case) = unbalanced().next() {
+            let (residual, of) =
+                (case.report.energy_residual.unwrap_or(0.0), case.report.energy_turned_over.unwrap_or(0.0));
+            let (residual, of) = (rough(residual), rough(of));
+            let message = format!("the energy balance is off by {residual} J of {of} J turned over");
+            let message = in_cases(cases, ran, case.index, unbalanced().count(), &message);
+            diagnostic::warning(message, Some("take a shorter solver.step".to_owned()));
+        }
     }
 
     /// What failed, and how far an interrupted run came.

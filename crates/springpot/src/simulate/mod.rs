@@ -69,9 +69,10 @@ pub struct Settings {
     pub end: f64,
     /// When rows are written.
     pub rows: RowTimes,
-    /// Relative tolerance of every D^alpha x, in units of its largest value so far.
+    /// Relative tolerance of every D^alpha x, in units of its largest value so far; of forward runs that of the motion, in units of its
+    /// largest travel and speed so far.
     pub rtol: f64,
-    /// Absolute tolerance of D^alpha x; `None`: the relative one alone.
+    /// Errors below this are not looked at: of D^alpha x, in forward runs of q and v. `None`: the relative tolerance alone.
     pub atol: Option<f64>,
     /// Relative tolerance of the kernels.
     pub memory_rtol: f64,
@@ -120,6 +121,9 @@ pub trait Rows {
     /// # Errors
     /// Whatever keeps the row from being kept; the run stops.
     fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
+
+    /// Before the first row, how often the signals of the run will switch ([`Report::switches`]).
+    fn looked_ahead(&mut self, _switches: u64) {}
 
     /// Whether [`Self::checkpoint`] is to be called now, at time `t` between two steps; `last` where the run stops here because it
     /// was interrupted. Asking changes nothing about the steps.

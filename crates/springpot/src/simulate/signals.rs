@@ -1,6 +1,7 @@
 //! The signals that drive a run, and what they ask of its steps.
 
-use super::{Report, RunError, Settings, System};
+use super::book::Book;
+use super::{RunError, Settings, System};
 use crate::motion::{Drive, Motion};
 use crate::signal::agenda::FINEST;
 use crate::signal::{Agenda, AgendaError, Signal, Watched};
@@ -39,6 +40,14 @@ impl System {
             return Err(RunError::TooBusy { what: "the motion".to_owned(), times: least, limit });
         }
         Ok(agenda)
+    }
+
+    /// How often the signals of a run that chooses its steps switch, as [`super::run`] finds out before its first row; `stop` interrupts.
+    ///
+    /// # Errors
+    /// [`RunError::TooBusy`] where a signal changes more often than the run may take steps, [`RunError::Interrupted`].
+    pub fn switches(&self, settings: &Settings, stop: &AtomicBool) -> Result<u64, RunError> {
+        Ok(self.agenda(settings, settings.end, stop)?.switches())
     }
 
     /// The first time from t on at which no sign turns, whose value there belongs to no step.
@@ -104,11 +113,12 @@ impl System {
     }
 }
 
-impl Report {
-    /// Takes in what was seen of the signals of a run to `end`.
-    pub(super) fn take_agenda(&mut self, agenda: &Agenda, end: f64) {
-        self.switches = Some(agenda.switches());
-        self.resolution = Some(FINEST * end);
+impl Book<'_> {
+    /// Takes in what was seen of the signals.
+    pub(super) fn take_agenda(&mut self, agenda: &Agenda) {
+        self.report.switches = Some(agenda.switches());
+        self.report.resolution = Some(FINEST * self.settings.end);
+        self.rows.looked_ahead(agenda.switches());
     }
 }
 

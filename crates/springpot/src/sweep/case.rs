@@ -122,7 +122,7 @@ fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<Ca
     }
     let curves = kept.map(Kept::into_curves);
     let CaseDone { index, written, report, error, no_ledger, limits } = done;
-    sweep.options.rows.fetch_add(report.rows, Ordering::Relaxed);
+    sweep.options.progress.rows.fetch_add(report.rows, Ordering::Relaxed);
     Ok(CaseResult { index, report, error, interrupted: false, wall: written.wall, no_ledger, limits, curves })
 }
 

@@ -34,10 +34,32 @@ pub struct Options<'a> {
     pub jobs: usize,
     /// Set from outside to interrupt.
     pub stop: &'a Stop,
-    /// Rows written so far, over all cases; counted as the run goes.
-    pub rows: &'a AtomicU64,
+    /// How far the run has come.
+    pub progress: &'a Progress,
     /// Keeps what it takes to go on later, or goes on.
     pub checkpoints: Option<&'a Checkpoints>,
+}
+
+/// How far a run has come, for others to watch.
+#[derive(Debug, Default)]
+pub struct Progress {
+    /// Rows written so far, over all cases.
+    pub rows: AtomicU64,
+    /// The most switches of the signals of one case so far.
+    pub switches: AtomicU64,
+    /// The bits of the time, s, that some case has reached.
+    t: AtomicU64,
+}
+
+impl Progress {
+    /// The time that some case has reached, s.
+    pub fn t(&self) -> f64 {
+        f64::from_bits(self.t.load(Ordering::Relaxed))
+    }
+
+    fn reach(&self, t: f64) {
+        self.t.store(t.to_bits(), Ordering::Relaxed);
+    }
 }
 
 /// How a sweep ended.

@@ -85,7 +85,7 @@ impl<'a> Output<'a> {
         if let Some(curves) = &mut output.kept {
             checkpoints.kept(index, kept, curves.width(), &mut |values| curves.again(values))?;
         }
-        sweep.options.rows.fetch_add(state.run.rows() as u64, Ordering::Relaxed);
+        sweep.options.progress.rows.fetch_add(state.run.rows() as u64, Ordering::Relaxed);
         Ok(output)
     }
 
@@ -150,14 +150,19 @@ impl Rows for CaseRows<'_, '_> {
             }
         }
         self.watch.see(row);
-        self.output.sweep.options.rows.fetch_add(1, Ordering::Relaxed);
+        self.output.sweep.options.progress.rows.fetch_add(1, Ordering::Relaxed);
         if self.output.text.len() >= CHUNK || self.output.handed_over.elapsed() > PATIENCE {
             self.output.hand_over()?;
         }
         Ok(())
     }
 
+    fn looked_ahead(&mut self, switches: u64) {
+        self.output.sweep.options.progress.switches.fetch_max(switches, Ordering::Relaxed);
+    }
+
     fn wants_checkpoint(&mut self, t: f64, last: bool) -> bool {
+        self.output.sweep.options.progress.reach(t);
         self.output.files.as_ref().is_some_and(|files| last || files.is_due(t))
     }
 

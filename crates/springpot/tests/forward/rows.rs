@@ -1,10 +1,10 @@
 //! Rows and threads change nothing.
 
 use crate::support::{cases, every, falling};
-use springpot::sweep::{self, Layout, Options};
+use springpot::sweep::{self, Layout, Options, Progress};
 use springpot::table::disk::Disk;
 use springpot::table::folder::{Folder, Targets};
-use std::sync::atomic::{AtomicBool, AtomicU64};
+use std::sync::atomic::AtomicBool;
 
 #[test]
 fn a_sweep_gives_the_same_bytes_for_any_number_of_threads() {
@@ -23,10 +23,14 @@ fn a_sweep_gives_the_same_bytes_for_any_number_of_threads() {
             let out = tempfile::tempdir().unwrap();
             let mut folder = Folder::open(out.path(), Disk::default(), "a test").unwrap();
             folder.begin(Targets { figures: &[], checkpoints: false, is_input: &|_| false }).unwrap();
-            let (stop, rows) = (AtomicBool::new(false), AtomicU64::new(0));
-            let outcome =
-                sweep::run(&cases, &layout, &mut folder, Options { jobs, stop: &stop, rows: &rows, checkpoints: None })
-                    .unwrap();
+            let (stop, progress) = (AtomicBool::new(false), Progress::default());
+            let outcome = sweep::run(
+                &cases,
+                &layout,
+                &mut folder,
+                Options { jobs, stop: &stop, progress: &progress, checkpoints: None },
+            )
+            .unwrap();
             assert_eq!(outcome.done, 18);
             std::fs::read(out.path().join("results.csv.part")).unwrap()
         })

@@ -30,7 +30,7 @@ impl Run<'_> {
             self.book.add_actuator_power(e, t, h);
             let alpha = self.book.system.elements[e].law.order();
             let scale = self.book.scale_with_step(e, to);
-            let allowed = self.book.settings.atol.unwrap_or(0.0) + self.book.settings.rtol * scale;
+            let allowed = self.book.settings.atol.unwrap_or(0.0).max(self.book.settings.rtol * scale);
             let share = if defect == 0.0 { 0.0 } else { defect / allowed };
             if share > error.memory {
                 error = StepError { memory: share, alpha, element: Some(e), ..error };

@@ -69,7 +69,7 @@ pub(in crate::simulate) struct StepPowers {
 pub(in crate::simulate) struct Book<'a> {
     pub(in crate::simulate) system: &'a System,
     pub(in crate::simulate) settings: &'a Settings,
-    rows: &'a mut dyn Rows,
+    pub(in crate::simulate) rows: &'a mut dyn Rows,
     pub(in crate::simulate) scratch: Scratch,
     /// At the start of the step and at its nodes.
     pub(in crate::simulate) moments: [Moment; MAX_NODES + 1],

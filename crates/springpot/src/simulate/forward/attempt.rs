@@ -94,7 +94,7 @@ impl Run<'_> {
                 continue;
             }
             let scale = book.scale_with_step(e, t + h);
-            let allowed = book.settings.atol.unwrap_or(0.0) + book.settings.rtol * scale;
+            let allowed = book.settings.atol.unwrap_or(0.0).max(book.settings.rtol * scale);
             let memory = (defect / allowed).powf(1.0 / (EXPONENT * (4.0 - element.law.order())));
             if memory > error {
                 (error, worst) = (memory, Worst::Element(e));

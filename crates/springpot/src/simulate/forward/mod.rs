@@ -137,7 +137,7 @@ impl<'a> Run<'a> {
     /// What the signals will do.
     fn look_ahead(&mut self) -> Result<(), RunError> {
         self.agenda = self.book.system.agenda(self.book.settings, self.longest_step, self.stop)?;
-        self.book.report.take_agenda(&self.agenda, self.book.settings.end);
+        self.book.take_agenda(&self.agenda);
         Ok(())
     }
 
