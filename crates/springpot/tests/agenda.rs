@@ -8,7 +8,7 @@ fn watch(text: &str) -> Signal {
 
 fn look(text: &str, end: f64, is_position: bool) -> Agenda {
     let signal = watch(text);
-    Agenda::new(&[Watched { signal: &signal, is_position }], end, 1e-6, None).unwrap()
+    Agenda::new(&[Watched { signal: &signal, is_position, slack: 1.0 }], end, 1e-6, None).unwrap()
 }
 
 /// All stops up to `end`, as the first time after each.
@@ -121,7 +121,7 @@ fn smooth_motions_ask_for_no_shorter_steps() {
 #[test]
 fn what_no_run_can_follow_is_refused_and_an_interrupt_is_heard() {
     let busy = watch("sign(sin(1e9*t))");
-    let watched = [Watched { signal: &busy, is_position: false }];
+    let watched = [Watched { signal: &busy, is_position: false, slack: 1.0 }];
     let stop = std::sync::atomic::AtomicBool::new(true);
     assert_eq!(Agenda::new(&watched, 100.0, 1e-6, Some(&stop)).unwrap_err(), AgendaError::Interrupted);
 }

@@ -46,8 +46,16 @@ output_step = "100 ms"
 "#;
 
 /// A motion of which no computer sees the end, with rows every now and then.
-pub(crate) const ENDLESS: [&str; 6] =
-    ["--set", "motion.joints.q1=0.1*sin(300000*t)", "--set", "time.end=1000", "--set", "time.output_step=0.0005"];
+pub(crate) const ENDLESS: [&str; 8] = [
+    "--set",
+    "motion.joints.q1=0.1*sin(300000*t)",
+    "--set",
+    "time.end=1000",
+    "--set",
+    "time.output_step=0.0005",
+    "--set",
+    "solver.max_steps=1000000000000",
+];
 
 /// A folder that is taken away in the end, with `arm.toml` in it.
 pub(crate) struct Place {

@@ -16,6 +16,7 @@ mod solver;
 mod task;
 
 pub use error::PathError;
+pub(super) use solver::STEP_TOLERANCE;
 pub use task::Task;
 
 use super::Wanted;

@@ -68,6 +68,11 @@ impl Motion {
         }
     }
 
+    /// How far coordinates may be from where the motion has them, rad or m: 0 where signals say it.
+    pub(crate) fn solved_to(&self) -> f64 {
+        if let Self::GripperPath(_) = self { gripper_path::STEP_TOLERANCE } else { 0.0 }
+    }
+
     /// Whether the motion says where the gripper should be.
     pub fn has_path(&self) -> bool {
         matches!(self, Self::GripperPath(_))

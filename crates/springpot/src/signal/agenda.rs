@@ -37,6 +37,8 @@ pub struct Watched<'a> {
     pub signal: &'a Signal,
     /// Whether it is a position, whose rates count; else it counts itself (a force, a voltage).
     pub is_position: bool,
+    /// How many times more than others it may hide: 1 where the motion follows from it.
+    pub slack: f64,
 }
 
 /// What a run must not step over.
@@ -265,7 +267,7 @@ impl<'a> Scan<'a> {
             signal: watched.signal,
             is_position: watched.is_position,
             end,
-            tolerance,
+            tolerance: watched.slack * tolerance,
             stop,
             kinks: Vec::new(),
             windows: Vec::new(),

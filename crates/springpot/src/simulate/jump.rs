@@ -6,8 +6,8 @@ use crate::model::Model;
 /// Neighbouring times on either side of a kink by which rounding is judged.
 const NEIGHBOURS: usize = 4;
 
-/// Refuses coordinates that jump from `before` to `after` (time and q): that move farther than at their `speeds` and than rounding makes
-/// of them, which `places` shows at neighbouring times. No jump is too small to count.
+/// Refuses coordinates that jump from `before` to `after` (time and q): that move farther than at their `speeds`, than they are `solved` for
+/// and than rounding makes of them, which `places` shows at neighbouring times. No jump is too small to count.
 ///
 /// # Errors
 /// [`RunError::Jump`], and those of `places`.
@@ -16,6 +16,7 @@ pub(super) fn refuse_jumps(
     (before, q_before): (f64, &[f64]),
     (after, q_after): (f64, &[f64]),
     speeds: impl Fn(usize) -> f64,
+    solved: f64,
     mut places: impl FnMut(f64, &mut Vec<f64>) -> Result<(), RunError>,
 ) -> Result<(), RunError> {
     let jumps = model.difference(q_before, q_after);
@@ -23,7 +24,7 @@ pub(super) fn refuse_jumps(
     for j in model.own_joints() {
         let size = q_after[model.q_range(j)].iter().fold(0.0, |largest: f64, q| largest.max(q.abs()));
         for k in model.v_range(j) {
-            let reach = (after - before) * speeds(k) + 16.0 * f64::EPSILON * size;
+            let reach = (after - before) * speeds(k) + 16.0 * f64::EPSILON * size + solved;
             if jumps[k].abs() <= reach {
                 continue;
             }

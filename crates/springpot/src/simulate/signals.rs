@@ -12,6 +12,9 @@ use std::sync::atomic::AtomicBool;
 const UNSEEN: f64 = 1e2;
 const UNSEEN_BOUNDS: [f64; 2] = [1e-6, 1e-2];
 
+/// How many times more an input may hide from which no motion follows.
+const INPUT_SLACK: f64 = 1e3;
+
 /// Steps that a run may take where nothing else is said, and how many more for every switch of its signals.
 const MAX_STEPS: u64 = 10_000_000;
 const STEPS_PER_SWITCH: u64 = 100;
@@ -75,8 +78,8 @@ impl System {
 
     /// Every signal with its name.
     fn watched(&self) -> Vec<(String, Watched<'_>)> {
-        let position = |signal| Watched { signal, is_position: true };
-        let own = |signal| Watched { signal, is_position: false };
+        let position = |signal| Watched { signal, is_position: true, slack: 1.0 };
+        let own = |signal| Watched { signal, is_position: false, slack: 1.0 };
         let mut watched: Vec<(String, Watched)> = Vec::new();
         let labels = self.model.v_labels();
         match &self.motion {
@@ -105,7 +108,10 @@ impl System {
         }
         for element in &self.elements {
             for (entry, signal) in element.row.inputs.iter().zip(&element.inputs) {
-                watched.push((format!("input {} of element \"{}\"", entry.name, element.name), own(signal)));
+                // Along a motion given in advance inputs change energies alone, which steps are held to as well.
+                let slack = if matches!(self.motion, Motion::Forward(_)) { 1.0 } else { INPUT_SLACK };
+                let name = format!("input {} of element \"{}\"", entry.name, element.name);
+                watched.push((name, Watched { slack, ..own(signal) }));
             }
         }
         watched.retain(|(_, watched): &(String, Watched<'_>)| is_function(watched.signal));

@@ -69,7 +69,8 @@ impl<'a> Follower<'a> {
     /// [`PathError`] where they change too often to be followed, or where this is interrupted.
     pub(super) fn new(solver: Solver<'a>, course: &'a Course<'a>) -> Result<Self, PathError> {
         let too_many = PathError::TooManyStretches { t: 0.0, limit: MOST_KNOTS / 2 };
-        let watched: Vec<Watched> = solver.task.signals().map(|signal| Watched { signal, is_position: true }).collect();
+        let watched: Vec<Watched> =
+            solver.task.signals().map(|signal| Watched { signal, is_position: true, slack: 1.0 }).collect();
         let agenda = Agenda::new(&watched, course.end, UNSEEN, Some(course.stop)).map_err(|error| match error {
             AgendaError::Interrupted => PathError::Interrupted { t: 0.0 },
             AgendaError::TooBusy { .. } => too_many,

@@ -10,7 +10,7 @@ use crate::dynamics::Kinematics;
 use crate::model::Model;
 
 /// Newton stops when its step is below this, rad or m: forces need the coordinates to rounding.
-const STEP_TOLERANCE: f64 = 2e-11;
+pub(in crate::motion) const STEP_TOLERANCE: f64 = 2e-11;
 
 /// A point counts as reached within this distance, m (rad for the orientation).
 const REACHED: f64 = 1e-9;

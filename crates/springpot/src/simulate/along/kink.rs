@@ -14,7 +14,7 @@ impl Run<'_> {
         let system = self.book.system;
         let (mut v, mut a) = (vec![0.0; system.model.nv()], vec![0.0; system.model.nv()]);
         let speed = |k: usize| left.v[k].abs() + right.v[k].abs();
-        refuse_jumps(&system.model, (before, &left.q), (after, &right.q), speed, |t, q| {
+        refuse_jumps(&system.model, (before, &left.q), (after, &right.q), speed, system.motion.solved_to(), |t, q| {
             system.motion.at(&system.model, t, q, &mut v, &mut a)?;
             Ok(())
         })?;

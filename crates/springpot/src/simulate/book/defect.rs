@@ -13,10 +13,10 @@ const TINY_ENERGY: f64 = 1e-280;
 /// Share of rtol^⅔ that the energy ledger may err in one step, in units of the energy turned over.
 const ENERGY_SHARE: f64 = 0.01;
 
-/// Share of rtol^⅔ that one element's account may err in one step, in units of what it holds, at least this share of the energy
-/// turned over: beside a violent motion an element may lose little.
+/// Share of rtol^⅔ that what an element has dissipated may err in one step, in units of itself, at least so many times rtol^⅔
+/// of the energy turned over: beside a violent motion an element may lose little.
 const ACCOUNT_SHARE: f64 = 0.03;
-const ACCOUNT_FLOOR: f64 = 1e-4;
+const ACCOUNT_FLOOR: f64 = 100.0;
 
 impl Book<'_> {
     /// Estimate of what the step just worked out adds to the error of the ledger, in units of its tolerance; `floor` is a lower bound
@@ -32,10 +32,10 @@ impl Book<'_> {
         let mut worst_account = 0.0f64;
         for (step, account) in self.steps.iter().zip(&self.accounts) {
             let (dissipation, input) = (step.powers.map(|p| p.dissipation), step.powers.map(|p| p.input));
-            let own = work_defect(&dissipation, h) + work_defect(&input, h);
-            defect += own;
-            let size = account.dissipated.abs() + account.input.abs() + ACCOUNT_FLOOR * turned_over;
+            let own = work_defect(&dissipation, h);
+            defect += own + work_defect(&input, h);
             // Of NaN the larger is the other one.
+            let size = account.dissipated.abs() + (ACCOUNT_FLOOR * allowed).min(1.0) * turned_over;
             worst_account = worst_account.max(own / (ACCOUNT_SHARE * allowed * size));
         }
         if defect.is_nan() { 0.0 } else { worst_account.max(defect / (ENERGY_SHARE * allowed * turned_over)) }

@@ -176,7 +176,7 @@ pub(super) fn take_jumps(system: &System, forward: &Forward, origin: &mut Origin
     let (now, q_now, v_now) = (*t, q.clone(), v.clone());
     let (mut spare_v, mut spare_a) = (v.clone(), a.clone());
     let speed = |k: usize| v_now[k].abs() + before_v[k].abs();
-    refuse_jumps(model, (now.next_down(), &before_q), (now, &q_now), speed, |at, places| {
+    refuse_jumps(model, (now.next_down(), &before_q), (now, &q_now), speed, 0.0, |at, places| {
         places.clone_from(&before_q);
         let drives = model.own_joints().zip(&forward.drives);
         for (j, drive) in drives {
