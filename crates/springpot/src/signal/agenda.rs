@@ -11,8 +11,9 @@ use super::series::Series;
 use super::{Kind, Signal};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Cells into which a run is divided at first.
-const CELLS: usize = 512;
+/// Cells into which a run is divided at first, and how many times shorter steps are nothing to speak of.
+const CELLS: usize = 32;
+const SHORT: f64 = 512.0;
 
 /// The narrowest cell, as a share of the run; what is narrower may be missed.
 pub const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
@@ -24,7 +25,7 @@ const FINEST_KINK: f64 = 1.0 / (1u64 << 42) as f64;
 const MOST_CELLS: u64 = 20_000_000;
 
 /// A settled cell that asks for more steps than this is tried for evenness, and where in it.
-const MANY: f64 = 1.0 / 64.0;
+const MANY: f64 = 0.5;
 const PROBES: [f64; 5] = [0.13, 0.37, 0.61, 0.83, 0.97];
 
 /// Cells between two looks at the flag that interrupts.
@@ -433,7 +434,7 @@ impl<'a> Scan<'a> {
 
     /// A cell that hides nothing, whose steps may be this long.
     fn close(&mut self, a: f64, longest: f64) {
-        let longest = if longest < 0.9 * self.end / CELLS as f64 { longest } else { f64::INFINITY };
+        let longest = if longest < 0.9 * self.end / SHORT { longest } else { f64::INFINITY };
         match self.windows.last() {
             // Not a window for every cell of a wave.
             Some(last) if last.longest <= longest && longest <= 4.0 * last.longest => {}
