@@ -29,8 +29,9 @@ pub const MAX_LENGTH: usize = 4096;
 pub const MAX_DEPTH: usize = 64;
 /// Most functions that may have a kink (abs, sign, step, min, max, atan2, sqrt, asin, acos) in one expression.
 pub const MAX_KINKS: usize = 64;
-/// Most intermediate results at a time.
+/// Most intermediate results at a time, and those of most expressions.
 const MAX_STACK: usize = 32;
+const SMALL_STACK: usize = 8;
 
 /// One instruction; operands come before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -228,7 +229,16 @@ impl Trace {
 
 /// Runs a program that `parse` has checked: operands present, at most `MAX_STACK` of them.
 fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace) -> V {
-    let mut stack = [time; MAX_STACK];
+    // A stack of n takes 2n − 1 instructions at least.
+    if program.len() < 2 * SMALL_STACK {
+        run_on::<V, SMALL_STACK>(program, time, trace)
+    } else {
+        run_on::<V, MAX_STACK>(program, time, trace)
+    }
+}
+
+fn run_on<V: Value, const STACK: usize>(program: &[Op], time: V, trace: &mut Trace) -> V {
+    let mut stack = [time; STACK];
     let mut top = 0;
     for &op in program {
         let result = match op.operands() {
