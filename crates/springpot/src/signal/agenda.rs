@@ -1,7 +1,7 @@
 //! What signals do between two times, known before a run steps through them.
 //!
 //! A step looks at a signal at a few nodes; what happens between them it cannot see. So the whole run is looked through beforehand,
-//! cell by cell, with bounds instead of samples ([`Expression::look`]): where no kink switches and the signal is a polynomial up to a
+//! cell by cell, with bounds instead of samples (`Expression::look`): where no kink switches and the signal is a polynomial up to a
 //! small share of its own range, the cell is done; where a kink switches once it is located to the last bit; else the cell is halved.
 //! No pulse is too narrow to be found, down to [`FINEST`] of the run. The outcome is a list of *stops*, where steps end, and of
 //! *windows* that bound the steps in them.
