@@ -73,6 +73,17 @@ impl Sizes {
 impl Stepper<'_> {
     /// What the errors of velocities and coordinates may be in a step of size `h`, in the order of the free velocities.
     pub(super) fn allow(&mut self, h: f64) {
+        // What a stroke's rounding does to each force; from nothing that a run that goes on does not know.
+        self.rounded.clear();
+        for (element, stage) in self.system.elements.iter().zip(&self.elements) {
+            let inputs = &stage.inputs[..element.inputs.len()];
+            let force = |stroke: f64, derivative: f64| {
+                element.law.force(&Point { t: self.origin.t, stroke, rate: 0.0, inputs }, derivative)
+            };
+            let rest = force(0.0, 0.0);
+            let fast = (force(0.0, 1.0) - rest).abs() * h.powf(-element.law.order());
+            self.rounded.push(((force(1.0, 0.0) - rest).abs() + fast) * stage.resolution);
+        }
         let (n, sizes, tolerance) = (self.model.nv(), &self.sizes, self.tolerance);
         self.allowed.clear();
         for &k in &self.free {
@@ -84,14 +95,7 @@ impl Stepper<'_> {
             let speed = if speed > 0.0 { speed } else { own() };
             let travel = sizes.travel(k).max(h * speed);
             // Strokes are differences of lengths: what they lose to rounding pushes the joints.
-            let push: f64 = self
-                .elements
-                .iter()
-                .map(|element| {
-                    let tangent = element.response.d_stroke[0][0].abs().max(element.response.d_stroke[2][2].abs());
-                    element.gradient[k].abs() * tangent * element.resolution
-                })
-                .sum();
+            let push: f64 = self.elements.iter().zip(&self.rounded).map(|(e, s)| e.gradient[k].abs() * s).sum();
             let noise = if mass > 0.0 { h * push / mass } else { 0.0 };
             let place = self.coordinates[k].map_or(1.0, |c| self.origin.q[c]);
             let rounding = 4.0 * f64::EPSILON * place.abs();

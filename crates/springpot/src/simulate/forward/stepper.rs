@@ -152,6 +152,8 @@ pub(super) struct Stepper<'a> {
     pub(super) sizes: Sizes,
     /// The energy turned over so far, J.
     pub(super) energy: f64,
+    /// What rounding of its stroke does to each element's force in this step, N.
+    pub(super) rounded: Vec<f64>,
     /// Errors that are allowed in this step, of each free velocity and of its coordinate.
     pub(super) allowed: Vec<[f64; 2]>,
     pub(super) scratch: EstimateScratch,
@@ -223,6 +225,7 @@ impl<'a> Stepper<'a> {
             contraction: 0.0,
             sizes: Sizes::new(&forward.q, nv),
             energy: 0.0,
+            rounded: Vec::new(),
             allowed: Vec::new(),
             scratch: EstimateScratch::default(),
         }
