@@ -24,6 +24,9 @@ const FINEST_KINK: f64 = 1.0 / (1u64 << 42) as f64;
 /// Cells after which a signal is given up: a run would take as many steps.
 const MOST_CELLS: u64 = 20_000_000;
 
+/// What may be added to them for every kink found.
+const CELLS_PER_KINK: u64 = 64;
+
 /// A settled cell that asks for more steps than this is tried for evenness, and where in it.
 const MANY: f64 = 0.5;
 const PROBES: [f64; 5] = [0.13, 0.37, 0.61, 0.83, 0.97];
@@ -335,8 +338,8 @@ impl<'a> Scan<'a> {
                 if self.cells.is_multiple_of(PATIENCE) && self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
                     return Err(AgendaError::Interrupted);
                 }
-                if self.cells > MOST_CELLS {
-                    return Err(AgendaError::TooBusy { signal: 0, cells: MOST_CELLS });
+                if self.cells > MOST_CELLS + CELLS_PER_KINK * self.kinks.len() as u64 {
+                    return Err(AgendaError::TooBusy { signal: 0, cells: self.cells });
                 }
                 self.look_at(cell, &mut open);
             }
