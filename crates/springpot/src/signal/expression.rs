@@ -231,13 +231,14 @@ impl Trace {
 fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace) -> V {
     // A stack of n takes 2n − 1 instructions at least.
     if program.len() < 2 * SMALL_STACK {
-        run_on::<V, SMALL_STACK>(program, time, trace)
+        stack_after::<V, SMALL_STACK>(program, time, trace).0[0]
     } else {
-        run_on::<V, MAX_STACK>(program, time, trace)
+        stack_after::<V, MAX_STACK>(program, time, trace).0[0]
     }
 }
 
-fn run_on<V: Value, const STACK: usize>(program: &[Op], time: V, trace: &mut Trace) -> V {
+/// The intermediate results that a program, or the beginning of one, leaves, and how many they are.
+fn stack_after<V: Value, const STACK: usize>(program: &[Op], time: V, trace: &mut Trace) -> ([V; STACK], usize) {
     let mut stack = [time; STACK];
     let mut top = 0;
     for &op in program {
@@ -258,7 +259,7 @@ fn run_on<V: Value, const STACK: usize>(program: &[Op], time: V, trace: &mut Tra
         stack[top] = result;
         top += 1;
     }
-    stack[0]
+    (stack, top)
 }
 
 fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace) -> V {

@@ -108,18 +108,8 @@ impl Expression {
         let wanted = bit.trailing_zeros() as usize;
         let mut kinks = self.program.iter().enumerate().filter(|(_, op)| op.has_kink());
         let Some((at, &op)) = kinks.nth(wanted) else { return (f64::NAN, f64::NAN) };
-        let mut stack = [Jet::time(t); MAX_STACK];
-        let mut top = 0;
-        for &op in &self.program[..at] {
-            top -= op.operands();
-            let mut trace = Trace::default();
-            stack[top] = match op.operands() {
-                0 => super::run(&[op], Jet::time(t), &mut trace),
-                1 => super::unary(op, stack[top], &mut trace),
-                _ => super::binary(op, stack[top], stack[top + 1], &mut trace),
-            };
-            top += 1;
-        }
+        let (stack, top) =
+            super::stack_after::<Jet, MAX_STACK>(&self.program[..at], Jet::time(t), &mut Trace::default());
         let argument = match op {
             Op::Min | Op::Max => stack[top - 2].sub(stack[top - 1]),
             Op::Atan2 => stack[top - 2],

@@ -1,6 +1,7 @@
 //! How large a motion is, so that a relative tolerance means the same from a nanometre to a kilometre.
 
-use super::stepper::Stepper;
+use super::stepper::{ElementStage, Stepper};
+use crate::element::Element;
 use crate::law::Point;
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
@@ -76,13 +77,8 @@ impl Stepper<'_> {
         // What a stroke's rounding does to each force; from nothing that a run that goes on does not know.
         self.rounded.clear();
         for (element, stage) in self.system.elements.iter().zip(&self.elements) {
-            let inputs = &stage.inputs[..element.inputs.len()];
-            let force = |stroke: f64, derivative: f64| {
-                element.law.force(&Point { t: self.origin.t, stroke, rate: 0.0, inputs }, derivative)
-            };
-            let rest = force(0.0, 0.0);
-            let fast = (force(0.0, 1.0) - rest).abs() * h.powf(-element.law.order());
-            self.rounded.push(((force(1.0, 0.0) - rest).abs() + fast) * stage.resolution);
+            let [k, c] = tangents(element, stage, self.origin.t);
+            self.rounded.push((k + c * h.powf(-element.law.order())) * stage.resolution);
         }
         let (n, sizes, tolerance) = (self.model.nv(), &self.sizes, self.tolerance);
         self.allowed.clear();
@@ -128,17 +124,9 @@ impl Stepper<'_> {
             .iter()
             .zip(&self.elements)
             .map(|(element, stage)| {
-                let inputs = &stage.inputs[..element.inputs.len()];
-                let force = |stroke: f64, derivative: f64| {
-                    element.law.force(&Point { t: self.origin.t, stroke, rate: 0.0, inputs }, derivative)
-                };
+                let [k, c] = tangents(element, stage, self.origin.t);
                 let moved: f64 = self.free.iter().map(|&k| stage.gradient[k] * a[k]).sum();
-                let rest = force(0.0, 0.0);
-                [
-                    (force(1.0, 0.0) - rest).abs() * moved * moved,
-                    (force(0.0, 1.0) - rest).abs() * moved * moved,
-                    element.law.order(),
-                ]
+                [k * moved * moved, c * moved * moved, element.law.order()]
             })
             .collect();
         let mut omega = slowest.max((rigid / mass).sqrt());
@@ -158,6 +146,14 @@ impl Stepper<'_> {
         let omega = self.answering_rate(slowest);
         self.sizes.expect(&self.origin.a, omega);
     }
+}
+
+/// |∂F/∂x| and |∂F/∂(D^alpha x)| at the start of the step, at t.
+fn tangents(element: &Element, stage: &ElementStage, t: f64) -> [f64; 2] {
+    let inputs = &stage.inputs[..element.inputs.len()];
+    let force = |stroke: f64, derivative: f64| element.law.force(&Point { t, stroke, rate: 0.0, inputs }, derivative);
+    let rest = force(0.0, 0.0);
+    [(force(1.0, 0.0) - rest).abs(), (force(0.0, 1.0) - rest).abs()]
 }
 
 /// Of a singular start with the stroke `jump`, how far it moves each velocity: |jump|·|g_k|/g·g.
