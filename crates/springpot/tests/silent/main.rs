@@ -3,6 +3,7 @@
 #![cfg(feature = "scenario")]
 
 mod cases;
+mod narrow;
 mod pulses;
 mod random;
 mod scales;
