@@ -1,10 +1,10 @@
 //! A material between two points: anchors + law + inputs. The only place where bodies and laws meet.
 
+use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
-use crate::law::{Derivative, Entry, InputValue, Law};
+use crate::law::{Derivative, Entry, InputValue, Network, Start, State};
 use crate::model::Site;
 use crate::signal::Signal;
-use std::sync::Arc;
 
 /// A massless one-dimensional material between point D_i (`from`) and point D_j (`to`).
 ///
@@ -21,7 +21,7 @@ pub struct Element {
     /// l0, m.
     pub rest_length: f64,
     /// The law.
-    pub law: Arc<dyn Law>,
+    pub law: Network,
     /// Its row of the catalog.
     pub row: Entry,
     /// Signals of its inputs, in the order of the row, SI.
@@ -39,6 +39,14 @@ impl Element {
             let jet = signal.at(t);
             *value = InputValue { value: jet.value, rate: jet.first };
         }
+    }
+
+    /// The law's state at t = 0 at this length and under these inputs, its memories without kernels ([`Network::begin`]).
+    ///
+    /// # Errors
+    /// [`KernelError`] where a memory cannot be.
+    pub fn begin(&self, length: f64, inputs: &[InputValue]) -> Result<State, KernelError> {
+        self.law.begin(&Start { stroke: length - self.rest_length, jump: self.jump(length), inputs })
     }
 
     /// x(0) as a Riemann–Liouville start counts it: 0 where it is no more than the rounding of the lengths.

@@ -211,6 +211,13 @@ impl Kernel {
         rates
     }
 
+    /// Takes the `count` fastest modes away; the bound then holds for longer lags only.
+    pub(super) fn drop_fastest(&mut self, count: usize) {
+        self.lambda.drain(..count);
+        self.weight.drain(..count);
+        self.delta *= (self.eta * count as f64).exp();
+    }
+
     /// Σ w/λ^n, n = 1, 2, 3, over the geometric series of modes above λ_0: d1, d2, d3.
     ///
     /// Under a smooth rate x' the lag of such a mode is x'/λ − x''/λ² + …, so that together they store ½·d2·x'² and dissipate

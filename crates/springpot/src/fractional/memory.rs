@@ -34,15 +34,15 @@
 //! For samples, streams and functions that are known, [`derivative`](super::derivative), [`Stream`](super::Stream) and
 //! [`Piecewise`](super::Piecewise) ask for less.
 
+use super::exponentials::CUBIC;
 use super::gamma::reciprocal_gamma;
+use super::history::{History, Squares};
 use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
 use super::step::{
-    Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_INVERSE, RADAU_NODES, RatePolynomial, TABLEAU, exponential_moments,
-    local_factors,
+    Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_INVERSE, RADAU_NODES, RatePolynomial, TABLEAU, local_factors,
 };
 use serde::{Deserialize, Serialize};
-use std::cell::RefCell;
 
 /// The start of a step as a memory sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -94,39 +94,24 @@ pub struct Memory {
     local: [f64; 5],
     /// ∫ of all rates committed: what the modes have seen of the stroke.
     travelled: f64,
-    modes: Option<Modes>,
-}
-
-/// The exponentials and their lags.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Modes {
-    kernel: Kernel,
-    z: Vec<f64>,
-    /// The last committed step, from which faster modes are made.
-    last: Option<RatePolynomial>,
+    /// D^alpha x after the last committed step without the singular part; at the limits it follows from x and x'.
+    now: f64,
+    /// None at the limits, and before [`Self::open`].
+    past: Option<History>,
+    /// In the place of it.
+    told: Option<f64>,
     #[serde(skip)]
-    tables: RefCell<Tables>,
+    prepared: Option<Prepared>,
 }
 
-/// e^{−λτ} and ψ_p(λτ) of every mode for the lags used last.
-#[derive(Debug, Clone, Default)]
-struct Tables {
-    slots: Vec<Table>,
-    next: usize,
+/// What [`Memory::respond`] says of one step.
+#[derive(Debug, Clone, Copy)]
+struct Prepared {
+    start: StepStart,
+    nodes: Nodes,
+    form: Form,
+    affine: Affine,
 }
-
-#[derive(Debug, Clone)]
-struct Table {
-    tau: f64,
-    decay: Vec<f64>,
-    psi: [Vec<f64>; 4],
-}
-
-/// Lags kept in the tables: the three nodes of two alternating step sizes.
-const SLOTS: usize = 6;
-
-/// Modes faster than the step needs are dropped once there are this many.
-const SURPLUS: usize = 16;
 
 impl Memory {
     /// An empty memory at t = 0.
@@ -145,15 +130,20 @@ impl Memory {
         delta: f64,
         horizon: f64,
     ) -> Result<Self, KernelError> {
+        let mut memory = Self::closed(alpha, kind, origin, jump)?;
+        memory.open(tolerance, delta, horizon)?;
+        Ok(memory)
+    }
+
+    /// A memory at t = 0 that has no kernel yet: all that it knows is what holds there ([`Self::now`], [`Self::is_singular`]).
+    ///
+    /// # Errors
+    /// [`KernelError::Order`] for an order outside [0, 1].
+    pub fn closed(alpha: f64, kind: Kind, origin: f64, jump: f64) -> Result<Self, KernelError> {
         if !(0.0..=1.0).contains(&alpha) {
             return Err(KernelError::Order(alpha));
         }
-        let fractional = alpha > 0.0 && alpha < 1.0;
-        let modes = match fractional {
-            true => Some(Modes::new(Kernel::new(alpha, tolerance, delta.min(0.5 * horizon), horizon)?)),
-            false => None,
-        };
-        let singular = fractional && kind == Kind::RiemannLiouville;
+        let singular = alpha > 0.0 && alpha < 1.0 && kind == Kind::RiemannLiouville;
         Ok(Self {
             alpha,
             kind,
@@ -162,8 +152,31 @@ impl Memory {
             singular_factor: reciprocal_gamma(1.0 - alpha),
             local: local_factors(alpha),
             travelled: 0.0,
-            modes,
+            now: 0.0,
+            told: None,
+            past: None,
+            prepared: None,
         })
+    }
+
+    /// Builds the kernel, whose arguments are those of [`Self::new`].
+    ///
+    /// # Errors
+    /// [`KernelError`] where no kernel can be built.
+    pub fn open(&mut self, tolerance: f64, delta: f64, horizon: f64) -> Result<(), KernelError> {
+        if self.is_fractional() {
+            self.past = Some(History::new(Kernel::new(self.alpha, tolerance, delta.min(0.5 * horizon), horizon)?));
+        }
+        Ok(())
+    }
+
+    fn is_fractional(&self) -> bool {
+        self.alpha > 0.0 && self.alpha < 1.0
+    }
+
+    /// Which derivative.
+    pub fn kind(&self) -> Kind {
+        self.kind
     }
 
     /// The order.
@@ -173,7 +186,7 @@ impl Memory {
 
     /// Number of exponentials.
     pub fn modes(&self) -> usize {
-        self.modes.as_ref().map_or(0, |m| m.z.len())
+        self.past.as_ref().map_or(0, |past| past.kernel().modes())
     }
 
     /// Whether D^alpha x is infinite at t = 0+.
@@ -220,26 +233,32 @@ impl Memory {
     /// of straight pieces, whose errors do not add up: a force that errs by h^{2−alpha} in every step leaves the motion of order 2. The
     /// work h Σ F u is that of D^alpha x on this stroke, never negative in all, so that no step size makes energy.
     pub fn respond(&self, start: &StepStart, nodes: Nodes, form: Form) -> Affine {
+        match &self.prepared {
+            Some(ready) if ready.start == *start && ready.nodes == nodes && ready.form == form => ready.affine,
+            _ => self.affine(start, nodes, form),
+        }
+    }
+
+    fn affine(&self, start: &StepStart, nodes: Nodes, form: Form) -> Affine {
         let mut affine = Affine::default();
-        let positions = nodes.positions();
-        for (i, &c) in positions.iter().enumerate() {
-            let Some(modes) = &self.modes else {
-                if self.alpha == 0.0 {
-                    affine.stroke[i][i] = 1.0;
-                    affine.history[i] = start.stroke - self.held();
-                    continue;
-                }
+        for (i, &c) in nodes.positions().iter().enumerate() {
+            if self.alpha == 0.0 {
+                affine.stroke[i][i] = 1.0;
+                affine.history[i] = start.stroke - self.held();
+                continue;
+            }
+            let Some(past) = &self.past else {
                 match form {
                     Form::Rates => affine.rate[i][i] = 1.0,
                     Form::Strokes => affine.stroke[i] = self.stroke_row(start.h, c, nodes),
                 }
                 continue;
             };
-            let past = match nodes {
-                Nodes::Midpoint => modes.mean_history(start.h),
-                Nodes::One | Nodes::Radau => modes.history(c * start.h),
+            let before = match nodes {
+                Nodes::Midpoint => mean_history(past, start.h),
+                Nodes::One | Nodes::Radau => past.at(c * start.h),
             };
-            affine.history[i] = past + self.singular_part(start.t + c * start.h);
+            affine.history[i] = before + self.singular_part(start.t + c * start.h);
             match form {
                 Form::Strokes => affine.stroke[i] = self.stroke_row(start.h, c, nodes),
                 Form::Rates => {
@@ -252,33 +271,62 @@ impl Memory {
         affine
     }
 
-    /// D^alpha x at t_n + θh, 0 < θ ≤ 1, from the step's polynomial and the exact x and x' there.
-    pub fn derivative(&self, start: &StepStart, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> f64 {
-        match &self.modes {
-            None if self.alpha == 0.0 => stroke - self.held(),
-            None => rate,
-            Some(modes) => {
-                let tau = theta * step.h;
-                self.local_part(step, theta) + modes.history(tau) + self.singular_part(start.t + tau)
-            }
+    /// Makes ready what a step will ask for, which then costs nothing however often it is asked; no answer changes.
+    pub fn prepare(&mut self, start: &StepStart, nodes: Nodes, form: Form) {
+        let is_same = |ready: &Prepared| ready.start == *start && ready.nodes == nodes && ready.form == form;
+        if self.prepared.as_ref().is_some_and(is_same) {
+            return;
+        }
+        self.prepare_lags(start.h, nodes);
+        self.prepared = Some(Prepared { start: *start, nodes, form, affine: self.affine(start, nodes, form) });
+    }
+
+    fn prepare_lags(&mut self, h: f64, nodes: Nodes) {
+        let Some(past) = &mut self.past else { return };
+        match nodes {
+            Nodes::One | Nodes::Midpoint => past.prepare(h, CUBIC, 0.0),
+            Nodes::Radau => nodes.positions().iter().for_each(|c| past.prepare(c * h, CUBIC, 0.0)),
         }
     }
 
-    /// As [`Self::derivative`] for a step of rates at the Radau nodes, with the exact x' at θ as one point more: between the
+    /// From now on [`Self::now`] is what was found by other means: by a named scheme.
+    pub fn tell(&mut self, derivative: f64) {
+        self.told = Some(derivative);
+    }
+
+    /// D^alpha x between two steps, where x and x' are `stroke` and `rate`, without the singular part: D^alpha x itself does not jump
+    /// with x', but at alpha = 1.
+    pub fn now(&self, stroke: f64, rate: f64) -> f64 {
+        match (self.told, self.alpha) {
+            (Some(told), _) => told,
+            (None, 0.0) => stroke - self.held(),
+            (None, 1.0) => rate,
+            (None, _) => self.now,
+        }
+    }
+
+    /// D^alpha x at t_n + θh, 0 < θ ≤ 1, from the step's polynomial and the exact x and x' there.
+    pub fn derivative(&self, start: &StepStart, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> f64 {
+        self.regular_derivative(step, theta, stroke, rate) + self.singular_part(start.t + theta * step.h)
+    }
+
+    /// As [`Self::derivative`] without the singular part.
+    pub fn regular_derivative(&self, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> f64 {
+        match &self.past {
+            Some(past) => self.local_part(step, theta) + past.at(theta * step.h),
+            None if self.alpha == 0.0 => stroke - self.held(),
+            None => rate,
+        }
+    }
+
+    /// As [`Self::regular_derivative`] for a step of rates at the Radau nodes, with the exact x' at θ as one point more: between the
     /// nodes this is as accurate as the end of the step.
-    pub fn derivative_between(
-        &self,
-        start: &StepStart,
-        step: &RatePolynomial,
-        theta: f64,
-        stroke: f64,
-        rate: f64,
-    ) -> f64 {
-        let value = self.derivative(start, step, theta, stroke, rate);
+    pub fn derivative_between(&self, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> f64 {
+        let value = self.regular_derivative(step, theta, stroke, rate);
         let at = |coefficients: &[f64; 5]| coefficients.iter().rev().fold(0.0, |sum, c| sum * theta + c);
         let node_polynomial = at(&NODE_POLYNOMIAL);
         // Next to a node the point says nothing that the cubic does not know.
-        if self.modes.is_none() || node_polynomial.abs() < 1e-6 {
+        if self.past.is_none() || node_polynomial.abs() < 1e-6 {
             return value;
         }
         let miss = (rate - step.rate(theta)) / node_polynomial;
@@ -290,7 +338,7 @@ impl Memory {
     ///
     /// `resolution` is the rounding of the strokes; differences that it explains count as 0.
     pub fn defect(&self, step: &RatePolynomial, stroke: [f64; 2], rate: [f64; 2], resolution: f64) -> f64 {
-        if self.modes.is_none() {
+        if self.past.is_none() {
             return 0.0;
         }
         let hermite = RatePolynomial::hermite(step.h, stroke, rate);
@@ -301,12 +349,29 @@ impl Memory {
     /// Energy of a unit springpot at t_n + θh; `rate` is x' there. The limits: ½(x − x(0))² or ½x² stored at alpha = 0,
     /// x'² dissipated at alpha = 1.
     pub fn energy(&self, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> Energy {
-        match &self.modes {
-            None if self.alpha == 0.0 => Energy { stored: 0.5 * (stroke - self.held()).powi(2), dissipation: 0.0 },
-            None => Energy { stored: 0.0, dissipation: rate * rate },
-            // At t = 0 the fast lags have not settled yet: nothing is stored and nothing flows.
-            Some(modes) if theta == 0.0 && modes.last.is_none() => Energy::default(),
-            Some(modes) => modes.energy(step, theta, rate),
+        let past = match &self.past {
+            Some(past) => past,
+            None if self.alpha == 0.0 => {
+                return Energy { stored: 0.5 * (stroke - self.held()).powi(2), dissipation: 0.0 };
+            }
+            None => return Energy { stored: 0.0, dissipation: rate * rate },
+        };
+        // At t = 0 the fast lags have not settled yet: nothing is stored and nothing flows.
+        if theta == 0.0 && past.is_empty() {
+            return Energy::default();
+        }
+        let mut power = 1.0;
+        let scaled = step.u.map(|u| {
+            let coefficient = power * u;
+            power *= theta;
+            coefficient
+        });
+        let Squares { weighted, with_rates } = past.squares(theta * step.h, &scaled);
+        let [d1, d2, d3] = past.kernel().fast_tail();
+        let bend = step.bend(theta);
+        Energy {
+            stored: 0.5 * (weighted + d2 * rate * rate),
+            dissipation: with_rates + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
         }
     }
 
@@ -315,22 +380,21 @@ impl Memory {
         self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate).stored
     }
 
-    /// Makes the tables of the exponentials for these `lags` (at most 6), s, so that steps that ask for no other do not allocate.
-    pub fn prepare(&self, lags: &[f64]) {
-        if let Some(modes) = &self.modes {
-            let mut tables = modes.tables.borrow_mut();
-            for &lag in lags {
-                tables.at(lag, &modes.kernel.lambda);
-            }
-        }
-    }
-
     /// Takes an accepted step into the past: z_k ← e^{−λ_k h} z_k + ∫ e^{−λ_k(h−s)} x'(s) ds, exact for the polynomial.
     pub fn commit(&mut self, step: &RatePolynomial) {
-        if let Some(modes) = &mut self.modes {
-            self.travelled += step.travel();
-            modes.commit(step);
-        }
+        self.take(step, step);
+    }
+
+    /// Takes `step` into the past, D^alpha x at its end being that of `as_found`.
+    fn take(&mut self, step: &RatePolynomial, as_found: &RatePolynomial) {
+        self.prepared = None;
+        let local = self.local_part(as_found, 1.0);
+        let Some(past) = &mut self.past else { return };
+        self.travelled += step.travel();
+        let shortest = RADAU_NODES[0] * step.h;
+        past.extend(shortest);
+        self.now = local + past.advance(step.h, &step.u, 0.0);
+        past.drop_surplus(shortest);
     }
 
     /// As [`Self::commit`] for a step of rates that ends at `stroke`, which is known to `resolution`, above 0.
@@ -338,16 +402,32 @@ impl Memory {
     /// Integrals of rates drift from the strokes, in a step by less than any tolerance; over 10⁵ steps the slowest modes, which
     /// are D^alpha x at small alpha, would be off by 10⁻⁷. What is owed is paid back as a rate, the faster the more it is.
     pub fn commit_rates(&mut self, step: &RatePolynomial, stroke: f64, resolution: f64) {
-        let Some(modes) = &self.modes else { return };
+        let Some(past) = &self.past else { return };
         let owed = (stroke - self.origin) - (self.travelled + step.travel());
-        let mut step = *step;
+        let mut paid = *step;
         if owed.abs() > resolution {
             let largest = step.rate(0.0).abs().max(step.rate(1.0).abs());
             // Of a debt that may be rounding, no more than the kernel errs: a short step would make much of it.
-            let bearable = 10.0 * modes.kernel.tolerance * (owed.abs() / resolution) * largest;
-            step.u[0] += (owed.abs() / step.h).min(bearable).copysign(owed);
+            let bearable = 10.0 * past.kernel().tolerance * (owed.abs() / resolution) * largest;
+            paid.u[0] += (owed.abs() / step.h).min(bearable).copysign(owed);
         }
-        self.commit(&step);
+        self.take(&paid, step);
+    }
+
+    /// Appends all numbers of the memory to `numbers`.
+    pub(crate) fn save(&self, numbers: &mut Vec<f64>) {
+        numbers.extend([self.origin, self.jump, self.travelled, self.now]);
+        if let Some(past) = &self.past {
+            past.save(numbers);
+        }
+    }
+
+    /// Takes back what [`Self::save`] wrote of a memory of the same order, from the front of `numbers`; `None` where it is not that.
+    pub(crate) fn load(&mut self, numbers: &mut &[f64]) -> Option<()> {
+        let &[origin, jump, travelled, now] = numbers.split_off(..4)? else { return None };
+        (self.origin, self.jump, self.travelled, self.now) = (origin, jump, travelled, now);
+        self.prepared = None;
+        self.past.as_mut().map_or(Some(()), |past| past.load(numbers))
     }
 
     /// The stroke that counts as unloaded at alpha = 0.
@@ -403,143 +483,11 @@ impl Memory {
     }
 }
 
-impl Modes {
-    fn new(kernel: Kernel) -> Self {
-        let z = vec![0.0; kernel.modes()];
-        Self { kernel, z, last: None, tables: RefCell::default() }
+/// The mean of the past over lags up to h; modes above the kernel's have settled to z = x'/λ and add d2·x'/h.
+fn mean_history(past: &History, h: f64) -> f64 {
+    if past.is_empty() {
+        return 0.0;
     }
-
-    /// Σ_k w_k e^{−λ_k τ} z_k, with faster modes where τ is shorter than the kernel's delta.
-    fn history(&self, tau: f64) -> f64 {
-        let Some(last) = &self.last else { return 0.0 };
-        let mut tables = self.tables.borrow_mut();
-        let table = tables.at(tau, &self.kernel.lambda);
-        let mut sum = 0.0;
-        for ((w, e), z) in self.kernel.weight.iter().zip(&table.decay).zip(&self.z) {
-            sum += w * e * z;
-        }
-        for k in 1..=self.kernel.missing(tau) {
-            let (lambda, weight) = self.kernel.faster(k);
-            sum += weight * (-lambda * tau).exp() * last.convolve(lambda, 1.0);
-        }
-        sum
-    }
-
-    /// The mean of the history over lags up to h, Σ_k w_k z_k ψ_0(λ_k h), modes above the kernel's included: they have settled
-    /// to z = x'/λ and add d2·x'/h.
-    fn mean_history(&self, h: f64) -> f64 {
-        let Some(last) = &self.last else { return 0.0 };
-        let mut tables = self.tables.borrow_mut();
-        let table = tables.at(h, &self.kernel.lambda);
-        let mut sum = 0.0;
-        for ((w, psi), z) in self.kernel.weight.iter().zip(&table.psi[0]).zip(&self.z) {
-            sum += w * psi * z;
-        }
-        let [_, d2, _] = self.kernel.fast_tail();
-        sum + d2 * last.rate(1.0) / h
-    }
-
-    fn energy(&self, step: &RatePolynomial, theta: f64, rate: f64) -> Energy {
-        let tau = theta * step.h;
-        let mut tables = self.tables.borrow_mut();
-        let table = tables.at(tau, &self.kernel.lambda);
-        let [u0, u1, u2, u3] = scaled(step, theta);
-        let [p0, p1, p2, p3] = &table.psi;
-        let (mut stored, mut dissipation) = (0.0, 0.0);
-        for k in 0..self.z.len() {
-            let z = table.decay[k] * self.z[k] + u0 * p0[k] + u1 * p1[k] + u2 * p2[k] + u3 * p3[k];
-            let square = self.kernel.weight[k] * z * z;
-            stored += square;
-            dissipation += self.kernel.lambda[k] * square;
-        }
-        let [d1, d2, d3] = self.kernel.fast_tail();
-        let bend = step.bend(theta);
-        Energy {
-            stored: 0.5 * (stored + d2 * rate * rate),
-            dissipation: dissipation + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
-        }
-    }
-
-    fn commit(&mut self, step: &RatePolynomial) {
-        self.extend(RADAU_NODES[0] * step.h);
-        {
-            let mut tables = self.tables.borrow_mut();
-            let table = tables.at(step.h, &self.kernel.lambda);
-            let [u0, u1, u2, u3] = scaled(step, 1.0);
-            let [p0, p1, p2, p3] = &table.psi;
-            for (k, z) in self.z.iter_mut().enumerate() {
-                *z = table.decay[k] * *z + u0 * p0[k] + u1 * p1[k] + u2 * p2[k] + u3 * p3[k];
-            }
-        }
-        self.last = Some(*step);
-        self.drop_surplus(RADAU_NODES[0] * step.h);
-    }
-
-    /// Puts the faster modes that lags down to `lag` need in front, with the lags they have after the last committed step.
-    fn extend(&mut self, lag: f64) {
-        let rates = self.kernel.extend(lag);
-        if rates.is_empty() {
-            return;
-        }
-        let lag_of = |lambda: f64| self.last.as_ref().map_or(0.0, |step| step.convolve(lambda, 1.0));
-        self.z.splice(0..0, rates.into_iter().map(lag_of));
-        self.tables.borrow_mut().slots.clear();
-    }
-
-    /// Drops modes that are faster than lags of `lag` and longer need, once there are many of them.
-    fn drop_surplus(&mut self, lag: f64) {
-        let surplus = ((lag / self.kernel.delta).ln() / self.kernel.eta).floor();
-        if surplus < SURPLUS as f64 {
-            return;
-        }
-        let surplus = (surplus as usize).min(self.z.len() - 1);
-        self.z.drain(..surplus);
-        self.kernel.lambda.drain(..surplus);
-        self.kernel.weight.drain(..surplus);
-        self.kernel.delta *= (self.kernel.eta * surplus as f64).exp();
-        self.tables.borrow_mut().slots.clear();
-    }
-}
-
-/// Coefficients of ψ_p in ∫₀^τ e^{−λ(τ−s)} x'(s) ds.
-fn scaled(step: &RatePolynomial, theta: f64) -> [f64; 4] {
-    let mut power = theta * step.h;
-    step.u.map(|u| {
-        let coefficient = power * u;
-        power *= theta;
-        coefficient
-    })
-}
-
-impl Tables {
-    /// The table for the lag `tau`, made when it is not there.
-    fn at(&mut self, tau: f64, lambda: &[f64]) -> &Table {
-        if let Some(found) = self.slots.iter().position(|t| t.tau == tau) {
-            return &self.slots[found];
-        }
-        if self.slots.len() < SLOTS {
-            self.slots.push(Table { tau, decay: Vec::new(), psi: Default::default() });
-            self.next = self.slots.len() - 1;
-        } else {
-            self.next = (self.next + 1) % SLOTS;
-        }
-        let table = &mut self.slots[self.next];
-        table.fill(tau, lambda);
-        table
-    }
-}
-
-impl Table {
-    fn fill(&mut self, tau: f64, lambda: &[f64]) {
-        self.tau = tau;
-        self.decay.clear();
-        self.decay.extend(lambda.iter().map(|l| (-l * tau).exp()));
-        self.psi.iter_mut().for_each(Vec::clear);
-        for l in lambda {
-            let moments = exponential_moments(l * tau);
-            for (column, moment) in self.psi.iter_mut().zip(moments) {
-                column.push(moment);
-            }
-        }
-    }
+    let [_, d2, _] = past.kernel().fast_tail();
+    past.mean(h) + d2 * past.last_value() / h
 }

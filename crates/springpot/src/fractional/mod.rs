@@ -58,8 +58,10 @@
 //! [`Memory`] is the same mathematics for a time loop that asks for implicit answers: [`memory`] tells of it.
 
 mod differintegral;
+mod exponentials;
 pub mod gamma;
 mod gauss;
+mod history;
 pub mod kernel;
 pub mod kind;
 pub mod memory;

@@ -16,6 +16,13 @@ pub const RADAU_NODES: [f64; 3] = [(4.0 - SQRT6) / 10.0, (4.0 + SQRT6) / 10.0, 1
 /// Weights of Radau IIA: ∫₀¹ f ≈ Σ b_i f(c_i), exact for degree 4.
 pub const RADAU_WEIGHTS: [f64; 3] = [(16.0 - SQRT6) / 36.0, (16.0 + SQRT6) / 36.0, 1.0 / 9.0];
 
+/// The Radau IIA matrix A.
+const RADAU_MATRIX: [[f64; 3]; 3] = [
+    [(88.0 - 7.0 * SQRT6) / 360.0, (296.0 - 169.0 * SQRT6) / 1800.0, (-2.0 + 3.0 * SQRT6) / 225.0],
+    [(296.0 + 169.0 * SQRT6) / 1800.0, (88.0 + 7.0 * SQRT6) / 360.0, (-2.0 - 3.0 * SQRT6) / 225.0],
+    RADAU_WEIGHTS,
+];
+
 /// The inverse of the Radau IIA matrix A.
 pub(super) const RADAU_INVERSE: [[f64; 3]; 3] = [
     [3.224_744_871_391_589, 1.167_840_084_690_405_5, -0.253_197_264_742_180_83],
@@ -44,6 +51,24 @@ impl Nodes {
             Self::One => &[1.0],
             Self::Midpoint => &[0.5],
             Self::Radau => &RADAU_NODES,
+        }
+    }
+
+    /// The inverse of the collocation matrix: with x' a polynomial through its values at the nodes, x'_i = Σ_j inverse_ij (x_j − x_0)/h.
+    pub fn inverse(self) -> [[f64; MAX_NODES]; MAX_NODES] {
+        match self {
+            Self::One => [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]],
+            Self::Midpoint => [[2.0, 0.0, 0.0], [0.0; 3], [0.0; 3]],
+            Self::Radau => RADAU_INVERSE,
+        }
+    }
+
+    /// The collocation matrix A: x_i − x_0 = h Σ_j A_ij x'_j; exact for x' of degree 2 with three nodes, 0 with one.
+    pub fn matrix(self) -> [[f64; MAX_NODES]; MAX_NODES] {
+        match self {
+            Self::One => [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]],
+            Self::Midpoint => [[0.5, 0.0, 0.0], [0.0; 3], [0.0; 3]],
+            Self::Radau => RADAU_MATRIX,
         }
     }
 
@@ -121,18 +146,16 @@ impl RatePolynomial {
         self.h * (u0 + u1 / 2.0 + u2 / 3.0 + u3 / 4.0)
     }
 
+    /// ∫ x' from the start of the step to θ.
+    pub fn travel_until(&self, theta: f64) -> f64 {
+        let [u0, u1, u2, u3] = self.u;
+        self.h * theta * (u0 + theta * (u1 / 2.0 + theta * (u2 / 3.0 + theta * u3 / 4.0)))
+    }
+
     /// x'' at θ; 0 for a step without length.
     pub fn bend(&self, theta: f64) -> f64 {
         let [_, u1, u2, u3] = self.u;
         if self.h == 0.0 { 0.0 } else { (u1 + theta * (2.0 * u2 + theta * 3.0 * u3)) / self.h }
-    }
-
-    /// ∫ e^{−λ(τ − s)} x'(s) ds over 0 ≤ s ≤ τ = θh, in closed form.
-    pub fn convolve(&self, lambda: f64, theta: f64) -> f64 {
-        let tau = theta * self.h;
-        let psi = exponential_moments(lambda * tau);
-        let [u0, u1, u2, u3] = self.u;
-        tau * (u0 * psi[0] + theta * (u1 * psi[1] + theta * (u2 * psi[2] + theta * u3 * psi[3])))
     }
 }
 
@@ -176,26 +199,6 @@ pub fn local_factors(alpha: f64) -> [f64; 5] {
         factors[p] = factors[p - 1] * p as f64 / (p as f64 + 1.0 - alpha);
     }
     factors
-}
-
-/// ψ_p(X) = ∫₀¹ e^{−X(1−θ)} θ^p dθ for p = 0…3 and X ≥ 0.
-///
-/// Upwards by ψ_p = (1 − pψ_{p−1})/X where that is stable; below X = 1 downwards from the series of ψ_3.
-pub fn exponential_moments(x: f64) -> [f64; 4] {
-    if x < 1.0 {
-        // ψ_3 = 1/4 (1 − X/5 (1 − X/6 (…))): 16 factors reach the last bit at X = 1.
-        let mut p3 = 0.0;
-        for m in (0..16).rev() {
-            p3 = (1.0 - x * p3) / (m + 4) as f64;
-        }
-        let p2 = (1.0 - x * p3) / 3.0;
-        let p1 = (1.0 - x * p2) / 2.0;
-        return [1.0 - x * p1, p1, p2, p3];
-    }
-    let p0 = -(-x).exp_m1() / x;
-    let p1 = (1.0 - p0) / x;
-    let p2 = (1.0 - 2.0 * p1) / x;
-    [p0, p1, p2, (1.0 - 3.0 * p2) / x]
 }
 
 /// Inverse Vandermonde matrices of the Radau nodes.
@@ -263,33 +266,6 @@ mod tests {
         for p in 0..5 {
             let sum: f64 = (0..3).map(|i| RADAU_WEIGHTS[i] * RADAU_NODES[i].powi(p)).sum();
             assert!((sum - 1.0 / (p + 1) as f64).abs() < 1e-15);
-        }
-    }
-
-    #[test]
-    fn exponential_moments_meet_their_integrals() {
-        // Composite Gauss–Legendre (5 points) of the definition.
-        let nodes = [-0.906_179_845_938_664, -0.538_469_310_105_683, 0.0, 0.538_469_310_105_683, 0.906_179_845_938_664];
-        let weights = [
-            0.236_926_885_056_189,
-            0.478_628_670_499_366,
-            0.568_888_888_888_889,
-            0.478_628_670_499_366,
-            0.236_926_885_056_189,
-        ];
-        for x in [0.0, 1e-9, 0.3, 0.999, 1.0, 1.001, 7.0, 60.0] {
-            let psi = exponential_moments(x);
-            for p in 0..4 {
-                let panels = 400;
-                let mut sum = 0.0;
-                for k in 0..panels {
-                    for (z, w) in nodes.iter().zip(&weights) {
-                        let theta = (k as f64 + 0.5 + 0.5 * z) / panels as f64;
-                        sum += 0.5 * w / panels as f64 * (-x * (1.0 - theta)).exp() * theta.powi(p as i32);
-                    }
-                }
-                assert!((psi[p] / sum - 1.0).abs() < 3e-14, "psi_{p}({x}) = {} vs {sum}", psi[p]);
-            }
         }
     }
 }

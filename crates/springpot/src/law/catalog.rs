@@ -1,7 +1,6 @@
 //! The catalog of laws: what the parser, the command line and the documentation know about them.
 
-use super::{Derivative, Law, kelvin_voigt, magnetorheological, piezo, thermoviscoelastic};
-use std::sync::Arc;
+use super::{Derivative, Network, kelvin_voigt, magnetorheological, piezo, thermoviscoelastic};
 
 /// An admissible interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +99,7 @@ pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Resul
 }
 
 /// What a catalog row builds.
-pub type Built = Result<Arc<dyn Law>, RuleError>;
+pub type Built = Result<Network, RuleError>;
 
 /// One law of the catalog.
 #[derive(Debug, Clone, Copy)]

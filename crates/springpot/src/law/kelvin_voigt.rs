@@ -1,9 +1,7 @@
 //! Plain laws: spring, dashpot, springpot, and their parallel combinations.
 
-use super::Parallel;
+use super::Network;
 use super::catalog::{ALPHA, Built, Entry, Param, Range, at_least_one_positive};
-use super::leaf::Coefficient;
-use std::sync::Arc;
 
 const STIFFNESS: Param =
     Param { name: "k", unit: "N/m", meaning: "stiffness", range: Range::NOT_NEGATIVE, default: None };
@@ -26,7 +24,7 @@ pub(super) const SPRING: Entry = Entry {
     source: "Hooke",
     build: |values, _| -> Built {
         at_least_one_positive(&[("k", values[0])])?;
-        Ok(Arc::new(Parallel::new().spring(values[0])))
+        Ok(Network::spring(values[0]))
     },
 };
 
@@ -39,7 +37,7 @@ pub(super) const DASHPOT: Entry = Entry {
     source: "Newton",
     build: |values, _| -> Built {
         at_least_one_positive(&[("c", values[0])])?;
-        Ok(Arc::new(Parallel::new().dashpot(values[0])))
+        Ok(Network::dashpot(values[0]))
     },
 };
 
@@ -52,8 +50,7 @@ pub(super) const SPRINGPOT: Entry = Entry {
     source: "Scott Blair 1947; Koeller 1984",
     build: |values, derivative| -> Built {
         at_least_one_positive(&[("c", values[0])])?;
-        let springpot = Parallel::new().springpot(Coefficient::constant(values[0]), values[1], derivative);
-        Ok(Arc::new(springpot))
+        Ok(Network::springpot(values[0], values[1], derivative))
     },
 };
 
@@ -66,7 +63,7 @@ pub(super) const KELVIN_VOIGT: Entry = Entry {
     source: "Kelvin 1865; Voigt 1892",
     build: |values, _| -> Built {
         at_least_one_positive(&[("k", values[0]), ("c", values[1])])?;
-        Ok(Arc::new(Parallel::new().spring(values[0]).dashpot(values[1])))
+        Ok(Network::parallel([Network::spring(values[0]), Network::dashpot(values[1])]))
     },
 };
 
@@ -80,6 +77,6 @@ pub(super) const FRACTIONAL_KELVIN_VOIGT: Entry = Entry {
     build: |values, derivative| -> Built {
         at_least_one_positive(&[("k", values[0]), ("c", values[1])])?;
         let &[k, c, alpha] = values else { unreachable!("values follow params") };
-        Ok(Arc::new(Parallel::new().spring(k).springpot(Coefficient::constant(c), alpha, derivative)))
+        Ok(Network::parallel([Network::spring(k), Network::springpot(c, alpha, derivative)]))
     },
 };

@@ -1,9 +1,8 @@
 //! Magnetorheological element: a springpot whose coefficient follows the voltage of its coil.
 
-use super::Parallel;
+use super::Network;
 use super::catalog::{ALPHA, CARRIER, Entry, Input, Param, Range, at_least_one_positive};
 use super::leaf::Coefficient;
-use std::sync::Arc;
 
 /// F = E_c·x + (mu_0 + u·mu)·D^alpha x; the coefficient stands outside the derivative also when u varies.
 ///
@@ -35,8 +34,9 @@ pub(super) const MAGNETORHEOLOGICAL: Entry = Entry {
     build: |values, derivative| {
         let &[e_c, mu_0, mu, alpha] = values else { unreachable!("values follow params") };
         at_least_one_positive(&[("E_c", e_c), ("mu_0", mu_0), ("mu", mu)])?;
-        let coefficient = Coefficient { constant: mu_0, slope: mu, input: Some(0), rule: "mu_0 + u·mu ≥ 0" };
-        Ok(Arc::new(Parallel::new().spring(e_c).springpot(coefficient, alpha, derivative)))
+        let rule = "mu_0 + u·mu ≥ 0";
+        let coefficient = Coefficient { constant: mu_0, slope: mu, input: Some(0), rule, parameter: "mu" };
+        Ok(Network::parallel([Network::spring(e_c), Network::varying_springpot(coefficient, alpha, derivative)]))
     },
 };
 

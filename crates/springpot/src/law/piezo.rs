@@ -1,9 +1,7 @@
 //! Fractional Kelvin–Voigt element with a piezo stack in it.
 
-use super::Parallel;
+use super::Network;
 use super::catalog::{ALPHA, CARRIER, DAMPING, Entry, Input, Param, Range, at_least_one_positive};
-use super::leaf::Coefficient;
-use std::sync::Arc;
 
 /// F = (E_c + E_pz)·x + E_d·D^alpha x − alpha_pz·E_pz·U: a positive voltage lengthens the stack and lowers the tension.
 ///
@@ -29,10 +27,10 @@ pub(super) const PIEZO_KELVIN_VOIGT: Entry = Entry {
     build: |values, derivative| {
         let &[e_c, e_pz, e_d, alpha, alpha_pz] = values else { unreachable!("values follow params") };
         at_least_one_positive(&[("E_c", e_c), ("E_pz", e_pz), ("E_d", e_d)])?;
-        Ok(Arc::new(Parallel::new().spring(e_c + e_pz).springpot(Coefficient::constant(e_d), alpha, derivative).drive(
-            alpha_pz * e_pz,
-            0.0,
-            0,
-        )))
+        Ok(Network::parallel([
+            Network::spring(e_c + e_pz),
+            Network::springpot(e_d, alpha, derivative),
+            Network::source(alpha_pz * e_pz, 0.0, 0),
+        ]))
     },
 };

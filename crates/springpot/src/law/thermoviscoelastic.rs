@@ -1,9 +1,7 @@
 //! Fractional Kelvin–Voigt element that expands with temperature.
 
-use super::Parallel;
+use super::Network;
 use super::catalog::{ALPHA, CARRIER, DAMPING, Entry, Input, Param, Range, at_least_one_positive};
-use super::leaf::Coefficient;
-use std::sync::Arc;
 
 const TEMPERATURE: Range = Range { low: 150.0, high: 1500.0 };
 
@@ -44,10 +42,10 @@ pub(super) const THERMOVISCOELASTIC: Entry = Entry {
     build: |values, derivative| {
         let &[e_c, e_kv, e_d, alpha, a_kv, t_ref] = values else { unreachable!("values follow params") };
         at_least_one_positive(&[("E_c", e_c), ("E_kv", e_kv), ("E_d", e_d)])?;
-        Ok(Arc::new(Parallel::new().spring(e_c + e_kv).springpot(Coefficient::constant(e_d), alpha, derivative).drive(
-            a_kv * e_kv,
-            t_ref,
-            0,
-        )))
+        Ok(Network::parallel([
+            Network::spring(e_c + e_kv),
+            Network::springpot(e_d, alpha, derivative),
+            Network::source(a_kv * e_kv, t_ref, 0),
+        ]))
     },
 };

@@ -3,7 +3,7 @@
 use super::figures::{ColumnGlob, FigurePlan};
 use super::refusal::Place;
 use crate::fractional::scheme::Scheme;
-use crate::law::{Derivative, Entry, Law};
+use crate::law::{Derivative, Entry, Network};
 use crate::model::urdf::Urdf;
 use crate::model::{Anchor, BodySpec, Model};
 use crate::signal::Signal;
@@ -137,7 +137,7 @@ pub struct ElementPlan {
     /// The law's row of the catalog.
     pub law: Entry,
     /// The law with its parameters.
-    pub object: Arc<dyn Law>,
+    pub object: Network,
     /// Parameters in the order of the catalog, SI.
     pub parameters: Vec<f64>,
     /// Inputs in the order of the catalog.

@@ -4,8 +4,8 @@ use super::moment::{Moment, Scratch};
 use super::{RowTimes, RunError, System};
 use crate::fractional::scheme::Samples;
 
-/// D^alpha x per row for each element with a named scheme; `None` for the others.
-pub(super) type GridDerivatives = Vec<Option<Vec<f64>>>;
+/// D^alpha x per row, for each memory of each element with a named scheme; `None` for the others.
+pub(super) type GridDerivatives = Vec<Option<Vec<Vec<f64>>>>;
 
 /// Evaluates the strokes at all rows and differentiates them.
 ///
@@ -35,8 +35,15 @@ pub(super) fn derivatives(
         let element = &system.elements[e];
         let scheme = element.scheme.as_ref()?;
         let samples = Samples { t: &times, x: &strokes[e], rate: Some(&rates[e]) };
-        let values = scheme.differentiate(&samples, element.law.order(), element.derivative);
-        Some(values.map_err(|source| RunError::Scheme { element: element.name.clone(), source }))
+        let name = || element.name.clone();
+        let inputs = &moment.elements[e].inputs;
+        let begun = element.begin(element.rest_length, inputs);
+        let derivatives = begun.map_err(|source| RunError::Kernel { element: name(), source }).and_then(|state| {
+            let orders = state.memories().iter().map(crate::fractional::Memory::alpha);
+            let values = orders.map(|alpha| scheme.differentiate(&samples, alpha, element.derivative));
+            values.collect::<Result<_, _>>().map_err(|source| RunError::Scheme { element: name(), source })
+        });
+        Some(derivatives)
     };
     (0..system.elements.len()).map(|e| derivative(e).transpose()).collect()
 }

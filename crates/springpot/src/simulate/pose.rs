@@ -3,7 +3,6 @@
 use super::moment::{Moment, Scratch};
 use super::{RunError, System};
 use crate::dynamics::Kinematics;
-use crate::law::Derivative;
 use crate::model::{Anchor, Model, Parent};
 use crate::spatial::Vec3;
 
@@ -47,16 +46,12 @@ impl System {
         let mut moment = Moment::new(self);
         self.evaluate(0.0, 0.0, &mut Scratch::new(&self.model), &mut moment)?;
         let starts = self.elements.iter().zip(moment.elements).map(|(element, state)| {
-            let fractional = element.law.order() > 0.0 && element.law.order() < 1.0;
-            let jumps = element.derivative == Derivative::RiemannLiouville && element.jump(state.length) != 0.0;
-            ElementStart {
-                length: state.length,
-                stroke: state.stroke,
-                gradient: state.gradient,
-                singular: fractional && jumps,
-            }
+            let begun = element.begin(state.length, &state.inputs);
+            let singular = begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+            let singular = singular.is_singular();
+            Ok(ElementStart { length: state.length, stroke: state.stroke, gradient: state.gradient, singular })
         });
-        Ok(starts.collect())
+        starts.collect()
     }
 
     /// The robot at time t.

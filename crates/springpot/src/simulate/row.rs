@@ -4,7 +4,7 @@ use super::System;
 use super::ledger::Balance;
 use super::moment::Moment;
 use crate::element::Element;
-use crate::law::Observation;
+use crate::law::{InputValue, Observation, Point};
 use crate::model::{Label, Measure};
 use crate::table::Column;
 
@@ -103,14 +103,14 @@ impl System {
             let from_elements: f64 = elements
                 .iter()
                 .zip(&moment.elements)
-                .map(|(row, state)| generalized_force(row.observation.force, state.gradient[j]))
+                .map(|(row, state)| generalized_force(row.observation.force(), state.gradient[j]))
                 .sum();
             row.push(moment.driven[j].unwrap_or(moment.rigid[j] - from_elements));
         }
         for (ElementRow { observation, dissipated, input }, state) in elements.iter().zip(&moment.elements) {
             let known = observation.stored.is_some();
-            row.extend([state.length, state.stroke, state.rate, observation.derivative, observation.force]);
-            row.extend(state.gradient.iter().map(|g| generalized_force(observation.force, *g)));
+            row.extend([state.length, state.stroke, state.rate, observation.derivative, observation.force()]);
+            row.extend(state.gradient.iter().map(|g| generalized_force(observation.force(), *g)));
             row.push(observation.stored.unwrap_or(f64::NAN));
             row.push(if known { *dissipated } else { f64::NAN });
             row.push(*input);
@@ -146,7 +146,8 @@ fn generalized_force(force: f64, gradient: f64) -> f64 {
 
 /// Unit of D^alpha x, the same for every alpha that a sweep may go through.
 fn derivative_unit(element: &Element) -> &'static str {
-    match element.law.order() {
+    let inputs = vec![InputValue::default(); element.inputs.len()];
+    match element.law.reported_order(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs }) {
         _ if element.row.params.iter().any(|param| param.name == "alpha") => "m/s^alpha",
         0.0 => "m",
         _ => "m/s",

@@ -63,13 +63,14 @@ pub(crate) fn power_balance(run: &Run, element: &str) {
     assert!(checked + 1 >= run.rows.len());
 }
 
-/// Stored energy is not negative, dissipated energy never falls.
+/// Stored energy is not negative, dissipated energy never falls, but by rounding of what the run turns over.
 pub(crate) fn second_law(run: &Run, element: &str) {
     let stored = run.column(&format!("{element}.stored"));
     assert!(stored.iter().all(|x| *x >= 0.0), "{element} stores less than nothing");
     let dissipated = run.column(&format!("{element}.dissipated"));
     assert_eq!(dissipated[0], 0.0);
-    assert!(dissipated.windows(2).all(|x| x[1] >= x[0]), "{element} gives heat back");
+    let rounding = 1e-18 * run.report.energy_turned_over.unwrap_or(0.0);
+    assert!(dissipated.windows(2).all(|x| x[1] >= x[0] - rounding), "{element} gives heat back");
 }
 
 #[test]
@@ -323,19 +324,19 @@ fn work_less_ledger(alpha: f64, at: usize, edit: &dyn Fn(&mut Value)) -> f64 {
     let (x, v) = (|t: f64| 0.1 * (8.0 * t).sin() + 0.05 * t, |t: f64| 0.8 * (8.0 * t).cos() + 0.05);
     // Towards t = 0 the powers are of the kind t^{1−alpha}.
     let grid = graded(2.0, 4000);
-    let start = Start { stroke: 0.0, jump: 0.0, tolerance: 1e-11, delta: RADAU_NODES[0] * grid[1], horizon: 2.0 };
-    let mut state = law.begin(&start).unwrap();
+    let mut state = law.begin(&Start { stroke: 0.0, jump: 0.0, inputs: &[] }).unwrap();
+    state.open(1e-11, RADAU_NODES[0] * grid[1], 2.0).unwrap();
     let (mut work, mut dissipated, mut turned_over) = (0.0, 0.0, 0.0f64);
     let mut stored_at_edit = 0.0;
     for (k, w) in grid.windows(2).enumerate() {
         let here = Point { t: w[0], stroke: x(w[0]), rate: v(w[0]), inputs: &[] };
         if k == at {
             let mut json = serde_json::to_value(&state).unwrap();
-            let before = law.stored(&here, &state).unwrap();
+            let before = law.now(&here, &state).stored.unwrap();
             edit(&mut json);
             state = serde_json::from_value::<State>(json).unwrap();
             // What the edit takes away at once is no loss of the motion that follows.
-            stored_at_edit = law.stored(&here, &state).unwrap() - before;
+            stored_at_edit = law.now(&here, &state).stored.unwrap() - before;
         }
         let h = w[1] - w[0];
         let points: Vec<f64> = [0.0].iter().chain(&RADAU_NODES).map(|c| w[0] + c * h).collect();
@@ -351,7 +352,7 @@ fn work_less_ledger(alpha: f64, at: usize, edit: &dyn Fn(&mut Value)) -> f64 {
             resolution: 1e-16,
             singular: springpot::law::Singular::Value,
         };
-        let response = law.respond(&step, &state);
+        let response = law.evaluate(&step, &state);
         let weights = springpot::fractional::step::RADAU_WEIGHTS;
         work += (0..3).map(|i| h * weights[i] * response.force[i] * rate[i + 1]).sum::<f64>();
         dissipated += Power::integrate(&law.powers(&step, &state), Nodes::Radau, h, 1.0).dissipation;
@@ -359,13 +360,13 @@ fn work_less_ledger(alpha: f64, at: usize, edit: &dyn Fn(&mut Value)) -> f64 {
         turned_over = turned_over.max(f64::abs(work)).max(dissipated);
     }
     let end = Point { t: 2.0, stroke: x(2.0), rate: v(2.0), inputs: &[] };
-    let stored = law.stored(&end, &state).unwrap() - stored_at_edit;
+    let stored = law.now(&end, &state).stored.unwrap() - stored_at_edit;
     (work - stored - dissipated).abs() / turned_over
 }
 
 /// The modes in a state of the springpot law, as JSON.
 fn modes(state: &mut Value) -> &mut Value {
-    &mut state["parts"][0]["memory"]["modes"]
+    &mut state["memories"][0]["past"]
 }
 
 #[test]

@@ -309,7 +309,7 @@ fn asking_changes_nothing() {
                 asked.respond(&trial, Nodes::One, Form::Strokes);
                 for theta in [1e-6, 0.37, 1.0] {
                     asked.derivative(&trial, &RatePolynomial { h: size, ..step }, theta, 0.1, 0.2);
-                    asked.derivative_between(&trial, &RatePolynomial { h: size, ..step }, theta, 0.1, 0.2);
+                    asked.derivative_between(&RatePolynomial { h: size, ..step }, theta, 0.1, 0.2);
                     asked.energy(&RatePolynomial { h: size, ..step }, theta, 0.1, 0.2);
                 }
                 asked.stored(0.1, 0.2);

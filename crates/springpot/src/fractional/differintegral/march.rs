@@ -2,7 +2,11 @@
 
 use super::DerivativeError;
 use super::order::Order;
-use super::past::Past;
+use crate::fractional::history::History;
+use crate::fractional::kernel::{Kernel, KernelError};
+
+/// Relative error of the kernel t^{beta−1}/Γ(beta) as a sum of exponentials, where nothing else is asked for.
+pub(super) const KERNEL_TOLERANCE: f64 = 1e-12;
 
 /// Most coefficients of a piece of y.
 const MOST: usize = 8;
@@ -12,7 +16,7 @@ const MOST: usize = 8;
 pub(super) struct March {
     order: Order,
     /// None where the order is an integer.
-    past: Option<Past>,
+    past: Option<History>,
     running: [f64; 2],
     factors: Vec<f64>,
     y: Vec<f64>,
@@ -23,7 +27,7 @@ pub(super) struct March {
 impl March {
     /// For pieces from `shortest` on, up to `horizon`, with a kernel that errs by `tolerance`.
     pub(super) fn new(order: Order, shortest: f64, horizon: f64, tolerance: f64) -> Result<Self, DerivativeError> {
-        let past = if order.is_integer() { None } else { Some(Past::new(&order, shortest, horizon, tolerance)?) };
+        let past = if order.is_integer() { None } else { Some(past_of(&order, shortest, horizon, tolerance)?) };
         let (factors, y) = (order.factors(MOST), Vec::with_capacity(MOST));
         Ok(Self { order, past, running: [0.0; 2], factors, y, scale: (0.0, 0.0) })
     }
@@ -38,6 +42,13 @@ impl March {
             self.scale = (width, width.powf(self.order.beta()));
         }
         let local: f64 = self.y.iter().zip(&self.factors).map(|(c, factor)| c * factor).sum();
-        self.scale.1 * local + past.advance(width, &self.y, slack)
+        past.extend(width);
+        self.scale.1 * local + past.advance(width, &self.y, slack + 1e-12 * width)
     }
+}
+
+/// An empty past of pieces from `shortest` on, up to `horizon`, with a kernel that errs by `tolerance`.
+pub(super) fn past_of(order: &Order, shortest: f64, horizon: f64, tolerance: f64) -> Result<History, KernelError> {
+    // A single piece has no past, but the kernel wants an interval.
+    Ok(History::new(Kernel::new(order.alpha, tolerance, shortest, horizon.max(2.0 * shortest))?))
 }

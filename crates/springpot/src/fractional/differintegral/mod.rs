@@ -9,7 +9,6 @@ mod hermite;
 mod march;
 mod method;
 mod order;
-mod past;
 mod piecewise;
 mod sampled;
 mod stencil;

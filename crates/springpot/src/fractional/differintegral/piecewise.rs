@@ -3,11 +3,12 @@
 use super::along::Start;
 use super::first_slope::FirstSlope;
 use super::hermite::{Form, Node};
+use super::march::{KERNEL_TOLERANCE, past_of};
 use super::order::{Jump, Order};
-use super::past::{KERNEL_TOLERANCE, Past};
 use super::sampled::{Nodes, negligible_slope};
 use super::{Definition, DerivativeError, FunctionError};
 use crate::fractional::gamma::reciprocal_gamma;
+use crate::fractional::kernel::Kernel;
 use crate::fractional::scheme::{Samples, Scheme, SchemeError};
 
 /// A function of time made of polynomials, from samples or from a closure.
@@ -354,18 +355,20 @@ impl Modes {
     fn new(order: &Order, spans: &[Span]) -> Result<Self, DerivativeError> {
         let shortest = spans.iter().map(|span| span.width).fold(f64::INFINITY, f64::min);
         let last = &spans[spans.len() - 1];
-        let mut past = Past::new(order, shortest, last.start + last.width, KERNEL_TOLERANCE)?;
+        let mut past = past_of(order, shortest, last.start + last.width, KERNEL_TOLERANCE)?;
         let mut missed = past.clone();
         let lags = spans
             .iter()
             .map(|span| {
-                let lags = [past.z.clone(), missed.z.clone()];
-                past.advance(span.width, &span.y, 0.0);
-                missed.advance(span.width, &[span.missed_later], 0.0);
+                let lags = [past.modes().to_vec(), missed.modes().to_vec()];
+                let slack = 1e-12 * span.width;
+                past.advance(span.width, &span.y, slack);
+                missed.advance(span.width, &[span.missed_later], slack);
                 lags
             })
             .collect();
-        Ok(Self { lambda: past.kernel.lambda, weight: past.kernel.weight, shortest, lags })
+        let Kernel { lambda, weight, .. } = past.kernel().clone();
+        Ok(Self { lambda, weight, shortest, lags })
     }
 
     /// Adds what lies before piece `place` at `lag` after its start, and returns what is missed of it.

@@ -2,8 +2,8 @@
 
 use super::along::{Along, Start};
 use super::hermite::{Form, Node};
+use super::march::KERNEL_TOLERANCE;
 use super::order::Order;
-use super::past::KERNEL_TOLERANCE;
 use super::stencil::{Equal, first_point};
 use super::uniform::{self, Grid};
 use super::{Definition, DerivativeError, Method};

@@ -2,8 +2,8 @@
 
 use super::along::{Along, Start};
 use super::hermite::{Form, Node};
+use super::march::KERNEL_TOLERANCE;
 use super::order::Order;
-use super::past::KERNEL_TOLERANCE;
 use super::sampled::negligible_slope;
 use super::stencil::{Equal, QUINTIC_POINTS};
 use super::{Definition, DerivativeError, Method};

@@ -26,12 +26,11 @@ impl Run<'_> {
         let mut error = StepError::NONE;
         for e in 0..self.book.system.elements.len() {
             self.book.fill_element_step(e);
-            let Some(defect) = self.book.evaluate_element(e, t, h) else { continue };
+            if !self.book.evaluate_element(e, t, h) {
+                continue;
+            }
             self.book.add_actuator_power(e, t, h);
-            let alpha = self.book.system.elements[e].law.order();
-            let scale = self.book.scale_with_step(e, to);
-            let allowed = self.book.settings.atol.unwrap_or(0.0).max(self.book.settings.rtol * scale);
-            let share = if defect == 0.0 { 0.0 } else { defect / allowed };
+            let (share, alpha) = self.book.memory_error(e);
             if share > error.memory {
                 error = StepError { memory: share, alpha, element: Some(e), ..error };
             }

@@ -135,8 +135,11 @@ impl<'a> Run<'a> {
             widen(&mut potential, moment.potential);
             for (e, state) in moment.elements.iter().enumerate() {
                 widen(&mut strokes[e], state.stroke);
-                let slow = state.stroke * self.book.settings.end.powf(-self.book.system.elements[e].law.order());
-                forces[e] = forces[e].max(self.book.system.elements[e].law.force(&state.point(t), slow).abs());
+                let element = &self.book.system.elements[e];
+                if let Ok(law) = element.begin(element.rest_length, &state.inputs) {
+                    let force = element.law.estimate(&state.point(t), &law, 1.0 / self.book.settings.end);
+                    forces[e] = forces[e].max(force.abs());
+                }
             }
         }
         let elements: f64 = strokes.iter().zip(forces).map(|(range, force)| (range[1] - range[0]) * force).sum();

@@ -1,7 +1,7 @@
 //! Rows and jumps between two steps, where signals have kinks.
 
 use super::Book;
-use crate::law::{Observation, Point};
+use crate::law::Point;
 use crate::simulate::RunError;
 use crate::simulate::moment::Moment;
 use crate::simulate::row::ElementRow;
@@ -11,25 +11,20 @@ impl Book<'_> {
     pub(in crate::simulate) fn emit_rows_between_steps(&mut self, until: f64) -> Result<(), RunError> {
         while self.next_row_until(until).is_some() {
             let moment = self.moments[0].clone();
-            let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.row_between_steps(e, &moment)).collect();
+            let rows = (0..self.steps.len()).map(|e| self.row_between_steps(e, &moment));
+            let rows = rows.collect::<Result<Vec<ElementRow>, _>>()?;
             self.write_row(&moment, &rows, 0.0, 0.0)?;
         }
         Ok(())
     }
 
     /// An element between two steps.
-    fn row_between_steps(&self, e: usize, moment: &Moment) -> ElementRow {
+    fn row_between_steps(&self, e: usize, moment: &Moment) -> Result<ElementRow, RunError> {
         let (element, account) = (&self.system.elements[e], &self.accounts[e]);
         let point = moment.elements[e].point(moment.t);
         let Some(state) = &account.law else { return self.grid_row(e, &point) };
-        // D^alpha x itself does not jump, but for alpha = 1.
-        let derivative = if element.law.order() == 1.0 { point.rate } else { account.derivative };
-        let observation = Observation {
-            derivative,
-            force: element.law.force(&point, derivative),
-            stored: element.law.stored(&point, state),
-        };
-        ElementRow { observation, dissipated: account.dissipated, input: account.input }
+        let observation = element.law.now(&point, state);
+        Ok(ElementRow { observation, dissipated: account.dissipated, input: account.input })
     }
 
     /// Goes on from the far side of a kink and books what jumps there.
@@ -41,7 +36,8 @@ impl Book<'_> {
             let Some(state) = &account.law else { continue };
             let was = left.elements[e].point(left.t);
             let is = Point { inputs: &right.elements[e].inputs, ..was };
-            if let Some((was, is)) = element.law.stored(&was, state).zip(element.law.stored(&is, state)) {
+            let stored = |at: &Point| element.law.now(at, state).stored;
+            if let Some((was, is)) = stored(&was).zip(stored(&is)) {
                 account.input += is - was;
             }
         }

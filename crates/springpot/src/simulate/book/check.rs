@@ -42,21 +42,22 @@ impl Book<'_> {
             *weight = lagrange_row(k).iter().rev().fold(0.0, |sum, c| sum * theta + c);
         }
         let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
-        for (e, (element, row)) in self.system.elements.iter().zip(rows).enumerate() {
-            let order = element.law.order();
-            if self.accounts[e].law.is_none() || order == 0.0 || h <= 0.0 {
+        for (e, (account, row)) in self.accounts.iter().zip(rows).enumerate() {
+            if account.law.is_none() || h <= 0.0 {
                 continue;
             }
             let told: f64 = cubic.iter().zip(&self.steps[e].rate).map(|(w, rate)| w * rate).sum();
             let is = moment.elements[e].rate;
-            let departure = (is - told).abs() * h.powf(1.0 - order);
             let derivative = row.observation.derivative.abs();
-            let scale = self.scale_with_step(e, to.t).max(if derivative.is_finite() { derivative } else { 0.0 });
-            let resolution = 8.0 * self.steps[e].resolution * h.powf(-order);
-            let floor = self.settings.atol.unwrap_or(0.0) + resolution;
-            if departure > allowed * scale + floor {
-                self.findings.departure = Some((moment.t, e, departure / scale));
-                return;
+            for (m, error) in self.steps[e].errors.iter().enumerate().filter(|(_, error)| error.order > 0.0) {
+                let departure = (is - told).abs() * h.powf(1.0 - error.order);
+                let scale = self.scale_with_step(e, m).max(if derivative.is_finite() { derivative } else { 0.0 });
+                let resolution = 8.0 * self.steps[e].resolution * h.powf(-error.order);
+                let floor = self.settings.atol.unwrap_or(0.0) + resolution;
+                if departure > allowed * scale + floor {
+                    self.findings.departure = Some((moment.t, e, departure / scale));
+                    return;
+                }
             }
         }
     }
@@ -68,7 +69,7 @@ impl Book<'_> {
         }
         self.residual = if residual.is_nan() { f64::NAN } else { self.residual.max(residual.abs()) };
         // Strokes are differences of lengths, heights of bodies are counted from the world's origin.
-        let forces = rows.iter().zip(&moment.elements).map(|(row, at)| (row.observation.force * at.length).abs());
+        let forces = rows.iter().zip(&moment.elements).map(|(row, at)| (row.observation.force() * at.length).abs());
         let sizes =
             moment.potential.abs() + self.potential_origin.abs() + forces.filter(|x| x.is_finite()).sum::<f64>();
         self.findings.rounding = self.findings.rounding.max(64.0 * f64::EPSILON * sizes);

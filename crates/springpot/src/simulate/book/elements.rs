@@ -4,7 +4,9 @@ use super::{Book, ElementStep};
 use crate::element::Element;
 use crate::fractional::Nodes;
 use crate::fractional::step::MAX_NODES;
-use crate::law::{Point, State, Step};
+use crate::law::{State, Step};
+use crate::simulate::RunError;
+use crate::simulate::moment::ElementMoment;
 
 impl Book<'_> {
     /// Takes the element's kinematics and inputs from the moments of the step.
@@ -20,19 +22,20 @@ impl Book<'_> {
         step.resolution = self.system.elements[e].resolution(self.moments[0].elements[e].length);
     }
 
-    /// Asks the law for the step: its powers, its state at the end. Returns the embedded error; `None` for an element with a
-    /// named scheme.
-    pub(in crate::simulate) fn evaluate_element(&mut self, e: usize, t: f64, h: f64) -> Option<f64> {
-        let element = &self.system.elements[e];
-        let account = &self.accounts[e];
-        let state = account.law.as_ref()?;
+    /// Asks the law for the step: its powers, its errors, its state at the end. `false` for an element with a named scheme.
+    pub(in crate::simulate) fn evaluate_element(&mut self, e: usize, t: f64, h: f64) -> bool {
+        let law = &self.system.elements[e].law;
+        let Some(state) = &mut self.accounts[e].law else { return false };
+        let mut errors = std::mem::take(&mut self.steps[e].errors);
+        errors.clear();
         let step = self.steps[e].law_step(t, h);
-        let powers = element.law.powers(&step, state);
-        let end = element.law.observe(&step, 1.0, &step.point(MAX_NODES), state);
-        let defect = element.law.defect(&step, state);
-        self.steps[e].powers = powers;
-        self.steps[e].end = end;
-        Some(defect)
+        law.prepare(&step, state);
+        let powers = law.powers(&step, state);
+        let end = law.at(&step, 1.0, &step.point(MAX_NODES), state);
+        law.local_errors(&step, state, &mut errors);
+        let step = &mut self.steps[e];
+        (step.powers, step.end, step.errors) = (powers, end, errors);
+        true
     }
 
     /// Adds the regular power that the element takes from the actuators of a motion given in advance.
@@ -41,21 +44,37 @@ impl Book<'_> {
         let account = &self.accounts[e];
         let Some(state) = account.law.as_ref() else { return };
         let step = self.steps[e].law_step(t, h);
-        let response = element.law.respond(&step, state);
+        let response = element.law.evaluate(&step, state);
         for k in 0..=MAX_NODES {
             let at = step.point(k);
-            let force = if k == 0 { element.force_at_start(&at, account.derivative) } else { response.force[k - 1] };
-            let singular = if at.t > 0.0 { singular_force(element, &at, state, at.t) } else { 0.0 };
-            self.powers.actuators[k] += (force - singular) * at.rate;
+            let regular = match k {
+                0 => element.law.now(&at, state).regular,
+                _ => response.force[k - 1] - response.singular[k - 1],
+            };
+            self.powers.actuators[k] += regular * at.rate;
         }
     }
 
-    /// The largest regular D^alpha x so far, this step included.
-    pub(in crate::simulate) fn scale_with_step(&self, e: usize, to: f64) -> f64 {
-        let account = &self.accounts[e];
-        let Some(state) = &account.law else { return 0.0 };
-        let regular = self.steps[e].end.derivative - self.system.elements[e].law.singular(to, state);
-        account.scale.max(regular.abs())
+    /// The largest of the element's local errors in units of their tolerances, and its order.
+    pub(in crate::simulate) fn memory_error(&self, e: usize) -> (f64, f64) {
+        let settings = self.settings;
+        let mut worst = (0.0, 0.0);
+        for (m, error) in self.steps[e].errors.iter().enumerate() {
+            let scale = self.scale_with_step(e, m);
+            let allowed = settings.atol.unwrap_or(0.0).max(settings.rtol * scale);
+            let share = error.share(scale, allowed);
+            // What is no number is no step to keep.
+            if share > worst.0 || share.is_nan() {
+                worst = (share, error.order);
+            }
+        }
+        worst
+    }
+
+    /// The largest regular D^order x so far, this step included, of the element's local error `m`.
+    pub(in crate::simulate) fn scale_with_step(&self, e: usize, m: usize) -> f64 {
+        let before = self.accounts[e].scales.get(m).copied().unwrap_or(0.0);
+        before.max(self.steps[e].errors[m].value.abs())
     }
 }
 
@@ -76,14 +95,18 @@ impl ElementStep {
 }
 
 impl Element {
-    /// F at the start of a step, where D^alpha x is what the step before ended with; at alpha = 1 it follows the rate.
-    pub(in crate::simulate) fn force_at_start(&self, at: &Point, derivative: f64) -> f64 {
-        self.law.force(at, if self.law.order() == 1.0 { at.rate } else { derivative })
+    /// The law's state at t = 0, ready for steps whose shortest lag is `delta`, up to `horizon`.
+    pub(in crate::simulate) fn open(
+        &self,
+        at: &ElementMoment,
+        tolerance: f64,
+        delta: f64,
+        horizon: f64,
+    ) -> Result<State, RunError> {
+        let begun = self.begin(at.length, &at.inputs).and_then(|mut state| {
+            state.open(tolerance, delta, horizon)?;
+            Ok(state)
+        });
+        begun.map_err(|source| RunError::Kernel { element: self.name.clone(), source })
     }
-}
-
-/// The force of the singular share of D^alpha x, that share being taken at the time `when`.
-pub(in crate::simulate) fn singular_force(element: &Element, at: &Point, state: &State, when: f64) -> f64 {
-    let share = element.law.singular(when, state);
-    if share == 0.0 { 0.0 } else { element.law.force(at, share) - element.law.force(at, 0.0) }
 }

@@ -21,7 +21,7 @@ use super::{Report, Rows, RunError, Settings, System};
 use crate::element::Element;
 use crate::fractional::Form;
 use crate::fractional::step::MAX_NODES;
-use crate::law::{InputValue, Observation, Powers, Singular, Start, State};
+use crate::law::{InputValue, LocalError, Observation, Powers, Singular, State};
 use serde::{Deserialize, Serialize};
 
 /// The running accounts of one element.
@@ -31,10 +31,8 @@ pub(in crate::simulate) struct Account {
     pub(in crate::simulate) law: Option<State>,
     pub(in crate::simulate) dissipated: f64,
     pub(in crate::simulate) input: f64,
-    /// Largest regular part of D^alpha x so far.
-    pub(in crate::simulate) scale: f64,
-    /// D^alpha x at the start of the step.
-    pub(in crate::simulate) derivative: f64,
+    /// Largest regular D^order x so far, of everything that the law has a [`LocalError`] of.
+    pub(in crate::simulate) scales: Vec<f64>,
 }
 
 impl Account {
@@ -54,6 +52,7 @@ pub(in crate::simulate) struct ElementStep {
     pub(in crate::simulate) form: Form,
     pub(in crate::simulate) singular: Singular,
     pub(in crate::simulate) powers: Powers,
+    pub(in crate::simulate) errors: Vec<LocalError>,
     /// The element at the end of the step.
     pub(in crate::simulate) end: Observation,
 }
@@ -105,7 +104,8 @@ impl<'a> Book<'a> {
             form: Form::Rates,
             singular: Singular::Value,
             powers: Powers::default(),
-            end: Observation { derivative: 0.0, force: 0.0, stored: None },
+            errors: Vec::new(),
+            end: Observation { derivative: 0.0, regular: 0.0, singular: 0.0, stored: None },
         };
         Self {
             system,
@@ -143,23 +143,14 @@ impl<'a> Book<'a> {
             let state = &moment.elements[e];
             let point = state.point(0.0);
             let observation = match self.grid.get(e).and_then(Option::as_ref) {
-                Some(values) => on_grid_observation(element, &point, values[0]),
+                Some(derivatives) => on_grid_observation(element, &point, derivatives, 0)?,
                 None => {
-                    let start = Start {
-                        stroke: state.stroke,
-                        jump: element.jump(state.length),
-                        tolerance: settings.memory_rtol,
-                        delta,
-                        horizon: settings.end,
-                    };
-                    let begun = element.law.begin(&start);
-                    let law = begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
-                    let observation = element.law.observe_start(&point, &law);
+                    let law = element.open(state, settings.memory_rtol, delta, settings.end)?;
+                    let observation = element.law.now(&point, &law);
                     account.law = Some(law);
                     observation
                 }
             };
-            account.derivative = if observation.derivative.is_finite() { observation.derivative } else { 0.0 };
             rows.push(ElementRow { observation, dissipated: 0.0, input: 0.0 });
         }
         let balance = self.balance(&self.moments[0], &rows, 0.0, 0.0);
@@ -188,14 +179,12 @@ impl<'a> Book<'a> {
         self.actuators += actuators;
         self.joints += joints;
         let t = self.moments[0].t;
-        let to = self.moments[MAX_NODES].t;
         for (e, row) in rows.iter().enumerate() {
-            let scale = self.scale_with_step(e, to);
+            let scales = (0..self.steps[e].errors.len()).map(|m| self.scale_with_step(e, m)).collect();
             let account = &mut self.accounts[e];
             account.dissipated = row.dissipated;
             account.input = row.input;
-            account.scale = scale;
-            account.derivative = row.observation.derivative;
+            account.scales = scales;
             if let Some(law) = &mut account.law {
                 self.system.elements[e].law.commit(&self.steps[e].law_step(t, h), law);
             }

@@ -1,7 +1,6 @@
 //! Rows, and the balance of energies in them.
 
 use super::Book;
-use super::elements::singular_force;
 use crate::element::Element;
 use crate::fractional::Nodes;
 use crate::fractional::step::MAX_NODES;
@@ -23,16 +22,23 @@ impl Book<'_> {
         let mut actuators = work(&self.powers.actuators, h, theta);
         for (e, element) in self.system.elements.iter().enumerate() {
             let Some(state) = &self.accounts[e].law else { continue };
-            if !self.takes_elements_work || element.law.singular(1.0, state) == 0.0 {
+            if !self.takes_elements_work || !state.is_singular() {
                 continue;
             }
             let step = self.steps[e].law_step(t, h);
-            // Without its power of t, which singular_work integrates exactly.
-            let g: NodePower = std::array::from_fn(|k| {
-                let at = step.point(k);
-                singular_force(element, &at, state, 1.0) * at.rate
-            });
-            actuators += singular_work(&g, t, h, theta, element.law.order());
+            // Without their power of t, which singular_work integrates exactly.
+            let mut shares: Vec<(f64, NodePower)> = Vec::new();
+            for k in 0..=MAX_NODES {
+                let (at, mut m) = (step.point(k), 0);
+                element.law.for_each_singularity(at.inputs, state, &mut |term| {
+                    if k == 0 {
+                        shares.push((term.order, [0.0; MAX_NODES + 1]));
+                    }
+                    shares[m].1[k] = term.coefficient * at.rate;
+                    m += 1;
+                });
+            }
+            actuators += shares.iter().map(|(alpha, g)| singular_work(g, t, h, theta, *alpha)).sum::<f64>();
         }
         (actuators, work(&self.powers.joints, h, theta))
     }
@@ -59,7 +65,8 @@ impl Book<'_> {
             } else {
                 place(self.system, &mut self.scratch, at, theta, &mut moment)?;
             }
-            let rows: Vec<ElementRow> = (0..self.steps.len()).map(|e| self.element_row(e, theta, &moment)).collect();
+            let rows = (0..self.steps.len()).map(|e| self.element_row(e, theta, &moment));
+            let rows = rows.collect::<Result<Vec<ElementRow>, _>>()?;
             self.compare_with_step(theta, &moment, &rows);
             let (actuators, joints) = self.work_until(theta);
             self.write_row(&moment, &rows, actuators, joints)?;
@@ -69,20 +76,25 @@ impl Book<'_> {
     }
 
     /// Element `e` in a row at θ, whose moment is `moment`.
-    pub(in crate::simulate) fn element_row(&self, e: usize, theta: f64, moment: &Moment) -> ElementRow {
+    pub(in crate::simulate) fn element_row(
+        &self,
+        e: usize,
+        theta: f64,
+        moment: &Moment,
+    ) -> Result<ElementRow, RunError> {
         let element = &self.system.elements[e];
         let point = moment.elements[e].point(moment.t);
         let [from, .., to] = &self.moments;
         let Some(law) = &self.accounts[e].law else { return self.grid_row(e, &point) };
-        let observation = element.law.observe(&self.steps[e].law_step(from.t, to.t - from.t), theta, &point, law);
-        self.with_ledger(e, theta, observation)
+        let observation = element.law.at(&self.steps[e].law_step(from.t, to.t - from.t), theta, &point, law);
+        Ok(self.with_ledger(e, theta, observation))
     }
 
     /// The next row of an element with a named scheme.
-    pub(in crate::simulate) fn grid_row(&self, e: usize, point: &Point) -> ElementRow {
-        let value = self.grid[e].as_ref().and_then(|values| values.get(self.next_row)).copied();
-        let observation = on_grid_observation(&self.system.elements[e], point, value.unwrap_or(f64::NAN));
-        ElementRow { observation, dissipated: f64::NAN, input: f64::NAN }
+    pub(in crate::simulate) fn grid_row(&self, e: usize, point: &Point) -> Result<ElementRow, RunError> {
+        let derivatives = self.grid[e].as_deref().unwrap_or_default();
+        let observation = on_grid_observation(&self.system.elements[e], point, derivatives, self.next_row)?;
+        Ok(ElementRow { observation, dissipated: f64::NAN, input: f64::NAN })
     }
 
     /// An observation at θ with what the element has dissipated and taken in until then.
@@ -144,7 +156,17 @@ impl Book<'_> {
     }
 }
 
-/// An element whose derivative comes from a named scheme: its energies are unknown.
-pub(in crate::simulate) fn on_grid_observation(element: &Element, at: &Point, derivative: f64) -> Observation {
-    Observation { derivative, force: element.law.force(at, derivative), stored: None }
+/// An element whose `derivatives` come from a named scheme, one list for each memory, at row `row`: its energies are unknown.
+pub(in crate::simulate) fn on_grid_observation(
+    element: &Element,
+    at: &Point,
+    derivatives: &[Vec<f64>],
+    row: usize,
+) -> Result<Observation, RunError> {
+    let begun = element.begin(element.rest_length, at.inputs);
+    let mut state = begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+    for (memory, values) in state.memories_mut().iter_mut().zip(derivatives) {
+        memory.tell(values.get(row).copied().unwrap_or(f64::NAN));
+    }
+    Ok(Observation { stored: None, ..element.law.now(at, &state) })
 }

@@ -1,9 +1,10 @@
 //! The elements over one step of a fixed-step method.
 
+use super::Method;
 use super::stepper::Stepper;
 use crate::dynamics::{Kinematics, Pair, PairForce, pair_into};
 use crate::element::Element;
-use crate::fractional::{Form, Nodes};
+use crate::fractional::Form;
 use crate::law::{InputValue, Response, Singular, State, Step};
 use crate::model::Model;
 use crate::simulate::RunError;
@@ -48,23 +49,40 @@ impl ElementStep {
     }
 }
 
-impl Stepper<'_> {
-    /// The step as memories take it into the past: x' is constant.
-    pub(super) fn with_past<R>(&self, e: usize, h: f64, take: impl FnOnce(&Step) -> R) -> R {
-        let (element, step) = (&self.system.elements[e], &self.elements[e]);
-        let stroke = step.ends.map(|pair| pair.length - element.rest_length);
-        let rate = step.ends.map(|pair| pair.rate);
-        take(&Step {
-            t: self.origin.t,
+impl ElementStep {
+    /// Inputs at the start of the step.
+    pub(super) fn start_inputs(&self) -> &[InputValue] {
+        &self.inputs[..self.inputs.len() / 2]
+    }
+
+    fn law_step(&self, t: f64, h: f64, method: Method) -> Step<'_> {
+        Step {
+            t,
             h,
-            nodes: Nodes::One,
+            nodes: method.nodes(),
             form: Form::Strokes,
-            stroke: &stroke,
-            rate: &rate,
-            inputs: &step.inputs,
-            resolution: step.resolution,
+            stroke: &self.stroke,
+            rate: &self.rate,
+            inputs: &self.inputs,
+            resolution: self.resolution,
             singular: Singular::Moments,
-        })
+        }
+    }
+}
+
+impl Stepper<'_> {
+    /// The step as the law of element `e` is told of it.
+    pub(super) fn law_step(&self, e: usize, h: f64) -> Step<'_> {
+        self.elements[e].law_step(self.origin.t, h, self.method)
+    }
+
+    /// What the law of element `e` knows before the step is found.
+    pub(super) fn prepare(&self, e: usize, h: f64, law: &mut State) {
+        let (element, step) = (&self.system.elements[e], &self.elements[e]);
+        let [start, _] = step.ends;
+        let (stroke, rate) = ([start.length - element.rest_length; 2], [start.rate; 2]);
+        let asked = step.law_step(self.origin.t, h, self.method);
+        element.law.prepare(&Step { stroke: &stroke, rate: &rate, ..asked }, law);
     }
 
     /// Inputs of an element at the stage of the last step.
@@ -118,18 +136,7 @@ impl Stepper<'_> {
             step.stroke = [start.length, stroke].map(|length| length - element.rest_length);
             step.rate = [start.rate, rate];
             step.resolution = element.resolution(pair.length);
-            let asked = Step {
-                t: self.origin.t,
-                h,
-                nodes: self.method.nodes(),
-                form: Form::Strokes,
-                stroke: &step.stroke,
-                rate: &step.rate,
-                inputs: &step.inputs,
-                resolution: step.resolution,
-                singular: Singular::Moments,
-            };
-            step.response = element.law.respond(&asked, law(e));
+            step.response = element.law.evaluate(&step.law_step(self.origin.t, h, self.method), law(e));
             let Response { force, d_stroke, d_rate, .. } = &step.response;
             let tangents = if ends_at_stage { [d_stroke[0][0], d_rate[0][0]] } else { [0.0; 2] };
             self.pairs.push(PairForce {

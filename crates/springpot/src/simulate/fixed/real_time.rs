@@ -4,7 +4,7 @@ use super::Method;
 use super::stepper::Stepper;
 use crate::dynamics::{kinetic_energy, potential_energy};
 use crate::fractional::step::RADAU_NODES;
-use crate::law::{Point, Start, State};
+use crate::law::{Point, State};
 use crate::motion::Motion;
 use crate::simulate::{RunError, System};
 
@@ -102,17 +102,15 @@ impl<'a> Loop<'a> {
                 return Err(LoopError::Scheme { element: element.name.clone() });
             }
             let length = at.ends[0].length;
-            let start = Start {
-                stroke: length - element.rest_length,
-                jump: element.jump(length),
-                tolerance: memory.tolerance,
-                delta: RADAU_NODES[0] * step,
-                horizon: memory.horizon,
-            };
-            let law = element.law.begin(&start);
-            let law = law.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
-            law.prepare(&[step, 0.0]);
-            laws.push(law);
+            let begun = element.begin(length, at.start_inputs()).and_then(|mut law| {
+                law.open(memory.tolerance, RADAU_NODES[0] * step, memory.horizon)?;
+                Ok(law)
+            });
+            laws.push(begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?);
+        }
+        // Here and not in the first step, so that none allocates.
+        for (e, law) in laws.iter_mut().enumerate() {
+            stepper.prepare(e, step, law);
         }
         Ok(Self { system, stepper, laws, method, step, steps: 0 })
     }
@@ -126,10 +124,13 @@ impl<'a> Loop<'a> {
     /// `torque` is too short.
     pub fn advance(&mut self, torque: &[f64]) -> Result<(), RunError> {
         let to = time(self.steps + 1, self.step);
+        for (e, law) in self.laws.iter_mut().enumerate() {
+            self.stepper.prepare(e, self.step, law);
+        }
         let laws = &self.laws;
         self.stepper.attempt(to, self.step, torque, |e| &laws[e])?;
         for (e, (element, law)) in self.system.elements.iter().zip(&mut self.laws).enumerate() {
-            self.stepper.with_past(e, self.step, |step| element.law.commit(step, law));
+            element.law.commit(&self.stepper.law_step(e, self.step), law);
         }
         self.stepper.accept();
         self.steps += 1;
@@ -198,7 +199,7 @@ impl<'a> Loop<'a> {
     pub fn stored_energy(&self, element: usize) -> Option<f64> {
         let inputs = self.stepper.inputs(element);
         let point = Point { t: self.t(), stroke: self.stroke(element), rate: self.rate(element), inputs };
-        self.system.elements[element].law.stored(&point, &self.laws[element])
+        self.system.elements[element].law.now(&point, &self.laws[element]).stored
     }
 
     /// Largest change of a velocity, in its unit, that the last Newton iteration of the last step made at its stage: how far the fixed

@@ -5,7 +5,7 @@ use super::stepper::{Place, Stepper};
 use super::{FixedStep, ITERATIONS};
 use crate::fractional::Form;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
-use crate::law::{Derivative, Singular};
+use crate::law::Singular;
 use crate::motion::{Forward, Motion};
 use crate::simulate::book::{Book, Books};
 use crate::simulate::moment::{Moment, Scratch};
@@ -104,11 +104,10 @@ impl Run<'_> {
         let mut is_singular = false;
         let force = |e: usize, moment: &Moment| {
             let (element, state) = (&system.elements[e], &moment.elements[e]);
-            let order = element.law.order();
-            let jumps = element.derivative == Derivative::RiemannLiouville && element.jump(state.length) != 0.0;
-            is_singular |= jumps && order > 0.0 && order < 1.0;
-            let point = state.point(0.0);
-            element.law.force(&point, element.law.start_derivative(&point, element.derivative))
+            // What cannot begin is refused when the books are opened.
+            let law = element.begin(state.length, &state.inputs).unwrap_or_default();
+            is_singular |= law.is_singular();
+            element.law.now(&state.point(0.0), &law).regular
         };
         self.accelerator.fill(system, forward, 0.0, &mut book.scratch, moment, force)?;
         if is_singular {
@@ -134,9 +133,11 @@ impl Run<'_> {
             }
             // To the bit where it can be, so that the tables of the exponentials are made once.
             let h = if (to - t - step).abs() <= 1e-9 * step { step } else { to - t };
+            for (e, account) in book.accounts.iter_mut().enumerate() {
+                account.law.iter_mut().for_each(|state| self.stepper.prepare(e, h, state));
+            }
             let laws = &book.accounts;
-            let law = |e: usize| laws[e].law.as_ref().expect("forward runs have no schemes");
-            self.stepper.attempt(to, h, &self.still, law)?;
+            self.stepper.attempt(to, h, &self.still, |e| laws[e].memory())?;
             self.keep(book, t, to, h)?;
             self.stepper.accept();
             book.report.steps += 1;
@@ -171,7 +172,7 @@ impl Run<'_> {
         }
         let Book { moments, steps, scratch, .. } = &mut *book;
         let moment = &mut moments[MAX_NODES];
-        self.accelerator.fill(system, forward, to, scratch, moment, |e, _| steps[e].end.force)?;
+        self.accelerator.fill(system, forward, to, scratch, moment, |e, _| steps[e].end.force())?;
         self.fill_powers(book);
         let a_at_start = book.moments[0].a.clone();
         let a_at_end = book.moments[MAX_NODES].a.clone();

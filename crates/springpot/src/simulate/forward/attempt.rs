@@ -33,7 +33,7 @@ impl Run<'_> {
         let t = self.stepper.origin.t;
         let t_end = if on_break { to.next_down() } else { to };
         self.stepper.energy = self.book.turnover.total();
-        let (mut error, mut worst, iterations) = match self.stepper.attempt(h, t_end, &self.book.accounts)? {
+        let (mut error, mut worst, iterations) = match self.stepper.attempt(h, t_end, &mut self.book.accounts)? {
             Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
             Outcome::Converged { iterations } => {
                 let (error, worst) = self.stepper.estimate(h);
@@ -47,8 +47,9 @@ impl Run<'_> {
         self.refuse_overflow(t, h)?;
         if error <= 1.0 {
             self.take_stock(to, h, on_break)?;
-            if self.has_paths || self.stepper.stick.holds_any() {
-                (error, worst) = self.books_error(h, error, worst);
+            let whole = self.has_paths || self.stepper.stick.holds_any();
+            if whole || self.has_inner_variables {
+                (error, worst) = self.books_error(h, whole, error, worst);
             }
         }
         let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
@@ -78,24 +79,22 @@ impl Run<'_> {
     }
 
     /// The largest of `error` and of what the estimate of the free joints may not see where others are prescribed: the errors of
-    /// D^alpha x and of the energy ledger. In units of their tolerances, brought to the order of that estimate.
-    fn books_error(&self, h: f64, error: f64, worst: Worst) -> (f64, Worst) {
-        let (book, t) = (&self.book, self.stepper.origin.t);
+    /// D^alpha x and of the energy ledger; else, where not the `whole`, those of laws with inner variables. In units of their tolerances,
+    /// brought to the order of that estimate.
+    fn books_error(&self, h: f64, whole: bool, error: f64, worst: Worst) -> (f64, Worst) {
+        let book = &self.book;
         let (mut error, mut worst) = (error, worst);
         // Beside a singular start there is no ledger, and what the actuators do against it is integrated by its moments.
-        let energy = if self.stepper.is_singular { 0.0 } else { book.energy_error(h, 0.0) };
+        let energy = if self.stepper.is_singular || !whole { 0.0 } else { book.energy_error(h, 0.0) };
         if energy > error {
             (error, worst) = (energy, Worst::Energy);
         }
         for (e, element) in book.system.elements.iter().enumerate() {
-            let (account, step) = (&book.accounts[e], self.stepper.elements[e].law_step(t, h));
-            let defect = element.law.defect(&step, account.memory());
-            if defect == 0.0 {
+            if !whole && !element.law.has_inner_variables() {
                 continue;
             }
-            let scale = book.scale_with_step(e, t + h);
-            let allowed = book.settings.atol.unwrap_or(0.0).max(book.settings.rtol * scale);
-            let memory = (defect / allowed).powf(1.0 / (EXPONENT * (4.0 - element.law.order())));
+            let (share, order) = book.memory_error(e);
+            let memory = share.powf(1.0 / (EXPONENT * (4.0 - order)));
             if memory > error {
                 (error, worst) = (memory, Worst::Element(e));
             }

@@ -2,7 +2,7 @@
 
 use super::drives::drive;
 use super::stepper::Stepper;
-use crate::law::{InputValue, Point};
+use crate::law::{InputValue, State};
 use crate::model::JointKind;
 use crate::motion::Drive;
 use crate::simulate::moment::Moment;
@@ -12,8 +12,8 @@ use crate::simulate::moment::Moment;
 pub(super) struct Dense<'s, 'a> {
     pub(super) stepper: &'s Stepper<'a>,
     pub(super) h: f64,
-    /// Of each element the singular share of D^alpha x at t = 1 s, x(0)/Γ(1−alpha); 0 without one.
-    pub(super) starts: &'s [f64],
+    /// The laws' states that tell of singular starts.
+    pub(super) starts: &'s [State],
     pub(super) scratch: &'s mut Scratch,
 }
 
@@ -75,23 +75,23 @@ impl Dense<'_, '_> {
             return;
         }
         let from = stepper.origin.t;
-        for (element, &unit) in stepper.system.elements.iter().zip(self.starts) {
-            if unit == 0.0 {
-                scratch.singular.push([0.0; 3]);
-                continue;
-            }
-            let alpha = element.law.order();
+        for (element, state) in stepper.system.elements.iter().zip(self.starts) {
             scratch.inputs.clear();
             scratch.inputs.resize(element.inputs.len(), InputValue::default());
             element.inputs_at(t, &mut scratch.inputs);
-            let point = Point { t, stroke: 0.0, rate: 0.0, inputs: &scratch.inputs };
-            let c = element.law.force(&point, 1.0) - element.law.force(&point, 0.0);
-            let parts = |t: f64| {
-                let value = if t == 0.0 { 0.0 } else { unit * t.powf(-alpha) };
-                [value, value * t / (1.0 - alpha), value * t * t / ((1.0 - alpha) * (2.0 - alpha))]
-            };
-            let ([value, once, twice], [_, before, before_twice]) = (parts(t), parts(from));
-            scratch.singular.push([c * value, c * (once - before), c * (twice - before_twice - (t - from) * before)]);
+            let mut sum = [0.0; 3];
+            element.law.for_each_singularity(&scratch.inputs, state, &mut |term| {
+                let alpha = term.order;
+                let parts = |t: f64| {
+                    let value = if t == 0.0 { 0.0 } else { term.coefficient * t.powf(-alpha) };
+                    [value, value * t / (1.0 - alpha), value * t * t / ((1.0 - alpha) * (2.0 - alpha))]
+                };
+                let ([value, once, twice], [_, before, before_twice]) = (parts(t), parts(from));
+                sum[0] += value;
+                sum[1] += once - before;
+                sum[2] += twice - before_twice - (t - from) * before;
+            });
+            scratch.singular.push(sum);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::dense::Dense;
 use super::drives::drive;
 use super::{Run, start};
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
-use crate::simulate::book::Book;
+use crate::law::{Observation, Point};
 use crate::simulate::moment::{Moment, Scratch};
 use crate::simulate::{RunError, System};
 
@@ -85,13 +85,14 @@ impl Run<'_> {
         stepper.restart();
         self.last = None;
         start::take_jumps(system, forward, &mut stepper.origin)?;
+        let now = |e: usize, point: &Point| system.elements[e].law.now(point, book.accounts[e].memory());
         start::decide(system, forward, &mut stepper.stick, &mut stepper.origin, |e, point, _| {
-            if system.elements[e].law.order() == 1.0 { point.rate } else { book.accounts[e].derivative }
+            let Observation { regular, singular, .. } = now(e, point);
+            Ok(regular + if singular.is_nan() { 0.0 } else { singular })
         })?;
         stepper.free = stepper.stick.free();
-        let derivatives = regular_derivatives(book, to);
-        start::accelerate(system, forward, &stepper.stick, &mut stepper.origin, |e, point| {
-            if system.elements[e].law.order() == 1.0 { point.rate } else { derivatives[e] }
+        start::accelerate(system, forward, &stepper.stick, &mut stepper.origin, |e, point, _| {
+            Ok(now(e, point).regular)
         })?;
         let left = book.moments[0].clone();
         let mut right = left.clone();
@@ -104,14 +105,4 @@ impl Run<'_> {
         book.emit_rows_between_steps(to)?;
         self.expect()
     }
-}
-
-/// D^alpha x of each element between two steps at t, without the share of a singular start.
-fn regular_derivatives(book: &Book, t: f64) -> Vec<f64> {
-    let elements = book.accounts.iter().zip(&book.system.elements);
-    let regular = elements.map(|(account, element)| {
-        let singular = if t > 0.0 { element.law.singular(t, account.memory()) } else { 0.0 };
-        account.derivative - singular
-    });
-    regular.collect()
 }

@@ -27,7 +27,7 @@ use self::stepper::{Carried, Stepper};
 use super::book::{Book, Books, target};
 use super::{Report, Rows, RunError, Settings, Stop, System};
 use crate::fractional::step::RADAU_NODES;
-use crate::law::{Derivative, Singular};
+use crate::law::{Singular, State};
 use crate::motion::{Drive, Forward, Motion};
 use crate::signal::{self, Agenda};
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ pub(super) fn resume(
     let mut run = Run::new(system, forward, settings, rows, stop);
     run.book.restore(books);
     run.stepper.restore(pace.carried);
-    run.find_starts();
+    run.starts = run.book.accounts.iter().map(|account| account.memory().clone()).collect();
     run.last = pace.last;
     let outcome = run.look_ahead().and_then(|()| run.march(pace.h)).and_then(|()| run.book.verdict());
     (run.book.finish(), outcome)
@@ -96,8 +96,10 @@ struct Run<'a> {
     has_paths: bool,
     /// Size and error of the last step kept.
     last: Option<(f64, f64)>,
-    /// Of each element the singular share of D^alpha x at t = 1 s; 0 without one.
-    starts: Vec<f64>,
+    /// Whether a law has inner variables, of which the motion may show nothing.
+    has_inner_variables: bool,
+    /// The laws' states that tell of singular starts.
+    starts: Vec<State>,
     scratch: dense::Scratch,
 }
 
@@ -129,6 +131,7 @@ impl<'a> Run<'a> {
             longest_step: settings.max_step.unwrap_or(settings.end * share).min(settings.end),
             has_paths: forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))),
             last: None,
+            has_inner_variables: system.elements.iter().any(|element| element.law.has_inner_variables()),
             starts: Vec::new(),
             scratch: dense::Scratch::default(),
         }
@@ -151,10 +154,8 @@ impl<'a> Run<'a> {
         moment.v.copy_from_slice(&origin.v);
         moment.a.copy_from_slice(&origin.a);
         drive(&system.model, self.forward, 0.0, moment);
-        let is_singular = system.elements.iter().zip(&elements).any(|(element, start)| {
-            let order = element.law.order();
-            element.derivative == Derivative::RiemannLiouville && order > 0.0 && order < 1.0 && start.jump != 0.0
-        });
+        self.starts = start::states(system, &elements)?;
+        let is_singular = self.starts.iter().any(State::is_singular);
         if is_singular {
             moment.a.fill(f64::NAN);
             moment.driven.fill(None);
@@ -167,7 +168,6 @@ impl<'a> Run<'a> {
         let chosen = start::first_step(&self.stepper, &elements, strict, settings.end);
         let h = self.agenda.reach(0.0, settings.first_step.unwrap_or(chosen).min(self.longest_step));
         self.book.open(RADAU_NODES[0] * h)?;
-        self.find_starts();
         Ok(h)
     }
 
@@ -179,11 +179,6 @@ impl<'a> Run<'a> {
         self.stepper.sizes.take(&self.book.system.model, &self.stepper.origin.q, &self.stepper.origin.v);
         self.stepper.expect(1.0 / self.book.settings.end);
         Ok(())
-    }
-
-    fn find_starts(&mut self) {
-        let laws = self.book.system.elements.iter().zip(&self.book.accounts);
-        self.starts = laws.map(|(element, account)| element.law.singular(1.0, account.memory())).collect();
     }
 
     fn march(&mut self, first: f64) -> Result<(), RunError> {

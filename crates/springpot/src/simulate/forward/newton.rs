@@ -22,10 +22,11 @@ pub(super) enum Outcome {
 
 impl Stepper<'_> {
     /// Solves the step of size `h`; nothing but scratch changes. Inputs at the end are taken at `t_end`.
-    pub(super) fn attempt(&mut self, h: f64, t_end: f64, accounts: &[Account]) -> Result<Outcome, RunError> {
+    pub(super) fn attempt(&mut self, h: f64, t_end: f64, accounts: &mut [Account]) -> Result<Outcome, RunError> {
         self.take_inputs(h, t_end)?;
         self.linearise()?;
         self.choose_forms(h);
+        self.prepare(h, accounts);
         self.foretell(h);
         self.take_drives(h, t_end)?;
         self.allow(h);

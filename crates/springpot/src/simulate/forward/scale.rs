@@ -77,8 +77,8 @@ impl Stepper<'_> {
         // What a stroke's rounding does to each force; from nothing that a run that goes on does not know.
         self.rounded.clear();
         for (element, stage) in self.system.elements.iter().zip(&self.elements) {
-            let [k, c] = tangents(element, stage, self.origin.t);
-            self.rounded.push((k + c * h.powf(-element.law.order())) * stage.resolution);
+            let stiffness = element.law.stiffness(&start(element, stage, self.origin.t), 1.0 / h);
+            self.rounded.push(stiffness * stage.resolution);
         }
         let (n, sizes, tolerance) = (self.model.nv(), &self.sizes, self.tolerance);
         self.allowed.clear();
@@ -118,20 +118,18 @@ impl Stepper<'_> {
         if !(mass > 0.0 && mass.is_finite() && rigid.is_finite()) {
             return slowest;
         }
-        let elements: Vec<[f64; 3]> = self
-            .system
-            .elements
-            .iter()
-            .zip(&self.elements)
-            .map(|(element, stage)| {
-                let [k, c] = tangents(element, stage, self.origin.t);
-                let moved: f64 = self.free.iter().map(|&k| stage.gradient[k] * a[k]).sum();
-                [k * moved * moved, c * moved * moved, element.law.order()]
-            })
+        let elements = || self.system.elements.iter().zip(&self.elements);
+        let squares: Vec<f64> = elements()
+            .map(|(_, stage)| self.free.iter().map(|&k| stage.gradient[k] * a[k]).sum::<f64>().powi(2))
             .collect();
         let mut omega = slowest.max((rigid / mass).sqrt());
         for _ in 0..30 {
-            let stiffness: f64 = elements.iter().map(|[k, c, order]| k + c * omega.powf(*order)).sum();
+            let each = elements().zip(&squares);
+            let stiffness: f64 = each
+                .map(|((element, stage), square)| {
+                    element.law.stiffness(&start(element, stage, self.origin.t), omega) * square
+                })
+                .sum();
             let next = slowest.max(((rigid + stiffness) / mass).sqrt());
             if (next - omega).abs() <= 0.1 * omega {
                 return next;
@@ -148,12 +146,10 @@ impl Stepper<'_> {
     }
 }
 
-/// |∂F/∂x| and |∂F/∂(D^alpha x)| at the start of the step, at t.
-fn tangents(element: &Element, stage: &ElementStage, t: f64) -> [f64; 2] {
+/// The element at the start of the step, at t.
+fn start<'a>(element: &Element, stage: &'a ElementStage, t: f64) -> Point<'a> {
     let inputs = &stage.inputs[..element.inputs.len()];
-    let force = |stroke: f64, derivative: f64| element.law.force(&Point { t, stroke, rate: 0.0, inputs }, derivative);
-    let rest = force(0.0, 0.0);
-    [(force(1.0, 0.0) - rest).abs(), (force(0.0, 1.0) - rest).abs()]
+    Point { t, stroke: stage.stroke[0], rate: stage.rate[0], inputs }
 }
 
 /// Of a singular start with the stroke `jump`, how far it moves each velocity: |jump|·|g_k|/g·g.

@@ -4,8 +4,10 @@ use super::drives::{force_at, take_path};
 use super::stepper::Stepper;
 use super::tableau::{A_SQUARED, GAMMA};
 use crate::dynamics::{PairForce, pair_into, rnea_derivatives_into};
+use crate::element::Element;
 use crate::fractional::Form;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
+use crate::law::{InputValue, Point};
 use crate::motion::Drive;
 use crate::simulate::RunError;
 use crate::simulate::book::Account;
@@ -43,7 +45,7 @@ impl Stepper<'_> {
             stage.rate[0] = pair.rate;
             stage.resolution = element.resolution(pair.length);
         }
-        if self.is_singular || self.system.elements.iter().any(|element| is_yielding(element.law.order())) {
+        if self.is_singular || self.may_yield {
             self.share_forces();
         }
         if self.is_singular {
@@ -80,17 +82,20 @@ impl Stepper<'_> {
     /// elements, since several may pull at one joint.
     pub(super) fn choose_forms(&mut self, h: f64) {
         let mut stiffness = 0.0;
+        if !self.may_yield {
+            return;
+        }
         for (element, stage) in self.system.elements.iter().zip(&self.elements) {
-            let order = element.law.order();
-            if is_yielding(order) {
-                let point = stage.law_step(self.origin.t, h).point(0);
-                let coefficient = element.law.force(&point, 1.0) - element.law.force(&point, 0.0);
-                let softness: f64 = stage.gradient.iter().zip(&stage.share).map(|(g, s)| -g * s).sum();
-                stiffness += h * h * coefficient * (GAMMA * h).powf(-order) * softness;
-            }
+            let point = stage.law_step(self.origin.t, h).point(0);
+            element.law.for_each_springpot(&point, &mut |term| {
+                if term.is_yielding() {
+                    let softness: f64 = stage.gradient.iter().zip(&stage.share).map(|(g, s)| -g * s).sum();
+                    stiffness += h * h * term.stiffness(1.0 / (GAMMA * h)) * softness;
+                }
+            });
         }
         for (element, stage) in self.system.elements.iter().zip(&mut self.elements) {
-            let through_strokes = stiffness >= STIFF && is_yielding(element.law.order());
+            let through_strokes = stiffness >= STIFF && may_yield(element);
             stage.form = if through_strokes { Form::Strokes } else { Form::Rates };
         }
     }
@@ -244,12 +249,25 @@ impl Stepper<'_> {
     /// The laws' answers to the stages.
     pub(super) fn respond(&mut self, h: f64, accounts: &[Account]) {
         for ((element, stage), account) in self.system.elements.iter().zip(&mut self.elements).zip(accounts) {
-            stage.response = element.law.respond(&stage.law_step(self.origin.t, h), account.memory());
+            stage.response = element.law.evaluate(&stage.law_step(self.origin.t, h), account.memory());
+        }
+    }
+
+    /// What the laws know before the stages are found.
+    pub(super) fn prepare(&mut self, h: f64, accounts: &mut [Account]) {
+        for ((element, stage), account) in self.system.elements.iter().zip(&self.elements).zip(accounts) {
+            if let Some(state) = &mut account.law {
+                element.law.prepare(&stage.law_step(self.origin.t, h), state);
+            }
         }
     }
 }
 
-/// Whether a springpot of this order can be unstable where it is stiff.
-fn is_yielding(order: f64) -> bool {
-    order > 0.0 && order < 0.5
+/// Whether a springpot of the element can be unstable where it is stiff.
+pub(super) fn may_yield(element: &Element) -> bool {
+    let inputs = vec![InputValue::default(); element.inputs.len()];
+    let mut may_yield = false;
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
+    element.law.for_each_springpot(&at, &mut |term| may_yield |= term.is_yielding());
+    may_yield
 }

@@ -5,9 +5,7 @@ use super::scale::{Tolerance, jump_travel};
 use super::stepper::{Origin, Stepper};
 use super::stick::Stick;
 use crate::dynamics::{Kinematics, PairForce, crba, rnea};
-use crate::element::Element;
-use crate::fractional::gamma::reciprocal_gamma;
-use crate::law::{Derivative, Point};
+use crate::law::{Derivative, Point, State, Term};
 use crate::motion::{Drive, Forward};
 use crate::simulate::jump::refuse_jumps;
 use crate::simulate::lu::Lu;
@@ -19,6 +17,7 @@ const SOON: f64 = 1e-12;
 
 /// One element where a motion starts.
 pub(super) struct ElementStart {
+    pub(super) length: f64,
     stroke: f64,
     /// x(0) where it counts as different from 0, else 0, m.
     pub(super) jump: f64,
@@ -38,23 +37,39 @@ pub(super) fn origin(
             origin.v[model.v_range(j)].fill(0.0);
         }
     }
-    let regular = |e: usize, point: &Point| {
-        let element: &Element = &system.elements[e];
-        element.law.start_derivative(point, element.derivative)
-    };
-    decide(system, forward, stick, &mut origin, |e, point, jump| {
-        let order = system.elements[e].law.order();
-        let is_singular = system.elements[e].derivative == Derivative::RiemannLiouville && order > 0.0 && order < 1.0;
+    decide(system, forward, stick, &mut origin, |e, point, length| {
+        let (element, law) = (&system.elements[e], begin(system, e, point, length)?);
+        let mut force = element.law.now(point, &law).regular;
         // Infinite at t = 0: as it is soon after.
-        let singular = if is_singular { jump * SOON.powf(-order) * reciprocal_gamma(1.0 - order) } else { 0.0 };
-        regular(e, point) + singular
+        let mut add = |term: Term| force += term.coefficient * SOON.powf(-term.order);
+        element.law.for_each_singularity(point.inputs, &law, &mut add);
+        Ok(force)
     })?;
-    let elements = accelerate(system, forward, stick, &mut origin, regular)?;
+    let elements = accelerate(system, forward, stick, &mut origin, |e, point, length| {
+        Ok(system.elements[e].law.now(point, &begin(system, e, point, length)?).regular)
+    })?;
     Ok((origin, elements))
 }
 
-/// Decides which joints friction holds at the origin, with the whole `derivative` of each element, of which it is told the jump of
-/// the stroke at the start of the motion.
+/// The states of all laws at t = 0.
+pub(super) fn states(system: &System, starts: &[ElementStart]) -> Result<Vec<State>, RunError> {
+    let state = |(e, start): (usize, &ElementStart)| {
+        let element = &system.elements[e];
+        let mut inputs = vec![Default::default(); element.inputs.len()];
+        element.inputs_at(0.0, &mut inputs);
+        begin(system, e, &Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: &inputs }, start.length)
+    };
+    starts.iter().enumerate().map(state).collect()
+}
+
+/// The state of a law at t = 0, before its first step is chosen.
+fn begin(system: &System, e: usize, point: &Point, length: f64) -> Result<State, RunError> {
+    let element = &system.elements[e];
+    let begun = element.begin(length, point.inputs);
+    begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })
+}
+
+/// Decides which joints friction holds at the origin, with the whole `force` of each element, which is told its length.
 ///
 /// # Errors
 /// [`RunError::NoHold`].
@@ -63,13 +78,13 @@ pub(super) fn decide(
     forward: &Forward,
     stick: &mut Stick,
     origin: &mut Origin,
-    derivative: impl Fn(usize, &Point, f64) -> f64,
+    force: impl Fn(usize, &Point, f64) -> Result<f64, RunError>,
 ) -> Result<(), RunError> {
     if stick.rubbing().next().is_none() {
         return Ok(());
     }
     let model = &system.model;
-    let Balance { kinematics, elements, residual, drives, .. } = balance(system, forward, origin, derivative)?;
+    let Balance { kinematics, elements, residual, drives, .. } = balance(system, forward, origin, force)?;
     let sizes: Vec<f64> = (0..model.nv())
         .map(|k| {
             let pull = elements.iter().zip(&origin.forces).map(|(element, force)| (element.gradient[k] * force).abs());
@@ -81,16 +96,15 @@ pub(super) fn decide(
 }
 
 /// Accelerations and forces of the elements at the origin's time, whatever came before: from M a = τ − nle − Σ g F with the
-/// `derivative` of each, without the share of a singular start.
+/// `force` of each, which is told its length, without the share of a singular start.
 pub(super) fn accelerate(
     system: &System,
     forward: &Forward,
     stick: &Stick,
     origin: &mut Origin,
-    derivative: impl Fn(usize, &Point) -> f64,
+    force: impl Fn(usize, &Point, f64) -> Result<f64, RunError>,
 ) -> Result<Vec<ElementStart>, RunError> {
-    let Balance { kinematics, elements, mut residual, .. } =
-        balance(system, forward, origin, |e, point, _| derivative(e, point))?;
+    let Balance { kinematics, elements, mut residual, .. } = balance(system, forward, origin, force)?;
     stick.add_sliding(&mut residual);
     let free = stick.free();
     let mut change: Vec<f64> = free.iter().map(|&k| -residual[k]).collect();
@@ -116,7 +130,7 @@ fn balance(
     system: &System,
     forward: &Forward,
     origin: &mut Origin,
-    derivative: impl Fn(usize, &Point, f64) -> f64,
+    force: impl Fn(usize, &Point, f64) -> Result<f64, RunError>,
 ) -> Result<Balance, RunError> {
     let model = &system.model;
     let Origin { t, q, v, a, forces } = origin;
@@ -140,10 +154,10 @@ fn balance(
         let stroke = pair.length - element.rest_length;
         let point = Point { t, stroke, rate: pair.rate, inputs: &inputs };
         let jump = element.jump(pair.length);
-        let force = element.law.force(&point, derivative(e, &point, jump));
+        let force = force(e, &point, pair.length)?;
         pairs.push(PairForce { from: element.from, to: element.to, force, d_length: 0.0, d_rate: 0.0 });
         *known = force;
-        elements.push(ElementStart { stroke, jump, gradient });
+        elements.push(ElementStart { length: pair.length, stroke, jump, gradient });
     }
     let mut residual = rnea(model, q, v, a, &pairs);
     add_smooth_resistance(model, v, &mut residual);
@@ -216,14 +230,15 @@ pub(super) fn first_step(stepper: &Stepper, elements: &[ElementStart], strict: T
     let kinematics = Kinematics::at_velocity(model, &origin.q, &origin.v);
     let mut h = (tolerance.rtol.powf(0.25) / stepper.answering_rate(1.0 / end)).min(0.1 * end);
     for (element, start) in system.elements.iter().zip(elements) {
-        let order = element.law.order();
-        if !(order > 0.0 && order < 1.0) {
-            continue;
-        }
         let mut inputs = vec![Default::default(); element.inputs.len()];
         element.inputs_at(0.0, &mut inputs);
         let point = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: &inputs };
-        let coefficient = element.law.force(&point, 1.0) - element.law.force(&point, 0.0);
+        let mut terms = Vec::new();
+        element.law.for_each_springpot(&point, &mut |term| terms.push(term));
+        terms.retain(|term| term.order > 0.0 && term.order < 1.0);
+        if terms.is_empty() {
+            continue;
+        }
         let mut push: Vec<f64> = free.iter().map(|&k| start.gradient[k]).collect();
         solve_mass(system, &kinematics, free, &mut push);
         // What does not move has no share of its own.
@@ -231,23 +246,25 @@ pub(super) fn first_step(stepper: &Stepper, elements: &[ElementStart], strict: T
             let shares = push.iter().zip(free).map(|(push, &k)| share(k, push.abs()));
             shares.filter(|share| share.is_finite()).fold(0.0, f64::max)
         };
-        if element.derivative == Derivative::RiemannLiouville && start.jump != 0.0 {
-            let travel = |k: usize| sizes.travel(k).max(jump_travel(start.jump, &start.gradient, k));
-            let kick = largest(&|k, push| push / strict.of(travel(k))) * (coefficient * start.jump).abs();
-            if kick > 0.0 {
-                h = h.min((1.0 / kick).powf(1.0 / (2.0 - order)));
-            }
-        }
-        let reach = largest(&|k, push| push / tolerance.of(sizes.speed(k))) * coefficient.abs();
         // x(h) − x(0) to second order, from the motion at the start.
         let slope: f64 = start.gradient.iter().zip(&origin.v).map(|(g, v)| g * v).sum();
         let bend: f64 = start.gradient.iter().zip(&origin.a).map(|(g, a)| g * a).sum();
-        for _ in 0..200 {
-            let travel = (h * slope).abs() + (0.5 * h * h * bend).abs();
-            if h * reach * h.powf(-order) * travel <= 1.0 {
-                break;
+        for Term { coefficient, order } in terms {
+            if element.derivative == Derivative::RiemannLiouville && start.jump != 0.0 {
+                let travel = |k: usize| sizes.travel(k).max(jump_travel(start.jump, &start.gradient, k));
+                let kick = largest(&|k, push| push / strict.of(travel(k))) * (coefficient * start.jump).abs();
+                if kick > 0.0 {
+                    h = h.min((1.0 / kick).powf(1.0 / (2.0 - order)));
+                }
             }
-            h *= 0.5;
+            let reach = largest(&|k, push| push / tolerance.of(sizes.speed(k))) * coefficient.abs();
+            for _ in 0..200 {
+                let travel = (h * slope).abs() + (0.5 * h * h * bend).abs();
+                if h * reach * h.powf(-order) * travel <= 1.0 {
+                    break;
+                }
+                h *= 0.5;
+            }
         }
     }
     h

@@ -1,6 +1,7 @@
 //! What one step of Radau IIA(5) in the accelerations works on: its start, its stages, its elements.
 
 use super::scale::{Sizes, Tolerance};
+use super::stages::may_yield;
 use super::stick::{Sliding, Stick};
 use super::tableau::A;
 use crate::dynamics::{Kinematics, Pair, PairForce, RneaDerivatives, Workspace};
@@ -110,6 +111,8 @@ pub(super) struct Stepper<'a> {
     pub(super) forward: &'a Forward,
     pub(super) tolerance: Tolerance,
     pub(super) rtol: f64,
+    /// Whether a springpot can be unstable where it is stiff.
+    pub(super) may_yield: bool,
     /// Friction that sticks.
     pub(super) stick: Stick,
     /// Velocities that no signal prescribes and no friction holds.
@@ -198,6 +201,7 @@ impl<'a> Stepper<'a> {
             forward,
             tolerance,
             rtol,
+            may_yield: system.elements.iter().any(may_yield),
             stick: Stick::new(model, forward),
             free: forward.free_velocities(model),
             coordinates: coordinates(model),

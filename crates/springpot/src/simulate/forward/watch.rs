@@ -153,8 +153,8 @@ impl Run<'_> {
             let (mut pull, mut terms) = (0.0, driven.abs() + moment.rigid[k].abs());
             for (e, element) in book.system.elements.iter().enumerate() {
                 let force = match i {
-                    0 => element.force_at_start(&moment.elements[e].point(moment.t), book.accounts[e].derivative),
-                    MAX_NODES => book.steps[e].end.force,
+                    0 => element.law.now(&moment.elements[e].point(moment.t), book.accounts[e].memory()).force(),
+                    MAX_NODES => book.steps[e].end.force(),
                     _ => elements[e].response.force[i - 1],
                 };
                 let share = force * moment.elements[e].gradient[k];
@@ -184,8 +184,8 @@ impl Run<'_> {
             let at = (stepper.origin.t + theta * h).min(to);
             Dense { stepper, h, starts, scratch }.place(at, theta, &mut moment);
             system.fill(at, at, None, &mut book.scratch, &mut moment)?;
-            let pulls: Vec<f64> =
-                (0..system.elements.len()).map(|e| book.element_row(e, theta, &moment).observation.force).collect();
+            let rows = (0..system.elements.len()).map(|e| book.element_row(e, theta, &moment));
+            let pulls = rows.map(|row| Ok(row?.observation.force())).collect::<Result<Vec<f64>, RunError>>()?;
             forces.extend((0..system.model.nv()).map(|k| {
                 let pull = pulls.iter().zip(&moment.elements).map(|(force, element)| force * element.gradient[k]);
                 moment.driven[k].unwrap_or(0.0) - moment.rigid[k] - pull.sum::<f64>()

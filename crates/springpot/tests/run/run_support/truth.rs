@@ -7,6 +7,7 @@ use springpot::dynamics::{Kinematics, pair};
 use springpot::element::Element;
 use springpot::fractional::Kind;
 use springpot::fractional::gamma::gamma;
+use springpot::law::{InputValue, Point};
 use springpot::simulate::System;
 use std::f64::consts::PI;
 
@@ -147,7 +148,8 @@ pub(crate) fn pair_at(system: &System, element: &Element, t: f64) -> (f64, f64, 
 /// D^alpha x of element `index` at the times `t` (positive, ascending).
 pub(crate) fn derivatives(system: &System, index: usize, times: &[f64], width: f64, cuts: &[f64]) -> Vec<f64> {
     let element = &system.elements[index];
-    let alpha = element.law.order();
+    let inputs = vec![InputValue::default(); element.inputs.len()];
+    let alpha = element.law.reported_order(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs });
     let end = times.last().copied().unwrap_or(1.0);
     let rate = |s: f64| pair_at(system, element, s).1;
     let mut truth = Truth::new(alpha, end, width, cuts);

@@ -1,0 +1,365 @@
+//! The past of a piecewise polynomial y as exponentials: the one memory under time loops, streams and files.
+//!
+//! Of the kernel t^−alpha/Γ(1−alpha) ≈ Σ_k w_k e^{−λ_k t} the past has left one number for each exponential,
+//! z_k = ∫₀ᵗ e^{−λ_k(t−s)} y(s) ds. A piece y(θ) = Σ_p y_p θ^p of the width h takes it to e^{−X} z_k + h Σ_p y_p ψ_p(X), X = λ_k h,
+//! without error. Modes stand in blocks of eight; what is missing to a whole block has weight 0 and stays 0.
+//!
+//! There is no shortest lag: faster modes are made where one is asked for, from the last piece alone. That is exact, since they
+//! have forgotten everything before it (X > 100).
+
+use super::exponentials::{Block, CUBIC, LANES, cubic_moments, decay, moments};
+use super::kernel::Kernel;
+use serde::{Deserialize, Serialize};
+
+/// Lags that are kept ready: the three nodes of two alternating step sizes.
+const SLOTS: usize = 6;
+
+/// Modes faster than the pieces need are dropped once there are this many.
+const SURPLUS: usize = 16;
+
+/// A kernel and what it has seen of y.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(from = "Kept", into = "Kept")]
+pub(super) struct History {
+    kernel: Kernel,
+    /// λ and w of the kernel.
+    lambda: Vec<Block>,
+    weight: Vec<Block>,
+    z: Vec<Block>,
+    /// Width and coefficients of the last piece; none before the first.
+    last: (f64, Vec<f64>),
+    tables: Vec<Table>,
+    oldest: usize,
+}
+
+/// What of a history outlasts a run: all else follows.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Kept {
+    kernel: Kernel,
+    z: Vec<f64>,
+    last: (f64, Vec<f64>),
+}
+
+/// e^{−X}, w e^{−X} and ψ_p(X) of every mode for one lag.
+#[derive(Debug, Clone)]
+struct Table {
+    lag: f64,
+    decay: Vec<Block>,
+    weighted: Vec<Block>,
+    /// Those of a block stand together.
+    psi: Vec<Block>,
+}
+
+/// Quadratic forms of the z: Σ w z² and Σ w λ z².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Squares {
+    pub(super) weighted: f64,
+    pub(super) with_rates: f64,
+}
+
+impl From<Kept> for History {
+    fn from(kept: Kept) -> Self {
+        let Kept { kernel, z, last } = kept;
+        let mut history = Self::new(kernel);
+        history.z = blocks(&z);
+        history.last = last;
+        history
+    }
+}
+
+impl From<History> for Kept {
+    fn from(history: History) -> Self {
+        let z = history.modes().to_vec();
+        Self { kernel: history.kernel, z, last: history.last }
+    }
+}
+
+/// Numbers in whole blocks, the rest 0.
+fn blocks(values: &[f64]) -> Vec<Block> {
+    let mut blocks = vec![[0.0; LANES]; values.len().div_ceil(LANES)];
+    blocks.as_flattened_mut()[..values.len()].copy_from_slice(values);
+    blocks
+}
+
+impl History {
+    /// Nothing yet.
+    pub(super) fn new(kernel: Kernel) -> Self {
+        let z = vec![[0.0; LANES]; kernel.modes().div_ceil(LANES)];
+        let (lambda, weight) = (blocks(&kernel.lambda), blocks(&kernel.weight));
+        let last = (0.0, Vec::with_capacity(CUBIC));
+        Self { kernel, lambda, weight, z, last, tables: Vec::new(), oldest: 0 }
+    }
+
+    pub(super) fn kernel(&self) -> &Kernel {
+        &self.kernel
+    }
+
+    /// z_k, one for each exponential of the kernel.
+    pub(super) fn modes(&self) -> &[f64] {
+        &self.z.as_flattened()[..self.kernel.modes()]
+    }
+
+    /// Whether there was no piece yet.
+    pub(super) fn is_empty(&self) -> bool {
+        self.last.1.is_empty()
+    }
+
+    /// The last piece at its end.
+    pub(super) fn last_value(&self) -> f64 {
+        self.last.1.iter().sum()
+    }
+
+    /// Makes the table of a lag of pieces with `count` coefficients, so that asking for it is cheap; lags that differ by no more than
+    /// `slack` are one.
+    pub(super) fn prepare(&mut self, lag: f64, count: usize, slack: f64) {
+        let moments = count * self.z.len();
+        let is_same = |table: &Table| (table.lag - lag).abs() <= slack && table.psi.len() == moments;
+        if self.tables.iter().any(is_same) {
+            return;
+        }
+        let slot = if self.tables.len() < SLOTS {
+            self.tables.push(Table { lag, decay: Vec::new(), weighted: Vec::new(), psi: Vec::new() });
+            self.tables.len() - 1
+        } else {
+            self.oldest = (self.oldest + 1) % SLOTS;
+            self.oldest
+        };
+        self.tables[slot].fill(lag, count, &self.kernel, [&self.lambda, &self.weight]);
+    }
+
+    fn table(&self, lag: f64, count: usize, slack: f64) -> Option<&Table> {
+        let moments = count * self.z.len();
+        self.tables.iter().find(|table| (table.lag - lag).abs() <= slack && table.psi.len() >= moments)
+    }
+
+    /// Σ_k w_k e^{−λ_k τ} z_k: what the past adds at the lag τ, with faster modes where τ is shorter than the kernel's delta.
+    pub(super) fn at(&self, lag: f64) -> f64 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        let mut sums = [0.0; LANES];
+        let mut add = |weighted: &Block, z: &Block| (0..LANES).for_each(|l| sums[l] += weighted[l] * z[l]);
+        match self.table(lag, 0, 0.0) {
+            Some(table) => table.weighted.iter().zip(&self.z).for_each(|(weighted, z)| add(weighted, z)),
+            None => {
+                for ((lambda, weight), z) in self.lambda.iter().zip(&self.weight).zip(&self.z) {
+                    add(&weighted(weight, &decay(&lambda.map(|lambda| lambda * lag))), z);
+                }
+            }
+        }
+        let mut sum: f64 = sums.iter().sum();
+        for k in 1..=self.kernel.missing(lag) {
+            let (lambda, weight) = self.kernel.faster(k);
+            sum += weight * (-lambda * lag).exp() * self.fast_mode(lambda);
+        }
+        sum
+    }
+
+    /// The mean of the past over lags up to τ, Σ_k w_k z_k ψ_0(λ_k τ), modes above the kernel's left out.
+    pub(super) fn mean(&self, lag: f64) -> f64 {
+        let mut sums = [0.0; LANES];
+        self.with_moments(lag, |k, _, psi| {
+            for l in 0..LANES {
+                sums[l] += self.weight[k][l] * psi[0][l] * self.z[k][l];
+            }
+        });
+        sums.iter().sum()
+    }
+
+    /// Σ w z² and Σ w λ z² at the lag τ, where the piece under way has the coefficients y of θ^p, θ = s/τ.
+    pub(super) fn squares(&self, lag: f64, y: &[f64; CUBIC]) -> Squares {
+        let (mut plain, mut rated) = ([0.0; LANES], [0.0; LANES]);
+        if lag == 0.0 {
+            for (k, z) in self.z.iter().enumerate() {
+                for l in 0..LANES {
+                    let square = self.weight[k][l] * z[l] * z[l];
+                    plain[l] += square;
+                    rated[l] += self.lambda[k][l] * square;
+                }
+            }
+            return Squares { weighted: plain.iter().sum(), with_rates: rated.iter().sum() };
+        }
+        self.with_moments(lag, |k, decay, psi| {
+            for l in 0..LANES {
+                let z = decay[l] * self.z[k][l]
+                    + lag * (y[0] * psi[0][l] + y[1] * psi[1][l] + y[2] * psi[2][l] + y[3] * psi[3][l]);
+                let square = self.weight[k][l] * z * z;
+                plain[l] += square;
+                rated[l] += self.lambda[k][l] * square;
+            }
+        });
+        Squares { weighted: plain.iter().sum(), with_rates: rated.iter().sum() }
+    }
+
+    /// Hands over index, e^{−X} and ψ_0 … ψ_3 of every block.
+    fn with_moments(&self, lag: f64, mut take: impl FnMut(usize, &Block, &[Block])) {
+        match self.table(lag, CUBIC, 0.0) {
+            Some(table) => {
+                let all = table.decay.iter().zip(table.psi.chunks_exact(CUBIC)).enumerate();
+                all.for_each(|(k, (decay, psi))| take(k, decay, psi));
+            }
+            None => {
+                for (k, lambda) in self.lambda.iter().enumerate() {
+                    let x = lambda.map(|lambda| lambda * lag);
+                    let decay = decay(&x);
+                    take(k, &decay, &cubic_moments(&x, &decay));
+                }
+            }
+        }
+    }
+
+    /// Takes a piece into the past, z_k ← e^{−X} z_k + h Σ_p y_p ψ_p(X), and gives Σ_k w_k e^{−λ_k h} z_k at its end, what was before
+    /// it. Widths that differ by no more than `slack` are one.
+    pub(super) fn advance(&mut self, width: f64, y: &[f64], slack: f64) -> f64 {
+        self.prepare(width, y.len(), slack);
+        let found = self
+            .tables
+            .iter()
+            .position(|table| (table.lag - width).abs() <= slack && table.psi.len() == y.len() * self.z.len());
+        let table = &self.tables[found.expect("made above")];
+        let z = &mut self.z;
+        // The lengths of cubic rates and of splines, unrolled; any other in a loop.
+        let before = match *y {
+            [a, b, c] => table.advance(z, [a, b, c].map(|y| width * y)),
+            [a, b, c, d] => table.advance(z, [a, b, c, d].map(|y| width * y)),
+            [a, b, c, d, e] => table.advance(z, [a, b, c, d, e].map(|y| width * y)),
+            _ => {
+                let y: Vec<f64> = y.iter().map(|y| width * y).collect();
+                table.advance_by(z, &y)
+            }
+        };
+        self.last.0 = width;
+        self.last.1.clear();
+        self.last.1.extend_from_slice(y);
+        before
+    }
+
+    /// Puts the faster modes in front that lags down to `lag` need.
+    pub(super) fn extend(&mut self, lag: f64) {
+        let modes = self.kernel.modes();
+        let rates = self.kernel.extend(lag);
+        if rates.is_empty() {
+            return;
+        }
+        let mut z: Vec<f64> = rates.into_iter().map(|lambda| self.fast_mode(lambda)).collect();
+        z.extend_from_slice(&self.z.as_flattened()[..modes]);
+        self.take_modes(&z);
+    }
+
+    /// Drops modes that are faster than lags of `lag` and longer need, once there are many of them.
+    pub(super) fn drop_surplus(&mut self, lag: f64) {
+        let surplus = ((lag / self.kernel.delta).ln() / self.kernel.eta).floor();
+        if surplus < SURPLUS as f64 {
+            return;
+        }
+        let modes = self.kernel.modes();
+        let surplus = (surplus as usize).min(modes - 1);
+        self.kernel.drop_fastest(surplus);
+        let z = self.z.as_flattened()[surplus..modes].to_vec();
+        self.take_modes(&z);
+    }
+
+    /// Appends the state to `numbers`: modes with their rates and weights, and the last piece.
+    pub(super) fn save(&self, numbers: &mut Vec<f64>) {
+        let Kernel { lambda, weight, delta, .. } = &self.kernel;
+        let (width, y) = &self.last;
+        numbers.extend([*delta, lambda.len() as f64, y.len() as f64, *width]);
+        [lambda, weight, self.modes(), y].into_iter().for_each(|values: &[f64]| numbers.extend_from_slice(values));
+    }
+
+    /// Takes back what [`Self::save`] wrote of a history with this kernel, from the front of `numbers`; `None` where it is not that.
+    pub(super) fn load(&mut self, numbers: &mut &[f64]) -> Option<()> {
+        let &[delta, modes, count, width] = numbers.split_off(..4)? else { return None };
+        let lambda = numbers.split_off(..modes as usize)?;
+        let weight = numbers.split_off(..modes as usize)?;
+        let z = numbers.split_off(..modes as usize)?;
+        let y = numbers.split_off(..count as usize)?;
+        self.kernel.delta = delta;
+        (self.kernel.lambda, self.kernel.weight) = (lambda.to_vec(), weight.to_vec());
+        self.last = (width, y.to_vec());
+        self.take_modes(z);
+        Some(())
+    }
+
+    /// Goes on with these numbers for the modes of the kernel, which has changed.
+    fn take_modes(&mut self, z: &[f64]) {
+        self.z = blocks(z);
+        self.lambda = blocks(&self.kernel.lambda);
+        self.weight = blocks(&self.kernel.weight);
+        self.tables.clear();
+    }
+
+    /// z of a mode that has forgotten all but the last piece.
+    fn fast_mode(&self, lambda: f64) -> f64 {
+        let (width, y) = &self.last;
+        let (mut few, mut many) = ([0.0; 2 * CUBIC], Vec::new());
+        let psi = match few.get_mut(..y.len()) {
+            Some(few) => few,
+            None => {
+                many.resize(y.len(), 0.0);
+                &mut many[..]
+            }
+        };
+        moments(lambda * width, psi);
+        width * psi.iter().zip(y).map(|(psi, y)| psi * y).sum::<f64>()
+    }
+}
+
+fn weighted(weight: &Block, decay: &Block) -> Block {
+    std::array::from_fn(|l| weight[l] * decay[l])
+}
+
+impl Table {
+    fn fill(&mut self, lag: f64, count: usize, kernel: &Kernel, [lambda, weight]: [&[Block]; 2]) {
+        self.lag = lag;
+        self.decay.clear();
+        self.weighted.clear();
+        self.psi.clear();
+        let mut scalar = vec![0.0; if count == CUBIC { 0 } else { count }];
+        for (k, (lambda, weight)) in lambda.iter().zip(weight).enumerate() {
+            let x = lambda.map(|lambda| lambda * lag);
+            let mut decay = decay(&x);
+            let first = self.psi.len();
+            if count == CUBIC {
+                self.psi.extend_from_slice(&cubic_moments(&x, &decay));
+            } else {
+                self.psi.resize(first + count, [0.0; LANES]);
+                for l in 0..LANES {
+                    moments(x[l], &mut scalar);
+                    self.psi[first..].iter_mut().zip(&scalar).for_each(|(psi, value)| psi[l] = *value);
+                }
+            }
+            for l in kernel.modes().saturating_sub(k * LANES).min(LANES)..LANES {
+                decay[l] = 0.0;
+                self.psi[first..].iter_mut().for_each(|psi| psi[l] = 0.0);
+            }
+            self.decay.push(decay);
+            self.weighted.push(weighted(weight, &decay));
+        }
+    }
+
+    fn advance<const COUNT: usize>(&self, z: &mut [Block], y: [f64; COUNT]) -> f64 {
+        self.advance_by(z, &y)
+    }
+
+    /// Σ w e^{−X} z, and z at the end of a piece whose coefficients times its width are y.
+    #[inline(always)]
+    fn advance_by(&self, z: &mut [Block], y: &[f64]) -> f64 {
+        let mut sums = [0.0; LANES];
+        let modes = z.iter_mut().zip(&self.decay).zip(&self.weighted).zip(self.psi.chunks_exact(y.len()));
+        for (((z, decay), weighted), psi) in modes {
+            let mut next = [0.0; LANES];
+            for l in 0..LANES {
+                sums[l] += weighted[l] * z[l];
+                next[l] = decay[l] * z[l];
+            }
+            for (y, psi) in y.iter().zip(psi) {
+                for l in 0..LANES {
+                    next[l] += y * psi[l];
+                }
+            }
+            *z = next;
+        }
+        sums.iter().sum()
+    }
+}

@@ -1,0 +1,41 @@
+//! The linear dashpot.
+
+use super::{Leaf, LocalError, Observation, Point, Powers, Response, StateRef, Step, Term};
+
+/// F = c·x'. Dissipates c·x'².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dashpot {
+    /// Viscosity c ≥ 0, N·s/m.
+    pub viscosity: f64,
+}
+
+impl Leaf for Dashpot {
+    fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
+        for i in 0..step.nodes.count() {
+            response.force[i] += self.viscosity * step.rate[i + 1];
+            response.d_rate[i][i] += self.viscosity;
+        }
+    }
+
+    fn local_errors(&self, step: &Step, _: StateRef, errors: &mut Vec<LocalError>) {
+        errors.push(LocalError { error: 0.0, value: step.rate[step.nodes.count()], order: 1.0, sharpness: 1.0 });
+    }
+
+    fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
+        for (power, rate) in powers.iter_mut().zip(step.rate) {
+            power.dissipation += self.viscosity * rate * rate;
+        }
+    }
+
+    fn now(&self, at: &Point, _: StateRef) -> Observation {
+        Observation { derivative: at.rate, regular: self.viscosity * at.rate, singular: 0.0, stored: Some(0.0) }
+    }
+
+    fn linearised(&self, _: &Point) -> Term {
+        Term { coefficient: self.viscosity, order: 1.0 }
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,47 @@
+//! A force that an input commands.
+
+use super::{Leaf, Observation, Point, Powers, Response, StateRef, Step, Term};
+
+/// F = −gain·(input − reference): expansion by heat or voltage, turned into force by a stiffness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Source {
+    /// Force per unit of the input, N.
+    pub gain: f64,
+    /// Input without force.
+    pub reference: f64,
+    /// Which input.
+    pub input: usize,
+}
+
+impl Source {
+    fn force(&self, at: &Point) -> f64 {
+        -self.gain * (at.inputs[self.input].value - self.reference)
+    }
+}
+
+impl Leaf for Source {
+    fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
+        for i in 0..step.nodes.count() {
+            response.force[i] += self.force(&step.point(i + 1));
+        }
+    }
+
+    fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
+        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
+            let at = step.point(k);
+            power.input -= self.force(&at) * at.rate;
+        }
+    }
+
+    fn now(&self, at: &Point, _: StateRef) -> Observation {
+        Observation { derivative: at.stroke, regular: self.force(at), singular: 0.0, stored: Some(0.0) }
+    }
+
+    fn linearised(&self, _: &Point) -> Term {
+        Term { coefficient: 0.0, order: 0.0 }
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+}

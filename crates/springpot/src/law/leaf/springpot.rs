@@ -1,0 +1,196 @@
+//! The springpot: a fractional derivative of the stroke.
+
+use super::{
+    InputValue, Leaf, LocalError, Observation, Point, Powers, Response, RuleError, Start, State, StateMut, StateRef,
+    StateSize, Step, Term,
+};
+use crate::fractional::step::MAX_NODES;
+use crate::fractional::{Form, KernelError, Memory, Nodes, RatePolynomial};
+use crate::law::{Derivative, Singular};
+
+/// A coefficient that may follow an input: constant + slope·input.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coefficient {
+    /// Value where the input is 0.
+    pub constant: f64,
+    /// Change per unit of the input.
+    pub slope: f64,
+    /// Which input; `None`: constant.
+    pub input: Option<usize>,
+    /// The rule that keeps it from turning negative, as the message says it.
+    pub rule: &'static str,
+    /// The parameter to change where the rule is broken.
+    pub parameter: &'static str,
+}
+
+/// F = c·D^alpha x, c outside the derivative also when it varies.
+///
+/// At alpha = 0 a spring (on x, or on x − x(0) for Caputo), at alpha = 1 a dashpot. Stores c·ψ, dissipates c·P with ψ and P of
+/// [`crate::fractional::Energy`]; a varying c exchanges ∫ c'ψ dt with its input.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Springpot {
+    /// Coefficient c ≥ 0, N·s^alpha/m.
+    pub coefficient: Coefficient,
+    /// Order, 0 ≤ alpha ≤ 1.
+    pub alpha: f64,
+    /// Which derivative.
+    pub derivative: Derivative,
+}
+
+impl Coefficient {
+    /// A coefficient that never changes.
+    pub fn constant(value: f64) -> Self {
+        Self { constant: value, slope: 0.0, input: None, rule: "c ≥ 0", parameter: "c" }
+    }
+
+    /// Value and rate under the inputs.
+    pub fn at(&self, inputs: &[InputValue]) -> InputValue {
+        match self.input {
+            None => InputValue { value: self.constant, rate: 0.0 },
+            Some(i) => {
+                InputValue { value: self.constant + self.slope * inputs[i].value, rate: self.slope * inputs[i].rate }
+            }
+        }
+    }
+}
+
+fn polynomial(step: &Step) -> RatePolynomial {
+    match step.form {
+        Form::Rates => RatePolynomial::through_rates(step.h, step.nodes, step.rate),
+        Form::Strokes => RatePolynomial::through_strokes(step.h, step.nodes, step.stroke),
+    }
+}
+
+impl Springpot {
+    /// F from the regular D^alpha x.
+    fn observation(&self, memory: &Memory, at: &Point, derivative: f64, energy: impl FnOnce() -> f64) -> Observation {
+        let c = self.coefficient.at(at.inputs).value;
+        if !memory.is_singular() {
+            return Observation { derivative, regular: c * derivative, singular: 0.0, stored: Some(c * energy()) };
+        }
+        let singular = if at.t == 0.0 { f64::NAN } else { memory.singular_part(at.t) };
+        Observation { derivative: derivative + singular, regular: c * derivative, singular: c * singular, stored: None }
+    }
+}
+
+impl Leaf for Springpot {
+    fn size(&self) -> StateSize {
+        StateSize { memories: 1, variables: 0 }
+    }
+
+    fn begin(&self, start: &Start, state: &mut State) -> Result<(), KernelError> {
+        state.push_memory(Memory::closed(self.alpha, self.derivative, start.stroke, start.jump)?);
+        Ok(())
+    }
+
+    fn prepare(&self, step: &Step, state: StateMut) {
+        state.memories[0].prepare(&step.start(), step.nodes, step.form);
+    }
+
+    fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response) {
+        let memory = &state.memories[0];
+        let start = step.start();
+        let affine = memory.respond(&start, step.nodes, step.form);
+        let moments = match step.singular {
+            Singular::Moments if memory.is_singular() => memory.singular_moments(&start, step.nodes),
+            _ => [0.0; MAX_NODES],
+        };
+        let count = step.nodes.count();
+        for i in 0..count {
+            let c = self.coefficient.at(step.point(i + 1).inputs).value;
+            let mut derivative = affine.history[i];
+            if memory.is_singular() {
+                let value = memory.singular_part(step.t + step.nodes.positions()[i] * step.h);
+                let share = if step.singular == Singular::Moments { moments[i] } else { value };
+                derivative += share - value;
+                response.singular[i] += c * share;
+            }
+            for j in 0..count {
+                derivative += affine.stroke[i][j] * (step.stroke[j + 1] - step.stroke[0]);
+                derivative += affine.rate[i][j] * step.rate[j + 1];
+                response.d_stroke[i][j] += c * affine.stroke[i][j];
+                response.d_rate[i][j] += c * affine.rate[i][j];
+            }
+            response.force[i] += c * derivative;
+        }
+    }
+
+    fn commit(&self, step: &Step, state: StateMut) {
+        let polynomial = polynomial(step);
+        let memory = &mut state.memories[0];
+        match step.form {
+            Form::Rates => memory.commit_rates(&polynomial, step.stroke[step.nodes.count()], step.resolution),
+            Form::Strokes => memory.commit(&polynomial),
+        }
+    }
+
+    fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
+        let memory = &state.memories[0];
+        let (last, polynomial) = (step.nodes.count(), polynomial(step));
+        let [stroke, rate] = [step.stroke, step.rate].map(|values| [values[0], values[last]]);
+        errors.push(LocalError {
+            error: memory.defect(&polynomial, stroke, rate, step.resolution),
+            value: memory.regular_derivative(&polynomial, 1.0, stroke[1], rate[1]),
+            order: self.alpha,
+            sharpness: 1.0,
+        });
+    }
+
+    fn powers(&self, step: &Step, state: StateRef, powers: &mut Powers) {
+        let memory = &state.memories[0];
+        let polynomial = polynomial(step);
+        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
+            let at = step.point(k);
+            let c = self.coefficient.at(at.inputs);
+            if memory.is_singular() {
+                // The stored energy is infinite, and what a varying coefficient makes of it is unknown.
+                power.input += if c.rate == 0.0 { 0.0 } else { f64::NAN };
+                continue;
+            }
+            let theta = if k == 0 { 0.0 } else { step.nodes.positions()[k - 1] };
+            let energy = memory.energy(&polynomial, theta, at.stroke, at.rate);
+            power.dissipation += c.value * energy.dissipation;
+            power.input += c.rate * energy.stored;
+        }
+    }
+
+    fn at(&self, step: &Step, theta: f64, at: &Point, state: StateRef) -> Observation {
+        let memory = &state.memories[0];
+        let polynomial = polynomial(step);
+        let derivative = if step.form == Form::Rates && step.nodes == Nodes::Radau && theta < 1.0 {
+            memory.derivative_between(&polynomial, theta, at.stroke, at.rate)
+        } else {
+            memory.regular_derivative(&polynomial, theta, at.stroke, at.rate)
+        };
+        let at = Point { t: step.t + theta * step.h, ..*at };
+        self.observation(memory, &at, derivative, || memory.energy(&polynomial, theta, at.stroke, at.rate).stored)
+    }
+
+    fn now(&self, at: &Point, state: StateRef) -> Observation {
+        let memory = &state.memories[0];
+        self.observation(memory, at, memory.now(at.stroke, at.rate), || memory.stored(at.stroke, at.rate))
+    }
+
+    fn linearised(&self, at: &Point) -> Term {
+        Term { coefficient: self.coefficient.at(at.inputs).value, order: self.alpha }
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn singular(&self, inputs: &[InputValue], state: StateRef) -> Option<Term> {
+        let memory = &state.memories[0];
+        let coefficient = || self.coefficient.at(inputs).value * memory.singular_part(1.0);
+        memory.is_singular().then(|| Term { coefficient: coefficient(), order: self.alpha })
+    }
+
+    fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
+        let c = self.coefficient.at(inputs).value;
+        if c >= 0.0 {
+            return Ok(());
+        }
+        let rule = format!("{} is broken: the coefficient of D^alpha x is {c}", self.coefficient.rule);
+        Err(RuleError { rule, parameter: self.coefficient.parameter })
+    }
+}

@@ -1,0 +1,393 @@
+//! A law as a network of leaves, and how it is asked.
+
+mod series;
+
+use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
+use super::{
+    Derivative, InputValue, LocalError, Observation, Point, Powers, Response, RuleError, Start, State, StateMut,
+    StateRef, StateSize, Step, Term,
+};
+use crate::fractional::KernelError;
+use std::sync::Arc;
+
+/// Most parts side by side in one series; more of them are nested.
+const MOST_IN_SERIES: usize = 8;
+
+/// A law: leaves, and parts that share their stroke or their force. It may hold any number of springpots of any orders.
+///
+/// A network knows no body and chooses no step. Whatever is in it, to the outside it is one map from strokes and rates at the nodes of a
+/// step to forces there; what it keeps between steps is a [`State`] outside it.
+///
+/// ```
+/// use springpot::fractional::{Form, Nodes};
+/// use springpot::law::{Derivative, Network, Singular, Start, Step};
+///
+/// // A fractional Maxwell element: a spring, and a springpot behind it.
+/// let law = Network::series([Network::spring(100.0), Network::springpot(50.0, 0.5, Derivative::Caputo)]);
+/// let mut state = law.begin(&Start { stroke: 0.0, jump: 0.0, inputs: &[] })?;
+/// state.open(1e-11, 1e-3, 1.0)?;
+/// // x = t²/10 over one step of 10 ms that is asked at its end.
+/// let (stroke, rate) = ([0.0, 1e-5], [0.0, 2e-3]);
+/// let step = Step {
+///     t: 0.0, h: 0.01, nodes: Nodes::One, form: Form::Strokes, stroke: &stroke, rate: &rate, inputs: &[],
+///     resolution: 0.0, singular: Singular::Value,
+/// };
+/// let force = law.evaluate(&step, &state).force[0];
+/// assert!(0.0 < force && force < 100.0 * 1e-5); // softer than the spring alone
+/// # Ok::<(), springpot::fractional::KernelError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub enum Network {
+    /// What gives a force by itself.
+    Leaf(Arc<dyn Leaf>),
+    /// One stroke, forces add.
+    Parallel(Vec<Network>),
+    /// One force, strokes add.
+    Series(Vec<Network>),
+}
+
+impl Network {
+    /// A leaf.
+    pub fn leaf(leaf: impl Leaf + 'static) -> Self {
+        Self::Leaf(Arc::new(leaf))
+    }
+
+    /// F = k·x, k in N/m.
+    pub fn spring(stiffness: f64) -> Self {
+        Self::leaf(Spring { stiffness })
+    }
+
+    /// F = c·x', c in N·s/m.
+    pub fn dashpot(viscosity: f64) -> Self {
+        Self::leaf(Dashpot { viscosity })
+    }
+
+    /// F = c·D^alpha x, 0 ≤ alpha ≤ 1, c in N·s^alpha/m.
+    pub fn springpot(coefficient: f64, alpha: f64, derivative: Derivative) -> Self {
+        Self::varying_springpot(Coefficient::constant(coefficient), alpha, derivative)
+    }
+
+    /// F = c·D^alpha x with a coefficient that follows an input.
+    pub fn varying_springpot(coefficient: Coefficient, alpha: f64, derivative: Derivative) -> Self {
+        Self::leaf(Springpot { coefficient, alpha, derivative })
+    }
+
+    /// F = −gain·(input − reference), the input counted from 0.
+    pub fn source(gain: f64, reference: f64, input: usize) -> Self {
+        Self::leaf(Source { gain, reference, input })
+    }
+
+    /// Parts side by side: one stroke, forces add. None: no force.
+    pub fn parallel(parts: impl IntoIterator<Item = Self>) -> Self {
+        Self::Parallel(parts.into_iter().collect())
+    }
+
+    /// Parts one behind the other: one force, strokes add. None: rigid, which no element may be.
+    pub fn series(parts: impl IntoIterator<Item = Self>) -> Self {
+        let mut parts: Vec<Self> = parts.into_iter().collect();
+        while parts.len() > MOST_IN_SERIES {
+            let nested = parts.drain(..MOST_IN_SERIES).collect();
+            parts.push(Self::Series(nested));
+        }
+        Self::Series(parts)
+    }
+
+    /// What of a state belongs to this part.
+    fn size(&self) -> StateSize {
+        let (parts, own) = match self {
+            Self::Leaf(leaf) => return leaf.size(),
+            Self::Parallel(parts) => (parts, 0),
+            Self::Series(parts) => (parts, parts.len()),
+        };
+        parts.iter().map(Self::size).fold(StateSize { memories: 0, variables: own }, |sum, part| StateSize {
+            memories: sum.memories + part.memories,
+            variables: sum.variables + part.variables,
+        })
+    }
+
+    /// The state at t = 0. Its memories have no kernels yet ([`State::open`]): only [`Network::now`] may be asked.
+    ///
+    /// Who takes x(0) in a series: the part of the lowest order where the derivative is Riemann–Liouville's, that of the highest where it is
+    /// Caputo's, for which the stroke was held since ever; parts of the same order share it.
+    ///
+    /// # Errors
+    /// [`KernelError`] where a memory cannot be.
+    pub fn begin(&self, start: &Start) -> Result<State, KernelError> {
+        let mut state = State::default();
+        self.begin_part(start, &mut state)?;
+        Ok(state)
+    }
+
+    fn begin_part(&self, start: &Start, state: &mut State) -> Result<(), KernelError> {
+        match self {
+            Self::Leaf(leaf) => leaf.begin(start, state),
+            Self::Parallel(parts) => parts.iter().try_for_each(|part| part.begin_part(start, state)),
+            Self::Series(parts) => series::begin(parts, start, state),
+        }
+    }
+
+    /// Makes ready what does not change while a step is worked out; no answer changes.
+    pub fn prepare(&self, step: &Step, state: &mut State) {
+        self.prepare_part(step, &mut state.view_mut());
+    }
+
+    fn prepare_part(&self, step: &Step, state: &mut StateMut) {
+        match self {
+            Self::Leaf(leaf) => leaf.prepare(step, state.take(leaf.size())),
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.prepare_part(step, state)),
+            Self::Series(parts) => series::prepare(parts, step, state),
+        }
+    }
+
+    /// Forces at the nodes of `step` and their tangents. Pure.
+    pub fn evaluate(&self, step: &Step, state: &State) -> Response {
+        let mut response = Response::default();
+        self.evaluate_part(step, &mut state.view(), &mut response);
+        response
+    }
+
+    fn evaluate_part(&self, step: &Step, state: &mut StateRef, response: &mut Response) {
+        match self {
+            Self::Leaf(leaf) => leaf.evaluate(step, state.take(leaf.size()), response),
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.evaluate_part(step, state, response)),
+            Self::Series(parts) => series::evaluate(parts, step, state, response),
+        }
+    }
+
+    /// Takes an accepted step into the state: the only change of it.
+    pub fn commit(&self, step: &Step, state: &mut State) {
+        self.commit_part(step, &mut state.view_mut());
+    }
+
+    fn commit_part(&self, step: &Step, state: &mut StateMut) {
+        match self {
+            Self::Leaf(leaf) => leaf.commit(step, state.take(leaf.size())),
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.commit_part(step, state)),
+            Self::Series(parts) => series::commit(parts, step, state),
+        }
+    }
+
+    /// Appends how well the step knows each memory, inner variable and dashpot, in the order of the leaves. Pure.
+    pub fn local_errors(&self, step: &Step, state: &State, errors: &mut Vec<LocalError>) {
+        self.local_errors_part(step, &mut state.view(), errors);
+    }
+
+    fn local_errors_part(&self, step: &Step, state: &mut StateRef, errors: &mut Vec<LocalError>) {
+        match self {
+            Self::Leaf(leaf) => leaf.local_errors(step, state.take(leaf.size()), errors),
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.local_errors_part(step, state, errors)),
+            Self::Series(parts) => series::local_errors(parts, step, state, errors),
+        }
+    }
+
+    /// Energy flows at the start and at the nodes of the step; of dissipation zeros after a singular start. Pure.
+    pub fn powers(&self, step: &Step, state: &State) -> Powers {
+        let mut powers = Powers::default();
+        self.powers_part(step, &mut state.view(), &mut powers);
+        powers
+    }
+
+    fn powers_part(&self, step: &Step, state: &mut StateRef, powers: &mut Powers) {
+        match self {
+            Self::Leaf(leaf) => leaf.powers(step, state.take(leaf.size()), powers),
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.powers_part(step, state, powers)),
+            Self::Series(parts) => series::powers(parts, step, state, powers),
+        }
+    }
+
+    /// The law at t_n + theta·h, 0 < theta ≤ 1, where its exact kinematics are those of `at`. Pure.
+    pub fn at(&self, step: &Step, theta: f64, at: &Point, state: &State) -> Observation {
+        self.at_part(step, theta, at, &mut state.view()).observation
+    }
+
+    fn at_part(&self, step: &Step, theta: f64, at: &Point, state: &mut StateRef) -> Reported {
+        match self {
+            Self::Leaf(leaf) => {
+                let size = leaf.size();
+                Reported::leaf(leaf.as_ref(), at, leaf.at(step, theta, at, state.take(size)))
+            }
+            Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.at_part(step, theta, at, state))),
+            Self::Series(parts) => series::at(parts, step, theta, at, state),
+        }
+    }
+
+    /// The law between two steps, under the kinematics and inputs of `at`, which may have jumped since the last one: memories and inner
+    /// variables do not jump. Pure.
+    pub fn now(&self, at: &Point, state: &State) -> Observation {
+        self.now_part(at, &mut state.view()).observation
+    }
+
+    fn now_part(&self, at: &Point, state: &mut StateRef) -> Reported {
+        match self {
+            Self::Leaf(leaf) => Reported::leaf(leaf.as_ref(), at, leaf.now(at, state.take(leaf.size()))),
+            Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.now_part(at, state))),
+            Self::Series(parts) => series::now(parts, at, state),
+        }
+    }
+
+    /// |∂F/∂x| of small strokes about `at` at the rate `omega`, rad/s, without any memory: k + c·ω + Σ c·ω^alpha of parallel parts.
+    pub fn stiffness(&self, at: &Point, omega: f64) -> f64 {
+        match self {
+            Self::Leaf(leaf) => leaf.linearised(at).stiffness(omega),
+            Self::Parallel(parts) => parts.iter().map(|part| part.stiffness(at, omega)).sum(),
+            Self::Series(parts) => parts.iter().map(|part| part.stiffness(at, omega).recip()).sum::<f64>().recip(),
+        }
+    }
+
+    /// The size of the force where x was reached at the rate `omega`, rad/s, signed.
+    pub fn estimate(&self, at: &Point, state: &State, omega: f64) -> f64 {
+        self.estimate_part(at, &mut state.view(), omega)
+    }
+
+    fn estimate_part(&self, at: &Point, state: &mut StateRef, omega: f64) -> f64 {
+        match self {
+            Self::Leaf(leaf) => {
+                let own = state.take(leaf.size());
+                match own.memories {
+                    [] => leaf.now(at, own).force(),
+                    _ => leaf.linearised(at).stiffness(omega) * at.stroke,
+                }
+            }
+            Self::Parallel(parts) => parts.iter().map(|part| part.estimate_part(at, state, omega)).sum(),
+            Self::Series(_) => {
+                state.take(self.size());
+                self.stiffness(at, omega) * at.stroke
+            }
+        }
+    }
+
+    /// Hands over c·D^alpha x of every springpot that the stroke reaches at once; of a series what it is like at short times.
+    pub fn for_each_springpot(&self, at: &Point, take: &mut dyn FnMut(Term)) {
+        match self {
+            Self::Leaf(leaf) if leaf.size().memories > 0 => take(leaf.linearised(at)),
+            Self::Leaf(_) => {}
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.for_each_springpot(at, take)),
+            Self::Series(_) => {
+                let term = self.asymptote(at, Onset::Short);
+                if term.order > 0.0 && term.order < 1.0 {
+                    take(term);
+                }
+            }
+        }
+    }
+
+    /// Hands over s and alpha of every share s·t^−alpha of a singular start in F.
+    pub fn for_each_singularity(&self, inputs: &[InputValue], state: &State, take: &mut dyn FnMut(Term)) {
+        if state.is_singular() {
+            self.singularities(inputs, &mut state.view(), take);
+        }
+    }
+
+    fn singularities(&self, inputs: &[InputValue], state: &mut StateRef, take: &mut dyn FnMut(Term)) {
+        match self {
+            Self::Leaf(leaf) => {
+                if let Some(term) = leaf.singular(inputs, state.take(leaf.size())) {
+                    take(term);
+                }
+            }
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.singularities(inputs, state, take)),
+            Self::Series(_) => {
+                state.take(self.size());
+            }
+        }
+    }
+
+    /// Rules over the inputs, to hold at every time.
+    ///
+    /// # Errors
+    /// [`RuleError`] names the broken rule.
+    pub fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
+        match self {
+            Self::Leaf(leaf) => leaf.check_inputs(inputs),
+            Self::Parallel(parts) | Self::Series(parts) => parts.iter().try_for_each(|part| part.check_inputs(inputs)),
+        }
+    }
+
+    /// The order of the derivative that an [`Observation`] tells; 0 where it is the stroke.
+    pub fn reported_order(&self, at: &Point) -> f64 {
+        self.report(at).1
+    }
+
+    fn report(&self, at: &Point) -> (u8, f64) {
+        match self {
+            Self::Leaf(leaf) => report(leaf.as_ref(), at),
+            Self::Parallel(parts) | Self::Series(parts) => {
+                let reports = parts.iter().map(|part| part.report(at));
+                reports.fold((0, 0.0), |first, next| if next.0 > first.0 { next } else { first })
+            }
+        }
+    }
+
+    /// Whether it keeps inner strokes or inner variables, whose errors no stroke shows.
+    pub fn has_inner_variables(&self) -> bool {
+        self.size().variables > 0
+    }
+
+    fn is_linear(&self) -> bool {
+        match self {
+            Self::Leaf(leaf) => leaf.is_linear(),
+            Self::Parallel(parts) | Self::Series(parts) => parts.iter().all(Self::is_linear),
+        }
+    }
+
+    /// What remains of the network at short or at long times.
+    fn asymptote(&self, at: &Point, onset: Onset) -> Term {
+        let (parts, adds) = match self {
+            Self::Leaf(leaf) => return leaf.linearised(at),
+            Self::Parallel(parts) => (parts, true),
+            Self::Series(parts) => (parts, false),
+        };
+        // The stiffest of parallel parts and the softest of those in series: that of the higher order at short times.
+        let takes_highest = adds == (onset == Onset::Short);
+        let terms = || parts.iter().map(|part| part.asymptote(at, onset)).filter(|term| term.coefficient != 0.0);
+        let orders = terms().map(|term| term.order);
+        let order = if takes_highest { orders.fold(0.0, f64::max) } else { orders.fold(f64::INFINITY, f64::min) };
+        let order = if order.is_finite() { order } else { 0.0 };
+        let same = terms().filter(|term| term.order == order).map(|term| term.coefficient);
+        let coefficient = if adds { same.sum() } else { same.map(f64::recip).sum::<f64>().recip() };
+        Term { coefficient, order }
+    }
+}
+
+/// How much the derivative that a leaf tells is worth, and its order.
+fn report(leaf: &dyn Leaf, at: &Point) -> (u8, f64) {
+    match (leaf.size().memories, leaf.linearised(at).order) {
+        (0, 1.0) => (1, 1.0),
+        (0, _) => (0, 0.0),
+        (_, order) => (2, order),
+    }
+}
+
+/// Which end of the times a law is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Onset {
+    Short,
+    Long,
+}
+
+/// An observation, and whose derivative it tells: that of the first springpot, else that of the first dashpot.
+#[derive(Debug, Clone, Copy)]
+struct Reported {
+    observation: Observation,
+    rank: u8,
+}
+
+impl Reported {
+    fn leaf(leaf: &dyn Leaf, at: &Point, observation: Observation) -> Self {
+        Self { observation, rank: report(leaf, at).0 }
+    }
+
+    fn sum(at: &Point, parts: impl Iterator<Item = Self>) -> Self {
+        let none = Observation { derivative: at.stroke, regular: 0.0, singular: 0.0, stored: Some(0.0) };
+        parts.fold(Self { observation: none, rank: 0 }, |mut sum, part| {
+            let (own, other) = (&mut sum.observation, part.observation);
+            own.regular += other.regular;
+            own.singular += other.singular;
+            own.stored = own.stored.zip(other.stored).map(|(a, b)| a + b);
+            if part.rank > sum.rank {
+                (own.derivative, sum.rank) = (other.derivative, part.rank);
+            }
+            sum
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! What a law keeps between steps.
+
+use crate::fractional::{KernelError, Memory};
+use serde::{Deserialize, Serialize};
+
+/// How much of a [`State`] belongs to one leaf.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StateSize {
+    /// Memories of fractional derivatives.
+    pub memories: usize,
+    /// Inner variables.
+    pub variables: usize,
+}
+
+/// The state of a law: the memories and the inner variables of its leaves, one leaf after the other.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct State {
+    memories: Vec<Memory>,
+    variables: Vec<f64>,
+}
+
+/// The share of a state that belongs to one part of a law.
+#[derive(Debug, Clone, Copy)]
+pub struct StateRef<'a> {
+    /// Its memories.
+    pub memories: &'a [Memory],
+    /// Its inner variables.
+    pub variables: &'a [f64],
+}
+
+/// As [`StateRef`], to be changed.
+#[derive(Debug)]
+pub struct StateMut<'a> {
+    /// Its memories.
+    pub memories: &'a mut [Memory],
+    /// Its inner variables.
+    pub variables: &'a mut [f64],
+}
+
+impl State {
+    /// Adds a memory of the leaf that begins.
+    pub fn push_memory(&mut self, memory: Memory) {
+        self.memories.push(memory);
+    }
+
+    /// Adds an inner variable of the leaf that begins.
+    pub fn push_variable(&mut self, value: f64) {
+        self.variables.push(value);
+    }
+
+    /// Builds the kernels of all memories: `tolerance` bounds their relative error between the lag `delta`, the shortest that the first
+    /// step asks for, and `horizon`, the longest of the run, s.
+    ///
+    /// # Errors
+    /// [`KernelError`] where one cannot be built.
+    pub fn open(&mut self, tolerance: f64, delta: f64, horizon: f64) -> Result<(), KernelError> {
+        self.memories.iter_mut().try_for_each(|memory| memory.open(tolerance, delta, horizon))
+    }
+
+    /// The memories, in the order of the leaves.
+    pub fn memories(&self) -> &[Memory] {
+        &self.memories
+    }
+
+    /// The memories, to be changed.
+    pub fn memories_mut(&mut self) -> &mut [Memory] {
+        &mut self.memories
+    }
+
+    /// Number of exponentials in all memories.
+    pub fn modes(&self) -> usize {
+        self.memories.iter().map(Memory::modes).sum()
+    }
+
+    /// Whether a force is infinite at t = 0.
+    pub fn is_singular(&self) -> bool {
+        self.memories.iter().any(Memory::is_singular)
+    }
+
+    /// All of it.
+    pub fn view(&self) -> StateRef<'_> {
+        StateRef { memories: &self.memories, variables: &self.variables }
+    }
+
+    /// All of it, to be changed.
+    pub fn view_mut(&mut self) -> StateMut<'_> {
+        StateMut { memories: &mut self.memories, variables: &mut self.variables }
+    }
+
+    /// Appends all numbers of the state to `numbers`.
+    pub fn save(&self, numbers: &mut Vec<f64>) {
+        self.memories.iter().for_each(|memory| memory.save(numbers));
+        numbers.extend_from_slice(&self.variables);
+    }
+
+    /// Takes back what [`Self::save`] wrote, from the front of `numbers`; `None`, and the state as it was, where they are not those of a
+    /// state of the same law.
+    pub fn load(&mut self, numbers: &mut &[f64]) -> Option<()> {
+        let (mut loaded, mut rest) = (self.clone(), *numbers);
+        for memory in &mut loaded.memories {
+            memory.load(&mut rest)?;
+        }
+        let variables = rest.split_off(..loaded.variables.len())?;
+        loaded.variables.copy_from_slice(variables);
+        (*self, *numbers) = (loaded, rest);
+        Some(())
+    }
+}
+
+impl<'a> StateRef<'a> {
+    /// Splits off the share of the next part.
+    pub(super) fn take(&mut self, size: StateSize) -> StateRef<'a> {
+        let (memories, other_memories) = self.memories.split_at(size.memories);
+        let (variables, other_variables) = self.variables.split_at(size.variables);
+        *self = StateRef { memories: other_memories, variables: other_variables };
+        StateRef { memories, variables }
+    }
+}
+
+impl<'a> StateMut<'a> {
+    /// Splits off the share of the next part.
+    pub(super) fn take(&mut self, size: StateSize) -> StateMut<'a> {
+        let memories = self.memories.split_off_mut(..size.memories).expect("a state of this law");
+        let variables = self.variables.split_off_mut(..size.variables).expect("a state of this law");
+        StateMut { memories, variables }
+    }
+}

@@ -1,0 +1,193 @@
+//! What laws are asked, and what they answer.
+
+use crate::fractional::step::{MAX_NODES, quadrature};
+use crate::fractional::{Form, Nodes, StepStart};
+use serde::{Deserialize, Serialize};
+
+/// Value and rate of one input at one time, SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct InputValue {
+    /// Value.
+    pub value: f64,
+    /// Time derivative.
+    pub rate: f64,
+}
+
+/// An element's kinematics and inputs at one time.
+#[derive(Debug, Clone, Copy)]
+pub struct Point<'a> {
+    /// Time, s.
+    pub t: f64,
+    /// x, m.
+    pub stroke: f64,
+    /// x', m/s.
+    pub rate: f64,
+    /// Inputs in the order of the catalog.
+    pub inputs: &'a [InputValue],
+}
+
+/// One step: its data at the start (index 0) and at the nodes (1 … s).
+#[derive(Debug, Clone, Copy)]
+pub struct Step<'a> {
+    /// Start t_n, s.
+    pub t: f64,
+    /// Size h, s.
+    pub h: f64,
+    /// Where the step is evaluated.
+    pub nodes: Nodes,
+    /// Which data make the memory's polynomial.
+    pub form: Form,
+    /// x, s + 1 values, m.
+    pub stroke: &'a [f64],
+    /// x', s + 1 values, m/s.
+    pub rate: &'a [f64],
+    /// Inputs, (s + 1) × (number of inputs), point by point.
+    pub inputs: &'a [InputValue],
+    /// Rounding of the strokes, m: differences below it mean nothing.
+    pub resolution: f64,
+    /// How a singular start enters the forces at the nodes.
+    pub singular: Singular,
+}
+
+/// How the singular part x(0) t^−alpha/Γ(1−alpha) of a Riemann–Liouville start enters the forces at the nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Singular {
+    /// By its value there.
+    Value,
+    /// By its moments over the step, so that impulses are exact ([`crate::fractional::Memory::singular_moments`]).
+    Moments,
+}
+
+/// Where a law starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start<'a> {
+    /// x(0), m.
+    pub stroke: f64,
+    /// x(0) where it counts as different from 0, else 0, m.
+    pub jump: f64,
+    /// Inputs at t = 0, in the order of the catalog.
+    pub inputs: &'a [InputValue],
+}
+
+/// Forces at the nodes of a step and their tangents.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Response {
+    /// F_i, N.
+    pub force: [f64; MAX_NODES],
+    /// ∂F_i/∂x_j, N/m.
+    pub d_stroke: [[f64; MAX_NODES]; MAX_NODES],
+    /// ∂F_i/∂x'_j, N·s/m.
+    pub d_rate: [[f64; MAX_NODES]; MAX_NODES],
+    /// The share of a singular start in F_i, N.
+    pub singular: [f64; MAX_NODES],
+}
+
+/// Energy flows at one time, W.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Power {
+    /// Dissipated.
+    pub dissipation: f64,
+    /// Supplied by the inputs.
+    pub input: f64,
+}
+
+/// Powers at the start and at the nodes of a step.
+pub type Powers = [Power; MAX_NODES + 1];
+
+/// A law at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// D^alpha x of the springpot that a law reports, x' of a dashpot where it has none, else x; NaN where it is infinite.
+    pub derivative: f64,
+    /// F without the share of a singular start, N.
+    pub regular: f64,
+    /// The share of a singular start in F, N; NaN at t = 0, where it is infinite, and 0 without one.
+    pub singular: f64,
+    /// Stored energy, J; unknown (`None`) after a singular start, which takes infinite work.
+    pub stored: Option<f64>,
+}
+
+/// c·D^order x: what a law is like under small and fast strokes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Term {
+    /// c ≥ 0, N·s^order/m.
+    pub coefficient: f64,
+    /// 0 for a spring, 1 for a dashpot, between them for a springpot.
+    pub order: f64,
+}
+
+/// How well a step knows one D^order x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LocalError {
+    /// Estimate of the error at the end of the step, in the unit of D^order x.
+    pub error: f64,
+    /// D^order x at the end of the step, without the share of a singular start: what the error is measured by.
+    pub value: f64,
+    /// The order; the error falls like h^{4−order}.
+    pub order: f64,
+    /// The exponent that brings an estimate of a lower order to that: 1 where it has it.
+    pub sharpness: f64,
+}
+
+impl<'a> Step<'a> {
+    /// The step's data at its start (0) or at node `index`.
+    pub fn point(&self, index: usize) -> Point<'a> {
+        let theta = if index == 0 { 0.0 } else { self.nodes.positions()[index - 1] };
+        let count = self.inputs.len() / self.stroke.len();
+        Point {
+            t: self.t + theta * self.h,
+            stroke: self.stroke[index],
+            rate: self.rate[index],
+            inputs: &self.inputs[index * count..(index + 1) * count],
+        }
+    }
+
+    /// The start as a memory sees it; one that is told strokes does not ask for the rate.
+    pub fn start(&self) -> StepStart {
+        let rate = if self.form == Form::Rates { self.rate[0] } else { 0.0 };
+        StepStart { t: self.t, h: self.h, stroke: self.stroke[0], rate }
+    }
+}
+
+impl Observation {
+    /// F, N; NaN where it is infinite.
+    pub fn force(&self) -> f64 {
+        self.regular + self.singular
+    }
+}
+
+impl Term {
+    /// |∂F/∂x| of strokes at the rate `omega`, rad/s.
+    pub fn stiffness(&self, omega: f64) -> f64 {
+        self.coefficient * omega.powf(self.order)
+    }
+
+    /// Whether it takes a memory that can be unstable where it is stiff and told rates.
+    pub fn is_yielding(&self) -> bool {
+        self.order > 0.0 && self.order < 0.5
+    }
+}
+
+impl LocalError {
+    /// The error in units of what is `allowed` where D^order x has the size `scale`.
+    pub fn share(&self, scale: f64, allowed: f64) -> f64 {
+        match self.error {
+            0.0 => 0.0,
+            error if self.sharpness == 1.0 => error / allowed,
+            error => (error / scale).powf(self.sharpness) * scale / allowed,
+        }
+    }
+}
+
+impl Power {
+    /// ∫ of the powers over the step up to t_n + theta·h: by the Radau weights at its end, else by the polynomial through them.
+    pub fn integrate(powers: &Powers, nodes: Nodes, h: f64, theta: f64) -> Power {
+        let weights = quadrature(nodes, theta);
+        let mut sum = Power::default();
+        for (power, weight) in powers.iter().zip(weights) {
+            sum.dissipation += h * weight * power.dissipation;
+            sum.input += h * weight * power.input;
+        }
+        sum
+    }
+}
