@@ -148,6 +148,8 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
             let sections = (sweep.rows.section(index), sweep.summary.section(index));
             // The section may have been long in coming.
             if stopped() {
+                sections.0.finish()?;
+                sections.1.finish()?;
                 break;
             }
             let result = case::run(&sweep, index, sections)?;
