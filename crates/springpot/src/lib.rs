@@ -59,6 +59,7 @@ pub mod dynamics;
 pub mod element;
 pub mod fractional;
 pub mod law;
+mod linalg;
 pub mod model;
 pub mod motion;
 #[cfg(feature = "scenario")]

@@ -1,8 +1,8 @@
 //! Whether a described body makes physical sense.
 
 use super::error::{Field, ModelError};
-use super::principal::principal_moments;
 use super::spec::{BodySpec, FrictionLaw, JointKind, Parent};
+use crate::linalg::symmetric_eigenvalues;
 
 /// Refuses a principal moment below minus this share of the largest one.
 const POSITIVE_TOLERANCE: f64 = 1e-12;
@@ -113,7 +113,7 @@ pub(super) fn inertia(
             return Err(ModelError::AsymmetricInertia { body, name: name(), row, column, upper, lower });
         }
     }
-    let [smallest, middle, largest] = principal_moments(m);
+    let [smallest, middle, largest] = symmetric_eigenvalues(m);
     if smallest < -POSITIVE_TOLERANCE * largest.abs() - rounding {
         return Err(ModelError::InertiaNotPositive { body, name: name(), smallest });
     }
