@@ -62,6 +62,7 @@ pub mod law;
 mod linalg;
 pub mod model;
 pub mod motion;
+pub mod names;
 #[cfg(feature = "scenario")]
 pub mod scenario;
 pub mod signal;
