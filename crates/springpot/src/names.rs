@@ -6,7 +6,7 @@ pub fn is_name(name: &str) -> bool {
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
-/// The candidate most like `name`, the first of equals, if any is like it at all.
+/// The candidate most like `name`, the last of equals, if any is like it at all.
 #[cfg(feature = "urdf")]
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Longer names resemble nothing.
@@ -25,7 +25,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             (likeness, candidate)
         })
         .filter(|(likeness, _)| *likeness > 0.78)
-        .reduce(|best, next| if next.0 > best.0 { next } else { best })
+        .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate)
 }
 
@@ -51,6 +51,6 @@ mod tests {
         assert_eq!(nearest("Law", keys), Some("law"));
         assert_eq!(nearest("zzz", keys), None);
         assert_eq!(nearest("joint2", ["panda_joint1", "panda_joint2", "joint3x"]), Some("panda_joint2"));
-        assert_eq!(nearest("joint2", ["left_joint2", "right_joint2"]), Some("left_joint2"));
+        assert_eq!(nearest("joint2", ["left_joint2", "right_joint2"]), Some("right_joint2"));
     }
 }

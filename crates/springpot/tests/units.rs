@@ -463,14 +463,19 @@ impl Natural {
     }
 }
 
-/// Whether the positive `value` is the double nearest to above·10^decimal/below.
+/// Whether the positive `value` is the double nearest to above·10^decimal/below, the even one of two.
 fn is_nearest(value: f64, above: Natural, decimal: i32, below: u64) -> bool {
     let (mantissa, exponent) = (value.to_bits() & ((1 << 52) - 1) | 1 << 52, (value.to_bits() >> 52) as i32 - 1075);
     // Half way to the next double below, and above: (2m ∓ 1)·2^(exponent − 1).
     let scale = |number: Natural, two: i32, ten: i32| number.times_power(2, two).times_power(10, ten);
     let exact = scale(above, 1 - exponent, decimal);
     let half_way = |odd: u64| scale(Natural::new("1").times(odd).times(below), exponent - 1, -decimal);
-    half_way(2 * mantissa - 1).is_at_most(&exact) && exact.is_at_most(&half_way(2 * mantissa + 1))
+    let (lower, upper) = (half_way(2 * mantissa - 1), half_way(2 * mantissa + 1));
+    if mantissa % 2 == 0 {
+        lower.is_at_most(&exact) && exact.is_at_most(&upper)
+    } else {
+        !exact.is_at_most(&lower) && !upper.is_at_most(&exact)
+    }
 }
 
 #[test]
