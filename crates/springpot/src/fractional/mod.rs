@@ -59,7 +59,6 @@
 
 mod differintegral;
 pub mod gamma;
-mod gauss;
 pub mod kernel;
 pub mod kind;
 pub mod memory;

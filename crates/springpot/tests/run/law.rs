@@ -1,6 +1,6 @@
 //! Laws on their own: tangents, sums, the catalog, and the rules that keep an element passive.
 
-use crate::memory_support::random_steps;
+use crate::steps::random_steps;
 use springpot::fractional::{Form, Nodes};
 use springpot::law::leaf::Coefficient;
 use springpot::law::{Catalog, Derivative, Entry, InputValue, Law, Parallel, Point, Start, State, Step};

@@ -1,7 +1,8 @@
 //! Single pulses and jolts as narrow as 1e-6 of the run, against convolutions with the exact answer to an impulse.
 
 use crate::random::{Random, slider};
-use crate::support::{Run, largest, run};
+use crate::support::forward::largest;
+use crate::support::{Run, run};
 use springpot::fractional::mittag_leffler::MittagLeffler;
 
 /// When a pulse comes and half its width.

@@ -8,9 +8,9 @@ use crate::dynamics::{Kinematics, PairForce, crba, rnea};
 use crate::element::Element;
 use crate::fractional::gamma::reciprocal_gamma;
 use crate::law::{Derivative, Point};
+use crate::linalg::Lu;
 use crate::motion::{Drive, Forward};
 use crate::simulate::jump::refuse_jumps;
-use crate::simulate::lu::Lu;
 use crate::simulate::resistance::add_smooth_resistance;
 use crate::simulate::{RunError, System};
 
