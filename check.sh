@@ -17,6 +17,25 @@ cargo clippy --package springpot --no-default-features --quiet -- -D warnings
 step "the engine with URDF files, without scenario files"
 cargo clippy --package springpot --no-default-features --features urdf --quiet -- -D warnings
 
+# Nothing is downloaded here: what is not at hand is said, not checked.
+msrv=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+step "Rust $msrv, the oldest that is promised"
+oldest=$(rustup toolchain list 2>/dev/null | grep -oE "^${msrv//./\\.}(\.[0-9]+)?-[^ ]+" | head -n 1 || true)
+if [ -n "$oldest" ]; then
+    cargo "+$oldest" check --workspace --quiet --target-dir target/oldest
+else
+    echo "not installed; clippy's incompatible_msrv has looked at the calls to std"
+fi
+
+step "licences, versions and sources of the crates"
+if ! cargo deny --version >/dev/null 2>&1; then
+    echo "cargo-deny is not installed: not checked"
+elif ! cargo metadata --offline --locked --format-version 1 >/dev/null 2>&1; then
+    echo "not all crates are downloaded (cargo fetch): not checked"
+else
+    cargo deny --offline --log-level warn check licenses bans sources
+fi
+
 step "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 

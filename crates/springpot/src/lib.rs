@@ -59,8 +59,10 @@ pub mod dynamics;
 pub mod element;
 pub mod fractional;
 pub mod law;
+mod linalg;
 pub mod model;
 pub mod motion;
+pub mod names;
 #[cfg(feature = "scenario")]
 pub mod scenario;
 pub mod signal;

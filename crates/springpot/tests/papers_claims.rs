@@ -2,13 +2,12 @@
 
 #![cfg(feature = "scenario")]
 
-#[path = "run/run_support/mod.rs"]
-mod run_support;
+mod support;
 
-use run_support::truth::pair_at;
-use run_support::{Run, largest, relative_difference, run_case, shipped};
 use springpot::scenario::{Cases, SweptValue};
 use std::f64::consts::PI;
+use support::truth::pair_at;
+use support::{Run, largest, relative_difference, run_case, shipped};
 
 /// Largest and smallest value.
 fn range(values: &[f64]) -> (f64, f64) {

@@ -3,13 +3,12 @@
 
 #![cfg(feature = "scenario")]
 
-#[path = "run/run_support/mod.rs"]
-mod run_support;
+mod support;
 
-use run_support::oracle::{column, file, number, numbers};
-use run_support::robots::{ARM, PATH, SWING, at, magnetorheological, thermoviscoelastic};
-use run_support::{Run, largest, run};
 use serde_json::Value;
+use support::oracle::{column, file, number, numbers};
+use support::robots::{ARM, PATH, SWING, at, magnetorheological, thermoviscoelastic};
+use support::{Run, largest, run};
 
 /// The tolerance that the papers' results must meet without any setting.
 const TOLERANCE: f64 = 1e-9;

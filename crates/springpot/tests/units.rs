@@ -406,3 +406,144 @@ proptest! {
         prop_assert!(square.dimension().agrees_with(&twice.dimension()));
     }
 }
+
+/// A natural number of any size, in digits of base 2³², the lowest first.
+#[derive(Clone)]
+struct Natural(Vec<u32>);
+
+impl Natural {
+    /// From decimal digits.
+    fn new(digits: &str) -> Self {
+        digits
+            .bytes()
+            .fold(Self(Vec::new()), |number, digit| number.times(10).sum(&Self(vec![u32::from(digit - b'0')])))
+    }
+
+    fn times(mut self, factor: u64) -> Self {
+        let mut carry = 0_u128;
+        for digit in &mut self.0 {
+            let product = u128::from(*digit) * u128::from(factor) + carry;
+            (*digit, carry) = (product as u32, product >> 32);
+        }
+        while carry > 0 {
+            self.0.push(carry as u32);
+            carry >>= 32;
+        }
+        self
+    }
+
+    /// The product, digit by digit.
+    fn product(&self, other: &Self) -> Self {
+        other
+            .0
+            .iter()
+            .rev()
+            .fold(Self(Vec::new()), |sum, digit| sum.times(1 << 32).sum(&self.clone().times(u64::from(*digit))))
+    }
+
+    fn sum(&self, other: &Self) -> Self {
+        let (mut sum, mut carry) = (Vec::new(), 0);
+        for k in 0..self.0.len().max(other.0.len()) {
+            let digit = |number: &Self| u64::from(number.0.get(k).copied().unwrap_or(0));
+            let total = digit(self) + digit(other) + carry;
+            sum.push(total as u32);
+            carry = total >> 32;
+        }
+        sum.extend((carry > 0).then_some(carry as u32));
+        Self(sum)
+    }
+
+    fn times_power(self, base: u64, exponent: i32) -> Self {
+        (0..exponent.max(0)).fold(self, |number, _| number.times(base))
+    }
+
+    fn is_at_most(&self, other: &Self) -> bool {
+        let (a, b) = (&self.0, &other.0);
+        a.len() < b.len() || (a.len() == b.len() && a.iter().rev().le(b.iter().rev()))
+    }
+}
+
+/// Whether the positive `value` is the double nearest to above·10^decimal/below, the even one of two.
+fn is_nearest(value: f64, above: Natural, decimal: i32, below: u64) -> bool {
+    let (mantissa, exponent) = (value.to_bits() & ((1 << 52) - 1) | 1 << 52, (value.to_bits() >> 52) as i32 - 1075);
+    // Half way to the next double below, and above: (2m ∓ 1)·2^(exponent − 1).
+    let scale = |number: Natural, two: i32, ten: i32| number.times_power(2, two).times_power(10, ten);
+    let exact = scale(above, 1 - exponent, decimal);
+    let half_way = |odd: u64| scale(Natural::new("1").times(odd).times(below), exponent - 1, -decimal);
+    let (lower, upper) = (half_way(2 * mantissa - 1), half_way(2 * mantissa + 1));
+    if mantissa % 2 == 0 {
+        lower.is_at_most(&exact) && exact.is_at_most(&upper)
+    } else {
+        !exact.is_at_most(&lower) && !upper.is_at_most(&exact)
+    }
+}
+
+#[test]
+fn every_unit_gives_the_nearest_double() {
+    const PI: (&str, i32) = ("3141592653589793238462643383279502884197169399375105820974944592", -63);
+    const ONE: (&str, i32) = ("1", 0);
+    // Unit, what it is in SI: numerator, denominator; and offset in hundredths.
+    let mut units: Vec<(String, (&str, i32), u64, u64)> = [
+        ("min", ("60", 0), 1, 0),
+        ("h", ("3600", 0), 1, 0),
+        ("deg", PI, 180, 0),
+        ("degC", ONE, 1, 27_315),
+        ("degF", ("5", 0), 9, 45_967),
+        ("%", ("1", -2), 1, 0),
+        ("deg/min", PI, 10_800, 0),
+        ("km/h", ("10", 0), 36, 0),
+        ("mm/min", ("1", -3), 60, 0),
+        ("mm/degF", ("9", -3), 5, 0),
+        ("kW*h", ("36", 5), 1, 0),
+        ("kN/mm", ("1", 6), 1, 0),
+    ]
+    .map(|(text, factor, below, offset)| (text.to_owned(), factor, below, offset))
+    .into();
+    for (prefix, power) in
+        [("p", -12), ("n", -9), ("u", -6), ("m", -3), ("c", -2), ("", 0), ("k", 3), ("M", 6), ("G", 9)]
+    {
+        for symbol in ["m", "g", "s", "rad", "N", "J", "W", "Pa", "Hz", "V", "A", "C", "F", "ohm", "K"] {
+            let power = if symbol == "g" { power - 3 } else { power };
+            units.push((format!("{prefix}{symbol}"), ("1", power), 1, 0));
+        }
+    }
+    let mut state = 1_u64;
+    let mut random = |below: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % below
+    };
+    let mut count = 0;
+    for (text, (factor, power), below, offset) in units {
+        let parsed = unit(&text);
+        let expected = parsed.dimension().to_string();
+        let affine = offset > 0;
+        for _ in 0..if power == 0 || below > 1 { 4_000 } else { 400 } {
+            // Up to six digits as people write them, or up to sixteen.
+            let length = if random(4) > 0 { 1 + random(6) } else { 7 + random(10) };
+            let digits: String = (0..length)
+                .map(|k| char::from(b'0' + (if k == 0 { 1 + random(9) } else { random(10) }) as u8))
+                .collect();
+            let places = random(length + 2) as i32;
+            let shift = if affine { 0 } else { random(9) as i32 - 4 };
+            let number = format!("{digits}e{}", shift - places);
+            let value = si(&format!("{number} {text}"), &expected).unwrap();
+            let tens = places.max(2);
+            let exact = Natural::new(&digits);
+            let (exact, decimal) = if affine {
+                // Offset and number in units of 10^−tens.
+                let offset = Natural::new(&offset.to_string()).times_power(10, tens - 2);
+                (exact.times_power(10, tens - places).sum(&offset), -tens)
+            } else {
+                (exact, shift - places)
+            };
+            let above = exact.product(&Natural::new(factor));
+            assert!(!is_nearest(value.next_up(), above.clone(), decimal + power, below), "{number} {text}");
+            assert!(is_nearest(value, above, decimal + power, below), "{number} {text}: {value:e}");
+            if !affine {
+                assert_eq!(si(&format!("-{number} {text}"), &expected), Ok(-value), "{number} {text}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 80_000, "{count}");
+}

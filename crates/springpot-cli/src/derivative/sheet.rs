@@ -4,6 +4,7 @@ use super::Problem;
 use crate::arguments::DerivativeOptions;
 use springpot::fractional::{Definition, DerivativeError};
 use springpot::signal::csv::{CsvProblem, CsvRow, CsvRows, TIME};
+use springpot::table::quoted;
 use std::io::Read;
 
 /// Which columns are read and in which order they are written.
@@ -147,14 +148,6 @@ fn push_cells<'a>(text: &mut Vec<u8>, cells: impl Iterator<Item = &'a [u8]>) {
         if k > 0 {
             text.push(b',');
         }
-        if cell.iter().any(|byte| matches!(byte, b',' | b'"' | b'\n' | b'\r')) {
-            text.push(b'"');
-            for byte in cell {
-                text.extend_from_slice(if *byte == b'"' { b"\"\"" } else { std::slice::from_ref(byte) });
-            }
-            text.push(b'"');
-        } else {
-            text.extend_from_slice(cell);
-        }
+        text.extend_from_slice(&quoted(cell));
     }
 }

@@ -32,7 +32,7 @@
 //! the whole is passive: what the sum misses of the kernel can never make energy.
 
 use super::gamma::{gamma, ln_abs_gamma, ln_gamma, upper_gamma_ratio, upper_gamma_ratio_inverse};
-use super::gauss::gauss_rules;
+use crate::linalg::gauss_rules;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 

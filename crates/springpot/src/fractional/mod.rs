@@ -60,7 +60,6 @@
 mod differintegral;
 mod exponentials;
 pub mod gamma;
-mod gauss;
 mod history;
 pub mod kernel;
 pub mod kind;

@@ -27,7 +27,6 @@ mod labels;
 mod manifold;
 mod mass_check;
 mod numbering;
-mod principal;
 mod robot;
 mod spec;
 mod state;

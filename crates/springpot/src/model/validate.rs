@@ -1,8 +1,9 @@
 //! Whether a described body makes physical sense.
 
 use super::error::{Field, ModelError};
-use super::principal::principal_moments;
 use super::spec::{BodySpec, FrictionLaw, JointKind, Parent};
+use crate::linalg::symmetric_eigenvalues;
+use crate::names::is_name;
 
 /// Refuses a principal moment below minus this share of the largest one.
 const POSITIVE_TOLERANCE: f64 = 1e-12;
@@ -41,16 +42,9 @@ pub(super) fn body(body: usize, spec: &BodySpec, rules: Rules) -> Result<(), Mod
     inertia(body, &spec.name, spec.inertia, 0.0, rules == Rules::Body)
 }
 
-/// Whether `name` matches `[A-Za-z_][A-Za-z0-9_-]*`.
-fn is_identifier(name: &str) -> bool {
-    let mut bytes = name.bytes();
-    bytes.next().is_some_and(|b| b.is_ascii_alphabetic() || b == b'_')
-        && bytes.all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
-}
-
 fn names(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
     for (field, name) in [(Field::Name, &spec.name), (Field::JointName, &spec.joint.name)] {
-        if !is_identifier(name) {
+        if !is_name(name) {
             return Err(ModelError::InvalidName { body, field, name: name.clone() });
         }
     }
@@ -113,7 +107,7 @@ pub(super) fn inertia(
             return Err(ModelError::AsymmetricInertia { body, name: name(), row, column, upper, lower });
         }
     }
-    let [smallest, middle, largest] = principal_moments(m);
+    let [smallest, middle, largest] = symmetric_eigenvalues(m);
     if smallest < -POSITIVE_TOLERANCE * largest.abs() - rounding {
         return Err(ModelError::InertiaNotPositive { body, name: name(), smallest });
     }

@@ -9,9 +9,7 @@ mod chebyshev;
 mod error;
 mod follow;
 mod hermite;
-mod least_norm;
 mod passage;
-mod pseudo_inverse;
 mod solver;
 mod task;
 

@@ -6,7 +6,7 @@
 //! fewer, else the first of them alone, which ends (Júdice & Pires, Computers & Operations Research 21, 1994). In
 //! fixed steps velocities at the end of the step take the place of accelerations.
 
-use super::lu::Lu;
+use crate::linalg::Lu;
 
 /// Pivots after which there is no answer: far more than any robot has needed.
 const MOST_PIVOTS: usize = 2_000;
@@ -172,7 +172,7 @@ impl Coulomb {
 #[cfg(test)]
 mod tests {
     use super::{Candidate, Coulomb};
-    use crate::simulate::lu::Lu;
+    use crate::linalg::Lu;
 
     /// Masses with coupled random numbers: every answer meets the conditions, whatever holds.
     #[test]

@@ -17,7 +17,6 @@ mod forward;
 mod jump;
 mod ledger;
 mod limits;
-mod lu;
 mod moment;
 mod on_grid;
 mod pose;

@@ -17,10 +17,10 @@ pub use limits::{CasesPassing, LimitTally};
 
 use crate::scenario::{Cases, Refusals};
 use crate::simulate::Stop;
-use crate::table::Column;
 use crate::table::disk::DiskFile;
 use crate::table::folder::Folder;
 use crate::table::ordered::Ordered;
+use crate::table::{Column, push_text};
 use std::io::{self, Seek as _, SeekFrom, Write as _};
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -148,6 +148,8 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
             let sections = (sweep.rows.section(index), sweep.summary.section(index));
             // The section may have been long in coming.
             if stopped() {
+                sections.0.finish()?;
+                sections.1.finish()?;
                 break;
             }
             let result = case::run(&sweep, index, sections)?;
@@ -339,19 +341,8 @@ fn header(columns: &[Column]) -> String {
         if k > 0 {
             line.push(',');
         }
-        push_field(&mut line, &column.name);
+        push_text(&mut line, &column.name);
     }
     line.push('\n');
     line
-}
-
-/// Appends a text as one CSV field (RFC 4180).
-fn push_field(line: &mut String, text: &str) {
-    if text.contains([',', '"', '\n', '\r']) {
-        line.push('"');
-        line.push_str(&text.replace('"', "\"\""));
-        line.push('"');
-    } else {
-        line.push_str(text);
-    }
 }

@@ -1,14 +1,14 @@
 //! What one case writes: rows, statistics, values for figures, and what it takes to go on.
 
+use super::Sweep;
 use super::checkpoint::{CaseFiles, CaseState, Written};
 use super::curve::KeptCurve;
 use super::kept::Kept;
-use super::{Sweep, push_field};
 use crate::scenario::{Plan, SweptValue};
 use crate::simulate::{Checkpoint, LimitWatch, Rows, System};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
-use crate::table::{Statistics, push_fields, push_number};
+use crate::table::{Statistics, push_fields, push_number, push_text};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::atomic::Ordering;
@@ -182,7 +182,7 @@ pub(super) fn lead(sweep: &Sweep, index: usize) -> String {
     for value in sweep.cases.values(index) {
         match value {
             SweptValue::Number(number) => push_number(&mut lead, number),
-            SweptValue::Text(text) => push_field(&mut lead, &text),
+            SweptValue::Text(text) => push_text(&mut lead, &text),
         }
         lead.push(',');
     }
@@ -194,9 +194,9 @@ pub(super) fn summary(sweep: &Sweep, index: usize, statistics: &[Statistics]) ->
     let (lead, mut summary) = (lead(sweep, index), String::new());
     for ((_, column), statistics) in sweep.layout.selected().zip(statistics) {
         summary.push_str(&lead);
-        push_field(&mut summary, &column.name);
+        push_text(&mut summary, &column.name);
         summary.push(',');
-        push_field(&mut summary, &column.unit);
+        push_text(&mut summary, &column.unit);
         push_fields(&mut summary, [statistics.min, statistics.max, statistics.rms()].into_iter());
         summary.push('\n');
     }

@@ -15,11 +15,13 @@ mod parquet;
 #[cfg(feature = "scenario")]
 pub(crate) mod sealed;
 pub mod statistics;
+pub mod text;
 
 #[cfg(feature = "scenario")]
 pub use format::Format;
 pub use number::{push_fields, push_number};
 pub use statistics::Statistics;
+pub use text::{push_text, quoted};
 
 use serde::Serialize;
 

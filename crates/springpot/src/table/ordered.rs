@@ -35,7 +35,7 @@ struct Waiting {
     finished: bool,
 }
 
-/// The part of the file that belongs to one case; it ends with [`Section::finish`], or when it is dropped.
+/// The part of the file that belongs to one case; it ends with [`Section::finish`]. One that is dropped before ends the whole file.
 ///
 /// Every case up to the last that is begun must be begun, or those after it are never written.
 #[derive(Debug)]
@@ -112,6 +112,12 @@ impl<W: Write> Ordered<W> {
         state.error.map_or(Ok(()), |kind| Err(kind.into()))
     }
 
+    /// Takes no more text; whoever waits is told.
+    fn close(&self) {
+        self.lock().error.get_or_insert(io::ErrorKind::BrokenPipe);
+        self.changed.notify_all();
+    }
+
     /// Keeps the first error, which every later call meets, and wakes those who wait for their turn.
     fn note(&self, state: &mut State<W>, result: io::Result<()>) -> io::Result<()> {
         if let Err(error) = &result {
@@ -150,11 +156,10 @@ impl<W: Write> Section<'_, W> {
 }
 
 impl<W: Write> Drop for Section<'_, W> {
-    /// A case that stops on an error, or panics, keeps nobody waiting.
+    /// A case that stops on an error of its own, or panics, ends the file: the text of later ones has no place behind half of it.
     fn drop(&mut self) {
         if !self.finished {
-            // Whoever writes next meets the same error.
-            let _ = self.file.finish(self.case);
+            self.file.close();
         }
     }
 }
@@ -261,12 +266,15 @@ mod tests {
     }
 
     #[test]
-    fn a_case_that_is_dropped_keeps_nobody_waiting() {
-        let ordered = Ordered::new(Vec::new(), 1);
-        ordered.section(0).write(b"half\n").unwrap();
-        let section = ordered.section(1);
-        section.write(b"whole\n").unwrap();
-        section.finish().unwrap();
-        assert_eq!(text(ordered), "half\nwhole\n");
+    fn behind_half_a_case_there_is_nothing() {
+        let ordered = Ordered::new(Vec::new(), 2);
+        let (first, second) = (ordered.section(0), ordered.section(1));
+        second.write(b"waits\n").unwrap();
+        first.write(b"half\n").unwrap();
+        drop(first);
+        // The file knows no reason: whoever has one tells it.
+        assert_eq!(second.write(b"late\n").unwrap_err().kind(), io::ErrorKind::BrokenPipe);
+        assert!(second.finish().is_err() && ordered.section(9).finish().is_err());
+        assert_eq!(text(ordered), "half\n");
     }
 }

@@ -1,13 +1,12 @@
 //! Files that are there as a whole or not at all, and whose damage is noticed.
 
 use super::disk::{Disk, DiskFile};
-use std::fmt;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// The first line of a file of a checkpoint: who wrote it, in which format. Another build may round differently.
 pub(crate) const CHECKPOINT: &str =
-    concat!("springpot ", env!("CARGO_PKG_VERSION"), " checkpoint 3, build ", env!("SPRINGPOT_BUILD"), "\n");
+    concat!("springpot ", env!("CARGO_PKG_VERSION"), " checkpoint 4, build ", env!("SPRINGPOT_BUILD"), "\n");
 
 /// What every first line says of its file.
 const TAGGED: [&str; 2] = [" checkpoint ", " commit "];
@@ -27,39 +26,6 @@ pub(crate) enum SealError {
     /// Some of its bytes are missing or others than were written.
     #[error("damaged")]
     Damaged,
-}
-
-/// The 64-bit FNV-1a hash of bytes and of formatted text (Fowler, Noll, Vo): no two of a file's accidents are likely to share it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Fnv(u64);
-
-impl Fnv {
-    pub(crate) const fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    pub(crate) const fn value(self) -> u64 {
-        self.0
-    }
-
-    fn of(bytes: &[u8]) -> u64 {
-        let mut hash = Self::new();
-        hash.take(bytes);
-        hash.0
-    }
-
-    fn take(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-}
-
-impl fmt::Write for Fnv {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        self.take(text.as_bytes());
-        Ok(())
-    }
 }
 
 /// Writes `bytes` to `path` behind the line `tag`. Whenever this is broken off, by the loss of power too, the file holds either these
@@ -92,15 +58,15 @@ pub(crate) fn first_line(bytes: &[u8]) -> Option<&str> {
     (line.starts_with("springpot ") && TAGGED.iter().any(|word| line.contains(word))).then_some(line)
 }
 
-/// Length, its complement, and hash.
-const FRAME: usize = 4 + 4 + 8;
+/// Length, its complement, and CRC-32.
+const FRAME: usize = 4 + 4 + 4;
 
 fn frame(bytes: &[u8]) -> io::Result<[u8; FRAME]> {
     let length = u32::try_from(bytes.len()).map_err(|_| io::Error::from(io::ErrorKind::FileTooLarge))?;
     let mut frame = [0; FRAME];
     frame[..4].copy_from_slice(&length.to_le_bytes());
     frame[4..8].copy_from_slice(&(!length).to_le_bytes());
-    frame[8..].copy_from_slice(&Fnv::of(bytes).to_le_bytes());
+    frame[8..].copy_from_slice(&crc32fast::hash(bytes).to_le_bytes());
     Ok(frame)
 }
 
@@ -130,7 +96,7 @@ fn take_record(from: &mut impl Read) -> io::Result<Taken> {
     if record.len() < length as usize {
         return Ok(Taken::Half);
     }
-    Ok(if Fnv::of(&record).to_le_bytes() == frame[8..] { Taken::Record(record) } else { Taken::Other })
+    Ok(if crc32fast::hash(&record) == number(8) { Taken::Record(record) } else { Taken::Other })
 }
 
 /// Takes a record and its place.

@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code, reason = "a global allocator that counts")]
 
-use crate::support::*;
+use crate::loops::*;
 use springpot::simulate::System;
 use springpot::simulate::fixed::Loop;
 use std::alloc::{GlobalAlloc, Layout};

@@ -1,6 +1,6 @@
 //! What the midpoint rule keeps: energies without loss, momenta of robots that float.
 
-use crate::support::*;
+use crate::loops::*;
 use springpot::dynamics::{Kinematics, crba};
 use springpot::simulate::System;
 use springpot::simulate::fixed::{Loop, Method};

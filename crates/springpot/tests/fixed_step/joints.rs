@@ -1,6 +1,6 @@
 //! Joints that are prescribed, locked, driven, that follow others, that float: against runs with error control.
 
-use crate::support::*;
+use crate::loops::*;
 use springpot::simulate::fixed::{Loop, Method};
 
 fn check(text: &str, end: f64, largest: f64) {

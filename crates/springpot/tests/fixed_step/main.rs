@@ -3,10 +3,12 @@
 mod allocations;
 mod conserved;
 mod joints;
+mod loops;
 mod memory;
 mod orders;
 mod refusals;
 mod rubbing;
 mod runs;
 mod stability;
+#[path = "../support/mod.rs"]
 mod support;

@@ -1,6 +1,6 @@
 //! Errors against runs with error control, and how they fall with the step.
 
-use crate::support::*;
+use crate::loops::*;
 use springpot::simulate::FixedStep;
 use springpot::simulate::fixed::Method;
 

@@ -1,6 +1,6 @@
 //! Bad input: typed errors that leave the loop usable, and refusals of scenario files.
 
-use crate::support::*;
+use crate::loops::*;
 use springpot::law::Catalog;
 use springpot::scenario::Scenario;
 use springpot::simulate::RunError;

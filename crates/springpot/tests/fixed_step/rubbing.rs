@@ -1,6 +1,6 @@
 //! Friction that sticks in steps of one size.
 
-use crate::support::*;
+use crate::loops::*;
 use springpot::simulate::FixedStep;
 use springpot::simulate::fixed::Loop;
 

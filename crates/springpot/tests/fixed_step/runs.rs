@@ -1,6 +1,6 @@
 //! Whole runs: rows, the last step, the ledger.
 
-use crate::support::*;
+use crate::loops::*;
 use springpot::law::Catalog;
 use springpot::scenario::Scenario;
 use springpot::simulate::fixed::Method;

@@ -1,6 +1,6 @@
 //! Stiff elements, elements that cannot make energy, friction.
 
-use crate::support::*;
+use crate::loops::*;
 use springpot::simulate::System;
 use springpot::simulate::fixed::{Loop, Method};
 

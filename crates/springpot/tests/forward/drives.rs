@@ -1,6 +1,8 @@
 //! Joints that are prescribed, locked, driven or followed, each against the same robot made otherwise.
 
-use crate::support::{ARM, Run, distance, every, falling, largest, run, strut};
+use crate::support::forward::{distance, every, falling, largest};
+use crate::support::robots::{ARM, strut};
+use crate::support::{Run, run};
 
 const RTOL: f64 = 1e-9;
 

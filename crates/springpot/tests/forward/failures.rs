@@ -1,6 +1,7 @@
 //! Runs that cannot go on, and runs that must.
 
-use crate::support::{Run, at, every, largest, run, slider, state, try_run};
+use crate::support::forward::{at, every, largest, slider, state};
+use crate::support::{Run, run, try_run};
 use springpot::law::Catalog;
 use springpot::scenario::Scenario;
 use springpot::simulate::RunError;
@@ -152,7 +153,8 @@ fn extreme_forces_and_starts() {
     assert!(error.contains("v.q is inf"), "{error}");
     assert!(absurd.rows.iter().flatten().all(|x| x.is_finite()));
     // An arm stretched out, whose gripper could not be driven from here; forward it just falls.
-    let stretched = crate::support::falling(0.5, 25.0, "caputo", "start = { q = { q2 = -1.5707963267948966 } }");
+    let stretched =
+        crate::support::forward::falling(0.5, 25.0, "caputo", "start = { q = { q2 = -1.5707963267948966 } }");
     let fallen = run(&(stretched + &every(1.0, 0.01, 1e-8)));
     assert!(fallen.residual() < 1e-8);
 }

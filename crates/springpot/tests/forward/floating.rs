@@ -1,6 +1,7 @@
 //! Floating bases: what is conserved, the order of the method, and the same robot on six joints.
 
-use crate::support::{Run, at, distance, every, largest, run};
+use crate::support::forward::{at, distance, every, largest};
+use crate::support::{Run, run};
 use springpot::dynamics::{Kinematics, crba};
 use springpot::model::Model;
 use springpot::spatial::{Quaternion, Rotation, Vec3};

@@ -1,6 +1,8 @@
 //! Limits of the order, and the order of the method in time.
 
-use crate::support::{ARM, Run, at, distance, every, falling, largest, run, slider, state, strut};
+use crate::support::forward::{at, distance, every, falling, largest, slider, state};
+use crate::support::robots::{ARM, strut};
+use crate::support::{Run, run};
 
 /// Relative distance of all of q and v of two runs, whose rows are at the same times.
 fn gap(a: &Run, b: &Run) -> f64 {

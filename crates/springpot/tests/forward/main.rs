@@ -11,4 +11,5 @@ mod references;
 mod rows;
 mod shipped;
 mod stick;
+#[path = "../support/mod.rs"]
 mod support;

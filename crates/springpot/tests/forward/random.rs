@@ -1,6 +1,7 @@
 //! Random robots with everything that may act on them: the energy balance closes.
 
-use crate::support::{distance, every, run};
+use crate::support::forward::{distance, every};
+use crate::support::run;
 use std::fmt::Write as _;
 
 /// The next number in [0, 1) of splitmix64.

@@ -1,6 +1,7 @@
 //! Whole reference files: the falling arm, one mass on every law, oscillators.
 
-use crate::support::{Run, at, distance, falling, run, run_system, slider, state};
+use crate::support::forward::{at, distance, falling, slider, state};
+use crate::support::{Run, run, run_system};
 use serde_json::Value;
 use springpot::element::Element;
 use springpot::law::{Catalog, Derivative};

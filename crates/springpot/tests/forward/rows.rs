@@ -1,6 +1,7 @@
 //! Rows and threads change nothing.
 
-use crate::support::{cases, every, falling};
+use crate::support::cases;
+use crate::support::forward::{every, falling};
 use springpot::sweep::{self, Layout, Options, Progress};
 use springpot::table::disk::Disk;
 use springpot::table::folder::{Folder, Targets};

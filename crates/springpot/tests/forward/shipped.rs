@@ -1,6 +1,7 @@
 //! The shipped scenarios that move by themselves, and runs so long that nothing may add up.
 
-use crate::support::{cases, every, falling, largest, scenarios, shipped, slider, state, try_case};
+use crate::support::forward::{every, falling, largest, slider, state};
+use crate::support::{cases, run_case, scenarios, shipped};
 use springpot::motion::Motion;
 use std::time::Instant;
 
@@ -19,7 +20,7 @@ fn the_balance_of_every_shipped_scenario_closes_to_its_tolerance() {
         }
         let mut worst = 0.0f64;
         for index in 0..cases.len() {
-            let run = try_case(&cases, index);
+            let run = run_case(&cases, index);
             assert!(run.error.is_none(), "{name}: {:?}", run.error);
             worst = worst.max(run.residual() / plan.solver.rtol);
             compared += 1;
@@ -32,7 +33,7 @@ fn the_balance_of_every_shipped_scenario_closes_to_its_tolerance() {
 
 #[test]
 fn the_mass_stays_on_its_exact_solution() {
-    let run = try_case(&shipped("one_mass_exact.toml", &[]), 0);
+    let run = run_case(&shipped("one_mass_exact.toml", &[]), 0);
     let error = largest(run.column("gauge.stroke"));
     println!("{error:.1e} m");
     assert!(error < 1e-9 && largest(run.column("q.mass")) > 0.1, "{error:e}");
@@ -72,7 +73,7 @@ fn ten_million_steps_keep_the_memory_as_it_is() {
     let law = "law = \"springpot\"\nparameters = { c = 30, alpha = 0.5 }";
     let stir = state("0", "0") + "\ntorque = { q = \"19.62 + 5*sin(3*t)\" }";
     let text = slider("2", -9.81, law, &stir) + &every(1e5, 1e4, 1e-4) + "max_step = 0.0099\nmax_steps = 20000000\n";
-    let run = try_case(&cases(&text), 0);
+    let run = run_case(&cases(&text), 0);
     println!("{:?}", run.report);
     assert!(run.error.is_none() && run.report.steps >= 10_000_000);
     assert!(run.report.modes < 60 && largest(run.column("q.q")) < 10.0);

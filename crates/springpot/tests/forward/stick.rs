@@ -1,6 +1,7 @@
 //! Friction that sticks, against closed forms: blocks, oscillators, belts, held loads.
 
-use crate::support::{Run, at, every, run};
+use crate::support::forward::{at, every};
+use crate::support::{Run, run};
 
 /// Sliders, one on the other along x; `joints` are the rests of their joints' tables.
 fn sliders(joints: &[(&str, &str)]) -> String {
@@ -139,7 +140,7 @@ fn a_mass_on_a_pulled_belt_sticks_and_slips() {
     let v = fine.column("v.q0");
     let stops = v.windows(2).filter(|v| v[0] != 0.0 && v[1] == 0.0).count();
     assert!(stops >= 6 && v.iter().filter(|v| **v == 0.0).count() > 200, "{stops}");
-    let apart = crate::support::distance(&coarse.column("q.q0"), &fine.column("q.q0"));
+    let apart = crate::support::forward::distance(&coarse.column("q.q0"), &fine.column("q.q0"));
     println!("{stops} stops, {apart:.1e} m, {:?}", fine.report);
     assert!(apart < 1e-8 && fine.residual() < 1e-10, "{apart:e} {}", fine.residual());
 }

@@ -1,10 +1,10 @@
 //! Accuracy is the run's business: every D^alpha x within rtol of the largest of its curve against an independent quadrature,
 //! whatever the motion, the order and the rows.
 
-use crate::run_support::oracle::{file, number};
-use crate::run_support::robots::{ARM, SWING, at, every, prescribed, springpot};
-use crate::run_support::truth::{Truth, derivatives};
-use crate::run_support::{Run, cases, largest, relative_difference, run, run_case};
+use crate::support::oracle::{file, number};
+use crate::support::robots::{ARM, SWING, at, every, prescribed, springpot};
+use crate::support::truth::{Truth, derivatives};
+use crate::support::{Run, cases, largest, relative_difference, run, run_case};
 use springpot::fractional::gamma::{gamma, reciprocal_gamma};
 
 /// The default of [solver].

@@ -1,9 +1,9 @@
 //! Every law on robots that are not the papers': sliding joints, branches, elements to the world, random smooth motions. Every
 //! D^alpha x, force and generalized force within 1e-9 of the largest of its curve against quadrature and the law's equation.
 
-use crate::run_support::robots::every;
-use crate::run_support::truth::{derivatives, pair_at};
-use crate::run_support::{cases, largest, run_case};
+use crate::support::robots::every;
+use crate::support::truth::{derivatives, pair_at};
+use crate::support::{cases, largest, run_case};
 use std::fmt::Write as _;
 
 const TOLERANCE: f64 = 1e-9;
@@ -149,7 +149,7 @@ fn every_law_on_random_robots() {
                 let case = format!("seed {seed}, alpha = {alpha}, {derivative}, {law}");
                 let mut check = |kind: usize, exact: &[f64], column: &str| {
                     let values = &run.column(column)[1..];
-                    let error = crate::run_support::relative_difference(exact, values);
+                    let error = crate::support::relative_difference(exact, values);
                     assert!(error < TOLERANCE, "{case}: {column} errs by {error:.1e} of {:e}", largest(exact));
                     worst[kind] = worst[kind].max(error);
                     compared += values.len();

@@ -1,9 +1,7 @@
 //! Runs that go on from what was kept of them: the same rows and the same report as without a break, bit by bit.
 
-use crate::run_support::robots::{
-    ARM, PATH, every, magnetorheological, prescribed, springpot, strut, thermoviscoelastic,
-};
-use crate::run_support::{cases, shipped};
+use crate::support::robots::{ARM, PATH, every, magnetorheological, prescribed, springpot, strut, thermoviscoelastic};
+use crate::support::{cases, shipped};
 use springpot::scenario::Cases;
 use springpot::simulate::{Checkpoint, Report, Rows, RunError, Settings, Stop, System, resume, run};
 use std::io;

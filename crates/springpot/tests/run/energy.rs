@@ -1,11 +1,9 @@
 //! The energy ledger: it closes in every run that knows it, and only because every mode of the memory is there.
 
-use crate::memory_support::graded;
-use crate::run_support::robots::{
-    ARM, PATH, SWING, every, magnetorheological, prescribed, springpot, thermoviscoelastic,
-};
-use crate::run_support::truth::{Truth, gauss_jacobi};
-use crate::run_support::{Run, cases, largest, run, run_case, scenarios, shipped};
+use crate::steps::graded;
+use crate::support::robots::{ARM, PATH, SWING, every, magnetorheological, prescribed, springpot, thermoviscoelastic};
+use crate::support::truth::{Truth, gauss_jacobi};
+use crate::support::{Run, cases, largest, run, run_case, scenarios, shipped};
 use serde_json::Value;
 use springpot::fractional::step::RADAU_NODES;
 use springpot::fractional::{Form, Kind, Nodes};

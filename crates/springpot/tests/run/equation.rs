@@ -1,7 +1,7 @@
 //! The equations of motion at one time: the numbers of a run's row, and nothing left over.
 
-use crate::run_support::robots::{ARM, SWING, every, springpot};
-use crate::run_support::{cases, scenarios, shipped};
+use crate::support::robots::{ARM, SWING, every, springpot};
+use crate::support::{cases, scenarios, shipped};
 use springpot::motion::Motion;
 use springpot::scenario::Cases;
 use springpot::simulate::{Equation, EquationError, RowTimes, Settings, Stop, run as simulate};
@@ -98,7 +98,7 @@ fn what_is_no_time_of_the_motion_is_an_error() {
         assert!(matches!(error, EquationError::Outside { end: 1.0, .. }), "{error}");
     }
     let scheme = springpot(0.5, "caputo") + "scheme = \"l1\"\n";
-    let cases = crate::run_support::cases(&format!("{ARM}{scheme}{SWING}{}", every(1.0, 0.1)));
+    let cases = crate::support::cases(&format!("{ARM}{scheme}{SWING}{}", every(1.0, 0.1)));
     let plan = cases.plan(0).unwrap();
     let error = plan.system().equation(&plan.settings(), 0.34).unwrap_err();
     assert!(matches!(error, EquationError::NotARow { nearest: 0.3, .. }), "{error}");

@@ -1,7 +1,7 @@
 //! Floating joints along prescribed poses: closed forms of the rigid body, and the energy ledger with elements.
 
-use crate::run_support::robots::every;
-use crate::run_support::{Run, largest, run};
+use crate::support::robots::every;
+use crate::support::{Run, largest, run};
 
 const MASS: f64 = 3.0;
 const COM: [f64; 3] = [0.05, -0.02, 0.1];
@@ -181,7 +181,7 @@ fn attitudes_that_pass_through_every_turn_close_it_too() {
 fn a_pose_that_jumps_is_an_error_and_one_with_a_kink_is_none() {
     let pose = |y: &str, yaw: &str| {
         let text = body(COM, INERTIA, "[0, 0, -9.81]", &format!("y = \"{y}\", rpy = [0, 0, \"{yaw}\"]"));
-        crate::run_support::run_case(&crate::run_support::cases(&format!("{text}{}", every(1.0, 0.1))), 0)
+        crate::support::run_case(&crate::support::cases(&format!("{text}{}", every(1.0, 0.1))), 0)
     };
     for (y, yaw) in [("0.1*step(t - 0.35)", "0"), ("0", "0.1*step(t - 0.35)")] {
         let error = pose(y, yaw).error.expect("a jump").to_string();

@@ -1,8 +1,8 @@
 //! Gripper paths: the robot follows, its rates are the path's, the answer is unique, and what cannot be followed is said.
 
-use crate::run_support::robots::{ARM, every, springpot};
-use crate::run_support::truth::derivatives;
-use crate::run_support::{Run, cases, largest, relative_difference, run, run_case, system};
+use crate::support::robots::{ARM, every, springpot};
+use crate::support::truth::derivatives;
+use crate::support::{Run, cases, largest, relative_difference, run, run_case, system};
 use springpot::dynamics::{Kinematics, angular_jacobian, angular_jacobian_rate, point_jacobian, point_jacobian_rate};
 use springpot::model::Parent;
 use springpot::motion::PathError;

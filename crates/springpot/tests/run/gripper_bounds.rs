@@ -1,6 +1,6 @@
 //! Gripper paths with loops and pulses that are short against the run; how much a path may take, and its interruption.
 
-use crate::run_support::{cases, run, run_case};
+use crate::support::{cases, run, run_case};
 use springpot::motion::gripper_path::{Course, GripperPath, Task};
 use springpot::motion::{Motion, PathError};
 use springpot::signal::{Expression, Signal};

@@ -1,7 +1,7 @@
 //! Gripper paths through singular configurations: rows on and beside the instant, starts and ends there, and where no motion leads on.
 
-use crate::run_support::robots::{ARM, springpot};
-use crate::run_support::{Run, cases, run, run_case};
+use crate::support::robots::{ARM, springpot};
+use crate::support::{Run, cases, run, run_case};
 use springpot::motion::PathError;
 use springpot::simulate::RunError;
 use std::f64::consts::PI;

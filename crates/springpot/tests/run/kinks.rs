@@ -1,8 +1,8 @@
 //! Kinks in motions and inputs, sampled motions and inputs: the same accuracy as where all is smooth, because steps end there.
 
-use crate::run_support::robots::{ARM, at, every, magnetorheological, prescribed, springpot, strut};
-use crate::run_support::truth::{derivatives, pair_at};
-use crate::run_support::{cases, largest, relative_difference, run, run_case};
+use crate::support::robots::{ARM, at, every, magnetorheological, prescribed, springpot, strut};
+use crate::support::truth::{derivatives, pair_at};
+use crate::support::{cases, largest, relative_difference, run, run_case};
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 

@@ -1,6 +1,6 @@
 //! Laws on their own: tangents, sums, the catalog, and the rules that keep an element passive.
 
-use crate::memory_support::random_steps;
+use crate::steps::random_steps;
 use springpot::fractional::{Form, Nodes};
 use springpot::law::{Catalog, Derivative, Entry, InputValue, Network, Point, Start, State, Step};
 use springpot::scenario::units::{Unit, parse_quantity};

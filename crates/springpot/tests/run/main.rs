@@ -14,11 +14,12 @@ mod gripper_singular;
 mod kinks;
 mod law;
 mod memory;
-mod memory_support;
 mod rubbing;
-mod run_support;
+mod slider;
 mod slider_drift;
 mod slider_energy;
 mod slider_kinks;
-mod slider_support;
+mod steps;
+#[path = "../support/mod.rs"]
+mod support;
 mod urdf;

@@ -1,8 +1,8 @@
 //! The memory against reference derivatives, its orders of convergence, and the identities it must keep.
 
-use crate::memory_support::{Interpolation, march, random_steps, uniform};
-use crate::run_support::oracle::{file, number};
-use crate::run_support::{largest, truth::Truth};
+use crate::steps::{Interpolation, march, random_steps, uniform};
+use crate::support::oracle::{file, number};
+use crate::support::{largest, truth::Truth};
 use springpot::fractional::gamma::gamma;
 use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
 

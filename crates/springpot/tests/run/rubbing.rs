@@ -1,7 +1,7 @@
 //! Friction that sticks along motions given in advance, and in the equations of motion.
 
-use crate::run_support::robots::{ARM, PATH, every, prescribed, springpot};
-use crate::run_support::{cases, run};
+use crate::support::robots::{ARM, PATH, every, prescribed, springpot};
+use crate::support::{cases, run};
 
 /// The arm with friction that sticks in two joints.
 fn rubbing() -> String {

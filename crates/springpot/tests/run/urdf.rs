@@ -1,7 +1,7 @@
 //! Runs of robots from URDF files: joints that follow others, damping and friction, limits.
 
-use crate::run_support::robots::every;
-use crate::run_support::{Run, cases, largest, relative_difference, run, run_case, shipped};
+use crate::support::robots::every;
+use crate::support::{Run, cases, largest, relative_difference, run, run_case, shipped};
 use springpot::simulate::{FRICTION_SPEED, LimitKind, LimitWatch, PassedLimit};
 use std::path::PathBuf;
 

@@ -7,8 +7,7 @@ mod narrow;
 mod pulses;
 mod random;
 mod scales;
-#[allow(dead_code, unused_imports, reason = "a share of it")]
-#[path = "../forward/support.rs"]
+#[path = "../support/mod.rs"]
 mod support;
 mod switched;
 mod verdicts;

@@ -1,7 +1,8 @@
 //! Single pulses and jolts as narrow as 1e-6 of the run, against convolutions with the exact answer to an impulse.
 
 use crate::random::{Random, slider};
-use crate::support::{Run, largest, run};
+use crate::support::forward::largest;
+use crate::support::{Run, run};
 use springpot::fractional::mittag_leffler::MittagLeffler;
 
 /// When a pulse comes and half its width.
@@ -19,8 +20,8 @@ impl Pulse {
     /// ∫ shape((s − at)/half) answer(t − s) ds; every shape has gone to 1e-17 at `reach` halves. The trapezoidal rule is exact to
     /// rounding for shapes that vanish smoothly.
     fn convolved(self, shape: &impl Fn(f64) -> f64, reach: f64, t: f64, answer: impl Fn(f64) -> f64) -> f64 {
-        let step = reach / 200.0;
-        (-200..=200).map(|k| f64::from(k) * step).map(|x| shape(x) * answer(t - self.at - self.half * x)).sum::<f64>()
+        let step = reach / 60.0;
+        (-60..=60).map(|k| f64::from(k) * step).map(|x| shape(x) * answer(t - self.at - self.half * x)).sum::<f64>()
             * step
             * self.half
     }

@@ -1,6 +1,7 @@
 //! Forward runs hold their tolerance from a nanometre to a kilometre.
 
-use crate::support::{Run, at, largest, run, slider, state};
+use crate::support::forward::{at, largest, slider, state};
+use crate::support::{Run, run};
 
 /// Distance of the slider's anchor, m.
 fn anchor(x: f64) -> f64 {

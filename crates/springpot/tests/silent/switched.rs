@@ -1,7 +1,8 @@
 //! Switched torques, voltages and ledgers: what a run finds by itself against what tiny steps find.
 
 use crate::random::{Random, slider};
-use crate::support::{Run, distance, largest, run};
+use crate::support::forward::{distance, largest};
+use crate::support::{Run, run};
 
 /// A square wave between 0 and 1 of that rate, and its duty as a share.
 fn wave(random: &mut Random, rate: f64, duty: f64) -> String {

@@ -2,8 +2,8 @@
 
 use super::relaxation::REACH;
 use super::{PronyError, PronySeries, Relaxation, Slowest, Term, Window};
-use crate::fractional::gauss::gauss_rule;
 use crate::fractional::mittag_leffler::Complex64;
+use crate::linalg::gauss_rule;
 use std::f64::consts::PI;
 
 /// Shares of the tolerance: trapezoidal rule, fast end, slow end.

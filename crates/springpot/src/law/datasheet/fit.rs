@@ -1,15 +1,11 @@
-//! Parameters within their bounds by the method of Levenberg and Marquardt, from many starts.
-//!
-//! K. Levenberg, Q. Appl. Math. 2 (1944) 164–168; D. W. Marquardt, J. SIAM 11 (1963) 431–441.
+//! Parameters within their bounds by least squares, from many starts.
 
 use super::{Datum, Identified, Model, Quantity, sin_cos};
+use crate::linalg::{Unknown, are_independent, levenberg_marquardt};
 use std::f64::consts::FRAC_PI_2;
 
 /// Largest relative deviation of what counts as met exactly.
 pub(super) const EXACT: f64 = 1e-9;
-/// A parameter whose effect lies this near to that of the others is not determined.
-const DEPENDENT: f64 = 1e-7;
-const ITERATIONS: usize = 200;
 /// Orders and shares of the spring to start from.
 const ORDERS: [f64; 6] = [0.05, 0.2, 0.4, 0.6, 0.8, 0.95];
 const SHARES: [f64; 4] = [0.0, 0.3, 0.6, 0.9];
@@ -103,101 +99,16 @@ impl<'a> Problem<'a> {
         (model / wanted - 1.0, by.map(|d| (weights[0] * d[0] + weights[1] * d[1]) / wanted))
     }
 
-    fn cost(&self, unknowns: &Unknowns) -> f64 {
-        let cost = self.data.iter().map(|datum| self.deviation(datum, unknowns).0.powi(2)).sum();
-        if f64::is_nan(cost) { f64::INFINITY } else { cost }
-    }
-
     /// The least cost that is reached from `start`, and where.
     fn descend(&self, start: Unknowns) -> (f64, Unknowns) {
-        let (mut at, mut cost, mut damping) = (start, self.cost(&start), 1e-3);
-        for _ in 0..ITERATIONS {
-            if !cost.is_finite() || cost == 0.0 {
-                break;
-            }
-            let (mut normal, mut gradient) = ([[0.0; 3]; 3], [0.0; 3]);
-            for datum in self.data {
-                let (deviation, slopes) = self.deviation(datum, &at);
-                for i in 0..3 {
-                    gradient[i] += slopes[i] * deviation;
-                    for j in 0..3 {
-                        normal[i][j] += slopes[i] * slopes[j];
-                    }
-                }
-            }
-            let moves: [bool; 3] = std::array::from_fn(|i| {
-                let leaves_below = at[i] <= 0.0 && gradient[i] > 0.0;
-                let leaves_above = i == 2 && at[i] >= 1.0 && gradient[i] < 0.0;
-                self.free[i] && !leaves_below && !leaves_above
-            });
-            for i in 0..3 {
-                for j in 0..3 {
-                    if !(moves[i] && moves[j]) {
-                        normal[i][j] = 0.0;
-                    }
-                }
-                normal[i][i] = if moves[i] { normal[i][i] * (1.0 + damping) } else { 1.0 };
-                gradient[i] = if moves[i] { gradient[i] } else { 0.0 };
-            }
-            let Some(step) = solve(normal, gradient) else { break };
-            let mut next: Unknowns = std::array::from_fn(|i| (at[i] - step[i]).max(0.0));
-            next[2] = next[2].min(1.0);
-            let next_cost = self.cost(&next);
-            if next_cost < cost {
-                (at, cost, damping) = (next, next_cost, (damping / 10.0).max(1e-15));
-            } else {
-                damping *= 10.0;
-                if damping > 1e12 {
-                    break;
-                }
-            }
-        }
-        (cost, at)
+        let bounds = [[0.0, f64::INFINITY], [0.0, f64::INFINITY], [0.0, 1.0]];
+        let unknowns = std::array::from_fn(|i| Unknown { free: self.free[i], bounds: bounds[i] });
+        levenberg_marquardt(&unknowns, start, self.data.len(), |row, at| self.deviation(&self.data[row], at))
     }
 
     /// Whether every free parameter changes the data in its own way.
     fn determines(&self, at: &Unknowns) -> bool {
         let rows: Vec<[f64; 3]> = self.data.iter().map(|datum| self.deviation(datum, at).1).collect();
-        let columns = (0..3).filter(|&i| self.free[i]).map(|i| rows.iter().map(|row| row[i]).collect::<Vec<f64>>());
-        let mut basis: Vec<Vec<f64>> = Vec::new();
-        for mut column in columns {
-            let size = norm(&column);
-            for other in &basis {
-                let along: f64 = column.iter().zip(other).map(|(a, b)| a * b).sum();
-                column.iter_mut().zip(other).for_each(|(a, b)| *a -= along * b);
-            }
-            let rest = norm(&column);
-            if !rest.is_finite() || rest <= DEPENDENT * size {
-                return false;
-            }
-            basis.push(column.iter().map(|a| a / rest).collect());
-        }
-        true
+        are_independent((0..3).filter(|&i| self.free[i]).map(|i| rows.iter().map(|row| row[i]).collect()))
     }
-}
-
-fn norm(column: &[f64]) -> f64 {
-    column.iter().map(|a| a * a).sum::<f64>().sqrt()
-}
-
-/// A positive definite system by Cholesky; `None` where it is singular.
-fn solve(a: [[f64; 3]; 3], b: [f64; 3]) -> Option<[f64; 3]> {
-    let mut l = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..=i {
-            let rest = a[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
-            l[i][j] = if i == j { rest.sqrt() } else { rest / l[j][j] };
-        }
-        if l[i][i].is_nan() || l[i][i] <= 0.0 {
-            return None;
-        }
-    }
-    let mut x = b;
-    for i in 0..3 {
-        x[i] = (x[i] - (0..i).map(|k| l[i][k] * x[k]).sum::<f64>()) / l[i][i];
-    }
-    for i in (0..3).rev() {
-        x[i] = (x[i] - (i + 1..3).map(|k| l[k][i] * x[k]).sum::<f64>()) / l[i][i];
-    }
-    Some(x)
 }

@@ -2,11 +2,11 @@
 
 use super::error::{Owner, UrdfError};
 use super::limit;
-use super::nearest::nearest;
 use super::problem::{UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
 use crate::model::{JointKind, JointSpec, Mimic};
+use crate::names::nearest;
 
 /// Types of the format, and of its neighbours, that are not built.
 const OTHER_TYPES: [&str; 7] = ["planar", "spherical", "ball", "universal", "helical", "screw", "cylindrical"];
@@ -85,7 +85,7 @@ fn read_kind<'a>(reader: &Reader<'a>, node: Node<'a>, name: &str, owner: &Owner)
         if OTHER_TYPES.contains(&written) {
             UrdfProblem::UnsupportedJointType { joint, kind }
         } else {
-            let suggestion = nearest(written, JointKind::ALL.map(JointKind::name));
+            let suggestion = nearest(written, JointKind::ALL.map(JointKind::name)).map(str::to_owned);
             UrdfProblem::UnknownJointType { joint, kind, suggestion }
         },
     ))

@@ -3,7 +3,7 @@
 use super::error::{Owner, UrdfError};
 use super::problem::UrdfProblem;
 use super::reader::{Node, Reader};
-use crate::model::principal::principal_moments;
+use crate::linalg::symmetric_eigenvalues;
 use crate::spatial::{Rotation, Symmetric3};
 
 /// Refuses a principal moment below minus this share of the largest one.
@@ -140,7 +140,7 @@ fn read_inertial<'a>(reader: &mut Reader<'a>, node: Node<'a>, owner: &Owner) -> 
 
 fn judge(tensor: Symmetric3, mass: f64) -> Physical {
     let matrix = tensor.to_matrix();
-    let [smallest, middle, largest] = principal_moments(matrix);
+    let [smallest, middle, largest] = symmetric_eigenvalues(matrix);
     let others = smallest + middle;
     if smallest < -POSITIVE_TOLERANCE * largest.abs() {
         let is_noise = matrix.iter().flatten().all(|entry| entry.abs() <= NOISE * mass);

@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use super::error::UrdfError;
 use super::joint::JointEntry;
-use super::nearest::nearest;
 use super::problem::UrdfProblem;
 use super::reader::Reader;
 use crate::model::Mimic;
+use crate::names::nearest;
 
 /// Joints of a circle that a message names.
 const NAMED: usize = 20;
@@ -24,7 +24,7 @@ pub(super) fn check<'a>(reader: &Reader<'a>, joints: &[JointEntry<'a>]) -> Resul
         let (joint, target) = (entry.spec.name.clone(), target.clone());
         let Some(&followed) = lookup.get(target.as_str()) else {
             let others = joints.iter().map(|other| &*other.spec.name).filter(|other| *other != joint);
-            let suggestion = nearest(&target, others);
+            let suggestion = nearest(&target, others).map(str::to_owned);
             return Err(reader.fail(node, UrdfProblem::UnknownMimic { joint, target, suggestion }));
         };
         let kind = joints[followed].spec.kind;

@@ -34,7 +34,6 @@ mod joint;
 mod limit;
 mod link;
 mod mimic;
-mod nearest;
 mod package;
 mod problem;
 mod reader;

@@ -6,9 +6,9 @@ use std::collections::hash_map::Entry;
 use super::error::{Owner, UrdfError};
 use super::joint::JointEntry;
 use super::link::LinkEntry;
-use super::nearest::nearest;
 use super::problem::UrdfProblem;
 use super::reader::Reader;
+use crate::names::nearest;
 
 /// Links of a circle that a message names.
 const NAMED: usize = 20;
@@ -106,7 +106,7 @@ fn branches<'a>(
         };
         let end = |(node, link), element| {
             link_lookup.get(link).copied().ok_or_else(|| {
-                let suggestion = nearest(link, links.iter().map(|link| link.name));
+                let suggestion = nearest(link, links.iter().map(|link| link.name)).map(str::to_owned);
                 let (joint, link) = (name.clone(), link.to_owned());
                 reader.fail(node, UrdfProblem::UnknownLink { joint, element, link, suggestion })
             })

@@ -9,7 +9,7 @@ pub(super) struct Knot {
     pub(super) a: Vec<f64>,
     /// How far J is from losing rank ([`LeastNorm::conditioning`]).
     ///
-    /// [`LeastNorm::conditioning`]: super::least_norm::LeastNorm::conditioning
+    /// [`LeastNorm::conditioning`]: crate::linalg::LeastNorm::conditioning
     pub(super) conditioning: f64,
 }
 

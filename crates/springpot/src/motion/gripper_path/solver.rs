@@ -4,9 +4,9 @@
 //! and a = dv/dt hold.
 
 use super::hermite::Knot;
-use super::least_norm::LeastNorm;
 use super::task::{CONDITIONS, Residual, Target, Task};
 use crate::dynamics::Kinematics;
+use crate::linalg::LeastNorm;
 use crate::model::Model;
 
 /// Newton stops when its step is below this, rad or m: forces need the coordinates to rounding.
@@ -32,7 +32,7 @@ pub(super) struct Solver<'a> {
     pub(super) task: &'a Task,
     pub(super) freedom: Freedom,
     kinematics: Kinematics,
-    least: LeastNorm,
+    least: LeastNorm<CONDITIONS>,
     rates: Vec<f64>,
     step: Vec<f64>,
     before: Vec<f64>,

@@ -1,5 +1,8 @@
 //! Numbers of twice the working precision, as the unevaluated sum of two `f64`.
 //!
+//! Why not `f64`: of numbers with up to six digits it would give another one than the nearest for 10 % in h, 15 % in min, 22 % in deg, 25 %
+//! in degC, 39 % in degF and 19 % in mm/min, by up to two units in the last place; 0.2 degC would be 273.34999999999997 K.
+//!
 //! Error-free transformations after T. J. Dekker, "A floating-point technique for extending the available precision",
 //! Numerische Mathematik 18 (1971) 224–242, with the product's error from a fused multiply-add.
 

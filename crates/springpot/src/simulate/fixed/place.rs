@@ -3,11 +3,11 @@
 use super::rub::SLACK;
 use super::stepper::Place;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
+use crate::linalg::Lu;
 use crate::model::Model;
 use crate::motion::Forward;
 use crate::simulate::coulomb::{Candidate, Coulomb};
 use crate::simulate::forward::drives::drive;
-use crate::simulate::lu::Lu;
 use crate::simulate::moment::{Moment, Scratch};
 use crate::simulate::resistance::holding_forces;
 use crate::simulate::{RunError, System};

@@ -4,10 +4,10 @@ use super::elements::ElementStep;
 use super::{ITERATIONS, Method};
 use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pair_into, rnea_derivatives_into, rnea_into};
 use crate::law::{Response, State};
+use crate::linalg::Lu;
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
 use crate::simulate::coulomb::Coulomb;
-use crate::simulate::lu::Lu;
 use crate::simulate::resistance::{add_secants, add_smooth_resistance, holding_forces};
 use crate::simulate::{RunError, System};
 

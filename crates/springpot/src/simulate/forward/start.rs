@@ -6,9 +6,9 @@ use super::stepper::{Origin, Stepper};
 use super::stick::Stick;
 use crate::dynamics::{Kinematics, PairForce, crba, rnea};
 use crate::law::{Derivative, Point, State, Term};
+use crate::linalg::Lu;
 use crate::motion::{Drive, Forward};
 use crate::simulate::jump::refuse_jumps;
-use crate::simulate::lu::Lu;
 use crate::simulate::resistance::add_smooth_resistance;
 use crate::simulate::{RunError, System};
 

@@ -8,10 +8,10 @@ use crate::dynamics::{Kinematics, Pair, PairForce, RneaDerivatives, Workspace};
 use crate::fractional::step::{MAX_NODES, lagrange_row};
 use crate::fractional::{Form, Nodes};
 use crate::law::{InputValue, Response, Singular, Step};
+use crate::linalg::Lu;
 use crate::model::{JointKind, Model};
 use crate::motion::Forward;
 use crate::simulate::System;
-use crate::simulate::lu::Lu;
 use serde::{Deserialize, Serialize};
 
 /// Where a step starts.

@@ -1,9 +1,9 @@
 //! Which joints friction holds and which slide against it, between two changes.
 
+use crate::linalg::Lu;
 use crate::model::Model;
 use crate::motion::{Drive, Forward};
 use crate::simulate::coulomb::{Candidate, Coulomb};
-use crate::simulate::lu::Lu;
 use crate::simulate::moment::Moment;
 use crate::simulate::resistance::holding_forces;
 use serde::{Deserialize, Serialize};

@@ -25,7 +25,7 @@ pub(in crate::sweep) struct CaseFiles<'a> {
     kept: Stretch,
     /// Time of the next checkpoint, s.
     next: f64,
-    digest: Option<u64>,
+    digest: Option<u32>,
 }
 
 impl<'a> CaseFiles<'a> {
@@ -88,7 +88,7 @@ impl<'a> CaseFiles<'a> {
     }
 
     /// What tells this case from others.
-    pub(in crate::sweep) fn digest(&mut self, plan: &Plan, system: &System) -> u64 {
+    pub(in crate::sweep) fn digest(&mut self, plan: &Plan, system: &System) -> u32 {
         *self.digest.get_or_insert_with(|| digest(plan, system))
     }
 

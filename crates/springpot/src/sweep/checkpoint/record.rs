@@ -2,11 +2,11 @@
 
 use crate::scenario::{Cases, Plan, RefusalKind, Scenario};
 use crate::simulate::{Checkpoint, PassedLimit, Report, ReportFields, Stop, System, Watch};
-use crate::table::sealed::{Fnv, SealError};
+use crate::table::sealed::SealError;
 use crate::table::{Format, Statistics};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -36,7 +36,7 @@ pub(super) struct Head {
     pub(super) origin: Origin,
     pub(super) cases: usize,
     /// [`digest`] of the first case.
-    pub(super) digest: u64,
+    pub(super) digest: u32,
 }
 
 /// A beginning of a file, or a part of one: how long it is, and what its bytes are.
@@ -77,7 +77,7 @@ pub(in crate::sweep) struct Written {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(in crate::sweep) struct CaseState {
     pub(in crate::sweep) index: usize,
-    pub(in crate::sweep) digest: u64,
+    pub(in crate::sweep) digest: u32,
     pub(in crate::sweep) written: Written,
     pub(in crate::sweep) watch: Watch,
     pub(in crate::sweep) run: Checkpoint,
@@ -132,17 +132,27 @@ impl Origin {
     }
 }
 
+/// CRC-32 of formatted text.
+struct TextSum(crc32fast::Hasher);
+
+impl fmt::Write for TextSum {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}
+
 /// A number that differs where a case differs: in its plan as resolved, in a signal's samples, in a tolerance.
-pub(super) fn digest(plan: &Plan, system: &System) -> u64 {
-    let mut hash = Fnv::new();
+pub(super) fn digest(plan: &Plan, system: &System) -> u32 {
+    let mut sum = TextSum(crc32fast::Hasher::new());
     let inputs: Vec<_> = system.elements.iter().map(|element| &element.inputs).collect();
-    let written = write!(hash, "{} {:?} {:?} {inputs:?}", plan.resolved(), plan.settings(), system.motion);
-    written.expect("a hash takes all text");
-    hash.value()
+    let written = write!(sum, "{} {:?} {:?} {inputs:?}", plan.resolved(), plan.settings(), system.motion);
+    written.expect("a sum takes all text");
+    sum.0.finalize()
 }
 
 /// As [`digest`], of case `index`; `None` where its plan is refused.
-pub(super) fn digest_of(cases: &Cases, index: usize) -> Option<u64> {
+pub(super) fn digest_of(cases: &Cases, index: usize) -> Option<u32> {
     // What a gripper path leads to follows from what is asked of it.
     let unsolved = Stop::new(true);
     cases.plan(index).ok().map(|plan| digest(&plan, &plan.system_unless(&unsolved)))

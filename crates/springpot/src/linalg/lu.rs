@@ -1,8 +1,9 @@
-//! Dense linear systems.
+//! Dense linear systems by Gaussian elimination: P A = L U with partial pivoting (G. H. Golub, C. F. Van Loan, Matrix
+//! Computations, 4th ed. 2013, 3.4).
 
 /// An n × n matrix factorised by rows with partial pivoting.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Lu {
+pub(crate) struct Lu {
     n: usize,
     entries: Vec<f64>,
     order: Vec<usize>,
@@ -11,7 +12,7 @@ pub(super) struct Lu {
 
 impl Lu {
     /// Factors the n × n matrix that `fill` writes row by row into zeros; `false` where it is singular or not finite.
-    pub(super) fn factor(&mut self, n: usize, fill: impl FnOnce(&mut [f64])) -> bool {
+    pub(crate) fn factor(&mut self, n: usize, fill: impl FnOnce(&mut [f64])) -> bool {
         self.n = n;
         self.entries.clear();
         self.entries.resize(n * n, 0.0);
@@ -48,7 +49,7 @@ impl Lu {
     }
 
     /// Factors the rows and columns `part` of a full n × n matrix; `false` as for [`Lu::factor`], of an empty part `true`.
-    pub(super) fn factor_part(&mut self, n: usize, full: &[f64], part: &[usize]) -> bool {
+    pub(crate) fn factor_part(&mut self, n: usize, full: &[f64], part: &[usize]) -> bool {
         self.factor(part.len(), |matrix| {
             for (line, &row) in matrix.chunks_exact_mut(part.len().max(1)).zip(part) {
                 for (entry, &column) in line.iter_mut().zip(part) {
@@ -59,7 +60,7 @@ impl Lu {
     }
 
     /// Solves in place: `x` holds the right-hand side before and the solution after.
-    pub(super) fn solve(&mut self, x: &mut [f64]) {
+    pub(crate) fn solve(&mut self, x: &mut [f64]) {
         let n = self.n;
         for (slot, &source) in self.scratch.iter_mut().zip(&self.order) {
             *slot = x[source];

@@ -1,16 +1,10 @@
 //! Robots that move by themselves, from texts, in fixed steps and with error control.
 
-#[allow(dead_code, reason = "a share of it")]
-#[path = "../run/run_support/robots.rs"]
-mod robots;
-
-use robots::ARM;
-pub(crate) use robots::strut;
-
-use springpot::law::Catalog;
-use springpot::scenario::Scenario;
+use crate::support::robots::{self, ARM};
+use crate::support::run_system;
+pub(crate) use crate::support::{robots::strut, system};
 use springpot::simulate::fixed::{Loop, MemorySettings, Method};
-use springpot::simulate::{FixedStep, Report, RowTimes, RunError, Settings, Stop, System, run};
+use springpot::simulate::{FixedStep, Report, RowTimes, RunError, Settings, System};
 
 pub(crate) const METHODS: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
 
@@ -27,13 +21,6 @@ pub(crate) fn thermoviscoelastic(alpha: f64, derivative: &str) -> String {
 /// A free motion of 1 s, which tests cut where they want.
 pub(crate) fn free(start: &str) -> String {
     format!("[motion]\nkind = \"forward\"\n{start}\n[time]\nend = 1\noutput_step = 0.1\n")
-}
-
-/// The system of a scenario.
-pub(crate) fn system(text: &str) -> System {
-    let scenario = Scenario::parse(text, "test.toml", "").unwrap_or_else(|refusals| panic!("{refusals}\n{text}"));
-    let cases = scenario.cases(&Catalog::standard()).unwrap_or_else(|refusals| panic!("{refusals}\n{text}"));
-    cases.plan(0).expect("a valid plan").system()
 }
 
 /// Loops of tests remember this well.
@@ -71,13 +58,8 @@ pub(crate) fn settings(end: f64, rows: &[f64], fixed_step: Option<FixedStep>) ->
 
 /// The rows of a run, what it did and how it ended.
 pub(crate) fn rows(system: &System, settings: &Settings) -> (Vec<Vec<f64>>, Report, Result<(), RunError>) {
-    let mut rows = Vec::new();
-    let mut keep = |row: &[f64]| -> std::io::Result<()> {
-        rows.push(row.to_vec());
-        Ok(())
-    };
-    let (report, outcome) = run(system, settings, &mut keep, &Stop::new(false));
-    (rows, report, outcome)
+    let run = run_system(system, settings);
+    (run.rows, run.report, run.error.map_or(Ok(()), Err))
 }
 
 /// q and v at `end` with error control, 1e-10.

@@ -1,13 +1,13 @@
-//! Pseudo-inverse of a small Jacobian by its singular values.
+//! Singular values of a small wide matrix, and its pseudo-inverse.
 
-use super::task::CONDITIONS;
+use super::{dot, norm};
 
 /// Singular values below this share of the largest count as 0.
 const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Singular value decomposition of an m × n matrix J with m ≤ 6: Jᵀ v_k = w_k, the w_k orthogonal with norms σ_k.
+/// Singular value decomposition of an m × n matrix J with few rows: Jᵀ v_k = w_k, the w_k orthogonal with norms σ_k.
 #[derive(Debug, Clone)]
-pub(super) struct PseudoInverse {
+pub(super) struct Svd {
     /// w_k, n values each.
     w: Vec<Vec<f64>>,
     /// v_k, m values each, orthonormal.
@@ -15,10 +15,10 @@ pub(super) struct PseudoInverse {
     sigma: Vec<f64>,
 }
 
-impl PseudoInverse {
-    /// One-sided Jacobi rotations on the rows of J, m × `n`, row-major (Hestenes 1958).
-    pub(super) fn new(jacobian: &[f64], n: usize) -> Self {
-        let mut w: Vec<Vec<f64>> = jacobian.chunks(n).map(<[f64]>::to_vec).collect();
+impl Svd {
+    /// One-sided Jacobi rotations on the rows of J, m × `n` (M. R. Hestenes, J. SIAM 6 (1958) 51–90).
+    pub(super) fn new(matrix: &[f64], n: usize) -> Self {
+        let mut w: Vec<Vec<f64>> = matrix.chunks(n).map(<[f64]>::to_vec).collect();
         let m = w.len();
         let mut v: Vec<Vec<f64>> = (0..m).map(|k| (0..m).map(|i| if i == k { 1.0 } else { 0.0 }).collect()).collect();
         for _ in 0..40 {
@@ -41,7 +41,7 @@ impl PseudoInverse {
                 break;
             }
         }
-        let sigma = w.iter().map(|w| dot(w, w).sqrt()).collect();
+        let sigma = w.iter().map(|w| norm(w)).collect();
         Self { w, v, sigma }
     }
 
@@ -71,13 +71,12 @@ impl PseudoInverse {
     }
 
     /// y with x = Jᵀ y for x in the row space of J.
-    pub(super) fn transpose_solve(&self, x: &[f64]) -> [f64; CONDITIONS] {
-        let mut y = [0.0; CONDITIONS];
+    pub(super) fn transpose_solve_into(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
         for (k, inverse) in self.regular(0.0) {
             let share = dot(&self.w[k], x) * inverse;
             y.iter_mut().zip(&self.v[k]).for_each(|(y, v)| *y += share * v);
         }
-        y
     }
 
     /// Takes away from x what J sees of it.
@@ -102,10 +101,6 @@ impl PseudoInverse {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 fn rotate(columns: &mut [Vec<f64>], p: usize, q: usize, c: f64, s: f64) {
     for i in 0..columns[p].len() {
         let (x, y) = (columns[p][i], columns[q][i]);
@@ -118,7 +113,7 @@ fn rotate(columns: &mut [Vec<f64>], p: usize, q: usize, c: f64, s: f64) {
 mod tests {
     use super::*;
 
-    fn solved(inverse: &PseudoInverse, r: &[f64], n: usize) -> Vec<f64> {
+    fn solved(inverse: &Svd, r: &[f64], n: usize) -> Vec<f64> {
         let mut x = vec![f64::NAN; n];
         inverse.solve_into(r, 0.0, &mut x);
         x
@@ -127,19 +122,20 @@ mod tests {
     #[test]
     fn solves_wide_square_and_deficient_systems() {
         let wide = [1.0, 2.0, 3.0, 0.5, 0.0, -1.0, 1.0, 2.0];
-        let inverse = PseudoInverse::new(&wide, 4);
+        let inverse = Svd::new(&wide, 4);
         let x = solved(&inverse, &[1.0, -2.0], 4);
         assert!((dot(&wide[..4], &x) - 1.0).abs() < 1e-14 && (dot(&wide[4..], &x) + 2.0).abs() < 1e-14);
         // Least norm: nothing of x lies in the null space.
         let mut rest = x.clone();
         inverse.project_to_null_space(&mut rest);
-        assert!(dot(&rest, &rest).sqrt() < 1e-14);
-        let y = inverse.transpose_solve(&x);
+        assert!(norm(&rest) < 1e-14);
+        let mut y = [f64::NAN; 2];
+        inverse.transpose_solve_into(&x, &mut y);
         for j in 0..4 {
             assert!((wide[j] * y[0] + wide[4 + j] * y[1] - x[j]).abs() < 1e-14);
         }
         // The third row is the sum of the first two: consistent right-hand sides are met.
-        let inverse = PseudoInverse::new(&[1.0, 0.0, 0.0, 2.0, 1.0, 2.0], 2);
+        let inverse = Svd::new(&[1.0, 0.0, 0.0, 2.0, 1.0, 2.0], 2);
         assert_eq!(inverse.rank(), 2);
         assert!(inverse.conditioning(3) < 1e-15 && inverse.conditioning(2) > 0.1 && inverse.conditioning(0) == 0.0);
         let x = solved(&inverse, &[3.0, 4.0, 7.0], 2);

@@ -3,8 +3,8 @@
 //! Away from singular configurations x = Jᵀ(JJᵀ)⁻¹r by Cholesky, which squares the condition number; one step of refinement takes
 //! that back where digits count. Near them, and for ranks below the number of rows, by singular values.
 
-use super::pseudo_inverse::PseudoInverse;
-use super::task::CONDITIONS;
+use super::dot;
+use super::svd::Svd;
 
 /// Where (Σσ² Σσ⁻²)^−½ is above this, JJᵀ is well enough conditioned.
 const REGULAR: f64 = 3e-3;
@@ -12,49 +12,49 @@ const REGULAR: f64 = 3e-3;
 /// Rows whose square is below this share of the largest one's say nothing: a plane arm cannot leave its plane.
 const EMPTY_ROW: f64 = 1e-24;
 
-/// A Jacobian, m × n with m ≤ 6, and what solves it.
+/// A matrix J, m × n with m ≤ M, and what solves J x = r.
 #[derive(Debug, Clone)]
-pub(super) struct LeastNorm {
+pub(crate) struct LeastNorm<const M: usize> {
     n: usize,
     jacobian: Vec<f64>,
     /// Inverse of the lower Cholesky factor of JJᵀ; rows and columns of 0 for empty rows of J.
-    inverse: [[f64; CONDITIONS]; CONDITIONS],
+    inverse: [[f64; M]; M],
     rank: usize,
     /// (Σσ² Σσ⁻²)^−½, at most the ratio of the smallest to the largest singular value; 0 where nothing is known.
     conditioning: f64,
-    exact: Option<PseudoInverse>,
+    exact: Option<Svd>,
 }
 
-impl LeastNorm {
-    pub(super) fn new(m: usize, n: usize) -> Self {
+impl<const M: usize> LeastNorm<M> {
+    pub(crate) fn new(m: usize, n: usize) -> Self {
         let jacobian = vec![0.0; m * n];
-        Self { n, jacobian, inverse: [[0.0; CONDITIONS]; CONDITIONS], rank: 0, conditioning: 0.0, exact: None }
+        Self { n, jacobian, inverse: [[0.0; M]; M], rank: 0, conditioning: 0.0, exact: None }
     }
 
     /// Takes J as `fill` writes it, m × n, row-major.
-    pub(super) fn take(&mut self, fill: impl FnOnce(&mut [f64])) {
+    pub(crate) fn take(&mut self, fill: impl FnOnce(&mut [f64])) {
         fill(&mut self.jacobian);
         self.exact = None;
         self.factor();
         if !self.is_regular() {
-            let exact = PseudoInverse::new(&self.jacobian, self.n);
+            let exact = Svd::new(&self.jacobian, self.n);
             self.rank = exact.rank();
             self.exact = Some(exact);
         }
     }
 
     /// Whether J is far from losing rank.
-    pub(super) fn is_regular(&self) -> bool {
+    pub(crate) fn is_regular(&self) -> bool {
         self.conditioning > REGULAR
     }
 
     /// Singular values that count.
-    pub(super) fn rank(&self) -> usize {
+    pub(crate) fn rank(&self) -> usize {
         self.rank
     }
 
     /// (Σσ² Σσ⁻²)^−½ over the `rank` largest singular values: 0 at singular configurations, at most 1/rank.
-    pub(super) fn conditioning(&self, rank: usize) -> f64 {
+    pub(crate) fn conditioning(&self, rank: usize) -> f64 {
         // A row may be empty in this configuration alone.
         if self.rank < rank {
             return 0.0;
@@ -73,16 +73,16 @@ impl LeastNorm {
     /// L⁻¹ of JJᵀ = LLᵀ, and with it 1/σ_min² ≤ tr (JJᵀ)⁻¹, σ_max² ≤ tr JJᵀ.
     fn factor(&mut self) {
         let m = self.rows();
-        let mut gram = [[0.0; CONDITIONS]; CONDITIONS];
+        let mut gram = [[0.0; M]; M];
         for i in 0..m {
             for j in 0..=i {
                 gram[i][j] = dot(self.row(i), self.row(j));
             }
         }
         let largest = (0..m).map(|i| gram[i][i]).fold(0.0, f64::max);
-        self.inverse = [[0.0; CONDITIONS]; CONDITIONS];
+        self.inverse = [[0.0; M]; M];
         (self.rank, self.conditioning) = (0, 0.0);
-        let (mut lower, mut empty) = ([[0.0; CONDITIONS]; CONDITIONS], [false; CONDITIONS]);
+        let (mut lower, mut empty) = ([[0.0; M]; M], [false; M]);
         for i in 0..m {
             empty[i] = gram[i][i] <= EMPTY_ROW * largest;
             if empty[i] {
@@ -111,9 +111,9 @@ impl LeastNorm {
     }
 
     /// (JJᵀ)⁻¹ r.
-    fn gram_solve(&self, r: &[f64; CONDITIONS]) -> [f64; CONDITIONS] {
+    fn gram_solve(&self, r: &[f64; M]) -> [f64; M] {
         let m = self.rows();
-        let (mut z, mut y) = ([0.0; CONDITIONS], [0.0; CONDITIONS]);
+        let (mut z, mut y) = ([0.0; M], [0.0; M]);
         for i in 0..m {
             z[i] = (0..=i).map(|k| self.inverse[i][k] * r[k]).sum();
         }
@@ -124,15 +124,15 @@ impl LeastNorm {
     }
 
     /// x += Jᵀ y.
-    fn add_transposed(&self, y: &[f64; CONDITIONS], x: &mut [f64]) {
+    fn add_transposed(&self, y: &[f64; M], x: &mut [f64]) {
         for (i, y) in y.iter().enumerate().take(self.rows()) {
             x.iter_mut().zip(self.row(i)).for_each(|(x, j)| *x += y * j);
         }
     }
 
     /// J x.
-    fn times(&self, x: &[f64]) -> [f64; CONDITIONS] {
-        let mut r = [0.0; CONDITIONS];
+    fn times(&self, x: &[f64]) -> [f64; M] {
+        let mut r = [0.0; M];
         for (i, r) in r.iter_mut().enumerate().take(self.rows()) {
             *r = dot(self.row(i), x);
         }
@@ -140,7 +140,7 @@ impl LeastNorm {
     }
 
     /// The x of least norm with J x = r as nearly as can be, to a relative error of 1e-10.
-    pub(super) fn solve_roughly_into(&self, r: &[f64; CONDITIONS], x: &mut [f64]) {
+    pub(crate) fn solve_roughly_into(&self, r: &[f64; M], x: &mut [f64]) {
         match &self.exact {
             Some(exact) => exact.solve_into(r, 0.0, x),
             None => {
@@ -151,7 +151,7 @@ impl LeastNorm {
     }
 
     /// The x of least norm with J x = r as nearly as can be, to rounding.
-    pub(super) fn solve_into(&self, r: &[f64; CONDITIONS], x: &mut [f64]) {
+    pub(crate) fn solve_into(&self, r: &[f64; M], x: &mut [f64]) {
         self.solve_roughly_into(r, x);
         if self.exact.is_none() {
             let mut rest = self.times(x);
@@ -161,23 +161,27 @@ impl LeastNorm {
     }
 
     /// Jᵀ(JJᵀ + (damping·σ_max)²)⁻¹ r.
-    pub(super) fn solve_damped_into(&self, r: &[f64; CONDITIONS], damping: f64, x: &mut [f64]) {
+    pub(crate) fn solve_damped_into(&self, r: &[f64; M], damping: f64, x: &mut [f64]) {
         match &self.exact {
             Some(exact) => exact.solve_into(r, damping, x),
-            None => PseudoInverse::new(&self.jacobian, self.n).solve_into(r, damping, x),
+            None => Svd::new(&self.jacobian, self.n).solve_into(r, damping, x),
         }
     }
 
     /// y with x = Jᵀ y for x in the row space of J.
-    pub(super) fn transpose_solve(&self, x: &[f64]) -> [f64; CONDITIONS] {
+    pub(crate) fn transpose_solve(&self, x: &[f64]) -> [f64; M] {
         match &self.exact {
-            Some(exact) => exact.transpose_solve(x),
+            Some(exact) => {
+                let mut y = [0.0; M];
+                exact.transpose_solve_into(x, &mut y);
+                y
+            }
             None => self.gram_solve(&self.times(x)),
         }
     }
 
     /// Takes away from x what J sees of it.
-    pub(super) fn project_to_null_space(&self, x: &mut [f64]) {
+    pub(crate) fn project_to_null_space(&self, x: &mut [f64]) {
         match &self.exact {
             Some(exact) => exact.project_to_null_space(x),
             // Twice is enough.
@@ -191,19 +195,17 @@ impl LeastNorm {
     }
 
     /// Columns that are not 0.
-    pub(super) fn moving(&self) -> impl Iterator<Item = bool> + '_ {
+    pub(crate) fn moving(&self) -> impl Iterator<Item = bool> + '_ {
         let largest = self.jacobian.iter().map(|x| x.abs()).fold(0.0, f64::max);
         (0..self.n).map(move |j| (0..self.rows()).any(|i| self.row(i)[j].abs() > 1e-12 * largest))
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const ROWS: usize = 6;
 
     /// A matrix of numbers between −1 and 1, the same in every run.
     fn matrix(m: usize, n: usize, seed: u64) -> Vec<f64> {
@@ -228,8 +230,8 @@ mod tests {
             if seed % 5 == 0 {
                 jacobian[n..2 * n].fill(0.0);
             }
-            let exact = PseudoInverse::new(&jacobian, n);
-            let mut solver = LeastNorm::new(m, n);
+            let exact = Svd::new(&jacobian, n);
+            let mut solver = LeastNorm::<ROWS>::new(m, n);
             solver.take(|rows| rows.copy_from_slice(&jacobian));
             assert_eq!(solver.rank(), exact.rank());
             let conditioning = exact.conditioning(exact.rank());
@@ -238,12 +240,14 @@ mod tests {
                 continue;
             }
             regular += 1;
-            let r: [f64; CONDITIONS] = std::array::from_fn(|i| if i < m { (i as f64 + 1.3).sin() } else { 0.0 });
+            let r: [f64; ROWS] = std::array::from_fn(|i| if i < m { (i as f64 + 1.3).sin() } else { 0.0 });
             let (mut x, mut y) = (vec![0.0; n], vec![0.0; n]);
             solver.solve_into(&r, &mut x);
             exact.solve_into(&r, 0.0, &mut y);
             assert!(gap(&x, &y) < 1e-12 / conditioning, "{:.1e}", gap(&x, &y));
-            assert!(gap(&solver.transpose_solve(&x), &exact.transpose_solve(&x)) < 1e-9 / conditioning);
+            let mut multipliers = [0.0; ROWS];
+            exact.transpose_solve_into(&x, &mut multipliers);
+            assert!(gap(&solver.transpose_solve(&x), &multipliers) < 1e-9 / conditioning);
             solver.solve_damped_into(&r, 0.1, &mut x);
             exact.solve_into(&r, 0.1, &mut y);
             assert_eq!(x, y);
@@ -257,7 +261,7 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_no_solution() {
-        let mut solver = LeastNorm::new(3, 4);
+        let mut solver = LeastNorm::<ROWS>::new(3, 4);
         solver.take(|rows| rows.fill(f64::NAN));
         assert!(!solver.is_regular());
     }

@@ -1,14 +1,15 @@
 //! What the tests of whole runs share: scenarios from texts and files, their rows by column name, and an independent truth.
 
-#![allow(dead_code, reason = "each test uses its share")]
+#![allow(dead_code, reason = "each binary uses its share")]
 
+pub(crate) mod forward;
 pub(crate) mod oracle;
 pub(crate) mod robots;
 pub(crate) mod truth;
 
 use springpot::law::Catalog;
 use springpot::scenario::{Cases, Scenario};
-use springpot::simulate::{Report, RunError, Stop, System, run as simulate};
+use springpot::simulate::{Report, RunError, Settings, Stop, System, run as simulate};
 use std::path::PathBuf;
 
 /// Rows of one run, by column.
@@ -44,11 +45,18 @@ impl Run {
     pub(crate) fn effort(&self) -> u64 {
         self.report.steps + self.report.rejected_steps
     }
+
+    /// Residual of the balance in units of the energy turned over.
+    pub(crate) fn residual(&self) -> f64 {
+        let turned_over = self.report.energy_turned_over.expect("a known ledger");
+        self.report.energy_residual.expect("a known ledger") / turned_over
+    }
 }
 
-/// The cases of a scenario text.
+/// The cases of a scenario text; files that it names are among the shipped scenarios.
 pub(crate) fn cases(text: &str) -> Cases {
-    let scenario = Scenario::parse(text, "test.toml", "").and_then(|scenario| scenario.cases(&Catalog::standard()));
+    let scenario =
+        Scenario::parse(text, "test.toml", scenarios()).and_then(|scenario| scenario.cases(&Catalog::standard()));
     scenario.unwrap_or_else(|refusals| panic!("{refusals}\n{text}"))
 }
 
@@ -57,24 +65,33 @@ pub(crate) fn system(text: &str) -> System {
     cases(text).plan(0).expect("a valid plan").system()
 }
 
-/// Runs one case.
-pub(crate) fn run_case(cases: &Cases, index: usize) -> Run {
-    let plan = cases.plan(index).expect("a valid plan");
-    let system = plan.system();
+/// Runs a system; the run may fail.
+pub(crate) fn run_system(system: &System, settings: &Settings) -> Run {
     let mut rows = Vec::new();
     let mut keep = |row: &[f64]| -> std::io::Result<()> {
         rows.push(row.to_vec());
         Ok(())
     };
-    let (report, outcome) = simulate(&system, &plan.settings(), &mut keep, &Stop::new(false));
+    let (report, outcome) = simulate(system, settings, &mut keep, &Stop::new(false));
     let names = system.columns().into_iter().map(|column| column.name).collect();
     Run { names, rows, report, error: outcome.err() }
 }
 
+/// Runs one case; it may fail.
+pub(crate) fn run_case(cases: &Cases, index: usize) -> Run {
+    let plan = cases.plan(index).expect("a valid plan");
+    run_system(&plan.system(), &plan.settings())
+}
+
+/// Runs a scenario with one case; it may fail.
+pub(crate) fn try_run(text: &str) -> Run {
+    run_case(&cases(text), 0)
+}
+
 /// Runs a scenario with one case to its end.
 pub(crate) fn run(text: &str) -> Run {
-    let run = run_case(&cases(text), 0);
-    assert!(run.error.is_none(), "{:?}\n{text}", run.error);
+    let run = try_run(text);
+    assert!(run.error.is_none(), "{}\n{text}", run.error.unwrap());
     run
 }
 

@@ -1,0 +1,22 @@
+//! Small dense linear algebra. Matrices are row-major; the joint-space mass matrix has its own factors in `dynamics`.
+
+mod eigen;
+mod gauss;
+mod least_norm;
+mod least_squares;
+mod lu;
+mod svd;
+
+pub(crate) use eigen::symmetric_eigenvalues;
+pub(crate) use gauss::{gauss_rule, gauss_rules};
+pub(crate) use least_norm::LeastNorm;
+pub(crate) use least_squares::{Unknown, are_independent, levenberg_marquardt};
+pub(crate) use lu::Lu;
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
