@@ -271,7 +271,7 @@ impl Memory {
         affine
     }
 
-    /// Makes ready what a step will ask for, which then costs nothing however often it is asked; no answer changes.
+    /// Makes ready what a step will ask for, which then costs nothing however often it is asked; no answer changes but by rounding.
     pub fn prepare(&mut self, start: &StepStart, nodes: Nodes, form: Form) {
         let is_same = |ready: &Prepared| ready.start == *start && ready.nodes == nodes && ready.form == form;
         if self.prepared.as_ref().is_some_and(is_same) {
@@ -283,6 +283,8 @@ impl Memory {
 
     fn prepare_lags(&mut self, h: f64, nodes: Nodes) {
         let Some(past) = &mut self.past else { return };
+        // Energies take what is faster than the modes for settled, which in a shorter step it is not.
+        past.extend(RADAU_NODES[0] * h);
         match nodes {
             Nodes::One | Nodes::Midpoint => past.prepare(h, CUBIC, 0.0),
             Nodes::Radau => nodes.positions().iter().for_each(|c| past.prepare(c * h, CUBIC, 0.0)),

@@ -34,6 +34,8 @@ struct Solved {
     inner: [Inner; MOST_IN_SERIES],
     force: [f64; MAX_NODES],
     tangent: Matrix,
+    /// By how much the force at the end follows an error of that of each part.
+    shares: [f64; MOST_IN_SERIES],
 }
 
 impl Inner {
@@ -118,17 +120,19 @@ pub(super) fn commit(parts: &[Network], step: &Step, state: &mut StateMut) {
 
 pub(super) fn local_errors(parts: &[Network], step: &Step, state: &mut StateRef, errors: &mut Vec<LocalError>) {
     let strokes = state.take(own(parts)).variables;
-    let Solved { mut inner, .. } = solve(parts, step, strokes, &mut state.clone());
-    let first = errors.len();
-    for (part, inner) in parts.iter().zip(&mut inner) {
+    let Solved { mut inner, shares, .. } = solve(parts, step, strokes, &mut state.clone());
+    for ((part, inner), share) in parts.iter().zip(&mut inner).zip(shares) {
+        let first = errors.len();
         if step.nodes == Nodes::Radau {
             // The rates of the parabola through three of the strokes: what departs from it is the estimate.
             inner.rate = rates_of_parabola(&inner.stroke, step.h);
         }
         part.local_errors_part(&inner.step(step), state, errors);
-    }
-    for error in &mut errors[first..] {
-        error.sharpness = (4.0 - error.order) / (3.0 - error.order);
+        for error in &mut errors[first..] {
+            // A part that hardly yields in the step does not matter, however little is known of it.
+            error.error *= share;
+            error.sharpness = (4.0 - error.order) / (3.0 - error.order);
+        }
     }
 }
 
@@ -269,6 +273,7 @@ fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -
     }
     let is_linear = parts.iter().all(Network::is_linear);
     let (mut force, mut tangent) = ([0.0; MAX_NODES], [[0.0; MAX_NODES]; MAX_NODES]);
+    let mut shares = [0.0; MOST_IN_SERIES];
     for _ in 0..MOST_ITERATIONS {
         let mut compliances = [[[0.0; MAX_NODES]; MAX_NODES]; MOST_IN_SERIES];
         let mut forces = [[0.0; MAX_NODES]; MOST_IN_SERIES];
@@ -307,6 +312,9 @@ fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -
             (0..count).map(|j| matrix[i][j] * vector[j]).sum()
         };
         force = std::array::from_fn(|i| product(&tangent, &right, i));
+        for (share, matrix) in shares.iter_mut().zip(&compliances) {
+            *share = (0..count).map(|j| tangent[count - 1][j] * matrix[j][count - 1]).sum::<f64>().abs();
+        }
         let (mut change, mut size) = (0.0f64, step.resolution);
         for (k, matrix) in compliances.iter().enumerate().take(parts.len()) {
             let lacking: [f64; MAX_NODES] = std::array::from_fn(|i| force[i] - forces[k][i]);
@@ -323,7 +331,7 @@ fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -
         }
     }
     *state = advance(parts, *state);
-    Solved { inner, force, tangent }
+    Solved { inner, force, tangent, shares }
 }
 
 /// The state behind these parts.

@@ -8,6 +8,9 @@ use crate::law::{State, Step};
 use crate::simulate::RunError;
 use crate::simulate::moment::ElementMoment;
 
+/// A step this short, in units of end·rtol^{1/(1+alpha)}, is kept whatever is known of inner strokes.
+const ONSET: f64 = 0.1;
+
 impl Book<'_> {
     /// Takes the element's kinematics and inputs from the moments of the step.
     pub(in crate::simulate) fn fill_element_step(&mut self, e: usize) {
@@ -58,8 +61,13 @@ impl Book<'_> {
     /// The largest of the element's local errors in units of their tolerances, and its order.
     pub(in crate::simulate) fn memory_error(&self, e: usize) -> (f64, f64) {
         let settings = self.settings;
+        let h = self.moments[MAX_NODES].t - self.moments[0].t;
         let mut worst = (0.0, 0.0);
         for (m, error) in self.steps[e].errors.iter().enumerate() {
+            // Where an inner stroke begins like t^alpha, every step knows little of it; what that does fades like (h/t)^{1+alpha}.
+            if error.sharpness != 1.0 && h <= ONSET * settings.end * settings.rtol.powf(1.0 / (1.0 + error.order)) {
+                continue;
+            }
             let scale = self.scale_with_step(e, m);
             let allowed = settings.atol.unwrap_or(0.0).max(settings.rtol * scale);
             let share = error.share(scale, allowed);
