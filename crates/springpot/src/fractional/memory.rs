@@ -100,6 +100,8 @@ pub struct Memory {
     past: Option<History>,
     /// In the place of it.
     told: Option<f64>,
+    /// Whether its energies are known.
+    is_accounted: bool,
     #[serde(skip)]
     prepared: Option<Prepared>,
 }
@@ -154,6 +156,7 @@ impl Memory {
             travelled: 0.0,
             now: 0.0,
             told: None,
+            is_accounted: !(singular && jump != 0.0),
             past: None,
             prepared: None,
         })
@@ -192,6 +195,16 @@ impl Memory {
     /// Whether D^alpha x is infinite at t = 0+.
     pub fn is_singular(&self) -> bool {
         self.jump != 0.0
+    }
+
+    /// Whether its energies are known: not after a singular start, nor where a network begins as steeply ([`Self::lose_account`]).
+    pub fn is_accounted(&self) -> bool {
+        self.is_accounted
+    }
+
+    /// No step knows the energies of what begins like t^alpha.
+    pub fn lose_account(&mut self) {
+        self.is_accounted = false;
     }
 
     /// x(0) t^−alpha/Γ(1−alpha) of a singular start, else 0; infinite at t = 0.

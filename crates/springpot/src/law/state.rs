@@ -77,6 +77,11 @@ impl State {
         self.memories.iter().any(Memory::is_singular)
     }
 
+    /// Whether all energies are known.
+    pub fn is_accounted(&self) -> bool {
+        self.memories.iter().all(Memory::is_accounted)
+    }
+
     /// All of it.
     pub fn view(&self) -> StateRef<'_> {
         StateRef { memories: &self.memories, variables: &self.variables }

@@ -15,7 +15,7 @@ pub struct ElementStart {
     pub stroke: f64,
     /// ∂l/∂q_b, nv values.
     pub gradient: Vec<f64>,
-    /// Whether its force is infinite at t = 0: a Riemann–Liouville start from x(0) ≠ 0.
+    /// Whether its energies are unknown: a Riemann–Liouville start from x(0) ≠ 0, at which a springpot has an infinite force.
     pub singular: bool,
 }
 
@@ -48,7 +48,7 @@ impl System {
         let starts = self.elements.iter().zip(moment.elements).map(|(element, state)| {
             let begun = element.begin(state.length, &state.inputs);
             let singular = begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
-            let singular = singular.is_singular();
+            let singular = !singular.is_accounted();
             Ok(ElementStart { length: state.length, stroke: state.stroke, gradient: state.gradient, singular })
         });
         starts.collect()

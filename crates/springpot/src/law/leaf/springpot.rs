@@ -66,7 +66,8 @@ impl Springpot {
     fn observation(&self, memory: &Memory, at: &Point, derivative: f64, energy: impl FnOnce() -> f64) -> Observation {
         let c = self.coefficient.at(at.inputs).value;
         if !memory.is_singular() {
-            return Observation { derivative, regular: c * derivative, singular: 0.0, stored: Some(c * energy()) };
+            let stored = memory.is_accounted().then(|| c * energy());
+            return Observation { derivative, regular: c * derivative, singular: 0.0, stored };
         }
         let singular = if at.t == 0.0 { f64::NAN } else { memory.singular_part(at.t) };
         Observation { derivative: derivative + singular, regular: c * derivative, singular: c * singular, stored: None }

@@ -71,9 +71,13 @@ pub(super) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Resu
     let limp = (0..parts.len()).find(|&k| compliance(k).is_infinite());
     let share = |k: usize| limp.map_or(compliance(k) / whole, |limp| f64::from(u8::from(k == limp)));
     (0..parts.len()).for_each(|k| state.push_variable(share(k) * start.stroke));
+    let first = state.memories().len();
     for (k, part) in parts.iter().enumerate() {
         let (stroke, jump) = (share(k) * start.stroke, share(k) * start.jump);
         part.begin_part(&Start { stroke, jump, ..*start }, state)?;
+    }
+    if onset == Onset::Short && start.jump != 0.0 {
+        state.memories_mut()[first..].iter_mut().for_each(crate::fractional::Memory::lose_account);
     }
     Ok(())
 }
