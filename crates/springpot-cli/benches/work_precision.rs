@@ -17,10 +17,10 @@ use springpot::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pai
 use springpot::fractional::{Kernel, gamma::gamma};
 use springpot::law::Catalog;
 use springpot::motion::{Drive, Forward, Motion};
-use springpot::scenario::Scenario;
 use springpot::signal::Signal;
 use springpot::simulate::{RowTimes, Settings, Stop, System, forward};
 use springpot_report::{Panel, Plot};
+use springpot_scenario::Scenario;
 
 /// Length of the run, s.
 const END: f64 = 2.0;

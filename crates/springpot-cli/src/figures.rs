@@ -3,12 +3,12 @@
 mod robot;
 
 use crate::labels;
-use springpot::scenario::units::Unit;
-use springpot::scenario::{Cases, FigureKind, FigurePlan, Plan};
 use springpot::simulate::System;
-use springpot::sweep::{FigureColumn, FigureData, KeptCurve, Layout, Outcome};
-use springpot::table::folder::Folder;
 use springpot_report::{Curve, Panel, Plot, Rendered, ReportError};
+use springpot_run::sweep::{FigureColumn, FigureData, KeptCurve, Layout, Outcome};
+use springpot_run::table::folder::Folder;
+use springpot_scenario::units::Unit;
+use springpot_scenario::{Cases, FigureKind, FigurePlan, Plan};
 use std::io;
 
 /// Draws every figure into the folder; returns what could not be drawn and why.

@@ -28,7 +28,7 @@ mod terminal;
 
 use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;
-use springpot::table::disk::Disk;
+use springpot_run::table::disk::Disk;
 use std::ffi::OsString;
 use std::io::{self, Write as _};
 use std::process::ExitCode;

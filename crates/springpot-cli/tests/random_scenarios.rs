@@ -4,8 +4,8 @@
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::{Report, RunError, Settings, along};
+use springpot_scenario::Scenario;
 use std::cell::Cell;
 use std::fmt::Write as _;
 use std::sync::atomic::AtomicBool;

@@ -1,13 +1,11 @@
 //! What the papers say about their results, shown with the shipped scenarios.
 
-#![cfg(feature = "scenario")]
-
 #[path = "run/run_support/mod.rs"]
 mod run_support;
 
 use run_support::truth::pair_at;
 use run_support::{Run, largest, relative_difference, run_case, shipped};
-use springpot::scenario::{Cases, SweptValue};
+use springpot_scenario::{Cases, SweptValue};
 use std::f64::consts::PI;
 
 /// Largest and smallest value.

@@ -3,9 +3,9 @@
 use crate::diagnostic;
 use crate::numbers::{count, short};
 use crate::run::{NAMED_LIMITS, in_cases};
-use springpot::scenario::{Cases, Plan};
 use springpot::simulate::{ElementStart, LimitWatch, System};
-use springpot::sweep::{CasesPassing, LimitTally};
+use springpot_run::sweep::{CasesPassing, LimitTally};
+use springpot_scenario::{Cases, Plan};
 use std::ops::RangeInclusive;
 
 /// A stroke at t = 0 beyond this share of the rest length is worth a warning.

@@ -7,9 +7,9 @@ use crate::run::{case_name, in_case};
 use crate::{Ending, diagnostic, plain, printed, terminal};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use springpot::scenario::units::parse_quantity;
-use springpot::scenario::{Cases, Refusals, SweptValue};
 use springpot::simulate::{Equation, EquationError, System};
+use springpot_scenario::units::parse_quantity;
+use springpot_scenario::{Cases, Refusals, SweptValue};
 
 pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused> {
     let file = &options.robot.file;

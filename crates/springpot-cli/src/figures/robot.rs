@@ -1,9 +1,9 @@
 //! The robot at t = 0 as a mechanism sketch.
 
 use springpot::model::{Anchor, JointKind, Parent};
-use springpot::scenario::{FigurePlan, Plan};
 use springpot::simulate::{Pose, System};
 use springpot_report::{ElementMark, JointMark, Link, RobotDrawing, WORLD};
+use springpot_scenario::{FigurePlan, Plan};
 
 /// Most links of a sketch.
 const MOST_LINKS: usize = 1_000;

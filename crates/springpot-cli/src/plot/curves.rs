@@ -4,11 +4,12 @@ use super::Refused;
 use super::table::Table;
 use crate::arguments::PlotOptions;
 use crate::labels;
-use springpot::scenario::suggest;
-use springpot::scenario::units::Unit;
-use springpot::sweep::{KeptCurve, MAX_CURVES, most_points};
-use springpot::table::{Column, matches};
+use springpot::table::Column;
 use springpot_report::{Curve, Panel, Plot};
+use springpot_run::sweep::{KeptCurve, MAX_CURVES, most_points};
+use springpot_run::table::matches;
+use springpot_scenario::suggest;
+use springpot_scenario::units::Unit;
 
 /// Values of a sweep that are listed.
 const LISTED: usize = 12;

@@ -3,9 +3,9 @@
 use super::{NAMED_LIMITS, in_case, in_cases};
 use crate::numbers::{brief, count, rough, short};
 use crate::{diagnostic, terminal};
-use springpot::scenario::Cases;
-use springpot::sweep::{CaseResult, CasesPassing, Outcome, Status};
-use springpot::table::folder::Folder;
+use springpot_run::sweep::{CaseResult, CasesPassing, Outcome, Status};
+use springpot_run::table::folder::Folder;
+use springpot_scenario::Cases;
 use std::time::Duration;
 
 /// Failed cases that are named one by one.

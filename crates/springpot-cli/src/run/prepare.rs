@@ -3,13 +3,13 @@
 use crate::arguments::RunOptions;
 use crate::{diagnostic, signals, terminal};
 use springpot::law::Catalog;
-use springpot::scenario::units::parse_quantity;
-use springpot::scenario::{Cases, Plan, Refusals, Scenario};
 use springpot::simulate::System;
-use springpot::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
-use springpot::table::Format;
-use springpot::table::disk::Disk;
-use springpot::table::folder::{Folder, FolderError, Targets};
+use springpot_run::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
+use springpot_run::table::Format;
+use springpot_run::table::disk::Disk;
+use springpot_run::table::folder::{Folder, FolderError, Targets};
+use springpot_scenario::units::parse_quantity;
+use springpot_scenario::{Cases, Plan, Refusals, Scenario};
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 

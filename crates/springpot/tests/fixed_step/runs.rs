@@ -2,9 +2,9 @@
 
 use crate::support::*;
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::fixed::Method;
 use springpot::simulate::{FixedStep, Settings};
+use springpot_scenario::Scenario;
 
 const START: &str = "start = { q = { q2 = 0.1 }, v = { q1 = 0.5 } }";
 

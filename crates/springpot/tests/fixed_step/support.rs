@@ -8,9 +8,9 @@ use robots::ARM;
 pub(crate) use robots::strut;
 
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::fixed::{Loop, MemorySettings, Method};
 use springpot::simulate::{FixedStep, Report, RowTimes, RunError, Settings, Stop, System, run};
+use springpot_scenario::Scenario;
 
 pub(crate) const METHODS: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
 

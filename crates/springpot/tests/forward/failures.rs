@@ -2,8 +2,8 @@
 
 use crate::support::{Run, at, every, largest, run, slider, state, try_run};
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::RunError;
+use springpot_scenario::Scenario;
 
 const SPRINGPOT: &str = "law = \"springpot\"\nparameters = { c = 30, alpha = 0.5 }";
 

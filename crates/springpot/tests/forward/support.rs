@@ -7,8 +7,8 @@ mod robots;
 pub(crate) use robots::{ARM, strut, thermoviscoelastic};
 
 use springpot::law::Catalog;
-use springpot::scenario::{Cases, Scenario};
 use springpot::simulate::{Report, RunError, Settings, Stop, System, run as simulate};
+use springpot_scenario::{Cases, Scenario};
 use std::path::PathBuf;
 
 /// Rows of one run.

@@ -4,8 +4,8 @@ use crate::run_support::robots::{
     ARM, PATH, every, magnetorheological, prescribed, springpot, strut, thermoviscoelastic,
 };
 use crate::run_support::{cases, shipped};
-use springpot::scenario::Cases;
 use springpot::simulate::{Checkpoint, Report, Rows, RunError, Settings, Stop, System, resume, run};
+use springpot_scenario::Cases;
 use std::io;
 use std::sync::atomic::Ordering;
 

@@ -3,8 +3,8 @@
 use crate::run_support::robots::{ARM, SWING, every, springpot};
 use crate::run_support::{cases, scenarios, shipped};
 use springpot::motion::Motion;
-use springpot::scenario::Cases;
 use springpot::simulate::{Equation, EquationError, RowTimes, Settings, Stop, run as simulate};
+use springpot_scenario::Cases;
 
 /// Times of a motion as shares of its duration; all but the end are no multiples of a step.
 const SHARES: [f64; 4] = [0.0, 0.1037, 0.5219, 1.0];

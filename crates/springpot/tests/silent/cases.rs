@@ -2,8 +2,8 @@
 
 use crate::support::{Run, run_system};
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::RunError;
+use springpot_scenario::Scenario;
 use std::path::PathBuf;
 
 /// Runs a scenario of `testdata/silent/` after `overrides`; it may fail.

@@ -78,10 +78,8 @@ fn narrow_jolts_of_a_motion_are_remembered() {
         let end = random.log(1e-2, 1e3);
         let pulse = Pulse::new(&mut random, end);
         let law = format!("law = \"springpot\"\nparameters = {{ c = 1, alpha = {alpha} }}");
-        let motion = format!(
-            "kind = \"prescribed\"\njoints = {{ q = \"1+0.1*tanh((t-{})/{})\" }}",
-            pulse.at, pulse.half
-        );
+        let motion =
+            format!("kind = \"prescribed\"\njoints = {{ q = \"1+0.1*tanh((t-{})/{})\" }}", pulse.at, pulse.half);
         let run = run(&slider(&law, &motion, end, 40));
         let shape = |x: f64| x.cosh().powi(-2);
         let scale = gamma(1.0 - alpha);

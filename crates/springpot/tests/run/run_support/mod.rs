@@ -7,8 +7,8 @@ pub(crate) mod robots;
 pub(crate) mod truth;
 
 use springpot::law::Catalog;
-use springpot::scenario::{Cases, Scenario};
 use springpot::simulate::{Report, RunError, Stop, System, run as simulate};
+use springpot_scenario::{Cases, Scenario};
 use std::path::PathBuf;
 
 /// Rows of one run, by column.

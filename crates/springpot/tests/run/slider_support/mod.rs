@@ -3,8 +3,8 @@
 #![allow(dead_code, reason = "each test uses its share")]
 
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::{Report, RunError, Stop, along};
+use springpot_scenario::Scenario;
 
 /// Rows of a slider of 1 kg on the x axis, drawn by the element `e` from the world: its stroke is q.
 pub(crate) struct Run {

@@ -1,0 +1,104 @@
+//! From a plan to what the time loop runs.
+
+use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan};
+use springpot::element::Element;
+use springpot::model::{Anchor, Model, Site};
+use springpot::motion::gripper_path::{Course, Task};
+use springpot::motion::{Drive, Forward, GripperPath, JointPath, Motion, PosePath};
+use springpot::signal::Signal;
+use springpot::simulate::{Settings, Stop, System};
+
+impl Plan {
+    /// The robot, its elements and its motion. A gripper path is solved here, as far as it can be followed.
+    pub fn system(&self) -> System {
+        self.system_unless(&Stop::new(false))
+    }
+
+    /// [`Self::system`], but a gripper path is followed until `stop` is set: it then ends there.
+    pub fn system_unless(&self, stop: &Stop) -> System {
+        System {
+            elements: self.elements.iter().map(|element| self.built_element(element)).collect(),
+            motion: self.solved_motion(stop),
+            gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
+            model: Model::clone(&self.model),
+            tells_joint_losses: self.tells_joint_losses,
+        }
+    }
+
+    /// How the run is carried out.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            end: self.time.end,
+            rows: self.time.rows.clone(),
+            rtol: self.solver.rtol,
+            atol: self.solver.atol,
+            memory_rtol: self.solver.memory_rtol,
+            first_step: self.solver.first_step,
+            max_step: self.solver.max_step,
+            max_steps: self.solver.max_steps,
+            fixed_step: self.solver.fixed_step,
+        }
+    }
+
+    fn built_element(&self, plan: &ElementPlan) -> Element {
+        Element {
+            name: plan.name.clone(),
+            from: self.site(&plan.from),
+            to: self.site(&plan.to),
+            rest_length: plan.rest_length,
+            law: plan.object.clone(),
+            row: plan.law,
+            inputs: plan.inputs.iter().map(signal).collect(),
+            derivative: plan.derivative,
+            scheme: plan.scheme,
+        }
+    }
+
+    fn solved_motion(&self, stop: &Stop) -> Motion {
+        match &self.motion {
+            MotionPlan::Prescribed { joints } => Motion::Prescribed(joints.iter().map(path).collect()),
+            MotionPlan::GripperPath { position, rpy, guess, .. } => {
+                let gripper = self.gripper.as_ref().expect("a gripper path was read with its gripper");
+                let task = Task {
+                    site: self.site(&gripper.anchor),
+                    frame: self.model.frame(gripper.anchor.body).expect("a body that was read"),
+                    position: position.each_ref().map(signal),
+                    rpy: rpy.as_ref().map(|rpy| rpy.each_ref().map(signal)),
+                };
+                let course = Course { end: self.time.end, max_step: self.solver.max_step, stop };
+                Motion::GripperPath(Box::new(GripperPath::new(&self.model, task, guess, &course)))
+            }
+            MotionPlan::Forward(plan) => Motion::Forward(Box::new(Forward {
+                q: plan.q.clone(),
+                v: plan.v.clone(),
+                drives: plan.drives.iter().map(drive).collect(),
+            })),
+        }
+    }
+
+    fn site(&self, anchor: &Anchor) -> Site {
+        self.model.resolve(anchor).expect("an anchor that was read")
+    }
+}
+
+fn drive(plan: &DrivePlan) -> Drive {
+    match plan {
+        DrivePlan::Force(signals) => Drive::Force(signals.iter().map(signal).collect()),
+        DrivePlan::Prescribed(joint) => Drive::Prescribed(path(joint)),
+        DrivePlan::Locked => Drive::Locked,
+    }
+}
+
+fn path(plan: &JointPlan) -> JointPath {
+    match plan {
+        JointPlan::Coordinate(coordinate) => JointPath::Coordinate(signal(coordinate)),
+        JointPlan::Pose(pose) => JointPath::Pose(Box::new(PosePath {
+            position: pose.position.each_ref().map(signal),
+            rpy: pose.rpy.each_ref().map(signal),
+        })),
+    }
+}
+
+fn signal(plan: &SignalPlan) -> Signal {
+    plan.signal.clone()
+}
