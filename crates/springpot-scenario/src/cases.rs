@@ -159,6 +159,13 @@ impl Cases {
         axes.flat_map(|(axis, k)| axis.targets.iter().map(move |_| axis.label(k))).collect()
     }
 
+    /// The swept values of case `i` by name, as written: `element.strut.alpha = 0.5, …`; empty where nothing is swept.
+    pub fn name(&self, i: usize) -> String {
+        let named =
+            self.parameters.iter().zip(self.labels(i)).map(|(parameter, label)| format!("{parameter} = {label}"));
+        named.collect::<Vec<_>>().join(", ")
+    }
+
     /// Globs of the columns to write; `None`: all.
     pub fn columns(&self) -> Option<&[ColumnGlob]> {
         self.columns.as_deref()

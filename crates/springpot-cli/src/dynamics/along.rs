@@ -3,7 +3,7 @@
 use super::terms;
 use crate::arguments::DynamicsOptions;
 use crate::robot::{Refused, is_scenario, refuse_urdf_flags};
-use crate::run::{case_name, in_case};
+use crate::run::in_case;
 use crate::{Ending, diagnostic, plain, printed, terminal};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -41,7 +41,7 @@ pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused>
         Ok(equation) => {
             let text = match options.json {
                 true => json(&cases, index, &system, &equation),
-                false => terms::text(plan.title.as_deref(), &case_name(&cases, index), &system, &equation),
+                false => terms::text(plan.title.as_deref(), &cases.name(index), &system, &equation),
             };
             Ok(printed(terminal::try_print(&text)))
         }

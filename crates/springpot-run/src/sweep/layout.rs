@@ -1,6 +1,7 @@
 //! Which columns are written, and which are kept in memory for the figures.
 
 use super::curve::{MAX_CURVES_IN_ALL, most_points};
+use crate::figures::FigureColumn;
 use crate::table::matches;
 use springpot::simulate::System;
 use springpot::table::Column;
@@ -59,15 +60,6 @@ pub enum LeftOut {
         /// Curves that they would have.
         curves: usize,
     },
-}
-
-/// A column of a figure.
-#[derive(Debug, Clone)]
-pub struct FigureColumn {
-    /// The column.
-    pub column: Column,
-    /// The unit it is drawn in and how SI values become numbers of it; `None`: SI.
-    pub unit: Option<(String, Unit)>,
 }
 
 impl Layout {

@@ -12,7 +12,7 @@ mod record;
 pub use case::CaseResult;
 pub use checkpoint::{CheckpointError, Checkpoints, Origin, Unfinished};
 pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
-pub use layout::{FigureColumn, FigureData, Layout, LeftOut, MAX_CURVES};
+pub use layout::{FigureData, Layout, LeftOut, MAX_CURVES};
 pub use limits::{CasesPassing, LimitTally};
 
 use crate::table::disk::DiskFile;

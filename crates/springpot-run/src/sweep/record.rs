@@ -2,12 +2,21 @@
 
 use super::layout::Layout;
 use super::{CaseResult, MAX_LISTED, Outcome};
+use crate::table::Format;
 use serde_json::{Map, Value, json};
 use springpot_scenario::{Cases, Plan, SweptValue};
 
 impl Outcome {
-    /// run.json: how it ended, what was run (the first case, as resolved), what the columns are, what every case did.
-    pub fn record(&self, cases: &Cases, plan: &Plan, layout: &Layout) -> Map<String, Value> {
+    /// run.json: how it ended, what was run (the first case, as resolved), what the columns are, what every case did, the format of
+    /// the rows and all `files` of the run.
+    pub fn record(
+        &self,
+        cases: &Cases,
+        plan: &Plan,
+        layout: &Layout,
+        format: Format,
+        files: &[String],
+    ) -> Map<String, Value> {
         let (residual, turned_over) = self.energy_residual.unzip();
         let listed: Vec<Value> = self.cases.iter().take(2 * MAX_LISTED).map(|case| one(cases, case)).collect();
         let ledger = self.no_ledger.as_ref().map(|(count, why)| {
@@ -33,6 +42,8 @@ impl Outcome {
             "columns": layout.written(),
             "sweeps": sweeps(cases),
             "cases": listed,
+            "format": format.name(),
+            "files": files,
         });
         match record {
             Value::Object(mut map) => {

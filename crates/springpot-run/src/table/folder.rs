@@ -282,7 +282,7 @@ impl Folder {
         self.create(&format!("{FIGURES}/{name}"))?.write_all(bytes)
     }
 
-    /// Writes run.json, with the list of all files, and puts the files in the place of the last run's, all or none; with `goes_on` the
+    /// Writes run.json, made by `run` from the list of all files, and puts the files in the place of the last run's, all or none; with `goes_on` the
     /// checkpoint stays.
     ///
     /// # Errors
@@ -290,12 +290,11 @@ impl Folder {
     /// the last run's files are as they were.
     pub fn put(
         &mut self,
-        mut run: serde_json::Map<String, serde_json::Value>,
+        run: impl FnOnce(&[String]) -> serde_json::Map<String, serde_json::Value>,
         goes_on: bool,
     ) -> Result<(), FolderError> {
         let mut file = self.create(RUN)?;
-        run.insert("files".into(), self.files.clone().into());
-        let mut text = serde_json::to_string_pretty(&run).map_err(io::Error::other)?;
+        let mut text = serde_json::to_string_pretty(&run(&self.files)).map_err(io::Error::other)?;
         text.push('\n');
         file.write_all(text.as_bytes())?;
         let (files, last) = (self.files.clone(), self.last.clone());

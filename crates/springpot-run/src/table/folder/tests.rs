@@ -12,9 +12,11 @@ fn begin(folder: &mut Folder, figures: &[&str], checkpoints: bool, input: Option
     folder.begin(Targets { figures: &figures, checkpoints, is_input: &is_input })
 }
 
-fn record() -> serde_json::Map<String, serde_json::Value> {
+fn record(files: &[String]) -> serde_json::Map<String, serde_json::Value> {
     let text = r#"{ "status": "done", "versions": { "springpot": "1" } }"#;
-    serde_json::from_str(text).unwrap()
+    let mut record: serde_json::Map<_, _> = serde_json::from_str(text).unwrap();
+    record.insert("files".into(), files.into());
+    record
 }
 
 /// A run of one row and one figure.
@@ -24,7 +26,7 @@ fn run(path: &Path, row: &str, figure: &str) -> Result<(), FolderError> {
     folder.create_rows()?.write_all(row.as_bytes())?;
     folder.create_summary()?.write_all(row.as_bytes())?;
     folder.write_figure(figure, row.as_bytes())?;
-    folder.put(record(), false)
+    folder.put(record, false)
 }
 
 /// All files in a folder and below, and what they hold.
@@ -170,7 +172,7 @@ fn what_appears_underway_keeps_the_results_waiting() {
     first.create_rows().unwrap().write_all(b"1\n").unwrap();
     first.create_summary().unwrap();
     fs::write(path.join("summary.csv"), "mine").unwrap();
-    let pending = first.put(record(), false);
+    let pending = first.put(record, false);
     assert!(matches!(&pending, Err(FolderError::Pending { .. })), "{pending:?}");
     drop(first);
     assert!(matches!(folder(path), Err(FolderError::Pending { .. })));

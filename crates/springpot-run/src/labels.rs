@@ -3,14 +3,14 @@
 use springpot::table::Column;
 
 /// What stands at an axis: symbol or words, then the unit.
-pub(crate) fn axis(column: &Column, unit: Option<&str>) -> String {
+pub fn axis(column: &Column, unit: Option<&str>) -> String {
     let unit = unit.map_or_else(|| written_unit(&column.unit), written_unit);
     let name = quantity(&column.name);
     if unit.is_empty() { name } else { format!("{name}, {unit}") }
 }
 
 /// The quantity alone: `strut.Q.q2` becomes "Q₂ of strut".
-pub(crate) fn quantity(name: &str) -> String {
+pub fn quantity(name: &str) -> String {
     // Names of elements hold no dot; those of joints may, and the parts of a floating joint follow one.
     let (first, rest) = name.split_once('.').map_or((name, None), |(first, rest)| (first, Some(rest)));
     match (first, rest) {
@@ -69,7 +69,7 @@ fn part_of_floating(kind: &str, part: &str) -> Option<String> {
 }
 
 /// Last name of a path as a symbol: `alpha` becomes α, `mu_0` μ₀; other names stay.
-pub(crate) fn parameter(path: &str) -> String {
+pub fn parameter(path: &str) -> String {
     let last = match path.strip_suffix('"') {
         Some(quoted) => quoted.rsplit_once(".\"").map_or(quoted, |(_, last)| last),
         None => path.rsplit('.').next().unwrap_or(path),
@@ -88,7 +88,7 @@ pub(crate) fn parameter(path: &str) -> String {
 }
 
 /// Text as a reader writes it: "25 degC" becomes "25 °C", "N*m" becomes "N·m".
-pub(crate) fn written_unit(unit: &str) -> String {
+pub fn written_unit(unit: &str) -> String {
     let text = unit.replace("degC", "°C").replace("degF", "°F").replace("alpha", "α").replace('*', "·");
     raise(&text.replace("deg", "°"))
 }
