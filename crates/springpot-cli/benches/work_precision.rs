@@ -59,7 +59,7 @@ fn arm(alpha: f64) -> (System, Settings) {
     let mut system = plan.system();
     let drives = (0..3).map(|_| Drive::Force(vec![Signal::constant(0.0)])).collect();
     system.motion = Motion::Forward(Box::new(Forward { q: vec![0.0; 3], v: vec![0.0; 3], drives }));
-    let settings = Settings { end: END, rows: RowTimes::Times([END].into()), ..plan.settings() };
+    let settings = Settings { end: END, rows: RowTimes::Times([END].into()), ..plan.settings.clone() };
     (system, settings)
 }
 

@@ -52,9 +52,9 @@ fn describe(file: &Path, options: &CheckOptions) -> Result<Ending, Refusals> {
     let mut warnings = Warnings::new(&plan);
     let mut failures: Vec<(usize, RunError)> = Vec::new();
     let mut first: Option<Vec<ElementStart>> = None;
-    let switches = match plan.solver.fixed_step {
+    let switches = match plan.settings.fixed_step {
         Some(_) => 0,
-        None => system.switches(&plan.settings(), &Stop::new(false)).unwrap_or_else(|error| {
+        None => system.switches(&plan.settings, &Stop::new(false)).unwrap_or_else(|error| {
             failures.push((0, error));
             0
         }),
@@ -107,7 +107,7 @@ fn looked_at(cases: &Cases, plan: &Plan) -> Vec<usize> {
 
 /// Why and where a gripper path ends early.
 fn path_failure(plan: &Plan, system: &System) -> Option<RunError> {
-    system.motion.has_path().then(|| system.pose(plan.time.end).err()).flatten()
+    system.motion.has_path().then(|| system.pose(plan.settings.end).err()).flatten()
 }
 
 /// The description of a scenario.
@@ -122,12 +122,12 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u6
     for joint in followers(plan) {
         line("", &joint);
     }
-    line("motion", &format!("{}, 0 to {} s", plan.motion.kind(), short(plan.time.end)));
+    line("motion", &format!("{}, 0 to {} s", plan.motion.kind(), short(plan.settings.end)));
     if switches > 0 {
         line("signals", &format!("{}, each of which ends a step", count(switches, "kink or jump", "kinks and jumps")));
     }
-    line("rows", &rows(&plan.time.rows));
-    line("accuracy", &format!("rtol {}, memory_rtol {}", short(plan.solver.rtol), short(plan.solver.memory_rtol)));
+    line("rows", &rows(&plan.settings.rows));
+    line("accuracy", &format!("rtol {}, memory_rtol {}", short(plan.settings.rtol), short(plan.settings.memory_rtol)));
     if cases.axis_count() > 0 {
         line("cases", &cases.len().to_string());
     }

@@ -111,7 +111,7 @@ fn execute(options: &RunOptions, mut prepared: Prepared) -> Result<Finished, Sto
     let done = Progress::default();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = options.jobs.map_or(cores, usize::from);
-    let (wanted, end) = (prepared.rows_wanted(), prepared.plan.time.end);
+    let (wanted, end) = (prepared.rows_wanted(), prepared.plan.settings.end);
     let outcome =
         progress::show_while(wanted, end, &done, options.quiet, || prepared.sweep(jobs, signals::stop(), &done))?;
     Ok(prepared.finish(outcome, &done, &mut |warning| diagnostic::warning(warning, None))?)

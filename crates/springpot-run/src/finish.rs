@@ -29,7 +29,7 @@ pub struct Finished {
 impl Prepared {
     /// Rows of all cases, where each has as many as the first.
     pub fn rows_wanted(&self) -> u64 {
-        (self.cases.len() as u64).saturating_mul(self.plan.time.rows.count() as u64)
+        (self.cases.len() as u64).saturating_mul(self.plan.settings.rows.count() as u64)
     }
 
     /// Runs all cases, `jobs` at a time, until `stop` is set; `progress` can be watched meanwhile.
@@ -50,7 +50,7 @@ impl Prepared {
     /// The folder cannot be written.
     pub fn finish(self, outcome: Outcome, progress: &Progress, warn: Warn<'_>) -> Result<Finished, FolderError> {
         let Self { cases, plan, system, layout, mut folder, checkpoints, figures, format } = self;
-        let (rows, end) = (progress.rows.load(Ordering::Relaxed), plan.time.end);
+        let (rows, end) = (progress.rows.load(Ordering::Relaxed), plan.settings.end);
         let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
         let is_put = match outcome.status {
             Status::Done => true,

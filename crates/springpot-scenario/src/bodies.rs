@@ -1,25 +1,16 @@
 //! `[[robot.body]]`: a robot body by body.
 
-use super::document::shorten;
-use super::names;
+use super::keys::{BODY, FRICTION, INERTIA, JOINT, WITH_AXIS};
 use super::plan::BodyPlaces;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Parts, checked_name, unique, unknown_body};
-use springpot::model::{
-    BodySpec, FRICTION_SPEED, FrictionLaw, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent,
-};
+use springpot::model::{BodySpec, FrictionLaw, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Most bodies of a robot.
 const MAX_BODIES: usize = 1_000;
-pub(super) const BODY_KEYS: [&str; 6] = ["name", "parent", "joint", "mass", "com", "inertia"];
-pub(super) const JOINT_KEYS: [&str; 7] = ["name", "kind", "origin", "rpy", "axis", "damping", "friction"];
-pub(super) const FRICTION_KEYS: [&str; 3] = ["force", "speed", "stick"];
-/// Those of them that a joint without an axis takes.
-pub(super) const PLAIN_JOINT_KEYS: usize = 4;
-pub(super) const INERTIA_KEYS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
 
 /// Reads every `[[robot.body]]`; `table` is `[robot]`.
 pub(super) fn read(table: &Table<'_>, bodies: &Field<'_>, gravity: Read<[f64; 3]>) -> Read<Parts> {
@@ -68,7 +59,7 @@ fn body_names(items: &[Field<'_>]) -> Read<HashMap<String, usize>> {
     let mut result = Ok(());
     for (i, item) in items.iter().enumerate() {
         let Some(node) = item.node.get("name") else { continue };
-        let field = Field { key: "name", node, owner: format!("body {}", i + 1).into(), ..item.clone() };
+        let field = Field { key: "name", row: None, node, owner: format!("body {}", i + 1).into(), ..item.clone() };
         let read = checked_name(&field).and_then(|name| {
             unique(&mut seen, &field, name)?;
             if name == "world" {
@@ -88,7 +79,8 @@ fn joint_names(items: &[Field<'_>]) -> Read<()> {
     all(items.iter().filter_map(|item| {
         let node = item.node.get("joint")?.get("name")?;
         let body = item.node.get("name")?.text()?;
-        let field = Field { key: "name", node, owner: format!("the joint of body {body:?}").into(), ..item.clone() };
+        let field =
+            Field { key: "name", row: None, node, owner: format!("the joint of body {body:?}").into(), ..item.clone() };
         Some(checked_name(&field).and_then(|name| unique(&mut seen, &field, name)))
     }))
     .map(|_| ())
@@ -97,9 +89,9 @@ fn joint_names(items: &[Field<'_>]) -> Read<()> {
 fn body(item: &Field<'_>, i: usize, index: &HashMap<String, usize>) -> Read<(BodySpec, BodyPlaces)> {
     let name = item.node.get("name").and_then(|node| node.text());
     let what = name.map_or_else(|| format!("body {}", i + 1), |name| format!("body {name:?}"));
-    let table = Table::open(item.ctx, item.node, what, &BODY_KEYS)?;
+    let table = Table::of(item.ctx, item.node, what, &BODY)?;
     let mut places = BodyPlaces { table: item.node.place.clone(), fields: Vec::new() };
-    for field in table.fields().filter(|field| BODY_KEYS.contains(&field.key)) {
+    for field in table.fields().filter(|field| BODY.get(field.key).is_some()) {
         places.fields.push((field.key.to_owned(), field.node.place.clone()));
     }
     let name = table.require("name", "name = \"…\"").and_then(|field| field.text());
@@ -111,8 +103,8 @@ fn body(item: &Field<'_>, i: usize, index: &HashMap<String, usize>) -> Read<(Bod
     let joint = table
         .require("joint", "joint = { name = \"…\", kind = \"revolute\", axis = [0, 0, 1], origin = [0, 0, 0] }")
         .and_then(|field| joint(&field, name.ok(), &mut places));
-    let mass = table.require("mass", "mass = 1.0 (in kg)").and_then(|field| field.number("kg"));
-    let com = table.get("com").map_or(Ok([0.0; 3]), |field| field.vector("m"));
+    let mass = table.require("mass", "mass = 1.0 (in kg)").and_then(|field| field.quantity());
+    let com = table.vector("com");
     let inertia = table.get("inertia").map_or(Ok([[0.0; 3]; 3]), |field| inertia(&field));
     let spec =
         BodySpec { name: name?.to_owned(), parent: parent?, joint: joint?, mass: mass?, com: com?, inertia: inertia? };
@@ -149,34 +141,26 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
             _ => "a fixed joint does not move",
         };
         let message = || format!("`{key}` of {what} has no meaning: {why}");
-        JOINT_KEYS[PLAIN_JOINT_KEYS..].contains(&key).then(|| (RefusalKind::Rule, message()))
+        JOINT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
     };
-    let known = if plain.is_some() { &JOINT_KEYS[..PLAIN_JOINT_KEYS] } else { &JOINT_KEYS[..] };
-    let table = Table::open_with(field.ctx, field.node, what.clone(), known, reason)?;
+    let of_kind = if plain.is_some() { "" } else { WITH_AXIS };
+    let table = Table::of_kind(field.ctx, field.node, what.clone(), (&JOINT, of_kind), reason)?;
     for field in table.fields() {
         places.fields.push((format!("joint.{}", field.key), field.node.place.clone()));
     }
     let name = table.require("name", "name = \"…\"").and_then(|field| field.text());
     let right = "kind = \"revolute\", \"continuous\", \"prismatic\", \"floating\" or \"fixed\"";
-    let kind = table.require("kind", right).and_then(|field| {
-        let written = field.text()?;
-        kind_named(written).ok_or_else(|| {
-            let message = format!("is {:?}, which is no kind of joint", shorten(written));
-            let help = names::suggest(written, JointKind::ALL.map(JointKind::name));
-            field.refuse(RefusalKind::UnknownName, message, Some(help))
-        })
-    });
+    let kind = table.require("kind", right).and_then(|field| kind_named(field.word("kind of joint")?).ok_or(Refused));
     let axis = match kind {
         Ok(kind) if !kind.has_axis() => Ok([0.0, 0.0, 1.0]),
         Ok(_) => table.require("axis", "axis = [0, 0, 1]").and_then(|field| axis(&field)),
         // Of an unknown kind nobody knows whether it needs one.
         Err(Refused) => table.get("axis").map_or(Err(Refused), |field| axis(&field)),
     };
-    let origin = table.get("origin").map_or(Ok([0.0; 3]), |field| field.vector("m"));
-    let rpy = table.get("rpy").map_or(Ok([0.0; 3]), |field| field.vector("rad"));
+    let origin = table.vector("origin");
+    let rpy = table.vector("rpy");
     let slides = matches!(kind, Ok(JointKind::Prismatic));
-    let damping_unit = if slides { "N*s/m" } else { "N*m*s/rad" };
-    let damping = table.get("damping").map_or(Ok(0.0), |field| field.number(damping_unit));
+    let damping = table.joint_number("damping", slides);
     let friction = match table.get("friction") {
         Some(field) => friction(&field, slides, places),
         None => Ok((0.0, FrictionLaw::default())),
@@ -198,20 +182,19 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
 
 /// A number, or `{ force = …, speed = …, stick = … }`.
 fn friction(field: &Field<'_>, slides: bool, places: &mut BodyPlaces) -> Read<(f64, FrictionLaw)> {
-    let (force_unit, speed_unit) = if slides { ("N", "m/s") } else { ("N*m", "rad/s") };
     if field.node.entries().is_none() {
-        return Ok((field.number(force_unit)?, FrictionLaw::default()));
+        return Ok((field.joint_quantity(slides)?, FrictionLaw::default()));
     }
-    let table = field.table(&FRICTION_KEYS)?;
+    let table = field.table(&FRICTION)?;
     for field in table.fields() {
         // What is wrong with the force is said of the whole.
         let key = if field.key == "force" { String::new() } else { format!(".{}", field.key) };
         places.fields.insert(0, (format!("joint.friction{key}"), field.node.place.clone()));
     }
-    let right = format!("force = \"0.2 {force_unit}\"");
-    let force = table.require("force", &right).and_then(|field| field.number(force_unit));
-    let speed = table.get("speed").map_or(Ok(FRICTION_SPEED), |field| field.positive(speed_unit));
-    let stick = table.get("stick").map_or(Ok(false), |field| field.boolean());
+    let right = if slides { "force = \"0.2 N\"" } else { "force = \"0.2 N*m\"" };
+    let force = table.require("force", right).and_then(|field| field.joint_quantity(slides));
+    let speed = table.joint_number("speed", slides);
+    let stick = table.flag("stick");
     let (force, speed, stick) = (force?, speed?, stick?);
     Ok((force, if stick { FrictionLaw::Sticking } else { FrictionLaw::Smooth { speed } }))
 }
@@ -221,7 +204,7 @@ fn kind_named(name: &str) -> Option<JointKind> {
 }
 
 fn axis(field: &Field<'_>) -> Read<[f64; 3]> {
-    let axis = field.vector("")?;
+    let axis = field.components()?;
     if axis != [0.0; 3] {
         return Ok(axis);
     }
@@ -230,10 +213,9 @@ fn axis(field: &Field<'_>) -> Read<[f64; 3]> {
 }
 
 fn inertia(field: &Field<'_>) -> Read<[[f64; 3]; 3]> {
-    const UNIT: &str = "kg*m^2";
-    let table = field.table(&INERTIA_KEYS)?;
-    let diagonal = |key| table.require(key, "xx, yy and zz, in kg*m^2").and_then(|field| field.number(UNIT));
-    let off = |key| table.get(key).map_or(Ok(0.0), |field| field.number(UNIT));
+    let table = field.table(&INERTIA)?;
+    let diagonal = |key| table.require(key, "xx, yy and zz, in kg*m^2").and_then(|field| field.quantity());
+    let off = |key| table.number(key);
     let (xx, yy, zz) = (diagonal("xx"), diagonal("yy"), diagonal("zz"));
     let (xy, xz, yz) = (off("xy")?, off("xz")?, off("yz")?);
     Ok([[xx?, xy, xz], [xy, yy?, yz], [xz, yz, zz?]])

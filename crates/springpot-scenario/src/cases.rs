@@ -2,6 +2,7 @@
 
 use super::document::Node;
 use super::figures::{self, ColumnGlob, FigurePlan};
+use super::keys::SCENARIO;
 use super::path;
 use super::plan::{MotionPlan, Plan};
 use super::reader::{Context, Read, Table};
@@ -19,8 +20,6 @@ use std::sync::Arc;
 
 /// Values of a sweep that are tried before the first run; of longer ones the first of them and the last.
 const TRIED: usize = 1_000;
-pub(super) const ROOT_KEYS: [&str; 9] =
-    ["title", "robot", "element", "motion", "time", "solver", "sweep", "figure", "output"];
 
 /// A value of a swept parameter, as a column of the results shows it.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +66,7 @@ impl Cases {
         let cases = Self::with_sweeps(scenario, catalog)?;
         let document = cases.document_at(&vec![0; cases.axes.len()]);
         let ctx = cases.context();
-        let read = Table::open(&ctx, &document, "the scenario", &ROOT_KEYS).and_then(|root| robot::read(&root));
+        let read = Table::of(&ctx, &document, "the scenario", &SCENARIO).and_then(|root| robot::read(&root));
         ctx.finish(read)
     }
 
@@ -248,7 +247,7 @@ impl Cases {
                 path::set(&mut document, &target, item.value.clone());
                 set.push(target);
             }
-            let root = Table::open(&ctx, &document, "the scenario", &ROOT_KEYS)?;
+            let root = Table::of(&ctx, &document, "the scenario", &SCENARIO)?;
             let axes = sweep::read(&root)?;
             for swept in axes.iter().flat_map(|axis| &axis.targets) {
                 if let Some(target) = set.iter().find(|target| target.overlaps(swept)) {
@@ -306,7 +305,7 @@ impl Cases {
 
     #[allow(clippy::type_complexity)]
     fn read_figures(&self, ctx: &Context<'_>) -> Read<(Arc<[FigurePlan]>, Option<Arc<[ColumnGlob]>>)> {
-        let root = Table::open(ctx, &self.document, "the scenario", &ROOT_KEYS)?;
+        let root = Table::of(ctx, &self.document, "the scenario", &SCENARIO)?;
         let labels: Vec<OnceCell<HashMap<String, usize>>> = self.axes.iter().map(|_| OnceCell::new()).collect();
         let figures = figures::read(&root, &self.axes, &|axis, at, node| {
             let labels = labels[axis].get_or_init(|| self.axes[axis].labels());
@@ -351,14 +350,14 @@ fn columns_of(plan: &Plan) -> Vec<String> {
 
 /// Reads everything but sweeps and what is the same in every case.
 fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
-    let root = Table::open(ctx, document, "the scenario", &ROOT_KEYS)?;
+    let root = Table::of(ctx, document, "the scenario", &SCENARIO)?;
     let title = root.get("title").map(|field| field.text().map(str::to_owned)).transpose();
     let time = time::read(&root);
-    let solver = time::read_solver(&root);
+    let settings = time::read_solver(&root, &time);
     let robot = robot::read(&root);
     let Ok(robot) = robot else {
         if root.get("motion").is_none() {
-            root.missing("motion", "[motion] with kind = \"prescribed\" or \"gripper-path\"");
+            root.missing("motion", motion::RIGHT);
         }
         return Err(super::reader::Refused);
     };
@@ -383,8 +382,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         elements: elements?,
         motion: motion?,
         tells_joint_losses: false,
-        time: time?,
-        solver: solver?,
+        settings: time.and(settings)?,
         figures: Arc::new([]),
         columns: None,
     })

@@ -1,6 +1,7 @@
 //! `[[element]]`: anchors, law, parameters, inputs.
 
 use super::document::shorten;
+use super::keys::{ELEMENT, RESERVED_NAMES};
 use super::names;
 use super::plan::{ElementPlan, SignalPlan};
 use super::reader::{Field, Read, Refused, Table, all, unit_help};
@@ -17,9 +18,6 @@ use std::collections::HashMap;
 const MAX_ELEMENTS: usize = 10_000;
 /// Most numbers ∂l/∂q_b of all elements.
 const MAX_GRADIENTS: usize = 10_000_000;
-/// Keys of an element.
-pub(crate) const KEYS: [&str; 9] =
-    ["name", "from", "to", "rest_length", "law", "parameters", "inputs", "derivative", "scheme"];
 
 /// Reads every `[[element]]`.
 pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<Vec<ElementPlan>> {
@@ -42,7 +40,7 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
         }
         let name = item.node.get("name").and_then(|node| node.text());
         let what = name.map_or_else(|| format!("element {}", i + 1), |name| format!("element {:?}", shorten(name)));
-        let table = Table::open(item.ctx, item.node, what, &KEYS)?;
+        let table = Table::of(item.ctx, item.node, what, &ELEMENT)?;
         let name = table.require("name", "name = \"…\"").and_then(|field| element_name(&field, &mut seen));
         let element = element(&table, robot, time)?;
         Ok(ElementPlan { name: name?.to_owned(), ..element })
@@ -51,9 +49,9 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
 
 fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, super::Place>) -> Read<&'a str> {
     let name = checked_name(field)?;
-    if names::RESERVED_ELEMENT_NAMES.contains(&name) {
+    if RESERVED_NAMES.contains(&name) {
         let message = format!("is {name:?}, which the columns of the results use");
-        let help = format!("an element may not be called {}", names::RESERVED_ELEMENT_NAMES.join(", "));
+        let help = format!("an element may not be called {}", RESERVED_NAMES.join(", "));
         return Err(field.refuse(RefusalKind::BadName, message, Some(help)));
     }
     unique(seen, field, name)?;
@@ -83,7 +81,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
         table.ctx.refuse(place.refuse(RefusalKind::Rule, message).help("join two bodies that move against each other"));
     }
     let rest_length = table.require("rest_length", "rest_length = \"70 cm\"").and_then(|field| {
-        let length = field.number("m")?;
+        let length = field.quantity()?;
         if length >= 0.0 {
             return Ok(length);
         }
@@ -129,15 +127,8 @@ fn law<'a>(field: &Field<'a>) -> Read<&'a Entry> {
 }
 
 fn derivative(field: &Field<'_>) -> Read<Derivative> {
-    match field.text()? {
-        "caputo" => Ok(Derivative::Caputo),
-        "riemann-liouville" => Ok(Derivative::RiemannLiouville),
-        other => {
-            let message = format!("is {:?}, which is no kind of derivative", shorten(other));
-            let help = names::suggest(other, ["caputo", "riemann-liouville"]);
-            Err(field.refuse(RefusalKind::UnknownName, message, Some(help)))
-        }
-    }
+    let word = field.word("kind of derivative")?;
+    [Derivative::Caputo, Derivative::RiemannLiouville].into_iter().find(|kind| kind.name() == word).ok_or(Refused)
 }
 
 fn scheme(field: &Field<'_>, time: Option<&Duration>) -> Read<Option<Scheme>> {

@@ -1,6 +1,7 @@
 //! `[[figure]]` and `[output]`.
 
-use super::document::{Node, shorten};
+use super::document::Node;
+use super::keys::{FIGURE, OUTPUT};
 use super::names;
 use super::path;
 use super::reader::{Field, Read, Table, all};
@@ -12,11 +13,6 @@ use std::sync::Arc;
 
 /// Most figures.
 const MAX_FIGURES: usize = 1_000;
-pub(super) const KEYS: [&str; 7] = ["name", "title", "x", "y", "units", "where", "kind"];
-
-/// Kinds of figures.
-pub(super) const KINDS: [&str; 2] = ["curves", "robot"];
-pub(super) const OUTPUT_KEYS: [&str; 1] = ["columns"];
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,19 +98,14 @@ pub(crate) fn read(root: &Table<'_>, axes: &[Axis], find: &Finder<'_>) -> Read<A
 
 fn figure(root: &Table<'_>, item: &Field<'_>, i: usize, axes: &[Axis], find: &Finder<'_>) -> Read<FigurePlan> {
     let default = format!("figure-{}", i + 1);
-    let table = Table::open(item.ctx, item.node, format!("[[figure]] {}", i + 1), &KEYS)?;
+    let table = Table::of(item.ctx, item.node, format!("[[figure]] {}", i + 1), &FIGURE)?;
     let name = table.get("name").map_or(Ok(default), |field| file_name(&field));
     let title = table.get("title").map(|field| field.text().map(str::to_owned)).transpose();
     let kind = match table.get("kind") {
         None => curves(&table, item),
-        Some(field) => match field.text()? {
-            "curves" => curves(&table, item),
+        Some(field) => match field.word("kind of figure")? {
             "robot" => robot(&table),
-            other => {
-                let message = format!("is {:?}, which is no kind of figure", shorten(other));
-                let help = names::suggest(other, KINDS);
-                Err(field.refuse(RefusalKind::UnknownName, message, Some(help)))
-            }
+            _ => curves(&table, item),
         },
     };
     let units = table.get("units").map_or(Ok(Vec::new()), |field| units(&field));
@@ -170,7 +161,7 @@ fn curves(table: &Table<'_>, item: &Field<'_>) -> Read<FigureKind> {
 }
 
 fn robot(table: &Table<'_>) -> Read<FigureKind> {
-    for key in ["x", "y", "units"] {
+    for key in FIGURE.keys.iter().map(|key| key.name).filter(|key| FIGURE.is_of_a_kind(key)) {
         if let Some(field) = table.get(key) {
             let message = "has no meaning where kind = \"robot\"";
             return Err(field.refuse(RefusalKind::Rule, message, Some(format!("leave `{key}` out"))));
@@ -185,7 +176,8 @@ fn units(field: &Field<'_>) -> Read<Vec<FigureUnit>> {
     }
     all(field.node.entries().unwrap_or_default().iter().map(|entry| {
         let column = ColumnGlob { text: entry.key.clone(), place: entry.key_place.clone() };
-        let unit = Field { node: &entry.node, key: &entry.key, owner: field.to_string().into(), ..field.clone() };
+        let unit =
+            Field { node: &entry.node, key: &entry.key, row: None, owner: field.to_string().into(), ..field.clone() };
         let text = unit.text()?;
         match Unit::parse(text, &|_| None) {
             Ok(_) => Ok(FigureUnit { column, unit: text.to_owned() }),
@@ -230,7 +222,7 @@ fn selection(root: &Table<'_>, field: &Field<'_>, axes: &[Axis], find: &Finder<'
 /// Reads `[output]`: globs of the columns to write.
 pub(crate) fn read_columns(root: &Table<'_>) -> Read<Option<Arc<[ColumnGlob]>>> {
     let Some(field) = root.get("output") else { return Ok(None) };
-    let table = Table::open(root.ctx, field.node, "[output]", &OUTPUT_KEYS)?;
+    let table = Table::of(root.ctx, field.node, "[output]", &OUTPUT)?;
     let Some(field) = table.get("columns") else { return Ok(None) };
     Ok(Some(globs(&field)?.into()))
 }

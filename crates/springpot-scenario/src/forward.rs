@@ -1,7 +1,8 @@
 //! `[motion] kind = "forward"`: where the robot starts and what drives its joints.
 
 use super::document::shorten;
-use super::motion::{POSE_KEYS, open_joints, path_of_joint};
+use super::keys::{FORCES, MOTION, START, START_POSE, START_VELOCITIES};
+use super::motion::{open_joints, path_of_joint, signal};
 use super::names;
 use super::plan::{DrivePlan, ForwardPlan, MotionPlan, SignalPlan};
 use super::reader::{Field, Read, Table, all};
@@ -14,15 +15,9 @@ use springpot::signal::Signal;
 use springpot::spatial::Quaternion;
 use std::collections::HashSet;
 
-/// Velocities of a floating joint, as in the columns of the results.
-pub(super) const VELOCITIES: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
-
-pub(super) const KEYS: [&str; 5] = ["kind", "start", "torque", "prescribed", "locked"];
-pub(super) const START_KEYS: [&str; 2] = ["q", "v"];
-
 /// Reads a motion of kind "forward".
 pub(super) fn read(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let table = Table::open(field.ctx, field.node, "[motion]", &KEYS)?;
+    let table = Table::of_kind(field.ctx, field.node, "[motion]", (&MOTION, "forward"), |_| None)?;
     let start = table.get("start").map(|field| start(&field, robot)).transpose();
     let torque = table.get("torque").map(|field| open_joints(&field, robot)).transpose();
     let prescribed = table.get("prescribed").map(|field| open_joints(&field, robot)).transpose();
@@ -57,7 +52,7 @@ pub(super) fn read(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<M
 
 /// `start = { q = {…}, v = {…} }`; what is left out is 0.
 fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
-    let table = field.table(&START_KEYS)?;
+    let table = field.table(&START)?;
     let model = robot.model();
     let (mut q, mut v) = (model.neutral(), vec![0.0; model.nv()]);
     let positions = table.get("q").map(|field| open_joints(&field, robot)).transpose();
@@ -75,10 +70,9 @@ fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
         if let Some(field) = velocities.as_ref().and_then(|table| table.get(joint.name)) {
             let v = &mut v[model.v_range(j)];
             if joint.kind == JointKind::Floating {
-                let table = field.table(&VELOCITIES)?;
-                for (k, name) in VELOCITIES.into_iter().enumerate() {
-                    v[k] =
-                        table.get(name).map_or(Ok(0.0), |field| field.number(if k < 3 { "m/s" } else { "rad/s" }))?;
+                let table = field.table(&START_VELOCITIES)?;
+                for (v, name) in v.iter_mut().zip(START_VELOCITIES.names()) {
+                    *v = table.number(name)?;
                 }
             } else {
                 v[0] = field.number(if joint.kind == JointKind::Prismatic { "m/s" } else { "rad/s" })?;
@@ -91,11 +85,11 @@ fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
 
 /// `{ x = …, y = …, z = …, rpy = […] }`, all numbers.
 fn start_pose(field: &Field<'_>, q: &mut [f64]) -> Read<()> {
-    let table = field.table(&POSE_KEYS)?;
+    let table = field.table(&START_POSE)?;
     for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
-        q[k] = table.get(axis).map_or(Ok(0.0), |field| field.number("m"))?;
+        q[k] = table.number(axis)?;
     }
-    let [roll, pitch, yaw] = table.get("rpy").map_or(Ok([0.0; 3]), |field| field.vector("rad"))?;
+    let [roll, pitch, yaw] = table.vector("rpy")?;
     q[3..].copy_from_slice(&Quaternion::from_rpy([roll, pitch, yaw]).0);
     Ok(())
 }
@@ -122,14 +116,13 @@ fn locked<'a>(field: &Field<'a>, robot: &Robot) -> Read<HashSet<&'a str>> {
 
 /// The actuator force of a joint.
 fn force(field: &Field<'_>, joint: &OwnJoint<'_>, end: Option<f64>) -> Read<Vec<SignalPlan>> {
-    let wanted = |unit| Wanted { unit, range: Range::ANY, smooth: false, end };
     if joint.kind != JointKind::Floating {
         let unit = if joint.kind == JointKind::Prismatic { "N" } else { "N*m" };
-        return Ok(vec![signals::read(field, wanted(unit))?]);
+        return Ok(vec![signals::read(field, Wanted { unit, range: Range::ANY, smooth: false, end })?]);
     }
-    let table = field.table(&VELOCITIES)?;
-    all(VELOCITIES.into_iter().enumerate().map(|(k, name)| match table.get(name) {
-        Some(field) => signals::read(&field, wanted(if k < 3 { "N" } else { "N*m" })),
+    let table = field.table(&FORCES)?;
+    all(FORCES.names().into_iter().map(|name| match table.get(name) {
+        Some(field) => signal(&field, false, end),
         None => Ok(zero(field)),
     }))
 }

@@ -26,7 +26,7 @@
 //! assert_eq!(cases.len(), 1);
 //! let plan = cases.plan(0)?;
 //! assert_eq!(plan.bodies[0].mass, 0.5);
-//! assert_eq!(plan.time.rows.count(), 1001);
+//! assert_eq!(plan.settings.rows.count(), 1001);
 //!
 //! scenario.set("time.end=10 m")?;
 //! let refusals = scenario.cases(&Catalog::standard()).map(|_| ()).unwrap_err();
@@ -42,6 +42,7 @@ mod elements;
 mod figures;
 mod forward;
 mod inputs;
+mod keys;
 mod motion;
 mod names;
 mod path;
@@ -60,15 +61,15 @@ mod urdf;
 
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
+pub use keys::MAX_CASES;
 pub use names::suggest;
 pub use path::toml_key;
 pub use plan::{
     BodyPlaces, DrivePlan, ElementPlan, ForwardPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan,
-    SignalPlan, SolverPlan, TimePlan, UrdfPlan,
+    SignalPlan, UrdfPlan,
 };
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use schema::json_schema;
-pub use sweep::MAX_CASES;
 
 use document::{MAX_BYTES, Node};
 use robot::Robot;

@@ -1,8 +1,7 @@
 //! `[motion]`: prescribed joints and gripper paths; robots that move by themselves are read by `forward`.
 
-use super::document::shorten;
 use super::forward;
-use super::names;
+use super::keys::{MOTION, POSE, Shape};
 use super::path;
 use super::plan::{JointPlan, MotionPlan, PosePlan, SignalPlan};
 use super::reader::{Field, Read, Refused, Table, all};
@@ -14,18 +13,14 @@ use springpot::model::JointKind;
 use springpot::model::urdf::FLOATING_BASE;
 use std::collections::HashSet;
 
-pub(super) const KINDS: [&str; 3] = ["prescribed", "gripper-path", "forward"];
-pub(super) const PRESCRIBED_KEYS: [&str; 3] = ["kind", "joints", "csv"];
-pub(super) const GRIPPER_PATH_KEYS: [&str; 6] = ["kind", "x", "y", "z", "rpy", "guess"];
-/// Keys of the pose of a floating joint.
-pub(super) const POSE_KEYS: [&str; 4] = ["x", "y", "z", "rpy"];
+/// What to write where nothing says how the robot moves.
+pub(super) const RIGHT: &str = "[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\"";
 /// What follows the name of a floating joint in the columns of a motion.
 const POSE_COLUMNS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 
 /// Reads `[motion]`.
 pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let right = "[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\"";
-    let field = root.require("motion", right)?;
+    let field = root.require("motion", RIGHT)?;
     if field.node.entries().is_none() {
         return Err(field.wrong_type("a table: [motion]"));
     }
@@ -33,15 +28,11 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
         let refusal = field.node.place.refuse(RefusalKind::Missing, "[motion] has no `kind`");
         return Err(root.ctx.refuse(refusal.help("write kind = \"prescribed\", \"gripper-path\" or \"forward\"")));
     };
-    let kind = Field { key: "kind", node: kind, owner: "[motion]".into(), ..field.clone() };
-    match kind.text()? {
+    let kind = Field { key: "kind", row: MOTION.get("kind"), node: kind, owner: "[motion]".into(), ..field.clone() };
+    match kind.word("kind of motion")? {
         "prescribed" => prescribed(&field, robot, end),
         "gripper-path" => gripper_path(&field, robot, end),
-        "forward" => forward::read(&field, robot, end),
-        other => {
-            let message = format!("is {:?}, which is no kind of motion", shorten(other));
-            Err(kind.refuse(RefusalKind::UnknownName, message, Some(names::suggest(other, KINDS))))
-        }
+        _ => forward::read(&field, robot, end),
     }
 }
 
@@ -49,8 +40,17 @@ fn wanted(unit: &str, end: Option<f64>) -> Wanted<'_> {
     Wanted { unit, range: Range::ANY, smooth: true, end }
 }
 
+/// A signal in the unit of its key; `smooth` as in [`Wanted`].
+pub(super) fn signal(field: &Field<'_>, smooth: bool, end: Option<f64>) -> Read<SignalPlan> {
+    let unit = match field.row.map(|row| row.shape) {
+        Some(Shape::Signal(unit) | Shape::Signals(unit)) => unit,
+        _ => "",
+    };
+    signals::read(field, Wanted { smooth, ..wanted(unit, end) })
+}
+
 fn prescribed(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let table = Table::open(field.ctx, field.node, "[motion]", &PRESCRIBED_KEYS)?;
+    let table = Table::of_kind(field.ctx, field.node, "[motion]", (&MOTION, "prescribed"), |_| None)?;
     let joints: Vec<OwnJoint<'_>> = robot.own_joints().collect();
     let joints = match (table.get("joints"), table.get("csv")) {
         (Some(field), None) => {
@@ -88,9 +88,9 @@ fn pose(field: &Field<'_>, end: Option<f64>) -> Read<PosePlan> {
         let right = "a table { x = …, y = …, z = …, rpy = [roll, pitch, yaw] }, since the joint is floating";
         return Err(field.wrong_type(right));
     }
-    let table = field.table(&POSE_KEYS)?;
+    let table = field.table(&POSE)?;
     let zero = || forward::zero(field);
-    let axis = |key| table.get(key).map_or_else(|| Ok(zero()), |field| signals::read(&field, wanted("m", end)));
+    let axis = |key| table.get(key).map_or_else(|| Ok(zero()), |field| signal(&field, true, end));
     let position = [axis("x"), axis("y"), axis("z")];
     let rpy = table.get("rpy").map_or_else(|| Ok([zero(), zero(), zero()]), |field| rpy(&field, end));
     let [x, y, z] = position;
@@ -151,7 +151,7 @@ fn columns_of(joint: &OwnJoint<'_>) -> Vec<String> {
 }
 
 fn gripper_path(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let table = Table::open(field.ctx, field.node, "[motion]", &GRIPPER_PATH_KEYS)?;
+    let table = Table::of_kind(field.ctx, field.node, "[motion]", (&MOTION, "gripper-path"), |_| None)?;
     if robot.gripper.is_none() {
         let message = "kind = \"gripper-path\" needs a gripper, but the robot has none";
         let place = table.get("kind").map_or(&table.node.place, |field| &field.node.place);
@@ -170,7 +170,7 @@ fn gripper_path(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<Moti
     }
     let axis = |key: &'static str| {
         let field = table.require(key, "a signal for each of x, y and z (in m)")?;
-        signals::read(&field, wanted("m", end))
+        signal(&field, true, end)
     };
     let (x, y, z) = (axis("x"), axis("y"), axis("z"));
     let rpy = table.get("rpy").map(|field| rpy(&field, end)).transpose();
@@ -181,7 +181,7 @@ fn gripper_path(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<Moti
 fn rpy(field: &Field<'_>, end: Option<f64>) -> Read<[SignalPlan; 3]> {
     let right = "an array of three signals: roll, pitch, yaw";
     let items = field.items(right)?;
-    let signals = all(items.iter().map(|item| signals::read(item, wanted("rad", end))))?;
+    let signals = all(items.iter().map(|item| signal(item, true, end)))?;
     signals.try_into().map_err(|signals: Vec<_>| {
         let message = format!("has {} entries, but must be {right}", signals.len());
         field.refuse(RefusalKind::WrongType, message, Some("write [roll, pitch, yaw]".to_owned()))

@@ -3,9 +3,6 @@
 /// Longest name that is compared with others; longer ones resemble nothing.
 const MAX_COMPARED: usize = 64;
 
-/// Names that would collide with columns of the results.
-pub(crate) const RESERVED_ELEMENT_NAMES: [&str; 7] = ["t", "q", "v", "a", "tau", "energy", "gripper"];
-
 /// Whether `name` matches `[A-Za-z_][A-Za-z0-9_-]*`.
 pub(crate) fn is_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')

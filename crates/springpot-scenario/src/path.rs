@@ -1,7 +1,7 @@
 //! Dotted paths into a scenario: `element.strut.alpha`, `solver.rtol`, `robot.body.forearm.mass`.
 
 use super::document::{Entry, Node, Value, shorten};
-use super::elements;
+use super::keys::ELEMENT;
 use super::names;
 use super::reader::{Context, Read};
 use super::refusal::{Place, RefusalKind};
@@ -197,7 +197,7 @@ fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static s
             return Some(section);
         }
     }
-    if elements::KEYS.contains(&key) {
+    if ELEMENT.get(key).is_some() {
         return None;
     }
     let law: &law::Entry = ctx.catalog.get(element.get("law")?.text()?)?;
@@ -215,7 +215,7 @@ fn names_of_element(ctx: &Context<'_>, element: &Node) -> Option<Vec<&'static st
     let law: &law::Entry = ctx.catalog.get(element.get("law")?.text()?)?;
     let parameters = law.params.iter().map(|param| param.name);
     let inputs = law.inputs.iter().map(|input| input.name);
-    Some(parameters.chain(inputs).chain(elements::KEYS).collect())
+    Some(parameters.chain(inputs).chain(ELEMENT.names()).collect())
 }
 
 /// Puts `value` where `target` leads; tables on the way are made where they lack.

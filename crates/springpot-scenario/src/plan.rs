@@ -7,7 +7,7 @@ use springpot::law::{Derivative, Entry, Law};
 use springpot::model::urdf::Urdf;
 use springpot::model::{Anchor, BodySpec, Model};
 use springpot::signal::Signal;
-use springpot::simulate::{FixedStep, RowTimes};
+use springpot::simulate::Settings;
 use std::sync::Arc;
 
 /// One run, ready to be started.
@@ -34,10 +34,8 @@ pub struct Plan {
     /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
     /// lost there.
     pub tells_joint_losses: bool,
-    /// Duration and rows.
-    pub time: TimePlan,
-    /// Accuracy and steps.
-    pub solver: SolverPlan,
+    /// Duration, rows, accuracy and steps.
+    pub settings: Settings,
     /// The figures; the same in every case.
     pub figures: Arc<[FigurePlan]>,
     /// Globs of the columns to write; `None`: all.
@@ -225,32 +223,4 @@ impl MotionPlan {
             Self::Forward(_) => "forward",
         }
     }
-}
-
-/// Duration and rows of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TimePlan {
-    /// Duration, s.
-    pub end: f64,
-    /// When rows are written.
-    pub rows: RowTimes,
-}
-
-/// Accuracy and steps.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SolverPlan {
-    /// Relative tolerance.
-    pub rtol: f64,
-    /// Absolute tolerance, in the unit of D^alpha x; `None`: the relative one stands alone.
-    pub atol: Option<f64>,
-    /// Relative error of the memory's kernel.
-    pub memory_rtol: f64,
-    /// First inner step, s; `None`: chosen by the run.
-    pub first_step: Option<f64>,
-    /// Largest inner step, s; `None`: a five-hundredth of the motion.
-    pub max_step: Option<f64>,
-    /// Most inner steps of a run.
-    pub max_steps: Option<u64>,
-    /// Steps of one size; `None`: the run chooses its steps.
-    pub fixed_step: Option<FixedStep>,
 }

@@ -1,6 +1,7 @@
 //! Reading tables by hand: every key is asked for by name, everything wrong is noted with its place.
 
 use super::document::{Entry, Node, Value, shorten};
+use super::keys::{Bound, Key, Keys, Need, Shape};
 use super::names;
 use super::refusal::{Refusal, RefusalKind, Refusals};
 use super::signals::CsvCache;
@@ -92,11 +93,35 @@ pub(crate) struct Table<'a> {
     /// What it is, for messages.
     pub(crate) what: Arc<str>,
     entries: &'a [Entry],
+    /// Its keys, where the scenario's own tables have them.
+    keys: Option<&'static Keys>,
     /// Keys that a misspelled key stands for, as already refused.
     suspected: Vec<String>,
 }
 
 impl<'a> Table<'a> {
+    /// Opens `node` as a table with the keys of `keys`.
+    pub(crate) fn of(
+        ctx: &'a Context<'a>,
+        node: &'a Node,
+        what: impl Into<Arc<str>>,
+        keys: &'static Keys,
+    ) -> Read<Self> {
+        Ok(Self { keys: Some(keys), ..Self::open(ctx, node, what, &keys.names())? })
+    }
+
+    /// Opens `node` as a table of the kind `kind` with those of `keys` that belong to it; `reason` may say why another one cannot
+    /// stand here.
+    pub(crate) fn of_kind(
+        ctx: &'a Context<'a>,
+        node: &'a Node,
+        what: impl Into<Arc<str>>,
+        (keys, kind): (&'static Keys, &str),
+        reason: impl Fn(&str) -> Option<(RefusalKind, String)>,
+    ) -> Read<Self> {
+        Ok(Self { keys: Some(keys), ..Self::open_with(ctx, node, what, &keys.names_for(kind), reason)? })
+    }
+
     /// Opens `node` as a table that may hold `known` keys.
     pub(crate) fn open(ctx: &'a Context<'a>, node: &'a Node, what: impl Into<Arc<str>>, known: &[&str]) -> Read<Self> {
         Self::open_with(ctx, node, what, known, |_| None)
@@ -135,13 +160,55 @@ impl<'a> Table<'a> {
                     .help(names::suggest(&entry.key, known.iter().copied())),
             );
         }
-        Ok(Self { ctx, node, what, entries, suspected })
+        Ok(Self { ctx, node, what, entries, keys: None, suspected })
     }
 
     /// The field of that name.
     pub(crate) fn get(&self, key: &'a str) -> Option<Field<'a>> {
         let entry = self.entries.iter().find(|entry| entry.key == key)?;
-        Some(Field { ctx: self.ctx, node: &entry.node, key, owner: self.what.clone() })
+        Some(Field { ctx: self.ctx, node: &entry.node, key, row: self.row(key), owner: self.what.clone() })
+    }
+
+    /// What the scenario's tables say of a key.
+    fn row(&self, key: &str) -> Option<&'static Key> {
+        self.keys.and_then(|keys| keys.get(key))
+    }
+
+    /// What stands for `key` where it is left out.
+    fn default(&self, key: &str) -> Need {
+        self.row(key).map_or(Need::Optional, |row| row.need)
+    }
+
+    /// The number under `key`; where it is left out, the one that stands for it.
+    pub(crate) fn number(&self, key: &'a str) -> Read<f64> {
+        self.joint_number(key, false)
+    }
+
+    /// As [`Self::number`], of a joint that slides or turns.
+    pub(crate) fn joint_number(&self, key: &'a str, slides: bool) -> Read<f64> {
+        match (self.get(key), self.default(key)) {
+            (Some(field), _) => field.joint_quantity(slides),
+            (None, Need::Number(number)) => Ok(number),
+            (None, _) => Err(self.missing(key, key)),
+        }
+    }
+
+    /// The three numbers under `key`; where they are left out, those that stand for them.
+    pub(crate) fn vector(&self, key: &'a str) -> Read<[f64; 3]> {
+        match (self.get(key), self.default(key)) {
+            (Some(field), _) => field.components(),
+            (None, Need::Vector(vector)) => Ok(vector),
+            (None, _) => Err(self.missing(key, key)),
+        }
+    }
+
+    /// The flag under `key`; where it is left out, what stands for it.
+    pub(crate) fn flag(&self, key: &'a str) -> Read<bool> {
+        match (self.get(key), self.default(key)) {
+            (Some(field), _) => field.boolean(),
+            (None, Need::Flag(flag)) => Ok(flag),
+            (None, _) => Err(self.missing(key, key)),
+        }
     }
 
     /// The field of that name, which must be there; `right` says what to write.
@@ -170,6 +237,7 @@ impl<'a> Table<'a> {
             ctx: self.ctx,
             node: &entry.node,
             key: &entry.key,
+            row: self.row(&entry.key),
             owner: self.what.clone(),
         })
     }
@@ -181,6 +249,8 @@ pub(crate) struct Field<'a> {
     pub(crate) ctx: &'a Context<'a>,
     pub(crate) node: &'a Node,
     pub(crate) key: &'a str,
+    /// What the scenario's tables say of it.
+    pub(crate) row: Option<&'static Key>,
     pub(crate) owner: Arc<str>,
 }
 
@@ -238,13 +308,24 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// A table with `known` keys.
-    pub(crate) fn table(&self, known: &[&str]) -> Read<Table<'a>> {
-        Table::open(self.ctx, self.node, self.to_string(), known)
+    /// A table with the keys of `keys`.
+    pub(crate) fn table(&self, keys: &'static Keys) -> Read<Table<'a>> {
+        Table::of(self.ctx, self.node, self.to_string(), keys)
+    }
+
+    /// One of the words that may stand here; `kind` says what they name.
+    pub(crate) fn word(&self, kind: &str) -> Read<&'a str> {
+        let written = self.text()?;
+        let choices = self.row.map(Key::choices).unwrap_or_default();
+        if choices.contains(&written) {
+            return Ok(written);
+        }
+        let message = format!("is {:?}, which is no {kind}", shorten(written));
+        Err(self.refuse(RefusalKind::UnknownName, message, Some(names::suggest(written, choices))))
     }
 
     /// A whole number from `low` to `high`.
-    pub(crate) fn integer(&self, low: i64, high: i64) -> Read<i64> {
+    fn integer(&self, low: i64, high: i64) -> Read<i64> {
         match self.node.value {
             Value::Number { integer: Some(integer), .. } if (low..=high).contains(&integer) => {
                 self.ctx.note_swept(self.node, integer as f64);
@@ -286,8 +367,52 @@ impl<'a> Field<'a> {
         Ok(value)
     }
 
+    /// A number in the unit and the range of its key.
+    pub(crate) fn quantity(&self) -> Read<f64> {
+        self.joint_quantity(false)
+    }
+
+    /// As [`Self::quantity`], of a joint that slides or turns.
+    pub(crate) fn joint_quantity(&self, slides: bool) -> Read<f64> {
+        let (unit, bound) = match self.row.map(|row| row.shape) {
+            Some(Shape::Number(unit, bound)) => (unit, bound),
+            Some(Shape::JointNumber(units, bound) | Shape::JointNumberOr(units, bound, _)) => {
+                (units[usize::from(slides)], bound)
+            }
+            _ => ("", Bound::Any),
+        };
+        match bound {
+            Bound::Any | Bound::NotNegative => self.number(unit),
+            Bound::Positive => self.positive(unit),
+            Bound::Within(low, high, right) => {
+                let value = self.number(unit)?;
+                if (low..=high).contains(&value) {
+                    return Ok(value);
+                }
+                let message = format!("is {}, outside {low:e} … {high}", self.node.label());
+                Err(self.refuse(RefusalKind::OutOfRange, message, Some(right.to_owned())))
+            }
+        }
+    }
+
+    /// A whole number in the range of its key.
+    pub(crate) fn whole(&self) -> Read<i64> {
+        match self.row.map(|row| row.shape) {
+            Some(Shape::Whole(low, high)) => self.integer(low, high.unwrap_or(i64::MAX)),
+            _ => self.integer(i64::MIN, i64::MAX),
+        }
+    }
+
+    /// Three numbers in the unit of its key.
+    pub(crate) fn components(&self) -> Read<[f64; 3]> {
+        match self.row.map(|row| row.shape) {
+            Some(Shape::Vector(unit)) => self.vector(unit),
+            _ => self.vector(""),
+        }
+    }
+
     /// A number above zero.
-    pub(crate) fn positive(&self, unit: &str) -> Read<f64> {
+    fn positive(&self, unit: &str) -> Read<f64> {
         let value = self.number(unit)?;
         if value > 0.0 {
             return Ok(value);
@@ -297,7 +422,7 @@ impl<'a> Field<'a> {
     }
 
     /// Three numbers.
-    pub(crate) fn vector(&self, unit: &str) -> Read<[f64; 3]> {
+    fn vector(&self, unit: &str) -> Read<[f64; 3]> {
         let right = format!("an array of three numbers{}", or_quantities(unit));
         let items = self.items(&right)?;
         let [x, y, z] = &items[..] else {

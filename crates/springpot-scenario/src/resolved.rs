@@ -1,8 +1,8 @@
 //! The plan as JSON, for the record of a run.
 
 use super::figures::{FigureKind, FigurePlan};
+use super::keys::solver::{ADAPTIVE, FIELDS, Slot};
 use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
-use super::time::ADAPTIVE;
 use serde_json::{Map, Value, json};
 use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
 use springpot::simulate::RowTimes;
@@ -13,8 +13,8 @@ const LISTED_TIMES: usize = 10_000;
 impl Plan {
     /// Everything the run depends on, defaults filled in: numbers in SI, signals that vary as they were written.
     pub fn resolved(&self) -> Value {
-        let mut time = json!({ "end": self.time.end, "rows": self.time.rows.count() });
-        match &self.time.rows {
+        let mut time = json!({ "end": self.settings.end, "rows": self.settings.rows.count() });
+        match &self.settings.rows {
             RowTimes::Step { step, .. } => time["output_step"] = json!(step),
             RowTimes::Times(times) if times.len() <= LISTED_TIMES => time["output_times"] = json!(times[..]),
             RowTimes::Times(times) => {
@@ -30,25 +30,32 @@ impl Plan {
             "elements": self.elements.iter().map(|element| self.element(element)).collect::<Vec<_>>(),
             "motion": self.motion(),
             "time": time,
-            "solver": {
-                "method": self.method(),
-                "step": self.solver.fixed_step.map(|by| by.step),
-                "rtol": self.solver.rtol,
-                "atol": self.solver.atol,
-                "memory_rtol": self.solver.memory_rtol,
-                "first_step": self.solver.first_step,
-                "max_step": self.solver.max_step,
-                "max_steps": self.solver.max_steps,
-            },
+            "solver": self.solver(),
             "figures": self.figures.iter().map(figure).collect::<Vec<_>>(),
             "columns": self.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
         })
     }
 
+    /// The keys of `[solver]`.
+    fn solver(&self) -> Value {
+        let mut settings = self.settings.clone();
+        let fields = FIELDS.map(|(key, slot)| {
+            let value = match slot(&mut settings) {
+                Slot::Number(number) => json!(number),
+                Slot::Perhaps(number) => json!(number),
+                Slot::Count(count) => json!(count),
+            };
+            (key.to_owned(), value)
+        });
+        let fixed_step = self.settings.fixed_step;
+        let steps = [("method", json!(self.method())), ("step", json!(fixed_step.map(|by| by.step)))];
+        fields.into_iter().chain(steps.map(|(key, value)| (key.to_owned(), value))).collect()
+    }
+
     /// What moves the robot on, where it moves by itself.
     fn method(&self) -> Option<&'static str> {
         matches!(self.motion, MotionPlan::Forward(_))
-            .then(|| self.solver.fixed_step.map_or(ADAPTIVE, |by| by.method.name()))
+            .then(|| self.settings.fixed_step.map_or(ADAPTIVE, |by| by.method.name()))
     }
 
     fn body_name(&self, body: Parent) -> &str {

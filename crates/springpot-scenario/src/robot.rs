@@ -1,6 +1,7 @@
 //! `[robot]`: bodies or a URDF file, gravity, gripper.
 
 use super::document::shorten;
+use super::keys::{ANCHOR, FROM_URDF, ROBOT};
 use super::names;
 use super::plan::{BodyPlaces, Gripper, UrdfPlan};
 use super::reader::{Field, Read, Refused, Table};
@@ -11,13 +12,6 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
-const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
-pub(super) const KEYS: [&str; 7] =
-    ["gravity", "body", "gripper", "urdf", "floating_base", "ignore_mimic", "package_path"];
-/// Keys that say how a URDF file is read.
-pub(super) const URDF_KEYS: [&str; 3] = ["floating_base", "ignore_mimic", "package_path"];
-/// Keys of a point on a body.
-pub(super) const ANCHOR_KEYS: [&str; 2] = ["body", "point"];
 const RIGHT: &str = "urdf = \"arm.urdf\", or a [[robot.body]] for each body";
 
 /// The robot as it is described.
@@ -55,17 +49,17 @@ impl OwnJoint<'_> {
 pub(crate) fn read(root: &Table<'_>) -> Read<Robot> {
     let field = root.require("robot", &format!("[robot] with {RIGHT}"))?;
     let from_urdf = field.node.get("urdf").is_some();
-    let known = if from_urdf { &KEYS[..] } else { &KEYS[..4] };
+    let kind = if from_urdf { FROM_URDF } else { "" };
     let urdf_only = |key: &str| {
         let help = match key {
             "floating_base" => "; give the first [[robot.body]] a joint of kind = \"floating\" instead",
             _ => "",
         };
         let message = || format!("`{key}` of [robot] belongs to `urdf`, and this robot has none{help}");
-        URDF_KEYS.contains(&key).then(|| (RefusalKind::Rule, message()))
+        ROBOT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
     };
-    let table = Table::open_with(root.ctx, field.node, "[robot]", known, urdf_only)?;
-    let gravity = table.get("gravity").map_or(Ok(STANDARD_GRAVITY), |field| field.vector("m/s^2"));
+    let table = Table::of_kind(root.ctx, field.node, "[robot]", (&ROBOT, kind), urdf_only)?;
+    let gravity = table.vector("gravity");
     let parts = match (table.get("urdf"), table.get("body")) {
         (Some(_), Some(bodies)) => {
             let help = "a robot is a URDF file or [[robot.body]] blocks: leave one of them out".to_owned();
@@ -90,7 +84,7 @@ impl Robot {
 
     /// Reads `{ body = …, point = … }`, where the body may be the world.
     pub(crate) fn anchor(&self, field: &Field<'_>) -> Read<(String, Anchor)> {
-        let table = field.table(&ANCHOR_KEYS)?;
+        let table = field.table(&ANCHOR)?;
         let body = table.require("body", "body = \"NAME\" or body = \"world\"").and_then(|body| {
             let name = body.text()?;
             match self.model().find_body(name) {
@@ -99,7 +93,7 @@ impl Robot {
             }
         });
         let point = table.require("point", "point = [x, y, z] in the body's joint frame, m");
-        let point = point.and_then(|point| point.vector("m"))?;
+        let point = point.and_then(|point| point.components())?;
         let (name, body) = body?;
         Ok((name, Anchor { body, point }))
     }

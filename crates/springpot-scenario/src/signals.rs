@@ -1,6 +1,7 @@
 //! Signals of a scenario: numbers, quantities, expressions, columns of CSV files.
 
 use super::document::{Value, shorten};
+use super::keys::SIGNAL;
 use super::names;
 use super::plan::SignalPlan;
 use super::reader::{Field, Read, Refused, unit_help};
@@ -13,7 +14,6 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-pub(super) const KEYS: [&str; 4] = ["expression", "csv", "column", "unit"];
 /// Times at which a signal is looked at before the run, besides 0 and the end.
 const PROBES: usize = 31;
 const NO_EXPONENTS: &dyn Fn(&str) -> Option<f64> = &|_| None;
@@ -114,7 +114,7 @@ fn expression(field: &Field<'_>, text: &str) -> Read<Expression> {
 }
 
 fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
-    let table = field.table(&KEYS)?;
+    let table = field.table(&SIGNAL)?;
     let signal = match (table.get("expression"), table.get("csv")) {
         (Some(text), None) => {
             if let Some(column) = table.get("column") {

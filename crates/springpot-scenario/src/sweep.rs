@@ -1,22 +1,13 @@
 //! `[[sweep]]`: which parameters move, and through which values.
 
 use super::document::{Node, Value, shorten, shortest};
+use super::keys::{MAX_BLOCKS, MAX_CASES, MAX_TOGETHER, SPAN, SWEEP};
 use super::path::{self, Target};
 use super::reader::{Field, Read, Table, all};
 use super::refusal::{Place, RefusalKind};
 use super::units;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// Most values of one sweep, and most cases of a grid.
-pub const MAX_CASES: usize = 10_000_000;
-pub(super) const KEYS: [&str; 2] = ["parameter", "values"];
-pub(super) const SPAN_KEYS: [&str; 4] = ["from", "to", "count", "scale"];
-pub(super) const SCALES: [&str; 2] = ["linear", "log"];
-/// Most blocks.
-pub(super) const MAX_BLOCKS: usize = 16;
-/// Most parameters that move together.
-pub(super) const MAX_TOGETHER: usize = 64;
 
 /// One `[[sweep]]`: parameters that move together, and their values.
 #[derive(Debug, Clone)]
@@ -174,13 +165,13 @@ pub(crate) fn read(root: &Table<'_>) -> Read<Vec<Axis>> {
 
 fn axis(root: &Table<'_>, item: &Field<'_>, i: usize) -> Read<Axis> {
     let direct = |key: &str| {
-        matches!(key, "from" | "to" | "count" | "scale").then(|| {
+        SPAN.get(key).is_some().then(|| {
             let why = format!("`{key}` stands in the values: write values = {{ from = …, to = …, count = … }}");
             (RefusalKind::UnknownKey, why)
         })
     };
     let what = format!("[[sweep]] {}", i + 1);
-    let table = Table::open_with(item.ctx, item.node, what, &KEYS, direct)?;
+    let table = Table::of_kind(item.ctx, item.node, what, (&SWEEP, ""), direct)?;
     let targets = table
         .require("parameter", "parameter = \"element.NAME.PARAMETER\"")
         .and_then(|field| targets(&field, root.node));
@@ -235,10 +226,10 @@ fn values(field: &Field<'_>) -> Read<Values> {
 }
 
 fn span(field: &Field<'_>) -> Read<Span> {
-    let table = field.table(&SPAN_KEYS)?;
+    let table = field.table(&SPAN)?;
     let end = |key| table.require(key, "from, to and count").and_then(|field| end_of_span(&field));
     let (from, to) = (end("from"), end("to"));
-    let count = table.require("count", "from, to and count").and_then(|field| field.integer(2, MAX_CASES as i64));
+    let count = table.require("count", "from, to and count").and_then(|field| field.whole());
     let logarithmic = table.get("scale").map_or(Ok(false), |field| match field.text()? {
         "linear" => Ok(false),
         "log" => Ok(true),

@@ -6,7 +6,7 @@ use springpot::model::{Anchor, Model, Site};
 use springpot::motion::gripper_path::{Course, Task};
 use springpot::motion::{Drive, Forward, GripperPath, JointPath, Motion, PosePath};
 use springpot::signal::Signal;
-use springpot::simulate::{Settings, Stop, System};
+use springpot::simulate::{Stop, System};
 
 impl Plan {
     /// The robot, its elements and its motion. A gripper path is solved here, as far as it can be followed.
@@ -22,21 +22,6 @@ impl Plan {
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: Model::clone(&self.model),
             tells_joint_losses: self.tells_joint_losses,
-        }
-    }
-
-    /// How the run is carried out.
-    pub fn settings(&self) -> Settings {
-        Settings {
-            end: self.time.end,
-            rows: self.time.rows.clone(),
-            rtol: self.solver.rtol,
-            atol: self.solver.atol,
-            memory_rtol: self.solver.memory_rtol,
-            first_step: self.solver.first_step,
-            max_step: self.solver.max_step,
-            max_steps: self.solver.max_steps,
-            fixed_step: self.solver.fixed_step,
         }
     }
 
@@ -65,7 +50,7 @@ impl Plan {
                     position: position.each_ref().map(signal),
                     rpy: rpy.as_ref().map(|rpy| rpy.each_ref().map(signal)),
                 };
-                let course = Course { end: self.time.end, max_step: self.solver.max_step, stop };
+                let course = Course { end: self.settings.end, max_step: self.settings.max_step, stop };
                 Motion::GripperPath(Box::new(GripperPath::new(&self.model, task, guess, &course)))
             }
             MotionPlan::Forward(plan) => Motion::Forward(Box::new(Forward {

@@ -1,42 +1,36 @@
 //! `[time]` and `[solver]`.
 
 use super::document::{Value, shorten};
+use super::keys::solver::{ADAPTIVE, FIELDS, FIXED, SMALLEST_MEMORY_RTOL, Slot};
+use super::keys::{Need, SOLVER, TIME};
 use super::names;
-use super::plan::{SolverPlan, TimePlan};
 use super::reader::{Field, Read, Table};
 use super::refusal::RefusalKind;
 use springpot::simulate::fixed::Method;
-use springpot::simulate::{FixedStep, RowTimes};
+use springpot::simulate::{FixedStep, RowTimes, Settings};
 
-/// The method that chooses its steps.
-pub(super) const ADAPTIVE: &str = "radau";
-
-pub(super) const KEYS: [&str; 3] = ["end", "output_step", "output_times"];
-pub(super) const SOLVER_KEYS: [&str; 8] =
-    ["rtol", "atol", "memory_rtol", "first_step", "max_step", "max_steps", "method", "step"];
-/// Those of them that every kind of motion takes.
-const COMMON_SOLVER_KEYS: usize = 6;
-/// Methods with steps of one size.
-pub(super) const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
 /// Most rows of one run.
 const MAX_ROWS: f64 = 2e7;
-const DEFAULT_RTOL: f64 = 1e-9;
-/// Smallest default error of the memory's kernel; the default is this share of `rtol`.
-pub(super) const SMALLEST_MEMORY_RTOL: f64 = 1e-12;
+/// Where nothing is said of the memory's kernel, its error is `rtol` divided by this.
 const MEMORY_SHARE: f64 = 100.0;
-pub(super) const TOLERANCES: (f64, f64) = (1e-13, 0.1);
 
-/// Duration and rows, for the readers that need them.
-pub(crate) type Duration = TimePlan;
+/// Duration and rows of a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Duration {
+    /// End, s.
+    pub(crate) end: f64,
+    /// When rows are written.
+    pub(crate) rows: RowTimes,
+}
 
 /// Reads `[time]`.
-pub(crate) fn read(root: &Table<'_>) -> Read<TimePlan> {
+pub(crate) fn read(root: &Table<'_>) -> Read<Duration> {
     let field = root.require("time", "[time] with end = \"10 s\" and output_step = \"10 ms\"")?;
-    let table = Table::open(root.ctx, field.node, "[time]", &KEYS)?;
-    let end = table.require("end", "end = \"10 s\"").and_then(|field| field.positive("s"));
+    let table = Table::of(root.ctx, field.node, "[time]", &TIME)?;
+    let end = table.require("end", "end = \"10 s\"").and_then(|field| field.quantity());
     match (table.get("output_step"), table.get("output_times")) {
         (Some(step), None) => {
-            let step_size = step.positive("s")?;
+            let step_size = step.quantity()?;
             let end = end?;
             let rows = end / step_size;
             if rows > MAX_ROWS {
@@ -45,11 +39,11 @@ pub(crate) fn read(root: &Table<'_>) -> Read<TimePlan> {
                 let help = "write a larger output_step or a smaller end".to_owned();
                 return Err(step.refuse(RefusalKind::TooLarge, message, Some(help)));
             }
-            Ok(TimePlan { end, rows: RowTimes::Step { step: step_size, end } })
+            Ok(Duration { end, rows: RowTimes::Step { step: step_size, end } })
         }
         (None, Some(times)) => {
             let end = end?;
-            Ok(TimePlan { end, rows: RowTimes::Times(output_times(&times, end)?.into()) })
+            Ok(Duration { end, rows: RowTimes::Times(output_times(&times, end)?.into()) })
         }
         (Some(_), Some(times)) => {
             let help = "write one of them".to_owned();
@@ -84,38 +78,53 @@ fn output_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
     Ok(times)
 }
 
-/// Reads `[solver]`.
-pub(crate) fn read_solver(root: &Table<'_>) -> Read<SolverPlan> {
-    let known = if moves_by_itself(root) { &SOLVER_KEYS[..] } else { &SOLVER_KEYS[..COMMON_SOLVER_KEYS] };
+/// Reads `[solver]`: how a run of the duration `time` is carried out.
+pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Settings> {
+    let kind = if moves_by_itself(root) { "forward" } else { "" };
     let forward_only = |key: &str| {
-        matches!(key, "method" | "step").then(|| {
+        SOLVER.is_of_a_kind(key).then(|| {
             let why = "belongs to forward runs; along a prescribed motion or a gripper path the run chooses its steps";
             (RefusalKind::Rule, format!("`{key}` of [solver] {why}"))
         })
     };
     let table = match root.get("solver") {
-        Some(field) => Some(Table::open_with(root.ctx, field.node, "[solver]", known, forward_only)?),
+        Some(field) => Some(Table::of_kind(root.ctx, field.node, "[solver]", (&SOLVER, kind), forward_only)?),
         None => None,
     };
     let get = |key: &'static str| table.as_ref().and_then(|table| table.get(key));
-    let rtol = get("rtol").map_or(Ok(DEFAULT_RTOL), |field| tolerance(&field, TOLERANCES));
-    let atol = get("atol").map(|field| field.positive("")).transpose();
-    let default_memory = (rtol.unwrap_or(DEFAULT_RTOL) / MEMORY_SHARE).max(SMALLEST_MEMORY_RTOL);
-    let memory_rtol =
-        get("memory_rtol").map_or(Ok(default_memory), |field| tolerance(&field, (SMALLEST_MEMORY_RTOL, TOLERANCES.1)));
-    let optional = |key| get(key).map(|field| field.positive("s")).transpose();
-    let (first_step, max_step) = (optional("first_step"), optional("max_step"));
-    let max_steps = get("max_steps").map(|field| field.integer(1, i64::MAX)).transpose();
-    let fixed_step = fixed_step(table.as_ref());
-    Ok(SolverPlan {
-        rtol: rtol?,
-        atol: atol?,
-        memory_rtol: memory_rtol?,
-        first_step: first_step?,
-        max_step: max_step?,
-        max_steps: max_steps?.map(i64::unsigned_abs),
-        fixed_step: fixed_step?,
-    })
+    let rows = RowTimes::Times(Vec::new().into());
+    let Duration { end, rows } = time.clone().unwrap_or(Duration { end: 0.0, rows });
+    let mut settings = Settings {
+        end,
+        rows,
+        rtol: 0.0,
+        atol: None,
+        memory_rtol: 0.0,
+        first_step: None,
+        max_step: None,
+        max_steps: None,
+        fixed_step: None,
+    };
+    let mut read = Ok(());
+    for (key, slot) in FIELDS {
+        let given = get(key);
+        let put = match (slot(&mut settings), given, SOLVER.get(key).map(|key| key.need)) {
+            (Slot::Number(number), None, Some(Need::Number(default))) => {
+                *number = default;
+                Ok(())
+            }
+            (_, None, _) => Ok(()),
+            (Slot::Number(number), Some(field), _) => field.quantity().map(|value| *number = value),
+            (Slot::Perhaps(number), Some(field), _) => field.quantity().map(|value| *number = Some(value)),
+            (Slot::Count(count), Some(field), _) => field.whole().map(|value| *count = Some(value.unsigned_abs())),
+        };
+        read = read.and(put);
+    }
+    if get("memory_rtol").is_none() {
+        settings.memory_rtol = (settings.rtol / MEMORY_SHARE).max(SMALLEST_MEMORY_RTOL);
+    }
+    settings.fixed_step = fixed_step(table.as_ref())?;
+    read.map(|()| settings)
 }
 
 /// Whether the motion follows from forces, as far as one can see before it is read.
@@ -146,7 +155,7 @@ fn fixed_step(table: Option<&Table<'_>>) -> Read<Option<FixedStep>> {
                     return Err(field.refuse(RefusalKind::Rule, message, Some("leave it out".to_owned())));
                 }
             }
-            Ok(Some(FixedStep { method, step: step.positive("s")? }))
+            Ok(Some(FixedStep { method, step: step.quantity()? }))
         }
     }
 }
@@ -163,13 +172,4 @@ fn method(field: &Field<'_>) -> Read<Option<Method>> {
     let names = FIXED.map(Method::name);
     let help = names::suggest(name, std::iter::once(ADAPTIVE).chain(names));
     Err(field.refuse(RefusalKind::UnknownName, format!("names no method: {:?}", shorten(name)), Some(help)))
-}
-
-fn tolerance(field: &Field<'_>, (low, high): (f64, f64)) -> Read<f64> {
-    let value = field.number("")?;
-    if (low..=high).contains(&value) {
-        return Ok(value);
-    }
-    let message = format!("is {}, outside {low:e} … {high}", field.node.label());
-    Err(field.refuse(RefusalKind::OutOfRange, message, Some("write a relative error such as 1e-9".to_owned())))
 }

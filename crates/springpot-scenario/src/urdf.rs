@@ -50,8 +50,7 @@ impl UrdfCache {
 
 /// Reads the file that `field`, the `urdf` of `table`, names.
 pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>) -> Read<Parts> {
-    let flag = |key| table.get(key).map_or(Ok(false), |field| field.boolean());
-    let (floating_base, ignore_mimic) = (flag("floating_base"), flag("ignore_mimic"));
+    let (floating_base, ignore_mimic) = (table.flag("floating_base"), table.flag("ignore_mimic"));
     let package_path = table.get("package_path").map_or(Ok(Vec::new()), |field| folders(&field));
     let written = field.text()?.to_owned();
     let (floating_base, ignore_mimic, package_path) = (floating_base?, ignore_mimic?, package_path?);

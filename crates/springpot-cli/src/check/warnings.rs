@@ -50,7 +50,7 @@ impl Warnings {
 
     /// Takes the start of one case.
     pub(super) fn take(&mut self, index: usize, plan: &Plan, system: &System, starts: &[ElementStart]) {
-        if let Ok(row) = system.first_row(&plan.settings()) {
+        if let Ok(row) = system.first_row(&plan.settings) {
             let mut watch = LimitWatch::new(system);
             watch.see(&row);
             self.limits.take(index, &watch.passed());

@@ -37,7 +37,7 @@ pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused>
     let plan = cases.plan(index).map_err(refused)?;
     let system = plan.system();
     diagnostic::robot_warnings(&cases);
-    match system.equation(&plan.settings(), t) {
+    match system.equation(&plan.settings, t) {
         Ok(equation) => {
             let text = match options.json {
                 true => json(&cases, index, &system, &equation),

@@ -56,7 +56,7 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
         }
         Ok(plan) => {
             let stop = sweep.options.stop;
-            let (system, settings) = (plan.system_unless(stop), plan.settings());
+            let (system, settings) = (plan.system_unless(stop), plan.settings.clone());
             let watch = LimitWatch::new(&system);
             let mut rows = CaseRows { output: &mut output, watch, plan: &plan, system: &system };
             let (report, outcome) = match state {

@@ -66,12 +66,12 @@ fn the_example_is_planned_whole() {
     assert_eq!(written, ["0", "0.1*sin(8*t)", "0.1*t"]);
     assert_eq!(joints[0].constant, Some(0.0));
 
-    assert_eq!(plan.time.end, 10.0);
-    assert_eq!(plan.time.rows, RowTimes::Step { step: 0.01, end: 10.0 });
-    assert_eq!(plan.time.rows.count(), 1001);
-    assert_eq!(plan.time.rows.at(1000), 10.0);
+    assert_eq!(plan.settings.end, 10.0);
+    assert_eq!(plan.settings.rows, RowTimes::Step { step: 0.01, end: 10.0 });
+    assert_eq!(plan.settings.rows.count(), 1001);
+    assert_eq!(plan.settings.rows.at(1000), 10.0);
 
-    let solver = &plan.solver;
+    let solver = &plan.settings;
     assert_eq!((solver.rtol, solver.atol, solver.memory_rtol), (1e-9, None, 1e-9 / 100.0));
     assert_eq!((solver.first_step, solver.max_step, solver.max_steps), (None, None, None));
 
@@ -111,7 +111,7 @@ fn the_resolved_plan_has_every_default() {
 fn solver_defaults_follow_rtol() {
     let solver = |lines: &str| {
         let text = edited(&single(), &[("rtol = 1e-9       ", lines)]);
-        cases(&text).unwrap().plan(0).unwrap().solver
+        cases(&text).unwrap().plan(0).unwrap().settings
     };
     let loose = solver("rtol = 1e-5");
     assert_eq!((loose.rtol, loose.atol, loose.memory_rtol), (1e-5, None, 1e-5 / 100.0));
@@ -194,8 +194,8 @@ fn output_times_and_columns_are_taken() {
         ],
     );
     let plan = cases(&text).unwrap().plan(0).unwrap();
-    assert_eq!(plan.time.rows, RowTimes::Times([0.0, 0.5, 10.0].into()));
-    assert_eq!(plan.time.rows.count(), 3);
+    assert_eq!(plan.settings.rows, RowTimes::Times([0.0, 0.5, 10.0].into()));
+    assert_eq!(plan.settings.rows.count(), 3);
     let columns: Vec<&str> =
         plan.columns.iter().flat_map(|globs| globs.iter()).map(|glob| glob.text.as_str()).collect();
     assert_eq!(columns, ["t", "strut.*"]);

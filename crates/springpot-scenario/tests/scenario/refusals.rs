@@ -323,6 +323,9 @@ fn whole_sections_are_missed_together() {
         assert!(messages.contains(&message.as_str()), "{messages:?}");
     }
     assert!(refusals.iter().all(|refusal| (refusal.line, refusal.column) == (1, 1)));
+    let motion = refusals.iter().find(|refusal| refusal.message.contains("`motion`")).unwrap();
+    let help = "write [motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\"";
+    assert_eq!(motion.help.as_deref(), Some(help));
 }
 
 #[test]

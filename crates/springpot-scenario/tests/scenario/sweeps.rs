@@ -90,7 +90,7 @@ fn what_the_file_leaves_out_can_be_swept() {
     let cases = crate::support::cases(&without).unwrap();
     assert_eq!(alpha(&cases.plan(1).unwrap()), 0.2);
     let cases = grid("[[sweep]]\nparameter = \"solver.max_step\"\nvalues = [1, \"1 ms\"]");
-    assert_eq!(cases.plan(1).unwrap().solver.max_step, Some(0.001));
+    assert_eq!(cases.plan(1).unwrap().settings.max_step, Some(0.001));
     let cases = grid("[[sweep]]\nparameter = \"robot.body.forearm.joint.damping\"\nvalues = [0, 1]");
     assert_eq!(cases.plan(1).unwrap().bodies[2].joint.damping, 1.0);
     let cases = grid("[[sweep]]\nparameter = \"element.strut.from.point\"\nvalues = [[0, 0, 0], [1, 0, 0]]");
@@ -139,7 +139,7 @@ fn a_bad_combination_fails_alone() {
         &[("output_step = \"10 ms\"", "output_times = [0]")],
     );
     let cases = crate::support::cases(&text).unwrap();
-    assert_eq!(cases.plan(3).unwrap().time.rows, RowTimes::Times([0.0, 0.5].into()));
+    assert_eq!(cases.plan(3).unwrap().settings.rows, RowTimes::Times([0.0, 0.5].into()));
 
     let roots = edited(
         &with_blocks(
@@ -213,10 +213,10 @@ fn overrides_use_the_same_paths() {
     .unwrap();
     assert_eq!(alpha(&plan), 0.7);
     assert_eq!(temperature(&plan), 303.15);
-    assert_eq!(plan.solver.rtol, 1e-6);
+    assert_eq!(plan.settings.rtol, 1e-6);
     assert_eq!(plan.bodies[2].mass, 2.5);
     assert_eq!(plan.elements[0].scheme, Some(Scheme::L1));
-    assert_eq!(plan.time.rows, RowTimes::Step { step: 0.5, end: plan.time.end });
+    assert_eq!(plan.settings.rows, RowTimes::Step { step: 0.5, end: plan.settings.end });
     assert_eq!(plan.title.as_deref(), Some("other = title"));
     assert_eq!(plan.columns.unwrap()[0].text, "t");
     assert_eq!(plan.figures[0].title.as_deref(), Some("New"));

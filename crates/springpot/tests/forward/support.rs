@@ -61,7 +61,7 @@ pub(crate) fn run_system(system: &System, settings: &Settings) -> Run {
 /// Runs one case; it may fail.
 pub(crate) fn try_case(cases: &Cases, index: usize) -> Run {
     let plan = cases.plan(index).expect("a valid plan");
-    run_system(&plan.system(), &plan.settings())
+    run_system(&plan.system(), &plan.settings)
 }
 
 /// Runs a scenario with one case; it may fail.

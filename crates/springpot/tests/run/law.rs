@@ -420,7 +420,7 @@ output_step = 0.5
         Ok(())
     };
     let (report, outcome) =
-        springpot::simulate::along(&system, &plan.settings(), &mut rows, &springpot::simulate::Stop::new(false));
+        springpot::simulate::along(&system, &plan.settings, &mut rows, &springpot::simulate::Stop::new(false));
     outcome.unwrap();
     assert_eq!(report.modes, 0);
     assert!(forces.iter().zip([0.0, 50.0, 100.0]).all(|(a, b)| (a - b).abs() < 1e-10), "{forces:?}");

@@ -135,7 +135,7 @@ impl Origin {
 pub(super) fn digest(plan: &Plan, system: &System) -> u64 {
     let mut hash = Fnv::new();
     let inputs: Vec<_> = system.elements.iter().map(|element| &element.inputs).collect();
-    let written = write!(hash, "{} {:?} {:?} {inputs:?}", plan.resolved(), plan.settings(), system.motion);
+    let written = write!(hash, "{} {:?} {:?} {inputs:?}", plan.resolved(), plan.settings, system.motion);
     written.expect("a hash takes all text");
     hash.value()
 }

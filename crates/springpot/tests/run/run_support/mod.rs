@@ -66,7 +66,7 @@ pub(crate) fn run_case(cases: &Cases, index: usize) -> Run {
         rows.push(row.to_vec());
         Ok(())
     };
-    let (report, outcome) = simulate(&system, &plan.settings(), &mut keep, &Stop::new(false));
+    let (report, outcome) = simulate(&system, &plan.settings, &mut keep, &Stop::new(false));
     let names = system.columns().into_iter().map(|column| column.name).collect();
     Run { names, rows, report, error: outcome.err() }
 }

@@ -45,7 +45,7 @@ output_step = {step}
             rows.push(row.to_vec());
             Ok(())
         };
-        let (report, outcome) = along(&system, &plan.settings(), &mut keep, &Stop::new(false));
+        let (report, outcome) = along(&system, &plan.settings, &mut keep, &Stop::new(false));
         Self { columns, rows, report, outcome }
     }
 
