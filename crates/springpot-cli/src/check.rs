@@ -6,6 +6,7 @@ use crate::arguments::CheckOptions;
 use crate::numbers::{count, short};
 use crate::run::in_case;
 use crate::{Ending, diagnostic, plain, printed, terminal};
+use springpot::element::Element;
 use springpot::law::{Catalog, Entry};
 use springpot::simulate::{ElementStart, RowTimes, RunError, Stop, System};
 use springpot_run::sweep::Layout;
@@ -139,10 +140,11 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u6
     if !figures.is_empty() {
         line("figures", &figures.join(", "));
     }
-    for (e, element) in plan.elements.iter().enumerate() {
-        line("element", &format!("{}: {}, {}", element.name, element.law.name, memory(element)));
-        line("", element.law.equation);
-        line("", &parameters(element));
+    for (e, plan_of) in plan.elements.iter().enumerate() {
+        let element = &plan_of.element;
+        line("element", &format!("{}: {}, {}", element.name, element.row.name, memory(element)));
+        line("", element.row.equation);
+        line("", &parameters(plan_of));
         let Some(start) = start.map(|start| &start[e]) else { continue };
         let (length, stroke) = (range(start.length, warnings.lengths(e)), range(start.stroke, warnings.strokes(e)));
         line("", &format!("l(0) = {length}, l0 = {} m", short(element.rest_length)));
@@ -213,7 +215,7 @@ fn values(cases: &Cases, axis: usize) -> String {
 }
 
 /// Which derivative, and by which scheme.
-fn memory(element: &ElementPlan) -> String {
+fn memory(element: &Element) -> String {
     match element.scheme {
         None => element.derivative.name().to_owned(),
         Some(scheme) => format!("{} by {scheme}", element.derivative.name()),
@@ -222,7 +224,7 @@ fn memory(element: &ElementPlan) -> String {
 
 /// Parameters in SI, then inputs as written.
 fn parameters(element: &ElementPlan) -> String {
-    let Entry { params, inputs, .. } = &element.law;
+    let Entry { params, inputs, .. } = &element.element.row;
     let with_unit = |value: String, unit: &str| if unit.is_empty() { value } else { format!("{value} {unit}") };
     let parameter = |(param, value): (&springpot::law::Param, &f64)| {
         format!("{} = {}", param.name, with_unit(short(*value), param.unit)).replace(' ', terminal::NO_BREAK)

@@ -341,8 +341,9 @@ fn has_joint_losses(plan: &Plan) -> bool {
 fn columns_of(plan: &Plan) -> Vec<String> {
     let mut columns: Vec<String> = plan.model.q_labels().into_iter().map(|label| label.name).collect();
     for element in &plan.elements {
-        columns.extend(element.law.inputs.iter().map(|input| format!("{}.{}", element.name, input.name)));
-        columns.push(format!("{}.", element.name));
+        let name = &element.element.name;
+        columns.extend(element.element.row.inputs.iter().map(|input| format!("{name}.{}", input.name)));
+        columns.push(format!("{name}."));
     }
     columns.push(format!("{} {}", plan.gripper.is_some(), matches!(plan.motion, MotionPlan::GripperPath { .. })));
     columns
@@ -364,9 +365,9 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     let elements = elements::read(&root, &robot, time.as_ref().ok());
     let motion = motion::read(&root, &robot, time.as_ref().ok().map(|time| time.end));
     if let (Ok(elements), Ok(MotionPlan::Forward(_))) = (&elements, &motion)
-        && let Some(element) = elements.iter().find(|element| element.scheme.is_some())
+        && let Some(element) = elements.iter().find(|plan| plan.element.scheme.is_some())
     {
-        let message = format!("element {:?} has a `scheme`, but the robot moves by itself", element.name);
+        let message = format!("element {:?} has a `scheme`, but the robot moves by itself", element.element.name);
         let refusal = element.place.refuse(RefusalKind::Rule, message);
         let help = "leave the scheme out: named schemes need a motion that is given in advance";
         return Err(ctx.refuse(refusal.help(help)));

@@ -9,8 +9,10 @@ use super::refusal::RefusalKind;
 use super::robot::{Robot, checked_name, unique};
 use super::signals::{self, Wanted, celsius, how_outside, interval};
 use super::time::Duration;
+use springpot::element::Element;
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
 use springpot::law::{Derivative, Entry, Param};
+use springpot::model::Anchor;
 use springpot::simulate::RowTimes;
 use std::collections::HashMap;
 
@@ -43,7 +45,7 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
         let table = Table::of(item.ctx, item.node, what, &ELEMENT)?;
         let name = table.require("name", "name = \"…\"").and_then(|field| element_name(&field, &mut seen));
         let element = element(&table, robot, time)?;
-        Ok(ElementPlan { name: name?.to_owned(), ..element })
+        Ok(ElementPlan { element: Element { name: name?.to_owned(), ..element.element }, ..element })
     }))
 }
 
@@ -102,19 +104,20 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
         table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{}`", error.parameter)))
     });
     let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
-    Ok(ElementPlan {
+    let ((_, from), (_, to), inputs) = (from?, to?, inputs?);
+    let site = |anchor: &Anchor| robot.model().resolve(anchor).expect("an anchor that was read");
+    let element = Element {
         name: String::new(),
-        from: from?.1,
-        to: to?.1,
+        from: site(&from),
+        to: site(&to),
         rest_length: rest_length?,
-        law: *law,
-        object: object?,
-        parameters,
-        inputs: inputs?,
+        law: object?,
+        row: *law,
+        inputs: inputs.iter().map(|input| input.signal.clone()).collect(),
         derivative,
         scheme: scheme?,
-        place,
-    })
+    };
+    Ok(ElementPlan { element, from, to, parameters, inputs, place })
 }
 
 fn law<'a>(field: &Field<'a>) -> Read<&'a Entry> {

@@ -2,8 +2,7 @@
 
 use super::figures::{ColumnGlob, FigurePlan};
 use super::refusal::Place;
-use springpot::fractional::scheme::Scheme;
-use springpot::law::{Derivative, Entry, Law};
+use springpot::element::Element;
 use springpot::model::urdf::Urdf;
 use springpot::model::{Anchor, BodySpec, Model};
 use springpot::signal::Signal;
@@ -121,29 +120,19 @@ pub struct SignalPlan {
     pub place: Place,
 }
 
-/// One element.
+/// One element: as the engine has it, and what the scenario says besides.
 #[derive(Debug, Clone)]
 pub struct ElementPlan {
-    /// Unique name.
-    pub name: String,
-    /// First end.
+    /// The element.
+    pub element: Element,
+    /// Its first end.
     pub from: Anchor,
-    /// Second end.
+    /// Its second end.
     pub to: Anchor,
-    /// Length at which the stroke is zero, m.
-    pub rest_length: f64,
-    /// The law's row of the catalog.
-    pub law: Entry,
-    /// The law with its parameters.
-    pub object: Arc<dyn Law>,
-    /// Parameters in the order of the catalog, SI.
+    /// Parameters of its law in the order of the catalog, SI.
     pub parameters: Vec<f64>,
-    /// Inputs in the order of the catalog.
+    /// Inputs of its law in the order of the catalog.
     pub inputs: Vec<SignalPlan>,
-    /// Where the memory starts.
-    pub derivative: Derivative,
-    /// A named offline scheme for D^alpha; `None`: exact.
-    pub scheme: Option<Scheme>,
     /// Where its parameters stand in the scenario (the element itself where it has none).
     pub place: Place,
 }

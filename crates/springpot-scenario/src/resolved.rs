@@ -94,17 +94,18 @@ impl Plan {
         })
     }
 
-    fn element(&self, element: &ElementPlan) -> Value {
+    fn element(&self, plan: &ElementPlan) -> Value {
+        let ElementPlan { element, from, to, parameters, inputs, .. } = plan;
         let parameters: Map<String, Value> =
-            element.law.params.iter().zip(&element.parameters).map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
+            element.row.params.iter().zip(parameters).map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
         let inputs: Map<String, Value> =
-            element.law.inputs.iter().zip(&element.inputs).map(|(i, s)| (i.name.to_owned(), signal(s))).collect();
+            element.row.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_owned(), signal(s))).collect();
         json!({
             "name": element.name,
-            "from": self.anchor(&element.from),
-            "to": self.anchor(&element.to),
+            "from": self.anchor(from),
+            "to": self.anchor(to),
             "rest_length": element.rest_length,
-            "law": element.law.name,
+            "law": element.row.name,
             "parameters": parameters,
             "inputs": inputs,
             "derivative": element.derivative.name(),

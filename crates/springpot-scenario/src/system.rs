@@ -1,7 +1,6 @@
 //! From a plan to what the time loop runs.
 
-use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan};
-use springpot::element::Element;
+use super::plan::{DrivePlan, JointPlan, MotionPlan, Plan, SignalPlan};
 use springpot::model::{Anchor, Model, Site};
 use springpot::motion::gripper_path::{Course, Task};
 use springpot::motion::{Drive, Forward, GripperPath, JointPath, Motion, PosePath};
@@ -17,25 +16,11 @@ impl Plan {
     /// [`Self::system`], but a gripper path is followed until `stop` is set: it then ends there.
     pub fn system_unless(&self, stop: &Stop) -> System {
         System {
-            elements: self.elements.iter().map(|element| self.built_element(element)).collect(),
+            elements: self.elements.iter().map(|plan| plan.element.clone()).collect(),
             motion: self.solved_motion(stop),
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: Model::clone(&self.model),
             tells_joint_losses: self.tells_joint_losses,
-        }
-    }
-
-    fn built_element(&self, plan: &ElementPlan) -> Element {
-        Element {
-            name: plan.name.clone(),
-            from: self.site(&plan.from),
-            to: self.site(&plan.to),
-            rest_length: plan.rest_length,
-            law: plan.object.clone(),
-            row: plan.law,
-            inputs: plan.inputs.iter().map(signal).collect(),
-            derivative: plan.derivative,
-            scheme: plan.scheme,
         }
     }
 

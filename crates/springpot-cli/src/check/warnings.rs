@@ -44,7 +44,7 @@ impl Warnings {
             large: None,
             singular: None,
         };
-        let elements = plan.elements.iter().map(|plan| element(&plan.name)).collect();
+        let elements = plan.elements.iter().map(|plan| element(&plan.element.name)).collect();
         Self { looked_at: 0, elements, limits: LimitTally::default() }
     }
 
@@ -59,10 +59,10 @@ impl Warnings {
             widen(&mut element.length, start.length);
             widen(&mut element.stroke, start.stroke);
             let found = |found: &mut Option<Found>| {
-                let new = || Found { index, cases: 0, start: start.clone(), rest_length: plan.rest_length };
+                let new = || Found { index, cases: 0, start: start.clone(), rest_length: plan.element.rest_length };
                 found.get_or_insert_with(new).cases += 1;
             };
-            if start.stroke.abs() > LARGE_STROKE * plan.rest_length {
+            if start.stroke.abs() > LARGE_STROKE * plan.element.rest_length {
                 found(&mut element.large);
             }
             if start.singular {

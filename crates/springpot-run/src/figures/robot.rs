@@ -32,7 +32,7 @@ pub(super) fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Resu
     }
     for element in &plan.elements {
         let (from, to) = (pose.point(&element.from), pose.point(&element.to));
-        drawing.elements.push(ElementMark { name: element.name.clone(), from, to });
+        drawing.elements.push(ElementMark { name: element.element.name.clone(), from, to });
         for (anchor, point) in [(&element.from, from), (&element.to, to)] {
             let link = match anchor.body {
                 Parent::World => WORLD,

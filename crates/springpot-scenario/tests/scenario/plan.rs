@@ -51,15 +51,15 @@ fn the_example_is_planned_whole() {
     assert_eq!(gripper.anchor, Anchor { body: Parent::Body(2), point: [0.4, 0.0, 0.0] });
 
     let [strut] = &plan.elements[..] else { panic!("one element") };
-    assert_eq!(strut.name, "strut");
+    assert_eq!(strut.element.name, "strut");
     assert_eq!(strut.from, Anchor { body: Parent::Body(0), point: [0.14, -0.1, 0.08] });
     assert_eq!(strut.to, Anchor { body: Parent::Body(2), point: [-0.06, 0.1, 0.08] });
-    assert_eq!(strut.rest_length, 0.7);
-    assert_eq!(strut.law.name, "thermoviscoelastic");
+    assert_eq!(strut.element.rest_length, 0.7);
+    assert_eq!(strut.element.row.name, "thermoviscoelastic");
     assert_eq!(strut.inputs[0].constant, Some(298.15));
     assert_eq!(strut.inputs[0].written, "25 degC");
-    assert_eq!(strut.derivative, Derivative::RiemannLiouville);
-    assert_eq!(strut.scheme, None);
+    assert_eq!(strut.element.derivative, Derivative::RiemannLiouville);
+    assert_eq!(strut.element.scheme, None);
 
     let joints = coordinates(&plan);
     let written: Vec<&str> = joints.iter().map(|joint| joint.written.as_str()).collect();

@@ -76,7 +76,7 @@ fn texts_are_swept_as_written() {
         "[[sweep]]\nparameter = \"element.strut.scheme\"\nvalues = [\"exact\", \"expansion-2004(7)\"]\n\
          [[sweep]]\nparameter = \"motion.joints.q2\"\nvalues = [\"0.1*t\", 0]",
     );
-    assert_eq!(cases.plan(2).unwrap().elements[0].scheme, Some(Scheme::Expansion2004(7)));
+    assert_eq!(cases.plan(2).unwrap().elements[0].element.scheme, Some(Scheme::Expansion2004(7)));
     assert_eq!(cases.values(2), [SweptValue::Text("expansion-2004(7)".into()), SweptValue::Text("0.1*t".into())]);
     assert_eq!(cases.values(3)[1], SweptValue::Number(0.0));
 }
@@ -215,7 +215,7 @@ fn overrides_use_the_same_paths() {
     assert_eq!(temperature(&plan), 303.15);
     assert_eq!(plan.settings.rtol, 1e-6);
     assert_eq!(plan.bodies[2].mass, 2.5);
-    assert_eq!(plan.elements[0].scheme, Some(Scheme::L1));
+    assert_eq!(plan.elements[0].element.scheme, Some(Scheme::L1));
     assert_eq!(plan.settings.rows, RowTimes::Step { step: 0.5, end: plan.settings.end });
     assert_eq!(plan.title.as_deref(), Some("other = title"));
     assert_eq!(plan.columns.unwrap()[0].text, "t");
