@@ -94,16 +94,14 @@ fn body(item: &Field<'_>, i: usize, index: &HashMap<String, usize>) -> Read<(Bod
     for field in table.fields().filter(|field| BODY.get(field.key).is_some()) {
         places.fields.push((field.key.to_owned(), field.node.place.clone()));
     }
-    let name = table.require("name", "name = \"…\"").and_then(|field| field.text());
+    let name = table.require("name").and_then(|field| field.text());
     let parent = match table.get("parent") {
         Some(field) => parent(&field, i, index),
         None if i == 0 => Ok(Parent::World),
         None => Ok(Parent::Body(i - 1)),
     };
-    let joint = table
-        .require("joint", "joint = { name = \"…\", kind = \"revolute\", axis = [0, 0, 1], origin = [0, 0, 0] }")
-        .and_then(|field| joint(&field, name.ok(), &mut places));
-    let mass = table.require("mass", "mass = 1.0 (in kg)").and_then(|field| field.quantity());
+    let joint = table.require("joint").and_then(|field| joint(&field, name.ok(), &mut places));
+    let mass = table.number("mass");
     let com = table.vector("com");
     let inertia = table.get("inertia").map_or(Ok([[0.0; 3]; 3]), |field| inertia(&field));
     let spec =
@@ -148,12 +146,11 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
     for field in table.fields() {
         places.fields.push((format!("joint.{}", field.key), field.node.place.clone()));
     }
-    let name = table.require("name", "name = \"…\"").and_then(|field| field.text());
-    let right = "kind = \"revolute\", \"continuous\", \"prismatic\", \"floating\" or \"fixed\"";
-    let kind = table.require("kind", right).and_then(|field| kind_named(field.word("kind of joint")?).ok_or(Refused));
+    let name = table.require("name").and_then(|field| field.text());
+    let kind = table.require("kind").and_then(|field| kind_named(field.word("kind of joint")?).ok_or(Refused));
     let axis = match kind {
         Ok(kind) if !kind.has_axis() => Ok([0.0, 0.0, 1.0]),
-        Ok(_) => table.require("axis", "axis = [0, 0, 1]").and_then(|field| axis(&field)),
+        Ok(_) => table.require("axis").and_then(|field| axis(&field)),
         // Of an unknown kind nobody knows whether it needs one.
         Err(Refused) => table.get("axis").map_or(Err(Refused), |field| axis(&field)),
     };
@@ -192,7 +189,7 @@ fn friction(field: &Field<'_>, slides: bool, places: &mut BodyPlaces) -> Read<(f
         places.fields.insert(0, (format!("joint.friction{key}"), field.node.place.clone()));
     }
     let right = if slides { "force = \"0.2 N\"" } else { "force = \"0.2 N*m\"" };
-    let force = table.require("force", right).and_then(|field| field.joint_quantity(slides));
+    let force = table.require_with("force", right).and_then(|field| field.joint_quantity(slides));
     let speed = table.joint_number("speed", slides);
     let stick = table.flag("stick");
     let (force, speed, stick) = (force?, speed?, stick?);
@@ -214,9 +211,7 @@ fn axis(field: &Field<'_>) -> Read<[f64; 3]> {
 
 fn inertia(field: &Field<'_>) -> Read<[[f64; 3]; 3]> {
     let table = field.table(&INERTIA)?;
-    let diagonal = |key| table.require(key, "xx, yy and zz, in kg*m^2").and_then(|field| field.quantity());
-    let off = |key| table.number(key);
-    let (xx, yy, zz) = (diagonal("xx"), diagonal("yy"), diagonal("zz"));
-    let (xy, xz, yz) = (off("xy")?, off("xz")?, off("yz")?);
+    let (xx, yy, zz) = (table.number("xx"), table.number("yy"), table.number("zz"));
+    let (xy, xz, yz) = (table.number("xy")?, table.number("xz")?, table.number("yz")?);
     Ok([[xx?, xy, xz], [xy, yy?, yz], [xz, yz, zz?]])
 }

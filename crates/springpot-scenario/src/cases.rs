@@ -358,7 +358,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     let robot = robot::read(&root);
     let Ok(robot) = robot else {
         if root.get("motion").is_none() {
-            root.missing("motion", motion::RIGHT);
+            root.lacks("motion");
         }
         return Err(super::reader::Refused);
     };

@@ -1,10 +1,10 @@
 //! `[[element]]`: anchors, law, parameters, inputs.
 
 use super::document::shorten;
-use super::keys::{ELEMENT, RESERVED_NAMES};
+use super::keys::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
 use super::names;
 use super::plan::{ElementPlan, SignalPlan};
-use super::reader::{Field, Read, Refused, Table, all, unit_help};
+use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Robot, checked_name, unique};
 use super::signals::{self, Wanted, celsius, how_outside, interval};
@@ -43,7 +43,7 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
         let name = item.node.get("name").and_then(|node| node.text());
         let what = name.map_or_else(|| format!("element {}", i + 1), |name| format!("element {:?}", shorten(name)));
         let table = Table::of(item.ctx, item.node, what, &ELEMENT)?;
-        let name = table.require("name", "name = \"…\"").and_then(|field| element_name(&field, &mut seen));
+        let name = table.require("name").and_then(|field| element_name(&field, &mut seen));
         let element = element(&table, robot, time)?;
         Ok(ElementPlan { element: Element { name: name?.to_owned(), ..element.element }, ..element })
     }))
@@ -62,9 +62,8 @@ fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, super::Place>)
 
 /// Everything but the name.
 fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<ElementPlan> {
-    let right = "{ body = \"NAME\", point = [x, y, z] }";
-    let from = table.require("from", &format!("from = {right}")).and_then(|field| robot.anchor(&field));
-    let to = table.require("to", &format!("to = {right}")).and_then(|field| robot.anchor(&field));
+    let from = table.require("from").and_then(|field| robot.anchor(&field));
+    let to = table.require("to").and_then(|field| robot.anchor(&field));
     if let (Ok((first, from)), Ok((second, to))) = (&from, &to)
         && robot.carrier(from.body) == robot.carrier(to.body)
     {
@@ -82,17 +81,9 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
         let message = format!("{} {why}: its length cannot change", table.what);
         table.ctx.refuse(place.refuse(RefusalKind::Rule, message).help("join two bodies that move against each other"));
     }
-    let rest_length = table.require("rest_length", "rest_length = \"70 cm\"").and_then(|field| {
-        let length = field.quantity()?;
-        if length >= 0.0 {
-            return Ok(length);
-        }
-        let message = format!("is {}, but a length is not negative", field.node.label());
-        Err(field.refuse(RefusalKind::OutOfRange, message, Some(unit_help("m"))))
-    });
     let derivative = table.get("derivative").map_or(Ok(Derivative::Caputo), |field| derivative(&field));
     let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
-    let law = table.require("law", "law = \"…\"").and_then(|field| law(&field))?;
+    let law = table.require("law").and_then(|field| law(&field))?;
     let parameters = parameters(table, law);
     let inputs = inputs(table, law, time);
     let (parameters, derivative) = (parameters?, derivative?);
@@ -106,17 +97,18 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
     let ((_, from), (_, to), inputs) = (from?, to?, inputs?);
     let site = |anchor: &Anchor| robot.model().resolve(anchor).expect("an anchor that was read");
-    let element = Element {
+    let mut element = Element {
         name: String::new(),
         from: site(&from),
         to: site(&to),
-        rest_length: rest_length?,
+        rest_length: 0.0,
         law: object?,
         row: *law,
         inputs: inputs.iter().map(|input| input.signal.clone()).collect(),
         derivative,
         scheme: scheme?,
     };
+    table.fill(ELEMENT_FIELDS, &mut element)?;
     Ok(ElementPlan { element, from, to, parameters, inputs, place })
 }
 

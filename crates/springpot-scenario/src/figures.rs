@@ -156,7 +156,7 @@ fn curves(table: &Table<'_>, item: &Field<'_>) -> Read<FigureKind> {
         Some(field) => glob(&field),
         None => Ok(ColumnGlob { text: "t".to_owned(), place: item.node.place.clone() }),
     };
-    let y = table.require("y", "y = [\"strut.Q.q2\"]: the columns to draw").and_then(|field| globs(&field));
+    let y = table.require("y").and_then(|field| globs(&field));
     Ok(FigureKind::Curves { x: x?, y: y? })
 }
 

@@ -13,14 +13,12 @@ use springpot::model::JointKind;
 use springpot::model::urdf::FLOATING_BASE;
 use std::collections::HashSet;
 
-/// What to write where nothing says how the robot moves.
-pub(super) const RIGHT: &str = "[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\"";
 /// What follows the name of a floating joint in the columns of a motion.
 const POSE_COLUMNS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 
 /// Reads `[motion]`.
 pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let field = root.require("motion", RIGHT)?;
+    let field = root.require("motion")?;
     if field.node.entries().is_none() {
         return Err(field.wrong_type("a table: [motion]"));
     }
@@ -169,7 +167,7 @@ fn gripper_path(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<Moti
         return Err(field.ctx.refuse(place.refuse(RefusalKind::Rule, message).help(right)));
     }
     let axis = |key: &'static str| {
-        let field = table.require(key, "a signal for each of x, y and z (in m)")?;
+        let field = table.require(key)?;
         signal(&field, true, end)
     };
     let (x, y, z) = (axis("x"), axis("y"), axis("z"));

@@ -1,7 +1,7 @@
 //! Reading tables by hand: every key is asked for by name, everything wrong is noted with its place.
 
 use super::document::{Entry, Node, Value, shorten};
-use super::keys::{Bound, Key, Keys, Need, Shape};
+use super::keys::{self, Bound, Key, Keys, Need, Shape, Slot};
 use super::names;
 use super::refusal::{Refusal, RefusalKind, Refusals};
 use super::signals::CsvCache;
@@ -189,7 +189,7 @@ impl<'a> Table<'a> {
         match (self.get(key), self.default(key)) {
             (Some(field), _) => field.joint_quantity(slides),
             (None, Need::Number(number)) => Ok(number),
-            (None, _) => Err(self.missing(key, key)),
+            (None, _) => Err(self.lacks(key)),
         }
     }
 
@@ -198,7 +198,7 @@ impl<'a> Table<'a> {
         match (self.get(key), self.default(key)) {
             (Some(field), _) => field.components(),
             (None, Need::Vector(vector)) => Ok(vector),
-            (None, _) => Err(self.missing(key, key)),
+            (None, _) => Err(self.lacks(key)),
         }
     }
 
@@ -207,13 +207,43 @@ impl<'a> Table<'a> {
         match (self.get(key), self.default(key)) {
             (Some(field), _) => field.boolean(),
             (None, Need::Flag(flag)) => Ok(flag),
-            (None, _) => Err(self.missing(key, key)),
+            (None, _) => Err(self.lacks(key)),
         }
     }
 
+    /// Puts the numbers of the table into the fields of `made`; where they are left out, what stands for them.
+    pub(crate) fn fill<T>(&self, fields: &'static [keys::Field<T>], made: &mut T) -> Read<()> {
+        let mut read = Ok(());
+        for &(key, slot) in fields {
+            let put = match (slot(made), self.get(key)) {
+                (Slot::Number(number), None) => match self.default(key) {
+                    // It follows from others.
+                    Need::Said(_) => Ok(()),
+                    _ => self.number(key).map(|value| *number = value),
+                },
+                (_, None) => Ok(()),
+                (Slot::Number(number), Some(field)) => field.quantity().map(|value| *number = value),
+                (Slot::Perhaps(number), Some(field)) => field.quantity().map(|value| *number = Some(value)),
+                (Slot::Count(count), Some(field)) => field.whole().map(|value| *count = Some(value.unsigned_abs())),
+            };
+            read = read.and(put);
+        }
+        read
+    }
+
+    /// The field of that name, which must be there.
+    pub(crate) fn require(&self, key: &'a str) -> Read<Field<'a>> {
+        self.get(key).ok_or_else(|| self.lacks(key))
+    }
+
     /// The field of that name, which must be there; `right` says what to write.
-    pub(crate) fn require(&self, key: &'a str, right: &str) -> Read<Field<'a>> {
+    pub(crate) fn require_with(&self, key: &'a str, right: &str) -> Read<Field<'a>> {
         self.get(key).ok_or_else(|| self.missing(key, right))
+    }
+
+    /// Refuses the absence of a key that must be there.
+    pub(crate) fn lacks(&self, key: &str) -> Refused {
+        self.missing(key, self.row(key).map_or(key, |row| row.right()))
     }
 
     /// Refuses the absence of `key`, unless a misspelled key stands for it.
@@ -384,6 +414,14 @@ impl<'a> Field<'a> {
         match bound {
             Bound::Any | Bound::NotNegative => self.number(unit),
             Bound::Positive => self.positive(unit),
+            Bound::Length => {
+                let value = self.number(unit)?;
+                if value >= 0.0 {
+                    return Ok(value);
+                }
+                let message = format!("is {}, but a length is not negative", self.node.label());
+                Err(self.refuse(RefusalKind::OutOfRange, message, Some(unit_help(unit))))
+            }
             Bound::Within(low, high, right) => {
                 let value = self.number(unit)?;
                 if (low..=high).contains(&value) {

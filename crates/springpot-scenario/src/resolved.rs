@@ -1,7 +1,8 @@
 //! The plan as JSON, for the record of a run.
 
 use super::figures::{FigureKind, FigurePlan};
-use super::keys::solver::{ADAPTIVE, FIELDS, Slot};
+use super::keys::solver::ADAPTIVE;
+use super::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
 use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
 use serde_json::{Map, Value, json};
 use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
@@ -38,18 +39,11 @@ impl Plan {
 
     /// The keys of `[solver]`.
     fn solver(&self) -> Value {
-        let mut settings = self.settings.clone();
-        let fields = FIELDS.map(|(key, slot)| {
-            let value = match slot(&mut settings) {
-                Slot::Number(number) => json!(number),
-                Slot::Perhaps(number) => json!(number),
-                Slot::Count(count) => json!(count),
-            };
-            (key.to_owned(), value)
-        });
+        let mut solver = record(SOLVER_FIELDS, &self.settings);
         let fixed_step = self.settings.fixed_step;
-        let steps = [("method", json!(self.method())), ("step", json!(fixed_step.map(|by| by.step)))];
-        fields.into_iter().chain(steps.map(|(key, value)| (key.to_owned(), value))).collect()
+        solver.insert("method".to_owned(), json!(self.method()));
+        solver.insert("step".to_owned(), json!(fixed_step.map(|by| by.step)));
+        solver.into()
     }
 
     /// What moves the robot on, where it moves by itself.
@@ -100,17 +94,20 @@ impl Plan {
             element.row.params.iter().zip(parameters).map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
         let inputs: Map<String, Value> =
             element.row.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_owned(), signal(s))).collect();
-        json!({
+        let mut value = json!({
             "name": element.name,
             "from": self.anchor(from),
             "to": self.anchor(to),
-            "rest_length": element.rest_length,
             "law": element.row.name,
             "parameters": parameters,
             "inputs": inputs,
             "derivative": element.derivative.name(),
             "scheme": element.scheme.map_or_else(|| "exact".into(), |scheme| scheme.to_string()),
-        })
+        });
+        if let Value::Object(value) = &mut value {
+            value.extend(record(ELEMENT_FIELDS, element));
+        }
+        value
     }
 
     fn motion(&self) -> Value {

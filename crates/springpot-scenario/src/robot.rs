@@ -47,7 +47,7 @@ impl OwnJoint<'_> {
 
 /// Reads `[robot]`.
 pub(crate) fn read(root: &Table<'_>) -> Read<Robot> {
-    let field = root.require("robot", &format!("[robot] with {RIGHT}"))?;
+    let field = root.require("robot")?;
     let from_urdf = field.node.get("urdf").is_some();
     let kind = if from_urdf { FROM_URDF } else { "" };
     let urdf_only = |key: &str| {
@@ -85,14 +85,14 @@ impl Robot {
     /// Reads `{ body = …, point = … }`, where the body may be the world.
     pub(crate) fn anchor(&self, field: &Field<'_>) -> Read<(String, Anchor)> {
         let table = field.table(&ANCHOR)?;
-        let body = table.require("body", "body = \"NAME\" or body = \"world\"").and_then(|body| {
+        let body = table.require("body").and_then(|body| {
             let name = body.text()?;
             match self.model().find_body(name) {
                 Some(found) => Ok((name.to_owned(), found)),
                 None => Err(unknown_body(&body, name, self.body_names().chain(self.world_names()))),
             }
         });
-        let point = table.require("point", "point = [x, y, z] in the body's joint frame, m");
+        let point = table.require("point");
         let point = point.and_then(|point| point.components())?;
         let (name, body) = body?;
         Ok((name, Anchor { body, point }))

@@ -124,7 +124,7 @@ fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
         }
         (None, Some(csv)) => {
             let samples = csv_table(&csv, wanted.end)?;
-            let column = table.require("column", "column = \"NAME\": the column of the CSV file")?;
+            let column = table.require_with("column", "column = \"NAME\": the column of the CSV file")?;
             samples_signal(&column, &samples, column.text()?, wanted.smooth)?
         }
         (Some(_), Some(csv)) => {

@@ -172,12 +172,8 @@ fn axis(root: &Table<'_>, item: &Field<'_>, i: usize) -> Read<Axis> {
     };
     let what = format!("[[sweep]] {}", i + 1);
     let table = Table::of_kind(item.ctx, item.node, what, (&SWEEP, ""), direct)?;
-    let targets = table
-        .require("parameter", "parameter = \"element.NAME.PARAMETER\"")
-        .and_then(|field| targets(&field, root.node));
-    let values = table
-        .require("values", "values = [ … ] or values = { from = …, to = …, count = … }")
-        .and_then(|field| values(&field));
+    let targets = table.require("parameter").and_then(|field| targets(&field, root.node));
+    let values = table.require("values").and_then(|field| values(&field));
     Ok(Axis { targets: targets?, values: values?, place: item.node.place.clone() })
 }
 
@@ -227,9 +223,9 @@ fn values(field: &Field<'_>) -> Read<Values> {
 
 fn span(field: &Field<'_>) -> Read<Span> {
     let table = field.table(&SPAN)?;
-    let end = |key| table.require(key, "from, to and count").and_then(|field| end_of_span(&field));
+    let end = |key| table.require(key).and_then(|field| end_of_span(&field));
     let (from, to) = (end("from"), end("to"));
-    let count = table.require("count", "from, to and count").and_then(|field| field.whole());
+    let count = table.require("count").and_then(|field| field.whole());
     let logarithmic = table.get("scale").map_or(Ok(false), |field| match field.text()? {
         "linear" => Ok(false),
         "log" => Ok(true),

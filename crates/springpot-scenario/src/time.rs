@@ -1,8 +1,8 @@
 //! `[time]` and `[solver]`.
 
-use super::document::{Value, shorten};
-use super::keys::solver::{ADAPTIVE, FIELDS, FIXED, SMALLEST_MEMORY_RTOL, Slot};
-use super::keys::{Need, SOLVER, TIME};
+use super::document::{Node, Value, shorten};
+use super::keys::solver::{ADAPTIVE, FIXED, SMALLEST_MEMORY_RTOL};
+use super::keys::{SOLVER, SOLVER_FIELDS, TIME};
 use super::names;
 use super::reader::{Field, Read, Table};
 use super::refusal::RefusalKind;
@@ -25,9 +25,9 @@ pub(crate) struct Duration {
 
 /// Reads `[time]`.
 pub(crate) fn read(root: &Table<'_>) -> Read<Duration> {
-    let field = root.require("time", "[time] with end = \"10 s\" and output_step = \"10 ms\"")?;
+    let field = root.require("time")?;
     let table = Table::of(root.ctx, field.node, "[time]", &TIME)?;
-    let end = table.require("end", "end = \"10 s\"").and_then(|field| field.quantity());
+    let end = table.number("end");
     match (table.get("output_step"), table.get("output_times")) {
         (Some(step), None) => {
             let step_size = step.quantity()?;
@@ -87,11 +87,10 @@ pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Setti
             (RefusalKind::Rule, format!("`{key}` of [solver] {why}"))
         })
     };
-    let table = match root.get("solver") {
-        Some(field) => Some(Table::of_kind(root.ctx, field.node, "[solver]", (&SOLVER, kind), forward_only)?),
-        None => None,
-    };
-    let get = |key: &'static str| table.as_ref().and_then(|table| table.get(key));
+    let nothing = Node::empty_table(&root.node.place);
+    let field = root.get("solver");
+    let node = field.as_ref().map_or(&nothing, |field| field.node);
+    let table = Table::of_kind(root.ctx, node, "[solver]", (&SOLVER, kind), forward_only)?;
     let rows = RowTimes::Times(Vec::new().into());
     let Duration { end, rows } = time.clone().unwrap_or(Duration { end: 0.0, rows });
     let mut settings = Settings {
@@ -105,25 +104,11 @@ pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Setti
         max_steps: None,
         fixed_step: None,
     };
-    let mut read = Ok(());
-    for (key, slot) in FIELDS {
-        let given = get(key);
-        let put = match (slot(&mut settings), given, SOLVER.get(key).map(|key| key.need)) {
-            (Slot::Number(number), None, Some(Need::Number(default))) => {
-                *number = default;
-                Ok(())
-            }
-            (_, None, _) => Ok(()),
-            (Slot::Number(number), Some(field), _) => field.quantity().map(|value| *number = value),
-            (Slot::Perhaps(number), Some(field), _) => field.quantity().map(|value| *number = Some(value)),
-            (Slot::Count(count), Some(field), _) => field.whole().map(|value| *count = Some(value.unsigned_abs())),
-        };
-        read = read.and(put);
-    }
-    if get("memory_rtol").is_none() {
+    let read = table.fill(SOLVER_FIELDS, &mut settings);
+    if table.get("memory_rtol").is_none() {
         settings.memory_rtol = (settings.rtol / MEMORY_SHARE).max(SMALLEST_MEMORY_RTOL);
     }
-    settings.fixed_step = fixed_step(table.as_ref())?;
+    settings.fixed_step = fixed_step(&table)?;
     read.map(|()| settings)
 }
 
@@ -134,12 +119,11 @@ fn moves_by_itself(root: &Table<'_>) -> bool {
 }
 
 /// `method` and `step`.
-fn fixed_step(table: Option<&Table<'_>>) -> Read<Option<FixedStep>> {
-    let get = |key: &'static str| table.and_then(|table| table.get(key));
-    let method = get("method").map(|field| method(&field)).transpose()?.flatten();
-    match (method, get("step"), table) {
-        (None, None, _) | (_, _, None) => Ok(None),
-        (None, Some(step), _) => {
+fn fixed_step(table: &Table<'_>) -> Read<Option<FixedStep>> {
+    let method = table.get("method").map(|field| method(&field)).transpose()?.flatten();
+    match (method, table.get("step")) {
+        (None, None) => Ok(None),
+        (None, Some(step)) => {
             let help = "add method = \"backward-euler\" or \"midpoint\", or leave step out".to_owned();
             Err(step.refuse(
                 RefusalKind::Rule,
@@ -147,8 +131,8 @@ fn fixed_step(table: Option<&Table<'_>>) -> Read<Option<FixedStep>> {
                 Some(help),
             ))
         }
-        (Some(_), None, Some(table)) => Err(table.missing("step", "step = \"1 ms\", as fixed-step methods need it")),
-        (Some(method), Some(step), Some(table)) => {
+        (Some(_), None) => Err(table.missing("step", "step = \"1 ms\", as fixed-step methods need it")),
+        (Some(method), Some(step)) => {
             for key in ["atol", "first_step", "max_step"] {
                 if let Some(field) = table.get(key) {
                     let message = format!("has no effect with method = {:?}, whose steps are all alike", method.name());

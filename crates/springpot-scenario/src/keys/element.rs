@@ -1,6 +1,8 @@
 //! `[[element]]`.
 
-use super::{ANCHOR, Bound, Keys, Need, Shape, key};
+use super::robot::NAME;
+use super::{ANCHOR, Bound, Field, Keys, Need, Shape, Slot, key};
+use springpot::element::Element;
 use springpot::law::Derivative;
 
 /// Names that would collide with columns of the results.
@@ -12,13 +14,23 @@ pub(crate) static ELEMENT: Keys = Keys {
         key(
             "name",
             Shape::Name(&RESERVED_NAMES),
-            Need::Written,
+            Need::Written(NAME),
             "Name of the element; begins the names of its columns.",
         ),
-        key("from", Shape::Table(&ANCHOR), Need::Required, "First end."),
-        key("to", Shape::Table(&ANCHOR), Need::Required, "Second end."),
-        key("rest_length", Shape::Number("m", Bound::NotNegative), Need::Required, "Length at which the stroke is 0."),
-        key("law", Shape::Law, Need::Required, "Name of the law: `springpot laws` lists them."),
+        key(
+            "from",
+            Shape::Table(&ANCHOR),
+            Need::Required("from = { body = \"NAME\", point = [x, y, z] }"),
+            "First end.",
+        ),
+        key("to", Shape::Table(&ANCHOR), Need::Required("to = { body = \"NAME\", point = [x, y, z] }"), "Second end."),
+        key(
+            "rest_length",
+            Shape::Number("m", Bound::Length),
+            Need::Required("rest_length = \"70 cm\""),
+            "Length at which the stroke is 0.",
+        ),
+        key("law", Shape::Law, Need::Required("law = \"…\""), "Name of the law: `springpot laws` lists them."),
         key("parameters", Shape::ByName, Need::Optional, "Parameters, as the law says."),
         key("inputs", Shape::ByName, Need::Optional, "Inputs, as the law says: functions of time."),
         key(
@@ -35,3 +47,7 @@ pub(crate) static ELEMENT: Keys = Keys {
         ),
     ],
 };
+
+/// Its keys that are numbers of the element.
+pub(crate) const ELEMENT_FIELDS: &[Field<Element>] =
+    &[("rest_length", |element| Slot::Number(&mut element.rest_length))];

@@ -12,13 +12,15 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use element::{ELEMENT, RESERVED_NAMES};
+pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
 pub(crate) use figure::{FIGURE, OUTPUT};
 pub(crate) use motion::{FORCES, MOTION, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
 pub(crate) use robot::{ANCHOR, BODY, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, WITH_AXIS};
-pub(crate) use solver::{SOLVER, TIME};
+pub(crate) use solver::{SOLVER, SOLVER_FIELDS, TIME};
 pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
+
+use serde_json::{Map, Value, json};
 
 /// A table of a scenario and its keys.
 #[derive(Debug)]
@@ -120,6 +122,8 @@ pub(crate) enum Bound {
     Any,
     /// Zero and above; what is below is refused where it is used, with words of its own.
     NotNegative,
+    /// Zero and above, since it is a length.
+    Length,
     /// Above zero.
     Positive,
     /// An interval, and what to write.
@@ -129,10 +133,10 @@ pub(crate) enum Bound {
 /// Whether a key must be there, and what stands for it where it is left out.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Need {
-    /// It must be written in the file.
-    Written,
-    /// It must be there; the file may leave it to a sweep.
-    Required,
+    /// It must be written in the file, as these words say.
+    Written(&'static str),
+    /// It must be there, as these words say; the file may leave it to a sweep.
+    Required(&'static str),
     /// It or another one must be there.
     OneOf,
     /// Nothing stands for it.
@@ -161,13 +165,21 @@ impl Key {
     /// What stands for it where it is left out, as a file would say it; `None` where nothing does, or it cannot be left out.
     pub(crate) fn default(&self) -> Option<String> {
         match self.need {
-            Need::Written | Need::Required | Need::OneOf | Need::Optional => None,
+            Need::Written(_) | Need::Required(_) | Need::OneOf | Need::Optional => None,
             Need::Number(number) if number != 0.0 && number.abs() < 0.01 => Some(format!("{number:e}")),
             Need::Number(number) => Some(number.to_string()),
             Need::Vector([x, y, z]) => Some(format!("[{x}, {y}, {z}]")),
             Need::Flag(flag) => Some(flag.to_string()),
             Need::Word(word) => Some(format!("{word:?}")),
             Need::Said(words) => Some(words.to_owned()),
+        }
+    }
+
+    /// What to write where it must be there and is not.
+    pub(crate) fn right(&self) -> &'static str {
+        match self.need {
+            Need::Written(right) | Need::Required(right) => right,
+            _ => self.name,
         }
     }
 
@@ -208,15 +220,52 @@ impl Keys {
     }
 }
 
+/// Where the number under a key goes.
+pub(crate) enum Slot<'t> {
+    Number(&'t mut f64),
+    Perhaps(&'t mut Option<f64>),
+    Count(&'t mut Option<u64>),
+}
+
+/// A key that is a field of what is made of its table. What a file says of it is put there, and the record of a run takes it from
+/// there.
+pub(crate) type Field<T> = (&'static str, fn(&mut T) -> Slot<'_>);
+
+/// The fields of `made` as the record of a run has them.
+pub(crate) fn record<T: Clone>(fields: &[Field<T>], made: &T) -> Map<String, Value> {
+    let mut made = made.clone();
+    let value = |slot: Slot<'_>| match slot {
+        Slot::Number(number) => json!(number),
+        Slot::Perhaps(number) => json!(number),
+        Slot::Count(count) => json!(count),
+    };
+    fields.iter().map(|(key, slot)| ((*key).to_owned(), value(slot(&mut made)))).collect()
+}
+
 /// The whole scenario.
 pub(crate) static SCENARIO: Keys = Keys {
     words: "A Springpot scenario.",
     keys: &[
         key("title", Shape::Text, Need::Optional, "Title, shown by check and in run.json."),
-        key("robot", Shape::Table(&ROBOT), Need::Required, "Gravity, bodies or a URDF file, gripper."),
+        key(
+            "robot",
+            Shape::Table(&ROBOT),
+            Need::Required("[robot] with urdf = \"arm.urdf\", or a [[robot.body]] for each body"),
+            "Gravity, bodies or a URDF file, gripper.",
+        ),
         key("element", Shape::Tables(&ELEMENT, None), Need::Optional, "Materials between two points."),
-        key("motion", Shape::Table(&MOTION), Need::Required, "What moves the robot."),
-        key("time", Shape::Table(&TIME), Need::Required, "Duration and rows."),
+        key(
+            "motion",
+            Shape::Table(&MOTION),
+            Need::Required("[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\""),
+            "What moves the robot.",
+        ),
+        key(
+            "time",
+            Shape::Table(&TIME),
+            Need::Required("[time] with end = \"10 s\" and output_step = \"10 ms\""),
+            "Duration and rows.",
+        ),
         key("solver", Shape::Table(&SOLVER), Need::Optional, "Accuracy and steps."),
         key(
             "sweep",

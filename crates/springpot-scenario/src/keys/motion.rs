@@ -13,7 +13,7 @@ pub(crate) static MOTION: Keys = Keys {
         key(
             "kind",
             Shape::Words(|| vec!["prescribed", "gripper-path", "forward"]),
-            Need::Required,
+            Need::Required("kind = \"prescribed\", \"gripper-path\" or \"forward\""),
             "Prescribed joints, a path of the gripper, or forward: forces.",
         ),
         key("joints", Shape::ByJoint(Each::Path), Need::OneOf, "How every joint moves.").only(PRESCRIBED),
@@ -56,7 +56,12 @@ pub(crate) static MOTION: Keys = Keys {
 };
 
 const fn coordinate(name: &'static str) -> Key {
-    key(name, Shape::Signal("m"), Need::Required, "Coordinate of the gripper in the world.")
+    key(
+        name,
+        Shape::Signal("m"),
+        Need::Required("a signal for each of x, y and z (in m)"),
+        "Coordinate of the gripper in the world.",
+    )
 }
 
 /// A signal that is a table.

@@ -3,6 +3,8 @@
 use super::{Bound, Key, Keys, Need, Shape, key};
 use springpot::model::{FRICTION_SPEED, JointKind};
 
+/// What to write where a name is missing.
+pub(super) const NAME: &str = "name = \"…\"";
 const KILOGRAM_METRE_SQUARED: &str = "kg*m^2";
 /// N·m where a joint turns, N where it slides.
 const FORCE: [&str; 2] = ["N*m", "N"];
@@ -44,23 +46,38 @@ pub(crate) static ROBOT: Keys = Keys {
 pub(crate) static ANCHOR: Keys = Keys {
     words: "A point on a body.",
     keys: &[
-        key("body", Shape::Text, Need::Required, "Name of a body or link, or \"world\"."),
-        key("point", Shape::Vector("m"), Need::Required, "The point in the frame of the body's joint."),
+        key(
+            "body",
+            Shape::Text,
+            Need::Required("body = \"NAME\" or body = \"world\""),
+            "Name of a body or link, or \"world\".",
+        ),
+        key(
+            "point",
+            Shape::Vector("m"),
+            Need::Required("point = [x, y, z] in the body's joint frame, m"),
+            "The point in the frame of the body's joint.",
+        ),
     ],
 };
 
 pub(crate) static BODY: Keys = Keys {
     words: "A body and the joint that it hangs on.",
     keys: &[
-        key("name", Shape::Name(&[]), Need::Written, "Name of the body; not \"world\"."),
+        key("name", Shape::Name(&[]), Need::Written(NAME), "Name of the body; not \"world\"."),
         key(
             "parent",
             Shape::Text,
             Need::Said("the body before; the first hangs on \"world\""),
             "\"world\" or an earlier body.",
         ),
-        key("joint", Shape::Table(&JOINT), Need::Required, "The joint between the body and its parent."),
-        key("mass", Shape::Number("kg", Bound::NotNegative), Need::Required, "Mass."),
+        key(
+            "joint",
+            Shape::Table(&JOINT),
+            Need::Required("joint = { name = \"…\", kind = \"revolute\", axis = [0, 0, 1], origin = [0, 0, 0] }"),
+            "The joint between the body and its parent.",
+        ),
+        key("mass", Shape::Number("kg", Bound::NotNegative), Need::Required("mass = 1.0 (in kg)"), "Mass."),
         key("com", Shape::Vector("m"), ZERO, "Centre of mass in the frame of the joint."),
         key(
             "inertia",
@@ -72,7 +89,12 @@ pub(crate) static BODY: Keys = Keys {
 };
 
 const fn moment(name: &'static str) -> Key {
-    key(name, Shape::Number(KILOGRAM_METRE_SQUARED, Bound::NotNegative), Need::Required, "Moment of inertia.")
+    key(
+        name,
+        Shape::Number(KILOGRAM_METRE_SQUARED, Bound::NotNegative),
+        Need::Required("xx, yy and zz, in kg*m^2"),
+        "Moment of inertia.",
+    )
 }
 
 const fn product(name: &'static str) -> Key {
@@ -92,11 +114,22 @@ const AXIS: &[&str] = &[WITH_AXIS];
 pub(crate) static JOINT: Keys = Keys {
     words: "The joint between the body and its parent.",
     keys: &[
-        key("name", Shape::Name(&[]), Need::Written, "Name of the joint."),
-        key("kind", Shape::Words(|| JointKind::ALL.map(JointKind::name).to_vec()), Need::Required, "How it moves."),
+        key("name", Shape::Name(&[]), Need::Written(NAME), "Name of the joint."),
+        key(
+            "kind",
+            Shape::Words(|| JointKind::ALL.map(JointKind::name).to_vec()),
+            Need::Required("kind = \"revolute\", \"continuous\", \"prismatic\", \"floating\" or \"fixed\""),
+            "How it moves.",
+        ),
         key("origin", Shape::Vector("m"), ZERO, "Origin of the joint frame in the parent's joint frame."),
         key("rpy", Shape::Vector("rad"), ZERO, "Roll, pitch, yaw of the joint frame in the parent's."),
-        key("axis", Shape::Vector(""), Need::Required, "Axis in the joint frame, of any length but 0.").only(AXIS),
+        key(
+            "axis",
+            Shape::Vector(""),
+            Need::Required("axis = [0, 0, 1]"),
+            "Axis in the joint frame, of any length but 0.",
+        )
+        .only(AXIS),
         key(
             "damping",
             Shape::JointNumber(["N*m*s/rad", "N*s/m"], Bound::NotNegative),
@@ -117,7 +150,12 @@ pub(crate) static JOINT: Keys = Keys {
 pub(crate) static FRICTION: Keys = Keys {
     words: "Coulomb friction, and what it does near rest.",
     keys: &[
-        key("force", Shape::JointNumber(FORCE, Bound::NotNegative), Need::Written, "Coulomb friction."),
+        key(
+            "force",
+            Shape::JointNumber(FORCE, Bound::NotNegative),
+            Need::Written("force = \"0.2 N*m\" (prismatic: \"0.2 N\")"),
+            "Coulomb friction.",
+        ),
         key(
             "speed",
             Shape::JointNumber(["rad/s", "m/s"], Bound::Positive),

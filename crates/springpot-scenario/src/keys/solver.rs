@@ -1,13 +1,18 @@
 //! `[time]` and `[solver]`, and where the numbers of `[solver]` go.
 
-use super::{Bound, Keys, Need, Shape, key};
+use super::{Bound, Field, Keys, Need, Shape, Slot, key};
 use springpot::simulate::Settings;
 use springpot::simulate::fixed::Method;
 
 pub(crate) static TIME: Keys = Keys {
     words: "Duration and rows.",
     keys: &[
-        key("end", Shape::Number("s", Bound::Positive), Need::Required, "Duration; the motion starts at t = 0."),
+        key(
+            "end",
+            Shape::Number("s", Bound::Positive),
+            Need::Required("end = \"10 s\""),
+            "Duration; the motion starts at t = 0.",
+        ),
         key(
             "output_step",
             Shape::Number("s", Bound::Positive),
@@ -85,19 +90,8 @@ pub(crate) static SOLVER: Keys = Keys {
     ],
 };
 
-/// A field of the settings.
-pub(crate) enum Slot<'s> {
-    Number(&'s mut f64),
-    Perhaps(&'s mut Option<f64>),
-    Count(&'s mut Option<u64>),
-}
-
-/// A key, and the field of the settings that it is.
-pub(crate) type Field = (&'static str, fn(&mut Settings) -> Slot<'_>);
-
-/// The keys of `[solver]` that are fields of the settings. What a file says of them is put there, and the record of a run takes it
-/// from there.
-pub(crate) const FIELDS: [Field; 6] = [
+/// Its keys that are numbers of the settings.
+pub(crate) const SOLVER_FIELDS: &[Field<Settings>] = &[
     ("rtol", |settings| Slot::Number(&mut settings.rtol)),
     ("atol", |settings| Slot::Perhaps(&mut settings.atol)),
     ("memory_rtol", |settings| Slot::Number(&mut settings.memory_rtol)),

@@ -15,19 +15,26 @@ pub(crate) static SWEEP: Keys = Keys {
         key(
             "parameter",
             Shape::Paths(MAX_TOGETHER),
-            Need::Written,
+            Need::Written("parameter = \"element.NAME.PARAMETER\""),
             "A path such as \"element.NAME.alpha\", or paths that take the same value.",
         ),
-        key("values", Shape::ValuesOr(&SPAN), Need::Written, "An array of values, or a table with from, to and count."),
+        key(
+            "values",
+            Shape::ValuesOr(&SPAN),
+            Need::Written("values = [ … ] or values = { from = …, to = …, count = … }"),
+            "An array of values, or a table with from, to and count.",
+        ),
     ],
 };
+
+const SPAN_KEYS: &str = "from, to and count";
 
 pub(crate) static SPAN: Keys = Keys {
     words: "Values from one number to another.",
     keys: &[
-        key("from", Shape::SweptNumber, Need::Written, "First value."),
-        key("to", Shape::SweptNumber, Need::Written, "Last value."),
-        key("count", Shape::Whole(2, Some(MAX_CASES as i64)), Need::Written, "Number of values."),
+        key("from", Shape::SweptNumber, Need::Written(SPAN_KEYS), "First value."),
+        key("to", Shape::SweptNumber, Need::Written(SPAN_KEYS), "Last value."),
+        key("count", Shape::Whole(2, Some(MAX_CASES as i64)), Need::Written(SPAN_KEYS), "Number of values."),
         key(
             "scale",
             Shape::Words(|| vec!["linear", "log"]),

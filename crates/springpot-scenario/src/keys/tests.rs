@@ -44,7 +44,7 @@ fn every_key_is_sound() {
             {
                 let holds = match bound {
                     Bound::Any => default.is_finite(),
-                    Bound::NotNegative => default >= 0.0,
+                    Bound::NotNegative | Bound::Length => default >= 0.0,
                     Bound::Positive => default > 0.0,
                     Bound::Within(low, high, _) => (low..=high).contains(&default),
                 };
@@ -60,7 +60,8 @@ fn every_key_is_sound() {
     assert!(count > 100, "{count}");
     assert_eq!(POSE.names(), START_POSE.names());
     assert_eq!(FORCES.names(), START_VELOCITIES.names());
-    assert!(solver::FIELDS.iter().all(|(name, _)| SOLVER.get(name).is_some()));
+    assert!(SOLVER_FIELDS.iter().all(|(name, _)| SOLVER.get(name).is_some()));
+    assert!(ELEMENT_FIELDS.iter().all(|(name, _)| ELEMENT.get(name).is_some()));
 }
 
 /// A row of a table of keys: the keys in its first cell, what is said of them, and the last cell.
@@ -113,7 +114,7 @@ fn unit_of(key: &Key) -> String {
 fn is_said(key: &Key, last: &str) -> bool {
     let plain = last.replace('`', "");
     match key.need {
-        Need::Written | Need::Required => plain.starts_with("required"),
+        Need::Written(_) | Need::Required(_) => plain.starts_with("required"),
         Need::OneOf => ["one of", "the two"].contains(&plain.as_str()),
         Need::Optional => !plain.starts_with("required"),
         _ => key.default().is_some_and(|default| plain == default),

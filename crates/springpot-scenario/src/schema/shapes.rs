@@ -13,7 +13,7 @@ pub(super) fn object(description: &str, keys: &Keys, catalog: &Catalog) -> Value
         "type": "object", "description": description, "properties": properties, "additionalProperties": false,
     });
     let written: Vec<&str> =
-        keys.keys.iter().filter(|key| matches!(key.need, Need::Written)).map(|key| key.name).collect();
+        keys.keys.iter().filter(|key| matches!(key.need, Need::Written(_))).map(|key| key.name).collect();
     if !written.is_empty() {
         schema["required"] = written.into();
     }
@@ -160,7 +160,7 @@ pub(super) fn quantity(unit: &str, description: &str) -> Value {
 fn bounded(mut schema: Value, bound: Bound) -> Value {
     match bound {
         Bound::Any => {}
-        Bound::NotNegative => schema["minimum"] = 0.0.into(),
+        Bound::NotNegative | Bound::Length => schema["minimum"] = 0.0.into(),
         Bound::Positive => schema["exclusiveMinimum"] = 0.0.into(),
         Bound::Within(low, high, _) => {
             schema["minimum"] = low.into();
