@@ -1,7 +1,7 @@
 //! `[time]` and `[solver]`.
 
 use super::document::{Node, Value, shorten};
-use super::keys::solver::{ADAPTIVE, FIXED, SMALLEST_MEMORY_RTOL};
+use super::keys::solver::{ADAPTIVE, FIXED, SMALLEST_MEMORY_RTOL, unfilled};
 use super::keys::{SOLVER, SOLVER_FIELDS, TIME};
 use super::names;
 use super::reader::{Field, Read, Table};
@@ -91,19 +91,10 @@ pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Setti
     let field = root.get("solver");
     let node = field.as_ref().map_or(&nothing, |field| field.node);
     let table = Table::of_kind(root.ctx, node, "[solver]", (&SOLVER, kind), forward_only)?;
+    // Where [time] is refused, what is wrong with [solver] is told all the same.
     let rows = RowTimes::Times(Vec::new().into());
     let Duration { end, rows } = time.clone().unwrap_or(Duration { end: 0.0, rows });
-    let mut settings = Settings {
-        end,
-        rows,
-        rtol: 0.0,
-        atol: None,
-        memory_rtol: 0.0,
-        first_step: None,
-        max_step: None,
-        max_steps: None,
-        fixed_step: None,
-    };
+    let mut settings = unfilled(end, rows);
     let read = table.fill(SOLVER_FIELDS, &mut settings);
     if table.get("memory_rtol").is_none() {
         settings.memory_rtol = (settings.rtol / MEMORY_SHARE).max(SMALLEST_MEMORY_RTOL);

@@ -1,8 +1,8 @@
 //! `[time]` and `[solver]`, and where the numbers of `[solver]` go.
 
 use super::{Bound, Field, Keys, Need, Shape, Slot, key};
-use springpot::simulate::Settings;
 use springpot::simulate::fixed::Method;
+use springpot::simulate::{RowTimes, Settings};
 
 pub(crate) static TIME: Keys = Keys {
     words: "Duration and rows.",
@@ -99,3 +99,18 @@ pub(crate) const SOLVER_FIELDS: &[Field<Settings>] = &[
     ("max_step", |settings| Slot::Perhaps(&mut settings.max_step)),
     ("max_steps", |settings| Slot::Count(&mut settings.max_steps)),
 ];
+
+/// Settings whose keys have not been read.
+pub(crate) fn unfilled(end: f64, rows: RowTimes) -> Settings {
+    Settings {
+        end,
+        rows,
+        rtol: f64::NAN,
+        atol: None,
+        memory_rtol: f64::NAN,
+        first_step: None,
+        max_step: None,
+        max_steps: None,
+        fixed_step: None,
+    }
+}
