@@ -4,7 +4,7 @@ use crate::steps::random_steps;
 use springpot::fractional::{Form, Nodes};
 use springpot::law::leaf::Coefficient;
 use springpot::law::{Catalog, Derivative, Entry, InputValue, Law, Parallel, Point, Start, State, Step};
-use springpot::scenario::units::{Unit, parse_quantity};
+use springpot_scenario::units::{Unit, parse_quantity};
 use std::sync::Arc;
 
 /// Parameter values well inside their ranges; alpha where the law has one.
@@ -409,7 +409,7 @@ joints = { q = "0.1*t" }
 end = 1
 output_step = 0.5
 "#;
-    let scenario = springpot::scenario::Scenario::parse(text, "user.toml", "").unwrap();
+    let scenario = springpot_scenario::Scenario::parse(text, "user.toml", "").unwrap();
     assert!(scenario.cases(&Catalog::standard()).is_err());
     let plan = scenario.cases(&replaced).unwrap().plan(0).unwrap();
     let mut forces = Vec::new();
@@ -420,7 +420,7 @@ output_step = 0.5
         Ok(())
     };
     let (report, outcome) =
-        springpot::simulate::along(&system, &plan.settings(), &mut rows, &springpot::simulate::Stop::new(false));
+        springpot::simulate::along(&system, &plan.settings, &mut rows, &springpot::simulate::Stop::new(false));
     outcome.unwrap();
     assert_eq!(report.modes, 0);
     assert!(forces.iter().zip([0.0, 50.0, 100.0]).all(|(a, b)| (a - b).abs() < 1e-10), "{forces:?}");
