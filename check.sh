@@ -11,11 +11,8 @@ cargo fmt --all --check
 step "lints"
 cargo clippy --workspace --all-targets --quiet -- -D warnings
 
-step "the engine without scenario files"
+step "the engine without URDF files"
 cargo clippy --package springpot --no-default-features --quiet -- -D warnings
-
-step "the engine with URDF files, without scenario files"
-cargo clippy --package springpot --no-default-features --features urdf --quiet -- -D warnings
 
 # Nothing is downloaded here: what is not at hand is said, not checked.
 msrv=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)

@@ -17,10 +17,10 @@ use springpot::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pai
 use springpot::fractional::{Kernel, gamma::gamma};
 use springpot::law::Catalog;
 use springpot::motion::{Drive, Forward, Motion};
-use springpot::scenario::Scenario;
 use springpot::signal::Signal;
 use springpot::simulate::{RowTimes, Settings, Stop, System, forward};
 use springpot_report::{Panel, Plot};
+use springpot_scenario::Scenario;
 
 /// Length of the run, s.
 const END: f64 = 2.0;
@@ -59,7 +59,7 @@ fn arm(alpha: f64) -> (System, Settings) {
     let mut system = plan.system();
     let drives = (0..3).map(|_| Drive::Force(vec![Signal::constant(0.0)])).collect();
     system.motion = Motion::Forward(Box::new(Forward { q: vec![0.0; 3], v: vec![0.0; 3], drives }));
-    let settings = Settings { end: END, rows: RowTimes::Times([END].into()), ..plan.settings() };
+    let settings = Settings { end: END, rows: RowTimes::Times([END].into()), ..plan.settings.clone() };
     (system, settings)
 }
 

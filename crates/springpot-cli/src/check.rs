@@ -6,10 +6,11 @@ use crate::arguments::CheckOptions;
 use crate::numbers::{count, short};
 use crate::run::in_case;
 use crate::{Ending, diagnostic, plain, printed, terminal};
+use springpot::element::Element;
 use springpot::law::{Catalog, Entry};
-use springpot::scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan, json_schema};
 use springpot::simulate::{ElementStart, RowTimes, RunError, Stop, System};
-use springpot::sweep::Layout;
+use springpot_run::sweep::Layout;
+use springpot_scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan, json_schema};
 use std::ops::RangeInclusive;
 use std::path::Path;
 use warnings::Warnings;
@@ -52,9 +53,9 @@ fn describe(file: &Path, options: &CheckOptions) -> Result<Ending, Refusals> {
     let mut warnings = Warnings::new(&plan);
     let mut failures: Vec<(usize, RunError)> = Vec::new();
     let mut first: Option<Vec<ElementStart>> = None;
-    let switches = match plan.solver.fixed_step {
+    let switches = match plan.settings.fixed_step {
         Some(_) => 0,
-        None => system.switches(&plan.settings(), &Stop::new(false)).unwrap_or_else(|error| {
+        None => system.switches(&plan.settings, &Stop::new(false)).unwrap_or_else(|error| {
             failures.push((0, error));
             0
         }),
@@ -107,7 +108,7 @@ fn looked_at(cases: &Cases, plan: &Plan) -> Vec<usize> {
 
 /// Why and where a gripper path ends early.
 fn path_failure(plan: &Plan, system: &System) -> Option<RunError> {
-    system.motion.has_path().then(|| system.pose(plan.time.end).err()).flatten()
+    system.motion.has_path().then(|| system.pose(plan.settings.end).err()).flatten()
 }
 
 /// The description of a scenario.
@@ -122,12 +123,12 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u6
     for joint in followers(plan) {
         line("", &joint);
     }
-    line("motion", &format!("{}, 0 to {} s", plan.motion.kind(), short(plan.time.end)));
+    line("motion", &format!("{}, 0 to {} s", plan.motion.kind(), short(plan.settings.end)));
     if switches > 0 {
         line("signals", &format!("{}, each of which ends a step", count(switches, "kink or jump", "kinks and jumps")));
     }
-    line("rows", &rows(&plan.time.rows));
-    line("accuracy", &format!("rtol {}, memory_rtol {}", short(plan.solver.rtol), short(plan.solver.memory_rtol)));
+    line("rows", &rows(&plan.settings.rows));
+    line("accuracy", &format!("rtol {}, memory_rtol {}", short(plan.settings.rtol), short(plan.settings.memory_rtol)));
     if cases.axis_count() > 0 {
         line("cases", &cases.len().to_string());
     }
@@ -139,10 +140,11 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u6
     if !figures.is_empty() {
         line("figures", &figures.join(", "));
     }
-    for (e, element) in plan.elements.iter().enumerate() {
-        line("element", &format!("{}: {}, {}", element.name, element.law.name, memory(element)));
-        line("", element.law.equation);
-        line("", &parameters(element));
+    for (e, plan_of) in plan.elements.iter().enumerate() {
+        let element = &plan_of.element;
+        line("element", &format!("{}: {}, {}", element.name, element.row.name, memory(element)));
+        line("", element.row.equation);
+        line("", &parameters(plan_of));
         let Some(start) = start.map(|start| &start[e]) else { continue };
         let (length, stroke) = (range(start.length, warnings.lengths(e)), range(start.stroke, warnings.strokes(e)));
         line("", &format!("l(0) = {length}, l0 = {} m", short(element.rest_length)));
@@ -213,7 +215,7 @@ fn values(cases: &Cases, axis: usize) -> String {
 }
 
 /// Which derivative, and by which scheme.
-fn memory(element: &ElementPlan) -> String {
+fn memory(element: &Element) -> String {
     match element.scheme {
         None => element.derivative.name().to_owned(),
         Some(scheme) => format!("{} by {scheme}", element.derivative.name()),
@@ -222,7 +224,7 @@ fn memory(element: &ElementPlan) -> String {
 
 /// Parameters in SI, then inputs as written.
 fn parameters(element: &ElementPlan) -> String {
-    let Entry { params, inputs, .. } = &element.law;
+    let Entry { params, inputs, .. } = &element.element.row;
     let with_unit = |value: String, unit: &str| if unit.is_empty() { value } else { format!("{value} {unit}") };
     let parameter = |(param, value): (&springpot::law::Param, &f64)| {
         format!("{} = {}", param.name, with_unit(short(*value), param.unit)).replace(' ', terminal::NO_BREAK)

@@ -6,7 +6,7 @@ use miette::ThemeStyles;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Severity, SourceCode, ThemeCharacters};
 use springpot::law::Catalog;
 use springpot::model::urdf::UrdfError;
-use springpot::scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Scenario, Source};
+use springpot_scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Scenario, Source};
 use std::fmt::{self, Display};
 use std::path::Path;
 use std::sync::Arc;

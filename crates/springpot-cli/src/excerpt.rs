@@ -2,7 +2,7 @@
 
 use crate::plain::{CUT, picture};
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
-use springpot::scenario::Refusal;
+use springpot_scenario::Refusal;
 use std::ops::Range;
 
 /// Up to three lines of a file.

@@ -3,7 +3,7 @@
 use crate::numbers::brief;
 use crate::signals;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use springpot::sweep::Progress;
+use springpot_run::sweep::Progress;
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};

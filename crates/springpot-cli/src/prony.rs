@@ -6,7 +6,7 @@ use crate::numbers::{count, rough, short};
 use crate::robot::Refused;
 use crate::{Ending, diagnostic, output, printed, terminal};
 use springpot::fractional::prony::{Bulk, PronyError, PronySeries, Slowest, Springpot, Term, Window};
-use springpot::scenario::units::{UnitError, parse_quantity};
+use springpot_scenario::units::{UnitError, parse_quantity};
 use std::f64::consts::TAU;
 
 pub(crate) fn prony(options: &PronyOptions) -> Ending {

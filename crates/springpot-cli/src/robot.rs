@@ -5,7 +5,7 @@ use crate::diagnostic;
 use springpot::law::Catalog;
 use springpot::model::urdf::{Urdf, UrdfOptions, UrdfWarning};
 use springpot::model::{BodySpec, JointKind, Model, Parent};
-use springpot::scenario::{RobotPlan, Scenario};
+use springpot_scenario::{RobotPlan, Scenario};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -3,19 +3,17 @@
 mod finished;
 mod prepare;
 
-use self::finished::Finished;
-use self::prepare::{Prepared, Unprepared, prepare};
+use self::finished::Said;
+use self::prepare::{Unprepared, prepare};
 use crate::arguments::RunOptions;
 use crate::numbers::count;
-use crate::{Ending, diagnostic, figures, progress, signals, terminal};
-use springpot::scenario::Cases;
-use springpot::sweep::{self, Options, Progress, Status, SweepError};
-use springpot::table::Format;
-use springpot::table::disk::Disk;
-use springpot::table::folder::FolderError;
-use std::io;
+use crate::{Ending, diagnostic, progress, signals, terminal};
+use springpot_run::sweep::{Progress, Status, SweepError};
+use springpot_run::table::disk::Disk;
+use springpot_run::table::folder::FolderError;
+use springpot_run::{Finished, Prepared};
+use springpot_scenario::Cases;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Limits of joints that are named one by one.
@@ -28,12 +26,6 @@ enum Stopped {
     Sweep(#[from] SweepError),
     #[error(transparent)]
     Folder(#[from] FolderError),
-}
-
-impl From<io::Error> for Stopped {
-    fn from(error: io::Error) -> Self {
-        Self::Folder(error.into())
-    }
 }
 
 pub(crate) fn run(options: &RunOptions, disk: &Disk) -> Ending {
@@ -51,15 +43,17 @@ pub(crate) fn run(options: &RunOptions, disk: &Disk) -> Ending {
     let (out, goes_on) = (prepared.folder.path().to_owned(), prepared.checkpoints.is_some());
     match execute(options, prepared) {
         Ok(finished) => {
+            let status = finished.outcome.status;
+            let finished = Said(finished);
             finished.warn();
             finished.complain();
-            if goes_on && finished.outcome.status == Status::Interrupted {
+            if goes_on && status == Status::Interrupted {
                 terminal::print_error(&format!("to go on: {}\n", to_go_on(&out)));
             }
             if !options.quiet {
                 terminal::print(&finished.summary(begun.elapsed()));
             }
-            match finished.outcome.status {
+            match status {
                 Status::Done => Ending::Done,
                 Status::Failed => Ending::Failed,
                 Status::Interrupted => Ending::Interrupted,
@@ -113,49 +107,19 @@ fn to_go_on(out: &Path) -> String {
 }
 
 /// Runs all cases, draws the figures, writes the record, and puts all of it in place.
-fn execute(options: &RunOptions, prepared: Prepared) -> Result<Finished, Stopped> {
-    let Prepared { cases, plan, system, layout, mut folder, checkpoints, figures, format } = prepared;
+fn execute(options: &RunOptions, mut prepared: Prepared) -> Result<Finished, Stopped> {
     let done = Progress::default();
-    let wanted = (cases.len() as u64).saturating_mul(plan.time.rows.count() as u64);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = options.jobs.map_or(cores, usize::from);
-    let sweep_options = Options { jobs, stop: signals::stop(), progress: &done, checkpoints: checkpoints.as_ref() };
-    let outcome = progress::show_while(wanted, plan.time.end, &done, options.quiet, || {
-        sweep::run(&cases, &layout, &mut folder, sweep_options)
-    })?;
-    let (rows, end) = (done.rows.load(Ordering::Relaxed), plan.time.end);
-
-    let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
-    let is_put = match outcome.status {
-        Status::Done => true,
-        Status::Failed => rows > 0,
-        // Less than one row is no reason to lose an earlier result.
-        Status::Interrupted => rows > 0 || !folder.has_earlier(),
-    };
-    if !is_put {
-        // What a checkpoint goes on with stays beside the earlier results.
-        if !goes_on {
-            folder.discard()?;
-        }
-        return Ok(Finished { cases, outcome, folder, rows, end, is_put });
-    }
-    if figures && outcome.status != Status::Interrupted {
-        for warning in figures::draw(&cases, &system, &plan, &layout, &outcome, &mut folder)? {
-            diagnostic::warning(warning, None);
-        }
-    }
-    // What is gone on with goes on as text.
-    let written = if goes_on { Format::Csv } else { format };
-    folder.convert_rows(written, layout.written(), layout.swept())?;
-    let mut record = outcome.record(&cases, &plan, &layout);
-    record.insert("format".to_owned(), written.name().into());
-    folder.put(record, goes_on)?;
-    Ok(Finished { cases, outcome, folder, rows, end, is_put })
+    let (wanted, end) = (prepared.rows_wanted(), prepared.plan.settings.end);
+    let outcome =
+        progress::show_while(wanted, end, &done, options.quiet, || prepared.sweep(jobs, signals::stop(), &done))?;
+    Ok(prepared.finish(outcome, &done, &mut |warning| diagnostic::warning(warning, None))?)
 }
 
 /// `message` with the swept values of its case in front, where anything is swept.
 pub(crate) fn in_case(cases: &Cases, index: usize, message: &str) -> String {
-    let name = case_name(cases, index);
+    let name = cases.name(index);
     if name.is_empty() { message.to_owned() } else { format!("{name}: {message}") }
 }
 
@@ -168,13 +132,6 @@ pub(crate) fn in_cases(cases: &Cases, looked_at: usize, first: usize, found: usi
         in_case(cases, first, message)
     } else {
         let others = count(found - 1, "other case", "other cases");
-        format!("{} and {others}: {message}", case_name(cases, first))
+        format!("{} and {others}: {message}", cases.name(first))
     }
-}
-
-/// The swept values of a case; empty where nothing is swept.
-pub(crate) fn case_name(cases: &Cases, index: usize) -> String {
-    let labels = cases.labels(index);
-    let named = cases.parameters().iter().zip(labels).map(|(parameter, label)| format!("{parameter} = {label}"));
-    named.collect::<Vec<_>>().join(", ")
 }

@@ -4,8 +4,8 @@
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::{Report, RunError, Settings, along};
+use springpot_scenario::Scenario;
 use std::cell::Cell;
 use std::fmt::Write as _;
 use std::sync::atomic::AtomicBool;
@@ -173,11 +173,11 @@ struct Ran {
 fn run(text: &str, limit: Option<u64>) -> Result<Ran, String> {
     let cases = Scenario::parse(text, "random.toml", "").and_then(|scenario| scenario.cases(&Catalog::standard()));
     let plan = cases.and_then(|cases| cases.plan(0)).map_err(|refusals| refusals.to_string())?;
-    if plan.time.rows.count() > 1_000 {
+    if plan.settings.rows.count() > 1_000 {
         return Err("too many rows for a test".into());
     }
     let system = plan.system();
-    let settings = Settings { max_steps: limit.or(plan.solver.max_steps), ..plan.settings() };
+    let settings = Settings { max_steps: limit.or(plan.settings.max_steps), ..plan.settings.clone() };
     let mut rows = Vec::new();
     let mut keep = |row: &[f64]| -> std::io::Result<()> {
         rows.push(row.to_vec());

@@ -2,9 +2,9 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::System;
 use springpot::simulate::fixed::{Loop, MemorySettings, Method};
+use springpot_scenario::Scenario;
 use std::hint::black_box;
 
 /// A shipped scenario whose robot moves by itself from its position at `start`.

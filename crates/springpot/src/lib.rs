@@ -18,37 +18,67 @@
 //! | [`element`] | a law between two anchors | `model`, `law`, `signal` |
 //! | [`motion`] | q, v, a as functions of time: prescribed, gripper paths | `dynamics`, `signal` |
 //! | [`simulate`] | the time loop: rows, step control, energy | all above |
-//! | [`scenario`], [`sweep`], [`table`] | files in, all cases on all cores, results out | all above |
+//! | [`table`] | the columns of rows | nothing |
+//!
+//! It knows numbers only: no files but URDF, no threads, no terminal. Scenario files are read by the crate `springpot-scenario`, sweeps,
+//! results and figures are made by `springpot-run`.
 //!
 //! A whole run in memory:
 //!
 //! ```
-//! use springpot::law::Catalog;
-//! use springpot::scenario::Scenario;
-//! use springpot::simulate::{Stop, along};
+//! use springpot::element::Element;
+//! use springpot::law::{Catalog, Derivative};
+//! use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
+//! use springpot::motion::{JointPath, Motion};
+//! use springpot::signal::{Expression, Signal};
+//! use springpot::simulate::{RowTimes, Settings, Stop, System, along};
 //!
-//! let text = r#"
-//! robot.body = [{ name = "arm", joint = { name = "q1", kind = "revolute", axis = [0, 1, 0] }, mass = 1, com = [0.2, 0, 0] }]
-//! motion = { kind = "prescribed", joints = { q1 = "0.5*sin(2*pi*t)" } }
-//! time = { end = "1 s", output_step = "10 ms" }
-//! [[element]]
-//! name = "strut"
-//! from = { body = "world", point = [0, 0, -0.3] }
-//! to = { body = "arm", point = [0.3, 0, 0] }
-//! rest_length = "42 cm"
-//! law = "springpot"
-//! parameters = { c = "50 N*s^alpha/m", alpha = 0.4 }
-//! "#;
-//! let cases = Scenario::parse(text, "arm.toml", "")?.cases(&Catalog::standard())?;
-//! let plan = cases.plan(0)?;
-//! let system = plan.system();
+//! let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
+//! let arm = builder.push(BodySpec {
+//!     name: "arm".into(),
+//!     parent: Parent::World,
+//!     joint: JointSpec::revolute("q1", [0.0, 1.0, 0.0], [0.0; 3]),
+//!     mass: 1.0,
+//!     com: [0.2, 0.0, 0.0],
+//!     inertia: [[0.0; 3]; 3],
+//! })?;
+//! let model = builder.finish()?;
+//!
+//! let row = Catalog::standard().get("springpot").expect("a law that comes with Springpot").clone();
+//! let derivative = Derivative::Caputo;
+//! let strut = Element {
+//!     name: "strut".into(),
+//!     from: model.resolve(&Anchor { body: Parent::World, point: [0.0, 0.0, -0.3] })?,
+//!     to: model.resolve(&Anchor { body: Parent::Body(arm), point: [0.3, 0.0, 0.0] })?,
+//!     rest_length: 0.42,
+//!     law: (row.build)(&[50.0, 0.4], derivative)?, // c = 50 N·s^0.4/m
+//!     row,
+//!     inputs: Vec::new(),
+//!     derivative,
+//!     scheme: None,
+//! };
+//! let swing = Signal::expression(Expression::parse("0.5*sin(2*pi*t)")?);
+//! let motion = Motion::Prescribed(vec![JointPath::Coordinate(swing)]);
+//! let system = System { model, elements: vec![strut], motion, gripper: None, tells_joint_losses: false };
+//! let settings = Settings {
+//!     end: 1.0,
+//!     rows: RowTimes::Step { step: 0.01, end: 1.0 },
+//!     rtol: 1e-9,
+//!     atol: None,
+//!     memory_rtol: 1e-11,
+//!     first_step: None,
+//!     max_step: None,
+//!     max_steps: None,
+//!     fixed_step: None,
+//! };
+//!
 //! let force = system.columns().iter().position(|column| column.name == "strut.force").expect("a column of every element");
 //! let mut largest = 0.0_f64;
 //! let mut rows = |row: &[f64]| -> std::io::Result<()> {
 //!     largest = largest.max(row[force].abs());
 //!     Ok(())
 //! };
-//! let (report, outcome) = along(&system, &plan.settings(), &mut rows, &Stop::new(false));
+//! let (report, outcome) = along(&system, &settings, &mut rows, &Stop::new(false));
 //! outcome?;
 //! assert_eq!(report.rows, 101);
 //! assert!((10.0..12.0).contains(&largest), "{largest} N");
@@ -63,11 +93,7 @@ mod linalg;
 pub mod model;
 pub mod motion;
 pub mod names;
-#[cfg(feature = "scenario")]
-pub mod scenario;
 pub mod signal;
 pub mod simulate;
 pub mod spatial;
-#[cfg(feature = "scenario")]
-pub mod sweep;
 pub mod table;

@@ -1,10 +1,8 @@
 //! What the papers say about their results, shown with the shipped scenarios.
 
-#![cfg(feature = "scenario")]
-
 mod support;
 
-use springpot::scenario::{Cases, SweptValue};
+use springpot_scenario::{Cases, SweptValue};
 use std::f64::consts::PI;
 use support::truth::pair_at;
 use support::{Run, largest, relative_difference, run_case, shipped};

@@ -1,8 +1,6 @@
 //! The reference files of the papers' two motions, read whole: every number within 1e-9 of the largest of its own curve, with
 //! no [solver] section.
 
-#![cfg(feature = "scenario")]
-
 mod support;
 
 use serde_json::Value;

@@ -3,9 +3,9 @@
 use crate::diagnostic;
 use crate::numbers::{count, short};
 use crate::run::{NAMED_LIMITS, in_cases};
-use springpot::scenario::{Cases, Plan};
 use springpot::simulate::{ElementStart, LimitWatch, System};
-use springpot::sweep::{CasesPassing, LimitTally};
+use springpot_run::sweep::{CasesPassing, LimitTally};
+use springpot_scenario::{Cases, Plan};
 use std::ops::RangeInclusive;
 
 /// A stroke at t = 0 beyond this share of the rest length is worth a warning.
@@ -44,13 +44,13 @@ impl Warnings {
             large: None,
             singular: None,
         };
-        let elements = plan.elements.iter().map(|plan| element(&plan.name)).collect();
+        let elements = plan.elements.iter().map(|plan| element(&plan.element.name)).collect();
         Self { looked_at: 0, elements, limits: LimitTally::default() }
     }
 
     /// Takes the start of one case.
     pub(super) fn take(&mut self, index: usize, plan: &Plan, system: &System, starts: &[ElementStart]) {
-        if let Ok(row) = system.first_row(&plan.settings()) {
+        if let Ok(row) = system.first_row(&plan.settings) {
             let mut watch = LimitWatch::new(system);
             watch.see(&row);
             self.limits.take(index, &watch.passed());
@@ -59,10 +59,10 @@ impl Warnings {
             widen(&mut element.length, start.length);
             widen(&mut element.stroke, start.stroke);
             let found = |found: &mut Option<Found>| {
-                let new = || Found { index, cases: 0, start: start.clone(), rest_length: plan.rest_length };
+                let new = || Found { index, cases: 0, start: start.clone(), rest_length: plan.element.rest_length };
                 found.get_or_insert_with(new).cases += 1;
             };
-            if start.stroke.abs() > LARGE_STROKE * plan.rest_length {
+            if start.stroke.abs() > LARGE_STROKE * plan.element.rest_length {
                 found(&mut element.large);
             }
             if start.singular {

@@ -11,7 +11,7 @@ use crate::plain::Plain;
 use crate::{Ending, diagnostic, printed};
 use sheet::{Layout, Sheet};
 use springpot::fractional::{DerivativeError, Method};
-use springpot::signal::csv::{CsvProblem, CsvRows};
+use springpot_scenario::csv::{CsvProblem, CsvRows};
 use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Read, Write};
 use std::path::Path;

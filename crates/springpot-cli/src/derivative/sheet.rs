@@ -3,8 +3,8 @@
 use super::Problem;
 use crate::arguments::DerivativeOptions;
 use springpot::fractional::{Definition, DerivativeError};
-use springpot::signal::csv::{CsvProblem, CsvRow, CsvRows, TIME};
-use springpot::table::quoted;
+use springpot_run::table::quoted;
+use springpot_scenario::csv::{CsvProblem, CsvRow, CsvRows, TIME};
 use std::io::Read;
 
 /// Which columns are read and in which order they are written.

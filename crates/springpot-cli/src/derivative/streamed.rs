@@ -3,8 +3,8 @@
 use super::sheet::{Layout, Sheet};
 use super::{FEWEST, Problem};
 use springpot::fractional::{DerivativeError, Stream};
-use springpot::signal::csv::CsvRows;
-use springpot::table::push_fields;
+use springpot_run::table::push_fields;
+use springpot_scenario::csv::CsvRows;
 use std::collections::VecDeque;
 use std::io::{Read, Write};
 

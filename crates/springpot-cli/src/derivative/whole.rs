@@ -4,7 +4,7 @@ use super::sheet::{Layout, Sheet};
 use super::{FEWEST, Problem, steps};
 use springpot::fractional::scheme::{Samples, SchemeError};
 use springpot::fractional::{DerivativeError, Method, derivative, derivative_with_error};
-use springpot::table::push_fields;
+use springpot_run::table::push_fields;
 use std::io::Write;
 
 /// The derivatives of all rows, or nothing; `last_line` is that of the last row.

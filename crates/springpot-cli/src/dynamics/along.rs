@@ -3,13 +3,13 @@
 use super::terms;
 use crate::arguments::DynamicsOptions;
 use crate::robot::{Refused, is_scenario, refuse_urdf_flags};
-use crate::run::{case_name, in_case};
+use crate::run::in_case;
 use crate::{Ending, diagnostic, plain, printed, terminal};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use springpot::scenario::units::parse_quantity;
-use springpot::scenario::{Cases, Refusals, SweptValue};
 use springpot::simulate::{Equation, EquationError, System};
+use springpot_scenario::units::parse_quantity;
+use springpot_scenario::{Cases, Refusals, SweptValue};
 
 pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused> {
     let file = &options.robot.file;
@@ -37,11 +37,11 @@ pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused>
     let plan = cases.plan(index).map_err(refused)?;
     let system = plan.system();
     diagnostic::robot_warnings(&cases);
-    match system.equation(&plan.settings(), t) {
+    match system.equation(&plan.settings, t) {
         Ok(equation) => {
             let text = match options.json {
                 true => json(&cases, index, &system, &equation),
-                false => terms::text(plan.title.as_deref(), &case_name(&cases, index), &system, &equation),
+                false => terms::text(plan.title.as_deref(), &cases.name(index), &system, &equation),
             };
             Ok(printed(terminal::try_print(&text)))
         }

@@ -2,7 +2,7 @@
 
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
-use springpot::scenario::{Place, Refusal, RefusalKind, Refusals, Source};
+use springpot_scenario::{Place, Refusal, RefusalKind, Refusals, Source};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;

@@ -13,7 +13,7 @@ use crate::robot::{Refused, Robot};
 use crate::{Ending, diagnostic, plain, printed, robot};
 use answer::Answers;
 use springpot::model::{Frame, JointKind};
-use springpot::scenario::suggest;
+use springpot_scenario::suggest;
 use states::States;
 use std::collections::BTreeMap;
 use std::io::{self, Write};

@@ -3,7 +3,7 @@
 use super::json_text::Json;
 use crate::robot::Robot;
 use springpot::model::Label;
-use springpot::scenario::{Refusal, RefusalKind, Refusals, suggest};
+use springpot_scenario::{Refusal, RefusalKind, Refusals, suggest};
 
 /// Which number of q and v stands where in a file.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use super::json_text::Json;
 use super::order::Order;
 use crate::robot::Robot;
 use springpot::model::JointKind;
-use springpot::scenario::{Place, RefusalKind, Refusals, Source};
+use springpot_scenario::{Place, RefusalKind, Refusals, Source};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;

@@ -4,7 +4,7 @@ use crate::{Ending, diagnostic};
 use springpot::law::Catalog;
 use springpot::model::urdf::{Urdf, UrdfOptions};
 use springpot::model::{BodySpec, JointKind, Limits, Model, Parent};
-use springpot::scenario::{Scenario, toml_key};
+use springpot_scenario::{Scenario, toml_key};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 

@@ -6,7 +6,7 @@ mod sheet;
 use crate::arguments::LawsOptions;
 use crate::{Ending, diagnostic, printed, terminal};
 use springpot::law::{Catalog, Entry};
-use springpot::scenario::suggest;
+use springpot_scenario::suggest;
 
 pub(crate) fn laws(options: &LawsOptions) -> Ending {
     let catalog = Catalog::standard();

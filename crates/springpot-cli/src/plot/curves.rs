@@ -3,34 +3,25 @@
 use super::Refused;
 use super::table::Table;
 use crate::arguments::PlotOptions;
-use crate::labels;
-use springpot::scenario::suggest;
-use springpot::scenario::units::Unit;
-use springpot::sweep::{KeptCurve, MAX_CURVES, most_points};
-use springpot::table::{Column, matches};
-use springpot_report::{Curve, Panel, Plot};
+use springpot::table::Column;
+use springpot_report::Plot;
+use springpot_run::figures::{Curves, FigureColumn};
+use springpot_run::labels;
+use springpot_run::sweep::{KeptCurve, MAX_CURVES, most_points};
+use springpot_run::table::matches;
+use springpot_scenario::suggest;
+use springpot_scenario::units::Unit;
 
 /// Values of a sweep that are listed.
 const LISTED: usize = 12;
 
-/// A column and the unit that it is drawn in.
-struct Drawn {
-    at: usize,
-    column: Column,
-    unit: Option<(String, Unit)>,
-}
-
-impl Drawn {
-    /// A value of the column as it is drawn.
-    fn number(&self, value: f64) -> f64 {
-        self.unit.as_ref().map_or(value, |(_, unit)| unit.from_si(value))
-    }
-}
-
 /// What is asked for.
 pub(super) struct Wanted {
-    x: Drawn,
-    y: Vec<Drawn>,
+    x: FigureColumn,
+    y: Vec<FigureColumn>,
+    /// Where these columns stand in the rows.
+    x_at: usize,
+    y_at: Vec<usize>,
     /// For each sweep the value that is chosen.
     chosen: Vec<Option<String>>,
 }
@@ -45,12 +36,13 @@ impl Wanted {
                 None => None,
                 Some((_, text, unit)) => Some(fitting(&column, text, unit)?),
             };
-            Ok(Drawn { at, column, unit })
+            Ok(FigureColumn { column, unit })
         };
-        let x = match found(table, &options.x)?[..] {
-            [only] => drawn(only)?,
+        let x_at = match found(table, &options.x)?[..] {
+            [only] => only,
             _ => return Err(Refused::new(format!("--x {:?} matches several columns; it takes one", options.x), None)),
         };
+        let x = drawn(x_at)?;
         let mut ordinates = Vec::new();
         for glob in &options.y {
             for at in found(table, glob)? {
@@ -59,8 +51,8 @@ impl Wanted {
                 }
             }
         }
-        let y = ordinates.into_iter().map(drawn).collect::<Result<_, _>>()?;
-        Ok(Self { x, y, chosen: chosen(table, &options.selection)? })
+        let y = ordinates.iter().copied().map(drawn).collect::<Result<_, _>>()?;
+        Ok(Self { x, y, x_at, y_at: ordinates, chosen: chosen(table, &options.selection)? })
     }
 }
 
@@ -143,42 +135,15 @@ struct Case {
 pub(super) fn plot(table: &Table, wanted: &Wanted, title: Option<String>) -> Result<Plot, Refused> {
     let (cases, sweeps) = cases(table, wanted)?;
     let free: Vec<usize> = (0..sweeps.len()).filter(|&k| wanted.chosen[k].is_none()).collect();
-    let several = wanted.y.len() > 1;
-    let alike = common_unit(&wanted.y).is_some();
-    let value = |axis: usize, position: &[usize], named: bool| {
-        let value = labels::written_unit(&sweeps[axis].1[position[axis]]);
-        if named { format!("{} = {value}", sweeps[axis].0) } else { value }
+    let what = Curves {
+        title: title.as_deref(),
+        x: &wanted.x,
+        y: &wanted.y,
+        free: &free,
+        sweep: &|axis| sweeps[axis].0.clone(),
+        value: &|axis, k| sweeps[axis].1[k].clone(),
     };
-    let mut panels: Vec<(Vec<usize>, Panel)> = Vec::new();
-    for Case { position, curves } in cases {
-        let key: Vec<usize> = free.iter().skip(1).map(|axis| position[*axis]).collect();
-        let at = panels.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
-            let named: Vec<String> = free.iter().skip(1).map(|axis| value(*axis, &position, true)).collect();
-            let title = (!named.is_empty()).then(|| named.join(", "));
-            panels.push((key, Panel { title, curves: Vec::new() }));
-            panels.len() - 1
-        });
-        let swept = free.first().map(|axis| value(*axis, &position, several));
-        for (column, curve) in wanted.y.iter().zip(curves) {
-            let own = several.then(|| if alike { labels::quantity(&column.column.name) } else { axis_label(column) });
-            let label = own.into_iter().chain(swept.clone()).collect::<Vec<_>>().join(", ");
-            let (x, y) = curve.points().iter().map(|[x, y]| (wanted.x.number(*x), column.number(*y))).unzip();
-            panels[at].1.curves.push(Curve { label, x, y });
-        }
-    }
-    let mut panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
-    if let [only] = &mut panels[..]
-        && let [curve] = &mut only.curves[..]
-    {
-        // The ordinate's label says all about a single curve.
-        curve.label.clear();
-    }
-    let y_label = match &wanted.y[..] {
-        [only] => axis_label(only),
-        several => common_unit(several).map_or(String::new(), |unit| labels::written_unit(&unit)),
-    };
-    let legend_title = free.first().filter(|_| !several).map(|axis| sweeps[*axis].0.clone());
-    Ok(Plot { title, x_label: axis_label(&wanted.x), y_label, legend_title, panels })
+    Ok(what.plot(cases.iter().map(|case| (case.position.clone(), case.curves.iter().map(KeptCurve::points).collect()))))
 }
 
 /// Title and labels of every sweep.
@@ -217,15 +182,15 @@ fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused>
             let help = "choose fewer columns, or some of the cases with --where PATH=VALUE".to_owned();
             return Err(Refused::new(message, help));
         }
-        let number = |drawn: &Drawn| {
-            let field = record.get(drawn.at).unwrap_or_default();
+        let number = |at: usize| {
+            let field = record.get(at).unwrap_or_default();
             let text = std::str::from_utf8(field).unwrap_or("?");
             let value = if text.is_empty() { Some(f64::NAN) } else { text.parse::<f64>().ok() };
-            value.ok_or_else(|| table.no_number(drawn.at, line, field))
+            value.ok_or_else(|| table.no_number(at, line, field))
         };
-        let x = number(&wanted.x)?;
-        for (column, points) in wanted.y.iter().zip(&mut cases[case].curves) {
-            points.push(x, number(column)?);
+        let x = number(wanted.x_at)?;
+        for (&at, points) in wanted.y_at.iter().zip(&mut cases[case].curves) {
+            points.push(x, number(at)?);
         }
         Ok(())
     })?;
@@ -237,15 +202,4 @@ fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused>
         (names.join(", "), sweep.labels)
     });
     Ok((cases, sweeps.collect()))
-}
-
-fn axis_label(drawn: &Drawn) -> String {
-    labels::axis(&drawn.column, drawn.unit.as_ref().map(|(text, _)| text.as_str()))
-}
-
-/// The unit that all columns are drawn in; `None` where they differ.
-fn common_unit(columns: &[Drawn]) -> Option<String> {
-    let unit = |drawn: &Drawn| drawn.unit.as_ref().map_or_else(|| drawn.column.unit.clone(), |(text, _)| text.clone());
-    let first = unit(columns.first()?);
-    columns.iter().all(|column| unit(column) == first).then_some(first)
 }

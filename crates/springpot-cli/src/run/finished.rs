@@ -3,30 +3,20 @@
 use super::{NAMED_LIMITS, in_case, in_cases};
 use crate::numbers::{brief, count, rough, short};
 use crate::{diagnostic, terminal};
-use springpot::scenario::Cases;
-use springpot::sweep::{CaseResult, CasesPassing, Outcome, Status};
-use springpot::table::folder::Folder;
+use springpot_run::Finished;
+use springpot_run::sweep::{CaseResult, CasesPassing, Status};
 use std::time::Duration;
 
 /// Failed cases that are named one by one.
 const NAMED: usize = 5;
 
-/// What a run that came to an end left behind.
-pub(super) struct Finished {
-    pub(super) cases: Cases,
-    pub(super) outcome: Outcome,
-    pub(super) folder: Folder,
-    pub(super) rows: u64,
-    /// End of the first case, s.
-    pub(super) end: f64,
-    /// Whether its results were put in place.
-    pub(super) is_put: bool,
-}
+/// What is said of it.
+pub(super) struct Said(pub(super) Finished);
 
-impl Finished {
+impl Said {
     /// Which joints pass their limits, and where.
     pub(super) fn warn(&self) {
-        let Self { cases, outcome, .. } = self;
+        let Finished { cases, outcome, .. } = &self.0;
         let ran = outcome.done + outcome.failed;
         let passing = &outcome.limits;
         for CasesPassing { passed, case, cases: found } in passing.iter().take(NAMED_LIMITS) {
@@ -50,7 +40,7 @@ impl Finished {
 
     /// What failed, and how far an interrupted run came.
     pub(super) fn complain(&self) {
-        let Self { cases, outcome, .. } = self;
+        let Finished { cases, outcome, .. } = &self.0;
         let failed: Vec<&CaseResult> = outcome.cases.iter().filter(|c| c.error.is_some() && !c.interrupted).collect();
         for case in failed.iter().take(NAMED) {
             let error = case.error.as_deref().unwrap_or_default();
@@ -69,7 +59,7 @@ impl Finished {
 
     /// How far a run came that did not come to its end; goes on after "failed" or "interrupted".
     fn how_far(&self) -> String {
-        let Self { cases, outcome, end, .. } = self;
+        let Finished { cases, outcome, end, .. } = &self.0;
         let stopped = outcome.cases.iter().filter(|case| case.error.is_some());
         let reached = stopped.clone().map(|case| case.report.t_reached.unwrap_or(-1.0)).fold(f64::INFINITY, f64::min);
         let rows = match reached {
@@ -98,7 +88,7 @@ impl Finished {
 
     /// The lines after a run: how much was done, how well the energy balance closes, where the results are.
     pub(super) fn summary(&self, wall: Duration) -> String {
-        let Self { cases, outcome, folder, rows, .. } = self;
+        let Finished { cases, outcome, folder, rows, .. } = &self.0;
         let mut work = Vec::new();
         if cases.len() > 1 {
             work.push(count(outcome.done + outcome.failed, "case", "cases"));
@@ -120,7 +110,7 @@ impl Finished {
             files.push_str(&format!(", {figures} (SVG and PNG)"));
         }
         let path = folder.path().display();
-        let results = match (self.is_put, folder.has_earlier()) {
+        let results = match (self.0.is_put, folder.has_earlier()) {
             (true, _) => format!("{path}: {files}"),
             (false, true) => format!("{path}: no row was written; the earlier ones are as they were"),
             (false, false) => format!("{path}: no row was written, and nothing else"),
@@ -134,7 +124,7 @@ impl Finished {
 
     /// What robots that move by themselves took: work, wall time, how much faster than life, and how well the energy balance closes.
     fn effort(&self, iterations: u64) -> String {
-        let outcome = &self.outcome;
+        let outcome = &self.0.outcome;
         let wall = outcome.wall.as_secs_f64();
         let residual = match outcome.energy_residual {
             Some((residual, turned_over)) if turned_over > 0.0 => rough(residual / turned_over),
@@ -153,7 +143,7 @@ impl Finished {
 
     /// How well the energy balance closes, and where it is not known.
     fn balance(&self) -> String {
-        let outcome = &self.outcome;
+        let outcome = &self.0.outcome;
         let known = match outcome.energy_residual {
             Some((residual, turned_over)) if turned_over > 0.0 => {
                 format!("balance closes to {} of {} J turned over", rough(residual / turned_over), rough(turned_over))

@@ -3,30 +3,14 @@
 use crate::arguments::RunOptions;
 use crate::{diagnostic, signals, terminal};
 use springpot::law::Catalog;
-use springpot::scenario::units::parse_quantity;
-use springpot::scenario::{Cases, Plan, Refusals, Scenario};
-use springpot::simulate::System;
-use springpot::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
-use springpot::table::Format;
-use springpot::table::disk::Disk;
-use springpot::table::folder::{Folder, FolderError, Targets};
-use std::cell::OnceCell;
+use springpot_run::sweep::CheckpointError;
+use springpot_run::table::Format;
+use springpot_run::table::disk::Disk;
+use springpot_run::table::folder::FolderError;
+use springpot_run::{BeginError, NewRun, Prepared, Surroundings};
+use springpot_scenario::Refusals;
+use springpot_scenario::units::parse_quantity;
 use std::path::{Path, PathBuf};
-
-/// All that a run needs.
-pub(super) struct Prepared {
-    pub(super) cases: Cases,
-    /// The first case.
-    pub(super) plan: Plan,
-    pub(super) system: System,
-    pub(super) layout: Layout,
-    pub(super) folder: Folder,
-    pub(super) checkpoints: Option<Checkpoints>,
-    /// Whether figures are drawn.
-    pub(super) figures: bool,
-    /// The format of the rows at the end.
-    pub(super) format: Format,
-}
 
 /// Why nothing is run.
 pub(super) enum Unprepared {
@@ -40,110 +24,42 @@ pub(super) enum Unprepared {
     Settled(String),
 }
 
-impl From<Refusals> for Unprepared {
-    fn from(refusals: Refusals) -> Self {
-        Self::Refused(refusals)
+impl From<BeginError> for Unprepared {
+    fn from(error: BeginError) -> Self {
+        match error {
+            BeginError::Refused(refusals) => Self::Refused(refusals),
+            BeginError::Folder { folder, error } => Self::Folder(folder, error),
+        }
     }
 }
 
 /// Reads everything and opens the folder of the results.
 pub(super) fn prepare(options: &RunOptions, disk: &Disk) -> Result<Prepared, Unprepared> {
     // Before anything takes time.
-    signals::stop();
+    let stop = signals::stop();
     let every = options.checkpoint_every.as_deref().map(spacing).transpose()?;
+    let catalog = Catalog::standard();
+    let (figures, mut warn) = (!options.no_figures, |warning| diagnostic::warning(warning, None));
     match (&options.resume, &options.file) {
-        (Some(folder), _) => go_on(options, disk, folder, every).map_err(|error| show(folder, error)),
-        (None, Some(file)) => begin(options, disk, file, every),
+        (Some(folder), _) => {
+            let holder = format!("springpot run --resume {}", folder.display());
+            let with = Surroundings { catalog: &catalog, disk, stop, holder: &holder };
+            Prepared::resume(folder, every, figures, with, &mut warn).map_err(|error| show(folder, error))
+        }
+        (None, Some(file)) => {
+            let holder = format!("springpot run {}", file.display());
+            let with = Surroundings { catalog: &catalog, disk, stop, holder: &holder };
+            let asked = NewRun {
+                file: file.clone(),
+                overrides: options.overrides.clone(),
+                out: options.out.clone(),
+                format: Format::named(&options.format).unwrap_or_default(),
+                figures,
+                checkpoint_every: every,
+            };
+            Ok(Prepared::begin(asked, with, &mut warn)?)
+        }
         (None, None) => unreachable!("one of them is required"),
-    }
-}
-
-/// What a scenario says, its first case, and its columns.
-struct Read {
-    cases: Cases,
-    plan: Plan,
-    system: System,
-    layout: Layout,
-}
-
-fn read(scenario: &Scenario) -> Result<Read, Refusals> {
-    let cases = scenario.cases(&Catalog::standard())?;
-    let plan = cases.plan(0)?;
-    let system = plan.system_unless(signals::stop());
-    diagnostic::robot_warnings(&cases);
-    let layout = Layout::new(&cases, &system)?;
-    Ok(Read { cases, plan, system, layout })
-}
-
-fn begin(options: &RunOptions, disk: &Disk, file: &Path, every: Option<f64>) -> Result<Prepared, Unprepared> {
-    let out = options.out.clone().unwrap_or_else(|| default_folder(file));
-    let scenario = diagnostic::scenario(file, &options.overrides)?;
-    let Read { cases, plan, system, layout } = read(&scenario)?;
-    let format = Format::named(&options.format).unwrap_or_default();
-    let (figures, no_results) = (!options.no_figures, |error| Unprepared::Folder(out.clone(), error));
-    let mut folder =
-        Folder::open(&out, disk.clone(), &format!("springpot run {}", file.display())).map_err(no_results)?;
-    warn_of_no_lock(&folder);
-    let inputs = Inputs::of(&scenario, file);
-    let (names, is_input) = (figure_files(&cases, figures), |file: &Path| inputs.holds(file));
-    let targets = Targets { figures: &names, checkpoints: every.is_some(), is_input: &is_input };
-    folder.begin(targets).map_err(no_results)?;
-    let checkpoints = every.map(|every| {
-        let origin = Origin::of(file, &scenario, &options.overrides, figures, every)?;
-        Checkpoints::begin(&folder, Origin { format, ..origin }, &cases, &plan, &system)
-    });
-    let checkpoints = checkpoints.transpose().map_err(|error| no_results(error.into()))?;
-    Ok(Prepared { cases, plan, system, layout, folder, checkpoints, figures, format })
-}
-
-fn go_on(options: &RunOptions, disk: &Disk, folder: &Path, every: Option<f64>) -> Result<Prepared, CheckpointError> {
-    let holder = format!("springpot run --resume {}", folder.display());
-    let unfinished = Unfinished::read(folder, disk.clone(), &holder)?;
-    warn_of_no_lock(unfinished.folder());
-    let origin = unfinished.origin().clone();
-    let changed = || CheckpointError::OtherScenario { what: origin.typed.clone() };
-    let scenario = origin.scenario()?.ok_or_else(changed)?;
-    let Read { cases, plan, system, layout } = read(&scenario)?;
-    let figures = origin.figures && !options.no_figures;
-    let inputs = Inputs::of(&scenario, &origin.file);
-    let (names, is_input) = (figure_files(&cases, figures), |file: &Path| inputs.holds(file));
-    let targets = Targets { figures: &names, checkpoints: true, is_input: &is_input };
-    let (checkpoints, folder) = unfinished.take_up(&cases, (&plan, &system), &layout, every, targets)?;
-    let (checkpoints, format) = (Some(checkpoints), origin.format);
-    Ok(Prepared { cases, plan, system, layout, folder, checkpoints, figures, format })
-}
-
-/// The names of the files that the figures are drawn into.
-fn figure_files(cases: &Cases, drawn: bool) -> Vec<String> {
-    let names = cases.figures().iter().filter(|_| drawn).map(|figure| &figure.name);
-    names.flat_map(|name| ["svg", "png"].map(|ending| format!("{name}.{ending}"))).collect()
-}
-
-/// The files that a scenario reads, itself included; found when they are first asked for.
-struct Inputs<'a> {
-    scenario: &'a Scenario,
-    file: &'a Path,
-    found: OnceCell<Vec<PathBuf>>,
-}
-
-impl<'a> Inputs<'a> {
-    fn of(scenario: &'a Scenario, file: &'a Path) -> Self {
-        Self { scenario, file, found: OnceCell::new() }
-    }
-
-    fn holds(&self, file: &Path) -> bool {
-        let found = self.found.get_or_init(|| {
-            let own = self.file.canonicalize().ok();
-            self.scenario.named_files().into_iter().chain(own).collect()
-        });
-        file.canonicalize().is_ok_and(|file| found.contains(&file))
-    }
-}
-
-fn warn_of_no_lock(folder: &Folder) {
-    if !folder.is_locked() {
-        let folder = folder.path().display();
-        diagnostic::warning(format!("{folder} cannot be locked: no second run must write to it"), None);
     }
 }
 
@@ -187,9 +103,4 @@ fn spacing(text: &str) -> Result<f64, Unprepared> {
     let help = "write a simulated time such as 10 or \"500 ms\"".to_owned();
     diagnostic::error_with_help(format!("--checkpoint-every {text}: {why}"), help);
     Err(Unprepared::Shown)
-}
-
-/// `results/<file stem>` in the current folder.
-fn default_folder(file: &Path) -> PathBuf {
-    Path::new("results").join(file.file_stem().unwrap_or("run".as_ref()))
 }

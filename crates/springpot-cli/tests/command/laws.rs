@@ -3,7 +3,7 @@
 use crate::support::Place;
 use serde_json::Value;
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
+use springpot_scenario::Scenario;
 use std::f64::consts::{PI, TAU};
 
 /// What the examples of the pages stand in.

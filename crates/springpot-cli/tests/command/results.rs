@@ -1,7 +1,7 @@
 //! `springpot run` as a user types it: its files, columns, rows and numbers.
 
 use crate::support::{Csv, Place};
-use springpot::table::push_number;
+use springpot_run::table::push_number;
 use std::path::Path;
 
 const COLUMNS: [&str; 27] = [

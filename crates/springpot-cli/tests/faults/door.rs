@@ -1,6 +1,6 @@
 //! Who stands at the door of the disk: counts calls, lets one fail, stops at one, or writes all of them down.
 
-use springpot::table::disk::{Call, Disk, Verdict, Watch};
+use springpot_run::table::disk::{Call, Disk, Verdict, Watch};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -2,7 +2,7 @@
 
 use crate::door::Door;
 use serde_json::Value;
-use springpot::table::disk::Disk;
+use springpot_run::table::disk::Disk;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;

@@ -14,8 +14,7 @@ mod look;
 mod parse;
 
 pub use error::ExpressionError;
-#[cfg(feature = "scenario")]
-pub(crate) use parse::number_length;
+pub use parse::number_length;
 
 use super::Jet;
 use super::jet::{Smooth, Value};

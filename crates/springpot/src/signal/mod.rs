@@ -6,8 +6,6 @@
 //! [`Signal::break_points`] where samples have theirs.
 
 pub mod agenda;
-#[cfg(feature = "scenario")]
-pub mod csv;
 pub mod expression;
 mod interval;
 mod jet;

@@ -1,7 +1,7 @@
 //! The state of a run between two steps: all that it takes to go on, and to end with the same bits.
 
 use super::book::Books;
-use super::{Report, System, along, fixed, forward};
+use super::{System, along, fixed, forward};
 use serde::{Deserialize, Serialize};
 
 /// The state of a run between two steps, memories included; see [`super::Rows::checkpoint`] and [`super::resume`].
@@ -38,20 +38,4 @@ impl Checkpoint {
     pub(super) fn fits(&self, system: &System) -> bool {
         self.books.fit(system.elements.len(), system.model.nq(), system.model.nv())
     }
-}
-
-/// A [`Report`] with all its fields, which its record leaves out where they say nothing.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Report")]
-pub(crate) struct ReportFields {
-    steps: u64,
-    rejected_steps: u64,
-    newton_iterations: Option<u64>,
-    rows: u64,
-    t_reached: Option<f64>,
-    energy_residual: Option<f64>,
-    energy_turned_over: Option<f64>,
-    modes: usize,
-    switches: Option<u64>,
-    resolution: Option<f64>,
 }

@@ -36,9 +36,6 @@ pub use limits::{LimitKind, LimitWatch, PassedLimit, Watch};
 pub use pose::{ElementStart, Pose, State};
 pub use row_times::RowTimes;
 
-#[cfg(feature = "scenario")]
-pub(crate) use checkpoint::ReportFields;
-
 use crate::element::Element;
 pub use crate::model::FRICTION_SPEED;
 use crate::model::{Model, Site};
@@ -86,14 +83,13 @@ pub struct Settings {
 }
 
 /// What a run did.
-#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Report {
     /// Inner steps taken.
     pub steps: u64,
     /// Inner steps tried and not kept.
     pub rejected_steps: u64,
     /// Newton iterations of a robot that moves by itself.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub newton_iterations: Option<u64>,
     /// Rows written.
     pub rows: u64,
@@ -106,10 +102,8 @@ pub struct Report {
     /// Exponentials of the memories at the end.
     pub modes: usize,
     /// Kinks and jumps of the signals, each of which ends a step; `None` for steps of one size, which do not look ahead.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub switches: Option<u64>,
     /// What signals do in less time than this may be missed between steps, s; `None` for steps of one size.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub resolution: Option<f64>,
 }
 

@@ -2,9 +2,9 @@
 
 use crate::loops::*;
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::RunError;
 use springpot::simulate::fixed::{Loop, LoopError, Method};
+use springpot_scenario::Scenario;
 
 #[test]
 fn steps_must_be_positive_and_motions_free() {

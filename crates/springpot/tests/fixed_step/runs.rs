@@ -2,9 +2,9 @@
 
 use crate::loops::*;
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::fixed::Method;
 use springpot::simulate::{FixedStep, Settings};
+use springpot_scenario::Scenario;
 
 const START: &str = "start = { q = { q2 = 0.1 }, v = { q1 = 0.5 } }";
 
@@ -19,7 +19,7 @@ fn a_scenario_names_method_and_step() {
     let plan = cases.plan(0).unwrap();
     assert_eq!(plan.resolved()["solver"]["method"], "midpoint");
     assert_eq!(plan.resolved()["solver"]["step"], 0.002);
-    let (rows, report, outcome) = rows(&plan.system(), &plan.settings());
+    let (rows, report, outcome) = rows(&plan.system(), &plan.settings);
     outcome.unwrap();
     assert_eq!((rows.len(), report.steps, report.rejected_steps), (11, 500, 0));
     assert_eq!(report.newton_iterations, Some(1500));

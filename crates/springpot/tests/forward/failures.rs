@@ -3,8 +3,8 @@
 use crate::support::forward::{at, every, largest, slider, state};
 use crate::support::{Run, run, try_run};
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::RunError;
+use springpot_scenario::Scenario;
 
 const SPRINGPOT: &str = "law = \"springpot\"\nparameters = { c = 30, alpha = 0.5 }";
 

@@ -34,7 +34,7 @@ pub(crate) fn solved(laws: &[Network], motion: &str, end: f64, rows: usize, solv
     for (element, law) in system.elements.iter_mut().zip(laws) {
         element.law = law.clone();
     }
-    let run = run_system(&system, &plan.settings());
+    let run = run_system(&system, &plan.settings);
     assert!(run.error.is_none(), "{:?} under {laws:?}", run.error);
     run
 }

@@ -71,8 +71,8 @@ fn a_dashpot_beside_a_springpot_may_stand_first() {
     let parts = [Network::springpot(5.0, 0.4, CAPUTO), Network::dashpot(3.0)];
     let swapped = [parts[1].clone(), parts[0].clone()];
     for (motion, rtol) in motions() {
-        let [one, other] = [&parts, &swapped]
-            .map(|parts| slider(&[Network::parallel(parts.iter().cloned())], &motion, 2.0, 40, rtol));
+        let [one, other] =
+            [&parts, &swapped].map(|parts| slider(&[Network::parallel(parts.iter().cloned())], &motion, 2.0, 40, rtol));
         assert!(departure(&force(&one), &force(&other)) < 1e-9, "{motion}");
         // The derivative that is told is the springpot's.
         assert!(departure(&one.column("e0.derivative"), &other.column("e0.derivative")) < 1e-9, "{motion}");

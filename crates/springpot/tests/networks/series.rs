@@ -55,7 +55,8 @@ fn steps_relax() {
 /// A spring and a dashpot: F = c v (1 − e^{−kt/c}).
 #[test]
 fn the_maxwell_element_of_textbooks() {
-    let run = slider(&[Network::series([Network::dashpot(8.0), Network::spring(20.0)])], &along("0.1*t"), 2.0, 20, 1e-10);
+    let run =
+        slider(&[Network::series([Network::dashpot(8.0), Network::spring(20.0)])], &along("0.1*t"), 2.0, 20, 1e-10);
     let exact: Vec<f64> = run.t().iter().map(|t| 0.8 * -(-20.0 / 8.0 * t).exp_m1()).collect();
     let error = departure(&force(&run), &exact);
     assert!(error < 1e-9, "{error:e}");
@@ -77,10 +78,9 @@ fn the_same_network_written_differently() {
     ];
     // The same steps for all: what differs is the network alone.
     let solver = "rtol = 1e-3\nfirst_step = 0.0005\nmax_step = 0.0005";
-    for motion in [
-        along("0.1*sin(3*t)+0.05*t"),
-        "kind = \"forward\"\nstart = { q = { q = 0.1 }, v = { q = 1 } }".to_owned(),
-    ] {
+    for motion in
+        [along("0.1*sin(3*t)+0.05*t"), "kind = \"forward\"\nstart = { q = { q = 0.1 }, v = { q = 1 } }".to_owned()]
+    {
         let runs = ways.each_ref().map(|law| solved(std::slice::from_ref(law), &motion, 1.0, 10, solver));
         for run in &runs[1..] {
             assert_eq!(run.effort(), runs[0].effort());
@@ -102,10 +102,9 @@ fn zener_and_poynting_thomson_elements_are_one() {
         Network::spring(instant),
         Network::parallel([Network::spring(inner), Network::springpot(beside, alpha, CAPUTO)]),
     ]);
-    for (motion, rtol, bound) in [
-        (along("0.1*sin(3*t)"), 1e-9, 1e-8),
-        ("kind = \"forward\"\nstart = { v = { q = 1 } }".to_owned(), 1e-9, 1e-7),
-    ] {
+    for (motion, rtol, bound) in
+        [(along("0.1*sin(3*t)"), 1e-9, 1e-8), ("kind = \"forward\"\nstart = { v = { q = 1 } }".to_owned(), 1e-9, 1e-7)]
+    {
         let [one, two] = [&zener, &other].map(|law| slider(std::slice::from_ref(law), &motion, 2.0, 20, rtol));
         let error = departure(&force(&one), &force(&two));
         assert!(error < bound, "{error:e} under {motion}");

@@ -2,8 +2,8 @@
 
 use crate::support::robots::{ARM, PATH, every, magnetorheological, prescribed, springpot, strut, thermoviscoelastic};
 use crate::support::{cases, shipped};
-use springpot::scenario::Cases;
 use springpot::simulate::{Checkpoint, Report, Rows, RunError, Settings, Stop, System, resume, run};
+use springpot_scenario::Cases;
 use std::io;
 use std::sync::atomic::Ordering;
 
@@ -46,7 +46,7 @@ fn plain(system: &System, settings: &Settings) -> (Vec<Vec<u64>>, Report) {
 /// Goes on from some states of a run, and compares rows and report with those of the run; returns how many states there were.
 fn goes_on(cases: &Cases, tried: usize) -> usize {
     let plan = cases.plan(0).unwrap();
-    let (system, settings) = (plan.system(), plan.settings());
+    let (system, settings) = (plan.system(), plan.settings.clone());
     let (rows, report) = plain(&system, &settings);
     let mut keeper = Keeper { wants: true, ..Keeper::default() };
     let (with, outcome) = run(&system, &settings, &mut keeper, &Stop::new(false));
@@ -159,7 +159,7 @@ fn a_run_may_be_stopped_again_and_again() {
     let text = format!("{ARM}{}{}", thermoviscoelastic(0.5, 25.0, "caputo"), every(0.5, 0.011));
     let motion = forward("torque = { q2 = \"3*sign(sin(11*t))\" }");
     let plan = cases(&format!("{text}{motion}")).plan(0).unwrap();
-    let (system, settings) = (plan.system(), plan.settings());
+    let (system, settings) = (plan.system(), plan.settings.clone());
     let (rows, report) = plain(&system, &settings);
 
     /// Stops at the first step after some rows.
@@ -211,7 +211,7 @@ fn another_robot_is_refused() {
     ];
     let systems = texts.each_ref().map(|text| {
         let plan = cases(text).plan(0).unwrap();
-        (plan.system(), plan.settings())
+        (plan.system(), plan.settings.clone())
     });
     for (k, (system, settings)) in systems.iter().enumerate() {
         let mut keeper = Keeper { wants: true, ..Keeper::default() };

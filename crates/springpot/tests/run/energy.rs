@@ -84,11 +84,11 @@ fn every_shipped_scenario() {
             let run = run_case(&cases, index);
             assert!(run.error.is_none(), "{file}, case {index}: {:?}", run.error);
             let plan = cases.plan(index).unwrap();
-            let names: Vec<&str> = plan.elements.iter().map(|element| element.name.as_str()).collect();
+            let names: Vec<&str> = plan.elements.iter().map(|plan| plan.element.name.as_str()).collect();
             names.iter().for_each(|name| power_balance(&run, name));
             let starts = plan.system().element_starts().unwrap();
             let mut is_known = true;
-            for (element, start) in plan.elements.iter().zip(&starts) {
+            for (element, start) in plan.elements.iter().map(|plan| &plan.element).zip(&starts) {
                 if start.singular || element.scheme.is_some() {
                     // Infinite work, or a scheme that keeps no account: nothing is shown, in any row.
                     is_known = false;

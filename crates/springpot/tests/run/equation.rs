@@ -3,8 +3,8 @@
 use crate::support::robots::{ARM, SWING, every, springpot};
 use crate::support::{cases, scenarios, shipped};
 use springpot::motion::Motion;
-use springpot::scenario::Cases;
 use springpot::simulate::{Equation, EquationError, RowTimes, Settings, Stop, run as simulate};
+use springpot_scenario::Cases;
 
 /// Times of a motion as shares of its duration; all but the end are no multiples of a step.
 const SHARES: [f64; 4] = [0.0, 0.1037, 0.5219, 1.0];
@@ -33,7 +33,7 @@ fn told(equation: &Equation, labels: &[String], q_labels: &[String]) -> Vec<(Str
 /// Compares a case at [`SHARES`] of its motion; returns how many numbers were compared.
 fn check(what: &str, cases: &Cases, case: usize) -> usize {
     let plan = cases.plan(case).unwrap();
-    let (system, settings) = (plan.system(), plan.settings());
+    let (system, settings) = (plan.system(), plan.settings.clone());
     // Named schemes live on the rows, and steps of robots that move by themselves may end on rows.
     let named_scheme = system.elements.iter().any(|element| element.scheme.is_some());
     let of_rows = named_scheme || matches!(system.motion, Motion::Forward(_));
@@ -94,12 +94,12 @@ fn what_is_no_time_of_the_motion_is_an_error() {
     let plan = cases.plan(0).unwrap();
     let system = plan.system();
     for t in [-1e-300, 1.0_f64.next_up(), f64::NAN, f64::INFINITY] {
-        let error = system.equation(&plan.settings(), t).unwrap_err();
+        let error = system.equation(&plan.settings, t).unwrap_err();
         assert!(matches!(error, EquationError::Outside { end: 1.0, .. }), "{error}");
     }
     let scheme = springpot(0.5, "caputo") + "scheme = \"l1\"\n";
     let cases = crate::support::cases(&format!("{ARM}{scheme}{SWING}{}", every(1.0, 0.1)));
     let plan = cases.plan(0).unwrap();
-    let error = plan.system().equation(&plan.settings(), 0.34).unwrap_err();
+    let error = plan.system().equation(&plan.settings, 0.34).unwrap_err();
     assert!(matches!(error, EquationError::NotARow { nearest: 0.3, .. }), "{error}");
 }

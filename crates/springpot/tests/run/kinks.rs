@@ -126,7 +126,7 @@ fn sampled_motions_and_inputs() {
         ));
         let motion = "\n[motion]\nkind = \"prescribed\"\ncsv = \"motion.csv\"\n";
         let text = format!("{ARM}{element}{motion}{}", every(3.0, 0.017));
-        let scenario = springpot::scenario::Scenario::parse(&text, "sampled.toml", folder.path()).unwrap();
+        let scenario = springpot_scenario::Scenario::parse(&text, "sampled.toml", folder.path()).unwrap();
         let cases = scenario.cases(&springpot::law::Catalog::standard()).unwrap();
         let system = cases.plan(0).unwrap().system();
         let run = run_case(&cases, 0);

@@ -3,7 +3,7 @@
 use crate::steps::random_steps;
 use springpot::fractional::{Form, Nodes};
 use springpot::law::{Catalog, Derivative, Entry, InputValue, Network, Point, Start, State, Step};
-use springpot::scenario::units::{Unit, parse_quantity};
+use springpot_scenario::units::{Unit, parse_quantity};
 
 /// Parameter values well inside their ranges; alpha where the law has one.
 fn parameters(entry: &Entry, alpha: f64) -> Vec<f64> {
@@ -411,7 +411,7 @@ joints = { q = "0.1*t" }
 end = 1
 output_step = 0.5
 "#;
-    let scenario = springpot::scenario::Scenario::parse(text, "user.toml", "").unwrap();
+    let scenario = springpot_scenario::Scenario::parse(text, "user.toml", "").unwrap();
     assert!(scenario.cases(&Catalog::standard()).is_err());
     let plan = scenario.cases(&replaced).unwrap().plan(0).unwrap();
     let mut forces = Vec::new();
@@ -422,7 +422,7 @@ output_step = 0.5
         Ok(())
     };
     let (report, outcome) =
-        springpot::simulate::along(&system, &plan.settings(), &mut rows, &springpot::simulate::Stop::new(false));
+        springpot::simulate::along(&system, &plan.settings, &mut rows, &springpot::simulate::Stop::new(false));
     outcome.unwrap();
     assert_eq!(report.modes, 0);
     assert!(forces.iter().zip([0.0, 50.0, 100.0]).all(|(a, b)| (a - b).abs() < 1e-10), "{forces:?}");

@@ -1,7 +1,5 @@
 //! Memories, laws and whole runs: accuracy against quadrature, orders of convergence, energy, kinks, gripper paths.
 
-#![cfg(feature = "scenario")]
-
 mod accuracy;
 mod accuracy_laws;
 mod checkpoint;

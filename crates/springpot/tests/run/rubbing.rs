@@ -58,7 +58,7 @@ fn the_equation_closes_where_joints_hold_and_where_they_slide() {
                   torque = { q1 = \"0.1*sin(3*t)\", q2 = \"-12 + 14*sin(4*t)\", q3 = -3.4 }\n";
     let text = format!("{}{}{motion}{}", rubbing(), springpot(0.5, "caputo"), every(1.0, 0.05));
     let plan = cases(&text).plan(0).unwrap();
-    let (system, settings) = (plan.system(), plan.settings());
+    let (system, settings) = (plan.system(), plan.settings.clone());
     let (mut held, mut slid) = (0, 0);
     for k in 0..=20 {
         let t = settings.rows.at(k);

@@ -192,7 +192,7 @@ fn efforts_are_those_of_the_actuators() {
         assert_eq!(passed.value.abs(), largest(&run.column(&format!("tau.{}", passed.joint))));
     }
     // The first row, asked for alone, is the first row of the run, whatever its rows are.
-    let settings = plan.settings();
+    let settings = plan.settings.clone();
     assert_eq!(system.first_row(&settings).unwrap(), run.rows[0]);
 }
 

@@ -2,8 +2,8 @@
 
 use crate::support::{Run, run_system};
 use springpot::law::Catalog;
-use springpot::scenario::Scenario;
 use springpot::simulate::RunError;
+use springpot_scenario::Scenario;
 use std::path::PathBuf;
 
 /// Runs a scenario of `testdata/silent/` after `overrides`; it may fail.
@@ -15,7 +15,7 @@ pub(crate) fn silent(name: &str, overrides: &[&str]) -> Run {
     }
     let cases = scenario.cases(&Catalog::standard()).unwrap_or_else(|refusals| panic!("{refusals}"));
     let plan = cases.plan(0).expect("a valid plan");
-    run_system(&plan.system(), &plan.settings())
+    run_system(&plan.system(), &plan.settings)
 }
 
 /// The column of a run at the times of `expected` is right to `digits` of the largest of `expected`.

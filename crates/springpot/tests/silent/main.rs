@@ -1,7 +1,5 @@
 //! What a run must not miss: switched signals, pulses, small motions; and what it says of itself where it did.
 
-#![cfg(feature = "scenario")]
-
 mod cases;
 mod narrow;
 mod pulses;

@@ -13,11 +13,11 @@ fn a_signal_that_changes_too_often_is_refused_before_the_run() {
     let text = slider(SPRINGPOT, motion, 3.0, 3) + "[solver]\nmax_steps = 1000\n";
     let cases = cases(&text);
     let plan = cases.plan(0).unwrap();
-    let run = run_system(&plan.system(), &plan.settings());
+    let run = run_system(&plan.system(), &plan.settings);
     assert!(matches!(run.error, Some(RunError::TooBusy { limit: 1000, .. })), "{:?}", run.error);
     assert_eq!(run.rows.len(), 0);
     // Without a limit of the user's it grows with the switches.
-    let settings = Settings { max_steps: None, ..plan.settings() };
+    let settings = Settings { max_steps: None, ..plan.settings.clone() };
     let run = run_system(&plan.system(), &settings);
     assert!(run.error.is_none() && run.report.switches == Some(59_999), "{:?}", run.report);
 }
@@ -27,7 +27,7 @@ fn the_resolution_is_recorded() {
     let text = slider(SPRINGPOT, "kind = \"prescribed\"\njoints = { q = \"1+0.1*sin(t)\" }", 8.0, 8);
     let cases = cases(&text);
     let plan = cases.plan(0).unwrap();
-    let run = run_system(&plan.system(), &plan.settings());
+    let run = run_system(&plan.system(), &plan.settings);
     assert_eq!((run.report.switches, run.report.resolution), (Some(0), Some(8.0 / (1u64 << 30) as f64)));
     assert!(run.report.is_balanced());
 }
@@ -53,7 +53,7 @@ fn no_number_of_elements_hides_a_kink() {
             element
         })
         .collect();
-    let run = run_system(&system, &plan.settings());
+    let run = run_system(&system, &plan.settings);
     assert!(run.error.is_none(), "{:?}", run.error);
     assert_eq!(run.report.switches, Some(1));
     assert!(run.residual() < 1e-7, "{}", run.residual());

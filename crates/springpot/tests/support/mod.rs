@@ -8,8 +8,8 @@ pub(crate) mod robots;
 pub(crate) mod truth;
 
 use springpot::law::Catalog;
-use springpot::scenario::{Cases, Scenario};
 use springpot::simulate::{Report, RunError, Settings, Stop, System, run as simulate};
+use springpot_scenario::{Cases, Scenario};
 use std::path::PathBuf;
 
 /// Rows of one run, by column.
@@ -80,7 +80,7 @@ pub(crate) fn run_system(system: &System, settings: &Settings) -> Run {
 /// Runs one case; it may fail.
 pub(crate) fn run_case(cases: &Cases, index: usize) -> Run {
     let plan = cases.plan(index).expect("a valid plan");
-    run_system(&plan.system(), &plan.settings())
+    run_system(&plan.system(), &plan.settings)
 }
 
 /// Runs a scenario with one case; it may fail.

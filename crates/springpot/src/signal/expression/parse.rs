@@ -19,7 +19,7 @@ pub(super) fn program(text: &str) -> Result<Vec<Op>, ExpressionError> {
 }
 
 /// Length of the number that `text` starts with: `digits[.digits][e[+-]digits]`, at least one digit before the exponent.
-pub(crate) fn number_length(text: &str) -> Option<usize> {
+pub fn number_length(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
     let whole = digits(0);
@@ -286,7 +286,6 @@ fn suggest(name: &str) -> Option<String> {
     meant.or_else(|| nearest(name)).map(str::to_owned)
 }
 
-#[cfg(feature = "scenario")]
 fn nearest(name: &str) -> Option<&'static str> {
     // Long names are nobody's slip, and the distance takes quadratic time.
     if name.len() > 16 || name.chars().count() < 3 {
@@ -295,9 +294,4 @@ fn nearest(name: &str) -> Option<&'static str> {
     let known = NAMES.iter().map(|(known, _)| *known).filter(|known| known.len() > 2);
     let measured = known.map(|known| (strsim::damerau_levenshtein(name, known), known));
     measured.filter(|(distance, _)| *distance <= 2).min_by_key(|(distance, _)| *distance).map(|(_, known)| known)
-}
-
-#[cfg(not(feature = "scenario"))]
-fn nearest(_: &str) -> Option<&'static str> {
-    None
 }

@@ -1,7 +1,6 @@
 //! What of the books must outlast a step.
 
 use super::{Account, Book, Findings};
-use crate::simulate::checkpoint::ReportFields;
 use crate::simulate::ledger::Turnover;
 use crate::simulate::moment::Moment;
 use crate::simulate::{Checkpoint, Pace, Report, RunError};
@@ -21,7 +20,6 @@ pub(in crate::simulate) struct Books {
     turnover: Turnover,
     residual: f64,
     findings: Findings,
-    #[serde(with = "ReportFields")]
     report: Report,
 }
 

@@ -46,7 +46,7 @@ pub enum LoopError {
 ///
 /// ```
 /// use springpot::law::Catalog;
-/// use springpot::scenario::Scenario;
+/// use springpot_scenario::Scenario;
 /// use springpot::simulate::fixed::{Loop, MemorySettings, Method};
 ///
 /// let text = r#"

@@ -1,0 +1,180 @@
+//! The robot at t = 0 as a mechanism sketch.
+
+use springpot::model::{Anchor, JointKind, Parent};
+use springpot::simulate::{Pose, System};
+use springpot_report::{ElementMark, JointMark, Link, RobotDrawing, WORLD};
+use springpot_scenario::{FigurePlan, Plan};
+
+/// Most links of a sketch.
+const MOST_LINKS: usize = 1_000;
+
+/// What is this near to a line of the sketch, as a share of the robot's size, is on it.
+const ON_LINE: f64 = 0.04;
+
+/// The robot at t = 0 with its joints, elements and gripper.
+pub(super) fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDrawing, String> {
+    let pose = system.pose(0.0).map_err(|error| error.to_string())?;
+    let skeleton = Skeleton::of(plan, &pose)?;
+    let mut drawing = RobotDrawing { title: figure.title.clone(), ..RobotDrawing::default() };
+    let near = ON_LINE * skeleton.size();
+    for (bone, name) in skeleton.bones.iter().zip(&skeleton.names) {
+        drawing.links.push(Link { name: (*name).to_owned(), points: bone.line(near) });
+    }
+    for (index, body) in plan.bodies.iter().enumerate() {
+        let kind = match body.joint.kind {
+            JointKind::Revolute | JointKind::Continuous => springpot_report::JointKind::Revolute,
+            JointKind::Prismatic => springpot_report::JointKind::Prismatic,
+            JointKind::Fixed | JointKind::Floating => continue,
+        };
+        let body_index = Parent::Body(index);
+        let (position, axis) = (pose.origin(body_index), pose.direction(body_index, body.joint.axis));
+        drawing.joints.push(JointMark { name: body.joint.name.clone(), position, axis, kind });
+    }
+    for element in &plan.elements {
+        let (from, to) = (pose.point(&element.from), pose.point(&element.to));
+        drawing.elements.push(ElementMark { name: element.element.name.clone(), from, to });
+        for (anchor, point) in [(&element.from, from), (&element.to, to)] {
+            let link = match anchor.body {
+                Parent::World => WORLD,
+                Parent::Body(index) => skeleton.bone_of[index].map_or(WORLD, |bone| skeleton.names[bone]),
+            };
+            drawing.bracket(link, point);
+        }
+    }
+    drawing.gripper = plan.gripper.as_ref().map(|gripper| pose.point(&gripper.anchor));
+    drawing.ground = ground(plan, &pose);
+    Ok(drawing)
+}
+
+/// Where the robot stands; nowhere where its first body floats.
+fn ground(plan: &Plan, pose: &Pose<'_>) -> Option<[f64; 3]> {
+    let first = plan.bodies.first()?;
+    match (first.joint.kind, &plan.urdf) {
+        (JointKind::Floating, _) => None,
+        (_, Some(_)) => Some([0.0; 3]),
+        (_, None) => Some(pose.origin(Parent::Body(0))),
+    }
+}
+
+/// The centre lines of a robot. Links of a URDF that are fixed to others are frames of those and have no line.
+struct Skeleton<'a> {
+    bones: Vec<Bone>,
+    names: Vec<&'a str>,
+    /// By body: the bone that it is, or is a frame of; `None` where that is the world.
+    bone_of: Vec<Option<usize>>,
+}
+
+/// The centre line of one body: from its origin to every joint that it carries.
+struct Bone {
+    origin: [f64; 3],
+    ends: Vec<[f64; 3]>,
+}
+
+impl<'a> Skeleton<'a> {
+    fn of(plan: &'a Plan, pose: &Pose<'_>) -> Result<Self, String> {
+        let mut skeleton =
+            Self { bones: Vec::new(), names: Vec::new(), bone_of: Vec::with_capacity(plan.bodies.len()) };
+        let root = plan.urdf.as_ref().map(|urdf| &urdf.robot).filter(|robot| !robot.floating_base);
+        if let Some(robot) = root {
+            // The name of the ground would draw it as ground.
+            skeleton.add([0.0; 3], if robot.root.name == WORLD { "" } else { &robot.root.name });
+        }
+        let root = root.map(|_| 0);
+        // By bone: what ends it where it carries no joint.
+        let mut frames: Vec<Vec<[f64; 3]>> = vec![Vec::new(); skeleton.bones.len()];
+        for (index, body) in plan.bodies.iter().enumerate() {
+            let holder = match body.parent {
+                Parent::World => root,
+                Parent::Body(parent) => skeleton.bone_of[parent],
+            };
+            let origin = pose.origin(Parent::Body(index));
+            let is_frame = plan.urdf.is_some() && body.joint.kind == JointKind::Fixed;
+            if is_frame {
+                skeleton.bone_of.push(holder);
+                holder.into_iter().for_each(|bone| frames[bone].push(origin));
+                continue;
+            }
+            holder.into_iter().for_each(|bone| skeleton.bones[bone].ends.push(origin));
+            skeleton.bone_of.push(Some(skeleton.bones.len()));
+            skeleton.add(origin, &body.name);
+            frames.push(vec![pose.point(&Anchor { body: Parent::Body(index), point: body.com })]);
+        }
+        if skeleton.bones.len() > MOST_LINKS {
+            return Err(format!("the robot has {} links (at most {MOST_LINKS} are drawn)", skeleton.bones.len()));
+        }
+        if let Some(gripper) = &plan.gripper
+            && let Parent::Body(body) = gripper.anchor.body
+            && let Some(bone) = skeleton.bone_of[body]
+        {
+            skeleton.bones[bone].ends.push(pose.point(&gripper.anchor));
+        }
+        for (bone, frames) in skeleton.bones.iter_mut().zip(frames) {
+            // A body that carries nothing reaches to its farthest frame, or to its centre of mass.
+            if bone.ends.is_empty() {
+                let farther = |a: [f64; 3], b: [f64; 3]| {
+                    if distance(b, bone.origin) > distance(a, bone.origin) { b } else { a }
+                };
+                bone.ends.extend(frames.into_iter().reduce(farther));
+            }
+        }
+        Ok(skeleton)
+    }
+
+    /// Largest extent along an axis of the world, m.
+    fn size(&self) -> f64 {
+        let extent = |axis: usize| {
+            let points = self.bones.iter().flat_map(|bone| bone.ends.iter().chain([&bone.origin]));
+            let (low, high) = points.fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
+            high - low
+        };
+        (0..3).map(extent).fold(0.0, f64::max)
+    }
+
+    fn add(&mut self, origin: [f64; 3], name: &'a str) {
+        self.bones.push(Bone { origin, ends: Vec::new() });
+        self.names.push(name);
+    }
+}
+
+impl Bone {
+    /// One line there and back again through all ends, the farthest first; ends nearer to it than `near` are left out.
+    fn line(&self, near: f64) -> Vec<[f64; 3]> {
+        let mut ends = self.ends.clone();
+        ends.sort_by(|a, b| distance(*b, self.origin).total_cmp(&distance(*a, self.origin)));
+        let mut line = vec![self.origin];
+        for end in ends {
+            let on_line = line.chunks(2).any(|piece| match piece {
+                [_, other] => to_segment(end, self.origin, *other) <= near,
+                _ => end == self.origin,
+            });
+            if !on_line {
+                if line.len() > 1 {
+                    line.push(self.origin);
+                }
+                line.push(end);
+            }
+        }
+        line
+    }
+}
+
+/// Distance of a point from the straight line between two others.
+fn to_segment(point: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
+    let (along, out) = (difference(to, from), difference(point, from));
+    let share = (dot(out, along) / dot(along, along)).clamp(0.0, 1.0);
+    let foot = [0, 1, 2].map(|k| from[k] + share * along[k]);
+    distance(point, foot)
+}
+
+fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[k] - b[k])
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let d = difference(a, b);
+    dot(d, d).sqrt()
+}

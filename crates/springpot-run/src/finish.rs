@@ -1,0 +1,77 @@
+//! From what was prepared to results that are in place.
+
+use crate::figures;
+use crate::prepare::{Prepared, Warn};
+use crate::sweep::{self, Options, Outcome, Progress, Status, SweepError};
+use crate::table::Format;
+use crate::table::folder::{Folder, FolderError};
+use springpot::simulate::Stop;
+use springpot_scenario::Cases;
+use std::sync::atomic::Ordering;
+
+/// What a run that came to an end left behind.
+#[derive(Debug)]
+pub struct Finished {
+    /// Its cases.
+    pub cases: Cases,
+    /// What they did.
+    pub outcome: Outcome,
+    /// The folder of the results.
+    pub folder: Folder,
+    /// Rows written, over all cases.
+    pub rows: u64,
+    /// End of the first case, s.
+    pub end: f64,
+    /// Whether its results were put in place.
+    pub is_put: bool,
+}
+
+impl Prepared {
+    /// Rows of all cases, where each has as many as the first.
+    pub fn rows_wanted(&self) -> u64 {
+        (self.cases.len() as u64).saturating_mul(self.plan.settings.rows.count() as u64)
+    }
+
+    /// Runs all cases, `jobs` at a time, until `stop` is set; `progress` can be watched meanwhile.
+    ///
+    /// # Errors
+    /// As [`sweep::run`].
+    pub fn sweep(&mut self, jobs: usize, stop: &Stop, progress: &Progress) -> Result<Outcome, SweepError> {
+        let options = Options { jobs, stop, progress, checkpoints: self.checkpoints.as_ref() };
+        sweep::run(&self.cases, &self.layout, &mut self.folder, options)
+    }
+
+    /// Draws the figures, writes run.json, and puts all of it in place; `progress` is that of the sweep. Figures that cannot be
+    /// drawn are warnings.
+    ///
+    /// A run without a row leaves the results of an earlier one as they were.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn finish(self, outcome: Outcome, progress: &Progress, warn: Warn<'_>) -> Result<Finished, FolderError> {
+        let Self { cases, plan, system, layout, mut folder, checkpoints, figures, format } = self;
+        let (rows, end) = (progress.rows.load(Ordering::Relaxed), plan.settings.end);
+        let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
+        let is_put = match outcome.status {
+            Status::Done => true,
+            Status::Failed => rows > 0,
+            // Less than one row is no reason to lose an earlier result.
+            Status::Interrupted => rows > 0 || !folder.has_earlier(),
+        };
+        if !is_put {
+            // What a checkpoint goes on with stays beside the earlier results.
+            if !goes_on {
+                folder.discard()?;
+            }
+            return Ok(Finished { cases, outcome, folder, rows, end, is_put });
+        }
+        if figures && outcome.status != Status::Interrupted {
+            figures::draw(&cases, &system, &plan, &layout, &outcome, &mut folder)?.into_iter().for_each(warn);
+        }
+        // What is gone on with goes on as text.
+        let written = if goes_on { Format::Csv } else { format };
+        folder.convert_rows(written, layout.written(), layout.swept())?;
+        folder.put(|files| outcome.record(&cases, &plan, &layout, written, files), goes_on)?;
+        Ok(Finished { cases, outcome, folder, rows, end, is_put })
+    }
+}

@@ -1,0 +1,39 @@
+//! Whole runs of scenarios, as every face of Springpot shares them: the command, and programs that are no command.
+//!
+//! [`Prepared::begin`] reads a scenario, or [`Prepared::resume`] a checkpoint, and opens the folder of the results;
+//! [`Prepared::sweep`] runs all cases on all cores; [`Prepared::finish`] draws the figures, writes run.json and puts everything in place.
+//! Nothing here prints: warnings are handed over as they come, errors are returned.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`sweep`] | all cases on all cores: columns, rows, curves that are kept, checkpoints, run.json |
+//! | [`table`] | results as files: numbers as text, formats, statistics, the folder that holds them |
+//! | [`figures`] | figures from the curves that a run kept, or from any others |
+//! | [`labels`] | names of columns as a reader of a figure wants them |
+//!
+//! ```no_run
+//! use springpot::law::Catalog;
+//! use springpot::simulate::Stop;
+//! use springpot_run::sweep::{Progress, Status};
+//! use springpot_run::table::disk::Disk;
+//! use springpot_run::{NewRun, Prepared, Surroundings};
+//!
+//! let (catalog, disk, stop, progress) = (Catalog::standard(), Disk::default(), Stop::new(false), Progress::default());
+//! let surroundings = Surroundings { catalog: &catalog, disk: &disk, stop: &stop, holder: "an example" };
+//! let mut warn = |warning: String| eprintln!("{warning}");
+//! let mut run = Prepared::begin(NewRun::of("scenarios/piezo_order.toml"), surroundings, &mut warn)?;
+//! let outcome = run.sweep(4, &stop, &progress)?;
+//! let finished = run.finish(outcome, &progress, &mut warn)?;
+//! assert_eq!(finished.outcome.status, Status::Done);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod figures;
+mod finish;
+pub mod labels;
+mod prepare;
+pub mod sweep;
+pub mod table;
+
+pub use finish::Finished;
+pub use prepare::{BeginError, NewRun, Prepared, Surroundings, Warn};

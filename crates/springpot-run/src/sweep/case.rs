@@ -1,0 +1,156 @@
+//! One case of a sweep.
+
+use super::Sweep;
+use super::checkpoint::CaseDone;
+use super::curve::KeptCurve;
+use super::kept::Kept;
+use super::output::{self, CaseRows, Output};
+use crate::table::disk::DiskFile;
+use crate::table::ordered::Section;
+use springpot::simulate::{self, LimitWatch, PassedLimit, Report, RunError, System};
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+/// What one case did.
+#[derive(Debug)]
+pub struct CaseResult {
+    /// Index in the grid.
+    pub index: usize,
+    /// Steps, rows, energy.
+    pub report: Report,
+    /// Why it stopped early.
+    pub error: Option<String>,
+    /// Whether it stopped because it was interrupted.
+    pub interrupted: bool,
+    /// Wall time.
+    pub wall: Duration,
+    /// Why its energy ledger is not known; `None` where it is.
+    pub no_ledger: Option<String>,
+    /// The limits of joints that it passes.
+    pub limits: Vec<PassedLimit>,
+    /// The curves that figures draw, by their index in [`super::FigureData`], where this case is drawn.
+    pub curves: Option<BTreeMap<usize, KeptCurve>>,
+}
+
+/// The rows and the statistics of one case, in the files that all cases share.
+pub(super) type Sections<'a> = (Section<'a, DiskFile>, Section<'a, DiskFile>);
+
+/// Runs case `index`, or goes on with it.
+///
+/// # Errors
+/// What keeps rows from being written; that of the case itself is in the result.
+pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>) -> io::Result<CaseResult> {
+    let checkpoints = sweep.options.checkpoints;
+    if let Some(done) = checkpoints.map(|checkpoints| checkpoints.done(index)).transpose()?.flatten() {
+        return again(sweep, done, Some(sections));
+    }
+    let (rows, summary) = sections;
+    let state = checkpoints.and_then(|checkpoints| checkpoints.take_state(index));
+    let mut output = Output::open(sweep, index, rows, state.as_ref())?;
+    let (report, no_ledger, limits, outcome) = match sweep.cases.plan(index) {
+        Err(refusals) => {
+            let why = Some("no row was written".into());
+            (Report::default(), why, Vec::new(), Err(CaseError::Refused(refusals.to_string())))
+        }
+        Ok(plan) => {
+            let stop = sweep.options.stop;
+            let (system, settings) = (plan.system_unless(stop), plan.settings.clone());
+            let watch = LimitWatch::new(&system);
+            let mut rows = CaseRows { output: &mut output, watch, plan: &plan, system: &system };
+            let (report, outcome) = match state {
+                None => simulate::run(&system, &settings, &mut rows, stop),
+                Some(state) => {
+                    rows.watch.go_on(state.watch);
+                    simulate::resume(&system, &settings, state.run, &mut rows, stop)
+                }
+            };
+            (report, why_no_ledger(&system, &report), rows.watch.passed(), outcome.map_err(CaseError::Run))
+        }
+    };
+    let error = match outcome {
+        // What was kept last is what can be gone on from.
+        Err(CaseError::Run(RunError::Output(error))) => return Err(error),
+        outcome => outcome.err(),
+    };
+    let interrupted = matches!(error, Some(CaseError::Run(RunError::Interrupted { .. })));
+    let error = error.map(|error| error.to_string());
+    let (wall, statistics) = (output.wall(), output.statistics.clone());
+    let curves = output.close(|output| {
+        if interrupted || output.files.is_none() {
+            return Ok(());
+        }
+        let (error, no_ledger, limits) = (error.clone(), no_ledger.clone(), limits.clone());
+        let done = CaseDone { index, written: output.written(), report, error, no_ledger, limits };
+        output.files.take().map_or(Ok(()), |files| files.end(&done, || sweep.sync()))
+    })?;
+    summary.write(output::summary(sweep, index, &statistics).as_bytes())?;
+    summary.finish()?;
+    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, limits, curves })
+}
+
+/// A case that an earlier run brought to its end, and whose rows stand where they belong.
+///
+/// # Errors
+/// The file system's.
+pub(super) fn ended(sweep: &Sweep, index: usize) -> io::Result<CaseResult> {
+    let done = sweep.options.checkpoints.map(|checkpoints| checkpoints.done(index)).transpose()?.flatten();
+    again(sweep, done.ok_or(io::ErrorKind::NotFound)?, None)
+}
+
+/// Writes what an earlier run has of a case that it brought to its end.
+fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<CaseResult> {
+    let lines = output::summary(sweep, done.index, &done.written.statistics);
+    let checkpoints = sweep.options.checkpoints.expect("it has the record");
+    match rows {
+        Some((rows, summary)) => {
+            checkpoints.copy_rows(&done, &mut |text| rows.write(text))?;
+            rows.finish()?;
+            summary.write(lines.as_bytes())?;
+            summary.finish()?;
+        }
+        None => {
+            let summary = sweep.summary.section(done.index);
+            summary.write(lines.as_bytes())?;
+            summary.finish()?;
+        }
+    }
+    let mut kept = Kept::of(sweep.layout, done.index);
+    if let Some(kept) = &mut kept {
+        checkpoints.kept(done.index, done.written.kept, kept.width(), &mut |values| kept.again(values))?;
+    }
+    let curves = kept.map(Kept::into_curves);
+    let CaseDone { index, written, report, error, no_ledger, limits } = done;
+    sweep.options.progress.rows.fetch_add(report.rows, Ordering::Relaxed);
+    Ok(CaseResult { index, report, error, interrupted: false, wall: written.wall, no_ledger, limits, curves })
+}
+
+/// Why a case does not know its energies; `None` where it does.
+fn why_no_ledger(system: &System, report: &Report) -> Option<String> {
+    if report.energy_residual.is_some() {
+        return None;
+    }
+    if report.rows == 0 {
+        return Some("no row was written".into());
+    }
+    if let Some(element) = system.elements.iter().find(|element| element.scheme.is_some()) {
+        return Some(format!("element \"{}\" has a named scheme, which keeps no account of energy", element.name));
+    }
+    let starts = system.element_starts().unwrap_or_default();
+    let singular = system.elements.iter().zip(&starts).find(|(_, start)| start.singular);
+    Some(singular.map_or("an energy is not finite".into(), |(element, _)| {
+        format!("element \"{}\" starts with x(0) != 0 and the Riemann-Liouville derivative", element.name)
+    }))
+}
+
+/// Why a case has no complete run.
+#[derive(Debug, thiserror::Error)]
+enum CaseError {
+    /// Its combination of values is not admissible.
+    #[error("{0}")]
+    Refused(String),
+    /// The run stopped.
+    #[error(transparent)]
+    Run(RunError),
+}

@@ -1,0 +1,349 @@
+//! All cases of a scenario on all cores, into one folder of results.
+
+mod case;
+mod checkpoint;
+mod curve;
+mod kept;
+mod layout;
+mod limits;
+mod output;
+mod record;
+
+pub use case::CaseResult;
+pub use checkpoint::{CheckpointError, Checkpoints, Origin, Unfinished};
+pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
+pub use layout::{FigureData, Layout, LeftOut, MAX_CURVES};
+pub use limits::{CasesPassing, LimitTally};
+
+use crate::table::disk::DiskFile;
+use crate::table::folder::Folder;
+use crate::table::ordered::Ordered;
+use crate::table::push_text;
+use springpot::simulate::Stop;
+use springpot::table::Column;
+use springpot_scenario::{Cases, Refusals};
+use std::io::{self, Seek as _, SeekFrom, Write as _};
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How a sweep is carried out.
+#[derive(Debug, Clone, Copy)]
+pub struct Options<'a> {
+    /// Cases at a time.
+    pub jobs: usize,
+    /// Set from outside to interrupt.
+    pub stop: &'a Stop,
+    /// How far the run has come.
+    pub progress: &'a Progress,
+    /// Keeps what it takes to go on later, or goes on.
+    pub checkpoints: Option<&'a Checkpoints>,
+}
+
+/// How far a run has come, for others to watch.
+#[derive(Debug, Default)]
+pub struct Progress {
+    /// Rows written so far, over all cases.
+    pub rows: AtomicU64,
+    /// The most switches of the signals of one case so far.
+    pub switches: AtomicU64,
+    /// The bits of the time, s, that some case has reached.
+    t: AtomicU64,
+}
+
+impl Progress {
+    /// The time that some case has reached, s.
+    pub fn t(&self) -> f64 {
+        f64::from_bits(self.t.load(Ordering::Relaxed))
+    }
+
+    fn reach(&self, t: f64) {
+        self.t.store(t.to_bits(), Ordering::Relaxed);
+    }
+}
+
+/// How a sweep ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// Every case reached its end.
+    Done,
+    /// At least one case did not.
+    Failed,
+    /// Interrupted from outside.
+    Interrupted,
+}
+
+/// What a sweep did.
+#[derive(Debug)]
+pub struct Outcome {
+    /// How it ended.
+    pub status: Status,
+    /// The cases that were begun, in order; beyond [`MAX_LISTED`] that ended well, and as many that did not, they are
+    /// counted only, unless a figure draws them.
+    pub cases: Vec<CaseResult>,
+    /// Cases that reached their end.
+    pub done: usize,
+    /// Cases that failed.
+    pub failed: usize,
+    /// Inner steps over all cases.
+    pub steps: u64,
+    /// Inner steps tried and not kept.
+    pub rejected_steps: u64,
+    /// Newton iterations over all cases, of robots that move by themselves.
+    pub newton_iterations: Option<u64>,
+    /// Simulated time over all cases, s.
+    pub simulated: f64,
+    /// Smallest time reached by a case that was begun; `None` where one has no row, or none was begun.
+    pub t_reached: Option<f64>,
+    /// The energy residual of the case in which it is largest beside the energy turned over, and that energy, J; `None`
+    /// where no case knows its ledger.
+    pub energy_residual: Option<(f64, f64)>,
+    /// The limits of joints that cases pass.
+    pub limits: Vec<CasesPassing>,
+    /// Number of cases that do not know their ledger, and why the first of them does not.
+    pub no_ledger: Option<(usize, String)>,
+    /// Wall time.
+    pub wall: Duration,
+}
+
+/// Cases that are listed one by one, of those that ended well and of those that did not.
+pub const MAX_LISTED: usize = 10_000;
+
+/// Why a sweep could not be carried out at all.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// The scenario asks for columns that do not exist, or the like.
+    #[error(transparent)]
+    Refused(#[from] Refusals),
+    /// The folder of the results cannot be written.
+    #[error("the results cannot be written: {0}")]
+    Output(#[from] io::Error),
+}
+
+/// Runs every case and streams rows and statistics into `folder`, in case order for any number of jobs; [`Folder::put`] then puts them in
+/// the place of the last run's.
+///
+/// A case that fails does not stop the others; its rows up to the failure are written.
+///
+/// # Errors
+/// [`SweepError::Output`] where the folder cannot be written; the complete rows that were written stay in `results.csv.part`.
+pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options) -> Result<Outcome, SweepError> {
+    let jobs = options.jobs.clamp(1, cases.len().max(1));
+    let sweep = Sweep::open(cases, layout, folder, options, jobs)?;
+    let mut tally = Tally::default();
+    for index in 0..sweep.first {
+        tally.take(case::ended(&sweep, index)?);
+    }
+
+    let next = AtomicUsize::new(sweep.first);
+    let tally = Mutex::new(tally);
+    let stopped = || options.stop.load(Ordering::Relaxed);
+    let work = || -> io::Result<()> {
+        while !stopped() {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= cases.len() {
+                break;
+            }
+            let sections = (sweep.rows.section(index), sweep.summary.section(index));
+            // The section may have been long in coming.
+            if stopped() {
+                sections.0.finish()?;
+                sections.1.finish()?;
+                break;
+            }
+            let result = case::run(&sweep, index, sections)?;
+            tally.lock().unwrap_or_else(PoisonError::into_inner).take(result);
+        }
+        Ok(())
+    };
+    let ended = std::thread::scope(|scope| {
+        // Where the system gives fewer threads, fewer do the work.
+        let spawn = |_| std::thread::Builder::new().spawn_scoped(scope, work).ok();
+        let others: Vec<_> = (1..jobs).map_while(spawn).collect();
+        let own = work();
+        let joined = others.into_iter().map(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        first_error(std::iter::once(own).chain(joined))
+    });
+    if let Err(error) = ended {
+        // What keeps rows from being written may keep them from being cut too; the first error is the one to tell.
+        let _ = folder.cut_rows();
+        return Err(error.into());
+    }
+
+    let mut tally = tally.into_inner().unwrap_or_else(PoisonError::into_inner);
+    tally.cases.sort_by_key(|case| case.index);
+    let status = if stopped() && tally.done + tally.failed < cases.len() {
+        Status::Interrupted
+    } else if tally.failed > 0 {
+        Status::Failed
+    } else {
+        Status::Done
+    };
+    Ok(Outcome {
+        status,
+        cases: tally.cases,
+        done: tally.done,
+        failed: tally.failed,
+        steps: tally.steps,
+        rejected_steps: tally.rejected_steps,
+        newton_iterations: tally.newton_iterations,
+        simulated: tally.simulated,
+        t_reached: tally.t_reached.flatten(),
+        energy_residual: tally.energy_residual,
+        limits: tally.limits.passing(),
+        no_ledger: tally.no_ledger.map(|(count, _, why)| (count, why)),
+        wall: sweep.wall(),
+    })
+}
+
+/// What all cases share.
+#[derive(Debug)]
+struct Sweep<'a> {
+    cases: &'a Cases,
+    layout: &'a Layout,
+    options: Options<'a>,
+    rows: Ordered<DiskFile>,
+    summary: Ordered<DiskFile>,
+    /// The file of `rows`, to wait for the disk without keeping others from writing.
+    file: DiskFile,
+    /// The first case that has not ended.
+    first: usize,
+    begun: Instant,
+    earlier_wall: Duration,
+}
+
+impl<'a> Sweep<'a> {
+    fn open(
+        cases: &'a Cases,
+        layout: &'a Layout,
+        folder: &mut Folder,
+        options: Options<'a>,
+        jobs: usize,
+    ) -> io::Result<Self> {
+        let begun = Instant::now();
+        let first = options.checkpoints.and_then(Checkpoints::first);
+        let mut summary = folder.create_summary()?;
+        summary.write_all(header(&layout.summary_columns()).as_bytes())?;
+        let rows = if first.is_some() {
+            let mut rows = folder.reopen_rows()?;
+            rows.seek(SeekFrom::End(0))?;
+            rows
+        } else {
+            let mut rows = folder.create_rows()?;
+            rows.write_all(header(layout.written()).as_bytes())?;
+            if options.checkpoints.is_some() {
+                rows.sync()?;
+                folder.disk().sync_folder(folder.path())?;
+            }
+            rows
+        };
+        let first = first.unwrap_or(0);
+        Ok(Self {
+            cases,
+            layout,
+            options,
+            file: rows.try_clone()?,
+            rows: Ordered::new(rows, 4 * jobs + 16).from_case(first),
+            // It begins with the cases that have ended.
+            summary: Ordered::new(summary, usize::MAX),
+            first,
+            begun,
+            earlier_wall: options.checkpoints.map_or(Duration::ZERO, Checkpoints::earlier_wall),
+        })
+    }
+
+    /// Makes the rows safe from the loss of power; returns the first case whose rows may not all be there.
+    fn sync(&self) -> io::Result<usize> {
+        let turn = self.rows.turn();
+        self.file.sync()?;
+        // Once interrupted, cases may end without rows.
+        Ok(if self.options.stop.load(Ordering::Relaxed) { 0 } else { turn })
+    }
+
+    /// Wall time, that of an earlier run included.
+    fn wall(&self) -> Duration {
+        self.earlier_wall + self.begun.elapsed()
+    }
+}
+
+/// The error with the system's own words, or else any: a case that others kept from writing knows its kind alone.
+fn first_error(results: impl Iterator<Item = io::Result<()>>) -> io::Result<()> {
+    let errors = results.filter_map(Result::err);
+    errors.max_by_key(|error| error.raw_os_error().is_some()).map_or(Ok(()), Err)
+}
+
+/// What is added up over the cases.
+#[derive(Debug, Default)]
+struct Tally {
+    cases: Vec<CaseResult>,
+    done: usize,
+    failed: usize,
+    steps: u64,
+    rejected_steps: u64,
+    newton_iterations: Option<u64>,
+    simulated: f64,
+    /// `None` before the first case.
+    t_reached: Option<Option<f64>>,
+    energy_residual: Option<(f64, f64)>,
+    limits: LimitTally,
+    /// How many, index of the first, and its reason.
+    no_ledger: Option<(usize, usize, String)>,
+    listed: [usize; 2],
+}
+
+impl Tally {
+    fn take(&mut self, case: CaseResult) {
+        match &case.error {
+            None => self.done += 1,
+            Some(_) if case.interrupted => {}
+            Some(_) => self.failed += 1,
+        }
+        self.steps += case.report.steps;
+        self.rejected_steps += case.report.rejected_steps;
+        if let Some(iterations) = case.report.newton_iterations {
+            *self.newton_iterations.get_or_insert(0) += iterations;
+        }
+        let reached = case.report.t_reached;
+        self.simulated += reached.unwrap_or(0.0);
+        self.t_reached = Some(match self.t_reached {
+            None => reached,
+            Some(smallest) => smallest.zip(reached).map(|(a, b)| a.min(b)),
+        });
+        if let Some((residual, turned_over)) = case.report.energy_residual.zip(case.report.energy_turned_over) {
+            let share =
+                |(residual, turned_over): (f64, f64)| if residual == 0.0 { 0.0 } else { residual / turned_over };
+            let new = (residual, turned_over);
+            if self.energy_residual.is_none_or(|old| share(new) > share(old)) {
+                self.energy_residual = Some(new);
+            }
+        }
+        self.limits.take(case.index, &case.limits);
+        if let Some(why) = &case.no_ledger {
+            let (count, first, reason) = self.no_ledger.get_or_insert_with(|| (0, case.index, why.clone()));
+            *count += 1;
+            if case.index < *first {
+                (*first, *reason) = (case.index, why.clone());
+            }
+        }
+        let listed = &mut self.listed[usize::from(case.error.is_some())];
+        if case.curves.is_some() || *listed < MAX_LISTED {
+            *listed += 1;
+            self.cases.push(case);
+        }
+    }
+}
+
+/// One line of column names.
+fn header(columns: &[Column]) -> String {
+    let mut line = String::new();
+    for (k, column) in columns.iter().enumerate() {
+        if k > 0 {
+            line.push(',');
+        }
+        push_text(&mut line, &column.name);
+    }
+    line.push('\n');
+    line
+}

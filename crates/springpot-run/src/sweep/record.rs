@@ -1,0 +1,110 @@
+//! The record of a run: run.json.
+
+use super::layout::Layout;
+use super::{CaseResult, MAX_LISTED, Outcome};
+use crate::table::Format;
+use serde_json::{Map, Value, json};
+use springpot_scenario::{Cases, Plan, SweptValue};
+
+impl Outcome {
+    /// run.json: how it ended, what was run (the first case, as resolved), what the columns are, what every case did, the format of
+    /// the rows and all `files` of the run.
+    pub fn record(
+        &self,
+        cases: &Cases,
+        plan: &Plan,
+        layout: &Layout,
+        format: Format,
+        files: &[String],
+    ) -> Map<String, Value> {
+        let (residual, turned_over) = self.energy_residual.unzip();
+        let listed: Vec<Value> = self.cases.iter().take(2 * MAX_LISTED).map(|case| one(cases, case)).collect();
+        let ledger = self.no_ledger.as_ref().map(|(count, why)| {
+            if cases.len() == 1 { format!("unknown: {why}") } else { format!("unknown in {count} cases: {why}") }
+        });
+        let record = json!({
+            "status": self.status,
+            "t_reached": self.t_reached,
+            "title": plan.title,
+            "versions": { "springpot": env!("CARGO_PKG_VERSION") },
+            "wall_time": self.wall.as_secs_f64(),
+            "cases_total": cases.len(),
+            "cases_done": self.done,
+            "cases_failed": self.failed,
+            "steps": self.steps,
+            "rejected_steps": self.rejected_steps,
+            "energy_residual": residual,
+            "energy_turned_over": turned_over,
+            "ledger": ledger,
+            "warnings": cases.warnings(),
+            "limits": self.limits,
+            "plan": plan.resolved(),
+            "columns": layout.written(),
+            "sweeps": sweeps(cases),
+            "cases": listed,
+            "format": format.name(),
+            "files": files,
+        });
+        match record {
+            Value::Object(mut map) => {
+                if let Some(iterations) = self.newton_iterations {
+                    map.insert("newton_iterations".to_owned(), iterations.into());
+                }
+                map
+            }
+            _ => unreachable!("the literal above is an object"),
+        }
+    }
+}
+
+/// Values of a sweep that are listed.
+const MAX_VALUES: usize = 1_000;
+
+/// What is swept: the paths that move together, the values as written, and as the rows have them.
+fn sweeps(cases: &Cases) -> Value {
+    let mut stride = cases.len();
+    let mut first = 0;
+    let sweeps = (0..cases.axis_count()).map(|axis| {
+        let (count, shown) = (cases.axis_len(axis), cases.axis_len(axis).min(MAX_VALUES));
+        stride /= count;
+        let parameters: Vec<&str> = cases.axis_parameters(axis).collect();
+        let columns = first..first + parameters.len();
+        first = columns.end;
+        let labels: Vec<String> = (0..shown).map(|k| cases.axis_label(axis, k)).collect();
+        let values = (0..shown).map(|k| cases.values(k * stride)[columns.clone()].iter().map(value).collect::<Value>());
+        json!({ "parameters": parameters, "count": count, "labels": labels, "values": values.collect::<Value>() })
+    });
+    sweeps.collect()
+}
+
+fn value(value: &SweptValue) -> Value {
+    match value {
+        SweptValue::Number(number) => json!(number),
+        SweptValue::Text(text) => json!(text),
+    }
+}
+
+fn one(cases: &Cases, case: &CaseResult) -> Value {
+    let values = cases.values(case.index);
+    let parameters: Map<String, Value> = cases.parameters().iter().cloned().zip(values.iter().map(value)).collect();
+    let status = match (&case.error, case.interrupted) {
+        (None, _) => "done",
+        (_, true) => "interrupted",
+        _ => "failed",
+    };
+    let mut record = json!({
+        "index": case.index,
+        "parameters": parameters,
+        "status": status,
+        "error": case.error,
+        "ledger": case.no_ledger.as_ref().map(|why| format!("unknown: {why}")),
+        "limits": case.limits,
+        "wall_time": case.wall.as_secs_f64(),
+    });
+    if let (Value::Object(record), Ok(Value::Object(report))) = (&mut record, serde_json::to_value(case.report)) {
+        // What does not belong to a way of running says nothing: Newton iterations, switches and resolution.
+        let silent = |key: &str| ["newton_iterations", "switches", "resolution"].contains(&key);
+        record.extend(report.into_iter().filter(|(key, value)| !(value.is_null() && silent(key))));
+    }
+    record
+}

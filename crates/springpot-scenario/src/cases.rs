@@ -1,0 +1,390 @@
+//! The cases of a scenario: the grid of its sweeps, each planned when it is asked for.
+
+use super::document::Node;
+use super::figures::{self, ColumnGlob, FigurePlan};
+use super::keys::SCENARIO;
+use super::path;
+use super::plan::{MotionPlan, Plan};
+use super::reader::{Context, Read, Table};
+use super::refusal::{Place, RefusalKind, Refusals};
+use super::robot::Robot;
+use super::signals::CsvCache;
+use super::sweep::{self, Axis};
+use super::urdf::UrdfCache;
+use super::{Scenario, elements, motion, robot, time};
+use springpot::law::Catalog;
+use std::cell::{Cell, OnceCell};
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Values of a sweep that are tried before the first run; of longer ones the first of them and the last.
+const TRIED: usize = 1_000;
+
+/// A value of a swept parameter, as a column of the results shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SweptValue {
+    /// A number or quantity, SI.
+    Number(f64),
+    /// As written, where it is neither.
+    Text(String),
+}
+
+/// The cases of a scenario; one where nothing is swept. The first `[[sweep]]` is the outer loop, the last runs fastest.
+#[derive(Debug)]
+pub struct Cases {
+    catalog: Catalog,
+    folder: PathBuf,
+    tables: CsvCache,
+    robots: UrdfCache,
+    document: Node,
+    axes: Vec<Axis>,
+    /// By axis, value and target: the SI value, where it was read as a number; shorter than the axis for long ones.
+    numbers: Vec<Vec<Vec<Option<f64>>>>,
+    figures: Arc<[FigurePlan]>,
+    columns: Option<Arc<[ColumnGlob]>>,
+    parameters: Vec<String>,
+    /// Whether the results have the column of the energy lost in joints.
+    tell_joint_losses: bool,
+}
+
+impl Cases {
+    /// Applies the overrides, reads sweeps and figures, and tries every swept value once.
+    pub(super) fn new(scenario: &Scenario, catalog: &Catalog) -> Result<Self, Refusals> {
+        let mut cases = Self::with_sweeps(scenario, catalog)?;
+        cases.try_values()?;
+        let ctx = cases.context();
+        let read = cases.read_figures(&ctx);
+        let (figures, columns) = ctx.finish(read)?;
+        cases.figures = figures;
+        cases.columns = columns;
+        Ok(cases)
+    }
+
+    /// Reads the robot of the first case, and nothing but the sweeps besides.
+    pub(super) fn robot(scenario: &Scenario, catalog: &Catalog) -> Result<Robot, Refusals> {
+        let cases = Self::with_sweeps(scenario, catalog)?;
+        let document = cases.document_at(&vec![0; cases.axes.len()]);
+        let ctx = cases.context();
+        let read = Table::of(&ctx, &document, "the scenario", &SCENARIO).and_then(|root| robot::read(&root));
+        ctx.finish(read)
+    }
+
+    fn with_sweeps(scenario: &Scenario, catalog: &Catalog) -> Result<Self, Refusals> {
+        let mut cases = Self {
+            catalog: catalog.clone(),
+            folder: scenario.folder.clone(),
+            tables: CsvCache::default(),
+            robots: UrdfCache::default(),
+            document: scenario.document.clone(),
+            axes: Vec::new(),
+            numbers: Vec::new(),
+            figures: Arc::new([]),
+            columns: None,
+            parameters: Vec::new(),
+            tell_joint_losses: false,
+        };
+        cases.read_sweeps(scenario)?;
+        Ok(cases)
+    }
+
+    /// Number of cases.
+    pub fn len(&self) -> usize {
+        self.axes.iter().map(Axis::len).product()
+    }
+
+    /// Always false.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Number of sweeps.
+    pub fn axis_count(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// Number of values of a sweep.
+    pub fn axis_len(&self, axis: usize) -> usize {
+        self.axes[axis].len()
+    }
+
+    /// Paths of the parameters that a sweep moves together.
+    pub fn axis_parameters(&self, axis: usize) -> impl Iterator<Item = &str> {
+        self.axes[axis].targets.iter().map(|target| target.written.as_str())
+    }
+
+    /// Value `k` of a sweep for a legend, as written.
+    pub fn axis_label(&self, axis: usize, k: usize) -> String {
+        self.axes[axis].label(k)
+    }
+
+    /// Paths of all swept parameters, in the order of [`Cases::values`].
+    pub fn parameters(&self) -> &[String] {
+        &self.parameters
+    }
+
+    /// Index of the value that each sweep has in case `i`.
+    pub fn position(&self, i: usize) -> Vec<usize> {
+        let mut rest = i;
+        let mut position: Vec<usize> = vec![0; self.axes.len()];
+        for (at, axis) in position.iter_mut().zip(&self.axes).rev() {
+            *at = rest % axis.len();
+            rest /= axis.len();
+        }
+        position
+    }
+
+    /// Values of the swept parameters in case `i`.
+    pub fn values(&self, i: usize) -> Vec<SweptValue> {
+        let position = self.position(i);
+        let mut values = Vec::with_capacity(self.parameters.len());
+        for (axis, &k) in position.iter().enumerate() {
+            let targets = 0..self.axes[axis].targets.len();
+            match self.numbers[axis].get(k) {
+                Some(numbers) => values.extend(targets.map(|at| self.swept_value(axis, k, numbers[at]))),
+                None => {
+                    let numbers = self.read_numbers(axis, k);
+                    values.extend(targets.map(|at| self.swept_value(axis, k, numbers[at])));
+                }
+            }
+        }
+        values
+    }
+
+    /// Values of the swept parameters in case `i`, as written.
+    pub fn labels(&self, i: usize) -> Vec<String> {
+        let position = self.position(i);
+        let axes = self.axes.iter().zip(position);
+        axes.flat_map(|(axis, k)| axis.targets.iter().map(move |_| axis.label(k))).collect()
+    }
+
+    /// The swept values of case `i` by name, as written: `element.strut.alpha = 0.5, …`; empty where nothing is swept.
+    pub fn name(&self, i: usize) -> String {
+        let named =
+            self.parameters.iter().zip(self.labels(i)).map(|(parameter, label)| format!("{parameter} = {label}"));
+        named.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Globs of the columns to write; `None`: all.
+    pub fn columns(&self) -> Option<&[ColumnGlob]> {
+        self.columns.as_deref()
+    }
+
+    /// What the URDF files hold that is not used, or lack and is assumed: one line each, which names the file.
+    pub fn warnings(&self) -> Vec<String> {
+        self.robots.warnings()
+    }
+
+    /// The figures.
+    pub fn figures(&self) -> &[FigurePlan] {
+        &self.figures
+    }
+
+    /// Plans case `i`.
+    ///
+    /// # Errors
+    /// The refusals of a combination of swept values that no single value shows.
+    ///
+    /// # Panics
+    /// Where `i` is not below [`Cases::len`].
+    pub fn plan(&self, i: usize) -> Result<Plan, Refusals> {
+        assert!(i < self.len(), "case {i} of {}", self.len());
+        let ctx = self.context();
+        let document = self.document_at(&self.position(i));
+        let read = read_plan(&ctx, &document);
+        let plan = ctx.finish(read)?;
+        let (figures, columns) = (self.figures.clone(), self.columns.clone());
+        Ok(Plan { figures, columns, tells_joint_losses: self.tell_joint_losses, ..plan })
+    }
+
+    fn context(&self) -> Context<'_> {
+        Context::new(&self.catalog, &self.folder, &self.tables, &self.robots)
+    }
+
+    fn swept_value(&self, axis: usize, k: usize, number: Option<f64>) -> SweptValue {
+        number.map_or_else(|| SweptValue::Text(self.axes[axis].label(k)), SweptValue::Number)
+    }
+
+    /// The document with the swept values of one case.
+    fn document_at(&self, position: &[usize]) -> Node {
+        let mut document = self.document.clone();
+        let mut tag = 0;
+        for (axis, &k) in self.axes.iter().zip(position) {
+            for target in &axis.targets {
+                path::set(&mut document, target, axis.node(k, tag));
+                tag += 1;
+            }
+        }
+        document
+    }
+
+    fn first_tag(&self, axis: usize) -> usize {
+        self.axes[..axis].iter().map(|axis| axis.targets.len()).sum()
+    }
+
+    /// SI values of value `k` of a sweep where it reads as a number, the other sweeps at their first values.
+    fn read_numbers(&self, axis: usize, k: usize) -> Vec<Option<f64>> {
+        let mut position = vec![0; self.axes.len()];
+        position[axis] = k;
+        let ctx = self.context();
+        // What is wrong with it is said by the case's plan.
+        let _ = read_plan(&ctx, &self.document_at(&position));
+        self.noted(&ctx, axis)
+    }
+
+    fn noted(&self, ctx: &Context<'_>, axis: usize) -> Vec<Option<f64>> {
+        let first = self.first_tag(axis);
+        (first..first + self.axes[axis].targets.len()).map(|tag| ctx.swept(tag)).collect()
+    }
+
+    fn read_sweeps(&mut self, scenario: &Scenario) -> Result<(), Refusals> {
+        let mut document = std::mem::replace(&mut self.document, Node::empty_table(&scenario.document.place));
+        let ctx = self.context();
+        let read = (|| {
+            let mut set = Vec::new();
+            for item in &scenario.overrides {
+                let target = path::resolve(&ctx, &document, &item.path, &item.place)?;
+                path::set(&mut document, &target, item.value.clone());
+                set.push(target);
+            }
+            let root = Table::of(&ctx, &document, "the scenario", &SCENARIO)?;
+            let axes = sweep::read(&root)?;
+            for swept in axes.iter().flat_map(|axis| &axis.targets) {
+                if let Some(target) = set.iter().find(|target| target.overlaps(swept)) {
+                    let message = format!("--set {} has no effect: it is swept", target.written);
+                    let refusal = target.place.refuse(RefusalKind::Rule, message);
+                    return Err(ctx.refuse(refusal.help("remove its [[sweep]], or set what is not swept")));
+                }
+            }
+            Ok(axes)
+        })();
+        let axes = ctx.finish(read)?;
+        self.document = document;
+        self.parameters = axes.iter().flat_map(|axis| &axis.targets).map(|target| target.written.clone()).collect();
+        self.axes = axes;
+        Ok(())
+    }
+
+    /// Plans the first case, then every other value of every sweep with the rest at their first values.
+    fn try_values(&mut self) -> Result<(), Refusals> {
+        let first = self.plan(0)?;
+        let columns = columns_of(&first);
+        let losses = Cell::new(has_joint_losses(&first));
+        let mut numbers = Vec::with_capacity(self.axes.len());
+        for (axis, values) in self.axes.iter().enumerate() {
+            let count = values.len();
+            let mut position = vec![0; self.axes.len()];
+            let mut known = Vec::with_capacity(count.min(TRIED));
+            let last = (count > TRIED).then_some(count - 1);
+            for k in (0..count.min(TRIED)).chain(last) {
+                position[axis] = k;
+                let ctx = self.context();
+                let read = read_plan(&ctx, &self.document_at(&position)).and_then(|plan| {
+                    losses.set(losses.get() || has_joint_losses(&plan));
+                    if columns_of(&plan) == columns {
+                        return Ok(());
+                    }
+                    let place: Place = values.node(k, 0).place;
+                    let what = values.targets.first().map_or("", |target| target.written.as_str());
+                    let message =
+                        format!("{what} = {}: the case has other columns than the first one", values.label(k));
+                    let help = "all cases of a sweep need the same elements, inputs and joints";
+                    Err(ctx.refuse(place.refuse(RefusalKind::Rule, message).help(help)))
+                });
+                if k < TRIED {
+                    known.push(self.noted(&ctx, axis));
+                }
+                ctx.finish(read)?;
+            }
+            numbers.push(known);
+        }
+        self.numbers = numbers;
+        self.tell_joint_losses = losses.get();
+        Ok(())
+    }
+
+    #[allow(clippy::type_complexity)]
+    fn read_figures(&self, ctx: &Context<'_>) -> Read<(Arc<[FigurePlan]>, Option<Arc<[ColumnGlob]>>)> {
+        let root = Table::of(ctx, &self.document, "the scenario", &SCENARIO)?;
+        let labels: Vec<OnceCell<HashMap<String, usize>>> = self.axes.iter().map(|_| OnceCell::new()).collect();
+        let figures = figures::read(&root, &self.axes, &|axis, at, node| {
+            let labels = labels[axis].get_or_init(|| self.axes[axis].labels());
+            labels.get(&node.label()).copied().or_else(|| self.find(axis, at, node))
+        });
+        let columns = figures::read_columns(&root);
+        Ok((figures?, columns?))
+    }
+
+    /// Which value of a sweep has the number of `node`: that of a span, or one of a list in SI.
+    fn find(&self, axis: usize, at: usize, node: &Node) -> Option<usize> {
+        let swept = &self.axes[axis];
+        if let Some(k) = swept.index_in_span(node) {
+            return Some(k);
+        }
+        let mut document = self.document_at(&vec![0; self.axes.len()]);
+        let tag = self.first_tag(axis) + at;
+        path::set(&mut document, &swept.targets[at], Node { tag: Some(tag), ..node.clone() });
+        let ctx = self.context();
+        let _ = read_plan(&ctx, &document);
+        let wanted = ctx.swept(tag)?;
+        let near = |number: f64| (number - wanted).abs() <= 1e-12 * wanted.abs();
+        self.numbers[axis].iter().position(|numbers| numbers[at].is_some_and(near))
+    }
+}
+
+/// Whether a joint has damping or friction.
+fn has_joint_losses(plan: &Plan) -> bool {
+    plan.model.damping().iter().chain(plan.model.friction()).any(|x| *x != 0.0)
+}
+
+/// What makes the columns of a case, but for the energy lost in joints, which all cases have or none.
+fn columns_of(plan: &Plan) -> Vec<String> {
+    let mut columns: Vec<String> = plan.model.q_labels().into_iter().map(|label| label.name).collect();
+    for element in &plan.elements {
+        let name = &element.element.name;
+        columns.extend(element.element.row.inputs.iter().map(|input| format!("{name}.{}", input.name)));
+        columns.push(format!("{name}."));
+    }
+    columns.push(format!("{} {}", plan.gripper.is_some(), matches!(plan.motion, MotionPlan::GripperPath { .. })));
+    columns
+}
+
+/// Reads everything but sweeps and what is the same in every case.
+fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
+    let root = Table::of(ctx, document, "the scenario", &SCENARIO)?;
+    let title = root.get("title").map(|field| field.text().map(str::to_owned)).transpose();
+    let time = time::read(&root);
+    let settings = time::read_solver(&root, &time);
+    let robot = robot::read(&root);
+    let Ok(robot) = robot else {
+        if root.get("motion").is_none() {
+            root.lacks("motion");
+        }
+        return Err(super::reader::Refused);
+    };
+    let elements = elements::read(&root, &robot, time.as_ref().ok());
+    let motion = motion::read(&root, &robot, time.as_ref().ok().map(|time| time.end));
+    if let (Ok(elements), Ok(MotionPlan::Forward(_))) = (&elements, &motion)
+        && let Some(element) = elements.iter().find(|plan| plan.element.scheme.is_some())
+    {
+        let message = format!("element {:?} has a `scheme`, but the robot moves by itself", element.element.name);
+        let refusal = element.place.refuse(RefusalKind::Rule, message);
+        let help = "leave the scheme out: named schemes need a motion that is given in advance";
+        return Err(ctx.refuse(refusal.help(help)));
+    }
+    Ok(Plan {
+        title: title?,
+        gravity: robot.gravity,
+        bodies: robot.parts.bodies,
+        model: robot.parts.model,
+        body_places: robot.parts.places,
+        urdf: robot.parts.urdf,
+        gripper: robot.gripper,
+        elements: elements?,
+        motion: motion?,
+        tells_joint_losses: false,
+        settings: time.and(settings)?,
+        figures: Arc::new([]),
+        columns: None,
+    })
+}

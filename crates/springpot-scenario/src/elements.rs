@@ -1,0 +1,255 @@
+//! `[[element]]`: anchors, law, parameters, inputs.
+
+use super::document::shorten;
+use super::keys::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
+use super::names;
+use super::plan::{ElementPlan, SignalPlan};
+use super::reader::{Field, Read, Refused, Table, all};
+use super::refusal::RefusalKind;
+use super::robot::{Robot, checked_name, unique};
+use super::signals::{self, Wanted, celsius, how_outside, interval};
+use super::time::Duration;
+use springpot::element::Element;
+use springpot::fractional::scheme::{Scheme, SchemeNameError};
+use springpot::law::{Derivative, Entry, Param};
+use springpot::model::Anchor;
+use springpot::simulate::RowTimes;
+use std::collections::HashMap;
+
+/// Most elements of a robot.
+const MAX_ELEMENTS: usize = 10_000;
+/// Most numbers ∂l/∂q_b of all elements.
+const MAX_GRADIENTS: usize = 10_000_000;
+
+/// Reads every `[[element]]`.
+pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<Vec<ElementPlan>> {
+    let Some(field) = root.get("element") else { return Ok(Vec::new()) };
+    let items = field.items("an array of tables: [[element]]")?;
+    if items.len() > MAX_ELEMENTS {
+        let message = format!("holds {} elements; at most {MAX_ELEMENTS} are taken", items.len());
+        return Err(field.refuse(RefusalKind::TooLarge, message, None));
+    }
+    let nv = robot.model().nv();
+    if items.len() * nv > MAX_GRADIENTS {
+        let message = format!("holds {} elements on a robot of {nv} velocities", items.len());
+        let help = format!("elements times velocities may be {MAX_GRADIENTS} at most: each pair makes a column");
+        return Err(field.refuse(RefusalKind::TooLarge, message, Some(help)));
+    }
+    let mut seen = HashMap::new();
+    all(items.iter().enumerate().map(|(i, item)| {
+        if item.ctx.full() {
+            return Err(Refused);
+        }
+        let name = item.node.get("name").and_then(|node| node.text());
+        let what = name.map_or_else(|| format!("element {}", i + 1), |name| format!("element {:?}", shorten(name)));
+        let table = Table::of(item.ctx, item.node, what, &ELEMENT)?;
+        let name = table.require("name").and_then(|field| element_name(&field, &mut seen));
+        let element = element(&table, robot, time)?;
+        Ok(ElementPlan { element: Element { name: name?.to_owned(), ..element.element }, ..element })
+    }))
+}
+
+fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, super::Place>) -> Read<&'a str> {
+    let name = checked_name(field)?;
+    if RESERVED_NAMES.contains(&name) {
+        let message = format!("is {name:?}, which the columns of the results use");
+        let help = format!("an element may not be called {}", RESERVED_NAMES.join(", "));
+        return Err(field.refuse(RefusalKind::BadName, message, Some(help)));
+    }
+    unique(seen, field, name)?;
+    Ok(name)
+}
+
+/// Everything but the name.
+fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<ElementPlan> {
+    let from = table.require("from").and_then(|field| robot.anchor(&field));
+    let to = table.require("to").and_then(|field| robot.anchor(&field));
+    if let (Ok((first, from)), Ok((second, to))) = (&from, &to)
+        && robot.carrier(from.body) == robot.carrier(to.body)
+    {
+        let why = if first == second {
+            format!("has both ends on {first:?}")
+        } else if from.body == to.body {
+            format!(
+                "has both ends on the world, which is also called {:?}",
+                if first == "world" { second } else { first }
+            )
+        } else {
+            format!("joins {first:?} and {second:?}, which fixed joints hold together")
+        };
+        let place = table.get("to").map_or(&table.node.place, |field| &field.node.place);
+        let message = format!("{} {why}: its length cannot change", table.what);
+        table.ctx.refuse(place.refuse(RefusalKind::Rule, message).help("join two bodies that move against each other"));
+    }
+    let derivative = table.get("derivative").map_or(Ok(Derivative::Caputo), |field| derivative(&field));
+    let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
+    let law = table.require("law").and_then(|field| law(&field))?;
+    let parameters = parameters(table, law);
+    let inputs = inputs(table, law, time);
+    let (parameters, derivative) = (parameters?, derivative?);
+    let object = (law.build)(&parameters, derivative).map_err(|error| {
+        let table_field = table.get("parameters");
+        let node = table_field.as_ref().map_or(table.node, |field| field.node);
+        let place = node.get(error.parameter).map_or(&node.place, |parameter| &parameter.place);
+        let message = format!("{}: law {:?} needs {}", table.what, law.name, error.rule);
+        table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{}`", error.parameter)))
+    });
+    let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
+    let ((_, from), (_, to), inputs) = (from?, to?, inputs?);
+    let site = |anchor: &Anchor| robot.model().resolve(anchor).expect("an anchor that was read");
+    let mut element = Element {
+        name: String::new(),
+        from: site(&from),
+        to: site(&to),
+        rest_length: 0.0,
+        law: object?,
+        row: *law,
+        inputs: inputs.iter().map(|input| input.signal.clone()).collect(),
+        derivative,
+        scheme: scheme?,
+    };
+    table.fill(ELEMENT_FIELDS, &mut element)?;
+    Ok(ElementPlan { element, from, to, parameters, inputs, place })
+}
+
+fn law<'a>(field: &Field<'a>) -> Read<&'a Entry> {
+    let name = field.text()?;
+    field.ctx.catalog.get(name).ok_or_else(|| {
+        let laws = field.ctx.catalog.entries().iter().map(|entry| entry.name);
+        let message = format!("is {:?}, which is no law", shorten(name));
+        field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, laws)))
+    })
+}
+
+fn derivative(field: &Field<'_>) -> Read<Derivative> {
+    let word = field.word("kind of derivative")?;
+    [Derivative::Caputo, Derivative::RiemannLiouville].into_iter().find(|kind| kind.name() == word).ok_or(Refused)
+}
+
+fn scheme(field: &Field<'_>, time: Option<&Duration>) -> Read<Option<Scheme>> {
+    let text = field.text()?;
+    if text == "exact" {
+        return Ok(None);
+    }
+    let scheme: Scheme = text.parse().map_err(|error: SchemeNameError| match error {
+        SchemeNameError::Unknown(_) => {
+            let names = Scheme::NAMES.into_iter().chain(["exact"]);
+            let message = format!("is {:?}, which is no scheme", shorten(text));
+            field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(text, names)))
+        }
+        other => field.refuse(RefusalKind::OutOfRange, format!("is {:?}: {other}", shorten(text)), None),
+    })?;
+    if let Some(why) = time.and_then(|time| misfit(scheme, time)) {
+        let help = "write such a [time], or leave the scheme out".to_owned();
+        return Err(field.refuse(RefusalKind::Rule, format!("is {text:?}, {why}"), Some(help)));
+    }
+    Ok(Some(scheme))
+}
+
+/// Why the scheme cannot work on the rows of the run.
+fn misfit(scheme: Scheme, time: &Duration) -> Option<&'static str> {
+    if time.rows.at(0) != 0.0 {
+        return Some("which starts at t = 0: the first of `output_times` must be 0");
+    }
+    let uniform = match &time.rows {
+        RowTimes::Times(_) => false,
+        RowTimes::Step { step, end } => (end / step - (end / step).round()).abs() < 1e-9,
+    };
+    (scheme.needs_uniform_grid() && !uniform).then_some("which needs equal steps: an `output_step` that divides `end`")
+}
+
+/// Parameter values in the order of the catalog.
+fn parameters(table: &Table<'_>, law: &Entry) -> Read<Vec<f64>> {
+    let names: Vec<&str> = law.params.iter().map(|param| param.name).collect();
+    let field = table.get("parameters");
+    let open = field.as_ref().map(|field| {
+        let what = format!("`parameters` of {} (law {:?})", table.what, law.name);
+        Table::open(field.ctx, field.node, what, &names)
+    });
+    let given = open.transpose()?;
+    let get = |param: &Param| given.as_ref().and_then(|table| table.get(param.name));
+
+    let lacking = |param: &&Param| param.default.is_none() && get(param).is_none();
+    let missing: Vec<&Param> = law.params.iter().filter(lacking).collect();
+    let untold = missing.iter().filter(|param| !given.as_ref().is_some_and(|table| table.suspects(param.name)));
+    let untold: Vec<&str> = untold.map(|param| param.name).collect();
+    let missing_refused = if untold.is_empty() {
+        (!missing.is_empty()).then_some(Refused)
+    } else {
+        let right: Vec<String> = missing.iter().map(|param| describe(param.name, param.unit, param.meaning)).collect();
+        let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
+        let message = format!("{}: law {:?} needs the parameters {}", table.what, law.name, names::list(untold));
+        let refusal = place.refuse(RefusalKind::Missing, message).label("missing parameters");
+        Some(table.ctx.refuse(refusal.help(right.join("; "))))
+    };
+
+    // Exponents name pure numbers, so those are read first.
+    let pure = |param: &Param| match get(param) {
+        Some(field) if param.unit.is_empty() => Some(value(&field, param, &|_| None)),
+        _ => None,
+    };
+    let pure: Vec<Option<Read<f64>>> = law.params.iter().map(pure).collect();
+    let exponent = |name: &str| {
+        let at = names.iter().position(|param| *param == name)?;
+        match pure[at] {
+            Some(read) => read.ok(),
+            None => law.params[at].default.filter(|_| law.params[at].unit.is_empty()),
+        }
+    };
+    // A quantity whose exponent was refused or is missing would be refused for the wrong reason.
+    if pure.contains(&Some(Err(Refused))) || missing.iter().any(|param| param.unit.is_empty()) {
+        return Err(Refused);
+    }
+    let values = law.params.iter().zip(&pure).map(|(param, pure)| match (pure, get(param)) {
+        (Some(read), _) => *read,
+        (None, Some(field)) => value(&field, param, &exponent),
+        (None, None) => param.default.ok_or(Refused),
+    });
+    let values = all(values)?;
+    missing_refused.map_or(Ok(values), Err)
+}
+
+fn describe(name: &str, unit: &str, meaning: &str) -> String {
+    let unit = if unit.is_empty() { "a number" } else { unit };
+    format!("{name} [{unit}]: {meaning}")
+}
+
+fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f64>) -> Read<f64> {
+    let value = field.number_with(param.unit, exponents)?;
+    if param.range.contains(value) {
+        return Ok(value);
+    }
+    let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
+    let message = format!("is {value}{unit}, {}", how_outside(param.range));
+    let of = if param.unit.is_empty() { "a number" } else { param.unit };
+    let right = || format!("{}: {} ({of}, {})", param.name, param.meaning, interval(param.range));
+    let help = celsius(param.unit, param.range, value).unwrap_or_else(right);
+    Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)))
+}
+
+/// Inputs in the order of the catalog.
+fn inputs(table: &Table<'_>, law: &Entry, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
+    let names: Vec<&str> = law.inputs.iter().map(|input| input.name).collect();
+    let field = table.get("inputs");
+    let open = field.as_ref().map(|field| {
+        let what = format!("`inputs` of {} (law {:?})", table.what, law.name);
+        Table::open(field.ctx, field.node, what, &names)
+    });
+    let given = open.transpose()?;
+    let missing: Vec<_> =
+        law.inputs.iter().filter(|input| given.as_ref().is_none_or(|given| given.get(input.name).is_none())).collect();
+    let untold = missing.iter().filter(|input| !given.as_ref().is_some_and(|given| given.suspects(input.name)));
+    let untold: Vec<&str> = untold.map(|input| input.name).collect();
+    if !untold.is_empty() {
+        let right: Vec<String> = missing.iter().map(|input| describe(input.name, input.unit, input.meaning)).collect();
+        let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
+        let message = format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold));
+        let refusal = place.refuse(RefusalKind::Missing, message).label("missing inputs");
+        table.ctx.refuse(refusal.help(right.join("; ")));
+    }
+    all(law.inputs.iter().map(|input| {
+        let field = given.as_ref().and_then(|given| given.get(input.name)).ok_or(Refused)?;
+        let end = time.map(|time| time.end);
+        signals::read(&field, Wanted { unit: input.unit, range: input.range, smooth: false, end })
+    }))
+}

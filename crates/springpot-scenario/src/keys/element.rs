@@ -1,0 +1,53 @@
+//! `[[element]]`.
+
+use super::robot::NAME;
+use super::{ANCHOR, Bound, Field, Keys, Need, Shape, Slot, key};
+use springpot::element::Element;
+use springpot::law::Derivative;
+
+/// Names that would collide with columns of the results.
+pub(crate) const RESERVED_NAMES: [&str; 7] = ["t", "q", "v", "a", "tau", "energy", "gripper"];
+
+pub(crate) static ELEMENT: Keys = Keys {
+    words: "A material between two points of two bodies.",
+    keys: &[
+        key(
+            "name",
+            Shape::Name(&RESERVED_NAMES),
+            Need::Written(NAME),
+            "Name of the element; begins the names of its columns.",
+        ),
+        key(
+            "from",
+            Shape::Table(&ANCHOR),
+            Need::Required("from = { body = \"NAME\", point = [x, y, z] }"),
+            "First end.",
+        ),
+        key("to", Shape::Table(&ANCHOR), Need::Required("to = { body = \"NAME\", point = [x, y, z] }"), "Second end."),
+        key(
+            "rest_length",
+            Shape::Number("m", Bound::Length),
+            Need::Required("rest_length = \"70 cm\""),
+            "Length at which the stroke is 0.",
+        ),
+        key("law", Shape::Law, Need::Required("law = \"…\""), "Name of the law: `springpot laws` lists them."),
+        key("parameters", Shape::ByName, Need::Optional, "Parameters, as the law says."),
+        key("inputs", Shape::ByName, Need::Optional, "Inputs, as the law says: functions of time."),
+        key(
+            "derivative",
+            Shape::Words(|| [Derivative::Caputo, Derivative::RiemannLiouville].map(|kind| kind.name()).to_vec()),
+            Need::Word("caputo"),
+            "What happened before t = 0: held at x(0), or unloaded.",
+        ),
+        key(
+            "scheme",
+            Shape::Scheme,
+            Need::Word("exact"),
+            "The exact memory, or a named scheme on the grid of the rows.",
+        ),
+    ],
+};
+
+/// Its keys that are numbers of the element.
+pub(crate) const ELEMENT_FIELDS: &[Field<Element>] =
+    &[("rest_length", |element| Slot::Number(&mut element.rest_length))];

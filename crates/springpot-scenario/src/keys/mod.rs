@@ -1,0 +1,279 @@
+//! The keys of a scenario, as data: name, what may stand there, what stands for it where it is left out, words.
+//!
+//! Everything that lists keys reads these tables: the readers (which keys there are, units, ranges, defaults), what is suggested in
+//! the place of a misspelt one, the JSON schema, and a test that compares them with the tables of docs/SCENARIO.md.
+
+mod element;
+mod figure;
+mod motion;
+mod robot;
+pub(crate) mod solver;
+mod sweep;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
+pub(crate) use figure::{FIGURE, OUTPUT};
+pub(crate) use motion::{FORCES, MOTION, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
+pub(crate) use robot::{ANCHOR, BODY, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, WITH_AXIS};
+pub(crate) use solver::{SOLVER, SOLVER_FIELDS, TIME};
+pub use sweep::MAX_CASES;
+pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
+
+use serde_json::{Map, Value, json};
+
+/// A table of a scenario and its keys.
+#[derive(Debug)]
+pub(crate) struct Keys {
+    /// What a table of this kind is, where several may stand in one place.
+    pub(crate) words: &'static str,
+    /// In the order in which messages list them.
+    pub(crate) keys: &'static [Key],
+}
+
+/// One key.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Key {
+    pub(crate) name: &'static str,
+    pub(crate) shape: Shape,
+    pub(crate) need: Need,
+    /// What it says, as a sentence.
+    pub(crate) words: &'static str,
+    /// The kinds of its table that it belongs to, such as the kinds of motion; empty: all.
+    pub(crate) only: &'static [&'static str],
+}
+
+/// What may stand under a key.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Shape {
+    /// Any text.
+    Text,
+    /// A name of the scenario's own, but none of these.
+    Name(&'static [&'static str]),
+    /// The name of a file, without an ending.
+    FileName,
+    /// One of these words.
+    Words(fn() -> Vec<&'static str>),
+    /// true or false.
+    Flag,
+    /// A number or a quantity in a unit; an empty unit is that of a pure number.
+    Number(&'static str, Bound),
+    /// A number that belongs to a joint: in the first unit where it turns, in the second where it slides.
+    JointNumber([&'static str; 2], Bound),
+    /// A whole number from the first on, to the second if there is one.
+    Whole(i64, Option<i64>),
+    /// Three numbers in a unit.
+    Vector(&'static str),
+    /// Any number of numbers in a unit, zero and above.
+    Numbers(&'static str),
+    /// An end of a span: a number in the unit of what is swept.
+    SweptNumber,
+    /// A function of time in a unit.
+    Signal(&'static str),
+    /// Three functions of time in a unit.
+    Signals(&'static str),
+    /// A text, or an array of texts.
+    Texts,
+    /// A path of a parameter, or an array of so many at most.
+    Paths(usize),
+    /// An array of texts.
+    TextList,
+    /// A column.
+    Column,
+    /// A column or glob, or an array of them.
+    Columns,
+    /// A table.
+    Table(&'static Keys),
+    /// An array of tables, so many at most where that is said.
+    Tables(&'static Keys, Option<usize>),
+    /// A number that belongs to a joint as above, or a table.
+    JointNumberOr([&'static str; 2], Bound, &'static Keys),
+    /// Values, or a table that says them.
+    ValuesOr(&'static Keys),
+    /// A table with a value for each joint.
+    ByJoint(Each),
+    /// A table of texts under names that other keys give.
+    TextsByName,
+    /// A table of anything under names that other keys give.
+    ByName,
+    /// A law of the catalog.
+    Law,
+    /// A named scheme, or the exact memory.
+    Scheme,
+}
+
+/// What a table by joints holds for each of them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Each {
+    /// How it moves: a signal, or the pose of a floating joint.
+    Path,
+    /// What its actuator gives: a signal, or the six of a floating joint.
+    Force,
+    /// A coordinate.
+    Coordinate,
+    /// A number, or a table for a floating joint.
+    NumberOr(&'static Keys),
+}
+
+/// Which numbers are right.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Bound {
+    /// All finite ones.
+    Any,
+    /// Zero and above; what is below is refused where it is used, with words of its own.
+    NotNegative,
+    /// Zero and above, since it is a length.
+    Length,
+    /// Above zero.
+    Positive,
+    /// An interval, and what to write.
+    Within(f64, f64, &'static str),
+}
+
+/// Whether a key must be there, and what stands for it where it is left out.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Need {
+    /// It must be written in the file, as these words say.
+    Written(&'static str),
+    /// It must be there, as these words say; the file may leave it to a sweep.
+    Required(&'static str),
+    /// It or another one must be there.
+    OneOf,
+    /// Nothing stands for it.
+    Optional,
+    /// This number.
+    Number(f64),
+    /// These numbers.
+    Vector([f64; 3]),
+    /// This.
+    Flag(bool),
+    /// This word.
+    Word(&'static str),
+    /// What these words say.
+    Said(&'static str),
+}
+
+const fn key(name: &'static str, shape: Shape, need: Need, words: &'static str) -> Key {
+    Key { name, shape, need, words, only: &[] }
+}
+
+impl Key {
+    const fn only(self, only: &'static [&'static str]) -> Self {
+        Self { only, ..self }
+    }
+
+    /// What stands for it where it is left out, as a file would say it; `None` where nothing does, or it cannot be left out.
+    pub(crate) fn default(&self) -> Option<String> {
+        match self.need {
+            Need::Written(_) | Need::Required(_) | Need::OneOf | Need::Optional => None,
+            Need::Number(number) if number != 0.0 && number.abs() < 0.01 => Some(format!("{number:e}")),
+            Need::Number(number) => Some(number.to_string()),
+            Need::Vector([x, y, z]) => Some(format!("[{x}, {y}, {z}]")),
+            Need::Flag(flag) => Some(flag.to_string()),
+            Need::Word(word) => Some(format!("{word:?}")),
+            Need::Said(words) => Some(words.to_owned()),
+        }
+    }
+
+    /// What to write where it must be there and is not.
+    pub(crate) fn right(&self) -> &'static str {
+        match self.need {
+            Need::Written(right) | Need::Required(right) => right,
+            _ => self.name,
+        }
+    }
+
+    /// The words that may stand there; none where it takes no words.
+    pub(crate) fn choices(&self) -> Vec<&'static str> {
+        match self.shape {
+            Shape::Words(words) => words(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl Keys {
+    /// All names, in their order.
+    pub(crate) fn names(&self) -> Vec<&'static str> {
+        self.keys.iter().map(|key| key.name).collect()
+    }
+
+    /// Names that belong to the kind `kind` of the table.
+    pub(crate) fn names_for(&self, kind: &str) -> Vec<&'static str> {
+        self.of(kind).map(|key| key.name).collect()
+    }
+
+    /// Keys that belong to the kind `kind` of the table.
+    pub(crate) fn of<'k>(&self, kind: &'k str) -> impl Iterator<Item = &'static Key> + use<'k> {
+        let keys = self.keys;
+        keys.iter().filter(move |key| key.only.is_empty() || key.only.contains(&kind))
+    }
+
+    /// Whether `name` belongs to some kinds of the table only.
+    pub(crate) fn is_of_a_kind(&self, name: &str) -> bool {
+        self.get(name).is_some_and(|key| !key.only.is_empty())
+    }
+
+    /// The key of that name.
+    pub(crate) fn get(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+}
+
+/// Where the number under a key goes.
+pub(crate) enum Slot<'t> {
+    Number(&'t mut f64),
+    Perhaps(&'t mut Option<f64>),
+    Count(&'t mut Option<u64>),
+}
+
+/// A key that is a field of what is made of its table. What a file says of it is put there, and the record of a run takes it from
+/// there.
+pub(crate) type Field<T> = (&'static str, fn(&mut T) -> Slot<'_>);
+
+/// The fields of `made` as the record of a run has them.
+pub(crate) fn record<T: Clone>(fields: &[Field<T>], made: &T) -> Map<String, Value> {
+    let mut made = made.clone();
+    let value = |slot: Slot<'_>| match slot {
+        Slot::Number(number) => json!(number),
+        Slot::Perhaps(number) => json!(number),
+        Slot::Count(count) => json!(count),
+    };
+    fields.iter().map(|(key, slot)| ((*key).to_owned(), value(slot(&mut made)))).collect()
+}
+
+/// The whole scenario.
+pub(crate) static SCENARIO: Keys = Keys {
+    words: "A Springpot scenario.",
+    keys: &[
+        key("title", Shape::Text, Need::Optional, "Title, shown by check and in run.json."),
+        key(
+            "robot",
+            Shape::Table(&ROBOT),
+            Need::Required("[robot] with urdf = \"arm.urdf\", or a [[robot.body]] for each body"),
+            "Gravity, bodies or a URDF file, gripper.",
+        ),
+        key("element", Shape::Tables(&ELEMENT, None), Need::Optional, "Materials between two points."),
+        key(
+            "motion",
+            Shape::Table(&MOTION),
+            Need::Required("[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\""),
+            "What moves the robot.",
+        ),
+        key(
+            "time",
+            Shape::Table(&TIME),
+            Need::Required("[time] with end = \"10 s\" and output_step = \"10 ms\""),
+            "Duration and rows.",
+        ),
+        key("solver", Shape::Table(&SOLVER), Need::Optional, "Accuracy and steps."),
+        key(
+            "sweep",
+            Shape::Tables(&SWEEP, Some(MAX_BLOCKS)),
+            Need::Optional,
+            "Parameters to vary; several blocks make a grid.",
+        ),
+        key("figure", Shape::Tables(&FIGURE, None), Need::Optional, "Figures to draw."),
+        key("output", Shape::Table(&OUTPUT), Need::Optional, "What is written."),
+    ],
+};

@@ -1,0 +1,167 @@
+//! `[robot]`.
+
+use super::{Bound, Key, Keys, Need, Shape, key};
+use springpot::model::{FRICTION_SPEED, JointKind};
+
+/// What to write where a name is missing.
+pub(super) const NAME: &str = "name = \"…\"";
+const KILOGRAM_METRE_SQUARED: &str = "kg*m^2";
+/// N·m where a joint turns, N where it slides.
+const FORCE: [&str; 2] = ["N*m", "N"];
+/// The kind of joints with an axis.
+pub(crate) const WITH_AXIS: &str = "with an axis";
+/// The kind of robots from a URDF file.
+pub(crate) const FROM_URDF: &str = "with urdf";
+const WITH_URDF: &[&str] = &[FROM_URDF];
+const ZERO: Need = Need::Vector([0.0; 3]);
+
+/// The kinds of it that `only` knows: robots from a URDF file.
+pub(crate) static ROBOT: Keys = Keys {
+    words: "A robot.",
+    keys: &[
+        key("gravity", Shape::Vector("m/s^2"), Need::Vector([0.0, 0.0, -9.81]), "Gravity in the axes of the world."),
+        key("body", Shape::Tables(&BODY, None), Need::OneOf, "Bodies, parents before children."),
+        key("gripper", Shape::Table(&ANCHOR), Need::Optional, "The point that a gripper path moves."),
+        key("urdf", Shape::Text, Need::OneOf, "Path of a URDF file, relative to the scenario."),
+        key(
+            "floating_base",
+            Shape::Flag,
+            Need::Flag(false),
+            "Whether the root link floats on a joint called floating_base.",
+        )
+        .only(WITH_URDF),
+        key("ignore_mimic", Shape::Flag, Need::Flag(false), "Whether mimic joints have coordinates of their own.")
+            .only(WITH_URDF),
+        key(
+            "package_path",
+            Shape::Texts,
+            Need::Said("[]"),
+            "Folders that are packages or hold some, for package:// paths.",
+        )
+        .only(WITH_URDF),
+    ],
+};
+
+/// A point on a body.
+pub(crate) static ANCHOR: Keys = Keys {
+    words: "A point on a body.",
+    keys: &[
+        key(
+            "body",
+            Shape::Text,
+            Need::Required("body = \"NAME\" or body = \"world\""),
+            "Name of a body or link, or \"world\".",
+        ),
+        key(
+            "point",
+            Shape::Vector("m"),
+            Need::Required("point = [x, y, z] in the body's joint frame, m"),
+            "The point in the frame of the body's joint.",
+        ),
+    ],
+};
+
+pub(crate) static BODY: Keys = Keys {
+    words: "A body and the joint that it hangs on.",
+    keys: &[
+        key("name", Shape::Name(&[]), Need::Written(NAME), "Name of the body; not \"world\"."),
+        key(
+            "parent",
+            Shape::Text,
+            Need::Said("the body before; the first hangs on \"world\""),
+            "\"world\" or an earlier body.",
+        ),
+        key(
+            "joint",
+            Shape::Table(&JOINT),
+            Need::Required("joint = { name = \"…\", kind = \"revolute\", axis = [0, 0, 1], origin = [0, 0, 0] }"),
+            "The joint between the body and its parent.",
+        ),
+        key("mass", Shape::Number("kg", Bound::NotNegative), Need::Required("mass = 1.0 (in kg)"), "Mass."),
+        key("com", Shape::Vector("m"), ZERO, "Centre of mass in the frame of the joint."),
+        key(
+            "inertia",
+            Shape::Table(&INERTIA),
+            Need::Said("0 (a point mass)"),
+            "Inertia about the centre of mass in the axes of the joint, kg*m^2.",
+        ),
+    ],
+};
+
+const fn moment(name: &'static str) -> Key {
+    key(
+        name,
+        Shape::Number(KILOGRAM_METRE_SQUARED, Bound::NotNegative),
+        Need::Required("xx, yy and zz, in kg*m^2"),
+        "Moment of inertia.",
+    )
+}
+
+const fn product(name: &'static str) -> Key {
+    let words = "Component of the tensor, J_xy = -∫xy dm.";
+    key(name, Shape::Number(KILOGRAM_METRE_SQUARED, Bound::Any), Need::Number(0.0), words)
+}
+
+pub(crate) static INERTIA: Keys = Keys {
+    words: "Inertia about the centre of mass.",
+    keys: &[moment("xx"), moment("yy"), moment("zz"), product("xy"), product("xz"), product("yz")],
+};
+
+/// What joints with an axis take alone.
+const AXIS: &[&str] = &[WITH_AXIS];
+
+/// The kinds of it that `only` knows: joints with an axis.
+pub(crate) static JOINT: Keys = Keys {
+    words: "The joint between the body and its parent.",
+    keys: &[
+        key("name", Shape::Name(&[]), Need::Written(NAME), "Name of the joint."),
+        key(
+            "kind",
+            Shape::Words(|| JointKind::ALL.map(JointKind::name).to_vec()),
+            Need::Required("kind = \"revolute\", \"continuous\", \"prismatic\", \"floating\" or \"fixed\""),
+            "How it moves.",
+        ),
+        key("origin", Shape::Vector("m"), ZERO, "Origin of the joint frame in the parent's joint frame."),
+        key("rpy", Shape::Vector("rad"), ZERO, "Roll, pitch, yaw of the joint frame in the parent's."),
+        key(
+            "axis",
+            Shape::Vector(""),
+            Need::Required("axis = [0, 0, 1]"),
+            "Axis in the joint frame, of any length but 0.",
+        )
+        .only(AXIS),
+        key(
+            "damping",
+            Shape::JointNumber(["N*m*s/rad", "N*s/m"], Bound::NotNegative),
+            Need::Number(0.0),
+            "Viscous damping.",
+        )
+        .only(AXIS),
+        key(
+            "friction",
+            Shape::JointNumberOr(FORCE, Bound::NotNegative, &FRICTION),
+            Need::Number(0.0),
+            "Coulomb friction: a number or quantity, or a table with `force`.",
+        )
+        .only(AXIS),
+    ],
+};
+
+pub(crate) static FRICTION: Keys = Keys {
+    words: "Coulomb friction, and what it does near rest.",
+    keys: &[
+        key(
+            "force",
+            Shape::JointNumber(FORCE, Bound::NotNegative),
+            Need::Written("force = \"0.2 N*m\" (prismatic: \"0.2 N\")"),
+            "Coulomb friction.",
+        ),
+        key(
+            "speed",
+            Shape::JointNumber(["rad/s", "m/s"], Bound::Positive),
+            Need::Number(FRICTION_SPEED),
+            "v_0 of force·tanh(v/v_0), at which a load below the force creeps. Not used where it sticks.",
+        ),
+        key("stick", Shape::Flag, Need::Flag(false), "Whether Coulomb's law holds as it stands, with rest."),
+    ],
+};

@@ -1,0 +1,116 @@
+//! `[time]` and `[solver]`, and where the numbers of `[solver]` go.
+
+use super::{Bound, Field, Keys, Need, Shape, Slot, key};
+use springpot::simulate::fixed::Method;
+use springpot::simulate::{RowTimes, Settings};
+
+pub(crate) static TIME: Keys = Keys {
+    words: "Duration and rows.",
+    keys: &[
+        key(
+            "end",
+            Shape::Number("s", Bound::Positive),
+            Need::Required("end = \"10 s\""),
+            "Duration; the motion starts at t = 0.",
+        ),
+        key(
+            "output_step",
+            Shape::Number("s", Bound::Positive),
+            Need::OneOf,
+            "Rows at its multiples, and one at the end.",
+        ),
+        key("output_times", Shape::Numbers("s"), Need::OneOf, "Rows at these increasing times and nowhere else."),
+    ],
+};
+
+/// The method that chooses its steps.
+pub(crate) const ADAPTIVE: &str = "radau";
+/// Methods with steps of one size.
+pub(crate) const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
+/// Smallest error of the memory's kernel; it is a hundredth of `rtol` where nothing else is said, and not below this.
+pub(crate) const SMALLEST_MEMORY_RTOL: f64 = 1e-12;
+const LARGEST_RTOL: f64 = 0.1;
+const SUCH_AS: &str = "write a relative error such as 1e-9";
+const FORWARD: &[&str] = &["forward"];
+
+/// The kinds of it that `only` knows: `forward`, runs of that kind of motion.
+pub(crate) static SOLVER: Keys = Keys {
+    words: "Accuracy and steps.",
+    keys: &[
+        key(
+            "rtol",
+            Shape::Number("", Bound::Within(1e-13, LARGEST_RTOL, SUCH_AS)),
+            Need::Number(1e-9),
+            "Error of every D^alpha x, relative to its largest value so far; forward: of q and v.",
+        ),
+        key(
+            "atol",
+            Shape::Number("", Bound::Positive),
+            Need::Said("none"),
+            "Errors below this are not looked at: of D^alpha x; forward: of q and v.",
+        ),
+        key(
+            "memory_rtol",
+            Shape::Number("", Bound::Within(SMALLEST_MEMORY_RTOL, LARGEST_RTOL, SUCH_AS)),
+            Need::Said("rtol/100, not below 1e-12"),
+            "Relative error of the memory's kernel.",
+        ),
+        key(
+            "first_step",
+            Shape::Number("s", Bound::Positive),
+            Need::Said("max_step/64; forward: chosen by the run"),
+            "First inner step.",
+        ),
+        key(
+            "max_step",
+            Shape::Number("s", Bound::Positive),
+            Need::Said("end/500; forward, where nothing varies with time: end/50"),
+            "Largest inner step.",
+        ),
+        key(
+            "max_steps",
+            Shape::Whole(1, None),
+            Need::Said("10 000 000, and 100 more for every switch of a signal"),
+            "Most inner steps of one case.",
+        ),
+        key(
+            "method",
+            Shape::Words(|| [ADAPTIVE].into_iter().chain(FIXED.map(Method::name)).collect()),
+            Need::Word(ADAPTIVE),
+            "How it steps; \"radau\" chooses its steps.",
+        )
+        .only(FORWARD),
+        key(
+            "step",
+            Shape::Number("s", Bound::Positive),
+            Need::Optional,
+            "The step of \"backward-euler\" and \"midpoint\".",
+        )
+        .only(FORWARD),
+    ],
+};
+
+/// Its keys that are numbers of the settings.
+pub(crate) const SOLVER_FIELDS: &[Field<Settings>] = &[
+    ("rtol", |settings| Slot::Number(&mut settings.rtol)),
+    ("atol", |settings| Slot::Perhaps(&mut settings.atol)),
+    ("memory_rtol", |settings| Slot::Number(&mut settings.memory_rtol)),
+    ("first_step", |settings| Slot::Perhaps(&mut settings.first_step)),
+    ("max_step", |settings| Slot::Perhaps(&mut settings.max_step)),
+    ("max_steps", |settings| Slot::Count(&mut settings.max_steps)),
+];
+
+/// Settings whose keys have not been read.
+pub(crate) fn unfilled(end: f64, rows: RowTimes) -> Settings {
+    Settings {
+        end,
+        rows,
+        rtol: f64::NAN,
+        atol: None,
+        memory_rtol: f64::NAN,
+        first_step: None,
+        max_step: None,
+        max_steps: None,
+        fixed_step: None,
+    }
+}

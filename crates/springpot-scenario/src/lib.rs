@@ -1,0 +1,213 @@
+//! Scenario files: TOML text → [`Scenario`] (as written) → [`Cases`] (the grid of its sweeps) → [`Plan`] (one run,
+//! validated, in SI units, with every default filled in).
+//!
+//! Everything that is wrong in a scenario is a [`Refusal`] with file, line, column, value and what would be right.
+//!
+//! ```
+//! use springpot::law::Catalog;
+//! use springpot_scenario::Scenario;
+//!
+//! let text = r#"
+//! [[robot.body]]
+//! name = "pendulum"
+//! joint = { name = "q1", kind = "revolute", axis = [0, 1, 0] }
+//! mass = "500 g"
+//! com = [0, 0, -0.3]
+//! [motion]
+//! kind = "prescribed"
+//! joints = { q1 = "0.1*sin(8*t)" }
+//! [time]
+//! end = "10 s"
+//! output_step = "10 ms"
+//! "#;
+//! let mut scenario = Scenario::parse(text, "pendulum.toml", "")?;
+//! scenario.set("solver.rtol=1e-7")?;
+//! let cases = scenario.cases(&Catalog::standard())?;
+//! assert_eq!(cases.len(), 1);
+//! let plan = cases.plan(0)?;
+//! assert_eq!(plan.bodies[0].mass, 0.5);
+//! assert_eq!(plan.settings.rows.count(), 1001);
+//!
+//! scenario.set("time.end=10 m")?;
+//! let refusals = scenario.cases(&Catalog::standard()).map(|_| ()).unwrap_err();
+//! assert!(refusals.to_string().starts_with("--set:1:13: `end` of [time]"));
+//! # Ok::<(), springpot_scenario::Refusals>(())
+//! ```
+
+mod bodies;
+mod cases;
+pub mod csv;
+mod document;
+mod elements;
+mod figures;
+mod forward;
+mod inputs;
+mod keys;
+mod motion;
+mod names;
+mod path;
+mod plan;
+mod reader;
+mod refusal;
+mod resolved;
+mod robot;
+mod schema;
+mod signals;
+mod sweep;
+mod system;
+mod time;
+pub mod units;
+mod urdf;
+
+pub use cases::{Cases, SweptValue};
+pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
+pub use keys::MAX_CASES;
+pub use names::suggest;
+pub use path::toml_key;
+pub use plan::{
+    BodyPlaces, DrivePlan, ElementPlan, ForwardPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan,
+    SignalPlan, UrdfPlan,
+};
+pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
+pub use schema::json_schema;
+
+use document::{MAX_BYTES, Node};
+use robot::Robot;
+use springpot::law::Catalog;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A scenario as written: a TOML document and the overrides of `--set`.
+#[derive(Debug, Clone)]
+pub struct Scenario {
+    document: Node,
+    source: Arc<Source>,
+    folder: PathBuf,
+    overrides: Vec<Override>,
+}
+
+/// One `--set PATH=VALUE`.
+#[derive(Debug, Clone)]
+struct Override {
+    path: String,
+    place: Place,
+    value: Node,
+}
+
+impl Scenario {
+    /// Reads a file. Paths that it names are relative to its folder.
+    ///
+    /// # Errors
+    /// A path of something else than a regular file; a file that cannot be read, is larger than 4 MiB, not UTF-8, not TOML, or too deeply nested.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Refusals> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let refuse = |message: String| {
+            let source = Source { name: name.clone(), text: "".into() };
+            Place { source: Arc::new(source), span: 0..0 }.refuse(RefusalKind::File, message)
+        };
+        let unopened = |error| refuse(format!("cannot be opened: {error}"));
+        // Looked at before it is opened: opening a pipe would wait for its other end.
+        if !std::fs::metadata(path).map_err(unopened)?.is_file() {
+            let refusal = refuse("cannot be read: not a regular file".to_owned());
+            return Err(refusal.help("a scenario is read from a file, which paths in it are relative to").into());
+        }
+        let mut bytes = Vec::new();
+        let file = std::fs::File::open(path).map_err(unopened)?;
+        let read = file.take(MAX_BYTES + 1).read_to_end(&mut bytes);
+        read.map_err(|error| refuse(format!("cannot be read: {error}")))?;
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(too_large(&name).into());
+        }
+        match String::from_utf8(bytes) {
+            Ok(text) => Self::parse(&text, name, path.parent().unwrap_or(Path::new(""))),
+            Err(error) => {
+                let at = error.utf8_error().valid_up_to();
+                let text: Arc<str> = String::from_utf8_lossy(error.as_bytes()).into();
+                let place = Place { source: Arc::new(Source { name, text }), span: at..at + '\u{fffd}'.len_utf8() };
+                Err(place.refuse(RefusalKind::Syntax, "not UTF-8").help("save the file as UTF-8").into())
+            }
+        }
+    }
+
+    /// Reads a text that stands for the file `name`; paths in it are relative to `folder`.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn parse(text: &str, name: impl Into<String>, folder: impl Into<PathBuf>) -> Result<Self, Refusals> {
+        let name = name.into();
+        if text.len() as u64 > MAX_BYTES {
+            return Err(too_large(&name).into());
+        }
+        // Editors of one system begin their files with a byte order mark; it is no part of line 1.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let source = Arc::new(Source { name, text: text.into() });
+        let document = Node::document(&source)?;
+        Ok(Self { document, source, folder: folder.into(), overrides: Vec::new() })
+    }
+
+    /// The text as written.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// Overrides one value: `PATH=VALUE`, as in `element.strut.alpha=0.5`. VALUE is read as a TOML value, else as a text.
+    /// What the path leads to is checked with everything else, in [`Scenario::cases`].
+    ///
+    /// # Errors
+    /// No `=`, an empty path or an empty value.
+    pub fn set(&mut self, assignment: &str) -> Result<(), Refusals> {
+        let source = Arc::new(Source { name: "--set".to_owned(), text: assignment.into() });
+        let place = |span| Place { source: source.clone(), span };
+        let refuse = |message: &str| {
+            let refusal = place(0..assignment.len()).refuse(RefusalKind::Syntax, message);
+            refusal.help("write PATH=VALUE, as in element.strut.alpha=0.5 or element.strut.T=\"25 degC\"")
+        };
+        if assignment.len() as u64 > MAX_BYTES {
+            return Err(refuse("--set takes no more than 4 MiB").into());
+        }
+        let Some(equals) = path::equals_sign(assignment) else {
+            return Err(refuse(&format!("--set {:?} has no `=`", document::shorten(assignment))).into());
+        };
+        let value = assignment[equals + 1..].trim();
+        let path = assignment[..equals].trim();
+        if value.is_empty() || path.is_empty() {
+            let what = if path.is_empty() { "path" } else { "value" };
+            return Err(refuse(&format!("--set {:?} has no {what}", document::shorten(assignment))).into());
+        }
+        let start = equals + 1 + (assignment[equals + 1..].len() - assignment[equals + 1..].trim_start().len());
+        let span = start..start + value.len();
+        let value = match Node::value(&source, span.clone())? {
+            Some(node) => node,
+            None => Node { value: document::Value::Text(value.to_owned()), place: place(span), tag: None },
+        };
+        let path_start = assignment.len() - assignment.trim_start().len();
+        let path_place = place(path_start..path_start + path.len());
+        self.overrides.push(Override { path: path.to_owned(), place: path_place, value });
+        Ok(())
+    }
+
+    /// Validates everything: robot, elements, motion, time, solver, figures, and every swept value once.
+    ///
+    /// # Errors
+    /// All refusals that could be collected, in the order of the text.
+    pub fn cases(&self, catalog: &Catalog) -> Result<Cases, Refusals> {
+        Cases::new(self, catalog)
+    }
+
+    /// The robot alone, as the first case has it: `[robot]` is all that the scenario needs to hold.
+    ///
+    /// # Errors
+    /// All refusals about the robot and the sweeps that could be collected; the rest of the scenario is not looked at.
+    pub fn robot(&self, catalog: &Catalog) -> Result<RobotPlan, Refusals> {
+        let Robot { gravity, gripper, parts, .. } = Cases::robot(self, catalog)?;
+        Ok(RobotPlan { gravity, bodies: parts.bodies, model: parts.model, urdf: parts.urdf, gripper })
+    }
+}
+
+fn too_large(name: &str) -> Refusal {
+    let source = Source { name: name.to_owned(), text: "".into() };
+    let message = format!("larger than {} MiB", MAX_BYTES >> 20);
+    Place { source: Arc::new(source), span: 0..0 }.refuse(RefusalKind::TooLarge, message)
+}

@@ -1,0 +1,54 @@
+//! Names of files and columns, and what to say of a name that does not exist.
+
+pub(crate) use springpot::names::{is_name, nearest};
+
+/// Whether `name` is safe as the name of a file on every system.
+pub(crate) fn is_file_name(name: &str) -> bool {
+    name.len() <= 100
+        && name.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
+        && !name.ends_with('.')
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.'))
+}
+
+/// `a, b and c`, shortened after twelve.
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    const SHOWN: usize = 12;
+    let names: Vec<&str> = names.into_iter().collect();
+    let shown = names.len().min(SHOWN);
+    match (names.len(), names[..shown].split_last()) {
+        (n, _) if n > SHOWN => format!("{} and {} more", names[..shown].join(", "), n - SHOWN),
+        (_, None) => "none".to_owned(),
+        (_, Some((last, []))) => (*last).to_owned(),
+        (_, Some((last, others))) => format!("{} and {last}", others.join(", ")),
+    }
+}
+
+/// What to say of a name that does not exist: the candidate most like it, or else what there is.
+pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    match nearest(name, candidates.clone()) {
+        Some(right) => format!("did you mean `{right}`?"),
+        None => format!("there is {}", list(candidates)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_stay_in_their_folder() {
+        for good in ["order", "figure-1", "a.b", "2_x"] {
+            assert!(is_file_name(good), "{good}");
+        }
+        for bad in ["", "..", ".x", "a/b", "a\\b", "a b", "x.", "a:b"] {
+            assert!(!is_file_name(bad), "{bad}");
+        }
+        assert!(!is_file_name(&"x".repeat(101)));
+    }
+
+    #[test]
+    fn what_is_suggested() {
+        assert_eq!(suggest("rest_lenght", ["law", "rest_length"]), "did you mean `rest_length`?");
+        assert_eq!(suggest("zzz", ["a", "b", "c"]), "there is a, b and c");
+    }
+}

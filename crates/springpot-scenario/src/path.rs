@@ -1,0 +1,269 @@
+//! Dotted paths into a scenario: `element.strut.alpha`, `solver.rtol`, `robot.body.forearm.mass`.
+
+use super::document::{Entry, Node, Value, shorten};
+use super::keys::ELEMENT;
+use super::names;
+use super::reader::{Context, Read};
+use super::refusal::{Place, RefusalKind};
+use springpot::law;
+use std::sync::Arc;
+use toml::de::DeValue;
+
+/// Longest path, in keys.
+const MAX_KEYS: usize = 16;
+
+/// One step from a node to a child.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Step {
+    Key(String),
+    Index(usize),
+}
+
+/// A path as written and what it leads to; the last keys may not exist yet.
+#[derive(Debug, Clone)]
+pub(crate) struct Target {
+    pub(crate) written: String,
+    pub(crate) place: Place,
+    pub(crate) steps: Vec<Step>,
+}
+
+impl Target {
+    /// Whether one leads to the other or into it.
+    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+        let n = self.steps.len().min(other.steps.len());
+        self.steps[..n] == other.steps[..n]
+    }
+
+    /// The top-level key and the last one.
+    pub(crate) fn ends(&self) -> (&str, &str) {
+        match (self.steps.first(), self.steps.last()) {
+            (Some(Step::Key(first)), Some(Step::Key(last))) => (first, last),
+            _ => ("", ""),
+        }
+    }
+}
+
+/// Splits a path into its keys; keys may be quoted as in TOML. `None` where it is not a path.
+pub(crate) fn keys(path: &str) -> Option<Vec<String>> {
+    let mut keys = Vec::new();
+    let mut rest = path.trim();
+    loop {
+        let end = match rest.chars().next()? {
+            '\'' => rest[1..].find('\'')? + 2,
+            '"' => closing_quote(rest)? + 1,
+            _ => rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '-')).unwrap_or(rest.len()),
+        };
+        let (key, after) = rest.split_at(end);
+        keys.push(match key.chars().next()? {
+            '\'' | '"' => DeValue::parse(key).ok()?.get_ref().as_str()?.to_owned(),
+            _ => key.to_owned(),
+        });
+        rest = after.trim_start();
+        match rest.strip_prefix('.') {
+            Some(after) if keys.len() < MAX_KEYS => rest = after.trim_start(),
+            None if rest.is_empty() => return Some(keys),
+            _ => return None,
+        }
+    }
+}
+
+/// Byte of the `=` after a path; quoted keys may hold one.
+pub(crate) fn equals_sign(assignment: &str) -> Option<usize> {
+    let mut at = 0;
+    while at < assignment.len() {
+        let rest = &assignment[at..];
+        at += match rest.chars().next()? {
+            '=' => return Some(at),
+            '"' => closing_quote(rest)? + 1,
+            '\'' => rest[1..].find('\'')? + 2,
+            c => c.len_utf8(),
+        };
+    }
+    None
+}
+
+/// Byte of the quote that ends the string at the start of `text`.
+fn closing_quote(text: &str) -> Option<usize> {
+    let mut escaped = false;
+    text.char_indices().skip(1).find_map(|(at, c)| match c {
+        '\\' if !escaped => {
+            escaped = true;
+            None
+        }
+        '"' if !escaped => Some(at),
+        _ => {
+            escaped = false;
+            None
+        }
+    })
+}
+
+/// Where `path` leads in `document`. Refuses names that do not exist; keys of tables may be new, the reader judges them.
+pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Place) -> Read<Target> {
+    let refuse = |kind, message: String, help: String| ctx.refuse(place.refuse(kind, message).help(help));
+    let Some(keys) = keys(path) else {
+        let message = format!("{:?} is not a path", shorten(path));
+        let help = "write keys joined by dots, as in element.strut.alpha or solver.rtol".to_owned();
+        return Err(refuse(RefusalKind::BadName, message, help));
+    };
+    if keys[0] == "sweep" {
+        let message = format!("{:?} is not a path: a [[sweep]] has no name", shorten(path));
+        return Err(refuse(RefusalKind::BadName, message, "set the parameter in the file's [[sweep]]".to_owned()));
+    }
+    let mut node = Some(document);
+    let mut steps = Vec::with_capacity(keys.len() + 1);
+    for (at, key) in keys.iter().enumerate() {
+        let walked = || dotted(&keys[..at]);
+        let Some(here) = node else {
+            steps.push(Step::Key(key.clone()));
+            continue;
+        };
+        match &here.value {
+            Value::Table(entries) => {
+                if let [Step::Key(root), Step::Index(_)] = &steps[..]
+                    && root == "element"
+                    && let Some(section) = section_of(ctx, here, key)
+                {
+                    steps.push(Step::Key(section.to_owned()));
+                    node = here.get(section).map(|node| &**node).and_then(|node| node.get(key)).map(|node| &**node);
+                } else if let [Step::Key(root), Step::Index(_)] = &steps[..]
+                    && root == "element"
+                    && let Some(names) = names_of_element(ctx, here)
+                    && !names.contains(&key.as_str())
+                {
+                    let message = format!("path {:?}: `{}` has no `{}`", shorten(path), walked(), shorten(key));
+                    return Err(refuse(RefusalKind::UnknownName, message, names::suggest(key, names.iter().copied())));
+                } else {
+                    node = entries.iter().find(|entry| entry.key == *key).map(|entry| &*entry.node);
+                }
+                steps.push(Step::Key(key.clone()));
+            }
+            Value::Array(items) if items.iter().all(|item| item.entries().is_some()) && !items.is_empty() => {
+                let name = |item: &Arc<Node>| item.get("name").and_then(|name| name.text()).map(str::to_owned);
+                let found = items.iter().position(|item| name(item).as_deref() == Some(key));
+                let Some(index) = found else {
+                    let names: Vec<String> = items.iter().filter_map(name).collect();
+                    let message = format!("path {:?}: no {} is named {:?}", shorten(path), walked(), shorten(key));
+                    let help = names::suggest(key, names.iter().map(String::as_str));
+                    return Err(refuse(RefusalKind::UnknownName, message, help));
+                };
+                steps.push(Step::Index(index));
+                node = Some(&items[index]);
+            }
+            _ => {
+                let message = format!("path {:?}: `{}` is {} and has no keys", shorten(path), walked(), here.kind());
+                let help = format!("end the path at `{}`; an array is given as a whole", walked());
+                return Err(refuse(RefusalKind::UnknownName, message, help));
+            }
+        }
+    }
+    if matches!(steps.last(), Some(Step::Index(_))) || (keys.len() == 1 && node.is_some_and(is_section)) {
+        let message = format!("path {:?} leads to a whole table", shorten(path));
+        return Err(refuse(RefusalKind::WrongType, message, "go on to one of its keys".to_owned()));
+    }
+    Ok(Target { written: dotted(&keys), place: place.clone(), steps })
+}
+
+fn is_section(node: &Node) -> bool {
+    matches!(node.value, Value::Table(_))
+        || node.items().is_some_and(|items| items.iter().any(|item| item.entries().is_some()))
+}
+
+fn dotted(keys: &[String]) -> String {
+    keys.iter().map(|key| toml_key(key)).collect::<Vec<_>>().join(".")
+}
+
+/// A key as TOML and the paths of `--set` take it: bare where it can be, else in quotes.
+pub fn toml_key(key: &str) -> String {
+    let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    if bare {
+        return key.to_owned();
+    }
+    let mut text = "\"".to_owned();
+    for c in key.chars() {
+        match c {
+            '"' | '\\' => text.extend(['\\', c]),
+            c if c.is_control() => text.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c => text.push(c),
+        }
+    }
+    text + "\""
+}
+
+/// The table of an element in which `key` is looked up: parameters, then inputs, then (`None`) the element's own keys.
+fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static str> {
+    for section in ["parameters", "inputs"] {
+        if element.get(section).is_some_and(|table| table.get(key).is_some()) {
+            return Some(section);
+        }
+    }
+    if ELEMENT.get(key).is_some() {
+        return None;
+    }
+    let law: &law::Entry = ctx.catalog.get(element.get("law")?.text()?)?;
+    if law.params.iter().any(|param| param.name == key) {
+        Some("parameters")
+    } else if law.inputs.iter().any(|input| input.name == key) {
+        Some("inputs")
+    } else {
+        None
+    }
+}
+
+/// Everything that a path into an element can name; `None` where its law is not known.
+fn names_of_element(ctx: &Context<'_>, element: &Node) -> Option<Vec<&'static str>> {
+    let law: &law::Entry = ctx.catalog.get(element.get("law")?.text()?)?;
+    let parameters = law.params.iter().map(|param| param.name);
+    let inputs = law.inputs.iter().map(|input| input.name);
+    Some(parameters.chain(inputs).chain(ELEMENT.names()).collect())
+}
+
+/// Puts `value` where `target` leads; tables on the way are made where they lack.
+pub(crate) fn set(document: &mut Node, target: &Target, value: Node) {
+    let mut node = document;
+    for step in &target.steps {
+        node = match (step, &mut node.value) {
+            (Step::Index(index), Value::Array(items)) => match items.get_mut(*index) {
+                Some(item) => Arc::make_mut(item),
+                None => return,
+            },
+            (Step::Key(key), Value::Table(entries)) => {
+                let at = entries.iter().position(|entry| entry.key == *key).unwrap_or_else(|| {
+                    let node = Node { value: Value::Table(Vec::new()), place: target.place.clone(), tag: None };
+                    entries.push(Entry { key: key.clone(), key_place: target.place.clone(), node: Arc::new(node) });
+                    entries.len() - 1
+                });
+                Arc::make_mut(&mut entries[at].node)
+            }
+            _ => return,
+        };
+    }
+    *node = value;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_split_like_toml_keys() {
+        let split = |path: &str| keys(path).map(|keys| keys.join("|"));
+        assert_eq!(split("element.strut.alpha").as_deref(), Some("element|strut|alpha"));
+        assert_eq!(split(" a . \"b.c\" . 'd\"e' ").as_deref(), Some("a|b.c|d\"e"));
+        assert_eq!(split(r#""q\"1".x"#).as_deref(), Some("q\"1|x"));
+        for bad in ["", ".", "a.", ".a", "a..b", "a b", "\"a", "'a", "a.\"b\"c", "ä", "a=b"] {
+            assert_eq!(split(bad), None, "{bad}");
+        }
+        assert_eq!(keys(&["a"; MAX_KEYS + 1].join(".")), None);
+    }
+
+    #[test]
+    fn every_key_has_a_path() {
+        for key in ["q1", "left knee", "a.b", "", "ü", "a\"b", "a\\b", "tab\tnull\0", "'", "a=b", "\u{7f}"] {
+            let path = format!("motion.joints.{}", toml_key(key));
+            assert_eq!(keys(&path), Some(vec!["motion".into(), "joints".into(), key.to_owned()]), "{path}");
+            assert_eq!(equals_sign(&format!("{path}=1")), Some(path.len()), "{path}");
+        }
+        assert_eq!(["q1", "left knee", "a\"b"].map(toml_key), ["q1", "\"left knee\"", "\"a\\\"b\""]);
+    }
+}

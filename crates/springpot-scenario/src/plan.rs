@@ -1,0 +1,215 @@
+//! The plan: a scenario validated and resolved, in SI units, with every default filled in.
+
+use super::figures::{ColumnGlob, FigurePlan};
+use super::refusal::Place;
+use springpot::element::Element;
+use springpot::model::urdf::Urdf;
+use springpot::model::{Anchor, BodySpec, Model};
+use springpot::signal::Signal;
+use springpot::simulate::Settings;
+use std::sync::Arc;
+
+/// One run, ready to be started.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Title of the scenario.
+    pub title: Option<String>,
+    /// Gravity in the world frame, m/s².
+    pub gravity: [f64; 3],
+    /// The bodies, parents before children.
+    pub bodies: Vec<BodySpec>,
+    /// The robot built of them.
+    pub model: Arc<Model>,
+    /// Where each body stands in the scenario; those of a URDF file stand where the file is named.
+    pub body_places: Vec<BodyPlaces>,
+    /// The URDF file that the bodies come from, if they do.
+    pub urdf: Option<UrdfPlan>,
+    /// The gripper, if there is one.
+    pub gripper: Option<Gripper>,
+    /// The elements, in the order of the scenario.
+    pub elements: Vec<ElementPlan>,
+    /// What moves the robot.
+    pub motion: MotionPlan,
+    /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
+    /// lost there.
+    pub tells_joint_losses: bool,
+    /// Duration, rows, accuracy and steps.
+    pub settings: Settings,
+    /// The figures; the same in every case.
+    pub figures: Arc<[FigurePlan]>,
+    /// Globs of the columns to write; `None`: all.
+    pub columns: Option<Arc<[ColumnGlob]>>,
+}
+
+impl Plan {
+    /// Names of the moving joints, those that follow another one included.
+    pub fn joint_names(&self) -> impl Iterator<Item = &str> {
+        self.model.joint_names().iter().map(String::as_str)
+    }
+
+    /// Names of the moving joints that have coordinates of their own, in the order of q.
+    pub fn own_joint_names(&self) -> impl Iterator<Item = &str> {
+        let own = (0..self.model.joint_count()).filter(|&j| self.model.followed(j).is_none());
+        own.map(|j| self.model.joint_names()[j].as_str())
+    }
+}
+
+/// The robot of a scenario by itself.
+#[derive(Debug, Clone)]
+pub struct RobotPlan {
+    /// Gravity in the world frame, m/s².
+    pub gravity: [f64; 3],
+    /// The bodies, parents before children.
+    pub bodies: Vec<BodySpec>,
+    /// The robot built of them.
+    pub model: Arc<Model>,
+    /// The URDF file that the bodies come from, if they do.
+    pub urdf: Option<UrdfPlan>,
+    /// The gripper, if there is one.
+    pub gripper: Option<Gripper>,
+}
+
+/// Where the fields of a body stand in the scenario.
+#[derive(Debug, Clone)]
+pub struct BodyPlaces {
+    /// The body's table.
+    pub table: Place,
+    /// The fields that were written, by dotted key: `mass`, `joint.axis`, …
+    pub fields: Vec<(String, Place)>,
+}
+
+impl BodyPlaces {
+    /// Place of the field with the dotted key `key`; the body's table where the field was left out.
+    pub fn at(&self, key: &str) -> &Place {
+        self.fields.iter().find(|(field, _)| field == key).map_or(&self.table, |(_, place)| place)
+    }
+}
+
+/// A URDF file and how it was read.
+#[derive(Debug, Clone)]
+pub struct UrdfPlan {
+    /// The path as written in the scenario, to whose folder it is relative.
+    pub written: String,
+    /// Whether mimic joints have coordinates of their own.
+    pub ignore_mimic: bool,
+    /// Folders that are packages or hold some, as written.
+    pub package_path: Vec<String>,
+    /// What the file says; its warnings are among those of [`super::Cases::warnings`].
+    pub robot: Arc<Urdf>,
+}
+
+/// The point that a gripper path is about, and whose coordinates are columns.
+#[derive(Debug, Clone)]
+pub struct Gripper {
+    /// Name of the body that carries it.
+    pub body: String,
+    /// The point.
+    pub anchor: Anchor,
+}
+
+/// A signal and the text it was read from.
+#[derive(Debug, Clone)]
+pub struct SignalPlan {
+    /// The function of time, SI.
+    pub signal: Signal,
+    /// Its value where it is a plain number or a quantity, SI.
+    pub constant: Option<f64>,
+    /// As written in the scenario.
+    pub written: String,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// One element: as the engine has it, and what the scenario says besides.
+#[derive(Debug, Clone)]
+pub struct ElementPlan {
+    /// The element.
+    pub element: Element,
+    /// Its first end.
+    pub from: Anchor,
+    /// Its second end.
+    pub to: Anchor,
+    /// Parameters of its law in the order of the catalog, SI.
+    pub parameters: Vec<f64>,
+    /// Inputs of its law in the order of the catalog.
+    pub inputs: Vec<SignalPlan>,
+    /// Where its parameters stand in the scenario (the element itself where it has none).
+    pub place: Place,
+}
+
+/// How one joint moves.
+#[derive(Debug, Clone)]
+pub enum JointPlan {
+    /// A joint of one degree: its coordinate, rad or m.
+    Coordinate(SignalPlan),
+    /// A floating joint.
+    Pose(Box<PosePlan>),
+}
+
+/// How a floating joint moves.
+#[derive(Debug, Clone)]
+pub struct PosePlan {
+    /// x, y, z of the joint's frame in the frame that it hangs on, m.
+    pub position: [SignalPlan; 3],
+    /// Roll, pitch, yaw of the joint's frame there, R = Rz(yaw)·Ry(pitch)·Rx(roll), rad.
+    pub rpy: [SignalPlan; 3],
+}
+
+/// What moves the robot.
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "one per run")]
+pub enum MotionPlan {
+    /// Every coordinate is a function of time.
+    Prescribed {
+        /// The joints that have coordinates of their own, in the order of q.
+        joints: Vec<JointPlan>,
+    },
+    /// The gripper follows a path.
+    GripperPath {
+        /// x, y, z in the world frame, m.
+        position: [SignalPlan; 3],
+        /// Roll, pitch, yaw of the gripper's body, rad.
+        rpy: Option<[SignalPlan; 3]>,
+        /// Coordinates near the start of the path (every joint has one), in the order of q, rad or m.
+        guess: Vec<f64>,
+        /// Where the motion stands in the scenario.
+        place: Place,
+    },
+    /// The robot moves by itself.
+    Forward(Box<ForwardPlan>),
+}
+
+/// A motion that follows from the equations of motion.
+#[derive(Debug, Clone)]
+pub struct ForwardPlan {
+    /// q(0), in the order of q.
+    pub q: Vec<f64>,
+    /// v(0), in the order of v.
+    pub v: Vec<f64>,
+    /// The joints that have coordinates of their own, in the order of q.
+    pub drives: Vec<DrivePlan>,
+    /// Where the motion stands in the scenario.
+    pub place: Place,
+}
+
+/// What drives one joint.
+#[derive(Debug, Clone)]
+pub enum DrivePlan {
+    /// An actuator force for each of its velocities, N·m or N.
+    Force(Vec<SignalPlan>),
+    /// It moves as signals say.
+    Prescribed(JointPlan),
+    /// It stays where it starts.
+    Locked,
+}
+
+impl MotionPlan {
+    /// Its kind as the scenario names it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Prescribed { .. } => "prescribed",
+            Self::GripperPath { .. } => "gripper-path",
+            Self::Forward(_) => "forward",
+        }
+    }
+}

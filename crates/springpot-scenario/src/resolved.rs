@@ -1,0 +1,212 @@
+//! The plan as JSON, for the record of a run.
+
+use super::figures::{FigureKind, FigurePlan};
+use super::keys::solver::ADAPTIVE;
+use super::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
+use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
+use serde_json::{Map, Value, json};
+use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
+use springpot::simulate::RowTimes;
+
+/// Most output times that are listed one by one.
+const LISTED_TIMES: usize = 10_000;
+
+impl Plan {
+    /// Everything the run depends on, defaults filled in: numbers in SI, signals that vary as they were written.
+    pub fn resolved(&self) -> Value {
+        let mut time = json!({ "end": self.settings.end, "rows": self.settings.rows.count() });
+        match &self.settings.rows {
+            RowTimes::Step { step, .. } => time["output_step"] = json!(step),
+            RowTimes::Times(times) if times.len() <= LISTED_TIMES => time["output_times"] = json!(times[..]),
+            RowTimes::Times(times) => {
+                time["output_times"] = json!(format!("{} times", times.len()));
+            }
+        }
+        json!({
+            "title": self.title,
+            "gravity": self.gravity,
+            "urdf": self.urdf.as_ref().map(urdf),
+            "bodies": self.bodies.iter().map(|body| self.body(body)).collect::<Vec<_>>(),
+            "gripper": self.gripper.as_ref().map(|gripper| self.anchor(&gripper.anchor)),
+            "elements": self.elements.iter().map(|element| self.element(element)).collect::<Vec<_>>(),
+            "motion": self.motion(),
+            "time": time,
+            "solver": self.solver(),
+            "figures": self.figures.iter().map(figure).collect::<Vec<_>>(),
+            "columns": self.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
+        })
+    }
+
+    /// The keys of `[solver]`.
+    fn solver(&self) -> Value {
+        let mut solver = record(SOLVER_FIELDS, &self.settings);
+        let fixed_step = self.settings.fixed_step;
+        solver.insert("method".to_owned(), json!(self.method()));
+        solver.insert("step".to_owned(), json!(fixed_step.map(|by| by.step)));
+        solver.into()
+    }
+
+    /// What moves the robot on, where it moves by itself.
+    fn method(&self) -> Option<&'static str> {
+        matches!(self.motion, MotionPlan::Forward(_))
+            .then(|| self.settings.fixed_step.map_or(ADAPTIVE, |by| by.method.name()))
+    }
+
+    fn body_name(&self, body: Parent) -> &str {
+        match body {
+            Parent::World => "world",
+            Parent::Body(index) => self.bodies.get(index).map_or("", |body| body.name.as_str()),
+        }
+    }
+
+    fn anchor(&self, anchor: &Anchor) -> Value {
+        json!({ "body": self.body_name(anchor.body), "point": anchor.point })
+    }
+
+    fn body(&self, body: &BodySpec) -> Value {
+        let joint = &body.joint;
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = body.inertia;
+        json!({
+            "name": body.name,
+            "parent": self.body_name(body.parent),
+            "joint": {
+                "name": joint.name,
+                "kind": joint.kind.name(),
+                "axis": joint.axis,
+                "origin": joint.origin,
+                "rpy": joint.rpy,
+                "damping": joint.damping,
+                "friction": friction(joint),
+                "limits": limits(&joint.limits),
+                "mimic": joint.mimic.as_ref().map(|Mimic { joint, multiplier, offset }| {
+                    json!({ "joint": joint, "multiplier": multiplier, "offset": offset })
+                }),
+            },
+            "mass": body.mass,
+            "com": body.com,
+            "inertia": { "xx": xx, "yy": yy, "zz": zz, "xy": xy, "xz": xz, "yz": yz },
+        })
+    }
+
+    fn element(&self, plan: &ElementPlan) -> Value {
+        let ElementPlan { element, from, to, parameters, inputs, .. } = plan;
+        let parameters: Map<String, Value> =
+            element.row.params.iter().zip(parameters).map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
+        let inputs: Map<String, Value> =
+            element.row.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_owned(), signal(s))).collect();
+        let mut value = json!({
+            "name": element.name,
+            "from": self.anchor(from),
+            "to": self.anchor(to),
+            "law": element.row.name,
+            "parameters": parameters,
+            "inputs": inputs,
+            "derivative": element.derivative.name(),
+            "scheme": element.scheme.map_or_else(|| "exact".into(), |scheme| scheme.to_string()),
+        });
+        if let Value::Object(value) = &mut value {
+            value.extend(record(ELEMENT_FIELDS, element));
+        }
+        value
+    }
+
+    fn motion(&self) -> Value {
+        match &self.motion {
+            MotionPlan::Prescribed { joints } => {
+                let joints: Map<String, Value> =
+                    self.own_joint_names().zip(joints).map(|(name, plan)| (name.to_owned(), joint(plan))).collect();
+                json!({ "kind": "prescribed", "joints": joints })
+            }
+            MotionPlan::GripperPath { position: [x, y, z], rpy, guess, .. } => {
+                let guess: Map<String, Value> =
+                    self.own_joint_names().zip(guess).map(|(name, guess)| (name.to_owned(), json!(guess))).collect();
+                json!({
+                    "kind": "gripper-path",
+                    "x": signal(x),
+                    "y": signal(y),
+                    "z": signal(z),
+                    "rpy": rpy.as_ref().map(|rpy| rpy.each_ref().map(signal)),
+                    "guess": guess,
+                })
+            }
+            MotionPlan::Forward(plan) => {
+                let drives: Map<String, Value> = self
+                    .own_joint_names()
+                    .zip(&plan.drives)
+                    .map(|(name, plan)| (name.to_owned(), drive(plan)))
+                    .collect();
+                json!({ "kind": "forward", "start": { "q": plan.q, "v": plan.v }, "joints": drives })
+            }
+        }
+    }
+}
+
+fn urdf(plan: &UrdfPlan) -> Value {
+    json!({
+        "file": plan.written,
+        "robot": plan.robot.name,
+        "root": plan.robot.root.name,
+        "floating_base": plan.robot.floating_base,
+        "ignore_mimic": plan.ignore_mimic,
+        "package_path": plan.package_path,
+    })
+}
+
+/// Force, speed of a smooth law, and whether it sticks.
+fn friction(joint: &JointSpec) -> Value {
+    let (speed, stick) = match joint.friction_law {
+        FrictionLaw::Smooth { speed } => (Some(speed), false),
+        FrictionLaw::Sticking => (None, true),
+    };
+    json!({ "force": joint.friction, "speed": speed, "stick": stick })
+}
+
+/// The limits that there are.
+fn limits(limits: &Limits) -> Value {
+    let Limits { lower, upper, velocity, effort } = *limits;
+    let all = [("lower", lower), ("upper", upper), ("velocity", velocity), ("effort", effort)];
+    all.into_iter()
+        .filter(|(_, limit)| limit.is_finite())
+        .map(|(name, limit)| (name.to_owned(), json!(limit)))
+        .collect()
+}
+
+fn drive(plan: &DrivePlan) -> Value {
+    match plan {
+        DrivePlan::Force(signals) => match &signals[..] {
+            [only] => json!({ "torque": signal(only) }),
+            several => json!({ "torque": several.iter().map(signal).collect::<Vec<_>>() }),
+        },
+        DrivePlan::Prescribed(plan) => json!({ "prescribed": joint(plan) }),
+        DrivePlan::Locked => json!("locked"),
+    }
+}
+
+fn joint(plan: &JointPlan) -> Value {
+    match plan {
+        JointPlan::Coordinate(coordinate) => signal(coordinate),
+        JointPlan::Pose(pose) => {
+            let [x, y, z] = pose.position.each_ref().map(signal);
+            json!({ "x": x, "y": y, "z": z, "rpy": pose.rpy.each_ref().map(signal) })
+        }
+    }
+}
+
+fn signal(signal: &SignalPlan) -> Value {
+    signal.constant.map_or_else(|| json!(signal.written), |value| json!(value))
+}
+
+fn figure(figure: &FigurePlan) -> Value {
+    let units: Map<String, Value> =
+        figure.units.iter().map(|unit| (unit.column.text.clone(), json!(unit.unit))).collect();
+    let mut json = json!({ "name": figure.name, "title": figure.title, "units": units });
+    match &figure.kind {
+        FigureKind::Robot => json["kind"] = json!("robot"),
+        FigureKind::Curves { x, y } => {
+            json["kind"] = json!("curves");
+            json["x"] = json!(x.text);
+            json["y"] = y.iter().map(|glob| glob.text.clone()).collect();
+        }
+    }
+    json
+}

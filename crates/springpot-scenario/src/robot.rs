@@ -1,0 +1,191 @@
+//! `[robot]`: bodies or a URDF file, gravity, gripper.
+
+use super::document::shorten;
+use super::keys::{ANCHOR, FROM_URDF, ROBOT};
+use super::names;
+use super::plan::{BodyPlaces, Gripper, UrdfPlan};
+use super::reader::{Field, Read, Refused, Table};
+use super::refusal::{Place, RefusalKind};
+use super::{bodies, urdf};
+use springpot::model::{Anchor, BodySpec, JointKind, Model, Parent};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::Arc;
+
+const RIGHT: &str = "urdf = \"arm.urdf\", or a [[robot.body]] for each body";
+
+/// The robot as it is described.
+pub(crate) struct Robot {
+    pub(crate) gravity: [f64; 3],
+    pub(crate) parts: Parts,
+    pub(crate) gripper: Option<Gripper>,
+    /// Kind of every joint by its name, fixed ones included.
+    joint_kinds: HashMap<String, JointKind>,
+}
+
+/// Bodies and the model built of them, from either source.
+pub(crate) struct Parts {
+    pub(crate) bodies: Vec<BodySpec>,
+    pub(crate) places: Vec<BodyPlaces>,
+    pub(crate) model: Arc<Model>,
+    pub(crate) urdf: Option<UrdfPlan>,
+}
+
+/// A moving joint that has coordinates of its own.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OwnJoint<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) kind: JointKind,
+}
+
+impl OwnJoint<'_> {
+    /// Unit of the coordinate of a joint of one degree.
+    pub(crate) fn unit(&self) -> &'static str {
+        if self.kind == JointKind::Prismatic { "m" } else { "rad" }
+    }
+}
+
+/// Reads `[robot]`.
+pub(crate) fn read(root: &Table<'_>) -> Read<Robot> {
+    let field = root.require("robot")?;
+    let from_urdf = field.node.get("urdf").is_some();
+    let kind = if from_urdf { FROM_URDF } else { "" };
+    let urdf_only = |key: &str| {
+        let help = match key {
+            "floating_base" => "; give the first [[robot.body]] a joint of kind = \"floating\" instead",
+            _ => "",
+        };
+        let message = || format!("`{key}` of [robot] belongs to `urdf`, and this robot has none{help}");
+        ROBOT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
+    };
+    let table = Table::of_kind(root.ctx, field.node, "[robot]", (&ROBOT, kind), urdf_only)?;
+    let gravity = table.vector("gravity");
+    let parts = match (table.get("urdf"), table.get("body")) {
+        (Some(_), Some(bodies)) => {
+            let help = "a robot is a URDF file or [[robot.body]] blocks: leave one of them out".to_owned();
+            return Err(bodies.refuse(RefusalKind::Rule, "stands beside `urdf`", Some(help)));
+        }
+        (Some(file), None) => urdf::read(&table, &file, gravity)?,
+        (None, Some(bodies)) => bodies::read(&table, &bodies, gravity)?,
+        (None, None) => return Err(table.missing("body", RIGHT)),
+    };
+    let joint_kinds = parts.bodies.iter().map(|body| (body.joint.name.clone(), body.joint.kind)).collect();
+    let mut robot = Robot { gravity: gravity?, parts, gripper: None, joint_kinds };
+    if let Some(field) = table.get("gripper") {
+        robot.gripper = Some(gripper(&field, &robot)?);
+    }
+    Ok(robot)
+}
+
+impl Robot {
+    pub(crate) fn model(&self) -> &Model {
+        &self.parts.model
+    }
+
+    /// Reads `{ body = …, point = … }`, where the body may be the world.
+    pub(crate) fn anchor(&self, field: &Field<'_>) -> Read<(String, Anchor)> {
+        let table = field.table(&ANCHOR)?;
+        let body = table.require("body").and_then(|body| {
+            let name = body.text()?;
+            match self.model().find_body(name) {
+                Some(found) => Ok((name.to_owned(), found)),
+                None => Err(unknown_body(&body, name, self.body_names().chain(self.world_names()))),
+            }
+        });
+        let point = table.require("point");
+        let point = point.and_then(|point| point.components())?;
+        let (name, body) = body?;
+        Ok((name, Anchor { body, point }))
+    }
+
+    /// The body that carries `body` rigidly and moves by its own joint, or the world.
+    pub(crate) fn carrier(&self, mut body: Parent) -> Parent {
+        while let Parent::Body(index) = body {
+            let spec = &self.parts.bodies[index];
+            if spec.joint.kind != JointKind::Fixed {
+                break;
+            }
+            body = spec.parent;
+        }
+        body
+    }
+
+    /// The moving joints that have coordinates of their own, in the order of q.
+    pub(crate) fn own_joints(&self) -> impl Iterator<Item = OwnJoint<'_>> {
+        let model = self.model();
+        let own = (0..model.joint_count()).filter(|&j| model.followed(j).is_none());
+        own.map(|j| OwnJoint { name: &model.joint_names()[j], kind: model.joint_kind(j) })
+    }
+
+    /// Why a joint of that name has no coordinate; `None` where it has one, or does not exist.
+    pub(crate) fn why_no_coordinate(&self, name: &str) -> Option<String> {
+        if *self.joint_kinds.get(name)? == JointKind::Fixed {
+            return Some(format!("joint {name:?} is fixed and has no coordinate"));
+        }
+        let model = self.model();
+        let (leader, ratio, offset) = model.followed(model.joint_index(name)?)?;
+        let leader = &model.joint_names()[leader];
+        let mut rule = String::new();
+        if (ratio, offset) != (1.0, 0.0) {
+            rule = format!(" ({ratio}*{leader} {} {})", if offset < 0.0 { '-' } else { '+' }, offset.abs());
+        }
+        Some(format!("joint {name:?} follows {leader:?}{rule} and has no coordinate of its own"))
+    }
+
+    fn body_names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.parts.bodies.iter().map(|body| body.name.as_str())
+    }
+
+    /// The root link of a robot on a fixed base, then "world".
+    fn world_names(&self) -> impl Iterator<Item = &str> + Clone {
+        let urdf = self.parts.urdf.as_ref().filter(|urdf| !urdf.robot.floating_base);
+        let root = urdf.map(|urdf| urdf.robot.root.name.as_str()).filter(|name| *name != "world");
+        root.into_iter().chain(["world"])
+    }
+}
+
+pub(super) fn unknown_body<'a>(field: &Field<'_>, name: &str, names: impl Iterator<Item = &'a str> + Clone) -> Refused {
+    let message = format!("names no body: {:?}", shorten(name));
+    field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, names)))
+}
+
+/// Refuses a name that breaks the rule of names.
+pub(crate) fn checked_name<'a>(field: &Field<'a>) -> Read<&'a str> {
+    let name = field.text()?;
+    if names::is_name(name) {
+        return Ok(name);
+    }
+    let message = format!("is {}, which is not a name", field.node.written());
+    let help = "a name starts with a letter or _, then letters, digits, _ and - follow".to_owned();
+    Err(field.refuse(RefusalKind::BadName, message, Some(help)))
+}
+
+/// Notes where `name` was used first, or refuses the second use.
+pub(crate) fn unique(seen: &mut HashMap<String, Place>, field: &Field<'_>, name: &str) -> Read<()> {
+    match seen.entry(name.to_owned()) {
+        Entry::Vacant(entry) => {
+            entry.insert(field.node.place.clone());
+            Ok(())
+        }
+        Entry::Occupied(entry) => {
+            let message = format!("is {:?}, which is taken on line {}", name, entry.get().position().0);
+            Err(field.refuse(RefusalKind::BadName, message, Some("names are unique; choose another".to_owned())))
+        }
+    }
+}
+
+fn gripper(field: &Field<'_>, robot: &Robot) -> Read<Gripper> {
+    let (body, anchor) = robot.anchor(field)?;
+    if robot.carrier(anchor.body) == Parent::World {
+        let message = match anchor.body {
+            Parent::World if body == "world" => "is on the world, which does not move".to_owned(),
+            Parent::World => format!("is on {body:?}, the root link, which is the world and does not move"),
+            Parent::Body(_) => format!("is on {body:?}, which is fixed to the world and does not move"),
+        };
+        let moves = |index: &usize| robot.carrier(Parent::Body(*index)) != Parent::World;
+        let moving = (0..robot.parts.bodies.len()).filter(moves).map(|index| robot.parts.bodies[index].name.as_str());
+        let help = format!("write one of {}", names::list(moving));
+        return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
+    }
+    Ok(Gripper { body, anchor })
+}

@@ -1,0 +1,88 @@
+//! What a file must hold where no sweep can bring it.
+
+use super::super::keys::{ELEMENT, JOINT, Keys, MOTION, Need, SCENARIO, Shape, WITH_AXIS};
+use super::rules::{alternatives, required_of, where_kind};
+use serde_json::{Map, Value, json};
+use springpot::law::{Catalog, Entry};
+use springpot::model::JointKind;
+
+/// Required keys alone; types stand elsewhere.
+pub(super) fn required(catalog: &Catalog) -> Value {
+    of(&SCENARIO, catalog).unwrap_or_default()
+}
+
+/// What a table must hold, and the tables in it; `None` where that is nothing.
+fn of(keys: &'static Keys, catalog: &Catalog) -> Option<Value> {
+    let mut schema = Map::new();
+    let must = |need| matches!(need, Need::Written(_) | Need::Required(_));
+    let names: Vec<&str> =
+        keys.keys.iter().filter(|key| key.only.is_empty() && must(key.need)).map(|key| key.name).collect();
+    if names.iter().any(|name| keys.get(name).is_some_and(|key| matches!(key.need, Need::Required(_)))) {
+        schema.insert("required".to_owned(), names.into());
+    }
+    let within = keys.keys.iter().filter_map(|key| {
+        let schema = match key.shape {
+            Shape::Table(keys) => of(keys, catalog)?,
+            Shape::Tables(keys, _) => {
+                let mut schema = json!({ "items": of(keys, catalog)? });
+                if matches!(key.need, Need::OneOf) {
+                    schema["minItems"] = 1.into();
+                }
+                schema
+            }
+            _ => return None,
+        };
+        Some((key.name.to_owned(), schema))
+    });
+    let within: Map<String, Value> = within.collect();
+    if !within.is_empty() {
+        schema.insert("properties".to_owned(), within.into());
+    }
+    if std::ptr::eq(keys, &MOTION) {
+        let kinds = MOTION.get("kind").map(|kind| kind.choices()).unwrap_or_default();
+        let one = any_of(&MOTION);
+        let of_kind = |kind: &str| match required_of(&MOTION, kind)[..] {
+            [] if MOTION.of(kind).any(|key| matches!(key.need, Need::OneOf)) => Some(where_kind(&[kind], one.clone())),
+            [] => None,
+            ref needed => Some(where_kind(&[kind], json!({ "required": needed }))),
+        };
+        schema.insert("allOf".to_owned(), kinds.into_iter().filter_map(of_kind).collect());
+    } else if let Value::Object(one) = any_of(keys) {
+        schema.extend(one);
+    }
+    if std::ptr::eq(keys, &JOINT) {
+        let moving = JointKind::ALL.into_iter().filter(|kind| kind.has_axis()).map(JointKind::name);
+        let moving: Vec<&str> = moving.collect();
+        let axis = where_kind(&moving, json!({ "required": required_of(&JOINT, WITH_AXIS) }));
+        schema.insert("allOf".to_owned(), json!([axis]));
+    }
+    if std::ptr::eq(keys, &ELEMENT) {
+        schema.insert("allOf".to_owned(), catalog.entries().iter().filter_map(of_law).collect());
+    }
+    (!schema.is_empty()).then_some(Value::Object(schema))
+}
+
+/// One of the alternatives of a table; nothing where there are none.
+fn any_of(keys: &'static Keys) -> Value {
+    match &alternatives(keys)[..] {
+        [] => Value::Null,
+        names => json!({ "anyOf": names.iter().map(|name| json!({ "required": [name] })).collect::<Vec<_>>() }),
+    }
+}
+
+/// The parameters and inputs that a law cannot do without.
+fn of_law(law: &Entry) -> Option<Value> {
+    let params: Vec<&str> = law.params.iter().filter(|p| p.default.is_none()).map(|param| param.name).collect();
+    let inputs: Vec<&str> = law.inputs.iter().map(|input| input.name).collect();
+    let tables = [("parameters", params), ("inputs", inputs)];
+    let needed: Vec<_> = tables.into_iter().filter(|(_, names)| !names.is_empty()).collect();
+    let sections: Vec<&str> = needed.iter().map(|(section, _)| *section).collect();
+    let within: Map<String, Value> =
+        needed.iter().map(|(section, names)| ((*section).to_owned(), json!({ "required": names }))).collect();
+    (!sections.is_empty()).then(|| {
+        json!({
+            "if": { "properties": { "law": { "const": law.name } }, "required": ["law"] },
+            "then": { "required": sections, "properties": within },
+        })
+    })
+}

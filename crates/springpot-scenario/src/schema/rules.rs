@@ -1,0 +1,119 @@
+//! What keys have to do with one another.
+
+use super::super::keys::{ELEMENT, FIGURE, FROM_URDF, JOINT, Key, Keys, MOTION, Need, ROBOT, SIGNAL, TIME};
+use super::shapes::{quantity, signal};
+use serde_json::{Map, Value, json};
+use springpot::law::{Catalog, Entry, Input, Param, Range};
+use springpot::model::JointKind;
+
+/// Adds the rules of the tables that have some.
+pub(super) fn add(schema: &mut Value, keys: &Keys, catalog: &Catalog) {
+    let is = |table: &Keys| std::ptr::eq(keys, table);
+    let rules = if is(&ROBOT) {
+        of_robot()
+    } else if is(&JOINT) {
+        json!({ "allOf": [without_axis()] })
+    } else if is(&ELEMENT) {
+        json!({ "allOf": catalog.entries().iter().map(of_law).collect::<Vec<_>>() })
+    } else if is(&MOTION) {
+        of_motion()
+    } else if is(&TIME) {
+        json!({ "not": { "required": alternatives(&TIME) } })
+    } else if is(&SIGNAL) {
+        json!({
+            "oneOf": alternatives(&SIGNAL).iter().map(|key| json!({ "required": [key] })).collect::<Vec<_>>(),
+            "dependencies": { "csv": ["column"], "column": ["csv"] },
+        })
+    } else if is(&FIGURE) {
+        of_figure()
+    } else {
+        return;
+    };
+    if let (Value::Object(schema), Value::Object(rules)) = (schema, rules) {
+        schema.extend(rules);
+    }
+}
+
+/// Keys of which one must be there.
+pub(super) fn alternatives(keys: &'static Keys) -> Vec<&'static str> {
+    keys.keys.iter().filter(|key| matches!(key.need, Need::OneOf)).map(|key| key.name).collect()
+}
+
+/// What must be there of the keys that belong to `kind` alone.
+pub(super) fn required_of(keys: &'static Keys, kind: &str) -> Vec<&'static str> {
+    let required = |key: &&&Key| !key.only.is_empty() && matches!(key.need, Need::Required(_));
+    keys.of(kind).collect::<Vec<_>>().iter().filter(required).map(|key| key.name).collect()
+}
+
+/// `then` where `kind` is one of `kinds`.
+pub(super) fn where_kind(kinds: &[&str], then: Value) -> Value {
+    let kinds = if let [only] = kinds { json!({ "const": only }) } else { json!({ "enum": kinds }) };
+    json!({ "if": { "properties": { "kind": kinds }, "required": ["kind"] }, "then": then })
+}
+
+fn of_robot() -> Value {
+    let with_urdf = ROBOT.keys.iter().filter(|key| key.only.contains(&FROM_URDF));
+    let needs: Map<String, Value> = with_urdf.map(|key| (key.name.to_owned(), json!(["urdf"]))).collect();
+    json!({ "dependencies": needs, "not": { "required": alternatives(&ROBOT) } })
+}
+
+fn without_axis() -> Value {
+    let plain: Vec<&str> = JointKind::ALL.into_iter().filter(|kind| !kind.has_axis()).map(JointKind::name).collect();
+    where_kind(&plain, json!({ "propertyNames": { "enum": JOINT.names_for("") } }))
+}
+
+fn of_motion() -> Value {
+    let kinds = MOTION.get("kind").map(Key::choices).unwrap_or_default();
+    let of_kind = |kind: &&str| where_kind(&[kind], json!({ "propertyNames": { "enum": MOTION.names_for(kind) } }));
+    let not_both = json!({ "not": { "required": alternatives(&MOTION) } });
+    json!({ "allOf": kinds.iter().map(of_kind).chain([not_both]).collect::<Vec<_>>() })
+}
+
+fn of_figure() -> Value {
+    let of_curves: Vec<&str> =
+        FIGURE.keys.iter().filter(|key| key.only.contains(&"curves")).map(|key| key.name).collect();
+    let mut rule = where_kind(&["robot"], json!({ "propertyNames": { "not": { "enum": of_curves } } }));
+    rule["else"] = json!({ "required": required_of(&FIGURE, "curves") });
+    rule
+}
+
+/// A law's own parameters and inputs.
+fn of_law(law: &Entry) -> Value {
+    let table = |what: &str, properties: Map<String, Value>| {
+        let description = format!("{what} of {}: {}", law.name, law.equation);
+        json!({ "type": "object", "description": description, "properties": properties, "additionalProperties": false })
+    };
+    let params = law.params.iter().map(|param| (param.name.to_owned(), parameter(param)));
+    let inputs = law.inputs.iter().map(|Input { name, unit, meaning, .. }| {
+        let schema = signal(unit, &format!("{}.", capitalised(meaning)));
+        ((*name).to_owned(), schema)
+    });
+    json!({
+        "if": { "properties": { "law": { "const": law.name } }, "required": ["law"] },
+        "then": { "properties": {
+            "parameters": table("Parameters", params.collect()),
+            "inputs": table("Inputs", inputs.collect()),
+        } },
+    })
+}
+
+fn parameter(&Param { unit, meaning, range, default, .. }: &Param) -> Value {
+    let mut description = format!("{}.", capitalised(meaning));
+    if let Some(default) = default {
+        description.push_str(&format!(" Default: {default}{}{unit}.", if unit.is_empty() { "" } else { " " }));
+    }
+    let mut schema = quantity(unit, &description);
+    let Range { low, high } = range;
+    if low > f64::MIN {
+        schema["minimum"] = low.into();
+    }
+    if high < f64::MAX {
+        schema["maximum"] = high.into();
+    }
+    schema
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+}

@@ -1,0 +1,276 @@
+//! `[[sweep]]`: which parameters move, and through which values.
+
+use super::document::{Node, Value, shorten, shortest};
+use super::keys::{MAX_BLOCKS, MAX_CASES, MAX_TOGETHER, SPAN, SWEEP};
+use super::path::{self, Target};
+use super::reader::{Field, Read, Table, all};
+use super::refusal::{Place, RefusalKind};
+use super::units;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// One `[[sweep]]`: parameters that move together, and their values.
+#[derive(Debug, Clone)]
+pub(crate) struct Axis {
+    pub(crate) targets: Vec<Target>,
+    pub(crate) values: Values,
+    pub(crate) place: Place,
+}
+
+/// The values of a sweep.
+#[derive(Debug, Clone)]
+pub(crate) enum Values {
+    List(Vec<Arc<Node>>),
+    Span(Span),
+}
+
+/// Values from one number to another.
+#[derive(Debug, Clone)]
+pub(crate) struct Span {
+    from: f64,
+    to: f64,
+    count: usize,
+    logarithmic: bool,
+    /// Unit behind every number; empty for plain numbers.
+    unit: String,
+    place: Place,
+}
+
+impl Axis {
+    pub(crate) fn len(&self) -> usize {
+        match &self.values {
+            Values::List(list) => list.len(),
+            Values::Span(span) => span.count,
+        }
+    }
+
+    /// Value `k` as a node that carries `tag`.
+    pub(crate) fn node(&self, k: usize, tag: usize) -> Node {
+        match &self.values {
+            Values::List(list) => Node { tag: Some(tag), ..Node::clone(&list[k]) },
+            Values::Span(span) => {
+                let number = span.number(k);
+                let value = if span.unit.is_empty() {
+                    Value::Number { value: number, integer: whole(number) }
+                } else {
+                    Value::Text(format!("{} {}", shortest(number), span.unit))
+                };
+                Node { value, place: span.place.clone(), tag: Some(tag) }
+            }
+        }
+    }
+
+    /// Index of every label of a list, for looking up many.
+    pub(crate) fn labels(&self) -> HashMap<String, usize> {
+        match &self.values {
+            Values::List(list) => list.iter().enumerate().rev().map(|(k, node)| (node.label(), k)).collect(),
+            Values::Span(_) => HashMap::new(),
+        }
+    }
+
+    /// Index of a number or quantity that is written like the ends of a span.
+    pub(crate) fn index_in_span(&self, node: &Node) -> Option<usize> {
+        let Values::Span(span) = &self.values else { return None };
+        match &node.value {
+            Value::Number { value, .. } if span.unit.is_empty() => span.index(*value),
+            Value::Text(text) => {
+                let (number, unit) = units::split_quantity(text)?;
+                let number = units::parse_quantity(number, "", &|_| None).ok()?;
+                (unit == span.unit).then(|| span.index(number)).flatten()
+            }
+            _ => None,
+        }
+    }
+
+    /// Value `k` for a legend, as written.
+    pub(crate) fn label(&self, k: usize) -> String {
+        match &self.values {
+            Values::List(list) => list[k].label(),
+            Values::Span(span) if span.unit.is_empty() => shortest(span.number(k)),
+            Values::Span(span) => format!("{} {}", shortest(span.number(k)), span.unit),
+        }
+    }
+}
+
+impl Span {
+    /// Index of the value that is `number`.
+    fn index(&self, number: f64) -> Option<usize> {
+        let part = if self.logarithmic {
+            (number / self.from).ln() / (self.to / self.from).ln()
+        } else {
+            (number - self.from) / (self.to - self.from)
+        };
+        let k = (part * (self.count - 1) as f64).round();
+        let inside = k >= 0.0 && k < self.count as f64;
+        let near = |k: usize| (self.number(k) - number).abs() <= 1e-12 * number.abs();
+        inside.then_some(k as usize).filter(|&k| near(k))
+    }
+
+    /// Number `k`; the ends are exact, what lies between is rounded to 15 digits so that 0.3 is 0.3.
+    fn number(&self, k: usize) -> f64 {
+        let last = self.count - 1;
+        if k == 0 {
+            return self.from;
+        }
+        if k >= last {
+            return self.to;
+        }
+        let part = k as f64 / last as f64;
+        let exact = if self.logarithmic {
+            self.from * (self.to / self.from).powf(part)
+        } else {
+            self.from * (1.0 - part) + self.to * part
+        };
+        format!("{exact:.14e}").parse().unwrap_or(exact)
+    }
+}
+
+fn whole(number: f64) -> Option<i64> {
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    (number.fract() == 0.0 && number.abs() <= EXACT).then_some(number as i64)
+}
+
+/// Reads every `[[sweep]]`. The first block is the outer loop of the grid, the last runs fastest.
+pub(crate) fn read(root: &Table<'_>) -> Read<Vec<Axis>> {
+    let Some(field) = root.get("sweep") else { return Ok(Vec::new()) };
+    let items = field.items("an array of tables: [[sweep]]")?;
+    if items.len() > MAX_BLOCKS {
+        let message = format!("holds {} blocks; at most {MAX_BLOCKS} are taken", items.len());
+        return Err(field.refuse(RefusalKind::TooLarge, message, None));
+    }
+    let axes = all(items.iter().enumerate().map(|(i, item)| axis(root, item, i)))?;
+    let targets: Vec<&Target> = axes.iter().flat_map(|axis| &axis.targets).collect();
+    for (i, target) in targets.iter().enumerate() {
+        if let Some(earlier) = targets[..i].iter().find(|earlier| earlier.overlaps(target)) {
+            let message = format!(
+                "{} is swept together with {} on line {}",
+                target.written,
+                earlier.written,
+                earlier.place.position().0
+            );
+            let refusal = target.place.refuse(RefusalKind::Rule, message);
+            return Err(root.ctx.refuse(refusal.help("a parameter is swept once")));
+        }
+    }
+    let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.len()));
+    if count.is_none_or(|count| count > MAX_CASES) {
+        let exact = axes.iter().map(|axis| axis.len() as f64).product::<f64>();
+        let shown = count.map_or_else(|| format!("{exact:.3e}"), |count| count.to_string());
+        let message = format!("the sweeps make a grid of {shown} cases; at most {MAX_CASES} are run");
+        let refusal = axes[axes.len() - 1].place.refuse(RefusalKind::TooLarge, message);
+        return Err(root.ctx.refuse(refusal.label("grid too large").help("sweep fewer values")));
+    }
+    Ok(axes)
+}
+
+fn axis(root: &Table<'_>, item: &Field<'_>, i: usize) -> Read<Axis> {
+    let direct = |key: &str| {
+        SPAN.get(key).is_some().then(|| {
+            let why = format!("`{key}` stands in the values: write values = {{ from = …, to = …, count = … }}");
+            (RefusalKind::UnknownKey, why)
+        })
+    };
+    let what = format!("[[sweep]] {}", i + 1);
+    let table = Table::of_kind(item.ctx, item.node, what, (&SWEEP, ""), direct)?;
+    let targets = table.require("parameter").and_then(|field| targets(&field, root.node));
+    let values = table.require("values").and_then(|field| values(&field));
+    Ok(Axis { targets: targets?, values: values?, place: item.node.place.clone() })
+}
+
+fn targets(field: &Field<'_>, document: &Node) -> Read<Vec<Target>> {
+    let fields = match &field.node.value {
+        Value::Text(_) => vec![field.clone()],
+        _ => field.items("a path or an array of paths")?,
+    };
+    if fields.is_empty() || fields.len() > MAX_TOGETHER {
+        let message = format!("holds {} paths", fields.len());
+        return Err(field.refuse(RefusalKind::OutOfRange, message, Some(format!("write 1 to {MAX_TOGETHER} paths"))));
+    }
+    all(fields.iter().map(|field| {
+        let target = path::resolve(field.ctx, document, field.text()?, &field.node.place)?;
+        match target.ends() {
+            ("sweep" | "figure" | "output" | "title", _) | ("robot" | "element", "name") => {
+                let message = format!("is {:?}, which cannot be swept", shorten(&target.written));
+                let help = "names, figures and outputs are the same in every case".to_owned();
+                Err(field.refuse(RefusalKind::Rule, message, Some(help)))
+            }
+            _ => Ok(target),
+        }
+    }))
+}
+
+fn values(field: &Field<'_>) -> Read<Values> {
+    if field.node.entries().is_some() {
+        return span(field).map(Values::Span);
+    }
+    let Some(items) = field.node.items() else {
+        return Err(field.wrong_type("an array or a table with from, to, count"));
+    };
+    if items.is_empty() {
+        return Err(field.refuse(RefusalKind::Missing, "is empty", Some("write at least one value".to_owned())));
+    }
+    for item in items {
+        if let Value::Number { value, .. } = item.value
+            && !value.is_finite()
+        {
+            let field = field.item(item);
+            let message = format!("holds {}, not a finite number", item.label());
+            return Err(field.refuse(RefusalKind::OutOfRange, message, Some("write finite numbers".to_owned())));
+        }
+    }
+    Ok(Values::List(items.to_vec()))
+}
+
+fn span(field: &Field<'_>) -> Read<Span> {
+    let table = field.table(&SPAN)?;
+    let end = |key| table.require(key).and_then(|field| end_of_span(&field));
+    let (from, to) = (end("from"), end("to"));
+    let count = table.require("count").and_then(|field| field.whole());
+    let logarithmic = table.get("scale").map_or(Ok(false), |field| match field.text()? {
+        "linear" => Ok(false),
+        "log" => Ok(true),
+        other => {
+            let message = format!("is {:?}, which is no scale", shorten(other));
+            Err(field.refuse(RefusalKind::UnknownName, message, Some("write \"linear\" or \"log\"".to_owned())))
+        }
+    });
+    let ((from, unit), (to, to_unit), count, logarithmic) = (from?, to?, count?, logarithmic?);
+    if unit != to_unit {
+        let message = format!("has a `from` in {} and a `to` in {}", unit_name(&unit), unit_name(&to_unit));
+        return Err(field.refuse(RefusalKind::Rule, message, Some("write both ends in one unit".to_owned())));
+    }
+    if logarithmic && (from == 0.0 || to == 0.0 || (from > 0.0) != (to > 0.0)) {
+        let message = format!("runs from {from} to {to}, which has no logarithmic scale");
+        let help = "both ends must be above zero, or both below".to_owned();
+        return Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)));
+    }
+    Ok(Span {
+        from,
+        to,
+        count: usize::try_from(count).unwrap_or(2),
+        logarithmic,
+        unit,
+        place: field.node.place.clone(),
+    })
+}
+
+fn unit_name(unit: &str) -> &str {
+    if unit.is_empty() { "plain numbers" } else { unit }
+}
+
+/// The number and the unit of an end.
+fn end_of_span(field: &Field<'_>) -> Read<(f64, String)> {
+    let (number, unit) = match &field.node.value {
+        Value::Number { value, .. } => (*value, String::new()),
+        Value::Text(text) => match units::split_quantity(text) {
+            Some((number, unit)) => (units::parse_quantity(number, "", &|_| None).unwrap_or(f64::NAN), unit.to_owned()),
+            None => return Err(field.wrong_type("a number or a quantity")),
+        },
+        _ => return Err(field.wrong_type("a number or a quantity")),
+    };
+    if number.is_finite() {
+        return Ok((number, unit));
+    }
+    let message = format!("is {}, not a finite number", field.node.label());
+    Err(field.refuse(RefusalKind::OutOfRange, message, Some("write finite ends".to_owned())))
+}

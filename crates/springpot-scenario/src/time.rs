@@ -1,0 +1,150 @@
+//! `[time]` and `[solver]`.
+
+use super::document::{Node, Value, shorten};
+use super::keys::solver::{ADAPTIVE, FIXED, SMALLEST_MEMORY_RTOL, unfilled};
+use super::keys::{SOLVER, SOLVER_FIELDS, TIME};
+use super::names;
+use super::reader::{Field, Read, Table};
+use super::refusal::RefusalKind;
+use springpot::simulate::fixed::Method;
+use springpot::simulate::{FixedStep, RowTimes, Settings};
+
+/// Most rows of one run.
+const MAX_ROWS: f64 = 2e7;
+/// Where nothing is said of the memory's kernel, its error is `rtol` divided by this.
+const MEMORY_SHARE: f64 = 100.0;
+
+/// Duration and rows of a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Duration {
+    /// End, s.
+    pub(crate) end: f64,
+    /// When rows are written.
+    pub(crate) rows: RowTimes,
+}
+
+/// Reads `[time]`.
+pub(crate) fn read(root: &Table<'_>) -> Read<Duration> {
+    let field = root.require("time")?;
+    let table = Table::of(root.ctx, field.node, "[time]", &TIME)?;
+    let end = table.number("end");
+    match (table.get("output_step"), table.get("output_times")) {
+        (Some(step), None) => {
+            let step_size = step.quantity()?;
+            let end = end?;
+            let rows = end / step_size;
+            if rows > MAX_ROWS {
+                let rows = if rows < 1e15 { format!("{rows:.0}") } else { format!("{rows:.1e}") };
+                let message = format!("makes {rows} rows; at most {MAX_ROWS:.0} are written");
+                let help = "write a larger output_step or a smaller end".to_owned();
+                return Err(step.refuse(RefusalKind::TooLarge, message, Some(help)));
+            }
+            Ok(Duration { end, rows: RowTimes::Step { step: step_size, end } })
+        }
+        (None, Some(times)) => {
+            let end = end?;
+            Ok(Duration { end, rows: RowTimes::Times(output_times(&times, end)?.into()) })
+        }
+        (Some(_), Some(times)) => {
+            let help = "write one of them".to_owned();
+            Err(times.refuse(RefusalKind::Rule, "stands beside `output_step`", Some(help)))
+        }
+        (None, None) => Err(table.missing("output_step", "output_step = \"10 ms\" or output_times = [0, …]")),
+    }
+}
+
+fn output_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
+    let items = field.items("an array of times")?;
+    if items.is_empty() {
+        return Err(field.refuse(RefusalKind::Missing, "is empty", Some("write times in 0 … end".to_owned())));
+    }
+    let mut times: Vec<f64> = Vec::with_capacity(items.len());
+    for item in items {
+        let time = item.number("s")?;
+        if !(0.0..=end).contains(&time) {
+            let message = format!("holds {}, outside 0 … {end} s", item.node.label());
+            return Err(item.refuse(RefusalKind::OutOfRange, message, Some("write times in 0 … end".to_owned())));
+        }
+        if times.last().is_some_and(|&last| time <= last) {
+            let message = format!("holds {} after {} s", item.node.label(), times[times.len() - 1]);
+            return Err(item.refuse(
+                RefusalKind::Rule,
+                message,
+                Some("write the times in increasing order".to_owned()),
+            ));
+        }
+        times.push(time);
+    }
+    Ok(times)
+}
+
+/// Reads `[solver]`: how a run of the duration `time` is carried out.
+pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Settings> {
+    let kind = if moves_by_itself(root) { "forward" } else { "" };
+    let forward_only = |key: &str| {
+        SOLVER.is_of_a_kind(key).then(|| {
+            let why = "belongs to forward runs; along a prescribed motion or a gripper path the run chooses its steps";
+            (RefusalKind::Rule, format!("`{key}` of [solver] {why}"))
+        })
+    };
+    let nothing = Node::empty_table(&root.node.place);
+    let field = root.get("solver");
+    let node = field.as_ref().map_or(&nothing, |field| field.node);
+    let table = Table::of_kind(root.ctx, node, "[solver]", (&SOLVER, kind), forward_only)?;
+    // Where [time] is refused, what is wrong with [solver] is told all the same.
+    let rows = RowTimes::Times(Vec::new().into());
+    let Duration { end, rows } = time.clone().unwrap_or(Duration { end: 0.0, rows });
+    let mut settings = unfilled(end, rows);
+    let read = table.fill(SOLVER_FIELDS, &mut settings);
+    if table.get("memory_rtol").is_none() {
+        settings.memory_rtol = (settings.rtol / MEMORY_SHARE).max(SMALLEST_MEMORY_RTOL);
+    }
+    settings.fixed_step = fixed_step(&table)?;
+    read.map(|()| settings)
+}
+
+/// Whether the motion follows from forces, as far as one can see before it is read.
+fn moves_by_itself(root: &Table<'_>) -> bool {
+    let kind = root.get("motion").and_then(|motion| motion.node.get("kind"));
+    kind.is_some_and(|kind| matches!(&kind.value, Value::Text(kind) if kind == "forward"))
+}
+
+/// `method` and `step`.
+fn fixed_step(table: &Table<'_>) -> Read<Option<FixedStep>> {
+    let method = table.get("method").map(|field| method(&field)).transpose()?.flatten();
+    match (method, table.get("step")) {
+        (None, None) => Ok(None),
+        (None, Some(step)) => {
+            let help = "add method = \"backward-euler\" or \"midpoint\", or leave step out".to_owned();
+            Err(step.refuse(
+                RefusalKind::Rule,
+                "belongs to a fixed-step method; \"radau\" chooses its steps",
+                Some(help),
+            ))
+        }
+        (Some(_), None) => Err(table.missing("step", "step = \"1 ms\", as fixed-step methods need it")),
+        (Some(method), Some(step)) => {
+            for key in ["atol", "first_step", "max_step"] {
+                if let Some(field) = table.get(key) {
+                    let message = format!("has no effect with method = {:?}, whose steps are all alike", method.name());
+                    return Err(field.refuse(RefusalKind::Rule, message, Some("leave it out".to_owned())));
+                }
+            }
+            Ok(Some(FixedStep { method, step: step.quantity()? }))
+        }
+    }
+}
+
+/// The method by its name; `None`: the adaptive one.
+fn method(field: &Field<'_>) -> Read<Option<Method>> {
+    let name = field.text()?;
+    if name == ADAPTIVE {
+        return Ok(None);
+    }
+    if let Some(method) = FIXED.into_iter().find(|method| method.name() == name) {
+        return Ok(Some(method));
+    }
+    let names = FIXED.map(Method::name);
+    let help = names::suggest(name, std::iter::once(ADAPTIVE).chain(names));
+    Err(field.refuse(RefusalKind::UnknownName, format!("names no method: {:?}", shorten(name)), Some(help)))
+}

@@ -1,0 +1,119 @@
+//! `urdf` of `[robot]`: a robot from a URDF file.
+
+use super::plan::{BodyPlaces, UrdfPlan};
+use super::reader::{Field, Read, Refused, Table, all};
+use super::refusal::RefusalKind;
+use super::robot::Parts;
+use springpot::model::urdf::{Urdf, UrdfError, UrdfOptions, UrdfProblem};
+use springpot::model::{Label, Model};
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Most moving joints of a robot in a scenario: every one makes columns.
+const MAX_JOINTS: usize = 10_000;
+/// Most folders of `package_path`.
+const MAX_FOLDERS: usize = 1_000;
+
+/// URDF files that were read, in the order of their first use, so that the cases of a sweep share them.
+#[derive(Debug, Default)]
+pub(crate) struct UrdfCache(Mutex<Vec<Entry>>);
+
+#[derive(Debug)]
+struct Entry {
+    file: PathBuf,
+    options: UrdfOptions,
+    robot: Arc<Urdf>,
+}
+
+impl UrdfCache {
+    fn read(&self, file: PathBuf, options: UrdfOptions) -> Result<Arc<Urdf>, UrdfError> {
+        let mut entries = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(entry) = entries.iter().find(|entry| entry.file == file && entry.options == options) {
+            return Ok(entry.robot.clone());
+        }
+        let robot = Arc::new(Urdf::read(&file, &options)?);
+        entries.push(Entry { file, options, robot: robot.clone() });
+        Ok(robot)
+    }
+
+    /// What the files hold and the robots do without, each once, as `file: what`.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let entries = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut seen = HashSet::new();
+        let all = entries.iter().flat_map(|Entry { file, robot, .. }| {
+            robot.warnings.iter().map(move |warning| format!("{}: {warning}", file.display()))
+        });
+        all.filter(|warning| seen.insert(warning.clone())).collect()
+    }
+}
+
+/// Reads the file that `field`, the `urdf` of `table`, names.
+pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>) -> Read<Parts> {
+    let (floating_base, ignore_mimic) = (table.flag("floating_base"), table.flag("ignore_mimic"));
+    let package_path = table.get("package_path").map_or(Ok(Vec::new()), |field| folders(&field));
+    let written = field.text()?.to_owned();
+    let (floating_base, ignore_mimic, package_path) = (floating_base?, ignore_mimic?, package_path?);
+
+    let options = UrdfOptions {
+        floating_base,
+        ignore_mimic,
+        package_path: package_path.iter().map(|folder| field.ctx.folder.join(folder)).collect(),
+    };
+    let robot = field.ctx.robots.read(field.ctx.folder.join(&written), options);
+    let robot = robot.map_err(|error| refuse(field, &error))?;
+    let model = robot.model(gravity?).map_err(|error| refuse(field, &error))?;
+    if model.joint_count() == 0 {
+        let help = "floating_base = true lets it move as a whole".to_owned();
+        return Err(field.refuse(RefusalKind::Missing, "has no joint that moves: all are fixed", Some(help)));
+    }
+    if model.joint_count() > MAX_JOINTS {
+        let message = format!("has {} moving joints; at most {MAX_JOINTS} are taken", model.joint_count());
+        return Err(field.refuse(RefusalKind::TooLarge, message, None));
+    }
+    if let Some(column) = shared_column(&model) {
+        let message = format!("has joints whose names make the same column twice: {column:?}");
+        return Err(field.refuse(RefusalKind::BadName, message, Some("rename one of them in the URDF".to_owned())));
+    }
+    let place = BodyPlaces { table: field.node.place.clone(), fields: Vec::new() };
+    Ok(Parts {
+        bodies: robot.bodies.clone(),
+        places: vec![place; robot.bodies.len()],
+        model: Arc::new(model),
+        urdf: Some(UrdfPlan { written, ignore_mimic, package_path, robot }),
+    })
+}
+
+/// One folder, or an array of them.
+fn folders(field: &Field<'_>) -> Read<Vec<String>> {
+    if field.node.text().is_some() {
+        return Ok(vec![field.text()?.to_owned()]);
+    }
+    let items = field.items("the path of a folder, or an array of them")?;
+    if items.len() > MAX_FOLDERS {
+        let message = format!("holds {} folders; at most {MAX_FOLDERS} are taken", items.len());
+        return Err(field.refuse(RefusalKind::TooLarge, message, None));
+    }
+    all(items.iter().map(|item| item.text().map(str::to_owned)))
+}
+
+/// Refuses a file, with its own place in the words of the reader of URDF files.
+fn refuse(field: &Field<'_>, error: &UrdfError) -> Refused {
+    let help = match &*error.problem {
+        UrdfProblem::Unreadable { .. } | UrdfProblem::NotAFile => {
+            Some("write the path of a URDF file, relative to the scenario".to_owned())
+        }
+        _ => None,
+    };
+    let refusal = field.refusal(RefusalKind::File, format!("cannot be used: {error}"));
+    field.ctx.refuse(refusal.label("this file").help_if(help))
+}
+
+/// A name that two of the numbers of q, or two of those of v, have.
+fn shared_column(model: &Model) -> Option<String> {
+    let twice = |labels: Vec<Label>| {
+        let mut seen = HashSet::new();
+        labels.into_iter().map(|label| label.name).find(|name| !seen.insert(name.clone()))
+    };
+    twice(model.q_labels()).or_else(|| twice(model.v_labels()))
+}
