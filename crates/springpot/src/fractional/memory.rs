@@ -284,7 +284,7 @@ impl Memory {
         affine
     }
 
-    /// Makes ready what a step will ask for, which then costs nothing however often it is asked; no answer changes but by rounding.
+    /// Makes ready what a step will ask for, which then costs nothing however often it is asked; no answer changes.
     pub fn prepare(&mut self, start: &StepStart, nodes: Nodes, form: Form) {
         let is_same = |ready: &Prepared| ready.start == *start && ready.nodes == nodes && ready.form == form;
         if self.prepared.as_ref().is_some_and(is_same) {
@@ -296,8 +296,6 @@ impl Memory {
 
     fn prepare_lags(&mut self, h: f64, nodes: Nodes) {
         let Some(past) = &mut self.past else { return };
-        // Energies take what is faster than the modes for settled, which in a shorter step it is not.
-        past.extend(RADAU_NODES[0] * h);
         match nodes {
             Nodes::One | Nodes::Midpoint => past.prepare(h, CUBIC, 0.0),
             Nodes::Radau => nodes.positions().iter().for_each(|c| past.prepare(c * h, CUBIC, 0.0)),
@@ -382,11 +380,14 @@ impl Memory {
             coefficient
         });
         let Squares { weighted, with_rates } = past.squares(theta * step.h, &scaled);
-        let [d1, d2, d3] = past.kernel().fast_tail();
+        // What is faster than the modes counts as settled; in a step that is shorter than they are made for, they are not.
+        let missing = if theta > 0.0 { past.kernel().missing(RADAU_NODES[0] * step.h) } else { 0 };
+        let between = past.faster_squares(missing, theta * step.h, &scaled);
+        let [d1, d2, d3] = past.kernel().fast_tail(missing);
         let bend = step.bend(theta);
         Energy {
-            stored: 0.5 * (weighted + d2 * rate * rate),
-            dissipation: with_rates + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
+            stored: 0.5 * (weighted + between.weighted + d2 * rate * rate),
+            dissipation: with_rates + between.with_rates + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
         }
     }
 
@@ -503,6 +504,6 @@ fn mean_history(past: &History, h: f64) -> f64 {
     if past.is_empty() {
         return 0.0;
     }
-    let [_, d2, _] = past.kernel().fast_tail();
+    let [_, d2, _] = past.kernel().fast_tail(0);
     past.mean(h) + d2 * past.last_value() / h
 }
