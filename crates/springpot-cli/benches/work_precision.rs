@@ -159,7 +159,7 @@ fn scipy(alpha: f64, reference: &[f64]) -> Option<Vec<Point>> {
     for (tolerance, delta) in KERNELS {
         let kernel = Kernel::new(alpha, tolerance, delta, END).ok()?;
         let case = serde_json::json!({
-            "end": END, "rates": kernel.lambda, "weights": kernel.weight, "fast": kernel.fast_tail(0)[0]
+            "end": END, "rates": kernel.lambda, "weights": kernel.weight, "fast": kernel.fast_tail()[0]
         });
         writeln!(input, "{case}").ok()?;
         loop {

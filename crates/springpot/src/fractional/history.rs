@@ -191,20 +191,6 @@ impl History {
         Squares { weighted: plain.iter().sum(), with_rates: rated.iter().sum() }
     }
 
-    /// As [`Self::squares`] of the first `count` modes in front of the kernel's.
-    pub(super) fn faster_squares(&self, count: usize, lag: f64, y: &[f64; CUBIC]) -> Squares {
-        let mut sum = Squares { weighted: 0.0, with_rates: 0.0 };
-        for (lambda, weight) in (1..=count).map(|k| self.kernel.faster(k)) {
-            let mut psi = [0.0; CUBIC];
-            moments(lambda * lag, &mut psi);
-            let own: f64 = psi.iter().zip(y).map(|(psi, y)| psi * y).sum();
-            let z = (-lambda * lag).exp() * self.fast_mode(lambda) + lag * own;
-            sum.weighted += weight * z * z;
-            sum.with_rates += lambda * weight * z * z;
-        }
-        sum
-    }
-
     /// Hands over index, e^{−X} and ψ_0 … ψ_3 of every block.
     fn with_moments(&self, lag: f64, mut take: impl FnMut(usize, &Block, &[Block])) {
         match self.table(lag, CUBIC, 0.0) {

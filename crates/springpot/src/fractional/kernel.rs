@@ -218,16 +218,15 @@ impl Kernel {
         self.delta *= (self.eta * count as f64).exp();
     }
 
-    /// Σ w/λ^n, n = 1, 2, 3, over the geometric series of modes above λ_0 but for the first `left_out`: d1, d2, d3.
+    /// Σ w/λ^n, n = 1, 2, 3, over the geometric series of modes above λ_0: d1, d2, d3.
     ///
     /// Under a smooth rate x' the lag of such a mode is x'/λ − x''/λ² + …, so that together they store ½·d2·x'² and dissipate
     /// d1·x'² − 2·d2·x'·x'' + d3·x''², which is never negative.
-    pub fn fast_tail(&self, left_out: usize) -> [f64; 3] {
+    pub fn fast_tail(&self) -> [f64; 3] {
         let scale = strength(self.alpha) * self.eta;
         [1.0, 2.0, 3.0].map(|n| {
             let power = n - self.alpha;
-            let fastest = self.lambda[0] * (self.eta * left_out as f64).exp();
-            scale * fastest.powf(-power) / (self.eta * power).exp_m1()
+            scale * self.lambda[0].powf(-power) / (self.eta * power).exp_m1()
         })
     }
 }
@@ -331,7 +330,7 @@ mod tests {
                     let kernel = Kernel::new(alpha, tolerance, delta, horizon).unwrap();
                     assert!(kernel.sampled_error(3000) <= tolerance, "{alpha} {delta} {tolerance:e}");
                     // What is faster than the modes is as little as what a step of delta misses.
-                    let [damping, inertia, _] = kernel.fast_tail(0);
+                    let [damping, inertia, _] = kernel.fast_tail();
                     assert!(damping < delta.powf(1.0 - alpha) && inertia < delta.powf(2.0 - alpha), "{alpha} {delta}");
                 }
             }

@@ -380,14 +380,11 @@ impl Memory {
             coefficient
         });
         let Squares { weighted, with_rates } = past.squares(theta * step.h, &scaled);
-        // What is faster than the modes counts as settled; in a step that is shorter than they are made for, they are not.
-        let missing = if theta > 0.0 { past.kernel().missing(RADAU_NODES[0] * step.h) } else { 0 };
-        let between = past.faster_squares(missing, theta * step.h, &scaled);
-        let [d1, d2, d3] = past.kernel().fast_tail(missing);
+        let [d1, d2, d3] = past.kernel().fast_tail();
         let bend = step.bend(theta);
         Energy {
-            stored: 0.5 * (weighted + between.weighted + d2 * rate * rate),
-            dissipation: with_rates + between.with_rates + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
+            stored: 0.5 * (weighted + d2 * rate * rate),
+            dissipation: with_rates + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
         }
     }
 
@@ -504,6 +501,6 @@ fn mean_history(past: &History, h: f64) -> f64 {
     if past.is_empty() {
         return 0.0;
     }
-    let [_, d2, _] = past.kernel().fast_tail(0);
+    let [_, d2, _] = past.kernel().fast_tail();
     past.mean(h) + d2 * past.last_value() / h
 }
