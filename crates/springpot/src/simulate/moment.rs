@@ -1,8 +1,8 @@
 //! The robot and its elements at one time, before any law is asked.
 
-use super::resistance::add_resistance;
+use super::resistance::{add_resistance, joint_loss};
 use super::{RunError, System};
-use crate::dynamics::{Kinematics, Workspace, kinetic_energy, pair_into, potential_energy, rnea_into};
+use crate::dynamics::{Kinematics, Pair, Workspace, kinetic_energy, pair_into, potential_energy, rnea_into};
 use crate::element::Element;
 use crate::law::{InputValue, Point};
 use crate::model::Model;
@@ -58,6 +58,13 @@ impl Scratch {
 }
 
 impl ElementMoment {
+    fn take(&mut self, element: &Element, pair: &Pair) {
+        self.length = pair.length;
+        self.stroke = pair.length - element.rest_length;
+        self.rate = pair.rate;
+        self.direction = pair.direction;
+    }
+
     pub(super) fn point(&self, t: f64) -> Point<'_> {
         Point { t, stroke: self.stroke, rate: self.rate, inputs: &self.inputs }
     }
@@ -138,10 +145,7 @@ impl System {
             if pair.check().is_err() {
                 return Err(RunError::ZeroLength { t, element: element.name.clone(), length: pair.length });
             }
-            state.length = pair.length;
-            state.stroke = pair.length - element.rest_length;
-            state.rate = pair.rate;
-            state.direction = pair.direction;
+            state.take(element, &pair);
             element.inputs_at(t_inputs, &mut state.inputs);
             element.check_inputs(t, &state.inputs)?;
         }
@@ -153,6 +157,25 @@ impl System {
             });
         }
         Ok(())
+    }
+
+    /// As [`Self::fill`] for all but the actuators and what rows alone ask for: from kinematics that are there, and from the `pairs` and
+    /// inputs of the elements.
+    pub(super) fn fill_energies<'s>(
+        &self,
+        t: f64,
+        kinematics: &Kinematics,
+        elements: impl Iterator<Item = (Pair, &'s [InputValue])>,
+        moment: &mut Moment,
+    ) {
+        moment.t = t;
+        moment.kinetic = kinetic_energy(&self.model, kinematics);
+        moment.potential = potential_energy(&self.model, kinematics);
+        moment.joint_loss = joint_loss(&self.model, &moment.v);
+        for ((element, state), (pair, inputs)) in self.elements.iter().zip(&mut moment.elements).zip(elements) {
+            state.take(element, &pair);
+            state.inputs.copy_from_slice(inputs);
+        }
     }
 
     fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {

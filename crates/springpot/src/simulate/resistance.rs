@@ -14,6 +14,16 @@ struct Resisting {
     law: FrictionLaw,
 }
 
+impl Resisting {
+    fn resistance(&self) -> f64 {
+        let direction = match self.law {
+            FrictionLaw::Smooth { speed } => (self.speed / speed).tanh(),
+            FrictionLaw::Sticking => sign(self.speed),
+        };
+        self.damping * self.speed + self.friction * direction
+    }
+}
+
 fn resisting<'a>(model: &'a Model, v: &'a [f64]) -> impl Iterator<Item = Resisting> + 'a {
     (0..model.joint_count()).filter_map(move |j| {
         let (damping, friction) = (model.damping()[j], model.friction()[j]);
@@ -36,17 +46,17 @@ fn sign(v: f64) -> f64 {
 /// Friction that sticks is f·sign(v) here, 0 at rest: what holds a joint there is no matter of its velocity.
 pub(super) fn add_resistance(model: &Model, v: &[f64], tau: &mut [f64]) -> f64 {
     let mut power = 0.0;
-    for Resisting { index, ratio, speed, damping, friction, law } in resisting(model, v) {
-        let resistance = damping * speed
-            + friction
-                * match law {
-                    FrictionLaw::Smooth { speed: width } => (speed / width).tanh(),
-                    FrictionLaw::Sticking => sign(speed),
-                };
-        tau[index] += ratio * resistance;
-        power += resistance * speed;
+    for joint in resisting(model, v) {
+        let resistance = joint.resistance();
+        tau[joint.index] += joint.ratio * resistance;
+        power += resistance * joint.speed;
     }
     power
+}
+
+/// The power that damping and friction of the joints take at the velocities `v` (nv), W.
+pub(super) fn joint_loss(model: &Model, v: &[f64]) -> f64 {
+    resisting(model, v).map(|joint| joint.resistance() * joint.speed).sum()
 }
 
 /// [`add_resistance`] without the friction that sticks.

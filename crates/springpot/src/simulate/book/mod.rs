@@ -77,6 +77,8 @@ pub(in crate::simulate) struct Book<'a> {
     pub(in crate::simulate) accounts: Vec<Account>,
     pub(in crate::simulate) steps: Vec<ElementStep>,
     pub(in crate::simulate) powers: StepPowers,
+    /// Whether the moment at the end of the step has all that a row asks for.
+    pub(in crate::simulate) end_is_whole: bool,
     /// Whether actuators move the elements, as along a motion given in advance.
     pub(in crate::simulate) takes_elements_work: bool,
     pub(in crate::simulate) grid: GridDerivatives,
@@ -117,6 +119,7 @@ impl<'a> Book<'a> {
             accounts: system.elements.iter().map(|_| Account::default()).collect(),
             steps: system.elements.iter().map(element_step).collect(),
             powers: StepPowers::default(),
+            end_is_whole: true,
             takes_elements_work: true,
             grid: Vec::new(),
             next_row: 0,

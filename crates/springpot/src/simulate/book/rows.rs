@@ -61,6 +61,10 @@ impl Book<'_> {
             let mut moment = self.spare.take().unwrap_or_else(|| Moment::new(self.system));
             let theta = if at == to { 1.0 } else { (at - t) / (to - t) };
             if at == to && !on_break {
+                if !self.end_is_whole {
+                    self.system.fill(at, at, None, &mut self.scratch, &mut self.moments[MAX_NODES])?;
+                    self.end_is_whole = true;
+                }
                 moment.clone_from(&self.moments[MAX_NODES]);
             } else {
                 place(self.system, &mut self.scratch, at, theta, &mut moment)?;

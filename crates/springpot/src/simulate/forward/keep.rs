@@ -12,17 +12,34 @@ impl Run<'_> {
     /// Works out the energies of the step that was just solved.
     pub(super) fn take_stock(&mut self, to: f64, h: f64, on_break: bool) -> Result<(), RunError> {
         self.stepper.fit();
+        // Actuators of joints that signals move follow from all forces, and so does friction that holds.
+        let is_whole = self.has_paths || self.stepper.stick.rubbing().next().is_some();
         let Self { book, stepper, starts, scratch, .. } = self;
         let (system, t) = (book.system, stepper.origin.t);
         let mut dense = Dense { stepper, h, starts, scratch };
+        book.end_is_whole = is_whole;
         for k in 0..MAX_NODES {
-            let at = if k + 1 == MAX_NODES { to } else { t + RADAU_NODES[k] * h };
-            let t_inputs = if k + 1 == MAX_NODES && on_break { to.next_down() } else { at };
-            let moment = &mut book.moments[k + 1];
-            dense.place(at, RADAU_NODES[k], moment);
-            moment.q.copy_from_slice(&stepper.stages[k].q);
-            moment.v.copy_from_slice(&stepper.stages[k].v);
-            system.fill(at, t_inputs, None, &mut book.scratch, moment)?;
+            let is_end = k + 1 == MAX_NODES;
+            let at = if is_end { to } else { t + RADAU_NODES[k] * h };
+            let (moment, stage) = (&mut book.moments[k + 1], &stepper.stages[k]);
+            if is_whole || is_end {
+                dense.place(at, RADAU_NODES[k], moment);
+            } else {
+                drive(&system.model, stepper.forward, at, moment);
+            }
+            moment.q.copy_from_slice(&stage.q);
+            moment.v.copy_from_slice(&stage.v);
+            if is_whole {
+                let t_inputs = if is_end && on_break { to.next_down() } else { at };
+                system.fill(at, t_inputs, None, &mut book.scratch, moment)?;
+                continue;
+            }
+            let elements = stepper.elements.iter().map(|element| {
+                let count = element.inputs.len() / (MAX_NODES + 1);
+                let pair = element.pairs[k + 1].expect("a stage that was placed");
+                (pair, &element.inputs[(k + 1) * count..(k + 2) * count])
+            });
+            system.fill_energies(at, &stage.kinematics, elements, moment);
         }
         for (e, element) in stepper.elements.iter().enumerate() {
             book.steps[e].form = element.form;
@@ -54,7 +71,7 @@ impl Run<'_> {
         let Self { book, stepper, .. } = self;
         for (k, moment) in book.moments.iter().enumerate() {
             let mut power = 0.0;
-            for (j, v) in moment.v.iter().enumerate() {
+            for (j, v) in moment.v.iter().enumerate().filter(|(_, v)| **v != 0.0) {
                 let computed = || {
                     let forces = stepper.elements.iter().zip(&moment.elements).zip(&stepper.origin.forces);
                     let pull = forces.map(|((element, state), start)| {
