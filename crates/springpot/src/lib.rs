@@ -87,6 +87,7 @@
 
 pub mod dynamics;
 pub mod element;
+pub mod elements;
 pub mod fractional;
 pub mod law;
 mod linalg;

@@ -1,0 +1,5 @@
+//! Elements without a robot.
+
+mod bank;
+
+pub use bank::{ElementBank, MemoryRange};
