@@ -67,6 +67,16 @@ impl<T: Scalar> Kinematics<T> {
         kinematics
     }
 
+    /// The joints' own placements, as last read.
+    pub(super) fn stands(&self) -> &Stands<T> {
+        &self.stands
+    }
+
+    /// World placements of all links, the world first.
+    pub(super) fn placements(&self) -> &[Placement<T>] {
+        &self.placements
+    }
+
     /// Moves to `q` (nq): placements alone. Does not allocate.
     pub fn update_position(&mut self, model: &Model, q: &[T]) {
         self.level = Level::Position;

@@ -52,7 +52,7 @@ pub use kinematics::Kinematics;
 pub use pair::{
     CoincidentAnchors, Pair, PairForce, add_generalized_force, pair, pair_hessian, pair_hessian_into, pair_into,
 };
-pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_into};
+pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_at_into, rnea_into};
 pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};
 pub use workspace::Workspace;
 pub use wrench::{add_wrench, add_wrench_derivative};

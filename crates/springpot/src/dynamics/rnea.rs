@@ -1,6 +1,6 @@
 //! Inverse dynamics by the recursive Newton–Euler algorithm.
 
-use super::{PairForce, Workspace, joint, pair};
+use super::{Kinematics, PairForce, Workspace, joint, pair};
 use crate::model::{JointMotion, Model};
 use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Vec3};
 
@@ -17,8 +17,22 @@ pub fn rnea_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     tau: &mut [T],
 ) {
-    let a = &a[..model.nv()];
-    inverse_dynamics(model, q, v, Some(a), pairs, workspace, tau);
+    let (v, a) = (&v[..model.nv()], &a[..model.nv()]);
+    inverse_dynamics(model, q, v, Some(a), pairs, None, workspace, tau);
+}
+
+/// [`rnea_into`] where the `kinematics` at `q` (nq) and v are at hand: nothing of them is worked out again.
+pub fn rnea_at_into<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    q: &[T],
+    a: &[T],
+    pairs: &[PairForce<T>],
+    workspace: &mut Workspace<T>,
+    tau: &mut [T],
+) {
+    let (v, a) = (kinematics.joint_velocities(), &a[..model.nv()]);
+    inverse_dynamics(model, q, v, Some(a), pairs, Some(kinematics), workspace, tau);
 }
 
 /// Nonlinear effects C(q, v) v + g(q) − ΣQ, N·m or N: what the actuators hold without acceleration, [`rnea_into`] at a = 0.
@@ -30,7 +44,7 @@ pub fn nonlinear_effects_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     tau: &mut [T],
 ) {
-    inverse_dynamics(model, q, v, None, pairs, workspace, tau);
+    inverse_dynamics(model, q, &v[..model.nv()], None, pairs, None, workspace, tau);
 }
 
 /// [`nonlinear_effects_into`], allocating.
@@ -47,19 +61,22 @@ fn inverse_dynamics<T: Scalar>(
     v: &[T],
     a: Option<&[T]>,
     pairs: &[PairForce<T>],
+    kinematics: Option<&Kinematics<T>>,
     ws: &mut Workspace<T>,
     tau: &mut [T],
 ) {
     let n = model.joint_count();
-    let (q, v, tau) = (&q[..model.nq()], &v[..model.nv()], &mut tau[..model.nv()]);
-    ws.stands.read(model, q);
+    let (q, tau) = (&q[..model.nq()], &mut tau[..model.nv()]);
+    if kinematics.is_none() {
+        ws.stands.read(model, q);
+    }
     ws.velocity[0] = Motion::ZERO;
     // A frame that accelerates upwards feels gravity.
     ws.acceleration[0] = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(model.gravity().into()) };
     ws.force[0] = Force::ZERO;
     for j in 0..n {
         let parent = model.parent_link(j);
-        let local = ws.stands.placement(model, j, q);
+        let local = kinematics.map_or(&ws.stands, Kinematics::stands).placement(model, j, q);
         let mut velocity = local.motion_to_child(ws.velocity[parent]);
         let mut acceleration = local.motion_to_child(ws.acceleration[parent]);
         // With S along z: v += S q̇, a += S q̈ + v × S q̇.
@@ -93,7 +110,11 @@ fn inverse_dynamics<T: Scalar>(
         ws.local[j] = local;
     }
     if !pairs.is_empty() {
-        subtract_pair_forces(model, pairs, ws);
+        match kinematics {
+            Some(kinematics) => ws.world.copy_from_slice(kinematics.placements()),
+            None => place_links(model, ws),
+        }
+        subtract_pair_forces(pairs, ws);
     }
     tau.fill(T::ZERO);
     for j in (0..n).rev() {
@@ -119,12 +140,16 @@ pub fn rnea<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T], pairs: &[PairFo
     tau
 }
 
-/// Takes what the pairs do off the forces that the joints must supply, so that one backward pass serves any number of pairs.
-fn subtract_pair_forces<T: Scalar>(model: &Model, pairs: &[PairForce<T>], ws: &mut Workspace<T>) {
+/// World placements of all links from those in their parents.
+fn place_links<T: Scalar>(model: &Model, ws: &mut Workspace<T>) {
     ws.world[0] = Placement::IDENTITY;
     for j in 0..model.joint_count() {
         ws.world[j + 1] = ws.world[model.parent_link(j)] * ws.local[j];
     }
+}
+
+/// Takes what the pairs do off the forces that the joints must supply, so that one backward pass serves any number of pairs.
+fn subtract_pair_forces<T: Scalar>(pairs: &[PairForce<T>], ws: &mut Workspace<T>) {
     for pair in pairs {
         let (from, to) = (pair.from.link(), pair.to.link());
         let pull = pair::pull(pair, |site| ws.world[site.link()].point(Vec3::from_f64(site.point())));

@@ -2,7 +2,7 @@
 
 use super::resistance::{add_resistance, joint_loss};
 use super::{RunError, System};
-use crate::dynamics::{Kinematics, Pair, Workspace, kinetic_energy, pair_into, potential_energy, rnea_into};
+use crate::dynamics::{Kinematics, Pair, Workspace, kinetic_energy, pair_into, potential_energy, rnea_at_into};
 use crate::element::Element;
 use crate::law::{InputValue, Point};
 use crate::model::Model;
@@ -136,7 +136,8 @@ impl System {
         moment.t = t;
         let kinematics = &mut scratch.kinematics;
         kinematics.update_velocity(&self.model, &moment.q, &moment.v);
-        rnea_into(&self.model, &moment.q, &moment.v, &moment.a, &[], &mut scratch.workspace, &mut moment.rigid);
+        let workspace = &mut scratch.workspace;
+        rnea_at_into(&self.model, kinematics, &moment.q, &moment.a, &[], workspace, &mut moment.rigid);
         moment.kinetic = kinetic_energy(&self.model, kinematics);
         moment.potential = potential_energy(&self.model, kinematics);
         moment.joint_loss = add_resistance(&self.model, &moment.v, &mut moment.rigid);

@@ -2,7 +2,9 @@
 
 use super::elements::ElementStep;
 use super::{ITERATIONS, Method};
-use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pair_into, rnea_derivatives_into, rnea_into};
+use crate::dynamics::{
+    Kinematics, PairForce, RneaDerivatives, Workspace, pair_into, rnea_at_into, rnea_derivatives_into,
+};
 use crate::law::{Response, State};
 use crate::linalg::Lu;
 use crate::model::Model;
@@ -243,7 +245,7 @@ impl<'a> Stepper<'a> {
             return Ok(());
         }
         let (stage, workspace) = (&self.stage, &mut self.workspace);
-        rnea_into(self.model, &stage.q, &stage.v, &self.a, &self.pairs, workspace, &mut self.tau);
+        rnea_at_into(self.model, &stage.kinematics, &stage.q, &self.a, &self.pairs, workspace, &mut self.tau);
         add_smooth_resistance(self.model, &stage.v, &mut self.tau);
         for ((r, &k), drive) in self.residual.iter_mut().zip(free).zip(&self.drives) {
             *r = drive - self.tau[k];

@@ -2,7 +2,7 @@
 
 use super::stepper::Stepper;
 use super::tableau::{A, A_SQUARED};
-use crate::dynamics::{PairForce, rnea_into};
+use crate::dynamics::{PairForce, rnea_at_into};
 use crate::fractional::step::MAX_NODES;
 use crate::simulate::RunError;
 use crate::simulate::book::Account;
@@ -95,7 +95,8 @@ impl Stepper<'_> {
                 self.pairs.push(PairForce { from, to, force, d_length: 0.0, d_rate: 0.0 });
             }
             let stage = &self.stages[i];
-            rnea_into(self.model, &stage.q, &stage.v, &stage.a, &self.pairs, &mut self.workspace, &mut self.tau);
+            let (model, workspace) = (self.model, &mut self.workspace);
+            rnea_at_into(model, &stage.kinematics, &stage.q, &stage.a, &self.pairs, workspace, &mut self.tau);
             add_smooth_resistance(self.model, &stage.v, &mut self.tau);
             self.stick.add_sliding(&mut self.tau);
             let forces = self.free.iter().zip(&self.drives[i]);
