@@ -5,7 +5,7 @@ use crate::support::{Case, case, close, config, difference, largest, one_degree_
 use proptest::prelude::*;
 use springpot::dynamics::{
     AbaDerivatives, Kinematics, PairForce, RneaDerivatives, Workspace, aba, aba_derivatives, aba_derivatives_into,
-    coriolis, crba, mass_inverse, pair, rnea, rnea_derivatives, rnea_derivatives_into,
+    coriolis, crba, mass_inverse, pair, rnea, rnea_at_into, rnea_derivatives, rnea_derivatives_into,
 };
 use springpot::model::{Anchor, BodySpec, JointSpec, Model, Parent, Site};
 
@@ -78,6 +78,10 @@ proptest! {
         let (q, v, a) = (&case.q[..], &case.v[..], &case.a[..]);
         let slopes = rnea_derivatives(&model, q, v, a, &elements.at(&model, q, v));
         let tau = |q: &[f64], v: &[f64]| rnea(&model, q, v, a, &elements.at(&model, q, v));
+        let mut at_hand = vec![0.0; model.nv()];
+        let (kinematics, workspace) = (Kinematics::at_velocity(&model, q, v), &mut Workspace::new(&model));
+        rnea_at_into(&model, &kinematics, q, a, &elements.at(&model, q, v), workspace, &mut at_hand);
+        close("tau by kinematics at hand", &at_hand, &tau(q, v), 1e-13, largest(&at_hand).max(1.0));
         let scale = largest(&tau(q, v)).max(largest(&slopes.d_q)).max(largest(&slopes.d_v)).max(1.0);
         close("dtau/dq", &slopes.d_q, &by_q(&model, q, |q| tau(q, v)), 1e-7, scale);
         close("dtau/dv", &slopes.d_v, &by_v(v, |v| tau(q, v)), 1e-9, scale);
