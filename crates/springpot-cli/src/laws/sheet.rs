@@ -206,7 +206,7 @@ fn omega(text: &str, at: Range<usize>) -> Result<f64, Refused> {
 }
 
 /// The parameters as they are shown, and the law that has them.
-fn rounded(row: &Entry, found: &Identified) -> (Vec<(&'static str, &'static str, f64)>, Identified) {
+fn rounded<'a>(row: &'a Entry, found: &Identified) -> (Vec<(&'a str, &'a str, f64)>, Identified) {
     let round = |value: f64| short(value).parse().unwrap_or(value);
     let shown = Identified {
         stiffness: round(found.stiffness),
@@ -215,7 +215,7 @@ fn rounded(row: &Entry, found: &Identified) -> (Vec<(&'static str, &'static str,
         ..*found
     };
     let value = |name: &str| shown.parameter(name).unwrap_or(f64::NAN);
-    (row.params.iter().map(|param| (param.name, param.unit, value(param.name))).collect(), shown)
+    (row.params.iter().map(|param| (&*param.name, &*param.unit, value(&param.name))).collect(), shown)
 }
 
 fn page(row: &Entry, found: &Identified, items: &[Item]) -> String {
@@ -241,13 +241,13 @@ fn page(row: &Entry, found: &Identified, items: &[Item]) -> String {
         unit => format!("{name} = \"{} {unit}\"", short(*value)),
     };
     text.push('\n');
-    text.push_str(&page::element(row.name, &params.iter().map(written).collect::<Vec<_>>(), &[]));
+    text.push_str(&page::element(&row.name, &params.iter().map(written).collect::<Vec<_>>(), &[]));
     text
 }
 
 fn json(row: &Entry, found: &Identified, items: &[Item]) -> String {
     let params: Map<String, Value> =
-        row.params.iter().map(|param| (param.name.to_owned(), found.parameter(param.name).into())).collect();
+        row.params.iter().map(|param| (param.name.to_string(), found.parameter(&param.name).into())).collect();
     let check: Vec<Value> = items
         .iter()
         .map(|Item { datum, .. }| {
