@@ -1,6 +1,7 @@
 //! The papers' first scenario as a user runs it: six orders, 10 s at 10 ms, CSV and figures.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use springpot::law::Catalog;
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -14,10 +15,14 @@ fn thermoviscoelastic_order(criterion: &mut Criterion) {
     };
     let mut group = criterion.benchmark_group("run thermoviscoelastic_order");
     group.sample_size(20);
-    group.bench_function("CSV and figures", |b| b.iter(|| springpot_cli::main_from(arguments(&[]))));
-    group.bench_function("CSV alone", |b| b.iter(|| springpot_cli::main_from(arguments(&["--no-figures"]))));
+    group.bench_function("CSV and figures", |b| {
+        b.iter(|| springpot_cli::main_from(&Catalog::standard(), arguments(&[])))
+    });
+    group.bench_function("CSV alone", |b| {
+        b.iter(|| springpot_cli::main_from(&Catalog::standard(), arguments(&["--no-figures"])))
+    });
     group.bench_function("CSV alone, one job", |b| {
-        b.iter(|| springpot_cli::main_from(arguments(&["--no-figures", "--jobs", "1"])));
+        b.iter(|| springpot_cli::main_from(&Catalog::standard(), arguments(&["--no-figures", "--jobs", "1"])));
     });
     group.finish();
     assert!(folder.path().join("results.csv").exists(), "the run wrote nothing");

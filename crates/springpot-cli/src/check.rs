@@ -29,12 +29,12 @@ const ROUNDING: f64 = 1e-12;
 /// Joints that are named.
 const NAMED_JOINTS: usize = 100;
 
-pub(crate) fn check(options: &CheckOptions) -> Ending {
+pub(crate) fn check(options: &CheckOptions, catalog: &Catalog) -> Ending {
     let Some(file) = &options.file else {
-        let schema = json_schema(&Catalog::standard());
+        let schema = json_schema(catalog);
         return printed(terminal::try_print(&format!("{schema:#}\n")));
     };
-    match describe(file, options) {
+    match describe(file, options, catalog) {
         Ok(ending) => ending,
         Err(refused) => {
             diagnostic::refused(&refused);
@@ -44,8 +44,8 @@ pub(crate) fn check(options: &CheckOptions) -> Ending {
 }
 
 /// Prints the plan of the first case, and what is known to fail or deserves a warning in any.
-fn describe(file: &Path, options: &CheckOptions) -> Result<Ending, Refusals> {
-    let cases = diagnostic::open(file, &options.overrides)?;
+fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<Ending, Refusals> {
+    let cases = diagnostic::open(file, &options.overrides, catalog)?;
     let plan = cases.plan(0)?;
     let system = plan.system();
     Layout::new(&cases, &system)?;
@@ -142,8 +142,8 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u6
     }
     for (e, plan_of) in plan.elements.iter().enumerate() {
         let element = &plan_of.element;
-        line("element", &format!("{}: {}, {}", element.name, element.row.name, memory(element)));
-        line("", element.row.equation);
+        line("element", &format!("{}: {}, {}", element.name, element.entry.name, memory(element)));
+        line("", &element.entry.equation);
         line("", &parameters(plan_of));
         let Some(start) = start.map(|start| &start[e]) else { continue };
         let (length, stroke) = (range(start.length, warnings.lengths(e)), range(start.stroke, warnings.strokes(e)));
@@ -224,14 +224,14 @@ fn memory(element: &Element) -> String {
 
 /// Parameters in SI, then inputs as written.
 fn parameters(element: &ElementPlan) -> String {
-    let Entry { params, inputs, .. } = &element.element.row;
+    let Entry { params, inputs, .. } = &*element.element.entry;
     let with_unit = |value: String, unit: &str| if unit.is_empty() { value } else { format!("{value} {unit}") };
     let parameter = |(param, value): (&springpot::law::Param, &f64)| {
-        format!("{} = {}", param.name, with_unit(short(*value), param.unit)).replace(' ', terminal::NO_BREAK)
+        format!("{} = {}", param.name, with_unit(short(*value), &param.unit)).replace(' ', terminal::NO_BREAK)
     };
     let input = |(input, signal): (&springpot::law::Input, &SignalPlan)| match signal.constant {
         Some(value) => {
-            format!("{} = {}", input.name, with_unit(short(value), input.unit)).replace(' ', terminal::NO_BREAK)
+            format!("{} = {}", input.name, with_unit(short(value), &input.unit)).replace(' ', terminal::NO_BREAK)
         }
         None => format!("{} = {}", input.name, signal.written),
     };

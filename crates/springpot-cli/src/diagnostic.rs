@@ -15,8 +15,8 @@ use std::sync::Arc;
 const EXCERPT: usize = 200;
 
 /// Reads the scenario, applies the overrides and checks everything.
-pub(crate) fn open(file: &Path, overrides: &[String]) -> Result<Cases, Refusals> {
-    scenario(file, overrides)?.cases(&Catalog::standard())
+pub(crate) fn open(file: &Path, overrides: &[String], catalog: &Catalog) -> Result<Cases, Refusals> {
+    scenario(file, overrides)?.cases(catalog)
 }
 
 /// Reads the scenario and applies the overrides.

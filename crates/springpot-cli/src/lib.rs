@@ -1,4 +1,24 @@
-//! The command line of Springpot as a library: [`main_from`] takes the arguments and returns the exit code.
+//! The command line of Springpot as a library: [`main_from`] takes the laws and the arguments and returns the exit code.
+//!
+//! A program with laws of its own has the whole command when its `main` is
+//!
+//! ```
+//! use springpot::law::{Catalog, Entry, Network};
+//! use std::process::ExitCode;
+//! use std::sync::Arc;
+//!
+//! fn main() -> ExitCode {
+//!     let stiff = Entry {
+//!         name: "stiff".into(),
+//!         equation: "F = 1000·x".into(),
+//!         params: Vec::new(),
+//!         inputs: Vec::new(),
+//!         source: "a crate with laws of its own".into(),
+//!         build: Arc::new(|_, _| Ok(Network::spring(1000.0))),
+//!     };
+//!     springpot_cli::main_from(&Catalog::standard().with(stiff), std::env::args_os())
+//! }
+//! ```
 //!
 //! Exit codes: 0 done; 1 a run failed; 2 the input was refused; 130 interrupted.
 
@@ -26,6 +46,7 @@ mod terminal;
 
 use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;
+use springpot::law::Catalog;
 use springpot_run::table::disk::Disk;
 use std::ffi::OsString;
 use std::io::{self, Write as _};
@@ -80,13 +101,13 @@ fn with_fewer_jobs(options: RunOptions) -> RunOptions {
     }
 }
 
-/// Runs the command that `arguments` ask for; the first of them is the program's name.
-pub fn main_from(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    main_on(&Disk::default(), arguments)
+/// Runs the command that `arguments` ask for with the laws of `catalog`; the first argument is the program's name.
+pub fn main_from(catalog: &Catalog, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    main_on(catalog, &Disk::default(), arguments)
 }
 
 /// As [`main_from`], with all results of runs on `disk`.
-pub fn main_on(disk: &Disk, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -99,14 +120,14 @@ pub fn main_on(disk: &Disk, arguments: impl IntoIterator<Item = OsString>) -> Ex
         }
     };
     let ending = match arguments.command {
-        Command::Run(options) => run::run(&with_fewer_jobs(options), disk),
-        Command::Check(options) => check::check(&options),
-        Command::Info(options) => info::info(&options),
-        Command::Dynamics(options) => dynamics::dynamics(&options),
+        Command::Run(options) => run::run(&with_fewer_jobs(options), catalog, disk),
+        Command::Check(options) => check::check(&options, catalog),
+        Command::Info(options) => info::info(&options, catalog),
+        Command::Dynamics(options) => dynamics::dynamics(&options, catalog),
         Command::Derivative(options) => derivative::derivative(&options),
-        Command::Laws(options) => laws::laws(&options),
+        Command::Laws(options) => laws::laws(&options, catalog),
         Command::Plot(options) => plot::plot(&options),
-        Command::Init(options) => init::init(&options),
+        Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),
         Command::Prony(options) => prony::prony(&options),

@@ -1,7 +1,8 @@
 //! The `springpot` command.
 
+use springpot::law::Catalog;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    springpot_cli::main_from(std::env::args_os())
+    springpot_cli::main_from(&Catalog::standard(), std::env::args_os())
 }

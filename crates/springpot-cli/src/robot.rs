@@ -39,9 +39,9 @@ pub(crate) fn is_scenario(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
-/// Reads the robot; what is wrong goes to stderr.
-pub(crate) fn read(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refused> {
-    if is_scenario(&options.file) { from_scenario(options, overrides) } else { from_urdf(options, overrides) }
+/// Reads the robot, where it is one of a scenario with the laws of `catalog`; what is wrong goes to stderr.
+pub(crate) fn read(options: &RobotOptions, overrides: &[String], catalog: &Catalog) -> Result<Robot, Refused> {
+    if is_scenario(&options.file) { from_scenario(options, overrides, catalog) } else { from_urdf(options, overrides) }
 }
 
 fn from_urdf(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refused> {
@@ -86,13 +86,13 @@ pub(crate) fn refuse_urdf_flags(options: &RobotOptions) -> Result<(), Refused> {
     Err(Refused)
 }
 
-fn from_scenario(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refused> {
+fn from_scenario(options: &RobotOptions, overrides: &[String], catalog: &Catalog) -> Result<Robot, Refused> {
     refuse_urdf_flags(options)?;
     let read = Scenario::read(&options.file).and_then(|mut scenario| {
         for assignment in overrides {
             scenario.set(assignment)?;
         }
-        scenario.robot(&Catalog::standard())
+        scenario.robot(catalog)
     });
     let RobotPlan { model, bodies, urdf, gripper, .. } = read.map_err(|refusals| {
         diagnostic::refused(&refusals);

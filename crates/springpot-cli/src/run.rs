@@ -8,6 +8,7 @@ use self::prepare::{Unprepared, prepare};
 use crate::arguments::RunOptions;
 use crate::numbers::count;
 use crate::{Ending, diagnostic, progress, signals, terminal};
+use springpot::law::Catalog;
 use springpot_run::sweep::{Progress, Status, SweepError};
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::FolderError;
@@ -28,9 +29,9 @@ enum Stopped {
     Folder(#[from] FolderError),
 }
 
-pub(crate) fn run(options: &RunOptions, disk: &Disk) -> Ending {
+pub(crate) fn run(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> Ending {
     let begun = Instant::now();
-    let prepared = match prepare(options, disk) {
+    let prepared = match prepare(options, catalog, disk) {
         Ok(prepared) => prepared,
         Err(Unprepared::Refused(refused)) => {
             diagnostic::refused(&refused);

@@ -342,7 +342,7 @@ fn columns_of(plan: &Plan) -> Vec<String> {
     let mut columns: Vec<String> = plan.model.q_labels().into_iter().map(|label| label.name).collect();
     for element in &plan.elements {
         let name = &element.element.name;
-        columns.extend(element.element.row.inputs.iter().map(|input| format!("{name}.{}", input.name)));
+        columns.extend(element.element.entry.inputs.iter().map(|input| format!("{name}.{}", input.name)));
         columns.push(format!("{name}."));
     }
     columns.push(format!("{} {}", plan.gripper.is_some(), matches!(plan.motion, MotionPlan::GripperPath { .. })));

@@ -15,6 +15,7 @@ use springpot::law::{Derivative, Entry, Param};
 use springpot::model::Anchor;
 use springpot::simulate::RowTimes;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Most elements of a robot.
 const MAX_ELEMENTS: usize = 10_000;
@@ -90,7 +91,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     let object = (law.build)(&parameters, derivative).map_err(|error| {
         let table_field = table.get("parameters");
         let node = table_field.as_ref().map_or(table.node, |field| field.node);
-        let place = node.get(error.parameter).map_or(&node.place, |parameter| &parameter.place);
+        let place = node.get(&error.parameter).map_or(&node.place, |parameter| &parameter.place);
         let message = format!("{}: law {:?} needs {}", table.what, law.name, error.rule);
         table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{}`", error.parameter)))
     });
@@ -103,7 +104,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
         to: site(&to),
         rest_length: 0.0,
         law: object?,
-        row: *law,
+        entry: Arc::clone(law),
         inputs: inputs.iter().map(|input| input.signal.clone()).collect(),
         derivative,
         scheme: scheme?,
@@ -112,10 +113,10 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     Ok(ElementPlan { element, from, to, parameters, inputs, place })
 }
 
-fn law<'a>(field: &Field<'a>) -> Read<&'a Entry> {
+fn law<'a>(field: &Field<'a>) -> Read<&'a Arc<Entry>> {
     let name = field.text()?;
     field.ctx.catalog.get(name).ok_or_else(|| {
-        let laws = field.ctx.catalog.entries().iter().map(|entry| entry.name);
+        let laws = field.ctx.catalog.entries().iter().map(|entry| &*entry.name);
         let message = format!("is {:?}, which is no law", shorten(name));
         field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, laws)))
     })
@@ -159,24 +160,25 @@ fn misfit(scheme: Scheme, time: &Duration) -> Option<&'static str> {
 }
 
 /// Parameter values in the order of the catalog.
-fn parameters(table: &Table<'_>, law: &Entry) -> Read<Vec<f64>> {
-    let names: Vec<&str> = law.params.iter().map(|param| param.name).collect();
+fn parameters<'a>(table: &Table<'a>, law: &'a Entry) -> Read<Vec<f64>> {
+    let names: Vec<&str> = law.params.iter().map(|param| &*param.name).collect();
     let field = table.get("parameters");
     let open = field.as_ref().map(|field| {
         let what = format!("`parameters` of {} (law {:?})", table.what, law.name);
         Table::open(field.ctx, field.node, what, &names)
     });
     let given = open.transpose()?;
-    let get = |param: &Param| given.as_ref().and_then(|table| table.get(param.name));
+    let get = |param: &'a Param| given.as_ref().and_then(|table| table.get(&param.name));
 
-    let lacking = |param: &&Param| param.default.is_none() && get(param).is_none();
+    let lacking = |param: &&'a Param| param.default.is_none() && get(param).is_none();
     let missing: Vec<&Param> = law.params.iter().filter(lacking).collect();
-    let untold = missing.iter().filter(|param| !given.as_ref().is_some_and(|table| table.suspects(param.name)));
-    let untold: Vec<&str> = untold.map(|param| param.name).collect();
+    let untold = missing.iter().filter(|param| !given.as_ref().is_some_and(|table| table.suspects(&param.name)));
+    let untold: Vec<&str> = untold.map(|param| &*param.name).collect();
     let missing_refused = if untold.is_empty() {
         (!missing.is_empty()).then_some(Refused)
     } else {
-        let right: Vec<String> = missing.iter().map(|param| describe(param.name, param.unit, param.meaning)).collect();
+        let right: Vec<String> =
+            missing.iter().map(|param| describe(&param.name, &param.unit, &param.meaning)).collect();
         let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
         let message = format!("{}: law {:?} needs the parameters {}", table.what, law.name, names::list(untold));
         let refusal = place.refuse(RefusalKind::Missing, message).label("missing parameters");
@@ -184,7 +186,7 @@ fn parameters(table: &Table<'_>, law: &Entry) -> Read<Vec<f64>> {
     };
 
     // Exponents name pure numbers, so those are read first.
-    let pure = |param: &Param| match get(param) {
+    let pure = |param: &'a Param| match get(param) {
         Some(field) if param.unit.is_empty() => Some(value(&field, param, &|_| None)),
         _ => None,
     };
@@ -215,21 +217,21 @@ fn describe(name: &str, unit: &str, meaning: &str) -> String {
 }
 
 fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f64>) -> Read<f64> {
-    let value = field.number_with(param.unit, exponents)?;
+    let value = field.number_with(&param.unit, exponents)?;
     if param.range.contains(value) {
         return Ok(value);
     }
     let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
     let message = format!("is {value}{unit}, {}", how_outside(param.range));
-    let of = if param.unit.is_empty() { "a number" } else { param.unit };
+    let of = if param.unit.is_empty() { "a number" } else { &*param.unit };
     let right = || format!("{}: {} ({of}, {})", param.name, param.meaning, interval(param.range));
-    let help = celsius(param.unit, param.range, value).unwrap_or_else(right);
+    let help = celsius(&param.unit, param.range, value).unwrap_or_else(right);
     Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)))
 }
 
 /// Inputs in the order of the catalog.
-fn inputs(table: &Table<'_>, law: &Entry, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
-    let names: Vec<&str> = law.inputs.iter().map(|input| input.name).collect();
+fn inputs<'a>(table: &Table<'a>, law: &'a Entry, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
+    let names: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
     let field = table.get("inputs");
     let open = field.as_ref().map(|field| {
         let what = format!("`inputs` of {} (law {:?})", table.what, law.name);
@@ -237,19 +239,20 @@ fn inputs(table: &Table<'_>, law: &Entry, time: Option<&Duration>) -> Read<Vec<S
     });
     let given = open.transpose()?;
     let missing: Vec<_> =
-        law.inputs.iter().filter(|input| given.as_ref().is_none_or(|given| given.get(input.name).is_none())).collect();
-    let untold = missing.iter().filter(|input| !given.as_ref().is_some_and(|given| given.suspects(input.name)));
-    let untold: Vec<&str> = untold.map(|input| input.name).collect();
+        law.inputs.iter().filter(|input| given.as_ref().is_none_or(|given| given.get(&input.name).is_none())).collect();
+    let untold = missing.iter().filter(|input| !given.as_ref().is_some_and(|given| given.suspects(&input.name)));
+    let untold: Vec<&str> = untold.map(|input| &*input.name).collect();
     if !untold.is_empty() {
-        let right: Vec<String> = missing.iter().map(|input| describe(input.name, input.unit, input.meaning)).collect();
+        let right: Vec<String> =
+            missing.iter().map(|input| describe(&input.name, &input.unit, &input.meaning)).collect();
         let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
         let message = format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold));
         let refusal = place.refuse(RefusalKind::Missing, message).label("missing inputs");
         table.ctx.refuse(refusal.help(right.join("; ")));
     }
     all(law.inputs.iter().map(|input| {
-        let field = given.as_ref().and_then(|given| given.get(input.name)).ok_or(Refused)?;
+        let field = given.as_ref().and_then(|given| given.get(&input.name)).ok_or(Refused)?;
         let end = time.map(|time| time.end);
-        signals::read(&field, Wanted { unit: input.unit, range: input.range, smooth: false, end })
+        signals::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })
     }))
 }

@@ -211,10 +211,10 @@ fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static s
 }
 
 /// Everything that a path into an element can name; `None` where its law is not known.
-fn names_of_element(ctx: &Context<'_>, element: &Node) -> Option<Vec<&'static str>> {
+fn names_of_element<'a>(ctx: &Context<'a>, element: &Node) -> Option<Vec<&'a str>> {
     let law: &law::Entry = ctx.catalog.get(element.get("law")?.text()?)?;
-    let parameters = law.params.iter().map(|param| param.name);
-    let inputs = law.inputs.iter().map(|input| input.name);
+    let parameters = law.params.iter().map(|param| &*param.name);
+    let inputs = law.inputs.iter().map(|input| &*input.name);
     Some(parameters.chain(inputs).chain(ELEMENT.names()).collect())
 }
 

@@ -91,14 +91,14 @@ impl Plan {
     fn element(&self, plan: &ElementPlan) -> Value {
         let ElementPlan { element, from, to, parameters, inputs, .. } = plan;
         let parameters: Map<String, Value> =
-            element.row.params.iter().zip(parameters).map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
+            element.entry.params.iter().zip(parameters).map(|(p, v)| (p.name.to_string(), json!(v))).collect();
         let inputs: Map<String, Value> =
-            element.row.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_owned(), signal(s))).collect();
+            element.entry.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_string(), signal(s))).collect();
         let mut value = json!({
             "name": element.name,
             "from": self.anchor(from),
             "to": self.anchor(to),
-            "law": element.row.name,
+            "law": element.entry.name,
             "parameters": parameters,
             "inputs": inputs,
             "derivative": element.derivative.name(),

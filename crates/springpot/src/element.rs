@@ -5,6 +5,7 @@ use crate::fractional::scheme::Scheme;
 use crate::law::{Derivative, Entry, InputValue, Network, Start, State};
 use crate::model::Site;
 use crate::signal::Signal;
+use std::sync::Arc;
 
 /// A massless one-dimensional material between point D_i (`from`) and point D_j (`to`).
 ///
@@ -22,9 +23,9 @@ pub struct Element {
     pub rest_length: f64,
     /// The law.
     pub law: Network,
-    /// Its row of the catalog.
-    pub row: Entry,
-    /// Signals of its inputs, in the order of the row, SI.
+    /// Its entry of the catalog, which copies of the element share.
+    pub entry: Arc<Entry>,
+    /// Signals of its inputs, in the order of the entry, SI.
     pub inputs: Vec<Signal>,
     /// Which fractional derivative the law takes.
     pub derivative: Derivative,

@@ -44,15 +44,15 @@
 //! })?;
 //! let model = builder.finish()?;
 //!
-//! let row = Catalog::standard().get("springpot").expect("a law that comes with Springpot").clone();
+//! let entry = Catalog::standard().get("springpot").expect("a law that comes with Springpot").clone();
 //! let derivative = Derivative::Caputo;
 //! let strut = Element {
 //!     name: "strut".into(),
 //!     from: model.resolve(&Anchor { body: Parent::World, point: [0.0, 0.0, -0.3] })?,
 //!     to: model.resolve(&Anchor { body: Parent::Body(arm), point: [0.3, 0.0, 0.0] })?,
 //!     rest_length: 0.42,
-//!     law: (row.build)(&[50.0, 0.4], derivative)?, // c = 50 N·s^0.4/m
-//!     row,
+//!     law: (entry.build)(&[50.0, 0.4], derivative)?, // c = 50 N·s^0.4/m
+//!     entry,
 //!     inputs: Vec::new(),
 //!     derivative,
 //!     scheme: None,

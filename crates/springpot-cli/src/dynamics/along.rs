@@ -7,11 +7,12 @@ use crate::run::in_case;
 use crate::{Ending, diagnostic, plain, printed, terminal};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
+use springpot::law::Catalog;
 use springpot::simulate::{Equation, EquationError, System};
 use springpot_scenario::units::parse_quantity;
 use springpot_scenario::{Cases, Refusals, SweptValue};
 
-pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused> {
+pub(super) fn at(options: &DynamicsOptions, catalog: &Catalog, at: &str) -> Result<Ending, Refused> {
     let file = &options.robot.file;
     if !is_scenario(file) {
         let message = format!("--at wants a scenario (.toml), whose motion it follows; {} has none", file.display());
@@ -27,7 +28,7 @@ pub(super) fn at(options: &DynamicsOptions, at: &str) -> Result<Ending, Refused>
         diagnostic::refused(&refusals);
         Refused
     };
-    let cases = diagnostic::open(file, &options.overrides).map_err(refused)?;
+    let cases = diagnostic::open(file, &options.overrides, catalog).map_err(refused)?;
     let index = options.case.unwrap_or(0);
     if index >= cases.len() {
         let message = format!("--case {index}: the last case of {} is {}", file.display(), cases.len() - 1);
@@ -109,8 +110,13 @@ fn json(cases: &Cases, index: usize, system: &System, equation: &Equation) -> St
     });
     let rows = |matrix| -> Vec<&[f64]> { <[f64]>::chunks(matrix, n).collect() };
     let element = |(term, element): (&springpot::simulate::ElementTerm, &springpot::element::Element)| {
-        let inputs: Map<String, Value> =
-            element.row.inputs.iter().zip(&term.inputs).map(|(input, x)| (input.name.to_owned(), json!(x))).collect();
+        let inputs: Map<String, Value> = element
+            .entry
+            .inputs
+            .iter()
+            .zip(&term.inputs)
+            .map(|(input, x)| (input.name.to_string(), json!(x)))
+            .collect();
         json!({
             "name": term.name,
             "length": term.length,

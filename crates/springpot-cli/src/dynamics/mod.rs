@@ -12,6 +12,7 @@ use crate::numbers::{count, short};
 use crate::robot::{Refused, Robot};
 use crate::{Ending, diagnostic, plain, printed, robot};
 use answer::Answers;
+use springpot::law::Catalog;
 use springpot::model::{Frame, JointKind};
 use springpot_scenario::suggest;
 use states::States;
@@ -25,18 +26,18 @@ const MOST_WITH_CHRISTOFFEL: usize = 400;
 /// States that are named one by one in an error.
 const NAMED: usize = 5;
 
-pub(crate) fn dynamics(options: &DynamicsOptions) -> Ending {
+pub(crate) fn dynamics(options: &DynamicsOptions, catalog: &Catalog) -> Ending {
     let ended = match (&options.states, &options.at) {
-        (Some(file), _) => in_states(options, file),
-        (None, Some(at)) => along::at(options, at),
+        (Some(file), _) => in_states(options, catalog, file),
+        (None, Some(at)) => along::at(options, catalog, at),
         (None, None) => unreachable!("one of them is required"),
     };
     ended.unwrap_or(Ending::Refused)
 }
 
 /// Reads everything before anything is printed.
-fn in_states(options: &DynamicsOptions, file: &Path) -> Result<Ending, Refused> {
-    let robot = robot::read(&options.robot, &options.overrides)?;
+fn in_states(options: &DynamicsOptions, catalog: &Catalog, file: &Path) -> Result<Ending, Refused> {
+    let robot = robot::read(&options.robot, &options.overrides, catalog)?;
     let frame = options.frame.as_deref().map(|name| find_frame(&robot, name)).transpose()?;
     check_size(&robot, options.christoffel)?;
     let read = states::source(file).and_then(|source| states::read(&robot, &source));

@@ -251,13 +251,14 @@ mod tests {
     use crate::arguments::RobotOptions;
     use crate::robot::{self, Robot};
     use proptest::prelude::*;
+    use springpot::law::Catalog;
     use std::sync::Arc;
 
     fn floating_pendulum() -> Robot {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../testdata/multibody/double_pendulum.urdf");
         let options =
             RobotOptions { file: file.into(), floating_base: true, ignore_mimic: false, package_path: Vec::new() };
-        robot::read(&options, &[]).unwrap()
+        robot::read(&options, &[], &Catalog::standard()).unwrap()
     }
 
     const STATES: &str = r#"{"joints": ["joint2", "floating_base", "joint1"],

@@ -170,7 +170,7 @@ fn elements(system: &System, equation: &Equation, page: &Page) -> String {
     let rows: Vec<Vec<String>> = equation.elements.iter().map(numbers).collect();
     text.push_str(&page.table("element", &names, &columns, &rows));
     for (term, element) in equation.elements.iter().zip(&system.elements) {
-        let inputs: Vec<String> = (element.row.inputs.iter().zip(&term.inputs))
+        let inputs: Vec<String> = (element.entry.inputs.iter().zip(&term.inputs))
             .map(|(input, value)| format!("{} = {} {}", input.name, short(*value), input.unit))
             .collect();
         if !inputs.is_empty() {

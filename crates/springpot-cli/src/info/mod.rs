@@ -8,6 +8,7 @@ use crate::grid::width_of;
 use crate::numbers::brief;
 use crate::robot::{Refused, Robot};
 use crate::{Ending, plain, printed, robot, terminal};
+use springpot::law::Catalog;
 use springpot::model::JointKind;
 
 /// Columns of the words that lead a line.
@@ -15,8 +16,8 @@ const LEAD: usize = 10;
 /// Names of what carries other links stand on a line of their own where they are wider.
 const WIDEST_CARRIER: usize = 24;
 
-pub(crate) fn info(options: &InfoOptions) -> Ending {
-    match robot::read(&options.robot, &[]) {
+pub(crate) fn info(options: &InfoOptions, catalog: &Catalog) -> Ending {
+    match robot::read(&options.robot, &[], catalog) {
         Ok(robot) => {
             let text = if options.json { json::text(&robot, &options.robot.file) } else { text(&robot) };
             printed(terminal::try_print(&text))

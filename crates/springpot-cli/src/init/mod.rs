@@ -4,13 +4,14 @@ mod robot;
 
 use crate::arguments::InitOptions;
 use crate::{Ending, diagnostic, output, printed, terminal};
+use springpot::law::Catalog;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// The starter without a robot: every line of it is admissible, and the file runs as it is.
 const STARTER: &str = include_str!("starter.toml");
 
-pub(crate) fn init(options: &InitOptions) -> Ending {
+pub(crate) fn init(options: &InitOptions, catalog: &Catalog) -> Ending {
     let out = options.out.clone().unwrap_or_else(|| default_file(options.robot.as_deref()));
     // Before anything is read: a file that is there is its author's.
     if output::is_taken(&out) {
@@ -18,7 +19,7 @@ pub(crate) fn init(options: &InitOptions) -> Ending {
     }
     let text = match &options.robot {
         None => STARTER.to_owned(),
-        Some(robot) => match robot::scenario(robot, &out) {
+        Some(robot) => match robot::scenario(robot, &out, catalog) {
             Ok(text) => text,
             Err(ending) => return ending,
         },

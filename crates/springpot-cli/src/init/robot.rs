@@ -22,7 +22,7 @@ const SWING: f64 = 0.2;
 const SLIDE: f64 = 0.02;
 
 /// The starter for `robot`, to be written to `out`; what is wrong with the robot goes to stderr.
-pub(super) fn scenario(robot: &Path, out: &Path) -> Result<String, Ending> {
+pub(super) fn scenario(robot: &Path, out: &Path, catalog: &Catalog) -> Result<String, Ending> {
     let read = Urdf::read(robot, &UrdfOptions::default()).and_then(|urdf| {
         let model = urdf.model(GRAVITY)?;
         Ok((urdf, model))
@@ -37,7 +37,7 @@ pub(super) fn scenario(robot: &Path, out: &Path) -> Result<String, Ending> {
         diagnostic::error_with_help(message, help);
         return Err(Ending::Refused);
     }
-    let starter = Starter { urdf: &urdf, model: &model, path: relative(robot, out), folder: folder(out) };
+    let starter = Starter { urdf: &urdf, model: &model, catalog, path: relative(robot, out), folder: folder(out) };
     Ok(starter.text(&starter.best_strut()))
 }
 
@@ -53,6 +53,7 @@ struct Strut {
 struct Starter<'a> {
     urdf: &'a Urdf,
     model: &'a Model,
+    catalog: &'a Catalog,
     /// The robot's file as the scenario names it.
     path: String,
     folder: PathBuf,
@@ -107,7 +108,7 @@ impl Starter<'_> {
     /// l(0) and the largest |∂l/∂q|; `None` where the scenario is not admissible.
     fn measured(&self, strut: &Strut) -> Option<(f64, f64)> {
         let text = self.text(&Strut { rest_length: 1.0, joints: strut.joints.clone(), ..*strut });
-        let cases = Scenario::parse(&text, "", &self.folder).ok()?.cases(&Catalog::standard()).ok()?;
+        let cases = Scenario::parse(&text, "", &self.folder).ok()?.cases(self.catalog).ok()?;
         let starts = cases.plan(0).ok()?.system().element_starts().ok()?;
         let start = starts.first()?;
         Some((start.length, start.gradient.iter().map(|g| g.abs()).fold(0.0, f64::max)))

@@ -9,24 +9,24 @@ use springpot::law::{Entry, Input, Param, Range};
 pub(super) fn text(law: &Entry) -> String {
     let width = terminal::stdout_width().or(Some(80));
     let mut text = format!("{}\n", law.name);
-    text.push_str(&terminal::hanging("  ", law.equation, width));
+    text.push_str(&terminal::hanging("  ", &law.equation, width));
     text.push_str("\nparameters\n");
     let mut grid = Grid::new(["name", "unit", "range", "default", "meaning"].map(|title| (title, Set::Text)));
-    for Param { name, unit, meaning, range, default } in law.params {
+    for Param { name, unit, meaning, range, default } in &law.params {
         let default = default.map_or_else(|| "required".to_owned(), |value| format!("{value}"));
-        grid.row([*name, unit_or_one(unit), &interval(*range), &default, meaning].map(str::to_owned).to_vec());
+        grid.row([&**name, unit_or_one(unit), &interval(*range), &default, meaning].map(str::to_owned).to_vec());
     }
     text.push_str(&indented(&grid));
     if !law.inputs.is_empty() {
         text.push_str("\ninputs, functions of time\n");
         let mut grid = Grid::new(["name", "unit", "range", "meaning"].map(|title| (title, Set::Text)));
-        for Input { name, unit, meaning, range } in law.inputs {
-            grid.row([*name, unit_or_one(unit), &interval(*range), meaning].map(str::to_owned).to_vec());
+        for Input { name, unit, meaning, range } in &law.inputs {
+            grid.row([&**name, unit_or_one(unit), &interval(*range), meaning].map(str::to_owned).to_vec());
         }
         text.push_str(&indented(&grid));
     }
     text.push('\n');
-    text.push_str(&terminal::hanging("source  ", law.source, width));
+    text.push_str(&terminal::hanging("source  ", &law.source, width));
     text.push_str("\nan element of this law in a scenario\n\n");
     text.push_str(&example(law));
     text
@@ -56,10 +56,10 @@ pub(super) fn json(law: &Entry) -> Value {
 /// An element of the law with parameters of a usual size.
 fn example(law: &Entry) -> String {
     let params: Vec<String> =
-        law.params.iter().map(|param| format!("{} = {}", param.name, usual(param.unit, param.range))).collect();
+        law.params.iter().map(|param| format!("{} = {}", param.name, usual(&param.unit, param.range))).collect();
     let inputs: Vec<String> =
-        law.inputs.iter().map(|input| format!("{} = {}", input.name, usual(input.unit, input.range))).collect();
-    element(law.name, &params, &inputs)
+        law.inputs.iter().map(|input| format!("{} = {}", input.name, usual(&input.unit, input.range))).collect();
+    element(&law.name, &params, &inputs)
 }
 
 /// Tables that make a longer line are written with a line for each value.
@@ -105,7 +105,7 @@ fn usual(unit: &str, range: Range) -> String {
     format!("\"{written}\"")
 }
 
-fn unit_or_one(unit: &'static str) -> &'static str {
+fn unit_or_one(unit: &str) -> &str {
     if unit.is_empty() { "1" } else { unit }
 }
 

@@ -53,22 +53,28 @@ struct Item {
 pub(super) fn text(catalog: &Catalog, data: &str, law: Option<&Entry>, as_json: bool) -> Result<String, Refused> {
     let items = items(data)?;
     let values: Vec<Datum> = items.iter().map(|item| item.datum).collect();
-    let model = match law {
-        None => Model::for_data(&values),
-        Some(law) => Model::ALL.into_iter().find(|model| model.name() == law.name).ok_or_else(|| {
-            let names = Model::ALL.map(Model::name);
-            let message = format!("the law {:?} has parameters that such data say nothing about", law.name);
-            Refused { message, help: Some(format!("choose one of {}", names.join(", "))), at: None }
+    let names = || {
+        let known = catalog.entries().iter().filter(|law| Model::of(law).is_some());
+        known.map(|law| &*law.name).collect::<Vec<_>>().join(", ")
+    };
+    let law = match law {
+        Some(law) => law,
+        None => Model::for_data(&values).law(catalog).ok_or_else(|| Refused {
+            message: "no law of the catalog is of the form that such data determine".to_owned(),
+            help: Some(format!("choose one of {}", names())),
+            at: None,
         })?,
     };
-    let found = identify(model, &values).map_err(|error| refused(&error, &values))?;
-    let row = catalog.get(model.name()).expect("every model is in the catalog");
-    Ok(if as_json { json(row, &found, &items) } else { page(row, &found, &items) })
+    let found = identify(law, &values).map_err(|error| refused(&error, law, &values, &names))?;
+    Ok(if as_json { json(law, &found, &items) } else { page(law, &found, &items) })
 }
 
-fn refused(error: &DatasheetError, data: &[Datum]) -> Refused {
+/// The message, and what would be right for this law, or which others data determine.
+fn refused(error: &DatasheetError, law: &Entry, data: &[Datum], names: &dyn Fn() -> String) -> Refused {
+    let is_whole = Model::of(law) == Some(Model::FractionalKelvinVoigt);
     let help = match error {
-        DatasheetError::TooFew { model, .. } => Some(missing(*model, data)),
+        DatasheetError::OtherLaw { .. } => Some(format!("choose one of {}", names())),
+        DatasheetError::TooFew { .. } => Some(missing(is_whole, data)),
         DatasheetError::NoStiffness => Some("add stiffness, storage, loss or damping".to_owned()),
         DatasheetError::NeedsFrequency { quantity } => Some(format!("write {quantity} = … at 10 Hz")),
         DatasheetError::NoStaticStiffness { .. } => {
@@ -77,7 +83,7 @@ fn refused(error: &DatasheetError, data: &[Datum]) -> Refused {
         DatasheetError::Undetermined { .. } => {
             Some("add tan_delta, loss or damping, or values at another frequency".to_owned())
         }
-        DatasheetError::Unreachable { model: Model::FractionalKelvinVoigt, .. } => Some(
+        DatasheetError::Unreachable { .. } if is_whole => Some(
             "its dynamic stiffness rises with the frequency, from k at rest; look at units and frequencies".to_owned(),
         ),
         DatasheetError::Unreachable { .. } => Some("look at units and frequencies, or name another law".to_owned()),
@@ -86,17 +92,15 @@ fn refused(error: &DatasheetError, data: &[Datum]) -> Refused {
     Refused { message: error.to_string(), help, at: None }
 }
 
-/// What would be enough for a law.
-fn missing(model: Model, data: &[Datum]) -> String {
+/// What would be enough for a law, of three parameters or of fewer.
+fn missing(is_whole: bool, data: &[Datum]) -> String {
     let has_losses = data.iter().any(|datum| datum.quantity.is_of_losses());
-    match (model, has_losses) {
-        (Model::FractionalKelvinVoigt, _) => {
-            "it needs three values, such as a static stiffness, and stiffness and tan_delta at one \
+    match (is_whole, has_losses) {
+        (true, _) => "it needs three values, such as a static stiffness, and stiffness and tan_delta at one \
                                               frequency"
-                .to_owned()
-        }
-        (_, true) => "add a stiffness: stiffness = 5 kN/m".to_owned(),
-        (_, false) => "add the losses: tan_delta = 0.3 at 10 Hz".to_owned(),
+            .to_owned(),
+        (false, true) => "add a stiffness: stiffness = 5 kN/m".to_owned(),
+        (false, false) => "add the losses: tan_delta = 0.3 at 10 Hz".to_owned(),
     }
 }
 
@@ -206,7 +210,7 @@ fn omega(text: &str, at: Range<usize>) -> Result<f64, Refused> {
 }
 
 /// The parameters as they are shown, and the law that has them.
-fn rounded(row: &Entry, found: &Identified) -> (Vec<(&'static str, &'static str, f64)>, Identified) {
+fn rounded<'a>(row: &'a Entry, found: &Identified) -> (Vec<(&'a str, &'a str, f64)>, Identified) {
     let round = |value: f64| short(value).parse().unwrap_or(value);
     let shown = Identified {
         stiffness: round(found.stiffness),
@@ -215,7 +219,7 @@ fn rounded(row: &Entry, found: &Identified) -> (Vec<(&'static str, &'static str,
         ..*found
     };
     let value = |name: &str| shown.parameter(name).unwrap_or(f64::NAN);
-    (row.params.iter().map(|param| (param.name, param.unit, value(param.name))).collect(), shown)
+    (row.params.iter().map(|param| (&*param.name, &*param.unit, value(&param.name))).collect(), shown)
 }
 
 fn page(row: &Entry, found: &Identified, items: &[Item]) -> String {
@@ -241,13 +245,13 @@ fn page(row: &Entry, found: &Identified, items: &[Item]) -> String {
         unit => format!("{name} = \"{} {unit}\"", short(*value)),
     };
     text.push('\n');
-    text.push_str(&page::element(row.name, &params.iter().map(written).collect::<Vec<_>>(), &[]));
+    text.push_str(&page::element(&row.name, &params.iter().map(written).collect::<Vec<_>>(), &[]));
     text
 }
 
 fn json(row: &Entry, found: &Identified, items: &[Item]) -> String {
     let params: Map<String, Value> =
-        row.params.iter().map(|param| (param.name.to_owned(), found.parameter(param.name).into())).collect();
+        row.params.iter().map(|param| (param.name.to_string(), found.parameter(&param.name).into())).collect();
     let check: Vec<Value> = items
         .iter()
         .map(|Item { datum, .. }| {

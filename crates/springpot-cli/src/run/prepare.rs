@@ -34,21 +34,20 @@ impl From<BeginError> for Unprepared {
 }
 
 /// Reads everything and opens the folder of the results.
-pub(super) fn prepare(options: &RunOptions, disk: &Disk) -> Result<Prepared, Unprepared> {
+pub(super) fn prepare(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> Result<Prepared, Unprepared> {
     // Before anything takes time.
     let stop = signals::stop();
     let every = options.checkpoint_every.as_deref().map(spacing).transpose()?;
-    let catalog = Catalog::standard();
     let (figures, mut warn) = (!options.no_figures, |warning| diagnostic::warning(warning, None));
     match (&options.resume, &options.file) {
         (Some(folder), _) => {
             let holder = format!("springpot run --resume {}", folder.display());
-            let with = Surroundings { catalog: &catalog, disk, stop, holder: &holder };
+            let with = Surroundings { catalog, disk, stop, holder: &holder };
             Prepared::resume(folder, every, figures, with, &mut warn).map_err(|error| show(folder, error))
         }
         (None, Some(file)) => {
             let holder = format!("springpot run {}", file.display());
-            let with = Surroundings { catalog: &catalog, disk, stop, holder: &holder };
+            let with = Surroundings { catalog, disk, stop, holder: &holder };
             let asked = NewRun {
                 file: file.clone(),
                 overrides: options.overrides.clone(),

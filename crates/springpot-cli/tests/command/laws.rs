@@ -43,20 +43,20 @@ fn every_page_says_all_and_its_example_runs() {
     let place = Place::new();
     let all: Value = serde_json::from_str(&place.done(&["laws", "--json"]).stdout).unwrap();
     for (law, row) in Catalog::standard().entries().iter().zip(all.as_array().unwrap()) {
-        let page = place.done(&["laws", law.name]).stdout;
-        for param in law.params {
+        let page = place.done(&["laws", &law.name]).stdout;
+        for param in &law.params {
             let found = page.lines().find(|line| line.starts_with(&format!("  {} ", param.name))).unwrap();
-            assert!(found.contains(if param.unit.is_empty() { " 1 " } else { param.unit }), "{found}");
+            assert!(found.contains(if param.unit.is_empty() { " 1 " } else { &param.unit }), "{found}");
         }
-        assert!(page.contains(law.equation) && page.contains("source  "), "{page}");
+        assert!(page.contains(&*law.equation) && page.contains("source  "), "{page}");
         admissible(element(&page));
 
-        let one: Value = serde_json::from_str(&place.done(&["laws", law.name, "--json"]).stdout).unwrap();
+        let one: Value = serde_json::from_str(&place.done(&["laws", &law.name, "--json"]).stdout).unwrap();
         assert_eq!(&one, row);
-        assert_eq!(row["name"], law.name);
+        assert_eq!(row["name"], *law.name);
         assert_eq!(row["parameters"].as_array().unwrap().len(), law.params.len());
         for (param, row) in law.params.iter().zip(row["parameters"].as_array().unwrap()) {
-            let named = row["name"] == param.name && row["unit"] == param.unit && row["meaning"] == param.meaning;
+            let named = row["name"] == *param.name && row["unit"] == *param.unit && row["meaning"] == *param.meaning;
             assert!(named && row["default"].as_f64() == param.default, "{row}");
             assert_eq!(row["minimum"].as_f64(), (param.range.low > f64::MIN).then_some(param.range.low));
         }

@@ -2,6 +2,7 @@
 
 use crate::door::Door;
 use serde_json::Value;
+use springpot::law::Catalog;
 use springpot_run::table::disk::Disk;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -124,7 +125,7 @@ impl Scene {
             arguments.extend(["--jobs".into(), "1".into()]);
         }
         arguments.extend(self.arguments.iter().map(OsString::from).chain(more.iter().map(OsString::from)));
-        springpot_cli::main_on(disk, arguments)
+        springpot_cli::main_on(&Catalog::standard(), disk, arguments)
     }
 
     /// Runs in the folder as it is.
@@ -137,7 +138,7 @@ impl Scene {
     pub(crate) fn resume(&self, door: &Arc<Door>) -> Left {
         let words: [OsString; 4] = ["springpot".into(), "run".into(), "--resume".into(), self.out().into()];
         let more = ["--quiet", "--jobs", "1"].map(OsString::from);
-        let code = springpot_cli::main_on(&door.disk(), words.into_iter().chain(more));
+        let code = springpot_cli::main_on(&Catalog::standard(), &door.disk(), words.into_iter().chain(more));
         Left { code, files: self.files() }
     }
 

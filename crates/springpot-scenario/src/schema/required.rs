@@ -57,7 +57,7 @@ fn of(keys: &'static Keys, catalog: &Catalog) -> Option<Value> {
         schema.insert("allOf".to_owned(), json!([axis]));
     }
     if std::ptr::eq(keys, &ELEMENT) {
-        schema.insert("allOf".to_owned(), catalog.entries().iter().filter_map(of_law).collect());
+        schema.insert("allOf".to_owned(), catalog.entries().iter().filter_map(|law| of_law(law)).collect());
     }
     (!schema.is_empty()).then_some(Value::Object(schema))
 }
@@ -72,8 +72,8 @@ fn any_of(keys: &'static Keys) -> Value {
 
 /// The parameters and inputs that a law cannot do without.
 fn of_law(law: &Entry) -> Option<Value> {
-    let params: Vec<&str> = law.params.iter().filter(|p| p.default.is_none()).map(|param| param.name).collect();
-    let inputs: Vec<&str> = law.inputs.iter().map(|input| input.name).collect();
+    let params: Vec<&str> = law.params.iter().filter(|p| p.default.is_none()).map(|param| &*param.name).collect();
+    let inputs: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
     let tables = [("parameters", params), ("inputs", inputs)];
     let needed: Vec<_> = tables.into_iter().filter(|(_, names)| !names.is_empty()).collect();
     let sections: Vec<&str> = needed.iter().map(|(section, _)| *section).collect();

@@ -14,7 +14,7 @@ pub(super) fn add(schema: &mut Value, keys: &Keys, catalog: &Catalog) {
     } else if is(&JOINT) {
         json!({ "allOf": [without_axis()] })
     } else if is(&ELEMENT) {
-        json!({ "allOf": catalog.entries().iter().map(of_law).collect::<Vec<_>>() })
+        json!({ "allOf": catalog.entries().iter().map(|law| of_law(law)).collect::<Vec<_>>() })
     } else if is(&MOTION) {
         of_motion()
     } else if is(&TIME) {
@@ -83,10 +83,10 @@ fn of_law(law: &Entry) -> Value {
         let description = format!("{what} of {}: {}", law.name, law.equation);
         json!({ "type": "object", "description": description, "properties": properties, "additionalProperties": false })
     };
-    let params = law.params.iter().map(|param| (param.name.to_owned(), parameter(param)));
+    let params = law.params.iter().map(|param| (param.name.to_string(), parameter(param)));
     let inputs = law.inputs.iter().map(|Input { name, unit, meaning, .. }| {
         let schema = signal(unit, &format!("{}.", capitalised(meaning)));
-        ((*name).to_owned(), schema)
+        (name.to_string(), schema)
     });
     json!({
         "if": { "properties": { "law": { "const": law.name } }, "required": ["law"] },
@@ -97,13 +97,13 @@ fn of_law(law: &Entry) -> Value {
     })
 }
 
-fn parameter(&Param { unit, meaning, range, default, .. }: &Param) -> Value {
+fn parameter(Param { unit, meaning, range, default, .. }: &Param) -> Value {
     let mut description = format!("{}.", capitalised(meaning));
     if let Some(default) = default {
         description.push_str(&format!(" Default: {default}{}{unit}.", if unit.is_empty() { "" } else { " " }));
     }
     let mut schema = quantity(unit, &description);
-    let Range { low, high } = range;
+    let Range { low, high } = *range;
     if low > f64::MIN {
         schema["minimum"] = low.into();
     }

@@ -106,7 +106,7 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         Shape::TextsByName => json!({ "type": "object", "additionalProperties": text(), "description": words }),
         Shape::ByName => json!({ "type": "object", "description": words }),
         Shape::Law => {
-            let laws: Vec<&str> = catalog.entries().iter().map(|law| law.name).collect();
+            let laws: Vec<&str> = catalog.entries().iter().map(|law| &*law.name).collect();
             described(one_of(&laws), &words)
         }
         Shape::Scheme => described(scheme(), &words),

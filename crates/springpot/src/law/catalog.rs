@@ -1,6 +1,9 @@
 //! The catalog of laws: what the parser, the command line and the documentation know about them.
 
 use super::{Derivative, Network, kelvin_voigt, magnetorheological, piezo, thermoviscoelastic};
+use std::borrow::Cow;
+use std::fmt;
+use std::sync::Arc;
 
 /// An admissible interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,31 +29,60 @@ impl Range {
 }
 
 /// One parameter of a law.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Param {
     /// Name in scenario files.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Unit in the grammar of quantities; an exponent may name a parameter of the same law. Empty: a pure number.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// What it is, in a few words.
-    pub meaning: &'static str,
+    pub meaning: Cow<'static, str>,
     /// Admissible values, SI.
     pub range: Range,
     /// Value where the file says nothing; `None`: must be given.
     pub default: Option<f64>,
 }
 
+impl Param {
+    /// A parameter that must be given.
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        unit: impl Into<Cow<'static, str>>,
+        meaning: impl Into<Cow<'static, str>>,
+        range: Range,
+    ) -> Self {
+        Self { name: name.into(), unit: unit.into(), meaning: meaning.into(), range, default: None }
+    }
+
+    /// As it is, with a value, SI, where the file says nothing.
+    pub fn or(self, default: f64) -> Self {
+        Self { default: Some(default), ..self }
+    }
+}
+
 /// One input of a law: a signal.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Input {
     /// Name in scenario files and columns.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Unit.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// What it is, in a few words.
-    pub meaning: &'static str,
+    pub meaning: Cow<'static, str>,
     /// Admissible values, SI.
     pub range: Range,
+}
+
+impl Input {
+    /// An input of these words and values.
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        unit: impl Into<Cow<'static, str>>,
+        meaning: impl Into<Cow<'static, str>>,
+        range: Range,
+    ) -> Self {
+        Self { name: name.into(), unit: unit.into(), meaning: meaning.into(), range }
+    }
 }
 
 /// A rule between parameters that a law needs to be passive.
@@ -60,30 +92,23 @@ pub struct RuleError {
     /// The rule, in words.
     pub rule: String,
     /// The parameter to change.
-    pub parameter: &'static str,
+    pub parameter: Cow<'static, str>,
 }
 
 /// The order of the fractional derivative, as every law names it.
-pub(super) const ALPHA: Param = Param {
-    name: "alpha",
-    unit: "",
-    meaning: "order of the fractional derivative (0: spring, 1: dashpot)",
-    range: Range::UNIT,
-    default: None,
-};
+pub(super) fn alpha() -> Param {
+    Param::new("alpha", "", "order of the fractional derivative (0: spring, 1: dashpot)", Range::UNIT)
+}
 
 /// The stiffness of the carrier in the laws of the papers.
-pub(super) const CARRIER: Param =
-    Param { name: "E_c", unit: "N/m", meaning: "stiffness of the carrier", range: Range::NOT_NEGATIVE, default: None };
+pub(super) fn carrier() -> Param {
+    Param::new("E_c", "N/m", "stiffness of the carrier", Range::NOT_NEGATIVE)
+}
 
 /// The coefficient of D^alpha x in the laws of the papers.
-pub(super) const DAMPING: Param = Param {
-    name: "E_d",
-    unit: "N*s^alpha/m",
-    meaning: "coefficient of the fractional derivative",
-    range: Range::NOT_NEGATIVE,
-    default: None,
-};
+pub(super) fn damping() -> Param {
+    Param::new("E_d", "N*s^alpha/m", "coefficient of the fractional derivative", Range::NOT_NEGATIVE)
+}
 
 /// A law without any positive coefficient is no material.
 pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Result<(), RuleError> {
@@ -95,66 +120,99 @@ pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Resul
         [only] => format!("{only} > 0"),
         _ => format!("one of {} to be positive", names.join(", ")),
     };
-    Err(RuleError { rule, parameter: names[0] })
+    Err(RuleError { rule, parameter: names[0].into() })
 }
 
 /// What a catalog row builds.
 pub type Built = Result<Network, RuleError>;
 
-/// One law of the catalog.
-#[derive(Debug, Clone, Copy)]
+/// How a catalog row builds its law: from parameter values (SI, in the order of the row, each within its range), and the derivative that
+/// its springpots take.
+pub type Build = Arc<dyn Fn(&[f64], Derivative) -> Built + Send + Sync>;
+
+/// One law of the catalog. It owns all it says, so that it can come from a file, a network or another language as well.
+///
+/// ```
+/// use springpot::law::{Catalog, Derivative, Entry, Network, Param, Range};
+/// use std::sync::Arc;
+///
+/// // Read from somewhere: springs of different stiffness, side by side.
+/// let springs = ["k_left", "k_right"];
+/// let entry = Entry {
+///     name: "springs".into(),
+///     equation: format!("F = ({})·x", springs.join(" + ")).into(),
+///     params: springs.iter().map(|name| Param::new(*name, "N/m", "stiffness", Range::NOT_NEGATIVE)).collect(),
+///     inputs: Vec::new(),
+///     source: "Hooke".into(),
+///     build: Arc::new(|values, _| Ok(Network::parallel(values.iter().map(|k| Network::spring(*k))))),
+/// };
+/// let catalog = Catalog::standard().with(entry);
+/// let springs = catalog.get("springs").expect("the law that was added");
+/// assert_eq!(springs.equation, "F = (k_left + k_right)·x");
+/// assert!((springs.build)(&[3.0, 4.0], Derivative::Caputo).is_ok());
+/// ```
+#[derive(Clone)]
 pub struct Entry {
     /// Name in scenario files.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// The law in one line.
-    pub equation: &'static str,
+    pub equation: Cow<'static, str>,
     /// Parameters, in the order `build` takes them.
-    pub params: &'static [Param],
+    pub params: Vec<Param>,
     /// Inputs, in the order the law takes them.
-    pub inputs: &'static [Input],
+    pub inputs: Vec<Input>,
     /// Where it comes from.
-    pub source: &'static str,
-    /// Builds the law from parameter values (SI, in the order of `params`, each within its range).
-    pub build: fn(&[f64], Derivative) -> Built,
+    pub source: Cow<'static, str>,
+    /// Builds the law.
+    pub build: Build,
 }
 
-/// A set of laws; a user's crate can add rows to the standard one.
+impl fmt::Debug for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, equation, params, inputs, source, build: _ } = self;
+        let mut shown = f.debug_struct("Entry");
+        shown.field("name", name).field("equation", equation).field("params", params).field("inputs", inputs);
+        shown.field("source", source).finish_non_exhaustive()
+    }
+}
+
+/// A set of laws; a user's crate can add rows to the standard one. Copies share their rows.
 #[derive(Debug, Clone)]
 pub struct Catalog {
-    entries: Vec<Entry>,
+    entries: Vec<Arc<Entry>>,
 }
 
 impl Catalog {
     /// The laws that come with Springpot.
     pub fn standard() -> Self {
-        Self {
-            entries: vec![
-                kelvin_voigt::SPRING,
-                kelvin_voigt::DASHPOT,
-                kelvin_voigt::SPRINGPOT,
-                kelvin_voigt::KELVIN_VOIGT,
-                kelvin_voigt::FRACTIONAL_KELVIN_VOIGT,
-                thermoviscoelastic::THERMOVISCOELASTIC,
-                piezo::PIEZO_KELVIN_VOIGT,
-                magnetorheological::MAGNETORHEOLOGICAL,
-            ],
-        }
+        let entries = [
+            kelvin_voigt::spring(),
+            kelvin_voigt::dashpot(),
+            kelvin_voigt::springpot(),
+            kelvin_voigt::kelvin_voigt(),
+            kelvin_voigt::fractional_kelvin_voigt(),
+            thermoviscoelastic::thermoviscoelastic(),
+            piezo::piezo_kelvin_voigt(),
+            magnetorheological::magnetorheological(),
+        ];
+        Self { entries: entries.into_iter().map(Arc::new).collect() }
     }
 
     /// Adds a law; a law of the same name is replaced.
-    pub fn with(mut self, entry: Entry) -> Self {
+    pub fn with(mut self, entry: impl Into<Arc<Entry>>) -> Self {
+        let entry = entry.into();
         self.entries.retain(|e| e.name != entry.name);
         self.entries.push(entry);
         self
     }
 
     /// The law of that name.
-    pub fn get(&self, name: &str) -> Option<&Entry> {
+    pub fn get(&self, name: &str) -> Option<&Arc<Entry>> {
         self.entries.iter().find(|e| e.name == name)
     }
 
     /// All laws, in order.
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[Arc<Entry>] {
         &self.entries
     }
 }

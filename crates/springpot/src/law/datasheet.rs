@@ -20,13 +20,16 @@
 //! damped structures*, AIAA J. 21 (1983) 741–748.
 //!
 //! ```
-//! use springpot::law::datasheet::{Datum, Model, Quantity, identify};
+//! use springpot::law::Catalog;
+//! use springpot::law::datasheet::{Datum, Quantity, identify};
 //! let omega = 2.0 * std::f64::consts::PI * 10.0;
 //! let data = [
 //!     Datum { quantity: Quantity::LossFactor, value: 0.3, omega },
 //!     Datum { quantity: Quantity::Stiffness, value: 5000.0, omega },
 //! ];
-//! let mount = identify(Model::Springpot, &data)?;
+//! let catalog = Catalog::standard();
+//! let springpot = catalog.get("springpot").expect("a law that comes with Springpot");
+//! let mount = identify(springpot, &data)?;
 //! assert!((mount.order - 2.0 / std::f64::consts::PI * 0.3_f64.atan()).abs() < 1e-15);
 //! assert!((mount.predict(&data[1]) - 5000.0).abs() < 1e-9);
 //! # Ok::<(), springpot::law::datasheet::DatasheetError>(())
@@ -35,8 +38,10 @@
 mod closed;
 mod fit;
 
+use super::{Catalog, Derivative, Entry, Network, Param, Point, Term};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
+use std::sync::Arc;
 
 /// What a data sheet tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -111,7 +116,7 @@ pub struct Datum {
     pub omega: f64,
 }
 
-/// A law that data can determine.
+/// The form of a law that data can determine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Model {
     /// F = k·x.
@@ -131,15 +136,34 @@ impl Model {
     pub const ALL: [Self; 5] =
         [Self::Spring, Self::Dashpot, Self::Springpot, Self::KelvinVoigt, Self::FractionalKelvinVoigt];
 
-    /// Its name in scenario files and in the catalog.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Spring => "spring",
-            Self::Dashpot => "dashpot",
-            Self::Springpot => "springpot",
-            Self::KelvinVoigt => "kelvin-voigt",
-            Self::FractionalKelvinVoigt => "fractional-kelvin-voigt",
-        }
+    /// The form of a law of the catalog; `None` where data sheets cannot determine it: it has inputs, or parameters other than k, c and
+    /// alpha, or what it builds of them is not the sum of such a spring and such a springpot.
+    pub fn of(law: &Entry) -> Option<Self> {
+        let trial = |param: &Param| {
+            let value = match &*param.name {
+                "k" => 2.0,
+                "c" => 3.0,
+                "alpha" => 0.25,
+                _ => return None,
+            };
+            Some(param.range.low.max(value).min(param.range.high))
+        };
+        let values: Vec<f64> = law.params.iter().map(trial).collect::<Option<_>>()?;
+        let value = |name: &str| law.params.iter().zip(&values).find(|(param, _)| param.name == name).map(|(_, x)| *x);
+        let [k, c, alpha] = ["k", "c", "alpha"].map(value);
+        let free = [k, c, alpha].map(|value| value.is_some());
+        let form = Self::ALL.into_iter().find(|form| form.free() == free && law.inputs.is_empty())?;
+        let network = (law.build)(&values, Derivative::Caputo).ok()?;
+        let spring = k.map(|coefficient| Term { coefficient, order: 0.0 });
+        let springpot = c.map(|coefficient| Term { coefficient, order: alpha.unwrap_or(1.0) });
+        let mut found = sum(&network)?;
+        found.sort_by(|a, b| a.order.total_cmp(&b.order));
+        (found == [spring, springpot].into_iter().flatten().collect::<Vec<_>>()).then_some(form)
+    }
+
+    /// The first law of this form in a catalog.
+    pub fn law(self, catalog: &Catalog) -> Option<&Arc<Entry>> {
+        catalog.entries().iter().find(|law| Self::of(law) == Some(self))
     }
 
     /// The law that data of this kind determine: no losses, a spring; two data, a springpot, or a Kelvin–Voigt element
@@ -177,15 +201,25 @@ impl Model {
     }
 }
 
-impl fmt::Display for Model {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+/// The terms c·D^order x whose sum a network is; `None` where it is more than that.
+fn sum(network: &Network) -> Option<Vec<Term>> {
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
+    match network {
+        Network::Leaf(leaf) if leaf.is_linear() && leaf.size().variables == 0 => Some(vec![leaf.linearised(&at)]),
+        Network::Parallel(parts) => parts.iter().map(sum).collect::<Option<Vec<_>>>().map(|terms| terms.concat()),
+        Network::Leaf(_) | Network::Series(_) => None,
     }
 }
 
 /// Why data determine no law.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DatasheetError {
+    /// A law that such data do not determine ([`Model::of`]).
+    #[error("the law {law:?} has parameters that such data say nothing about")]
+    OtherLaw {
+        /// The law.
+        law: String,
+    },
     /// A value is not a positive number, or a frequency is negative or infinite.
     #[error("{quantity} = {value} at {omega} rad/s: values must be positive and finite, frequencies not negative")]
     NotPositive {
@@ -211,16 +245,16 @@ pub enum DatasheetError {
         omega: f64,
     },
     /// A static stiffness for a law that has none.
-    #[error("the law {model} has no static stiffness")]
+    #[error("the law {law} has no static stiffness")]
     NoStaticStiffness {
         /// The law.
-        model: Model,
+        law: String,
     },
     /// Fewer data than parameters.
-    #[error("the law {model} has {needed} parameters, and {given} data are given")]
+    #[error("the law {law} has {needed} parameters, and {given} data are given")]
     TooFew {
         /// The law.
-        model: Model,
+        law: String,
         /// Its parameters.
         needed: usize,
         /// Data given.
@@ -230,18 +264,16 @@ pub enum DatasheetError {
     #[error("no stiffness is given: a loss factor alone does not say how stiff the element is")]
     NoStiffness,
     /// The data leave a parameter open.
-    #[error("the data leave the law {model} open: they say the same thing more than once, or nothing about losses")]
+    #[error("the data leave the law {law} open: they say the same thing more than once, or nothing about losses")]
     Undetermined {
         /// The law.
-        model: Model,
+        law: String,
     },
     /// No admissible parameters have these values.
-    #[error(
-        "no law {model} with k ≥ 0, c ≥ 0 and 0 ≤ alpha ≤ 1 has these values; the nearest is off by {percent:.3} %"
-    )]
+    #[error("no law {law} with k ≥ 0, c ≥ 0 and 0 ≤ alpha ≤ 1 has these values; the nearest is off by {percent:.3} %")]
     Unreachable {
         /// The law.
-        model: Model,
+        law: String,
         /// Largest relative deviation of the nearest one, in percent.
         percent: f64,
     },
@@ -250,7 +282,7 @@ pub enum DatasheetError {
 /// A law whose parameters were found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Identified {
-    /// The law.
+    /// Its form.
     pub model: Model,
     /// k, N/m; 0 where the law has none.
     pub stiffness: f64,
@@ -302,18 +334,20 @@ fn sin_cos(order: f64) -> (f64, f64) {
     }
 }
 
-/// Finds the parameters of `model` from `data`: exactly where there are as many data as parameters, else with the
+/// Finds the parameters of `law` from `data`: exactly where there are as many data as parameters, else with the
 /// smallest sum of squares of relative deviations.
 ///
 /// A [`Quantity::Damping`] at ω = 0 is the c of a dashpot.
 ///
 /// # Errors
-/// [`DatasheetError`]: data that make no sense, too few of them, or none that the law can have.
-pub fn identify(model: Model, data: &[Datum]) -> Result<Identified, DatasheetError> {
-    check(model, data)?;
+/// [`DatasheetError`]: a law of another form, data that make no sense, too few of them, or none that the law can have.
+pub fn identify(law: &Entry, data: &[Datum]) -> Result<Identified, DatasheetError> {
+    let name = || law.name.to_string();
+    let model = Model::of(law).ok_or_else(|| DatasheetError::OtherLaw { law: name() })?;
+    check(law, model, data)?;
     let (given, needed) = (data.len(), model.parameter_count());
     if given < needed {
-        return Err(DatasheetError::TooFew { model, needed, given });
+        return Err(DatasheetError::TooFew { law: name(), needed, given });
     }
     if data.iter().all(|datum| datum.quantity == Quantity::LossFactor) {
         return Err(DatasheetError::NoStiffness);
@@ -321,16 +355,16 @@ pub fn identify(model: Model, data: &[Datum]) -> Result<Identified, DatasheetErr
     let closed = if given == needed { closed::form(model, data) } else { None };
     let found = match closed {
         Some(found) => found,
-        None => fit::nearest(model, data).ok_or(DatasheetError::Undetermined { model })?,
+        None => fit::nearest(model, data).ok_or_else(|| DatasheetError::Undetermined { law: name() })?,
     };
     let deviation = found.deviation(data);
     if given == needed && deviation.is_nan() | (deviation > fit::EXACT) {
-        return Err(DatasheetError::Unreachable { model, percent: 100.0 * deviation });
+        return Err(DatasheetError::Unreachable { law: name(), percent: 100.0 * deviation });
     }
     Ok(found)
 }
 
-fn check(model: Model, data: &[Datum]) -> Result<(), DatasheetError> {
+fn check(law: &Entry, model: Model, data: &[Datum]) -> Result<(), DatasheetError> {
     for (i, &Datum { quantity, value, omega }) in data.iter().enumerate() {
         let admissible = value > 0.0 && value.is_finite() && omega >= 0.0 && omega.is_finite();
         if !admissible {
@@ -341,7 +375,7 @@ fn check(model: Model, data: &[Datum]) -> Result<(), DatasheetError> {
             return Err(DatasheetError::NeedsFrequency { quantity });
         }
         if omega == 0.0 && !quantity.is_of_losses() && matches!(model, Model::Springpot | Model::Dashpot) {
-            return Err(DatasheetError::NoStaticStiffness { model });
+            return Err(DatasheetError::NoStaticStiffness { law: law.name.to_string() });
         }
         if data[..i].iter().any(|other| other.quantity == quantity && other.omega == omega) {
             return Err(DatasheetError::Twice { quantity, omega });

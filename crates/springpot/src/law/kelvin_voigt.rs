@@ -1,82 +1,93 @@
 //! Plain laws: spring, dashpot, springpot, and their parallel combinations.
 
 use super::Network;
-use super::catalog::{ALPHA, Built, Entry, Param, Range, at_least_one_positive};
+use super::catalog::{Entry, Param, Range, alpha, at_least_one_positive};
+use std::sync::Arc;
 
-const STIFFNESS: Param =
-    Param { name: "k", unit: "N/m", meaning: "stiffness", range: Range::NOT_NEGATIVE, default: None };
-const VISCOSITY: Param =
-    Param { name: "c", unit: "N*s/m", meaning: "viscosity", range: Range::NOT_NEGATIVE, default: None };
-const COEFFICIENT: Param = Param {
-    name: "c",
-    unit: "N*s^alpha/m",
-    meaning: "coefficient of the fractional derivative",
-    range: Range::NOT_NEGATIVE,
-    default: None,
-};
+fn stiffness() -> Param {
+    Param::new("k", "N/m", "stiffness", Range::NOT_NEGATIVE)
+}
+
+fn viscosity() -> Param {
+    Param::new("c", "N*s/m", "viscosity", Range::NOT_NEGATIVE)
+}
+
+fn coefficient() -> Param {
+    Param::new("c", "N*s^alpha/m", "coefficient of the fractional derivative", Range::NOT_NEGATIVE)
+}
 
 /// F = k·x.
-pub(super) const SPRING: Entry = Entry {
-    name: "spring",
-    equation: "F = k·x",
-    params: &[STIFFNESS],
-    inputs: &[],
-    source: "Hooke",
-    build: |values, _| -> Built {
-        at_least_one_positive(&[("k", values[0])])?;
-        Ok(Network::spring(values[0]))
-    },
-};
+pub(super) fn spring() -> Entry {
+    Entry {
+        name: "spring".into(),
+        equation: "F = k·x".into(),
+        params: vec![stiffness()],
+        inputs: vec![],
+        source: "Hooke".into(),
+        build: Arc::new(|values, _| {
+            at_least_one_positive(&[("k", values[0])])?;
+            Ok(Network::spring(values[0]))
+        }),
+    }
+}
 
 /// F = c·x'.
-pub(super) const DASHPOT: Entry = Entry {
-    name: "dashpot",
-    equation: "F = c·x'",
-    params: &[VISCOSITY],
-    inputs: &[],
-    source: "Newton",
-    build: |values, _| -> Built {
-        at_least_one_positive(&[("c", values[0])])?;
-        Ok(Network::dashpot(values[0]))
-    },
-};
+pub(super) fn dashpot() -> Entry {
+    Entry {
+        name: "dashpot".into(),
+        equation: "F = c·x'".into(),
+        params: vec![viscosity()],
+        inputs: vec![],
+        source: "Newton".into(),
+        build: Arc::new(|values, _| {
+            at_least_one_positive(&[("c", values[0])])?;
+            Ok(Network::dashpot(values[0]))
+        }),
+    }
+}
 
 /// F = c·D^alpha x.
-pub(super) const SPRINGPOT: Entry = Entry {
-    name: "springpot",
-    equation: "F = c·D^alpha x",
-    params: &[COEFFICIENT, ALPHA],
-    inputs: &[],
-    source: "Scott Blair 1947; Koeller 1984",
-    build: |values, derivative| -> Built {
-        at_least_one_positive(&[("c", values[0])])?;
-        Ok(Network::springpot(values[0], values[1], derivative))
-    },
-};
+pub(super) fn springpot() -> Entry {
+    Entry {
+        name: "springpot".into(),
+        equation: "F = c·D^alpha x".into(),
+        params: vec![coefficient(), alpha()],
+        inputs: vec![],
+        source: "Scott Blair 1947; Koeller 1984".into(),
+        build: Arc::new(|values, derivative| {
+            at_least_one_positive(&[("c", values[0])])?;
+            Ok(Network::springpot(values[0], values[1], derivative))
+        }),
+    }
+}
 
 /// F = k·x + c·x'.
-pub(super) const KELVIN_VOIGT: Entry = Entry {
-    name: "kelvin-voigt",
-    equation: "F = k·x + c·x'",
-    params: &[STIFFNESS, VISCOSITY],
-    inputs: &[],
-    source: "Kelvin 1865; Voigt 1892",
-    build: |values, _| -> Built {
-        at_least_one_positive(&[("k", values[0]), ("c", values[1])])?;
-        Ok(Network::parallel([Network::spring(values[0]), Network::dashpot(values[1])]))
-    },
-};
+pub(super) fn kelvin_voigt() -> Entry {
+    Entry {
+        name: "kelvin-voigt".into(),
+        equation: "F = k·x + c·x'".into(),
+        params: vec![stiffness(), viscosity()],
+        inputs: vec![],
+        source: "Kelvin 1865; Voigt 1892".into(),
+        build: Arc::new(|values, _| {
+            at_least_one_positive(&[("k", values[0]), ("c", values[1])])?;
+            Ok(Network::parallel([Network::spring(values[0]), Network::dashpot(values[1])]))
+        }),
+    }
+}
 
 /// F = k·x + c·D^alpha x.
-pub(super) const FRACTIONAL_KELVIN_VOIGT: Entry = Entry {
-    name: "fractional-kelvin-voigt",
-    equation: "F = k·x + c·D^alpha x",
-    params: &[STIFFNESS, COEFFICIENT, ALPHA],
-    inputs: &[],
-    source: "Bagley & Torvik 1983",
-    build: |values, derivative| -> Built {
-        at_least_one_positive(&[("k", values[0]), ("c", values[1])])?;
-        let &[k, c, alpha] = values else { unreachable!("values follow params") };
-        Ok(Network::parallel([Network::spring(k), Network::springpot(c, alpha, derivative)]))
-    },
-};
+pub(super) fn fractional_kelvin_voigt() -> Entry {
+    Entry {
+        name: "fractional-kelvin-voigt".into(),
+        equation: "F = k·x + c·D^alpha x".into(),
+        params: vec![stiffness(), coefficient(), alpha()],
+        inputs: vec![],
+        source: "Bagley & Torvik 1983".into(),
+        build: Arc::new(|values, derivative| {
+            at_least_one_positive(&[("k", values[0]), ("c", values[1])])?;
+            let &[k, c, alpha] = values else { unreachable!("values follow params") };
+            Ok(Network::parallel([Network::spring(k), Network::springpot(c, alpha, derivative)]))
+        }),
+    }
+}

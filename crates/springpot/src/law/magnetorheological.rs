@@ -1,44 +1,42 @@
 //! Magnetorheological element: a springpot whose coefficient follows the voltage of its coil.
 
 use super::Network;
-use super::catalog::{ALPHA, CARRIER, Entry, Input, Param, Range, at_least_one_positive};
+use super::catalog::{Entry, Input, Param, Range, alpha, at_least_one_positive, carrier};
 use super::leaf::Coefficient;
+use std::sync::Arc;
 
 /// F = E_c·x + (mu_0 + u·mu)·D^alpha x; the coefficient stands outside the derivative also when u varies.
 ///
 /// Passive only while mu_0 + u·mu ≥ 0, which is checked wherever u is evaluated. A varying u supplies ∫ mu·u'·ψ dt, ψ the energy
 /// stored by a springpot of unit coefficient.
-pub(super) const MAGNETORHEOLOGICAL: Entry = Entry {
-    name: "magnetorheological",
-    equation: "F = E_c·x + (mu_0 + u·mu)·D^alpha x",
-    params: &[
-        CARRIER,
-        Param {
-            name: "mu_0",
-            unit: "N*s^alpha/m",
-            meaning: "coefficient without field",
-            range: Range::NOT_NEGATIVE,
-            default: None,
-        },
-        Param {
-            name: "mu",
-            unit: "N*s^alpha/(m*V)",
-            meaning: "change of the coefficient per volt",
-            range: Range::ANY,
-            default: None,
-        },
-        ALPHA,
-    ],
-    inputs: &[Input { name: "u", unit: "V", meaning: "voltage of the coil", range: Range::ANY }],
-    source: "equations of motion of a robot with piezo-modified and magnetorheological elements (docs/LITERATURE.md)",
-    build: |values, derivative| {
-        let &[e_c, mu_0, mu, alpha] = values else { unreachable!("values follow params") };
-        at_least_one_positive(&[("E_c", e_c), ("mu_0", mu_0), ("mu", mu)])?;
-        let rule = "mu_0 + u·mu ≥ 0";
-        let coefficient = Coefficient { constant: mu_0, slope: mu, input: Some(0), rule, parameter: "mu" };
-        Ok(Network::parallel([Network::spring(e_c), Network::varying_springpot(coefficient, alpha, derivative)]))
-    },
-};
+pub(super) fn magnetorheological() -> Entry {
+    Entry {
+        name: "magnetorheological".into(),
+        equation: "F = E_c·x + (mu_0 + u·mu)·D^alpha x".into(),
+        params: vec![
+            carrier(),
+            Param::new("mu_0", "N*s^alpha/m", "coefficient without field", Range::NOT_NEGATIVE),
+            Param::new("mu", "N*s^alpha/(m*V)", "change of the coefficient per volt", Range::ANY),
+            alpha(),
+        ],
+        inputs: vec![Input::new("u", "V", "voltage of the coil", Range::ANY)],
+        source:
+            "equations of motion of a robot with piezo-modified and magnetorheological elements (docs/LITERATURE.md)"
+                .into(),
+        build: Arc::new(|values, derivative| {
+            let &[e_c, mu_0, mu, alpha] = values else { unreachable!("values follow params") };
+            at_least_one_positive(&[("E_c", e_c), ("mu_0", mu_0), ("mu", mu)])?;
+            let coefficient = Coefficient {
+                constant: mu_0,
+                slope: mu,
+                input: Some(0),
+                rule: "mu_0 + u·mu ≥ 0".into(),
+                parameter: "mu".into(),
+            };
+            Ok(Network::parallel([Network::spring(e_c), Network::varying_springpot(coefficient, alpha, derivative)]))
+        }),
+    }
+}
 
 #[cfg(test)]
 mod tests {
@@ -47,7 +45,7 @@ mod tests {
 
     #[test]
     fn a_negative_coefficient_names_the_rule() {
-        let law = (MAGNETORHEOLOGICAL.build)(&[10.0, 50.0, 10.0, 0.5], Derivative::Caputo).unwrap();
+        let law = (magnetorheological().build)(&[10.0, 50.0, 10.0, 0.5], Derivative::Caputo).unwrap();
         let at = |u: f64| law.check_inputs(&[InputValue { value: u, rate: 0.0 }]);
         assert!(at(-5.0).is_ok());
         let broken = at(-7.0).unwrap_err().to_string();

@@ -36,7 +36,7 @@ mod piezo;
 mod thermoviscoelastic;
 
 pub use crate::fractional::Kind as Derivative;
-pub use catalog::{Catalog, Entry, Input, Param, Range, RuleError};
+pub use catalog::{Build, Built, Catalog, Entry, Input, Param, Range, RuleError};
 pub use leaf::Leaf;
 pub use network::Network;
 pub use state::{State, StateMut, StateRef, StateSize};

@@ -192,7 +192,7 @@ impl System {
 
 impl Element {
     pub(super) fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {
-        for (row, input) in self.row.inputs.iter().zip(inputs) {
+        for (row, input) in self.entry.inputs.iter().zip(inputs) {
             if !input.value.is_finite() {
                 let what = format!("{}.{}", self.name, row.name);
                 return Err(RunError::NotFinite { t, what, value: input.value });
@@ -201,7 +201,7 @@ impl Element {
                 return Err(RunError::InputRange {
                     t,
                     element: self.name.clone(),
-                    input: row.name.into(),
+                    input: row.name.to_string(),
                     value: input.value,
                     low: row.range.low,
                     high: row.range.high,

@@ -54,8 +54,8 @@ impl System {
             add("stored", "J", format!("energy stored in {name}"));
             add("dissipated", "J", format!("energy dissipated in {name} since t = 0"));
             add("input", "J", format!("energy supplied by the inputs of {name} since t = 0"));
-            for input in element.row.inputs {
-                add(input.name, input.unit, format!("{} of {name}", input.meaning));
+            for input in &element.entry.inputs {
+                add(&input.name, &input.unit, format!("{} of {name}", input.meaning));
             }
         }
         if self.gripper.is_some() {
@@ -148,7 +148,7 @@ fn generalized_force(force: f64, gradient: f64) -> f64 {
 fn derivative_unit(element: &Element) -> &'static str {
     let inputs = vec![InputValue::default(); element.inputs.len()];
     match element.law.reported_order(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs }) {
-        _ if element.row.params.iter().any(|param| param.name == "alpha") => "m/s^alpha",
+        _ if element.entry.params.iter().any(|param| param.name == "alpha") => "m/s^alpha",
         0.0 => "m",
         _ => "m/s",
     }

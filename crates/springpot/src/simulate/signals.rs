@@ -107,7 +107,7 @@ impl System {
             }
         }
         for element in &self.elements {
-            for (entry, signal) in element.row.inputs.iter().zip(&element.inputs) {
+            for (entry, signal) in element.entry.inputs.iter().zip(&element.inputs) {
                 // Along a motion given in advance inputs change energies alone, which steps are held to as well.
                 let slack = if matches!(self.motion, Motion::Forward(_)) { 1.0 } else { INPUT_SLACK };
                 let name = format!("input {} of element \"{}\"", entry.name, element.name);

@@ -9,6 +9,7 @@ use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
 use springpot::motion::{Drive, Forward, Motion};
 use springpot::signal::Signal;
 use springpot::simulate::{RowTimes, Settings, System};
+use std::sync::Arc;
 
 fn read(path: &str) -> Value {
     let file = format!("{}/../../testdata/{path}", env!("CARGO_MANIFEST_DIR"));
@@ -182,14 +183,15 @@ fn slider_in_code(k: f64, c: f64, alpha: f64, derivative: Derivative, start: [f6
         .unwrap();
     let model = builder.finish().unwrap();
     let site = |body| model.resolve(&Anchor { body, point: [0.0; 3] }).unwrap();
-    let row = *Catalog::standard().get("fractional-kelvin-voigt").unwrap();
+    let catalog = Catalog::standard();
+    let entry = Arc::clone(catalog.get("fractional-kelvin-voigt").unwrap());
     let element = Element {
         name: "e".into(),
         from: site(Parent::World),
         to: site(Parent::Body(0)),
         rest_length: 8.0,
-        law: (row.build)(&[k, c, alpha], derivative).unwrap(),
-        row,
+        law: (entry.build)(&[k, c, alpha], derivative).unwrap(),
+        entry,
         inputs: Vec::new(),
         derivative,
         scheme: None,

@@ -4,10 +4,11 @@ use crate::steps::random_steps;
 use springpot::fractional::{Form, Nodes};
 use springpot::law::{Catalog, Derivative, Entry, InputValue, Network, Point, Start, State, Step};
 use springpot_scenario::units::{Unit, parse_quantity};
+use std::sync::Arc;
 
 /// Parameter values well inside their ranges; alpha where the law has one.
 fn parameters(entry: &Entry, alpha: f64) -> Vec<f64> {
-    let value = |(k, param): (usize, &springpot::law::Param)| match (param.name, param.default) {
+    let value = |(k, param): (usize, &springpot::law::Param)| match (&*param.name, param.default) {
         ("alpha", _) => alpha,
         (_, Some(default)) => default,
         _ => 3.0 + k as f64,
@@ -168,7 +169,7 @@ fn laws_without_memory_answer_by_their_equations() {
         let response = law.evaluate(&step, state);
         for i in 0..samples.nodes.count() {
             let (x, v) = (samples.stroke[i + 1], samples.rate[i + 1]);
-            let wanted = match entry.name {
+            let wanted = match &*entry.name {
                 "spring" => 3.0 * x,
                 "dashpot" => 3.0 * v,
                 "kelvin-voigt" => 3.0 * x + 4.0 * v,
@@ -315,7 +316,7 @@ fn drives_push_by_their_gain() {
 #[test]
 fn the_catalog_is_complete_and_in_order() {
     let catalog = Catalog::standard();
-    let names: Vec<_> = catalog.entries().iter().map(|entry| entry.name).collect();
+    let names: Vec<_> = catalog.entries().iter().map(|entry| &*entry.name).collect();
     assert_eq!(
         names,
         [
@@ -330,28 +331,28 @@ fn the_catalog_is_complete_and_in_order() {
         ]
     );
     for entry in catalog.entries() {
-        let name = entry.name;
+        let name = &*entry.name;
         assert!(entry.equation.starts_with("F = ") && !entry.source.is_empty(), "{name}");
         // Every symbol of the row stands in its equation, and every parameter that is a name alone.
-        for symbol in entry.params.iter().map(|p| p.name).chain(entry.inputs.iter().map(|i| i.name)) {
+        for symbol in entry.params.iter().map(|p| &*p.name).chain(entry.inputs.iter().map(|i| &*i.name)) {
             assert!(entry.equation.contains(symbol), "{name}: {symbol} is not in {}", entry.equation);
         }
-        let all: Vec<_> = entry.params.iter().map(|p| p.name).chain(entry.inputs.iter().map(|i| i.name)).collect();
+        let all: Vec<_> = entry.params.iter().map(|p| &*p.name).chain(entry.inputs.iter().map(|i| &*i.name)).collect();
         assert!((1..all.len()).all(|k| !all[..k].contains(&all[k])), "{name}: a symbol stands twice");
-        for param in entry.params {
+        for param in &entry.params {
             let alpha = |symbol: &str| (symbol == "alpha").then_some(0.5);
-            let unit = Unit::parse(param.unit, &alpha).unwrap_or_else(|e| panic!("{name}.{}: {e}", param.name));
+            let unit = Unit::parse(&param.unit, &alpha).unwrap_or_else(|e| panic!("{name}.{}: {e}", param.name));
             assert!(unit.scale() == 1.0 && unit.shift() == 0.0, "{name}.{}: the unit is not SI", param.name);
-            assert!(parse_quantity("3", param.unit, &alpha).is_ok(), "{name}.{}", param.name);
+            assert!(parse_quantity("3", &param.unit, &alpha).is_ok(), "{name}.{}", param.name);
             assert!(!param.meaning.is_empty() && param.range.low <= param.range.high, "{name}.{}", param.name);
             assert!(param.default.is_none_or(|value| param.range.contains(value)), "{name}.{}", param.name);
             assert!(!param.range.contains(f64::NAN) && !param.range.contains(f64::INFINITY));
             if param.name == "alpha" {
-                assert_eq!((param.range.low, param.range.high, param.unit), (0.0, 1.0, ""));
+                assert_eq!((param.range.low, param.range.high, &*param.unit), (0.0, 1.0, ""));
             }
         }
-        for input in entry.inputs {
-            let unit = Unit::parse(input.unit, &|_| None).unwrap_or_else(|e| panic!("{name}.{}: {e}", input.name));
+        for input in &entry.inputs {
+            let unit = Unit::parse(&input.unit, &|_| None).unwrap_or_else(|e| panic!("{name}.{}: {e}", input.name));
             assert!(unit.scale() == 1.0 && unit.shift() == 0.0, "{name}.{}", input.name);
             assert!(!input.meaning.is_empty());
         }
@@ -363,9 +364,9 @@ fn a_law_without_any_coefficient_is_refused() {
     for entry in Catalog::standard().entries() {
         let zeros: Vec<f64> =
             entry.params.iter().map(|p| if p.name == "alpha" { 0.5 } else { 0.0f64.max(p.range.low) }).collect();
-        let broken = (entry.build)(&zeros, Derivative::Caputo).expect_err(entry.name);
+        let broken = (entry.build)(&zeros, Derivative::Caputo).expect_err(&entry.name);
         assert!(entry.params.iter().any(|p| p.name == broken.parameter), "{}: {}", entry.name, broken.parameter);
-        assert!(broken.rule.contains(broken.parameter), "{}: {broken}", entry.name);
+        assert!(broken.rule.contains(&*broken.parameter), "{}: {broken}", entry.name);
         // One positive coefficient of a stiffness or of a viscosity makes it a material.
         let passive = |p: &&springpot::law::Param| p.range.low == 0.0 && p.name != "alpha";
         for param in entry.params.iter().filter(passive) {
@@ -378,18 +379,20 @@ fn a_law_without_any_coefficient_is_refused() {
 
 #[test]
 fn rows_can_be_added_and_replaced() {
-    const STIFF: Entry = Entry {
-        name: "stiff",
-        equation: "F = 1000·x",
-        params: &[],
-        inputs: &[],
-        source: "a user's crate",
-        build: |_, _| Ok(Network::spring(1000.0)),
+    // Owned text and what the closure keeps: nothing of the row is known before the program runs.
+    let stiffness = 1000.0;
+    let stiff = Entry {
+        name: "stiff".into(),
+        equation: format!("F = {stiffness}·x").into(),
+        params: vec![],
+        inputs: vec![],
+        source: "a user's crate".into(),
+        build: Arc::new(move |_, _| Ok(Network::spring(stiffness))),
     };
-    let catalog = Catalog::standard().with(STIFF);
+    let catalog = Catalog::standard().with(stiff.clone());
     assert_eq!(catalog.entries().len(), 9);
     assert_eq!(catalog.get("stiff").unwrap().source, "a user's crate");
-    let replaced = catalog.with(Entry { name: "spring", ..STIFF });
+    let replaced = catalog.with(Entry { name: "spring".into(), ..stiff });
     assert_eq!(replaced.entries().len(), 9);
     assert_eq!(replaced.get("spring").unwrap().equation, "F = 1000·x");
     assert!(replaced.get("spr1ng").is_none());

@@ -76,7 +76,7 @@ pub(crate) fn assert_all_refused(base: &str, cases: &[Case<'_>]) {
 /// A parameter of the first element by name, SI.
 pub(crate) fn parameter(plan: &Plan, name: &str) -> f64 {
     let element = &plan.elements[0];
-    let at = element.element.row.params.iter().position(|param| param.name == name).expect("a parameter of the law");
+    let at = element.element.entry.params.iter().position(|param| param.name == name).expect("a parameter of the law");
     element.parameters[at]
 }
 

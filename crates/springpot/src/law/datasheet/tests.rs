@@ -1,7 +1,13 @@
 use super::*;
+use crate::law::Build;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const HZ: f64 = 2.0 * PI;
+
+/// The parameters of the standard law of this form.
+fn identify(model: Model, data: &[Datum]) -> Result<Identified, DatasheetError> {
+    super::identify(model.law(&Catalog::standard()).unwrap(), data)
+}
 
 fn datum(quantity: Quantity, value: f64, omega: f64) -> Datum {
     Datum { quantity, value, omega }
@@ -128,9 +134,9 @@ fn data_that_make_no_law_are_refused() {
     let at_rest = datum(Storage, 6000.0, 0.0);
     let refused = |model, data: &[Datum]| identify(model, data).unwrap_err();
     let springpot = Model::Springpot;
-    assert_eq!(refused(springpot, &[tan]), DatasheetError::TooFew { model: springpot, needed: 2, given: 1 });
+    assert_eq!(refused(springpot, &[tan]), DatasheetError::TooFew { law: "springpot".into(), needed: 2, given: 1 });
     assert_eq!(refused(springpot, &[tan, datum(LossFactor, 0.4, 600.0)]), DatasheetError::NoStiffness);
-    assert_eq!(refused(springpot, &[stiff, at_rest]), DatasheetError::NoStaticStiffness { model: springpot });
+    assert_eq!(refused(springpot, &[stiff, at_rest]), DatasheetError::NoStaticStiffness { law: "springpot".into() });
     assert_eq!(refused(springpot, &[tan, stiff, stiff]), DatasheetError::Twice { quantity: Stiffness, omega: 60.0 });
     assert_eq!(
         refused(springpot, &[stiff, datum(Damping, 3.0, 0.0)]),
@@ -154,6 +160,28 @@ fn data_that_make_no_law_are_refused() {
     // Three data that say two things.
     let law = Identified { model: springpot, stiffness: 0.0, coefficient: 80.0, order: 0.4 };
     let same = told(&law, &[(LossFactor, 60.0), (Stiffness, 60.0), (Storage, 60.0)]);
-    assert_eq!(refused(fractional, &same), DatasheetError::Undetermined { model: fractional });
+    assert_eq!(refused(fractional, &same), DatasheetError::Undetermined { law: "fractional-kelvin-voigt".into() });
     assert!(identify(springpot, &same).is_ok());
+}
+
+#[test]
+fn the_catalog_says_which_laws_data_determine() {
+    let catalog = Catalog::standard();
+    let found: Vec<_> = catalog.entries().iter().filter_map(|law| Some((&*law.name, Model::of(law)?))).collect();
+    let names = ["spring", "dashpot", "springpot", "kelvin-voigt", "fractional-kelvin-voigt"];
+    assert_eq!(found, names.into_iter().zip(Model::ALL).collect::<Vec<_>>());
+    for (name, model) in found {
+        assert_eq!(catalog.get(name).unwrap().params.len(), model.parameter_count(), "{name}");
+    }
+    // Another law may have the same parameters, and is none of these; under another name the same law is.
+    let kelvin_voigt = catalog.get("kelvin-voigt").unwrap();
+    let with = |name: &'static str, build: Build| Entry { name: name.into(), build, ..Entry::clone(kelvin_voigt) };
+    let (spring, dashpot) = (|k: &[f64]| Network::spring(k[0]), |k: &[f64]| Network::dashpot(k[1]));
+    let maxwell = with("maxwell", Arc::new(move |k, _| Ok(Network::series([spring(k), dashpot(k)]))));
+    let twice = with("twice", Arc::new(move |k, _| Ok(Network::parallel([spring(k), spring(k), dashpot(k)]))));
+    let turned = with("turned", Arc::new(move |k, _| Ok(Network::parallel([dashpot(k), spring(k)]))));
+    assert_eq!([&maxwell, &twice, &turned].map(Model::of), [None, None, Some(Model::KelvinVoigt)]);
+    let data = [datum(Quantity::Stiffness, 700.0, 0.0), datum(Quantity::Damping, 30.0, 0.0)];
+    assert_eq!(super::identify(&maxwell, &data), Err(DatasheetError::OtherLaw { law: "maxwell".into() }));
+    assert_eq!(super::identify(&turned, &data), super::identify(kelvin_voigt, &data));
 }

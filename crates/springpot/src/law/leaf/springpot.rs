@@ -7,9 +7,10 @@ use super::{
 use crate::fractional::step::MAX_NODES;
 use crate::fractional::{Form, KernelError, Memory, Nodes, RatePolynomial};
 use crate::law::{Derivative, Singular};
+use std::borrow::Cow;
 
 /// A coefficient that may follow an input: constant + slope·input.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Coefficient {
     /// Value where the input is 0.
     pub constant: f64,
@@ -18,16 +19,16 @@ pub struct Coefficient {
     /// Which input; `None`: constant.
     pub input: Option<usize>,
     /// The rule that keeps it from turning negative, as the message says it.
-    pub rule: &'static str,
+    pub rule: Cow<'static, str>,
     /// The parameter to change where the rule is broken.
-    pub parameter: &'static str,
+    pub parameter: Cow<'static, str>,
 }
 
 /// F = c·D^alpha x, c outside the derivative also when it varies.
 ///
 /// At alpha = 0 a spring (on x, or on x − x(0) for Caputo), at alpha = 1 a dashpot. Stores c·ψ, dissipates c·P with ψ and P of
 /// [`crate::fractional::Energy`]; a varying c exchanges ∫ c'ψ dt with its input.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Springpot {
     /// Coefficient c ≥ 0, N·s^alpha/m.
     pub coefficient: Coefficient,
@@ -40,7 +41,7 @@ pub struct Springpot {
 impl Coefficient {
     /// A coefficient that never changes.
     pub fn constant(value: f64) -> Self {
-        Self { constant: value, slope: 0.0, input: None, rule: "c ≥ 0", parameter: "c" }
+        Self { constant: value, slope: 0.0, input: None, rule: "c ≥ 0".into(), parameter: "c".into() }
     }
 
     /// Value and rate under the inputs.
@@ -192,6 +193,6 @@ impl Leaf for Springpot {
             return Ok(());
         }
         let rule = format!("{} is broken: the coefficient of D^alpha x is {c}", self.coefficient.rule);
-        Err(RuleError { rule, parameter: self.coefficient.parameter })
+        Err(RuleError { rule, parameter: self.coefficient.parameter.clone() })
     }
 }
