@@ -123,13 +123,12 @@ impl System {
     }
 
     fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {
-        let motion: [(fn(usize) -> Quantity, &[f64]); 3] =
-            [(Quantity::Coordinate, &moment.q), (Quantity::Velocity, &moment.v), (Quantity::Acceleration, &moment.a)];
-        for (quantity, values) in motion {
-            if let Some(k) = values.iter().position(|x| !x.is_finite()) {
-                let what = self.observables().named(quantity(k)).to_string();
-                return Err(RunError::NotFinite { t, what, value: values[k] });
-            }
+        let q = moment.q.iter().enumerate().map(|(k, x)| (Quantity::Coordinate(k), *x));
+        let v = moment.v.iter().enumerate().map(|(k, x)| (Quantity::Velocity(k), *x));
+        let a = moment.a.iter().enumerate().map(|(k, x)| (Quantity::Acceleration(k), *x));
+        if let Some((quantity, value)) = q.chain(v).chain(a).find(|(_, x)| !x.is_finite()) {
+            let what = self.observables().named(quantity).to_string();
+            return Err(RunError::NotFinite { t, what, value });
         }
         Ok(())
     }
