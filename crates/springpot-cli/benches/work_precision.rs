@@ -17,6 +17,7 @@ use springpot::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pai
 use springpot::fractional::{Kernel, gamma::gamma};
 use springpot::law::Catalog;
 use springpot::motion::{Drive, Forward, Motion};
+use springpot::observe::Quantity;
 use springpot::signal::Signal;
 use springpot::simulate::{RowTimes, Settings, Stop, System, forward};
 use springpot_report::{Panel, Plot};
@@ -67,17 +68,16 @@ fn arm(alpha: f64) -> (System, Settings) {
 fn springpot(system: &System, settings: &Settings, rtol: f64, repeats: usize) -> (f64, Vec<f64>) {
     let memory_rtol = (rtol / 100.0).max(1e-12);
     let settings = Settings { rtol, atol: Some(rtol), memory_rtol, ..settings.clone() };
-    let (mut times, mut last) = (Vec::new(), Vec::new());
+    let (mut times, mut table) = (Vec::new(), system.table());
     for _ in 0..repeats {
         let begun = Instant::now();
-        let mut keep = |row: &[f64]| -> std::io::Result<()> {
-            last = row[1..7].to_vec();
-            Ok(())
-        };
-        forward(system, &settings, &mut keep, &Stop::new(false)).1.expect("the run succeeds");
+        forward(system, &settings, &mut table, &Stop::new(false)).1.expect("the run succeeds");
         times.push(begun.elapsed().as_secs_f64());
     }
-    (median(times), last)
+    let q = (0..system.model.nq()).map(Quantity::Coordinate);
+    let state = q.chain((0..system.model.nv()).map(Quantity::Velocity));
+    let last = |quantity| table.value(table.len() - 1, quantity).expect("the row at the end");
+    (median(times), state.map(last).collect())
 }
 
 /// Average acceleration with D^alpha x by L1 over the whole past: q and v at the end.

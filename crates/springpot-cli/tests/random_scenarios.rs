@@ -178,13 +178,10 @@ fn run(text: &str, limit: Option<u64>) -> Result<Ran, String> {
     }
     let system = plan.system();
     let settings = Settings { max_steps: limit.or(plan.settings.max_steps), ..plan.settings.clone() };
-    let mut rows = Vec::new();
-    let mut keep = |row: &[f64]| -> std::io::Result<()> {
-        rows.push(row.to_vec());
-        Ok(())
-    };
-    let (report, outcome) = along(&system, &settings, &mut keep, &AtomicBool::new(false));
-    let columns = system.columns().into_iter().map(|column| column.name).collect();
+    let mut table = system.table();
+    let (report, outcome) = along(&system, &settings, &mut table, &AtomicBool::new(false));
+    let columns = table.columns().iter().map(|column| column.name.clone()).collect();
+    let rows = table.rows().map(<[f64]>::to_vec).collect();
     Ok(Ran { columns, rows, report, outcome })
 }
 

@@ -337,16 +337,10 @@ fn has_joint_losses(plan: &Plan) -> bool {
     plan.model.damping().iter().chain(plan.model.friction()).any(|x| *x != 0.0)
 }
 
-/// What makes the columns of a case, but for the energy lost in joints, which all cases have or none.
+/// Names of the columns of a case, but for the energy lost in joints, which all cases have or none.
 fn columns_of(plan: &Plan) -> Vec<String> {
-    let mut columns: Vec<String> = plan.model.q_labels().into_iter().map(|label| label.name).collect();
-    for element in &plan.elements {
-        let name = &element.element.name;
-        columns.extend(element.element.entry.inputs.iter().map(|input| format!("{name}.{}", input.name)));
-        columns.push(format!("{name}."));
-    }
-    columns.push(format!("{} {}", plan.gripper.is_some(), matches!(plan.motion, MotionPlan::GripperPath { .. })));
-    columns
+    let observables = plan.observables();
+    observables.quantities().into_iter().map(|quantity| observables.named(quantity).to_string()).collect()
 }
 
 /// Reads everything but sweeps and what is the same in every case.

@@ -4,6 +4,7 @@ use super::plan::{DrivePlan, JointPlan, MotionPlan, Plan, SignalPlan};
 use springpot::model::{Anchor, Model, Site};
 use springpot::motion::gripper_path::{Course, Task};
 use springpot::motion::{Drive, Forward, GripperPath, JointPath, Motion, PosePath};
+use springpot::observe::Observables;
 use springpot::signal::Signal;
 use springpot::simulate::{Stop, System};
 
@@ -21,6 +22,15 @@ impl Plan {
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: Model::clone(&self.model),
             tells_joint_losses: self.tells_joint_losses,
+        }
+    }
+
+    /// What can be observed of the system, but for the energy lost in joints.
+    pub(crate) fn observables(&self) -> Observables {
+        let observables = Observables::new(&self.model, self.elements.iter().map(|plan| &plan.element));
+        match self.gripper {
+            Some(_) => observables.with_gripper(matches!(self.motion, MotionPlan::GripperPath { .. })),
+            None => observables,
         }
     }
 

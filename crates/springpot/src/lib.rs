@@ -17,6 +17,7 @@
 //! | [`signal`] | functions of time with exact derivatives | nothing |
 //! | [`element`] | a law between two anchors | `model`, `law`, `signal` |
 //! | [`motion`] | q, v, a as functions of time: prescribed, gripper paths | `dynamics`, `signal` |
+//! | [`observe`] | what can be observed: quantities with names, units and values; the table in memory | `element`, `table` |
 //! | [`simulate`] | the time loop: rows, step control, energy | all above |
 //! | [`table`] | the columns of rows | nothing |
 //!
@@ -72,15 +73,12 @@
 //!     fixed_step: None,
 //! };
 //!
-//! let force = system.columns().iter().position(|column| column.name == "strut.force").expect("a column of every element");
-//! let mut largest = 0.0_f64;
-//! let mut rows = |row: &[f64]| -> std::io::Result<()> {
-//!     largest = largest.max(row[force].abs());
-//!     Ok(())
-//! };
-//! let (report, outcome) = along(&system, &settings, &mut rows, &Stop::new(false));
+//! let mut table = system.table();
+//! let (report, outcome) = along(&system, &settings, &mut table, &Stop::new(false));
 //! outcome?;
 //! assert_eq!(report.rows, 101);
+//! let force = table.column("strut.force").expect("a column of every element");
+//! let largest = force.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
 //! assert!((10.0..12.0).contains(&largest), "{largest} N");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -94,6 +92,7 @@ mod linalg;
 pub mod model;
 pub mod motion;
 pub mod names;
+pub mod observe;
 pub mod signal;
 pub mod simulate;
 pub mod spatial;

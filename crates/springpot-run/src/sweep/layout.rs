@@ -3,6 +3,7 @@
 use super::curve::{MAX_CURVES_IN_ALL, most_points};
 use crate::figures::FigureColumn;
 use crate::table::matches;
+use springpot::observe::Quantity;
 use springpot::simulate::System;
 use springpot::table::Column;
 use springpot_scenario::units::Unit;
@@ -68,7 +69,8 @@ impl Layout {
     /// # Errors
     /// Globs that match no column, units that do not fit their column.
     pub fn new(cases: &Cases, system: &System) -> Result<Self, Refusals> {
-        let columns = system.columns();
+        let observables = system.observables();
+        let (columns, time) = (observables.columns(), observables.column(Quantity::Time));
         let swept = cases.parameters().len();
         let selected = match cases.columns() {
             None => (0..columns.len()).collect(),
@@ -87,7 +89,7 @@ impl Layout {
         let (kept, curves, figures) = (Vec::new(), Vec::new(), Vec::new());
         let mut layout = Self { written, swept, columns, selected, kept, curves, figures };
         for figure in cases.figures() {
-            let data = layout.figure(cases, figure)?;
+            let data = layout.figure(cases, figure, &time)?;
             layout.figures.push(data);
         }
         Ok(layout)
@@ -137,9 +139,9 @@ impl Layout {
         &self.figures
     }
 
-    fn figure(&mut self, cases: &Cases, figure: &FigurePlan) -> Result<FigureData, Refusals> {
+    fn figure(&mut self, cases: &Cases, figure: &FigurePlan, time: &Column) -> Result<FigureData, Refusals> {
         let FigureKind::Curves { x, y } = &figure.kind else {
-            let x = FigureColumn { column: self.columns[0].clone(), unit: None };
+            let x = FigureColumn { column: time.clone(), unit: None };
             return Ok(FigureData { cases: Vec::new(), x, y: Vec::new(), curves: Vec::new(), left_out: None });
         };
         let abscissa = match found(x, &self.columns)?[..] {

@@ -4,6 +4,7 @@ use super::resistance::{add_resistance, holding_forces};
 use super::{Report, RowTimes, RunError, Settings, State, Stop, System, run};
 use crate::dynamics::{Kinematics, christoffel, coriolis, crba, gravity};
 use crate::motion::Motion;
+use crate::observe::{ElementQuantity, Quantity, Table};
 use std::sync::atomic::Ordering;
 
 /// Most velocities for which Christoffel symbols are kept.
@@ -96,20 +97,29 @@ impl System {
     /// # Errors
     /// [`EquationError`].
     pub fn equation(&self, settings: &Settings, t: f64) -> Result<Equation, EquationError> {
-        let row = self.row(settings, t)?;
+        let table = self.row(settings, t)?;
         let (nq, n) = (self.model.nq(), self.model.nv());
-        let mut rest = row.iter().copied();
-        let mut take = |count: usize| -> Vec<f64> { rest.by_ref().take(count).collect() };
-        // In the order of the columns of a row.
-        let t = take(1)[0];
-        let state = State { q: take(nq), v: take(n), a: take(n) };
-        let tau = take(n);
-        let elements = self.elements.iter().map(|element| {
-            let [length, stroke, rate, derivative, force] = take(5)[..] else { unreachable!("rows are complete") };
-            let q_force = take(n);
-            let _energies = take(3);
-            let inputs = take(element.inputs.len());
-            ElementTerm { name: element.name.clone(), length, stroke, rate, derivative, force, q_force, inputs }
+        let at = |quantity| table.value(0, quantity).expect("rows are complete");
+        let all = |quantity: fn(usize) -> Quantity, count: usize| (0..count).map(quantity).map(at).collect();
+        let t = at(Quantity::Time);
+        let state = State {
+            q: all(Quantity::Coordinate, nq),
+            v: all(Quantity::Velocity, n),
+            a: all(Quantity::Acceleration, n),
+        };
+        let tau = all(Quantity::Torque, n);
+        let elements = self.elements.iter().enumerate().map(|(e, element)| {
+            let of = |quantity| at(Quantity::Element(e, quantity));
+            ElementTerm {
+                name: element.name.clone(),
+                length: of(ElementQuantity::Length),
+                stroke: of(ElementQuantity::Stroke),
+                rate: of(ElementQuantity::Rate),
+                derivative: of(ElementQuantity::Derivative),
+                force: of(ElementQuantity::Force),
+                q_force: (0..n).map(ElementQuantity::GeneralizedForce).map(of).collect(),
+                inputs: (0..element.entry.inputs.len()).map(ElementQuantity::InputValue).map(of).collect(),
+            }
         });
         let elements = elements.collect();
 
@@ -156,8 +166,8 @@ impl System {
         }
     }
 
-    /// The row of a run at time `t`.
-    fn row(&self, settings: &Settings, t: f64) -> Result<Vec<f64>, EquationError> {
+    /// The row of a run at time `t`, alone in its table.
+    fn row(&self, settings: &Settings, t: f64) -> Result<Table, EquationError> {
         if !(0.0..=settings.end).contains(&t) {
             return Err(EquationError::Outside { t, end: settings.end });
         }
@@ -176,19 +186,21 @@ impl System {
             }
         };
         let stop = Stop::new(false);
-        let mut found = None;
+        let observables = self.observables();
+        let time = observables.position(Quantity::Time).expect("every row has its time");
+        let mut table = Table::new(&observables);
         let mut keep = |row: &[f64]| -> std::io::Result<()> {
-            if row[0] == t {
-                found = Some(row.to_vec());
+            if table.is_empty() && row[time] == t {
+                table.push(row);
                 stop.store(true, Ordering::Relaxed);
             }
             Ok(())
         };
         let (Report { t_reached, .. }, outcome) = run(self, &Settings { rows, ..settings.clone() }, &mut keep, &stop);
-        match (found, outcome) {
-            (Some(row), _) => Ok(row),
-            (None, Err(error)) => Err(error.into()),
-            (None, Ok(())) => unreachable!("a run to {:?} s has a row at {t} s", t_reached),
+        match outcome {
+            _ if !table.is_empty() => Ok(table),
+            Err(error) => Err(error.into()),
+            Ok(()) => unreachable!("a run to {:?} s has a row at {t} s", t_reached),
         }
     }
 }

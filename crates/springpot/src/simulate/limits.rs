@@ -2,6 +2,7 @@
 
 use super::{RowTimes, Settings, Stop, System, run};
 use crate::model::{JointKind, Limits, Model};
+use crate::observe::{Observables, Quantity};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
@@ -87,6 +88,8 @@ pub struct Watch(Vec<Option<Passed>>);
 /// Watches the rows of a run for joints that pass their limits. What happens between two rows is not seen.
 #[derive(Debug, Clone)]
 pub struct LimitWatch {
+    /// Where rows have their time.
+    time: usize,
     watched: Vec<Watched>,
 }
 
@@ -115,7 +118,9 @@ impl LimitWatch {
     /// Watches every limit of the robot's joints. A joint that follows another one has no actuator, so no limit of effort.
     pub fn new(system: &System) -> Self {
         let model = &system.model;
-        Self { watched: (0..model.joint_count()).flat_map(|joint| of_joint(model, joint)).collect() }
+        let observables = system.observables();
+        let watched = (0..model.joint_count()).flat_map(|joint| of_joint(model, &observables, joint)).collect();
+        Self { time: position(&observables, Quantity::Time), watched }
     }
 
     /// What was seen so far.
@@ -137,7 +142,7 @@ impl LimitWatch {
             let excess = |value| excess(watched.kind, watched.limit, value);
             // An empty field is beyond nothing.
             if excess(value) > ROUNDING * (1.0 + watched.limit.abs()) {
-                let new = Passed { first: row[0], farthest: row[0], value };
+                let new = Passed { first: row[self.time], farthest: row[self.time], value };
                 let passed = watched.passed.get_or_insert(new);
                 if excess(value) > excess(passed.value) {
                     *passed = Passed { first: passed.first, ..new };
@@ -171,27 +176,31 @@ impl System {
     /// What keeps a run from starting.
     pub fn first_row(&self, settings: &Settings) -> Result<Vec<f64>, super::RunError> {
         let settings = Settings { rows: RowTimes::Times([0.0].into()), ..settings.clone() };
-        let mut first = None;
-        let mut keep = |row: &[f64]| -> std::io::Result<()> {
-            first = Some(row.to_vec());
-            Ok(())
-        };
+        let mut table = self.table();
         // Stopped from the outset, it writes its first row and takes no step.
-        let _ = run(self, &settings, &mut keep, &Stop::new(true));
-        if let Some(row) = first {
-            return Ok(row);
+        let _ = run(self, &settings, &mut table, &Stop::new(true));
+        if let Some(row) = table.rows().next() {
+            return Ok(row.to_vec());
         }
         let state = self.state(0.0)?;
-        let known = std::iter::once(0.0).chain(state.q).chain(state.v).chain(state.a);
-        let mut row: Vec<f64> = known.collect();
-        row.resize(self.columns().len(), f64::NAN);
-        Ok(row)
+        let known = |quantity| match quantity {
+            Quantity::Time => 0.0,
+            Quantity::Coordinate(k) => state.q[k],
+            Quantity::Velocity(k) => state.v[k],
+            Quantity::Acceleration(k) => state.a[k],
+            _ => f64::NAN,
+        };
+        Ok(self.observables().quantities().into_iter().map(known).collect())
     }
 }
 
-fn of_joint(model: &Model, joint: usize) -> Vec<Watched> {
+/// Where a quantity that every system has stands in its rows.
+fn position(observables: &Observables, quantity: Quantity) -> usize {
+    observables.position(quantity).expect("a quantity of every system")
+}
+
+fn of_joint(model: &Model, observables: &Observables, joint: usize) -> Vec<Watched> {
     let (q, v) = (model.q_range(joint).start, model.v_range(joint).start);
-    let (nq, nv) = (model.nq(), model.nv());
     if model.joint_kind(joint).nv() != 1 {
         return Vec::new();
     }
@@ -201,19 +210,19 @@ fn of_joint(model: &Model, joint: usize) -> Vec<Watched> {
     let Limits { lower, upper, velocity, effort } = *model.limits(joint);
     let effort = if followed.is_some() { f64::INFINITY } else { effort };
     let all = [
-        (LimitKind::Lower, lower, units[0], 1 + q, offset),
-        (LimitKind::Upper, upper, units[0], 1 + q, offset),
-        (LimitKind::Velocity, velocity, units[1], 1 + nq + v, 0.0),
-        (LimitKind::Effort, effort, units[2], 1 + nq + 2 * nv + v, 0.0),
+        (LimitKind::Lower, lower, units[0], Quantity::Coordinate(q), offset),
+        (LimitKind::Upper, upper, units[0], Quantity::Coordinate(q), offset),
+        (LimitKind::Velocity, velocity, units[1], Quantity::Velocity(v), 0.0),
+        (LimitKind::Effort, effort, units[2], Quantity::Torque(v), 0.0),
     ];
     let finite = all.into_iter().filter(|(_, limit, ..)| limit.is_finite());
     let name = &model.joint_names()[joint];
-    let watched = finite.map(|(kind, limit, unit, column, offset)| Watched {
+    let watched = finite.map(|(kind, limit, unit, quantity, offset)| Watched {
         joint: name.clone(),
         kind,
         limit,
         unit,
-        column,
+        column: position(observables, quantity),
         ratio,
         offset,
         passed: None,

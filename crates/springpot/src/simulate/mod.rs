@@ -40,6 +40,7 @@ use crate::element::Element;
 pub use crate::model::FRICTION_SPEED;
 use crate::model::{Model, Site};
 use crate::motion::Motion;
+use crate::observe::Table;
 use checkpoint::Pace;
 use std::sync::atomic::AtomicBool;
 
@@ -136,6 +137,14 @@ pub trait Rows {
 impl<F: FnMut(&[f64]) -> std::io::Result<()>> Rows for F {
     fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
         self(values)
+    }
+}
+
+/// Keeps every row.
+impl Rows for Table {
+    fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
+        self.push(values);
+        Ok(())
     }
 }
 

@@ -7,42 +7,9 @@ use crate::element::Element;
 use crate::law::{InputValue, Point};
 use crate::model::Model;
 use crate::motion::Wanted;
+pub(super) use crate::observe::snapshot::{ElementMoment, Moment};
+use crate::observe::{ElementQuantity, Quantity};
 use crate::spatial::Vec3;
-use serde::{Deserialize, Serialize};
-
-/// State of one element at one time.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct ElementMoment {
-    pub(super) length: f64,
-    pub(super) stroke: f64,
-    pub(super) rate: f64,
-    /// l_vec/l.
-    pub(super) direction: Vec3,
-    /// ∂l/∂q_b.
-    pub(super) gradient: Vec<f64>,
-    pub(super) inputs: Vec<InputValue>,
-}
-
-/// State of robot and elements at one time.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Moment {
-    pub(super) t: f64,
-    pub(super) q: Vec<f64>,
-    pub(super) v: Vec<f64>,
-    pub(super) a: Vec<f64>,
-    /// M a + C v + g and joint friction: the actuator forces were there no elements.
-    pub(super) rigid: Vec<f64>,
-    /// Actuator forces that are known beforehand; the others follow from `rigid` and the elements.
-    pub(super) driven: Vec<Option<f64>>,
-    /// Power lost in the joints' damping and friction, W.
-    pub(super) joint_loss: f64,
-    pub(super) kinetic: f64,
-    pub(super) potential: f64,
-    pub(super) elements: Vec<ElementMoment>,
-    pub(super) gripper: [f64; 3],
-    /// Distance of the gripper from the wanted point, where there is one.
-    pub(super) gripper_error: Option<f64>,
-}
 
 /// Scratch of [`System::evaluate`].
 #[derive(Debug)]
@@ -180,11 +147,12 @@ impl System {
     }
 
     fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {
-        for (symbol, values) in [("q", &moment.q), ("v", &moment.v), ("a", &moment.a)] {
-            if let Some(k) = values.iter().position(|x| !x.is_finite()) {
-                let labels = if symbol == "q" { self.model.q_labels() } else { self.model.v_labels() };
-                return Err(RunError::NotFinite { t, what: format!("{symbol}.{}", labels[k].name), value: values[k] });
-            }
+        let q = moment.q.iter().enumerate().map(|(k, x)| (Quantity::Coordinate(k), *x));
+        let v = moment.v.iter().enumerate().map(|(k, x)| (Quantity::Velocity(k), *x));
+        let a = moment.a.iter().enumerate().map(|(k, x)| (Quantity::Acceleration(k), *x));
+        if let Some((quantity, value)) = q.chain(v).chain(a).find(|(_, x)| !x.is_finite()) {
+            let what = self.observables().named(quantity).to_string();
+            return Err(RunError::NotFinite { t, what, value });
         }
         Ok(())
     }
@@ -194,7 +162,7 @@ impl Element {
     pub(super) fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {
         for (row, input) in self.entry.inputs.iter().zip(inputs) {
             if !input.value.is_finite() {
-                let what = format!("{}.{}", self.name, row.name);
+                let what = Quantity::Element(&*self.name, ElementQuantity::InputValue(&*row.name)).to_string();
                 return Err(RunError::NotFinite { t, what, value: input.value });
             }
             if !row.range.contains(input.value) {

@@ -3,6 +3,7 @@
 use crate::support::robots::{self, ARM};
 use crate::support::run_system;
 pub(crate) use crate::support::{robots::strut, system};
+use springpot::observe::Quantity;
 use springpot::simulate::fixed::{Loop, MemorySettings, Method};
 use springpot::simulate::{FixedStep, Report, RowTimes, RunError, Settings, System};
 
@@ -64,9 +65,11 @@ pub(crate) fn rows(system: &System, settings: &Settings) -> (Vec<Vec<f64>>, Repo
 
 /// q and v at `end` with error control, 1e-10.
 pub(crate) fn truth(system: &System, end: f64) -> Vec<f64> {
-    let (rows, _, outcome) = rows(system, &settings(end, &[end], None));
-    outcome.expect("the adaptive run ends");
-    rows[0][1..=system.model.nq() + system.model.nv()].to_vec()
+    let run = run_system(system, &settings(end, &[end], None));
+    assert!(run.error.is_none(), "the adaptive run ends: {:?}", run.error);
+    let q = (0..system.model.nq()).map(Quantity::Coordinate);
+    let state = q.chain((0..system.model.nv()).map(Quantity::Velocity));
+    state.map(|quantity| run.table.value(0, quantity).expect("the row at the end")).collect()
 }
 
 /// Largest difference.

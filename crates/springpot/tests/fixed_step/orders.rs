@@ -1,6 +1,7 @@
 //! Errors against runs with error control, and how they fall with the step.
 
 use crate::loops::*;
+use springpot::observe::{ElementQuantity, Quantity};
 use springpot::simulate::FixedStep;
 use springpot::simulate::fixed::Method;
 
@@ -47,7 +48,7 @@ fn a_singular_start_leaves_order_two_less_alpha() {
 fn forces_of_rows_have_order_two_less_alpha() {
     for alpha in [0.3, 0.5, 0.8] {
         let system = system(&arm(&(thermoviscoelastic(alpha, "caputo") + &free(START))));
-        let force = system.columns().iter().position(|column| column.name == "strut.force").unwrap();
+        let force = system.observables().position(Quantity::Element(0, ElementQuantity::Force)).unwrap();
         let at_end = |by: Option<FixedStep>| {
             let (rows, _, outcome) = rows(&system, &settings(0.5, &[0.5], by));
             outcome.unwrap();

@@ -4,6 +4,7 @@ use crate::support::forward::{at, distance, every, largest};
 use crate::support::{Run, run};
 use springpot::dynamics::{Kinematics, crba};
 use springpot::model::Model;
+use springpot::observe::Quantity;
 use springpot::spatial::{Quaternion, Rotation, Vec3};
 
 /// Two bodies with an element between them, the first of which floats; `motion` is the rest of its motion.
@@ -62,7 +63,10 @@ fn momenta(model: &Model, q: &[f64], v: &[f64]) -> [f64; 6] {
 
 fn states(run: &Run, model: &Model) -> Vec<(Vec<f64>, Vec<f64>)> {
     let (nq, nv) = (model.nq(), model.nv());
-    run.rows.iter().map(|row| (row[1..=nq].to_vec(), row[1 + nq..=nq + nv].to_vec())).collect()
+    let of_row = |k: usize, quantity: fn(usize) -> Quantity, count: usize| -> Vec<f64> {
+        (0..count).map(|i| run.table.value(k, quantity(i)).expect("a column")).collect()
+    };
+    (0..run.table.len()).map(|k| (of_row(k, Quantity::Coordinate, nq), of_row(k, Quantity::Velocity, nv))).collect()
 }
 
 #[test]

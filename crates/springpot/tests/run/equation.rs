@@ -43,20 +43,18 @@ fn check(what: &str, cases: &Cases, case: usize) -> usize {
         false => SHARES.map(|share| share * settings.end).to_vec(),
     };
     let rows_at = if of_rows { settings.rows.clone() } else { RowTimes::Times(times.as_slice().into()) };
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    let mut keep = |row: &[f64]| -> std::io::Result<()> {
-        rows.push(row.to_vec());
-        Ok(())
-    };
-    let (_, outcome) = simulate(&system, &Settings { rows: rows_at, ..settings.clone() }, &mut keep, &Stop::new(false));
+    let mut table = system.table();
+    let (_, outcome) =
+        simulate(&system, &Settings { rows: rows_at, ..settings.clone() }, &mut table, &Stop::new(false));
     outcome.unwrap();
 
-    let columns: Vec<String> = system.columns().into_iter().map(|column| column.name).collect();
+    let columns: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
+    let written = table.column("t").unwrap();
     let names = |labels: Vec<springpot::model::Label>| labels.into_iter().map(|label| label.name).collect::<Vec<_>>();
     let (labels, q_labels) = (names(system.model.v_labels()), names(system.model.q_labels()));
     let mut compared = 0;
     for t in times {
-        let row = rows.iter().find(|row| row[0] == t).unwrap();
+        let row = table.row(written.iter().position(|at| *at == t).unwrap());
         let equation = system.equation(&settings, t).unwrap();
         for (name, value) in told(&equation, &labels, &q_labels) {
             let expected = row[columns.iter().position(|column| *column == name).unwrap()];

@@ -417,16 +417,12 @@ output_step = 0.5
     let scenario = springpot_scenario::Scenario::parse(text, "user.toml", "").unwrap();
     assert!(scenario.cases(&Catalog::standard()).is_err());
     let plan = scenario.cases(&replaced).unwrap().plan(0).unwrap();
-    let mut forces = Vec::new();
     let system = plan.system();
-    let force = system.columns().iter().position(|c| c.name == "e.force").unwrap();
-    let mut rows = |row: &[f64]| -> std::io::Result<()> {
-        forces.push(row[force]);
-        Ok(())
-    };
+    let mut table = system.table();
     let (report, outcome) =
-        springpot::simulate::along(&system, &plan.settings, &mut rows, &springpot::simulate::Stop::new(false));
+        springpot::simulate::along(&system, &plan.settings, &mut table, &springpot::simulate::Stop::new(false));
     outcome.unwrap();
+    let forces = table.column("e.force").unwrap();
     assert_eq!(report.modes, 0);
     assert!(forces.iter().zip([0.0, 50.0, 100.0]).all(|(a, b)| (a - b).abs() < 1e-10), "{forces:?}");
 }

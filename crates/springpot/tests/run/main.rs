@@ -12,6 +12,7 @@ mod gripper_singular;
 mod kinks;
 mod law;
 mod memory;
+mod observables;
 mod rubbing;
 mod slider;
 mod slider_drift;

@@ -8,6 +8,7 @@ pub(crate) mod robots;
 pub(crate) mod truth;
 
 use springpot::law::Catalog;
+use springpot::observe::Table;
 use springpot::simulate::{Report, RunError, Settings, Stop, System, run as simulate};
 use springpot_scenario::{Cases, Scenario};
 use std::path::PathBuf;
@@ -15,6 +16,7 @@ use std::path::PathBuf;
 /// Rows of one run, by column.
 #[derive(Debug)]
 pub(crate) struct Run {
+    pub(crate) table: Table,
     pub(crate) names: Vec<String>,
     pub(crate) rows: Vec<Vec<f64>>,
     pub(crate) report: Report,
@@ -22,14 +24,8 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    fn index(&self, name: &str) -> usize {
-        let found = self.names.iter().position(|n| n == name);
-        found.unwrap_or_else(|| panic!("no column {name} among {:?}", self.names))
-    }
-
     pub(crate) fn column(&self, name: &str) -> Vec<f64> {
-        let index = self.index(name);
-        self.rows.iter().map(|row| row[index]).collect()
+        self.table.column(name).unwrap_or_else(|| panic!("no column {name} among {:?}", self.names))
     }
 
     pub(crate) fn t(&self) -> Vec<f64> {
@@ -67,14 +63,11 @@ pub(crate) fn system(text: &str) -> System {
 
 /// Runs a system; the run may fail.
 pub(crate) fn run_system(system: &System, settings: &Settings) -> Run {
-    let mut rows = Vec::new();
-    let mut keep = |row: &[f64]| -> std::io::Result<()> {
-        rows.push(row.to_vec());
-        Ok(())
-    };
-    let (report, outcome) = simulate(system, settings, &mut keep, &Stop::new(false));
-    let names = system.columns().into_iter().map(|column| column.name).collect();
-    Run { names, rows, report, error: outcome.err() }
+    let mut table = system.table();
+    let (report, outcome) = simulate(system, settings, &mut table, &Stop::new(false));
+    let names = table.columns().iter().map(|column| column.name.clone()).collect();
+    let rows = table.rows().map(<[f64]>::to_vec).collect();
+    Run { table, names, rows, report, error: outcome.err() }
 }
 
 /// Runs one case; it may fail.

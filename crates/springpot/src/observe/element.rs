@@ -1,0 +1,156 @@
+//! What can be observed of an element: names, units, words and values.
+
+use super::observables::{FORCES, ObservedElement, of_measure};
+use super::snapshot::{ElementMoment, ElementRow};
+use super::symbol::at_joint;
+use crate::model::Label;
+use std::fmt;
+
+/// A number of an element. `Id` as in [`super::Quantity`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ElementQuantity<Id = usize> {
+    /// l, m.
+    Length,
+    /// x = l − l0, m.
+    Stroke,
+    /// x', m/s.
+    Rate,
+    /// D^alpha x, m/s^alpha.
+    Derivative,
+    /// F, N, positive in tension.
+    Force,
+    /// Q_b = −F·∂l/∂q_b of a velocity b: N·m or N.
+    GeneralizedForce(Id),
+    /// Energy stored, J; unknown where the derivative comes from a named scheme.
+    Stored,
+    /// Energy dissipated since t = 0, J; unknown where `Stored` is.
+    Dissipated,
+    /// Energy supplied by the inputs since t = 0, J.
+    Input,
+    /// Value of an input, in the order of its law.
+    InputValue(Id),
+}
+
+impl<Id> ElementQuantity<Id> {
+    /// Those that come before the generalized forces in a row.
+    pub(super) const BEFORE_FORCES: [Self; 5] = [Self::Length, Self::Stroke, Self::Rate, Self::Derivative, Self::Force];
+    /// Those that come between the generalized forces and the inputs.
+    pub(super) const BEFORE_INPUTS: [Self; 3] = [Self::Stored, Self::Dissipated, Self::Input];
+}
+
+impl ElementQuantity {
+    /// Its value in a row, NaN where unknown.
+    pub(super) fn value(self, row: &ElementRow, state: &ElementMoment) -> f64 {
+        let ElementRow { observation, dissipated, input } = row;
+        match self {
+            Self::Length => state.length,
+            Self::Stroke => state.stroke,
+            Self::Rate => state.rate,
+            Self::Derivative => observation.derivative,
+            Self::Force => observation.force(),
+            Self::GeneralizedForce(k) => generalized_force(row, state, k),
+            Self::Stored => observation.stored.unwrap_or(f64::NAN),
+            Self::Dissipated => observation.stored.map_or(f64::NAN, |_| *dissipated),
+            Self::Input => *input,
+            Self::InputValue(i) => state.inputs.get(i).map_or(f64::NAN, |input| input.value),
+        }
+    }
+
+    /// Its unit.
+    pub(super) fn unit<'a>(self, element: &'a ObservedElement, velocities: &[Label]) -> &'a str {
+        match self {
+            Self::Length | Self::Stroke => "m",
+            Self::Rate => "m/s",
+            Self::Derivative => element.derivative_unit,
+            Self::Force => "N",
+            Self::GeneralizedForce(k) => of_measure(&velocities[k], FORCES),
+            Self::Stored | Self::Dissipated | Self::Input => "J",
+            Self::InputValue(i) => &element.entry.inputs[i].unit,
+        }
+    }
+
+    /// The same with names in place of indices.
+    pub(super) fn named<'a>(self, element: &'a ObservedElement, velocities: &'a [Label]) -> ElementQuantity<&'a str> {
+        match self {
+            Self::Length => ElementQuantity::Length,
+            Self::Stroke => ElementQuantity::Stroke,
+            Self::Rate => ElementQuantity::Rate,
+            Self::Derivative => ElementQuantity::Derivative,
+            Self::Force => ElementQuantity::Force,
+            Self::GeneralizedForce(k) => ElementQuantity::GeneralizedForce(&velocities[k].name),
+            Self::Stored => ElementQuantity::Stored,
+            Self::Dissipated => ElementQuantity::Dissipated,
+            Self::Input => ElementQuantity::Input,
+            Self::InputValue(i) => ElementQuantity::InputValue(&element.entry.inputs[i].name),
+        }
+    }
+}
+
+impl<'a> ElementQuantity<&'a str> {
+    /// From what follows the element's name in a column.
+    pub(super) fn read(key: &'a str) -> Option<Self> {
+        match key.split_once('.') {
+            Some(("Q", velocity)) => Some(Self::GeneralizedForce(velocity)),
+            Some(_) => None,
+            None => {
+                let mut known = Self::BEFORE_FORCES.into_iter().chain(Self::BEFORE_INPUTS);
+                Some(known.find(|quantity| quantity.to_string() == key).unwrap_or(Self::InputValue(key)))
+            }
+        }
+    }
+
+    /// What it holds, in a few words.
+    pub(super) fn meaning(&self, element: &str) -> String {
+        match self {
+            Self::Length => format!("length of {element}"),
+            Self::Stroke => format!("length of {element} less its rest length"),
+            Self::Rate => format!("rate of the stroke of {element}"),
+            Self::Derivative => format!("fractional derivative of the stroke of {element}"),
+            Self::Force => format!("force of {element}, positive in tension"),
+            Self::GeneralizedForce(velocity) => format!("generalized force of {element} on {velocity}"),
+            Self::Stored => format!("energy stored in {element}"),
+            Self::Dissipated => format!("energy dissipated in {element} since t = 0"),
+            Self::Input => format!("energy supplied by the inputs of {element} since t = 0"),
+            Self::InputValue(input) => format!("{input} of {element}"),
+        }
+    }
+
+    /// What figures call it.
+    pub(super) fn symbol(&self, element: &str) -> String {
+        match self {
+            Self::Length => format!("length l of {element}"),
+            Self::Stroke => format!("stroke x of {element}"),
+            Self::Rate => format!("stroke rate of {element}"),
+            Self::Derivative => format!("Dᵅ x of {element}"),
+            Self::Force => format!("force F of {element}"),
+            Self::GeneralizedForce(velocity) => format!("Q{} of {element}", at_joint(velocity)),
+            Self::Stored => format!("energy stored in {element}"),
+            Self::Dissipated => format!("energy dissipated in {element}"),
+            Self::Input => format!("energy supplied to {element}"),
+            Self::InputValue(input) => format!("{input} of {element}"),
+        }
+    }
+}
+
+/// What follows the element's name in the column.
+impl fmt::Display for ElementQuantity<&str> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Length => "length",
+            Self::Stroke => "stroke",
+            Self::Rate => "rate",
+            Self::Derivative => "derivative",
+            Self::Force => "force",
+            Self::GeneralizedForce(velocity) => return write!(f, "Q.{velocity}"),
+            Self::Stored => "stored",
+            Self::Dissipated => "dissipated",
+            Self::Input => "input",
+            Self::InputValue(input) => input,
+        })
+    }
+}
+
+/// Q_b = −F·∂l/∂q_b.
+pub(super) fn generalized_force(row: &ElementRow, state: &ElementMoment, b: usize) -> f64 {
+    -row.observation.force() * state.gradient[b]
+}

@@ -1,0 +1,17 @@
+//! What can be observed of a system: one enum of quantities, from which columns, rows, limits and labels derive.
+//!
+//! A [`Quantity`] is one number of a row. It has a name (`strut.Q.q2`), a unit, a symbol and a meaning, and [`Observables`] lists those of a
+//! system in the order of its rows. A [`Table`] keeps the rows of a run in memory, its columns by name or by quantity.
+
+mod element;
+mod observables;
+mod quantity;
+pub(crate) mod snapshot;
+pub mod symbol;
+mod table;
+
+pub use element::ElementQuantity;
+pub use observables::Observables;
+pub(crate) use observables::Shape;
+pub use quantity::{Axis, EnergyQuantity, Quantity};
+pub use table::Table;
