@@ -3,8 +3,8 @@
 //! `cargo run --release -p springpot --example network` prints the force of the element and a coordinate at every tenth of a second, and the
 //! force of the same law built the other way round; the last number on stderr is that of the inner steps.
 
-use springpot::element::Element;
 use springpot::law::{Catalog, Derivative, Network};
+use springpot::observe::Table;
 use springpot::simulate::{Report, Settings, Stop, System, run};
 use springpot_scenario::Scenario;
 
@@ -43,37 +43,30 @@ end = "10 s"
 output_step = "100 ms"
 "#;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failure> {
     let plan = Scenario::parse(SCENARIO, "network.toml", "")?.cases(&Catalog::standard())?.plan(0)?;
     let parts = [Network::springpot(50.0, 0.3, Derivative::Caputo), Network::springpot(20.0, 0.7, Derivative::Caputo)];
     let [first, second] = parts.clone();
-    let (report, rows) = forces(plan.system(), &plan.settings, Network::parallel(parts))?;
-    let (_, swapped) = forces(plan.system(), &plan.settings, Network::parallel([second, first]))?;
+    let (report, table) = with_law(plan.system(), &plan.settings, Network::parallel(parts))?;
+    let (_, swapped) = with_law(plan.system(), &plan.settings, Network::parallel([second, first]))?;
 
+    let [t, force, q2] = ["t", "strut.force", "q.q2"].map(|name| table.column(name).expect("a column"));
+    let other = swapped.column("strut.force").expect("a column");
     println!("t,force,q2,swapped");
-    for ([t, force, q2], [_, other, _]) in rows.iter().zip(&swapped) {
-        println!("{t},{force:e},{q2:e},{other:e}");
+    for k in 0..t.len() {
+        println!("{},{:e},{:e},{:e}", t[k], force[k], q2[k], other[k]);
     }
     eprintln!("inner steps: {}", report.steps);
     Ok(())
 }
 
-/// t, force and q2 of every row, where the element has this law.
-fn forces(
-    mut system: System,
-    settings: &Settings,
-    law: Network,
-) -> Result<(Report, Vec<[f64; 3]>), Box<dyn std::error::Error>> {
-    let strut: &mut Element = &mut system.elements[0];
-    strut.law = law;
-    let names: Vec<String> = system.columns().into_iter().map(|column| column.name).collect();
-    let at = ["t", "strut.force", "q.q2"].map(|name| names.iter().position(|column| column == name).expect("a column"));
-    let mut kept = Vec::new();
-    let mut keep = |row: &[f64]| -> std::io::Result<()> {
-        kept.push(at.map(|k| row[k]));
-        Ok(())
-    };
-    let (report, outcome) = run(&system, settings, &mut keep, &Stop::new(false));
+/// A run of the system whose element has this law.
+fn with_law(mut system: System, settings: &Settings, law: Network) -> Result<(Report, Table), Failure> {
+    system.elements[0].law = law;
+    let mut table = system.table();
+    let (report, outcome) = run(&system, settings, &mut table, &Stop::new(false));
     outcome?;
-    Ok((report, kept))
+    Ok((report, table))
 }

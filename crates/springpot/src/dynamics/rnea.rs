@@ -18,7 +18,7 @@ pub fn rnea_into<T: Scalar>(
     tau: &mut [T],
 ) {
     let (v, a) = (&v[..model.nv()], &a[..model.nv()]);
-    inverse_dynamics(model, q, v, Some(a), pairs, None, workspace, tau);
+    inverse_dynamics(model, [q, v], Some(a), pairs, None, workspace, tau);
 }
 
 /// [`rnea_into`] where the `kinematics` at `q` (nq) and v are at hand: nothing of them is worked out again.
@@ -32,7 +32,7 @@ pub fn rnea_at_into<T: Scalar>(
     tau: &mut [T],
 ) {
     let (v, a) = (kinematics.joint_velocities(), &a[..model.nv()]);
-    inverse_dynamics(model, q, v, Some(a), pairs, Some(kinematics), workspace, tau);
+    inverse_dynamics(model, [q, v], Some(a), pairs, Some(kinematics), workspace, tau);
 }
 
 /// Nonlinear effects C(q, v) v + g(q) − ΣQ, N·m or N: what the actuators hold without acceleration, [`rnea_into`] at a = 0.
@@ -44,7 +44,7 @@ pub fn nonlinear_effects_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     tau: &mut [T],
 ) {
-    inverse_dynamics(model, q, &v[..model.nv()], None, pairs, None, workspace, tau);
+    inverse_dynamics(model, [q, &v[..model.nv()]], None, pairs, None, workspace, tau);
 }
 
 /// [`nonlinear_effects_into`], allocating.
@@ -57,8 +57,7 @@ pub fn nonlinear_effects<T: Scalar>(model: &Model, q: &[T], v: &[T], pairs: &[Pa
 #[inline]
 fn inverse_dynamics<T: Scalar>(
     model: &Model,
-    q: &[T],
-    v: &[T],
+    [q, v]: [&[T]; 2],
     a: Option<&[T]>,
     pairs: &[PairForce<T>],
     kinematics: Option<&Kinematics<T>>,
