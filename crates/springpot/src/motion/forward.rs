@@ -1,4 +1,4 @@
-//! Robots that move by themselves: what they start from, and what drives their joints.
+//! Forward dynamics: what robots start from, and what drives their joints.
 
 use super::prescribed::JointPath;
 use crate::model::Model;

@@ -1,6 +1,6 @@
 //! The state of a run between two steps: all that it takes to go on, and to end with the same bits.
 
-use super::book::Books;
+use super::recorder::RecorderState;
 use super::{System, along, fixed, forward};
 use serde::{Deserialize, Serialize};
 
@@ -11,31 +11,31 @@ use serde::{Deserialize, Serialize};
 /// same machine. Numbers that are not finite may be part of it, so that formats which know none (JSON) may not hold it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Checkpoint {
-    pub(super) books: Books,
-    pub(super) pace: Pace,
+    pub(super) recorder: RecorderState,
+    pub(super) stepper_state: StepperState,
 }
 
 /// What a time loop takes over from the steps before.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) enum Pace {
-    Along(along::Pace),
-    Forward(Box<forward::Pace>),
-    Fixed(Box<fixed::Pace>),
+pub(super) enum StepperState {
+    Along(along::StepperState),
+    Forward(Box<forward::StepperState>),
+    Fixed(Box<fixed::StepperState>),
 }
 
 impl Checkpoint {
     /// The time at which it was taken, s: rows up to it are written, later ones are not.
     pub fn t(&self) -> f64 {
-        self.books.moment.t
+        self.recorder.moment.t
     }
 
     /// How many rows are written.
     pub fn rows(&self) -> usize {
-        self.books.next_row
+        self.recorder.next_row
     }
 
     /// Whether it can be one of `system`, by the numbers of its elements and joints.
     pub(super) fn fits(&self, system: &System) -> bool {
-        self.books.fit(system.elements.len(), system.model.nq(), system.model.nv())
+        self.recorder.fit(system.elements.len(), system.model.nq(), system.model.nv())
     }
 }

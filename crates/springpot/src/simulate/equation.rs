@@ -91,7 +91,7 @@ pub enum EquationError {
 
 impl System {
     /// The equations of motion at time `t`, the forces with the whole memory of a run until then: the numbers are those of the row
-    /// that a run with these `settings` writes at that time; of a robot that moves by itself, at the times of its rows, and elsewhere
+    /// that a run with these `settings` writes at that time; of forward dynamics, at the times of its rows, and elsewhere
     /// within the tolerance.
     ///
     /// # Errors

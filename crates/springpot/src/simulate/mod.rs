@@ -6,7 +6,6 @@
 //! steps. The [`Report`] tells steps, rows, the time reached, and the residual of the energy balance.
 
 mod along;
-mod book;
 mod checkpoint;
 mod control;
 mod coulomb;
@@ -20,6 +19,7 @@ mod limits;
 mod moment;
 mod on_grid;
 mod pose;
+mod recorder;
 mod resistance;
 mod row;
 mod row_times;
@@ -41,7 +41,7 @@ pub use crate::model::FRICTION_SPEED;
 use crate::model::{Model, Site};
 use crate::motion::Motion;
 use crate::observe::Table;
-use checkpoint::Pace;
+use checkpoint::StepperState;
 use std::sync::atomic::AtomicBool;
 
 /// A robot, its elements and its motion.
@@ -79,7 +79,7 @@ pub struct Settings {
     pub max_step: Option<f64>,
     /// Number of inner steps allowed; `None`: ten million, and a hundred more for every switch of the signals.
     pub max_steps: Option<u64>,
-    /// Steps of one size, for robots that move by themselves; `None`: the run chooses its steps.
+    /// Steps of one size, of forward dynamics; `None`: the run chooses its steps.
     pub fixed_step: Option<FixedStep>,
 }
 
@@ -90,7 +90,7 @@ pub struct Report {
     pub steps: u64,
     /// Inner steps tried and not kept.
     pub rejected_steps: u64,
-    /// Newton iterations of a robot that moves by itself.
+    /// Newton iterations of forward dynamics.
     pub newton_iterations: Option<u64>,
     /// Rows written.
     pub rows: u64,
@@ -167,16 +167,16 @@ pub fn resume(
     stop: &Stop,
 ) -> (Report, Result<(), RunError>) {
     let fits = checkpoint.fits(system);
-    let Checkpoint { books, pace } = checkpoint;
-    match (&system.motion, settings.fixed_step, pace) {
-        (Motion::Prescribed(_) | Motion::GripperPath(_), _, Pace::Along(pace)) if fits => {
-            along::resume(system, settings, (books, pace), rows, stop)
+    let Checkpoint { recorder, stepper_state } = checkpoint;
+    match (&system.motion, settings.fixed_step, stepper_state) {
+        (Motion::Prescribed(_) | Motion::GripperPath(_), _, StepperState::Along(stepper_state)) if fits => {
+            along::resume(system, settings, (recorder, stepper_state), rows, stop)
         }
-        (Motion::Forward(motion), None, Pace::Forward(pace)) if fits => {
-            forward::resume(system, motion, settings, (books, *pace), rows, stop)
+        (Motion::Forward(motion), None, StepperState::Forward(stepper_state)) if fits => {
+            forward::resume(system, motion, settings, (recorder, *stepper_state), rows, stop)
         }
-        (Motion::Forward(motion), Some(by), Pace::Fixed(pace)) if fits => {
-            fixed::resume(system, (motion, by), settings, (books, *pace), rows, stop)
+        (Motion::Forward(motion), Some(by), StepperState::Fixed(stepper_state)) if fits => {
+            fixed::resume(system, (motion, by), settings, (recorder, *stepper_state), rows, stop)
         }
         _ => (Report::default(), Err(RunError::OtherRun)),
     }

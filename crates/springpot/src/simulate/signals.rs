@@ -1,6 +1,6 @@
 //! The signals that drive a run, and what they ask of its steps.
 
-use super::book::Book;
+use super::recorder::Recorder;
 use super::{RunError, Settings, System};
 use crate::motion::{Drive, Motion};
 use crate::signal::agenda::FINEST;
@@ -119,7 +119,7 @@ impl System {
     }
 }
 
-impl Book<'_> {
+impl Recorder<'_> {
     /// Takes in what was seen of the signals.
     pub(super) fn take_agenda(&mut self, agenda: &Agenda) {
         self.report.switches = Some(agenda.switches());

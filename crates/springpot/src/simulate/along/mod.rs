@@ -9,10 +9,10 @@ mod reversal;
 
 use crate::fractional::step::RADAU_NODES;
 use crate::signal::{self, Agenda};
-use crate::simulate::book::{Book, Books, target};
 use crate::simulate::control::StepError;
 use crate::simulate::moment::{Moment, Scratch};
 use crate::simulate::on_grid;
+use crate::simulate::recorder::{Recorder, RecorderState, target};
 use crate::simulate::{self, Report, Rows, RunError, Settings, Stop, System};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
@@ -35,41 +35,41 @@ const NEAR: f64 = 1e-3;
 pub fn along(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
     let mut run = Run::new(system, settings, rows, stop);
     let outcome = run.look_ahead().and_then(|()| run.start()).and_then(|first| run.march(0.0, first));
-    let outcome = outcome.and_then(|()| run.book.verdict());
-    (run.book.finish(), outcome)
+    let outcome = outcome.and_then(|()| run.recorder.verdict());
+    (run.recorder.finish(), outcome)
 }
 
 /// Goes on with a run from what was kept of it.
 pub(super) fn resume(
     system: &System,
     settings: &Settings,
-    (books, pace): (Books, Pace),
+    (recorder, stepper_state): (RecorderState, StepperState),
     rows: &mut dyn Rows,
     stop: &Stop,
 ) -> (Report, Result<(), RunError>) {
     let mut run = Run::new(system, settings, rows, stop);
-    let Pace { t, h, energy_floor } = pace;
+    let StepperState { t, h, energy_floor } = stepper_state;
     run.energy_floor = energy_floor;
-    run.book.restore(books);
+    run.recorder.restore(recorder);
     let outcome = run.look_ahead().and_then(|()| run.differentiate_grid()).and_then(|()| run.march(t, h));
-    let outcome = outcome.and_then(|()| run.book.verdict());
-    (run.book.finish(), outcome)
+    let outcome = outcome.and_then(|()| run.recorder.verdict());
+    (run.recorder.finish(), outcome)
 }
 
 /// What the next step takes over from those before.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub(super) struct Pace {
+pub(super) struct StepperState {
     t: f64,
     h: f64,
     energy_floor: f64,
 }
 
 struct Run<'a> {
-    book: Book<'a>,
+    recorder: Recorder<'a>,
     stop: &'a Stop,
     /// What the signals do.
     agenda: Agenda,
-    /// A lower bound of the energy turned over, from a glance at the motion.
+    /// A lower bound of the energy turned over, estimated beforehand.
     energy_floor: f64,
     /// Velocities at which friction sticks: their power has a kink where they turn round.
     rubbing: Vec<usize>,
@@ -78,7 +78,7 @@ struct Run<'a> {
 impl<'a> Run<'a> {
     fn new(system: &'a System, settings: &'a Settings, rows: &'a mut dyn Rows, stop: &'a Stop) -> Self {
         Self {
-            book: Book::new(system, settings, rows),
+            recorder: Recorder::new(system, settings, rows),
             stop,
             agenda: Agenda::default(),
             energy_floor: 0.0,
@@ -87,47 +87,52 @@ impl<'a> Run<'a> {
     }
 
     fn longest_step(&self) -> f64 {
-        self.book.settings.max_step.unwrap_or(self.book.settings.end * LONGEST_STEP).min(self.book.settings.end)
+        self.recorder
+            .settings
+            .max_step
+            .unwrap_or(self.recorder.settings.end * LONGEST_STEP)
+            .min(self.recorder.settings.end)
     }
 
     fn first_step(&self) -> f64 {
-        let first = self.book.settings.first_step.unwrap_or(self.longest_step() * FIRST_STEP);
-        self.agenda.reach(0.0, first.min(self.book.settings.end))
+        let first = self.recorder.settings.first_step.unwrap_or(self.longest_step() * FIRST_STEP);
+        self.agenda.reach(0.0, first.min(self.recorder.settings.end))
     }
 
     /// What the signals will do.
     fn look_ahead(&mut self) -> Result<(), RunError> {
-        self.agenda = self.book.system.agenda(self.book.settings, self.longest_step(), self.stop)?;
-        self.book.take_agenda(&self.agenda);
+        self.agenda = self.recorder.system.agenda(self.recorder.settings, self.longest_step(), self.stop)?;
+        self.recorder.take_agenda(&self.agenda);
         Ok(())
     }
 
     /// The first moment and its row; returns the first step.
     fn start(&mut self) -> Result<f64, RunError> {
-        let (system, first) = (self.book.system, self.first_step());
-        let [moment, ..] = &mut self.book.moments;
-        system.evaluate(0.0, 0.0, &mut self.book.scratch, moment)?;
+        let (system, first) = (self.recorder.system, self.first_step());
+        let [moment, ..] = &mut self.recorder.moments;
+        system.evaluate(0.0, 0.0, &mut self.recorder.scratch, moment)?;
         self.differentiate_grid()?;
-        self.energy_floor = self.glance();
-        self.book.open(RADAU_NODES[0] * first)?;
+        self.energy_floor = self.estimate_energy_scale();
+        self.recorder.open(RADAU_NODES[0] * first)?;
         Ok(first)
     }
 
     /// The derivatives of elements with named schemes, at all rows.
     fn differentiate_grid(&mut self) -> Result<(), RunError> {
-        self.book.grid = on_grid::derivatives(self.book.system, &self.book.settings.rows, &mut self.book.scratch)?;
+        self.recorder.grid =
+            on_grid::derivatives(self.recorder.system, &self.recorder.settings.rows, &mut self.recorder.scratch)?;
         Ok(())
     }
 
-    /// A lower bound of the energy that the motion turns over, from 65 glances at it.
-    fn glance(&mut self) -> f64 {
-        let mut moment = Moment::new(self.book.system);
+    /// A lower bound of the energy that the motion turns over, from 65 samples of it.
+    fn estimate_energy_scale(&mut self) -> f64 {
+        let mut moment = Moment::new(self.recorder.system);
         let (mut potential, mut kinetic) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0f64);
-        let mut strokes = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.book.system.elements.len()];
-        let mut forces = vec![0.0f64; self.book.system.elements.len()];
+        let mut strokes = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.recorder.system.elements.len()];
+        let mut forces = vec![0.0f64; self.recorder.system.elements.len()];
         for k in 0..=64 {
-            let t = self.book.settings.end * k as f64 / 64.0;
-            if self.book.system.evaluate(t, t, &mut self.book.scratch, &mut moment).is_err() {
+            let t = self.recorder.settings.end * k as f64 / 64.0;
+            if self.recorder.system.evaluate(t, t, &mut self.recorder.scratch, &mut moment).is_err() {
                 break;
             }
             let widen = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
@@ -135,9 +140,9 @@ impl<'a> Run<'a> {
             widen(&mut potential, moment.potential);
             for (e, state) in moment.elements.iter().enumerate() {
                 widen(&mut strokes[e], state.stroke);
-                let element = &self.book.system.elements[e];
+                let element = &self.recorder.system.elements[e];
                 if let Ok(law) = element.begin(element.rest_length, &state.inputs) {
-                    let force = element.law.estimate(&state.point(t), &law, 1.0 / self.book.settings.end);
+                    let force = element.law.estimate(&state.point(t), &law, 1.0 / self.recorder.settings.end);
                     forces[e] = forces[e].max(force.abs());
                 }
             }
@@ -148,18 +153,18 @@ impl<'a> Run<'a> {
 
     /// Takes step after step from t on, the first of size h.
     fn march(&mut self, mut t: f64, mut h: f64) -> Result<(), RunError> {
-        let end = self.book.settings.end;
-        let limit = self.book.settings.step_limit(self.agenda.switches());
+        let end = self.recorder.settings.end;
+        let limit = self.recorder.settings.step_limit(self.agenda.switches());
         while t < end {
             let (stopped, energy_floor) = (self.stop.load(Ordering::Relaxed), self.energy_floor);
-            self.book.keep(t, stopped, || simulate::Pace::Along(Pace { t, h, energy_floor }))?;
+            self.recorder.keep(t, stopped, || simulate::StepperState::Along(StepperState { t, h, energy_floor }))?;
             if stopped {
                 return Err(RunError::Interrupted { t });
             }
-            if self.book.report.steps >= limit {
-                return Err(RunError::TooManySteps { t, limit: self.book.report.steps });
+            if self.recorder.report.steps >= limit {
+                return Err(RunError::TooManySteps { t, limit: self.recorder.report.steps });
             }
-            if t == 0.0 && self.book.system.turns_at(t) {
+            if t == 0.0 && self.recorder.system.turns_at(t) {
                 let sides = self.look_across(t, f64::EPSILON * f64::EPSILON * end)?;
                 t = self.cross(sides)?;
                 continue;
@@ -173,7 +178,7 @@ impl<'a> Run<'a> {
                 continue;
             }
             let stop_at = stop.map_or(end, |stop| stop.before);
-            let reach = self.book.system.motion.reach(t, self.agenda.reach(t, h));
+            let reach = self.recorder.system.motion.reach(t, self.agenda.reach(t, h));
             let to = target(t, reach, stop_at);
             // Only one side of a kink belongs to the step.
             let far_side = stop.filter(|_| to == stop_at).and_then(|stop| stop.after);
@@ -187,7 +192,7 @@ impl<'a> Run<'a> {
                 error = self.attempt(t, to, on_break)?;
             }
             if !error.accepted() {
-                self.book.report.rejected_steps += 1;
+                self.recorder.report.rejected_steps += 1;
                 h = size * error.factor().min(0.7);
                 if h < SHORTEST_STEP * end {
                     return Err(self.step_too_small(t, size, &error));
@@ -199,17 +204,17 @@ impl<'a> Run<'a> {
             let mut place = |system: &System, scratch: &mut Scratch, at: f64, _: f64, moment: &mut Moment| {
                 system.evaluate(at, at, scratch, moment)
             };
-            self.book.emit_rows(t, to, on_break, &mut place)?;
-            self.book.commit(size);
-            self.book.report.steps += 1;
+            self.recorder.emit_rows(t, to, on_break, &mut place)?;
+            self.recorder.commit(size);
+            self.recorder.report.steps += 1;
             // A step cut short by a stop says nothing against the size chosen before.
             h = (size * error.factor()).max(if size < h { h } else { 0.0 }).min(self.longest_step());
             t = to;
             if let Some(sides) = sides {
                 t = self.cross(sides)?;
             } else if on_break {
-                let [moment, ..] = &mut self.book.moments;
-                self.book.system.evaluate(t, t, &mut self.book.scratch, moment)?;
+                let [moment, ..] = &mut self.recorder.moments;
+                self.recorder.system.evaluate(t, t, &mut self.recorder.scratch, moment)?;
             }
         }
         Ok(())
@@ -218,12 +223,12 @@ impl<'a> Run<'a> {
     fn step_too_small(&self, t: f64, h: f64, error: &StepError) -> RunError {
         // At the limit of its reach the robot's rates are infinite, so that the steps shrink before the path ends.
         if let Some(failure) =
-            self.book.system.motion.failure().filter(|failure| failure.t() - t < NEAR * self.book.settings.end)
+            self.recorder.system.motion.failure().filter(|failure| failure.t() - t < NEAR * self.recorder.settings.end)
         {
             return failure.into();
         }
         let subject = match error.element {
-            Some(e) if error.memory >= error.energy => format!("element \"{}\"", self.book.system.elements[e].name),
+            Some(e) if error.memory >= error.energy => format!("element \"{}\"", self.recorder.system.elements[e].name),
             _ => "the energy ledger".into(),
         };
         RunError::StepTooSmall { t, h, error: error.worst(), subject }

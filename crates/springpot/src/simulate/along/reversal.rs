@@ -26,7 +26,7 @@ impl Run<'_> {
         let mut first: Option<f64> = None;
         for at in 0..self.rubbing.len() {
             let k = self.rubbing[at];
-            let values: [f64; MAX_NODES + 1] = std::array::from_fn(|node| self.book.moments[node].v[k]);
+            let values: [f64; MAX_NODES + 1] = std::array::from_fn(|node| self.recorder.moments[node].v[k]);
             let largest = values.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
             let cubic: [f64; 4] =
                 std::array::from_fn(|p| (0..=MAX_NODES).map(|node| lagrange_row(node)[p] * values[node]).sum());
@@ -37,8 +37,8 @@ impl Run<'_> {
             }
             let Some(near) = first_zero(|theta| sign * foreseen(theta.max(EARLY))) else { continue };
             // The velocity itself, from a place before the zero to one behind it.
-            let system = self.book.system;
-            let [_, .., end] = &self.book.moments;
+            let system = self.recorder.system;
+            let [_, .., end] = &self.recorder.moments;
             let (mut q, mut v, mut a) = (end.q.clone(), end.v.clone(), end.a.clone());
             let mut velocity = |theta: f64| -> Result<f64, RunError> {
                 system.motion.at(&system.model, t + theta * h, &mut q, &mut v, &mut a)?;

@@ -1,4 +1,4 @@
-//! Robots that move by themselves, in steps of one size: for loops in real time.
+//! Forward dynamics in steps of one size: for loops in real time.
 //!
 //! [`Loop`] is the library's type for a controller's loop: it does not allocate after it is built, and every step takes the same
 //! work whatever happens. [`fixed`] is a whole run with rows and the energy ledger.
@@ -21,7 +21,7 @@ mod stepper;
 
 pub use real_time::{Loop, LoopError, MemorySettings};
 pub use run::fixed;
-pub(super) use run::{Pace, resume};
+pub(super) use run::{StepperState, resume};
 
 use crate::fractional::Nodes;
 

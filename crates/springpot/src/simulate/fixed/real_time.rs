@@ -37,7 +37,7 @@ pub enum LoopError {
     Run(#[from] RunError),
 }
 
-/// A robot that moves by itself under its elements, step by step, at t = 0, h, 2h, …
+/// Forward dynamics of a robot with its elements, step by step, at t = 0, h, 2h, …
 ///
 /// [`Loop::advance`] does not allocate (unless it fails), and its work is the same in every step: a fixed number of Newton
 /// iterations and a constant number of exponentials; where friction sticks, a few pivots in every iteration. Signals of the motion (actuator forces, prescribed joints) and inputs of

@@ -7,13 +7,13 @@ use crate::fractional::Form;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::law::Singular;
 use crate::motion::{Forward, Motion};
-use crate::simulate::book::{Book, Books};
 use crate::simulate::moment::{Moment, Scratch};
+use crate::simulate::recorder::{Recorder, RecorderState};
 use crate::simulate::{self, Report, RowTimes, Rows, RunError, Settings, Stop, System};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
-/// Runs a `system` that moves by itself in steps of one size and hands every row to `rows`.
+/// Runs the forward dynamics of a `system` in steps of one size and hands every row to `rows`.
 ///
 /// Steps end at k·step; only the last one is shorter where the end is no multiple of the step. A row inside a step takes its
 /// place from the cubic Hermite form between the ends and its velocity from a straight line; its accelerations solve the equations of
@@ -36,7 +36,7 @@ pub(in crate::simulate) fn resume(
     system: &System,
     (forward, by): (&Forward, FixedStep),
     settings: &Settings,
-    kept: (Books, Pace),
+    kept: (RecorderState, StepperState),
     rows: &mut dyn Rows,
     stop: &Stop,
 ) -> (Report, Result<(), RunError>) {
@@ -45,7 +45,7 @@ pub(in crate::simulate) fn resume(
 
 /// Where the next step starts; its number is that of the steps taken.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(in crate::simulate) struct Pace {
+pub(in crate::simulate) struct StepperState {
     t: f64,
     q: Vec<f64>,
     v: Vec<f64>,
@@ -58,12 +58,12 @@ fn whole(
     settings: &Settings,
     rows: &mut dyn Rows,
     stop: &Stop,
-    kept: Option<(Books, Pace)>,
+    kept: Option<(RecorderState, StepperState)>,
 ) -> (Report, Result<(), RunError>) {
-    let mut book = Book::new(system, settings, rows);
-    book.takes_elements_work = false;
-    book.report.newton_iterations = Some(0);
-    for step in &mut book.steps {
+    let mut recorder = Recorder::new(system, settings, rows);
+    recorder.takes_elements_work = false;
+    recorder.report.newton_iterations = Some(0);
+    for step in &mut recorder.steps {
         step.singular = Singular::Moments;
         step.form = Form::Strokes;
     }
@@ -72,15 +72,15 @@ fn whole(
         let still = vec![0.0; system.model.nv()];
         let mut run = Run { system, forward, by, stop, stepper, accelerator, still };
         match kept {
-            None => run.start(&mut book)?,
-            Some((books, Pace { t, q, v })) => {
-                book.restore(books);
+            None => run.start(&mut recorder)?,
+            Some((recorded, StepperState { t, q, v })) => {
+                recorder.restore(recorded);
                 run.stepper.go_on(t, &q, &v);
             }
         }
-        run.march(&mut book)
+        run.march(&mut recorder)
     });
-    (book.finish(), outcome)
+    (recorder.finish(), outcome)
 }
 
 struct Run<'a> {
@@ -96,86 +96,88 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// The first moment and its row.
-    fn start(&mut self, book: &mut Book) -> Result<(), RunError> {
+    fn start(&mut self, recorder: &mut Recorder) -> Result<(), RunError> {
         let (system, forward) = (self.system, self.forward);
-        let [moment, ..] = &mut book.moments;
+        let [moment, ..] = &mut recorder.moments;
         moment.q.copy_from_slice(&self.stepper.origin.q);
         moment.v.copy_from_slice(&self.stepper.origin.v);
         let mut is_singular = false;
         let force = |e: usize, moment: &Moment| {
             let (element, state) = (&system.elements[e], &moment.elements[e]);
-            // What cannot begin is refused when the books are opened.
+            // What cannot begin is refused when the recorder is opened.
             let law = element.begin(state.length, &state.inputs).unwrap_or_default();
             is_singular |= law.is_singular();
             element.law.now(&state.point(0.0), &law).regular
         };
-        self.accelerator.fill(system, forward, 0.0, &mut book.scratch, moment, force)?;
+        self.accelerator.fill(system, forward, 0.0, &mut recorder.scratch, moment, force)?;
         if is_singular {
             moment.a.fill(f64::NAN);
             moment.driven.fill(None);
         }
-        book.open(RADAU_NODES[0] * self.by.step)
+        recorder.open(RADAU_NODES[0] * self.by.step)
     }
 
-    fn march(&mut self, book: &mut Book) -> Result<(), RunError> {
+    fn march(&mut self, recorder: &mut Recorder) -> Result<(), RunError> {
         let step = self.by.step;
-        let ends = RowTimes::Step { step, end: book.settings.end };
+        let ends = RowTimes::Step { step, end: recorder.settings.end };
         // Every step ends where the table says, so that the steps taken tell where the next one ends.
-        for to in (book.report.steps as usize + 1..ends.count()).map(|k| ends.at(k)) {
+        for to in (recorder.report.steps as usize + 1..ends.count()).map(|k| ends.at(k)) {
             let Place { t, ref q, ref v, .. } = self.stepper.origin;
             let stopped = self.stop.load(Ordering::Relaxed);
-            book.keep(t, stopped, || simulate::Pace::Fixed(Box::new(Pace { t, q: q.clone(), v: v.clone() })))?;
+            recorder.keep(t, stopped, || {
+                simulate::StepperState::Fixed(Box::new(StepperState { t, q: q.clone(), v: v.clone() }))
+            })?;
             if stopped {
                 return Err(RunError::Interrupted { t });
             }
-            if book.report.steps >= book.settings.step_limit(0) {
-                return Err(RunError::TooManySteps { t, limit: book.report.steps });
+            if recorder.report.steps >= recorder.settings.step_limit(0) {
+                return Err(RunError::TooManySteps { t, limit: recorder.report.steps });
             }
             // To the bit where it can be, so that the tables of the exponentials are made once.
             let h = if (to - t - step).abs() <= 1e-9 * step { step } else { to - t };
-            for (e, account) in book.accounts.iter_mut().enumerate() {
+            for (e, account) in recorder.accounts.iter_mut().enumerate() {
                 account.law.iter_mut().for_each(|state| self.stepper.prepare(e, h, state));
             }
-            let laws = &book.accounts;
+            let laws = &recorder.accounts;
             self.stepper.attempt(to, h, &self.still, |e| laws[e].memory())?;
-            self.keep(book, t, to, h)?;
+            self.keep(recorder, t, to, h)?;
             self.stepper.accept();
-            book.report.steps += 1;
-            *book.report.newton_iterations.get_or_insert(0) += u64::from(ITERATIONS);
+            recorder.report.steps += 1;
+            *recorder.report.newton_iterations.get_or_insert(0) += u64::from(ITERATIONS);
         }
         Ok(())
     }
 
     /// Writes the rows of the step that was just worked out, and takes it into the past.
-    fn keep(&mut self, book: &mut Book, t: f64, to: f64, h: f64) -> Result<(), RunError> {
+    fn keep(&mut self, recorder: &mut Recorder, t: f64, to: f64, h: f64) -> Result<(), RunError> {
         let (system, forward, stepper) = (self.system, self.forward, &self.stepper);
         let [from, end] = [&stepper.origin, &stepper.end];
         let within = Between::new(system, forward, [from, end], [&stepper.a, &stepper.a], h);
         for (k, c) in RADAU_NODES.into_iter().enumerate() {
             let at = if k + 1 == MAX_NODES { to } else { t + c * h };
-            let moment = &mut book.moments[k + 1];
+            let moment = &mut recorder.moments[k + 1];
             within.place(at, c, moment);
             if k + 1 == MAX_NODES {
                 moment.q.copy_from_slice(&end.q);
                 moment.v.copy_from_slice(&end.v);
             }
-            system.fill(at, at, None, &mut book.scratch, moment)?;
+            system.fill(at, at, None, &mut recorder.scratch, moment)?;
         }
         for e in 0..system.elements.len() {
-            book.fill_element_step(e);
+            recorder.fill_element_step(e);
             // What the memory was told: a straight line.
-            let [first, .., last] = book.steps[e].stroke;
-            for (stroke, c) in book.steps[e].stroke[1..].iter_mut().zip(RADAU_NODES) {
+            let [first, .., last] = recorder.steps[e].stroke;
+            for (stroke, c) in recorder.steps[e].stroke[1..].iter_mut().zip(RADAU_NODES) {
                 *stroke = first + c * (last - first);
             }
-            book.evaluate_element(e, t, h);
+            recorder.evaluate_element(e, t, h);
         }
-        let Book { moments, steps, scratch, .. } = &mut *book;
+        let Recorder { moments, steps, scratch, .. } = &mut *recorder;
         let moment = &mut moments[MAX_NODES];
         self.accelerator.fill(system, forward, to, scratch, moment, |e, _| steps[e].end.force())?;
-        self.fill_powers(book);
-        let a_at_start = book.moments[0].a.clone();
-        let a_at_end = book.moments[MAX_NODES].a.clone();
+        self.fill_powers(recorder);
+        let a_at_start = recorder.moments[0].a.clone();
+        let a_at_end = recorder.moments[MAX_NODES].a.clone();
         // Of a singular start there are none.
         let first = if a_at_start.iter().all(|a| a.is_finite()) { &a_at_start } else { &self.stepper.a };
         let within = Between::new(system, forward, [from, end], [first, &a_at_end], h);
@@ -183,14 +185,14 @@ impl Run<'_> {
             within.place(at, theta, moment);
             system.fill(at, at, None, scratch, moment)
         };
-        book.emit_rows(t, to, false, &mut place)?;
-        book.commit(h);
+        recorder.emit_rows(t, to, false, &mut place)?;
+        recorder.commit(h);
         Ok(())
     }
 
     /// Powers of actuators and joints at the start and at the nodes, elements with the force of the step.
-    fn fill_powers(&self, book: &mut Book) {
-        for (k, moment) in book.moments.iter().enumerate() {
+    fn fill_powers(&self, recorder: &mut Recorder) {
+        for (k, moment) in recorder.moments.iter().enumerate() {
             let of_joint = |j: usize| {
                 let pull = self.stepper.elements.iter().zip(&moment.elements);
                 let computed = || {
@@ -199,8 +201,8 @@ impl Run<'_> {
                 };
                 moment.driven[j].unwrap_or_else(computed)
             };
-            book.powers.actuators[k] = moment.v.iter().enumerate().map(|(j, v)| of_joint(j) * v).sum();
-            book.powers.joints[k] = moment.joint_loss;
+            recorder.powers.actuators[k] = moment.v.iter().enumerate().map(|(j, v)| of_joint(j) * v).sum();
+            recorder.powers.joints[k] = moment.joint_loss;
         }
     }
 }

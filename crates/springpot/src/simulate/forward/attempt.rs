@@ -32,30 +32,30 @@ impl Run<'_> {
     pub(super) fn attempt(&mut self, to: f64, h: f64, on_break: bool) -> Result<Result<f64, f64>, RunError> {
         let t = self.stepper.origin.t;
         let t_end = if on_break { to.next_down() } else { to };
-        self.stepper.energy = self.book.turnover.total();
-        let (mut error, mut worst, iterations) = match self.stepper.attempt(h, t_end, &mut self.book.accounts)? {
+        self.stepper.energy = self.recorder.turnover.total();
+        let (mut error, mut worst, iterations) = match self.stepper.attempt(h, t_end, &mut self.recorder.accounts)? {
             Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
             Outcome::Converged { iterations } => {
                 let (error, worst) = self.stepper.estimate(h);
                 (error, Worst::Velocity(worst), iterations)
             }
         };
-        *self.book.report.newton_iterations.get_or_insert(0) += u64::from(iterations);
+        *self.recorder.report.newton_iterations.get_or_insert(0) += u64::from(iterations);
         if let Some(e) = self.turned_over() {
             (error, worst) = (f64::INFINITY, Worst::Element(e));
         }
         self.refuse_overflow(t, h)?;
         if error <= 1.0 {
-            self.take_stock(to, h, on_break)?;
+            self.evaluate_step(to, h, on_break)?;
             let whole = self.has_paths || self.stepper.stick.holds_any();
             if whole || self.has_inner_variables {
-                (error, worst) = self.books_error(h, whole, error, worst);
+                (error, worst) = self.recorder_error(h, whole, error, worst);
             }
         }
         let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
         if error > 1.0 || error.is_nan() {
             let smaller = h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
-            if smaller < SHORTEST_STEP * self.book.settings.end {
+            if smaller < SHORTEST_STEP * self.recorder.settings.end {
                 return Err(self.step_too_small(t, h, error, worst));
             }
             return Ok(Err(smaller));
@@ -74,26 +74,26 @@ impl Run<'_> {
     fn refuse_overflow(&self, t: f64, h: f64) -> Result<(), RunError> {
         let overflow = self.stepper.stages[MAX_NODES - 1].v.iter().position(|v| v.abs() > FASTEST);
         let Some(k) = overflow else { return Ok(()) };
-        let what = format!("v.{}", self.book.system.model.v_labels()[k].name);
+        let what = format!("v.{}", self.recorder.system.model.v_labels()[k].name);
         Err(RunError::NotFinite { t: t + h, what, value: f64::INFINITY })
     }
 
     /// The largest of `error` and of what the estimate of the free joints may not see where others are prescribed: the errors of
     /// D^alpha x and of the energy ledger; else, where not the `whole`, those of laws with inner variables. In units of their tolerances,
     /// brought to the order of that estimate.
-    fn books_error(&self, h: f64, whole: bool, error: f64, worst: Worst) -> (f64, Worst) {
-        let book = &self.book;
+    fn recorder_error(&self, h: f64, whole: bool, error: f64, worst: Worst) -> (f64, Worst) {
+        let recorder = &self.recorder;
         let (mut error, mut worst) = (error, worst);
         // Beside a singular start there is no ledger, and what the actuators do against it is integrated by its moments.
-        let energy = if self.stepper.is_singular || !whole { 0.0 } else { book.energy_error(h, 0.0) };
+        let energy = if self.stepper.is_singular || !whole { 0.0 } else { recorder.energy_error(h, 0.0) };
         if energy > error {
             (error, worst) = (energy, Worst::Energy);
         }
-        for (e, element) in book.system.elements.iter().enumerate() {
+        for (e, element) in recorder.system.elements.iter().enumerate() {
             if !whole && !element.law.has_inner_variables() {
                 continue;
             }
-            let (share, order) = book.memory_error(e);
+            let (share, order) = recorder.memory_error(e);
             let memory = share.powf(1.0 / (EXPONENT * (4.0 - order)));
             if memory > error {
                 (error, worst) = (memory, Worst::Element(e));
@@ -108,7 +108,7 @@ impl Run<'_> {
     }
 
     fn step_too_small(&self, t: f64, h: f64, error: f64, worst: Worst) -> RunError {
-        let system = self.book.system;
+        let system = self.recorder.system;
         let joint = |k: usize| system.model.v_labels()[k].name.clone();
         if let Some(e) = self.turned_over() {
             let pairs = self.stepper.elements[e].pairs.iter().flatten();

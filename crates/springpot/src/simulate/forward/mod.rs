@@ -1,4 +1,4 @@
-//! A robot that moves by itself: the equations of motion with the memories of the elements inside.
+//! Forward dynamics: the equations of motion with the memories of the elements inside.
 //!
 //! Radau IIA(5) in the accelerations. The law of an element answers with its forces at the nodes and their tangents, so that the
 //! Newton iteration has three unknowns for each velocity whatever the number of elements and of their exponentials. Order five
@@ -24,7 +24,7 @@ use self::drives::drive;
 use self::scale::Tolerance;
 use self::settle::Settled;
 use self::stepper::{Carried, Stepper};
-use super::book::{Book, Books, target};
+use super::recorder::{Recorder, RecorderState, target};
 use super::{Report, Rows, RunError, Settings, Stop, System};
 use crate::fractional::step::RADAU_NODES;
 use crate::law::{Singular, State};
@@ -40,7 +40,7 @@ const ESTIMATE_SHARE: f64 = 0.03;
 /// does.
 const LONGEST_STEP: [f64; 2] = [1.0 / 500.0, 1.0 / 50.0];
 
-/// Runs a `system` that moves by itself and hands every row to `rows`.
+/// Runs the forward dynamics of a `system` and hands every row to `rows`.
 ///
 /// The report is true also where the run stops early: all rows up to `t_reached` were handed over. Panics unless the motion is
 /// [`Motion::Forward`].
@@ -53,8 +53,8 @@ pub fn forward(
     let Motion::Forward(forward) = &system.motion else { panic!("the motion is given in advance") };
     let mut run = Run::new(system, forward, settings, rows, stop);
     let outcome = run.look_ahead().and_then(|()| run.start()).and_then(|h| run.march(h));
-    let outcome = outcome.and_then(|()| run.book.verdict());
-    (run.book.finish(), outcome)
+    let outcome = outcome.and_then(|()| run.recorder.verdict());
+    (run.recorder.finish(), outcome)
 }
 
 /// Goes on with a run from what was kept of it.
@@ -62,22 +62,22 @@ pub(super) fn resume(
     system: &System,
     forward: &Forward,
     settings: &Settings,
-    (books, pace): (Books, Pace),
+    (recorder, stepper_state): (RecorderState, StepperState),
     rows: &mut dyn Rows,
     stop: &Stop,
 ) -> (Report, Result<(), RunError>) {
     let mut run = Run::new(system, forward, settings, rows, stop);
-    run.book.restore(books);
-    run.stepper.restore(pace.carried);
-    run.starts = run.book.accounts.iter().map(|account| account.memory().clone()).collect();
-    run.last = pace.last;
-    let outcome = run.look_ahead().and_then(|()| run.march(pace.h)).and_then(|()| run.book.verdict());
-    (run.book.finish(), outcome)
+    run.recorder.restore(recorder);
+    run.stepper.restore(stepper_state.carried);
+    run.starts = run.recorder.accounts.iter().map(|account| account.memory().clone()).collect();
+    run.last = stepper_state.last;
+    let outcome = run.look_ahead().and_then(|()| run.march(stepper_state.h)).and_then(|()| run.recorder.verdict());
+    (run.recorder.finish(), outcome)
 }
 
 /// What the next step takes over from those before.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Pace {
+pub(super) struct StepperState {
     carried: Carried,
     /// Size and error of the last step kept.
     last: Option<(f64, f64)>,
@@ -85,7 +85,7 @@ pub(super) struct Pace {
 }
 
 struct Run<'a> {
-    book: Book<'a>,
+    recorder: Recorder<'a>,
     stepper: Stepper<'a>,
     forward: &'a Forward,
     stop: &'a Stop,
@@ -114,16 +114,16 @@ impl<'a> Run<'a> {
         let rtol = settings.rtol;
         let mapped = ESTIMATE_SHARE * rtol.powf(2.0 / 3.0);
         let tolerance = Tolerance { rtol: mapped, atol: settings.atol.unwrap_or(0.0) * mapped / rtol };
-        let mut book = Book::new(system, settings, rows);
-        book.takes_elements_work = false;
-        book.report.newton_iterations = Some(0);
-        for step in &mut book.steps {
+        let mut recorder = Recorder::new(system, settings, rows);
+        recorder.takes_elements_work = false;
+        recorder.report.newton_iterations = Some(0);
+        for step in &mut recorder.steps {
             step.singular = Singular::Moments;
         }
         let [varying, constant] = LONGEST_STEP;
         let share = if system.varies() { varying } else { constant };
         Self {
-            book,
+            recorder,
             stepper: Stepper::new(system, forward, tolerance, rtol),
             forward,
             stop,
@@ -139,17 +139,17 @@ impl<'a> Run<'a> {
 
     /// What the signals will do.
     fn look_ahead(&mut self) -> Result<(), RunError> {
-        self.agenda = self.book.system.agenda(self.book.settings, self.longest_step, self.stop)?;
-        self.book.take_agenda(&self.agenda);
+        self.agenda = self.recorder.system.agenda(self.recorder.settings, self.longest_step, self.stop)?;
+        self.recorder.take_agenda(&self.agenda);
         Ok(())
     }
 
     /// The first moment and its row; returns the first step.
     fn start(&mut self) -> Result<f64, RunError> {
-        let (system, settings) = (self.book.system, self.book.settings);
+        let (system, settings) = (self.recorder.system, self.recorder.settings);
         let (origin, elements) = start::origin(system, self.forward, &mut self.stepper.stick)?;
         self.stepper.free = self.stepper.stick.free();
-        let [moment, ..] = &mut self.book.moments;
+        let [moment, ..] = &mut self.recorder.moments;
         moment.q.copy_from_slice(&origin.q);
         moment.v.copy_from_slice(&origin.v);
         moment.a.copy_from_slice(&origin.a);
@@ -160,14 +160,14 @@ impl<'a> Run<'a> {
             moment.a.fill(f64::NAN);
             moment.driven.fill(None);
         }
-        system.fill(0.0, 0.0, None, &mut self.book.scratch, moment)?;
+        system.fill(0.0, 0.0, None, &mut self.recorder.scratch, moment)?;
         self.stepper.origin = origin;
         self.stepper.is_singular = is_singular;
         self.expect()?;
         let strict = Tolerance { rtol: settings.rtol, atol: settings.atol.unwrap_or(0.0) };
         let chosen = start::first_step(&self.stepper, &elements, strict, settings.end);
         let h = self.agenda.reach(0.0, settings.first_step.unwrap_or(chosen).min(self.longest_step));
-        self.book.open(RADAU_NODES[0] * h)?;
+        self.recorder.open(RADAU_NODES[0] * h)?;
         Ok(h)
     }
 
@@ -176,25 +176,26 @@ impl<'a> Run<'a> {
         let t = self.stepper.origin.t;
         self.stepper.take_inputs(0.0, t)?;
         self.stepper.linearise()?;
-        self.stepper.sizes.take(&self.book.system.model, &self.stepper.origin.q, &self.stepper.origin.v);
-        self.stepper.expect(1.0 / self.book.settings.end);
+        self.stepper.sizes.take(&self.recorder.system.model, &self.stepper.origin.q, &self.stepper.origin.v);
+        self.stepper.expect(1.0 / self.recorder.settings.end);
         Ok(())
     }
 
     fn march(&mut self, first: f64) -> Result<(), RunError> {
-        let (system, end) = (self.book.system, self.book.settings.end);
-        let limit = self.book.settings.step_limit(self.agenda.switches());
+        let (system, end) = (self.recorder.system, self.recorder.settings.end);
+        let limit = self.recorder.settings.step_limit(self.agenda.switches());
         let mut h = first;
         while self.stepper.origin.t < end {
             let t = self.stepper.origin.t;
             let (stopped, stepper, last) = (self.stop.load(Ordering::Relaxed), &self.stepper, self.last);
-            self.book
-                .keep(t, stopped, || super::Pace::Forward(Box::new(Pace { carried: stepper.carried(), last, h })))?;
+            self.recorder.keep(t, stopped, || {
+                super::StepperState::Forward(Box::new(StepperState { carried: stepper.carried(), last, h }))
+            })?;
             if stopped {
                 return Err(RunError::Interrupted { t });
             }
-            if self.book.report.steps >= limit {
-                return Err(RunError::TooManySteps { t, limit: self.book.report.steps });
+            if self.recorder.report.steps >= limit {
+                return Err(RunError::TooManySteps { t, limit: self.recorder.report.steps });
             }
             if t == 0.0 && system.turns_at(t) {
                 self.cross(f64::EPSILON * f64::EPSILON * end)?;
@@ -216,7 +217,7 @@ impl<'a> Run<'a> {
             let on_break = stop.is_some() && to == stop_at && far_side.is_none();
             match self.attempt(to, size, on_break)? {
                 Err(smaller) => {
-                    self.book.report.rejected_steps += 1;
+                    self.recorder.report.rejected_steps += 1;
                     h = smaller;
                 }
                 Ok(factor) => {
@@ -224,7 +225,7 @@ impl<'a> Run<'a> {
                     let (to, size) = match self.settle(to, size)? {
                         Settled::At { to, size } => (to, size),
                         Settled::Shorter(smaller) => {
-                            self.book.report.rejected_steps += 1;
+                            self.recorder.report.rejected_steps += 1;
                             h = smaller;
                             continue;
                         }
@@ -253,8 +254,8 @@ impl<'a> Run<'a> {
 
     /// The next row, where rows are farther apart than steps are long: steps end there.
     fn next_sparse_row(&self, h: f64) -> Option<f64> {
-        let next = self.book.next_row_until(f64::INFINITY)?;
-        let last = self.book.report.t_reached.unwrap_or(0.0);
+        let next = self.recorder.next_row_until(f64::INFINITY)?;
+        let last = self.recorder.report.t_reached.unwrap_or(0.0);
         (next > self.stepper.origin.t && next - last >= h).then_some(next)
     }
 }

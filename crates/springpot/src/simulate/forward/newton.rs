@@ -5,7 +5,7 @@ use super::tableau::{A, A_SQUARED};
 use crate::dynamics::{PairForce, rnea_at_into};
 use crate::fractional::step::MAX_NODES;
 use crate::simulate::RunError;
-use crate::simulate::book::Account;
+use crate::simulate::recorder::Account;
 use crate::simulate::resistance::add_smooth_resistance;
 
 /// Newton iterations after which a step is given up.
@@ -27,7 +27,7 @@ impl Stepper<'_> {
         self.linearise()?;
         self.choose_forms(h);
         self.prepare(h, accounts);
-        self.foretell(h);
+        self.predict(h);
         self.take_drives(h, t_end)?;
         self.allow(h);
         let count = self.free.len();

@@ -84,7 +84,7 @@ impl Run<'_> {
     /// # Errors
     /// [`RunError::Chatter`].
     pub(super) fn stop_sliding(&mut self) -> Result<(), RunError> {
-        let span = CHATTER * self.book.settings.end;
+        let span = CHATTER * self.recorder.settings.end;
         let stepper = &mut self.stepper;
         let t = stepper.origin.t;
         for &k in &stepper.stick.stopping {

@@ -10,7 +10,7 @@ use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::law::{InputValue, Point};
 use crate::motion::Drive;
 use crate::simulate::RunError;
-use crate::simulate::book::Account;
+use crate::simulate::recorder::Account;
 use crate::simulate::resistance::add_tangents;
 
 /// Above this stiffness a springpot of order below ½ takes its polynomial through strokes, which is stable however stiff.
@@ -101,7 +101,7 @@ impl Stepper<'_> {
     }
 
     /// First guess of the stages' accelerations: the last cubic goes on.
-    pub(super) fn foretell(&mut self, h: f64) {
+    pub(super) fn predict(&mut self, h: f64) {
         for (stage, c) in self.stages.iter_mut().zip(RADAU_NODES) {
             match self.last {
                 Some(size) => {

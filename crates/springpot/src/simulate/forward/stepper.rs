@@ -128,7 +128,7 @@ pub(super) struct Stepper<'a> {
     pub(super) cubic: [Vec<f64>; MAX_NODES + 1],
     /// The same of the rate of ξ, for robots with floating joints.
     pub(super) turning: [Vec<f64>; MAX_NODES + 1],
-    /// Size of the step before, whose cubic foretells the next; none after a break.
+    /// Size of the step before, whose cubic predicts the next; none after a break.
     pub(super) last: Option<f64>,
     /// Whether a start is singular, so that its share of the accelerations is kept apart.
     pub(super) is_singular: bool,
@@ -304,7 +304,7 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// The origin was set from outside: nothing can be foretold from what was.
+    /// The origin was set from outside: nothing can be predicted from what was.
     pub(super) fn restart(&mut self) {
         self.last = None;
         self.linearised = false;

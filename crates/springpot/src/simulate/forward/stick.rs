@@ -27,7 +27,7 @@ pub(super) struct Sliding {
     since: f64,
 }
 
-/// Friction that sticks, at the velocities of a robot that moves by itself.
+/// Friction that sticks, at the velocities of forward dynamics.
 pub(super) struct Stick {
     /// What friction can hold at every velocity, N·m or N; 0 where nothing sticks.
     limits: Vec<f64>,

@@ -87,8 +87,8 @@ impl Run<'_> {
                 if largest + 4.0 * off <= limit {
                     continue;
                 }
-                let clear = self.book.settings.rtol.sqrt().clamp(1e-6, 1e-2);
-                if !(off <= clear * limit || h <= SHORT * self.book.settings.end) {
+                let clear = self.recorder.settings.rtol.sqrt().clamp(1e-6, 1e-2);
+                if !(off <= clear * limit || h <= SHORT * self.recorder.settings.end) {
                     return Ok(Look::Unclear);
                 }
                 for direction in [1.0, -1.0] {
@@ -141,20 +141,20 @@ impl Run<'_> {
     /// A velocity of a joint that slides that counts as rest.
     fn near_rest(&self, k: usize) -> f64 {
         let nodes = self.stepper.stages.iter().map(|stage| stage.v[k].abs());
-        SHARE * self.book.settings.rtol * nodes.fold(self.stepper.origin.v[k].abs(), f64::max)
+        SHARE * self.recorder.settings.rtol * nodes.fold(self.stepper.origin.v[k].abs(), f64::max)
     }
 
     /// The force with which friction holds velocity `k` at the start and at the nodes.
     fn holding(&self, k: usize) -> Holding {
-        let (book, elements) = (&self.book, &self.stepper.elements);
+        let (recorder, elements) = (&self.recorder, &self.stepper.elements);
         let (mut values, mut size) = ([0.0; MAX_NODES + 1], 0.0f64);
-        for (i, (value, moment)) in values.iter_mut().zip(&book.moments).enumerate() {
+        for (i, (value, moment)) in values.iter_mut().zip(&recorder.moments).enumerate() {
             let driven = moment.driven[k].unwrap_or(0.0);
             let (mut pull, mut terms) = (0.0, driven.abs() + moment.rigid[k].abs());
-            for (e, element) in book.system.elements.iter().enumerate() {
+            for (e, element) in recorder.system.elements.iter().enumerate() {
                 let force = match i {
-                    0 => element.law.now(&moment.elements[e].point(moment.t), book.accounts[e].memory()).force(),
-                    MAX_NODES => book.steps[e].end.force(),
+                    0 => element.law.now(&moment.elements[e].point(moment.t), recorder.accounts[e].memory()).force(),
+                    MAX_NODES => recorder.steps[e].end.force(),
                     _ => elements[e].response.force[i - 1],
                 };
                 let share = force * moment.elements[e].gradient[k];
@@ -170,21 +170,21 @@ impl Run<'_> {
         }
         let cubic = std::array::from_fn(|p| (0..=MAX_NODES).map(|i| lagrange_row(i)[p] * values[i]).sum());
         let stick = &self.stepper.stick;
-        let tolerance = SHARE * self.book.settings.rtol * stick.limit(k);
+        let tolerance = SHARE * self.recorder.settings.rtol * stick.limit(k);
         Holding { cubic, breaking: stick.breaking(k, size) + 0.5 * tolerance, tolerance }
     }
 
     /// The forces (nv) with which friction would hold every velocity, between the nodes.
     fn look_between(&mut self, to: f64, h: f64) -> Result<[Vec<f64>; 3], RunError> {
-        let system = self.book.system;
+        let system = self.recorder.system;
         let mut moment = self.stepper.stick.spare.take().unwrap_or_else(|| Moment::new(system));
         let mut forces: [Vec<f64>; 3] = Default::default();
         for (theta, forces) in BETWEEN.into_iter().zip(&mut forces) {
-            let Self { book, stepper, starts, scratch, .. } = self;
+            let Self { recorder, stepper, starts, scratch, .. } = self;
             let at = (stepper.origin.t + theta * h).min(to);
             Dense { stepper, h, starts, scratch }.place(at, theta, &mut moment);
-            system.fill(at, at, None, &mut book.scratch, &mut moment)?;
-            let rows = (0..system.elements.len()).map(|e| book.element_row(e, theta, &moment));
+            system.fill(at, at, None, &mut recorder.scratch, &mut moment)?;
+            let rows = (0..system.elements.len()).map(|e| recorder.element_row(e, theta, &moment));
             let pulls = rows.map(|row| Ok(row?.observation.force())).collect::<Result<Vec<f64>, RunError>>()?;
             forces.extend((0..system.model.nv()).map(|k| {
                 let pull = pulls.iter().zip(&moment.elements).map(|(force, element)| force * element.gradient[k]);

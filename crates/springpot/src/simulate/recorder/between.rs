@@ -1,12 +1,12 @@
 //! Rows and jumps between two steps, where signals have kinks.
 
-use super::Book;
+use super::Recorder;
 use crate::law::Point;
 use crate::simulate::RunError;
 use crate::simulate::moment::Moment;
 use crate::simulate::row::ElementRow;
 
-impl Book<'_> {
+impl Recorder<'_> {
     /// The rows up to `until`, when no step is under way.
     pub(in crate::simulate) fn emit_rows_between_steps(&mut self, until: f64) -> Result<(), RunError> {
         while self.next_row_until(until).is_some() {
@@ -27,7 +27,7 @@ impl Book<'_> {
         Ok(ElementRow { observation, dissipated: account.dissipated, input: account.input })
     }
 
-    /// Goes on from the far side of a kink and books what jumps there.
+    /// Goes on from the far side of a kink and records what jumps there.
     pub(in crate::simulate) fn jump(&mut self, [left, right]: [Moment; 2]) {
         // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
         self.actuators += right.kinetic - left.kinetic;

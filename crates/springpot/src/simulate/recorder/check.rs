@@ -1,6 +1,6 @@
 //! A run looks at itself: whether its steps saw what the motion does, and whether its energies balance.
 
-use super::Book;
+use super::Recorder;
 use crate::fractional::step::{MAX_NODES, lagrange_row};
 use crate::simulate::moment::Moment;
 use crate::simulate::row::ElementRow;
@@ -27,7 +27,7 @@ pub(in crate::simulate) struct Findings {
     rounding: f64,
 }
 
-impl Book<'_> {
+impl Recorder<'_> {
     /// Compares the rates of a row at θ of its step with what the step's memory was told: the cubic through its nodes.
     ///
     /// A departure δx' that lasts a step adds up to δx'·h^{1−alpha} to D^alpha x.

@@ -1,6 +1,6 @@
 //! What a step may add to the error of the energy ledger.
 
-use super::Book;
+use super::Recorder;
 use crate::simulate::ledger::work_defect;
 
 /// A step this short, as a share of the motion, is kept whatever it does to the energy ledger: behind a kink of the rates the
@@ -18,7 +18,7 @@ const ENERGY_SHARE: f64 = 0.01;
 const ACCOUNT_SHARE: f64 = 0.03;
 const ACCOUNT_FLOOR: f64 = 100.0;
 
-impl Book<'_> {
+impl Recorder<'_> {
     /// Estimate of what the step just worked out adds to the error of the ledger, in units of its tolerance; `floor` is a lower bound
     /// of the energy turned over.
     pub(in crate::simulate) fn energy_error(&self, h: f64, floor: f64) -> f64 {

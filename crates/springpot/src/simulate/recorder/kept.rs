@@ -1,14 +1,14 @@
-//! What of the books must outlast a step.
+//! What of a recorder must outlast a step.
 
-use super::{Account, Book, Findings};
+use super::{Account, Findings, Recorder};
 use crate::simulate::ledger::Turnover;
 use crate::simulate::moment::Moment;
-use crate::simulate::{Checkpoint, Pace, Report, RunError};
+use crate::simulate::{Checkpoint, Report, RunError, StepperState};
 use serde::{Deserialize, Serialize};
 
-/// The books between two steps. Whatever else they hold follows from the system and its settings, or is filled anew by every step.
+/// A recorder between two steps. Whatever else it holds follows from the system and its settings, or is filled anew by every step.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(in crate::simulate) struct Books {
+pub(in crate::simulate) struct RecorderState {
     accounts: Vec<Account>,
     /// Where the next step starts.
     pub(in crate::simulate) moment: Moment,
@@ -23,18 +23,18 @@ pub(in crate::simulate) struct Books {
     report: Report,
 }
 
-impl Book<'_> {
+impl Recorder<'_> {
     /// Hands over the state between two steps where it is wanted; `last` says that the run stops here for now.
     pub(in crate::simulate) fn keep(
         &mut self,
         t: f64,
         last: bool,
-        pace: impl FnOnce() -> Pace,
+        stepper_state: impl FnOnce() -> StepperState,
     ) -> Result<(), RunError> {
         if !self.rows.wants_checkpoint(t, last) {
             return Ok(());
         }
-        let books = Books {
+        let recorder = RecorderState {
             accounts: self.accounts.clone(),
             moment: self.moments[0].clone(),
             next_row: self.next_row,
@@ -47,13 +47,13 @@ impl Book<'_> {
             findings: self.findings,
             report: self.report,
         };
-        self.rows.checkpoint(Checkpoint { books, pace: pace() })?;
+        self.rows.checkpoint(Checkpoint { recorder, stepper_state: stepper_state() })?;
         Ok(())
     }
 
     /// Goes on from what was kept of a run of the same system.
-    pub(in crate::simulate) fn restore(&mut self, books: Books) {
-        let Books {
+    pub(in crate::simulate) fn restore(&mut self, recorder: RecorderState) {
+        let RecorderState {
             accounts,
             moment,
             next_row,
@@ -65,7 +65,7 @@ impl Book<'_> {
             residual,
             findings,
             report,
-        } = books;
+        } = recorder;
         self.accounts = accounts;
         self.moments[0] = moment;
         self.next_row = next_row;
@@ -80,8 +80,8 @@ impl Book<'_> {
     }
 }
 
-impl Books {
-    /// Whether these can be the books of a system of that many elements, coordinates and velocities.
+impl RecorderState {
+    /// Whether this can be the recorder of a system of that many elements, coordinates and velocities.
     pub(in crate::simulate) fn fit(&self, elements: usize, nq: usize, nv: usize) -> bool {
         let Moment { q, v, a, .. } = &self.moment;
         let sizes = [self.accounts.len(), self.moment.elements.len(), q.len(), v.len(), a.len()];

@@ -1,6 +1,6 @@
 //! What a step works out for its elements.
 
-use super::{Book, ElementStep};
+use super::{ElementStep, Recorder};
 use crate::element::Element;
 use crate::fractional::Nodes;
 use crate::fractional::step::MAX_NODES;
@@ -11,7 +11,7 @@ use crate::simulate::moment::ElementMoment;
 /// A step this short, in units of end·rtol^{1/(1+alpha)}, is kept whatever is known of inner strokes.
 const ONSET: f64 = 0.1;
 
-impl Book<'_> {
+impl Recorder<'_> {
     /// Takes the element's kinematics and inputs from the moments of the step.
     pub(in crate::simulate) fn fill_element_step(&mut self, e: usize) {
         let step = &mut self.steps[e];

@@ -1,4 +1,4 @@
-//! The books of a run: what its elements remember, the energy accounts, and the rows.
+//! The run recorder: what its elements remember, the energy accounts, and the rows.
 //!
 //! A time loop fills the moments of a step (its start and its nodes) and [`ElementStep`]s, has rows written while the step is
 //! under way, and commits it.
@@ -11,7 +11,7 @@ mod kept;
 mod rows;
 
 use self::check::Findings;
-pub(in crate::simulate) use self::kept::Books;
+pub(in crate::simulate) use self::kept::RecorderState;
 use self::rows::on_grid_observation;
 use super::ledger::{NodePower, Turnover};
 use super::moment::{Moment, Scratch};
@@ -64,8 +64,8 @@ pub(in crate::simulate) struct StepPowers {
     pub(in crate::simulate) joints: NodePower,
 }
 
-/// The books of one run.
-pub(in crate::simulate) struct Book<'a> {
+/// The recorder of one run.
+pub(in crate::simulate) struct Recorder<'a> {
     pub(in crate::simulate) system: &'a System,
     pub(in crate::simulate) settings: &'a Settings,
     pub(in crate::simulate) rows: &'a mut dyn Rows,
@@ -95,7 +95,7 @@ pub(in crate::simulate) struct Book<'a> {
     pub(in crate::simulate) report: Report,
 }
 
-impl<'a> Book<'a> {
+impl<'a> Recorder<'a> {
     pub(in crate::simulate) fn new(system: &'a System, settings: &'a Settings, rows: &'a mut dyn Rows) -> Self {
         let moment = Moment::new(system);
         let element_step = |element: &Element| ElementStep {

@@ -1,6 +1,6 @@
 //! Rows, and the balance of energies in them.
 
-use super::Book;
+use super::Recorder;
 use crate::element::Element;
 use crate::fractional::Nodes;
 use crate::fractional::step::MAX_NODES;
@@ -14,7 +14,7 @@ use crate::simulate::{RunError, System};
 pub(in crate::simulate) type Place<'a> =
     &'a mut dyn FnMut(&System, &mut Scratch, f64, f64, &mut Moment) -> Result<(), RunError>;
 
-impl Book<'_> {
+impl Recorder<'_> {
     /// Work of the actuators and losses of the joints from the start of the step to θ.
     pub(in crate::simulate) fn work_until(&self, theta: f64) -> (f64, f64) {
         let [from, .., to] = &self.moments;
