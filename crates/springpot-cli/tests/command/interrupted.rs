@@ -245,7 +245,7 @@ fn a_gripper_path_that_is_still_followed_hears_it() {
     for (command, code) in [("run", Some(130)), ("check", None)] {
         let child =
             place.command(&[command, "arm.toml"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(500));
+        std::thread::sleep(Duration::from_millis(150));
         let begun = Instant::now();
         signal(&child, "-INT");
         let ended = ended(child);

@@ -400,7 +400,10 @@ impl Memory {
 
     /// Takes `step` into the past, D^alpha x at its end being that of `as_found`.
     fn take(&mut self, step: &RatePolynomial, as_found: &RatePolynomial) {
-        self.prepared = None;
+        // Whoever does not prepare steps asks for the next one with the same lags.
+        if self.prepared.take().is_none() {
+            self.prepare_lags(step.h, Nodes::Radau);
+        }
         let local = self.local_part(as_found, 1.0);
         let Some(past) = &mut self.past else { return };
         self.travelled += step.travel();
