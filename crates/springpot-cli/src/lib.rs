@@ -2,7 +2,7 @@
 //!
 //! A program with laws of its own has the whole command when its `main` is
 //!
-//! ```
+//! ```no_run
 //! use springpot::law::{Catalog, Entry, Network};
 //! use std::process::ExitCode;
 //! use std::sync::Arc;
