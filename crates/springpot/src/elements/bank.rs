@@ -57,14 +57,20 @@ pub struct ElementBank {
 struct Banked {
     law: Network,
     state: State,
+    told: Told,
+    response: Response,
+}
+
+/// What an element was told of a step, at its start and at its nodes.
+#[derive(Debug, Clone)]
+struct Told {
     stroke: [f64; MAX_NODES + 1],
     rate: [f64; MAX_NODES + 1],
     /// Point by point.
     inputs: Vec<InputValue>,
-    response: Response,
 }
 
-impl Banked {
+impl Told {
     fn step(&self, t: f64, h: f64, nodes: Nodes, form: Form) -> Step<'_> {
         let count = nodes.count() + 1;
         let size = self.stroke[..count].iter().fold(0.0f64, |size, x| size.max(x.abs()));
@@ -88,9 +94,7 @@ impl ElementBank {
         let element = |law| Banked {
             law,
             state: State::default(),
-            stroke: [0.0; MAX_NODES + 1],
-            rate: [0.0; MAX_NODES + 1],
-            inputs: Vec::new(),
+            told: Told { stroke: [0.0; MAX_NODES + 1], rate: [0.0; MAX_NODES + 1], inputs: Vec::new() },
             response: Response::default(),
         };
         Self { nodes, form, t: 0.0, h: 0.0, elements: laws.into_iter().map(element).collect() }
@@ -117,8 +121,11 @@ impl ElementBank {
             // The first node of a step asks for the shortest lag.
             state.open(memory.tolerance, self.nodes.positions()[0] * memory.shortest, memory.horizon)?;
             element.state = state;
-            (element.stroke, element.rate) = ([start.stroke; MAX_NODES + 1], [0.0; MAX_NODES + 1]);
-            element.inputs = start.inputs.repeat(self.nodes.count() + 1);
+            element.told = Told {
+                stroke: [start.stroke; MAX_NODES + 1],
+                rate: [0.0; MAX_NODES + 1],
+                inputs: start.inputs.repeat(self.nodes.count() + 1),
+            };
             element.response = Response::default();
         }
         (self.t, self.h) = (0.0, 0.0);
@@ -133,20 +140,18 @@ impl ElementBank {
     /// Stroke, rate and inputs of element `e` at the start (0) or at node `point` (1 … s) of the step. Panics beyond them, or where the number
     /// of inputs is not that of the start.
     pub fn set(&mut self, e: usize, point: usize, stroke: f64, rate: f64, inputs: &[InputValue]) {
-        let element = &mut self.elements[e];
-        (element.stroke[point], element.rate[point]) = (stroke, rate);
-        element.inputs[point * inputs.len()..(point + 1) * inputs.len()].copy_from_slice(inputs);
+        let told = &mut self.elements[e].told;
+        (told.stroke[point], told.rate[point]) = (stroke, rate);
+        told.inputs[point * inputs.len()..(point + 1) * inputs.len()].copy_from_slice(inputs);
     }
 
     /// Asks all laws for their forces and tangents; may be done any number of times with other strokes and rates.
     pub fn evaluate(&mut self) {
         let (t, h, nodes, form) = (self.t, self.h, self.nodes, self.form);
-        for element in &mut self.elements {
-            let mut state = std::mem::take(&mut element.state);
-            let step = element.step(t, h, nodes, form);
-            element.law.prepare(&step, &mut state);
-            let response = element.law.evaluate(&step, &state);
-            (element.state, element.response) = (state, response);
+        for Banked { law, state, told, response } in &mut self.elements {
+            let step = told.step(t, h, nodes, form);
+            law.prepare(&step, state);
+            *response = law.evaluate(&step, state);
         }
     }
 
@@ -162,21 +167,16 @@ impl ElementBank {
 
     /// Energy stored in element `e` after the last committed step, J; `None` where it is unknown.
     pub fn stored(&self, e: usize) -> Option<f64> {
-        let element = &self.elements[e];
-        let last = self.nodes.count();
-        let count = element.inputs.len() / (last + 1);
-        let inputs = &element.inputs[last * count..];
-        let at = Point { t: self.t + self.h, stroke: element.stroke[last], rate: element.rate[last], inputs };
-        element.law.now(&at, &element.state).stored
+        let Banked { law, state, told, .. } = &self.elements[e];
+        let end = told.step(self.t, self.h, self.nodes, self.form).point(self.nodes.count());
+        law.now(&Point { t: self.t + self.h, ..end }, state).stored
     }
 
     /// Takes the step into the past; the next one starts where it ended.
     pub fn commit(&mut self) {
         let (t, h, nodes, form) = (self.t, self.h, self.nodes, self.form);
-        for element in &mut self.elements {
-            let mut state = std::mem::take(&mut element.state);
-            element.law.commit(&element.step(t, h, nodes, form), &mut state);
-            element.state = state;
+        for Banked { law, state, told, .. } in &mut self.elements {
+            law.commit(&told.step(t, h, nodes, form), state);
         }
     }
 

@@ -111,11 +111,13 @@ impl History {
 
     /// Makes the table of a lag of pieces with `count` coefficients, so that asking for it is cheap; lags that differ by no more than
     /// `slack` are one.
-    pub(super) fn prepare(&mut self, lag: f64, count: usize, slack: f64) {
+    ///
+    /// Gives its place among the tables.
+    pub(super) fn prepare(&mut self, lag: f64, count: usize, slack: f64) -> usize {
         let moments = count * self.z.len();
         let is_same = |table: &Table| (table.lag - lag).abs() <= slack && table.psi.len() == moments;
-        if self.tables.iter().any(is_same) {
-            return;
+        if let Some(slot) = self.tables.iter().position(is_same) {
+            return slot;
         }
         let slot = if self.tables.len() < SLOTS {
             self.tables.push(Table { lag, decay: Vec::new(), weighted: Vec::new(), psi: Vec::new() });
@@ -125,11 +127,13 @@ impl History {
             self.oldest
         };
         self.tables[slot].fill(lag, count, &self.kernel, [&self.lambda, &self.weight]);
+        slot
     }
 
-    fn table(&self, lag: f64, count: usize, slack: f64) -> Option<&Table> {
+    /// The table of a lag with `count` moments or more, where it is ready.
+    fn table(&self, lag: f64, count: usize) -> Option<&Table> {
         let moments = count * self.z.len();
-        self.tables.iter().find(|table| (table.lag - lag).abs() <= slack && table.psi.len() >= moments)
+        self.tables.iter().find(|table| table.lag == lag && table.psi.len() >= moments)
     }
 
     /// Σ_k w_k e^{−λ_k τ} z_k: what the past adds at the lag τ, with faster modes where τ is shorter than the kernel's delta.
@@ -139,7 +143,7 @@ impl History {
         }
         let mut sums = [0.0; LANES];
         let mut add = |weighted: &Block, z: &Block| (0..LANES).for_each(|l| sums[l] += weighted[l] * z[l]);
-        match self.table(lag, 0, 0.0) {
+        match self.table(lag, 0) {
             Some(table) => table.weighted.iter().zip(&self.z).for_each(|(weighted, z)| add(weighted, z)),
             None => {
                 for ((lambda, weight), z) in self.lambda.iter().zip(&self.weight).zip(&self.z) {
@@ -169,31 +173,27 @@ impl History {
     /// Σ w z² and Σ w λ z² at the lag τ, where the piece under way has the coefficients y of θ^p, θ = s/τ.
     pub(super) fn squares(&self, lag: f64, y: &[f64; CUBIC]) -> Squares {
         let (mut plain, mut rated) = ([0.0; LANES], [0.0; LANES]);
-        if lag == 0.0 {
-            for (k, z) in self.z.iter().enumerate() {
-                for l in 0..LANES {
-                    let square = self.weight[k][l] * z[l] * z[l];
-                    plain[l] += square;
-                    rated[l] += self.lambda[k][l] * square;
-                }
-            }
-            return Squares { weighted: plain.iter().sum(), with_rates: rated.iter().sum() };
-        }
-        self.with_moments(lag, |k, decay, psi| {
+        let mut add = |k: usize, z: &Block| {
             for l in 0..LANES {
-                let z = decay[l] * self.z[k][l]
-                    + lag * (y[0] * psi[0][l] + y[1] * psi[1][l] + y[2] * psi[2][l] + y[3] * psi[3][l]);
-                let square = self.weight[k][l] * z * z;
+                let square = self.weight[k][l] * z[l] * z[l];
                 plain[l] += square;
                 rated[l] += self.lambda[k][l] * square;
             }
-        });
+        };
+        if lag == 0.0 {
+            self.z.iter().enumerate().for_each(|(k, z)| add(k, z));
+        } else {
+            self.with_moments(lag, |k, decay, psi| {
+                let grown = |l: usize| y[0] * psi[0][l] + y[1] * psi[1][l] + y[2] * psi[2][l] + y[3] * psi[3][l];
+                add(k, &std::array::from_fn(|l| decay[l] * self.z[k][l] + lag * grown(l)));
+            });
+        }
         Squares { weighted: plain.iter().sum(), with_rates: rated.iter().sum() }
     }
 
     /// Hands over index, e^{−X} and ψ_0 … ψ_3 of every block.
     fn with_moments(&self, lag: f64, mut take: impl FnMut(usize, &Block, &[Block])) {
-        match self.table(lag, CUBIC, 0.0) {
+        match self.table(lag, CUBIC) {
             Some(table) => {
                 let all = table.decay.iter().zip(table.psi.chunks_exact(CUBIC)).enumerate();
                 all.for_each(|(k, (decay, psi))| take(k, decay, psi));
@@ -211,13 +211,8 @@ impl History {
     /// Takes a piece into the past, z_k ← e^{−X} z_k + h Σ_p y_p ψ_p(X), and gives Σ_k w_k e^{−λ_k h} z_k at its end, what was before
     /// it. Widths that differ by no more than `slack` are one.
     pub(super) fn advance(&mut self, width: f64, y: &[f64], slack: f64) -> f64 {
-        self.prepare(width, y.len(), slack);
-        let found = self
-            .tables
-            .iter()
-            .position(|table| (table.lag - width).abs() <= slack && table.psi.len() == y.len() * self.z.len());
-        let table = &self.tables[found.expect("made above")];
-        let z = &mut self.z;
+        let slot = self.prepare(width, y.len(), slack);
+        let (table, z) = (&self.tables[slot], &mut self.z);
         // The lengths of cubic rates and of splines, unrolled; any other in a loop.
         let before = match *y {
             [a, b, c] => table.advance(z, [a, b, c].map(|y| width * y)),

@@ -297,8 +297,14 @@ impl Memory {
     fn prepare_lags(&mut self, h: f64, nodes: Nodes) {
         let Some(past) = &mut self.past else { return };
         match nodes {
-            Nodes::One | Nodes::Midpoint => past.prepare(h, CUBIC, 0.0),
-            Nodes::Radau => nodes.positions().iter().for_each(|c| past.prepare(c * h, CUBIC, 0.0)),
+            Nodes::One | Nodes::Midpoint => {
+                past.prepare(h, CUBIC, 0.0);
+            }
+            Nodes::Radau => {
+                for c in nodes.positions() {
+                    past.prepare(c * h, CUBIC, 0.0);
+                }
+            }
         }
     }
 
