@@ -1,10 +1,7 @@
 //! e^{−X} and its moments ψ_p(X) = ∫₀¹ e^{−X(1−θ)} θ^p dθ: what an exponential with the rate λ makes of a step, X = λh.
 
-/// Modes side by side.
-pub(super) const LANES: usize = 8;
-
-/// As many numbers.
-pub(super) type Block = [f64; LANES];
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f64x8};
 
 /// Number of moments that steps of a time loop ask for: x' is a cubic.
 pub(super) const CUBIC: usize = 4;
@@ -18,92 +15,90 @@ const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 /// 1.5·2⁵²: what is added to it is rounded to a whole number.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// 1/k!, k = 0 … 13.
+/// 1/(k + 1)!, k = 0 … 13.
 const INVERSE_FACTORIALS: [f64; 14] = {
     let mut values = [1.0; 14];
     let mut k = 1;
     while k < 14 {
-        values[k] = values[k - 1] / k as f64;
+        values[k] = values[k - 1] / (k + 1) as f64;
         k += 1;
     }
     values
 };
 
-/// 1/(k + 4), k = 0 … 15.
-const INVERSES: [f64; 16] = {
-    let mut values = [0.0; 16];
-    let mut k = 0;
+/// 3!/(k + 4)!, k = 0 … 15.
+const SERIES: [f64; 16] = {
+    let mut values = [0.25; 16];
+    let mut k = 1;
     while k < 16 {
-        values[k] = 1.0 / (k + 4) as f64;
+        values[k] = values[k - 1] / (k + 4) as f64;
         k += 1;
     }
     values
 };
+
+/// Σ_k f_k x^k with an even number of factors f_k; even and odd powers do not wait for each other.
+#[inline(always)]
+fn polynomial<S: Simd>(factors: &[f64], x: f64x8<S>) -> f64x8<S> {
+    let square = x * x;
+    let [mut even, mut odd] = [f64x8::splat(x.simd, 0.0); 2];
+    for [a, b] in factors.as_chunks().0.iter().rev() {
+        (even, odd) = (even * square + *a, odd * square + *b);
+    }
+    even + odd * x
+}
 
 /// e^{−x} for x ≥ 0, to an ulp: e^r 2^n with |r| ≤ ln(2)/2.
-pub(super) fn decay(x: &Block) -> Block {
-    let mut value = [0.0; LANES];
-    for l in 0..LANES {
-        let x = (-x[l]).max(SMALLEST);
-        let shifted = x * std::f64::consts::LOG2_E + ROUND;
-        let n = shifted - ROUND;
-        let r = (x - n * LN_2[0]) - n * LN_2[1];
-        let mut sum = INVERSE_FACTORIALS[13];
-        for k in (0..13).rev() {
-            sum = sum * r + INVERSE_FACTORIALS[k];
-        }
-        value[l] = f64::from_bits(sum.to_bits().wrapping_add(shifted.to_bits() << 52));
-    }
-    for l in 0..LANES {
-        if -x[l] <= SMALLEST {
-            value[l] = 0.0;
-        }
-    }
-    value
+#[inline(always)]
+pub(super) fn decay<S: Simd>(x: f64x8<S>) -> f64x8<S> {
+    let negative = (-x).max(SMALLEST);
+    let shifted = negative * std::f64::consts::LOG2_E + ROUND;
+    let n = shifted - ROUND;
+    let r = (negative - n * LN_2[0]) - n * LN_2[1];
+    // The last sum alone rounds: the same factor is taken again and again over equal steps.
+    let near_one = polynomial(&INVERSE_FACTORIALS, r) * r + 1.0;
+    let value = f64x8::from_bits(near_one.to_bits() + (shifted.to_bits() << 52));
+    negative.simd_gt(SMALLEST).select(value, f64x8::splat(x.simd, 0.0))
 }
 
 /// ψ_0 … ψ_3 of every x ≥ 0, where `decay` is e^{−x}.
 ///
 /// Upwards by ψ_p = (1 − pψ_{p−1})/x from x = 1 on; below, downwards from the series of ψ_3.
-pub(super) fn cubic_moments(x: &Block, decay: &Block) -> [Block; CUBIC] {
-    let (small, large) = x.iter().fold((false, false), |(small, large), x| (small || *x < 1.0, large || *x >= 1.0));
-    match (small, large) {
-        (false, _) => moments_upwards(x, decay),
-        (true, false) => moments_downwards(x),
-        (true, true) => {
-            let (up, down) = (moments_upwards(x, decay), moments_downwards(x));
-            std::array::from_fn(|p| std::array::from_fn(|l| if x[l] < 1.0 { down[p][l] } else { up[p][l] }))
-        }
+#[inline(always)]
+pub(super) fn cubic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; CUBIC] {
+    let is_small = x.simd_lt(1.0);
+    if is_small.all_false() {
+        return moments_upwards(x, decay);
     }
-}
-
-fn moments_upwards(x: &Block, decay: &Block) -> [Block; CUBIC] {
-    let mut psi = [[0.0; LANES]; CUBIC];
-    for l in 0..LANES {
-        let inverse = 1.0 / x[l].max(1.0);
-        psi[0][l] = (1.0 - decay[l]) * inverse;
-        psi[1][l] = (1.0 - psi[0][l]) * inverse;
-        psi[2][l] = (1.0 - 2.0 * psi[1][l]) * inverse;
-        psi[3][l] = (1.0 - 3.0 * psi[2][l]) * inverse;
+    let mut psi = moments_downwards(x);
+    if !is_small.all_true() {
+        let up = moments_upwards(x, decay);
+        for p in 0..CUBIC {
+            psi[p] = is_small.select(psi[p], up[p]);
+        }
     }
     psi
 }
 
-/// ψ_3 = 1/4 (1 − x/5 (1 − x/6 (…))): 16 factors reach the last bit at x = 1.
-fn moments_downwards(x: &Block) -> [Block; CUBIC] {
-    let mut psi = [[0.0; LANES]; CUBIC];
-    let x: Block = std::array::from_fn(|l| x[l].min(1.0));
-    for inverse in INVERSES.iter().rev() {
-        for l in 0..LANES {
-            psi[3][l] = (1.0 - x[l] * psi[3][l]) * inverse;
-        }
-    }
-    for l in 0..LANES {
-        psi[2][l] = (1.0 - x[l] * psi[3][l]) * (1.0 / 3.0);
-        psi[1][l] = (1.0 - x[l] * psi[2][l]) * 0.5;
-        psi[0][l] = 1.0 - x[l] * psi[1][l];
-    }
-    psi
+#[inline(always)]
+fn moments_upwards<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; CUBIC] {
+    let one = f64x8::splat(x.simd, 1.0);
+    let inverse = one / x.max(1.0);
+    let first = (one - decay) * inverse;
+    let second = (one - first) * inverse;
+    let third = (one - second * 2.0) * inverse;
+    [first, second, third, (one - third * 3.0) * inverse]
+}
+
+/// ψ_3 = Σ_k 3!/(k + 4)! (−x)^k: 16 terms reach the last bit at x = 1.
+#[inline(always)]
+fn moments_downwards<S: Simd>(x: f64x8<S>) -> [f64x8<S>; CUBIC] {
+    let one = f64x8::splat(x.simd, 1.0);
+    let x = x.min(1.0);
+    let last = polynomial(&SERIES, -x);
+    let third = (one - x * last) * (1.0 / 3.0);
+    let second = (one - x * third) * 0.5;
+    [one - x * second, second, third, last]
 }
 
 /// ψ_p(x) for x ≥ 0 and p = 0 … psi.len() − 1.
@@ -137,7 +132,20 @@ pub(super) fn moments(x: f64, psi: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::lanes::{Block, LANES, load};
     use super::*;
+    use fearless_simd::{Level, dispatch};
+
+    fn decay_of(level: Level, x: &Block) -> Block {
+        dispatch!(level, simd => decay(load(simd, x)).to_array())
+    }
+
+    fn moments_of(level: Level, x: &Block) -> [Block; CUBIC] {
+        dispatch!(level, simd => {
+            let x = load(simd, x);
+            cubic_moments(x, decay(x)).map(|psi| psi.to_array())
+        })
+    }
 
     const ARGUMENTS: [f64; 16] =
         [0.0, 1e-9, 0.3, 0.5, 0.999, 1.0, 1.001, 1.5, 2.999, 3.0, 3.001, 6.5, 16.9, 17.1, 60.0, 707.0];
@@ -147,14 +155,14 @@ mod tests {
         for k in 0..20_000 {
             let x: Block =
                 std::array::from_fn(|l| 0.0443 * (LANES * k + l) as f64 * if k % 2 == 0 { 1.0 } else { 1e-5 });
-            for (x, value) in x.iter().zip(decay(&x)) {
+            for (x, value) in x.iter().zip(decay_of(Level::new(), &x)) {
                 let exact = (-x).exp();
                 let allowed = if *x > 708.0 { 4e-308 } else { 2.3e-16 * exact };
                 assert!((value - exact).abs() <= allowed, "e^-{x} = {value}, not {exact}");
             }
         }
-        assert_eq!(decay(&[f64::INFINITY; LANES]), [0.0; LANES]);
-        assert_eq!(decay(&[0.0; LANES]), [1.0; LANES]);
+        assert_eq!(decay_of(Level::new(), &[f64::INFINITY; LANES]), [0.0; LANES]);
+        assert_eq!(decay_of(Level::new(), &[0.0; LANES]), [1.0; LANES]);
     }
 
     #[test]
@@ -188,7 +196,7 @@ mod tests {
     fn moments_of_a_block_are_those_of_its_numbers() {
         for shift in 0..ARGUMENTS.len() {
             let x: Block = std::array::from_fn(|l| ARGUMENTS[(l + shift) % ARGUMENTS.len()]);
-            let block = cubic_moments(&x, &decay(&x));
+            let block = moments_of(Level::new(), &x);
             for l in 0..LANES {
                 let mut psi = [0.0; CUBIC];
                 moments(x[l], &mut psi);
@@ -202,6 +210,15 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn registers_of_any_width_find_the_same_bits() {
+        for k in 0..20_000 {
+            let x: Block = std::array::from_fn(|l| 1e-7 * 1.0007f64.powi((k + 4321 * l as i32) % 33_000));
+            assert_eq!(decay_of(Level::baseline(), &x), decay_of(Level::new(), &x), "{x:?}");
+            assert_eq!(moments_of(Level::baseline(), &x), moments_of(Level::new(), &x), "{x:?}");
         }
     }
 }

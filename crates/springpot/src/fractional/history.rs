@@ -7,8 +7,12 @@
 //! There is no shortest lag: faster modes are made where one is asked for, from the last piece alone. That is exact, since they
 //! have forgotten everything before it (X > 100).
 
-use super::exponentials::{Block, CUBIC, LANES, cubic_moments, decay, moments};
+use super::exponentials::{CUBIC, cubic_moments, decay, moments};
 use super::kernel::Kernel;
+use super::lanes::{Block, LANES, blocks, load, sum};
+use super::table::Table;
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f64x8};
 use serde::{Deserialize, Serialize};
 
 /// Lags that are kept ready: the three nodes of two alternating step sizes.
@@ -25,6 +29,8 @@ pub(super) struct History {
     /// λ and w of the kernel.
     lambda: Vec<Block>,
     weight: Vec<Block>,
+    /// [`Kernel::fast_tail`].
+    fast_tail: [f64; 3],
     z: Vec<Block>,
     /// Width and coefficients of the last piece; none before the first.
     last: (f64, Vec<f64>),
@@ -38,16 +44,6 @@ struct Kept {
     kernel: Kernel,
     z: Vec<f64>,
     last: (f64, Vec<f64>),
-}
-
-/// e^{−X}, w e^{−X} and ψ_p(X) of every mode for one lag.
-#[derive(Debug, Clone)]
-struct Table {
-    lag: f64,
-    decay: Vec<Block>,
-    weighted: Vec<Block>,
-    /// Those of a block stand together.
-    psi: Vec<Block>,
 }
 
 /// Quadratic forms of the z: Σ w z² and Σ w λ z².
@@ -74,24 +70,22 @@ impl From<History> for Kept {
     }
 }
 
-/// Numbers in whole blocks, the rest 0.
-fn blocks(values: &[f64]) -> Vec<Block> {
-    let mut blocks = vec![[0.0; LANES]; values.len().div_ceil(LANES)];
-    blocks.as_flattened_mut()[..values.len()].copy_from_slice(values);
-    blocks
-}
-
 impl History {
     /// Nothing yet.
     pub(super) fn new(kernel: Kernel) -> Self {
         let z = vec![[0.0; LANES]; kernel.modes().div_ceil(LANES)];
         let (lambda, weight) = (blocks(&kernel.lambda), blocks(&kernel.weight));
-        let last = (0.0, Vec::with_capacity(CUBIC));
-        Self { kernel, lambda, weight, z, last, tables: Vec::new(), oldest: 0 }
+        let (fast_tail, last) = (kernel.fast_tail(), (0.0, Vec::with_capacity(CUBIC)));
+        Self { kernel, lambda, weight, fast_tail, z, last, tables: Vec::new(), oldest: 0 }
     }
 
     pub(super) fn kernel(&self) -> &Kernel {
         &self.kernel
+    }
+
+    /// [`Kernel::fast_tail`] of the modes above those that are kept.
+    pub(super) fn fast_tail(&self) -> [f64; 3] {
+        self.fast_tail
     }
 
     /// z_k, one for each exponential of the kernel.
@@ -120,20 +114,14 @@ impl History {
             return slot;
         }
         let slot = if self.tables.len() < SLOTS {
-            self.tables.push(Table { lag, decay: Vec::new(), weighted: Vec::new(), psi: Vec::new() });
+            self.tables.push(Table::empty());
             self.tables.len() - 1
         } else {
             self.oldest = (self.oldest + 1) % SLOTS;
             self.oldest
         };
-        self.tables[slot].fill(lag, count, &self.kernel, [&self.lambda, &self.weight]);
+        self.tables[slot].fill(lag, count, self.kernel.modes(), [&self.lambda, &self.weight]);
         slot
-    }
-
-    /// The table of a lag with `count` moments or more, where it is ready.
-    fn table(&self, lag: f64, count: usize) -> Option<&Table> {
-        let moments = count * self.z.len();
-        self.tables.iter().find(|table| table.lag == lag && table.psi.len() >= moments)
     }
 
     /// Σ_k w_k e^{−λ_k τ} z_k: what the past adds at the lag τ, with faster modes where τ is shorter than the kernel's delta.
@@ -141,17 +129,7 @@ impl History {
         if self.is_empty() {
             return 0.0;
         }
-        let mut sums = [0.0; LANES];
-        let mut add = |weighted: &Block, z: &Block| (0..LANES).for_each(|l| sums[l] += weighted[l] * z[l]);
-        match self.table(lag, 0) {
-            Some(table) => table.weighted.iter().zip(&self.z).for_each(|(weighted, z)| add(weighted, z)),
-            None => {
-                for ((lambda, weight), z) in self.lambda.iter().zip(&self.weight).zip(&self.z) {
-                    add(&weighted(weight, &decay(&lambda.map(|lambda| lambda * lag))), z);
-                }
-            }
-        }
-        let mut sum: f64 = sums.iter().sum();
+        let mut sum = dispatch!(Level::new(), simd => self.kept_at(simd, lag));
         for k in 1..=self.kernel.missing(lag) {
             let (lambda, weight) = self.kernel.faster(k);
             sum += weight * (-lambda * lag).exp() * self.fast_mode(lambda);
@@ -159,51 +137,84 @@ impl History {
         sum
     }
 
+    /// Σ_k w_k e^{−λ_k τ} z_k over the modes that are kept.
+    #[inline(always)]
+    fn kept_at<S: Simd>(&self, simd: S, lag: f64) -> f64 {
+        let mut total = f64x8::splat(simd, 0.0);
+        if let Some(table) = self.tables.iter().find(|table| table.lag == lag) {
+            for (weighted, z) in table.weighted.iter().zip(&self.z) {
+                total += load(simd, weighted) * load(simd, z);
+            }
+        } else {
+            for ((lambda, weight), z) in self.lambda.iter().zip(&self.weight).zip(&self.z) {
+                let weighted = load(simd, weight) * decay(load(simd, lambda) * lag);
+                total += weighted * load(simd, z);
+            }
+        }
+        sum(total)
+    }
+
     /// The mean of the past over lags up to τ, Σ_k w_k z_k ψ_0(λ_k τ), modes above the kernel's left out.
     pub(super) fn mean(&self, lag: f64) -> f64 {
-        let mut sums = [0.0; LANES];
-        self.with_moments(lag, |k, _, psi| {
-            for l in 0..LANES {
-                sums[l] += self.weight[k][l] * psi[0][l] * self.z[k][l];
-            }
-        });
-        sums.iter().sum()
+        dispatch!(Level::new(), simd => {
+            let mut total = f64x8::splat(simd, 0.0);
+            self.with_moments(
+                simd,
+                lag,
+                #[inline(always)]
+                |k, _, [psi, ..]| total += load(simd, &self.weight[k]) * psi * load(simd, &self.z[k]),
+            );
+            sum(total)
+        })
     }
 
     /// Σ w z² and Σ w λ z² at the lag τ, where the piece under way has the coefficients y of θ^p, θ = s/τ.
     pub(super) fn squares(&self, lag: f64, y: &[f64; CUBIC]) -> Squares {
-        let (mut plain, mut rated) = ([0.0; LANES], [0.0; LANES]);
-        let mut add = |k: usize, z: &Block| {
-            for l in 0..LANES {
-                let square = self.weight[k][l] * z[l] * z[l];
-                plain[l] += square;
-                rated[l] += self.lambda[k][l] * square;
-            }
-        };
+        dispatch!(Level::new(), simd => self.squares_with(simd, lag, y))
+    }
+
+    #[inline(always)]
+    fn squares_with<S: Simd>(&self, simd: S, lag: f64, y: &[f64; CUBIC]) -> Squares {
+        let mut totals = [f64x8::splat(simd, 0.0); 2];
         if lag == 0.0 {
-            self.z.iter().enumerate().for_each(|(k, z)| add(k, z));
+            for (k, z) in self.z.iter().enumerate() {
+                self.add_squares(k, load(simd, z), &mut totals);
+            }
         } else {
-            self.with_moments(lag, |k, decay, psi| {
-                let grown = |l: usize| y[0] * psi[0][l] + y[1] * psi[1][l] + y[2] * psi[2][l] + y[3] * psi[3][l];
-                add(k, &std::array::from_fn(|l| decay[l] * self.z[k][l] + lag * grown(l)));
-            });
+            self.with_moments(
+                simd,
+                lag,
+                #[inline(always)]
+                |k, decay, [a, b, c, d]| {
+                    let grown = a * y[0] + b * y[1] + c * y[2] + d * y[3];
+                    self.add_squares(k, decay * load(simd, &self.z[k]) + grown * lag, &mut totals);
+                },
+            );
         }
-        Squares { weighted: plain.iter().sum(), with_rates: rated.iter().sum() }
+        let [weighted, with_rates] = totals;
+        Squares { weighted: sum(weighted), with_rates: sum(with_rates) }
+    }
+
+    #[inline(always)]
+    fn add_squares<S: Simd>(&self, k: usize, z: f64x8<S>, [plain, rated]: &mut [f64x8<S>; 2]) {
+        let square = load(z.simd, &self.weight[k]) * z * z;
+        *plain += square;
+        *rated += load(z.simd, &self.lambda[k]) * square;
     }
 
     /// Hands over index, e^{−X} and ψ_0 … ψ_3 of every block.
-    fn with_moments(&self, lag: f64, mut take: impl FnMut(usize, &Block, &[Block])) {
-        match self.table(lag, CUBIC) {
-            Some(table) => {
-                let all = table.decay.iter().zip(table.psi.chunks_exact(CUBIC)).enumerate();
-                all.for_each(|(k, (decay, psi))| take(k, decay, psi));
+    #[inline(always)]
+    fn with_moments<S: Simd>(&self, simd: S, lag: f64, mut take: impl FnMut(usize, f64x8<S>, [f64x8<S>; CUBIC])) {
+        let moments = CUBIC * self.z.len();
+        if let Some(table) = self.tables.iter().find(|table| table.lag == lag && table.psi.len() == moments) {
+            for (k, (decay, [a, b, c, d])) in table.decay.iter().zip(table.psi.as_chunks().0).enumerate() {
+                take(k, load(simd, decay), [load(simd, a), load(simd, b), load(simd, c), load(simd, d)]);
             }
-            None => {
-                for (k, lambda) in self.lambda.iter().enumerate() {
-                    let x = lambda.map(|lambda| lambda * lag);
-                    let decay = decay(&x);
-                    take(k, &decay, &cubic_moments(&x, &decay));
-                }
+        } else {
+            for (k, lambda) in self.lambda.iter().enumerate() {
+                let x = load(simd, lambda) * lag;
+                let decay = decay(x);
+                take(k, decay, cubic_moments(x, decay));
             }
         }
     }
@@ -214,15 +225,15 @@ impl History {
         let slot = self.prepare(width, y.len(), slack);
         let (table, z) = (&self.tables[slot], &mut self.z);
         // The lengths of cubic rates and of splines, unrolled; any other in a loop.
-        let before = match *y {
-            [a, b, c] => table.advance(z, [a, b, c].map(|y| width * y)),
-            [a, b, c, d] => table.advance(z, [a, b, c, d].map(|y| width * y)),
-            [a, b, c, d, e] => table.advance(z, [a, b, c, d, e].map(|y| width * y)),
+        let before = dispatch!(Level::new(), simd => match *y {
+            [a, b, c] => table.advance(simd, z, &[width * a, width * b, width * c]),
+            [a, b, c, d] => table.advance(simd, z, &[width * a, width * b, width * c, width * d]),
+            [a, b, c, d, e] => table.advance(simd, z, &[width * a, width * b, width * c, width * d, width * e]),
             _ => {
                 let y: Vec<f64> = y.iter().map(|y| width * y).collect();
-                table.advance_by(z, &y)
+                table.advance(simd, z, &y)
             }
-        };
+        });
         self.last.0 = width;
         self.last.1.clear();
         self.last.1.extend_from_slice(y);
@@ -281,6 +292,7 @@ impl History {
         self.z = blocks(z);
         self.lambda = blocks(&self.kernel.lambda);
         self.weight = blocks(&self.kernel.weight);
+        self.fast_tail = self.kernel.fast_tail();
         self.tables.clear();
     }
 
@@ -297,64 +309,5 @@ impl History {
         };
         moments(lambda * width, psi);
         width * psi.iter().zip(y).map(|(psi, y)| psi * y).sum::<f64>()
-    }
-}
-
-fn weighted(weight: &Block, decay: &Block) -> Block {
-    std::array::from_fn(|l| weight[l] * decay[l])
-}
-
-impl Table {
-    fn fill(&mut self, lag: f64, count: usize, kernel: &Kernel, [lambda, weight]: [&[Block]; 2]) {
-        self.lag = lag;
-        self.decay.clear();
-        self.weighted.clear();
-        self.psi.clear();
-        let mut scalar = vec![0.0; if count == CUBIC { 0 } else { count }];
-        for (k, (lambda, weight)) in lambda.iter().zip(weight).enumerate() {
-            let x = lambda.map(|lambda| lambda * lag);
-            let mut decay = decay(&x);
-            let first = self.psi.len();
-            if count == CUBIC {
-                self.psi.extend_from_slice(&cubic_moments(&x, &decay));
-            } else {
-                self.psi.resize(first + count, [0.0; LANES]);
-                for l in 0..LANES {
-                    moments(x[l], &mut scalar);
-                    self.psi[first..].iter_mut().zip(&scalar).for_each(|(psi, value)| psi[l] = *value);
-                }
-            }
-            for l in kernel.modes().saturating_sub(k * LANES).min(LANES)..LANES {
-                decay[l] = 0.0;
-                self.psi[first..].iter_mut().for_each(|psi| psi[l] = 0.0);
-            }
-            self.decay.push(decay);
-            self.weighted.push(weighted(weight, &decay));
-        }
-    }
-
-    fn advance<const COUNT: usize>(&self, z: &mut [Block], y: [f64; COUNT]) -> f64 {
-        self.advance_by(z, &y)
-    }
-
-    /// Σ w e^{−X} z, and z at the end of a piece whose coefficients times its width are y.
-    #[inline(always)]
-    fn advance_by(&self, z: &mut [Block], y: &[f64]) -> f64 {
-        let mut sums = [0.0; LANES];
-        let modes = z.iter_mut().zip(&self.decay).zip(&self.weighted).zip(self.psi.chunks_exact(y.len()));
-        for (((z, decay), weighted), psi) in modes {
-            let mut next = [0.0; LANES];
-            for l in 0..LANES {
-                sums[l] += weighted[l] * z[l];
-                next[l] = decay[l] * z[l];
-            }
-            for (y, psi) in y.iter().zip(psi) {
-                for l in 0..LANES {
-                    next[l] += y * psi[l];
-                }
-            }
-            *z = next;
-        }
-        sums.iter().sum()
     }
 }

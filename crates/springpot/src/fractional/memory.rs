@@ -39,9 +39,8 @@ use super::gamma::reciprocal_gamma;
 use super::history::{History, Squares};
 use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
-use super::step::{
-    Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_INVERSE, RADAU_NODES, RatePolynomial, TABLEAU, local_factors,
-};
+use super::local::Local;
+use super::step::{Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_INVERSE, RADAU_NODES, RatePolynomial};
 use serde::{Deserialize, Serialize};
 
 /// The start of a step as a memory sees it.
@@ -91,7 +90,7 @@ pub struct Memory {
     jump: f64,
     /// 1/Γ(1−alpha).
     singular_factor: f64,
-    local: [f64; 5],
+    local: Local,
     /// ∫ of all rates committed: what the modes have seen of the stroke.
     travelled: f64,
     /// D^alpha x after the last committed step without the singular part; at the limits it follows from x and x'.
@@ -152,7 +151,7 @@ impl Memory {
             origin,
             jump: if singular { jump } else { 0.0 },
             singular_factor: reciprocal_gamma(1.0 - alpha),
-            local: local_factors(alpha),
+            local: Local::from(alpha),
             travelled: 0.0,
             now: 0.0,
             told: None,
@@ -263,7 +262,7 @@ impl Memory {
             let Some(past) = &self.past else {
                 match form {
                     Form::Rates => affine.rate[i][i] = 1.0,
-                    Form::Strokes => affine.stroke[i] = self.stroke_row(start.h, c, nodes),
+                    Form::Strokes => affine.stroke[i] = self.local.stroke_row(start.h, i, nodes),
                 }
                 continue;
             };
@@ -273,9 +272,9 @@ impl Memory {
             };
             affine.history[i] = before + self.singular_part(start.t + c * start.h);
             match form {
-                Form::Strokes => affine.stroke[i] = self.stroke_row(start.h, c, nodes),
+                Form::Strokes => affine.stroke[i] = self.local.stroke_row(start.h, i, nodes),
                 Form::Rates => {
-                    let row = self.rate_row(start.h, c, nodes);
+                    let row = self.local.rate_row(start.h, i, nodes);
                     affine.history[i] += row[0] * start.rate;
                     affine.rate[i].copy_from_slice(&row[1..]);
                 }
@@ -296,6 +295,7 @@ impl Memory {
 
     fn prepare_lags(&mut self, h: f64, nodes: Nodes) {
         let Some(past) = &mut self.past else { return };
+        self.local.prepare(h);
         match nodes {
             Nodes::One | Nodes::Midpoint => {
                 past.prepare(h, CUBIC, 0.0);
@@ -332,7 +332,7 @@ impl Memory {
     /// As [`Self::derivative`] without the singular part.
     pub fn regular_derivative(&self, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> f64 {
         match &self.past {
-            Some(past) => self.local_part(step, theta) + past.at(theta * step.h),
+            Some(past) => self.local.part(step, theta) + past.at(theta * step.h),
             None if self.alpha == 0.0 => stroke - self.held(),
             None => rate,
         }
@@ -349,8 +349,8 @@ impl Memory {
             return value;
         }
         let miss = (rate - step.rate(theta)) / node_polynomial;
-        let moments: [f64; 5] = std::array::from_fn(|p| NODE_POLYNOMIAL[p] * self.local[p]);
-        value + miss * (theta * step.h).powf(1.0 - self.alpha) * at(&moments)
+        let moments: [f64; 5] = std::array::from_fn(|p| NODE_POLYNOMIAL[p] * self.local.factors[p]);
+        value + miss * self.local.power(theta * step.h) * at(&moments)
     }
 
     /// |D^alpha x| at the end of the step by the step's polynomial less the same by the Hermite form: the embedded error.
@@ -361,8 +361,8 @@ impl Memory {
             return 0.0;
         }
         let hermite = RatePolynomial::hermite(step.h, stroke, rate);
-        let difference = (self.local_part(step, 1.0) - self.local_part(&hermite, 1.0)).abs();
-        (difference - 6.0 * resolution * step.h.powf(-self.alpha)).max(0.0)
+        let difference = (self.local.part(step, 1.0) - self.local.part(&hermite, 1.0)).abs();
+        (difference - 6.0 * resolution * self.local.power(step.h) / step.h).max(0.0)
     }
 
     /// Energy of a unit springpot at t_n + θh; `rate` is x' there. The limits: ½(x − x(0))² or ½x² stored at alpha = 0,
@@ -386,7 +386,7 @@ impl Memory {
             coefficient
         });
         let Squares { weighted, with_rates } = past.squares(theta * step.h, &scaled);
-        let [d1, d2, d3] = past.kernel().fast_tail();
+        let [d1, d2, d3] = past.fast_tail();
         let bend = step.bend(theta);
         Energy {
             stored: 0.5 * (weighted + d2 * rate * rate),
@@ -410,7 +410,7 @@ impl Memory {
         if self.prepared.take().is_none() {
             self.prepare_lags(step.h, Nodes::Radau);
         }
-        let local = self.local_part(as_found, 1.0);
+        let local = self.local.part(as_found, 1.0);
         let Some(past) = &mut self.past else { return };
         self.travelled += step.travel();
         let shortest = RADAU_NODES[0] * step.h;
@@ -459,50 +459,6 @@ impl Memory {
             Kind::RiemannLiouville => 0.0,
         }
     }
-
-    /// The current step's share: h^{1−alpha} Σ_p u_p p!/Γ(p+2−alpha) θ^{p+1−alpha}.
-    fn local_part(&self, step: &RatePolynomial, theta: f64) -> f64 {
-        let sum = (0..4).rev().fold(0.0, |sum, p| sum * theta + step.u[p] * self.local[p]);
-        (theta * step.h).powf(1.0 - self.alpha) * sum
-    }
-
-    /// Factors of x' at 0 and at the nodes.
-    fn rate_row(&self, h: f64, c: f64, nodes: Nodes) -> [f64; 4] {
-        let scale = (c * h).powf(1.0 - self.alpha);
-        let mut row = [0.0; 4];
-        match nodes {
-            Nodes::One => (row[0], row[1]) = (self.local[0] - c * self.local[1], c * self.local[1]),
-            Nodes::Midpoint => return [0.0, self.mean_factor(h), 0.0, 0.0],
-            Nodes::Radau => {
-                for (k, factor) in row.iter_mut().enumerate() {
-                    *factor = (0..4).rev().fold(0.0, |sum, p| sum * c + self.local[p] * TABLEAU.rates[p][k]);
-                }
-            }
-        }
-        row.map(|factor| scale * factor)
-    }
-
-    /// Mean over the step of D^alpha x under the rate 1: h^{1−alpha}/Γ(3−alpha).
-    fn mean_factor(&self, h: f64) -> f64 {
-        h.powf(1.0 - self.alpha) * self.local[0] / (2.0 - self.alpha)
-    }
-
-    /// Factors of the strokes x_j − x_0.
-    fn stroke_row(&self, h: f64, c: f64, nodes: Nodes) -> [f64; 3] {
-        let scale = (c * h).powf(1.0 - self.alpha) / h;
-        let mut row = [0.0; 3];
-        match nodes {
-            Nodes::One => row[0] = self.local[0],
-            Nodes::Midpoint => return [2.0 / h * self.mean_factor(h), 0.0, 0.0],
-            Nodes::Radau => {
-                for (j, factor) in row.iter_mut().enumerate() {
-                    let term = |p: usize| self.local[p] * (p + 1) as f64 * TABLEAU.strokes[p][j];
-                    *factor = (0..3).rev().fold(0.0, |sum, p| sum * c + term(p));
-                }
-            }
-        }
-        row.map(|factor| scale * factor)
-    }
 }
 
 /// The mean of the past over lags up to h; modes above the kernel's have settled to z = x'/λ and add d2·x'/h.
@@ -510,6 +466,6 @@ fn mean_history(past: &History, h: f64) -> f64 {
     if past.is_empty() {
         return 0.0;
     }
-    let [_, d2, _] = past.kernel().fast_tail();
+    let [_, d2, _] = past.fast_tail();
     past.mean(h) + d2 * past.last_value() / h
 }

@@ -63,11 +63,14 @@ pub mod gamma;
 mod history;
 pub mod kernel;
 pub mod kind;
+mod lanes;
+mod local;
 pub mod memory;
 pub mod mittag_leffler;
 pub mod prony;
 pub mod scheme;
 pub mod step;
+mod table;
 
 pub use differintegral::{
     Definition, DefinitionNameError, DerivativeError, Differintegral, Estimate, Estimated, FunctionError, Method,
