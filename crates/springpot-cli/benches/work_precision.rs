@@ -13,13 +13,13 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use springpot::actuation::{Drive, Forward};
 use springpot::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pair, rnea_derivatives_into, rnea_into};
 use springpot::fractional::{Kernel, gamma::gamma};
+use springpot::integrate::{RowTimes, Settings, Stop, System, run};
 use springpot::law::Catalog;
-use springpot::motion::{Drive, Forward, Motion};
 use springpot::observe::Quantity;
 use springpot::signal::Signal;
-use springpot::simulate::{RowTimes, Settings, Stop, System, forward};
 use springpot_report::{Panel, Plot};
 use springpot_scenario::Scenario;
 
@@ -59,7 +59,7 @@ fn arm(alpha: f64) -> (System, Settings) {
     let plan = plan.expect("the order is swept");
     let mut system = plan.system();
     let drives = (0..3).map(|_| Drive::Force(vec![Signal::constant(0.0)])).collect();
-    system.motion = Motion::Forward(Box::new(Forward { q: vec![0.0; 3], v: vec![0.0; 3], drives }));
+    system.motion = Forward { q: vec![0.0; 3], v: vec![0.0; 3], drives }.into();
     let settings = Settings { end: END, rows: RowTimes::Times([END].into()), ..plan.settings.clone() };
     (system, settings)
 }
@@ -71,7 +71,7 @@ fn springpot(system: &System, settings: &Settings, rtol: f64, repeats: usize) ->
     let (mut times, mut table) = (Vec::new(), system.table());
     for _ in 0..repeats {
         let begun = Instant::now();
-        forward(system, &settings, &mut table, &Stop::new(false)).1.expect("the run succeeds");
+        run(system, &settings, &mut table, &Stop::new(false)).1.expect("the run succeeds");
         times.push(begun.elapsed().as_secs_f64());
     }
     let q = (0..system.model.nq()).map(Quantity::Coordinate);

@@ -3,8 +3,8 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use springpot::integrate::{Report, RunError, Settings, run as simulate};
 use springpot::law::Catalog;
-use springpot::simulate::{Report, RunError, Settings, along};
 use springpot_scenario::Scenario;
 use std::cell::Cell;
 use std::fmt::Write as _;
@@ -179,7 +179,7 @@ fn run(text: &str, limit: Option<u64>) -> Result<Ran, String> {
     let system = plan.system();
     let settings = Settings { max_steps: limit.or(plan.settings.max_steps), ..plan.settings.clone() };
     let mut table = system.table();
-    let (report, outcome) = along(&system, &settings, &mut table, &AtomicBool::new(false));
+    let (report, outcome) = simulate(&system, &settings, &mut table, &AtomicBool::new(false));
     let columns = table.columns().iter().map(|column| column.name.clone()).collect();
     let rows = table.rows().map(<[f64]>::to_vec).collect();
     Ok(Ran { columns, rows, report, outcome })

@@ -8,7 +8,7 @@ pub use panels::{Curves, FigureColumn};
 use crate::labels;
 use crate::sweep::{FigureData, KeptCurve, Layout, Outcome};
 use crate::table::folder::Folder;
-use springpot::simulate::System;
+use springpot::integrate::System;
 use springpot_report::{Plot, Rendered, ReportError};
 use springpot_scenario::{Cases, FigureKind, FigurePlan, Plan};
 use std::io;

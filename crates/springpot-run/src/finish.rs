@@ -5,7 +5,7 @@ use crate::prepare::{Prepared, Warn};
 use crate::sweep::{self, Options, Outcome, Progress, Status, SweepError};
 use crate::table::Format;
 use crate::table::folder::{Folder, FolderError};
-use springpot::simulate::Stop;
+use springpot::integrate::Stop;
 use springpot_scenario::Cases;
 use std::sync::atomic::Ordering;
 

@@ -13,7 +13,7 @@
 //!
 //! ```no_run
 //! use springpot::law::Catalog;
-//! use springpot::simulate::Stop;
+//! use springpot::integrate::Stop;
 //! use springpot_run::sweep::{Progress, Status};
 //! use springpot_run::table::disk::Disk;
 //! use springpot_run::{NewRun, Prepared, Surroundings};

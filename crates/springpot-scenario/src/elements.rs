@@ -9,11 +9,11 @@ use super::refusal::RefusalKind;
 use super::robot::{Robot, checked_name, unique};
 use super::signals::{self, Wanted, celsius, how_outside, interval};
 use super::time::Duration;
-use springpot::element::Element;
+use springpot::elements::Element;
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
+use springpot::integrate::RowTimes;
 use springpot::law::{Derivative, Entry, Param};
 use springpot::model::Anchor;
-use springpot::simulate::RowTimes;
 use std::collections::HashMap;
 use std::sync::Arc;
 

@@ -2,11 +2,11 @@
 
 use super::figures::{ColumnGlob, FigurePlan};
 use super::refusal::Place;
-use springpot::element::Element;
+use springpot::elements::Element;
+use springpot::integrate::Settings;
 use springpot::model::urdf::Urdf;
 use springpot::model::{Anchor, BodySpec, Model};
 use springpot::signal::Signal;
-use springpot::simulate::Settings;
 use std::sync::Arc;
 
 /// One run, ready to be started.

@@ -1,12 +1,13 @@
 //! From a plan to what the time loop runs.
 
 use super::plan::{DrivePlan, JointPlan, MotionPlan, Plan, SignalPlan};
-use springpot::model::{Anchor, Model, Site};
+use springpot::actuation::{Drive, Forward};
+use springpot::integrate::{Motion, Stop, System};
+use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::{Course, Task};
-use springpot::motion::{Drive, Forward, GripperPath, JointPath, Motion, PosePath};
+use springpot::motion::{GripperPath, JointPath, PosePath, Trajectory};
 use springpot::observe::Observables;
 use springpot::signal::Signal;
-use springpot::simulate::{Stop, System};
 
 impl Plan {
     /// The robot, its elements and its motion. A gripper path is solved here, as far as it can be followed.
@@ -20,7 +21,7 @@ impl Plan {
             elements: self.elements.iter().map(|plan| plan.element.clone()).collect(),
             motion: self.solved_motion(stop),
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
-            model: Model::clone(&self.model),
+            model: self.model.clone(),
             tells_joint_losses: self.tells_joint_losses,
         }
     }
@@ -36,7 +37,7 @@ impl Plan {
 
     fn solved_motion(&self, stop: &Stop) -> Motion {
         match &self.motion {
-            MotionPlan::Prescribed { joints } => Motion::Prescribed(joints.iter().map(path).collect()),
+            MotionPlan::Prescribed { joints } => Trajectory::Prescribed(joints.iter().map(path).collect()).into(),
             MotionPlan::GripperPath { position, rpy, guess, .. } => {
                 let gripper = self.gripper.as_ref().expect("a gripper path was read with its gripper");
                 let task = Task {
@@ -46,13 +47,13 @@ impl Plan {
                     rpy: rpy.as_ref().map(|rpy| rpy.each_ref().map(signal)),
                 };
                 let course = Course { end: self.settings.end, max_step: self.settings.max_step, stop };
-                Motion::GripperPath(Box::new(GripperPath::new(&self.model, task, guess, &course)))
+                let path = GripperPath::new(&self.model, task, guess, &course);
+                Trajectory::GripperPath(Box::new(path)).into()
             }
-            MotionPlan::Forward(plan) => Motion::Forward(Box::new(Forward {
-                q: plan.q.clone(),
-                v: plan.v.clone(),
-                drives: plan.drives.iter().map(drive).collect(),
-            })),
+            MotionPlan::Forward(plan) => {
+                let drives = plan.drives.iter().map(drive).collect();
+                Forward { q: plan.q.clone(), v: plan.v.clone(), drives }.into()
+            }
         }
     }
 

@@ -6,8 +6,8 @@ use super::keys::{SOLVER, SOLVER_FIELDS, TIME};
 use super::names;
 use super::reader::{Field, Read, Table};
 use super::refusal::RefusalKind;
-use springpot::simulate::fixed::Method;
-use springpot::simulate::{FixedStep, RowTimes, Settings};
+use springpot::integrate::fixed::Method;
+use springpot::integrate::{FixedStep, RowTimes, Settings};
 
 /// Most rows of one run.
 const MAX_ROWS: f64 = 2e7;

@@ -1,9 +1,9 @@
 //! One step of the fixed-step methods: the falling three-body arm and a Panda arm, each with a strut.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use springpot::integrate::System;
+use springpot::integrate::fixed::{Loop, MemorySettings, Method};
 use springpot::law::Catalog;
-use springpot::simulate::System;
-use springpot::simulate::fixed::{Loop, MemorySettings, Method};
 use springpot_scenario::Scenario;
 use std::hint::black_box;
 

@@ -27,12 +27,12 @@
 //! A whole run in memory:
 //!
 //! ```
-//! use springpot::element::Element;
+//! use springpot::elements::Element;
 //! use springpot::law::{Catalog, Derivative};
 //! use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
-//! use springpot::motion::{JointPath, Motion};
+//! use springpot::motion::{JointPath, Trajectory};
 //! use springpot::signal::{Expression, Signal};
-//! use springpot::simulate::{RowTimes, Settings, Stop, System, along};
+//! use springpot::integrate::{RowTimes, Settings, Stop, System, run};
 //!
 //! let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
 //! let arm = builder.push(BodySpec {
@@ -59,8 +59,8 @@
 //!     scheme: None,
 //! };
 //! let swing = Signal::expression(Expression::parse("0.5*sin(2*pi*t)")?);
-//! let motion = Motion::Prescribed(vec![JointPath::Coordinate(swing)]);
-//! let system = System { model, elements: vec![strut], motion, gripper: None, tells_joint_losses: false };
+//! let motion = Trajectory::Prescribed(vec![JointPath::Coordinate(swing)]).into();
+//! let system = System { model: model.into(), elements: vec![strut], motion, gripper: None, tells_joint_losses: false };
 //! let settings = Settings {
 //!     end: 1.0,
 //!     rows: RowTimes::Step { step: 0.01, end: 1.0 },
@@ -74,7 +74,7 @@
 //! };
 //!
 //! let mut table = system.table();
-//! let (report, outcome) = along(&system, &settings, &mut table, &Stop::new(false));
+//! let (report, outcome) = run(&system, &settings, &mut table, &Stop::new(false));
 //! outcome?;
 //! assert_eq!(report.rows, 101);
 //! let force = table.column("strut.force").expect("a column of every element");
@@ -83,10 +83,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod actuation;
 pub mod dynamics;
-pub mod element;
 pub mod elements;
 pub mod fractional;
+pub mod integrate;
 pub mod law;
 mod linalg;
 pub mod model;
@@ -94,6 +95,7 @@ pub mod motion;
 pub mod names;
 pub mod observe;
 pub mod signal;
-pub mod simulate;
 pub mod spatial;
 pub mod table;
+
+pub use integrate::Simulation;

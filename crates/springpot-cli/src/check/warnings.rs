@@ -3,7 +3,7 @@
 use crate::diagnostic;
 use crate::numbers::{count, short};
 use crate::run::{NAMED_LIMITS, in_cases};
-use springpot::simulate::{ElementStart, LimitWatch, System};
+use springpot::integrate::{ElementStart, LimitWatch, System};
 use springpot_run::sweep::{CasesPassing, LimitTally};
 use springpot_scenario::{Cases, Plan};
 use std::ops::RangeInclusive;

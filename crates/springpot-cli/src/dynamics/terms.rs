@@ -4,7 +4,7 @@ use crate::grid::{Grid, Set, width_of};
 use crate::numbers::{brief, rough, short};
 use crate::plain;
 use crate::terminal;
-use springpot::simulate::{ElementTerm, Equation, System};
+use springpot::integrate::{ElementTerm, Equation, System};
 
 /// Most velocities for which a_ab, and Γ_ab,c, are printed.
 const MOST_WITH_MATRIX: usize = 8;
@@ -119,7 +119,7 @@ fn square(matrix: &[f64], n: usize) -> Vec<Vec<String>> {
 
 /// q, q̇ and q̈, with the labels of the other tables; floating joints have more numbers in q than in q̇.
 fn state(system: &System, equation: &Equation, names: &[String], labels: &[String], page: &Page) -> String {
-    let springpot::simulate::State { q, v, a } = &equation.state;
+    let springpot::integrate::State { q, v, a } = &equation.state;
     let number = |x: &f64| shown(*x, 0.0);
     let columns = ["q", "q\u{307}", "q\u{308}"].map(str::to_owned);
     let pad = labels.last().map_or(0, |label| width_of(label));

@@ -1,7 +1,7 @@
 //! The robot at t = 0 as a mechanism sketch.
 
+use springpot::integrate::{Pose, System};
 use springpot::model::{Anchor, JointKind, Parent};
-use springpot::simulate::{Pose, System};
 use springpot_report::{ElementMark, JointMark, Link, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan};
 

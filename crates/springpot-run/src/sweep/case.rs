@@ -7,7 +7,7 @@ use super::kept::Kept;
 use super::output::{self, CaseRows, Output};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
-use springpot::simulate::{self, LimitWatch, PassedLimit, Report, RunError, System};
+use springpot::integrate::{self, LimitWatch, PassedLimit, Report, RunError, System};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::atomic::Ordering;
@@ -60,10 +60,10 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
             let watch = LimitWatch::new(&system);
             let mut rows = CaseRows { output: &mut output, watch, plan: &plan, system: &system };
             let (report, outcome) = match state {
-                None => simulate::run(&system, &settings, &mut rows, stop),
+                None => integrate::run(&system, &settings, &mut rows, stop),
                 Some(state) => {
                     rows.watch.go_on(state.watch);
-                    simulate::resume(&system, &settings, state.run, &mut rows, stop)
+                    integrate::resume(&system, &settings, state.run, &mut rows, stop)
                 }
             };
             (report, why_no_ledger(&system, &report), rows.watch.passed(), outcome.map_err(CaseError::Run))

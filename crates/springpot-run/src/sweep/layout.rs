@@ -3,8 +3,8 @@
 use super::curve::{MAX_CURVES_IN_ALL, most_points};
 use crate::figures::FigureColumn;
 use crate::table::matches;
+use springpot::integrate::System;
 use springpot::observe::Quantity;
-use springpot::simulate::System;
 use springpot::table::Column;
 use springpot_scenario::units::Unit;
 use springpot_scenario::{Cases, ColumnGlob, FigureKind, FigurePlan, RefusalKind, Refusals};

@@ -19,7 +19,7 @@ use crate::table::disk::DiskFile;
 use crate::table::folder::Folder;
 use crate::table::ordered::Ordered;
 use crate::table::push_text;
-use springpot::simulate::Stop;
+use springpot::integrate::Stop;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Refusals};
 use std::io::{self, Seek as _, SeekFrom, Write as _};

@@ -7,7 +7,7 @@ use super::kept::Kept;
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_number, push_text};
-use springpot::simulate::{Checkpoint, LimitWatch, Rows, System};
+use springpot::integrate::{Checkpoint, LimitWatch, Rows, System};
 use springpot_scenario::{Plan, SweptValue};
 use std::collections::BTreeMap;
 use std::io;

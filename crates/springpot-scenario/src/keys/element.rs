@@ -2,7 +2,7 @@
 
 use super::robot::NAME;
 use super::{ANCHOR, Bound, Field, Keys, Need, Shape, Slot, key};
-use springpot::element::Element;
+use springpot::elements::Element;
 use springpot::law::Derivative;
 
 /// Names that would collide with columns of the results.

@@ -1,8 +1,8 @@
 //! `[time]` and `[solver]`, and where the numbers of `[solver]` go.
 
 use super::{Bound, Field, Keys, Need, Shape, Slot, key};
-use springpot::simulate::fixed::Method;
-use springpot::simulate::{RowTimes, Settings};
+use springpot::integrate::fixed::Method;
+use springpot::integrate::{RowTimes, Settings};
 
 pub(crate) static TIME: Keys = Keys {
     words: "Duration and rows.",

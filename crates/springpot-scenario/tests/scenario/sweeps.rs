@@ -2,8 +2,8 @@
 
 use crate::support::{EXAMPLE, cases, catalog, edited, parameter, parse, single};
 use springpot::fractional::scheme::Scheme;
+use springpot::integrate::RowTimes;
 use springpot::law::Catalog;
-use springpot::simulate::RowTimes;
 use springpot_scenario::{Cases, Plan, Refusals, Selection, SweptValue};
 
 /// The single run with these blocks behind it.

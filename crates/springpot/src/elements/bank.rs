@@ -2,7 +2,10 @@
 
 use crate::fractional::step::MAX_NODES;
 use crate::fractional::{Form, KernelError, Nodes};
-use crate::law::{InputValue, Network, Point, Response, Singular, Start, State, Step};
+use crate::law::{
+    InputValue, LocalError, Network, Observation, Point, Power, Powers, Response, Singular, Start, State, Step, Term,
+};
+use serde::{Deserialize, Serialize};
 
 /// How the memories of a bank are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,46 +48,85 @@ pub struct MemoryRange {
 /// ```
 #[derive(Debug, Clone)]
 pub struct ElementBank {
-    nodes: Nodes,
-    form: Form,
+    step: StepShape,
+    elements: Vec<Banked>,
+}
+
+/// What the steps of all elements have in common.
+#[derive(Debug, Clone, Copy)]
+struct StepShape {
     t: f64,
     h: f64,
-    elements: Vec<Banked>,
+    nodes: Nodes,
+    singular: Singular,
 }
 
 /// One element of a bank.
 #[derive(Debug, Clone)]
 struct Banked {
     law: Network,
-    state: State,
+    /// None of an element that takes no part: before it begins.
+    kept: Option<Kept>,
     told: Told,
     response: Response,
+    energies: StepEnergies,
+}
+
+/// What of an element outlasts a step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Kept {
+    state: State,
+    /// Dissipated, and supplied by inputs, since t = 0, J.
+    dissipated: f64,
+    supplied: f64,
+    /// Largest regular D^order x so far, of everything that the law has a [`LocalError`] of.
+    scales: Vec<f64>,
 }
 
 /// What an element was told of a step, at its start and at its nodes.
 #[derive(Debug, Clone)]
 struct Told {
+    form: Form,
     stroke: [f64; MAX_NODES + 1],
     rate: [f64; MAX_NODES + 1],
     /// Point by point.
     inputs: Vec<InputValue>,
+    resolution: Option<f64>,
+}
+
+/// What a step does to the energies of an element, and how well it knows its memories.
+#[derive(Debug, Clone)]
+struct StepEnergies {
+    powers: Powers,
+    errors: Vec<LocalError>,
+    /// The element at the end of the step.
+    end: Observation,
 }
 
 impl Told {
-    fn step(&self, t: f64, h: f64, nodes: Nodes, form: Form) -> Step<'_> {
+    fn step(&self, StepShape { t, h, nodes, singular }: StepShape) -> Step<'_> {
         let count = nodes.count() + 1;
-        let size = self.stroke[..count].iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        let inputs = self.inputs.len() / (MAX_NODES + 1);
         Step {
             t,
             h,
             nodes,
-            form,
+            form: self.form,
             stroke: &self.stroke[..count],
             rate: &self.rate[..count],
-            inputs: &self.inputs,
-            resolution: 4.0 * f64::EPSILON * size,
-            singular: Singular::Value,
+            inputs: &self.inputs[..count * inputs],
+            resolution: self.resolution.unwrap_or_else(|| {
+                let size = self.stroke[..count].iter().fold(0.0f64, |size, x| size.max(x.abs()));
+                4.0 * f64::EPSILON * size
+            }),
+            singular,
         }
+    }
+
+    /// Inputs at a point.
+    fn inputs_mut(&mut self, point: usize) -> &mut [InputValue] {
+        let count = self.inputs.len() / (MAX_NODES + 1);
+        &mut self.inputs[point * count..(point + 1) * count]
     }
 }
 
@@ -93,11 +135,23 @@ impl ElementBank {
     pub fn new(laws: Vec<Network>, nodes: Nodes, form: Form) -> Self {
         let element = |law| Banked {
             law,
-            state: State::default(),
-            told: Told { stroke: [0.0; MAX_NODES + 1], rate: [0.0; MAX_NODES + 1], inputs: Vec::new() },
+            kept: None,
+            told: Told {
+                form,
+                stroke: [0.0; MAX_NODES + 1],
+                rate: [0.0; MAX_NODES + 1],
+                inputs: Vec::new(),
+                resolution: None,
+            },
             response: Response::default(),
+            energies: StepEnergies {
+                powers: Powers::default(),
+                errors: Vec::new(),
+                end: Observation { derivative: 0.0, regular: 0.0, singular: 0.0, stored: None },
+            },
         };
-        Self { nodes, form, t: 0.0, h: 0.0, elements: laws.into_iter().map(element).collect() }
+        let step = StepShape { t: 0.0, h: 0.0, nodes, singular: Singular::Value };
+        Self { step, elements: laws.into_iter().map(element).collect() }
     }
 
     /// Number of elements.
@@ -116,42 +170,125 @@ impl ElementBank {
     /// [`KernelError`] where a memory cannot be built. Panics where there are not as many starts as elements.
     pub fn begin(&mut self, starts: &[Start], memory: MemoryRange) -> Result<(), KernelError> {
         assert_eq!(starts.len(), self.elements.len(), "a start for each element");
-        for (element, start) in self.elements.iter_mut().zip(starts) {
-            let mut state = element.law.begin(start)?;
-            // The first node of a step asks for the shortest lag.
-            state.open(memory.tolerance, self.nodes.positions()[0] * memory.shortest, memory.horizon)?;
-            element.state = state;
-            element.told = Told {
-                stroke: [start.stroke; MAX_NODES + 1],
-                rate: [0.0; MAX_NODES + 1],
-                inputs: start.inputs.repeat(self.nodes.count() + 1),
-            };
-            element.response = Response::default();
+        for (e, start) in starts.iter().enumerate() {
+            self.begin_element(e, start)?;
+            self.open_element(e, memory)?;
         }
-        (self.t, self.h) = (0.0, 0.0);
+        (self.step.t, self.step.h) = (0.0, 0.0);
         Ok(())
+    }
+
+    /// Takes element `e` to t = 0, its memories without kernels.
+    pub(crate) fn begin_element(&mut self, e: usize, start: &Start) -> Result<(), KernelError> {
+        let element = &mut self.elements[e];
+        let state = element.law.begin(start)?;
+        element.kept = Some(Kept { state, dissipated: 0.0, supplied: 0.0, scales: Vec::new() });
+        let Told { stroke, rate, inputs, .. } = &mut element.told;
+        (*stroke, *rate) = ([start.stroke; MAX_NODES + 1], [0.0; MAX_NODES + 1]);
+        *inputs = start.inputs.repeat(MAX_NODES + 1);
+        element.response = Response::default();
+        Ok(())
+    }
+
+    /// Builds the kernels of an element that has begun.
+    pub(crate) fn open_element(&mut self, e: usize, memory: MemoryRange) -> Result<(), KernelError> {
+        let MemoryRange { tolerance, shortest, horizon } = memory;
+        let kept = self.elements[e].kept.as_mut();
+        // The first node of a step asks for the shortest lag.
+        let delta = Nodes::Radau.positions()[0].min(self.step.nodes.positions()[0]) * shortest;
+        kept.map_or(Ok(()), |kept| kept.state.open(tolerance, delta, horizon))
     }
 
     /// Begins a step of the size `h` > 0 at time `t`, s.
     pub fn start(&mut self, t: f64, h: f64) {
-        (self.t, self.h) = (t, h);
+        (self.step.t, self.step.h) = (t, h);
+    }
+
+    /// Size of the step, s.
+    pub fn size(&self) -> f64 {
+        self.step.h
     }
 
     /// Stroke, rate and inputs of element `e` at the start (0) or at node `point` (1 … s) of the step. Panics beyond them, or where the number
     /// of inputs is not that of the start.
     pub fn set(&mut self, e: usize, point: usize, stroke: f64, rate: f64, inputs: &[InputValue]) {
+        self.set_stroke(e, point, stroke, rate);
+        self.inputs_mut(e, point).copy_from_slice(inputs);
+    }
+
+    /// Stroke and rate alone.
+    pub(crate) fn set_stroke(&mut self, e: usize, point: usize, stroke: f64, rate: f64) {
         let told = &mut self.elements[e].told;
         (told.stroke[point], told.rate[point]) = (stroke, rate);
-        told.inputs[point * inputs.len()..(point + 1) * inputs.len()].copy_from_slice(inputs);
+    }
+
+    /// Inputs alone.
+    pub(crate) fn inputs_mut(&mut self, e: usize, point: usize) -> &mut [InputValue] {
+        self.elements[e].told.inputs_mut(point)
+    }
+
+    /// Room for the inputs of an element that has not begun.
+    pub(crate) fn reserve_inputs(&mut self, e: usize, count: usize) {
+        self.elements[e].told.inputs = vec![InputValue::default(); (MAX_NODES + 1) * count];
+    }
+
+    /// Where the following steps are asked.
+    pub(crate) fn set_nodes(&mut self, nodes: Nodes) {
+        self.step.nodes = nodes;
+    }
+
+    /// How singular starts enter the forces at the nodes.
+    pub(crate) fn set_singular(&mut self, singular: Singular) {
+        self.step.singular = singular;
+    }
+
+    /// Which data make the polynomial of element `e`.
+    pub(crate) fn set_form(&mut self, e: usize, form: Form) {
+        self.elements[e].told.form = form;
+    }
+
+    /// Rounding of the strokes of element `e`, m, where they are differences of larger lengths; else it is that of the strokes themselves.
+    pub fn set_resolution(&mut self, e: usize, resolution: f64) {
+        self.elements[e].told.resolution = Some(resolution);
+    }
+
+    /// Rounding of the strokes of element `e`, m.
+    pub(crate) fn resolution(&self, e: usize) -> f64 {
+        self.elements[e].told.step(self.step).resolution
+    }
+
+    /// What element `e` was told of the start (0) or of a node of the step.
+    pub(crate) fn point(&self, e: usize, point: usize) -> Point<'_> {
+        self.elements[e].told.step(self.step).point(point)
+    }
+
+    /// The strokes and rates that element `e` was told.
+    pub(crate) fn told(&self, e: usize) -> (&[f64; MAX_NODES + 1], &[f64; MAX_NODES + 1]) {
+        let Told { stroke, rate, .. } = &self.elements[e].told;
+        (stroke, rate)
+    }
+
+    /// Makes ready what does not change while the step is worked out.
+    pub(crate) fn prepare(&mut self) {
+        let step = self.step;
+        for Banked { law, kept, told, .. } in &mut self.elements {
+            if let Some(Kept { state, .. }) = kept {
+                law.prepare(&told.step(step), state);
+            }
+        }
     }
 
     /// Asks all laws for their forces and tangents; may be done any number of times with other strokes and rates.
     pub fn evaluate(&mut self) {
-        let (t, h, nodes, form) = (self.t, self.h, self.nodes, self.form);
-        for Banked { law, state, told, response } in &mut self.elements {
-            let step = told.step(t, h, nodes, form);
-            law.prepare(&step, state);
-            *response = law.evaluate(&step, state);
+        self.prepare();
+        (0..self.elements.len()).for_each(|e| self.evaluate_element(e));
+    }
+
+    /// Asks one law, which is prepared.
+    pub(crate) fn evaluate_element(&mut self, e: usize) {
+        let Banked { law, kept, told, response, .. } = &mut self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            *response = law.evaluate(&told.step(self.step), state);
         }
     }
 
@@ -162,35 +299,158 @@ impl ElementBank {
 
     /// Force of element `e` at the last node of the step, N, as last evaluated.
     pub fn force(&self, e: usize) -> f64 {
-        self.elements[e].response.force[self.nodes.count() - 1]
+        self.elements[e].response.force[self.step.nodes.count() - 1]
+    }
+
+    /// Works out what the step does to the energies of element `e` and how well it knows its memories. `false` where it takes no part.
+    pub(crate) fn account(&mut self, e: usize) -> bool {
+        let Banked { law, kept, told, energies, .. } = &mut self.elements[e];
+        let Some(Kept { state, .. }) = kept else { return false };
+        let step = told.step(self.step);
+        law.prepare(&step, state);
+        energies.powers = law.powers(&step, state);
+        energies.end = law.at(&step, 1.0, &step.point(step.nodes.count()), state);
+        energies.errors.clear();
+        law.local_errors(&step, state, &mut energies.errors);
+        true
+    }
+
+    /// Energy flows at the start and at the nodes of the step, as accounted.
+    pub(crate) fn powers(&self, e: usize) -> &Powers {
+        &self.elements[e].energies.powers
+    }
+
+    /// Local errors of the step, as accounted.
+    pub(crate) fn errors(&self, e: usize) -> &[LocalError] {
+        &self.elements[e].energies.errors
+    }
+
+    /// The largest regular D^order x so far, the step that was accounted included, of local error `m`.
+    pub(crate) fn scale(&self, e: usize, m: usize) -> f64 {
+        let Banked { kept, energies, .. } = &self.elements[e];
+        let before = kept.as_ref().and_then(|kept| kept.scales.get(m)).copied().unwrap_or(0.0);
+        before.max(energies.errors[m].value.abs())
+    }
+
+    /// Element `e` at the end of the step, as accounted.
+    pub(crate) fn end(&self, e: usize) -> &Observation {
+        &self.elements[e].energies.end
+    }
+
+    /// Whether element `e` takes part.
+    pub(crate) fn takes_part(&self, e: usize) -> bool {
+        self.elements[e].kept.is_some()
+    }
+
+    /// The law of element `e` at t + θh of the step, 0 < θ ≤ 1, where its exact kinematics are those of `at`; `None` where it takes no part.
+    pub(crate) fn at(&self, e: usize, theta: f64, at: &Point) -> Option<Observation> {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        kept.as_ref().map(|kept| law.at(&told.step(self.step), theta, at, &kept.state))
+    }
+
+    /// The law of element `e` between two steps; `None` where it takes no part.
+    pub(crate) fn now(&self, e: usize, at: &Point) -> Option<Observation> {
+        let Banked { law, kept, .. } = &self.elements[e];
+        kept.as_ref().map(|kept| law.now(at, &kept.state))
+    }
+
+    /// Energies of element `e` dissipated and supplied by inputs since t = 0, J; unknown where it takes no part.
+    pub(crate) fn energies(&self, e: usize) -> (f64, f64) {
+        self.elements[e].kept.as_ref().map_or((f64::NAN, f64::NAN), |kept| (kept.dissipated, kept.supplied))
+    }
+
+    /// Those until θ of the step that was accounted.
+    pub(crate) fn energies_until(&self, e: usize, theta: f64) -> (f64, f64) {
+        let (dissipated, supplied) = self.energies(e);
+        let step = Power::integrate(&self.elements[e].energies.powers, self.step.nodes, self.step.h, theta);
+        (dissipated + step.dissipation, supplied + step.input)
+    }
+
+    /// Adds to what the inputs of element `e` have supplied, J.
+    pub(crate) fn add_supplied(&mut self, e: usize, energy: f64) {
+        if let Some(kept) = &mut self.elements[e].kept {
+            kept.supplied += energy;
+        }
+    }
+
+    /// Whether a singular start makes the force of element `e` infinite at t = 0.
+    pub(crate) fn is_singular(&self, e: usize) -> bool {
+        self.elements[e].kept.as_ref().is_some_and(|kept| kept.state.is_singular())
+    }
+
+    /// Hands over s and alpha of every share s·t^−alpha of a singular start in the force of element `e`.
+    pub(crate) fn for_each_singularity(&self, e: usize, inputs: &[InputValue], take: &mut dyn FnMut(Term)) {
+        let Banked { law, kept, .. } = &self.elements[e];
+        if let Some(kept) = kept {
+            law.for_each_singularity(inputs, &kept.state, take);
+        }
     }
 
     /// Energy stored in element `e` after the last committed step, J; `None` where it is unknown.
     pub fn stored(&self, e: usize) -> Option<f64> {
-        let Banked { law, state, told, .. } = &self.elements[e];
-        let end = told.step(self.t, self.h, self.nodes, self.form).point(self.nodes.count());
-        law.now(&Point { t: self.t + self.h, ..end }, state).stored
+        let end = self.point(e, self.step.nodes.count());
+        self.now(e, &Point { t: self.step.t + self.step.h, ..end })?.stored
+    }
+
+    /// Number of exponentials in all memories.
+    pub fn modes(&self) -> usize {
+        self.elements.iter().filter_map(|element| element.kept.as_ref()).map(|kept| kept.state.modes()).sum()
     }
 
     /// Takes the step into the past; the next one starts where it ended.
     pub fn commit(&mut self) {
-        let (t, h, nodes, form) = (self.t, self.h, self.nodes, self.form);
-        for Banked { law, state, told, .. } in &mut self.elements {
-            law.commit(&told.step(t, h, nodes, form), state);
+        let step = self.step;
+        for Banked { law, kept, told, .. } in &mut self.elements {
+            if let Some(Kept { state, .. }) = kept {
+                law.commit(&told.step(step), state);
+            }
         }
+    }
+
+    /// [`Self::commit`] of a step that was accounted, with its energies.
+    pub(crate) fn commit_account(&mut self) {
+        for e in 0..self.elements.len() {
+            let (dissipated, supplied) = self.energies_until(e, 1.0);
+            let Banked { kept, energies, .. } = &mut self.elements[e];
+            let Some(kept) = kept else { continue };
+            (kept.dissipated, kept.supplied) = (dissipated, supplied);
+            kept.scales.resize(energies.errors.len(), 0.0);
+            for (scale, error) in kept.scales.iter_mut().zip(&energies.errors) {
+                *scale = scale.max(error.value.abs());
+            }
+        }
+        self.commit();
+    }
+
+    /// What outlasts the steps, element by element.
+    pub(crate) fn kept(&self) -> Vec<Option<Kept>> {
+        self.elements.iter().map(|element| element.kept.clone()).collect()
+    }
+
+    /// Goes on from what was kept of a bank of the same laws; `false`, and nothing changed, where it is of another one.
+    pub(crate) fn go_on(&mut self, kept: Vec<Option<Kept>>) -> bool {
+        let fits = |(element, kept): (&Banked, &Option<Kept>)| match kept {
+            Some(kept) => element.law.has_state(&kept.state),
+            None => true,
+        };
+        if kept.len() != self.elements.len() || !self.elements.iter().zip(&kept).all(fits) {
+            return false;
+        }
+        self.elements.iter_mut().zip(kept).for_each(|(element, kept)| element.kept = kept);
+        true
     }
 
     /// Appends the states of all elements to `numbers`.
     pub fn save(&self, numbers: &mut Vec<f64>) {
-        self.elements.iter().for_each(|element| element.state.save(numbers));
+        self.elements.iter().filter_map(|element| element.kept.as_ref()).for_each(|kept| kept.state.save(numbers));
     }
 
     /// Takes back what [`Self::save`] wrote of a bank of the same laws that has begun; `false`, and nothing changed, where `numbers` are not
     /// that.
     pub fn load(&mut self, numbers: &[f64]) -> bool {
         let (mut rest, mut states) = (numbers, Vec::with_capacity(self.elements.len()));
-        for element in &self.elements {
-            let mut state = element.state.clone();
+        for kept in self.elements.iter().filter_map(|element| element.kept.as_ref()) {
+            let mut state = kept.state.clone();
             if state.load(&mut rest).is_none() {
                 return false;
             }
@@ -198,7 +458,8 @@ impl ElementBank {
         }
         let fits = rest.is_empty();
         if fits {
-            self.elements.iter_mut().zip(states).for_each(|(element, state)| element.state = state);
+            let kept = self.elements.iter_mut().filter_map(|element| element.kept.as_mut());
+            kept.zip(states).for_each(|(kept, state)| kept.state = state);
         }
         fits
     }

@@ -126,6 +126,11 @@ impl Network {
         }
     }
 
+    /// Whether a state can be one of this law.
+    pub fn has_state(&self, state: &State) -> bool {
+        self.size() == state.size()
+    }
+
     /// Makes ready what does not change while a step is worked out; no answer changes.
     pub fn prepare(&self, step: &Step, state: &mut State) {
         self.prepare_part(step, &mut state.view_mut());

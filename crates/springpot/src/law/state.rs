@@ -82,6 +82,11 @@ impl State {
         self.memories.iter().all(Memory::is_accounted)
     }
 
+    /// How large it is.
+    pub(super) fn size(&self) -> StateSize {
+        StateSize { memories: self.memories.len(), variables: self.variables.len() }
+    }
+
     /// All of it.
     pub fn view(&self) -> StateRef<'_> {
         StateRef { memories: &self.memories, variables: &self.variables }

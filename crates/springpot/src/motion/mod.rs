@@ -1,11 +1,9 @@
-//! Motions given in advance: q, v, a as functions of time.
+//! Kinematics given in advance: q, v, a as functions of time.
 
 mod attitude;
-mod forward;
 pub mod gripper_path;
 mod prescribed;
 
-pub use forward::{Drive, Forward};
 pub use gripper_path::{GripperPath, PathError};
 pub use prescribed::{JointPath, PosePath};
 
@@ -19,20 +17,17 @@ pub struct Wanted {
     pub position: [f64; 3],
 }
 
-/// A motion given in advance.
+/// Kinematics given in advance.
 #[derive(Debug, Clone)]
-pub enum Motion {
+pub enum Trajectory {
     /// Each joint that has coordinates of its own moves as signals say, in joint order.
     Prescribed(Vec<JointPath>),
     /// The gripper follows a path; the coordinates come from inverse kinematics.
     GripperPath(Box<GripperPath>),
-    /// The robot moves by itself.
-    Forward(Box<Forward>),
 }
 
-impl Motion {
-    /// q (nq values), v and a (nv values each) at t, and where the gripper should be. Of a robot that moves by itself: where it
-    /// starts, without acceleration.
+impl Trajectory {
+    /// q (nq values), v and a (nv values each) at t, and where the gripper should be.
     ///
     /// # Errors
     /// [`PathError`] where the gripper cannot follow its path.
@@ -50,12 +45,6 @@ impl Motion {
                 Ok(None)
             }
             Self::GripperPath(path) => path.at(model, t, q, v, a).map(Some),
-            Self::Forward(forward) => {
-                q.copy_from_slice(&forward.q);
-                v.copy_from_slice(&forward.v);
-                a.fill(0.0);
-                Ok(None)
-            }
         }
     }
 
@@ -64,16 +53,15 @@ impl Motion {
         match self {
             Self::Prescribed(joints) => joints.iter().flat_map(JointPath::signals).collect(),
             Self::GripperPath(path) => path.signals().collect(),
-            Self::Forward(forward) => forward.drives.iter().flat_map(Drive::signals).collect(),
         }
     }
 
-    /// How far coordinates may be from where the motion has them, rad or m: 0 where signals say it.
+    /// How far coordinates may be from where the path has them, rad or m: 0 where signals say it.
     pub(crate) fn solved_to(&self) -> f64 {
         if let Self::GripperPath(_) = self { gripper_path::STEP_TOLERANCE } else { 0.0 }
     }
 
-    /// Whether the motion says where the gripper should be.
+    /// Whether it says where the gripper should be.
     pub fn has_path(&self) -> bool {
         matches!(self, Self::GripperPath(_))
     }
@@ -82,7 +70,7 @@ impl Motion {
     /// singular configurations a gripper path turns joints at once.
     pub fn reach(&self, t: f64, h: f64) -> f64 {
         match self {
-            Self::Prescribed(_) | Self::Forward(_) => h,
+            Self::Prescribed(_) => h,
             Self::GripperPath(path) => path.reach(t, h),
         }
     }
@@ -90,7 +78,7 @@ impl Motion {
     /// Where and why the motion ends early, if it does.
     pub fn failure(&self) -> Option<PathError> {
         match self {
-            Self::Prescribed(_) | Self::Forward(_) => None,
+            Self::Prescribed(_) => None,
             Self::GripperPath(path) => path.failure(),
         }
     }

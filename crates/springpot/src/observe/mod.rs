@@ -14,4 +14,5 @@ pub use element::ElementQuantity;
 pub use observables::Observables;
 pub(crate) use observables::Shape;
 pub use quantity::{Axis, EnergyQuantity, Quantity};
+pub use snapshot::Snapshot;
 pub use table::Table;

@@ -1,7 +1,7 @@
 //! What can be observed of a system, in the order of its rows.
 
 use super::{Axis, ElementQuantity, EnergyQuantity, Quantity};
-use crate::element::Element;
+use crate::elements::Element;
 use crate::law::{Entry, InputValue, Point};
 use crate::model::{Label, Measure, Model};
 use crate::table::Column;

@@ -49,11 +49,11 @@ pub(crate) struct ElementRow {
     pub(crate) input: f64,
 }
 
-/// All that is known at the time of a row.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Snapshot<'a> {
-    pub(crate) moment: &'a Moment,
-    pub(crate) elements: &'a [ElementRow],
+/// All that is known at one time of a run.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    pub(crate) moment: Moment,
+    pub(crate) elements: Vec<ElementRow>,
     /// Work of the actuators since t = 0, J; NaN where unknown.
     pub(crate) actuators: f64,
     /// Lost in joints since t = 0, J.
@@ -62,9 +62,40 @@ pub(crate) struct Snapshot<'a> {
     pub(crate) residual: f64,
 }
 
-impl Snapshot<'_> {
-    /// The value of a quantity of the system, NaN where unknown.
-    pub(crate) fn value(&self, quantity: Quantity) -> f64 {
+impl Snapshot {
+    /// Time, s.
+    pub fn t(&self) -> f64 {
+        self.moment.t
+    }
+
+    /// Coordinates, nq values.
+    pub fn q(&self) -> &[f64] {
+        &self.moment.q
+    }
+
+    /// Velocities, nv values.
+    pub fn v(&self) -> &[f64] {
+        &self.moment.v
+    }
+
+    /// Accelerations, nv values; NaN at a singular start.
+    pub fn a(&self) -> &[f64] {
+        &self.moment.a
+    }
+
+    /// Force of an element, N, positive in tension; NaN at a singular start.
+    ///
+    /// # Panics
+    /// Where there is no such element.
+    pub fn force(&self, element: usize) -> f64 {
+        self.elements[element].observation.force()
+    }
+
+    /// The value of a quantity of the system, SI, NaN where unknown.
+    ///
+    /// # Panics
+    /// Where an index is none of this system.
+    pub fn value(&self, quantity: Quantity) -> f64 {
         let Self { moment, elements, .. } = self;
         match quantity {
             Quantity::Time => moment.t,

@@ -4,14 +4,14 @@ use super::{Observables, Quantity};
 use crate::table::Column;
 use std::collections::HashMap;
 
-/// Rows in memory, columns by name or by [`Quantity`]. As [`crate::simulate::Rows`] it takes those of a run.
+/// Rows in memory, columns by name or by [`Quantity`]. As [`crate::integrate::Rows`] it takes those of a run.
 ///
 /// ```
 /// use springpot::model::{BodySpec, JointSpec, ModelBuilder, Parent};
-/// use springpot::motion::{JointPath, Motion};
+/// use springpot::motion::{JointPath, Trajectory};
 /// use springpot::observe::Quantity;
 /// use springpot::signal::{Expression, Signal};
-/// use springpot::simulate::{RowTimes, Settings, Stop, System, run};
+/// use springpot::integrate::{RowTimes, Settings, Stop, System, run};
 ///
 /// let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
 /// builder.push(BodySpec {
@@ -22,9 +22,9 @@ use std::collections::HashMap;
 ///     com: [0.2, 0.0, 0.0],
 ///     inertia: [[0.0; 3]; 3],
 /// })?;
-/// let motion = Motion::Prescribed(vec![JointPath::Coordinate(Signal::expression(Expression::parse("t^2")?))]);
+/// let motion = Trajectory::Prescribed(vec![JointPath::Coordinate(Signal::expression(Expression::parse("t^2")?))]);
 /// let model = builder.finish()?;
-/// let system = System { model, elements: Vec::new(), motion, gripper: None, tells_joint_losses: false };
+/// let system = System { model: model.into(), elements: Vec::new(), motion: motion.into(), gripper: None, tells_joint_losses: false };
 /// let settings = Settings {
 ///     end: 1.0,
 ///     rows: RowTimes::Step { step: 0.5, end: 1.0 },

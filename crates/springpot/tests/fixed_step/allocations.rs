@@ -3,8 +3,8 @@
 #![allow(unsafe_code, reason = "a global allocator that counts")]
 
 use crate::loops::*;
-use springpot::simulate::System;
-use springpot::simulate::fixed::Loop;
+use springpot::integrate::System;
+use springpot::integrate::fixed::Loop;
 use std::alloc::{GlobalAlloc, Layout};
 use std::cell::Cell;
 use std::time::Instant;

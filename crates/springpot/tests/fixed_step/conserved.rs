@@ -2,8 +2,8 @@
 
 use crate::loops::*;
 use springpot::dynamics::{Kinematics, crba};
-use springpot::simulate::System;
-use springpot::simulate::fixed::{Loop, Method};
+use springpot::integrate::System;
+use springpot::integrate::fixed::{Loop, Method};
 use springpot::spatial::{Quaternion, Rotation, Vec3};
 
 /// Largest departure of kinetic + potential energy from the start in the first and in the last tenth of 10⁵ steps, in units of `scale`.

@@ -1,7 +1,7 @@
 //! Joints that are prescribed, locked, driven, that follow others, that float: against runs with error control.
 
 use crate::loops::*;
-use springpot::simulate::fixed::{Loop, Method};
+use springpot::integrate::fixed::{Loop, Method};
 
 fn check(text: &str, end: f64, largest: f64) {
     let system = system(text);
@@ -82,17 +82,17 @@ fn inputs_are_held() {
     let (cold, hot) = (system(&text(0.0)), system(&text(60.0)));
     let expected = looped(&hot, Method::Midpoint, 1e-3, 0.2);
     let mut robot = Loop::new(&cold, Method::Midpoint, 1e-3, MEMORY).unwrap();
-    robot.hold_input(0, 0, Some(333.15));
+    robot.hold_input(0, 0, Some(333.15)).unwrap();
     for _ in 0..200 {
         robot.advance(&[0.0; 3]).unwrap();
     }
     assert_eq!(state(&robot), state(&expected));
     // Out of the range of the law: refused, and nothing has moved.
-    robot.hold_input(0, 0, Some(20.0));
+    robot.hold_input(0, 0, Some(20.0)).unwrap();
     let before = state(&robot);
     let message = robot.advance(&[0.0; 3]).unwrap_err().to_string();
     assert!(message.contains("input T = 20 lies outside 150 … 1500"), "{message}");
     assert_eq!(state(&robot), before);
-    robot.hold_input(0, 0, None);
+    robot.hold_input(0, 0, None).unwrap();
     robot.advance(&[0.0; 3]).unwrap();
 }

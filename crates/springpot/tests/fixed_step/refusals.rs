@@ -1,9 +1,9 @@
 //! Bad input: typed errors that leave the loop usable, and refusals of scenario files.
 
 use crate::loops::*;
+use springpot::integrate::RunError;
+use springpot::integrate::fixed::{Loop, LoopError, Method};
 use springpot::law::Catalog;
-use springpot::simulate::RunError;
-use springpot::simulate::fixed::{Loop, LoopError, Method};
 use springpot_scenario::Scenario;
 
 #[test]
@@ -19,7 +19,7 @@ fn steps_must_be_positive_and_motions_free() {
     let error = Loop::new(&given, Method::Midpoint, 1e-3, MEMORY).unwrap_err();
     assert!(matches!(error, LoopError::MotionGiven), "{error}");
     let elastic = system(&arm(&(thermoviscoelastic(0.5, "caputo") + &free(""))));
-    let forgetful = springpot::simulate::fixed::MemorySettings { tolerance: 0.0, ..MEMORY };
+    let forgetful = springpot::integrate::fixed::MemorySettings { tolerance: 0.0, ..MEMORY };
     let error = Loop::new(&elastic, Method::Midpoint, 1e-3, forgetful).unwrap_err();
     assert!(matches!(error, LoopError::Run(RunError::Kernel { .. })), "{error}");
 }

@@ -3,12 +3,12 @@
 use crate::support::forward::{at, distance, falling, slider, state};
 use crate::support::{Run, run, run_system};
 use serde_json::Value;
-use springpot::element::Element;
+use springpot::actuation::{Drive, Forward};
+use springpot::elements::Element;
+use springpot::integrate::{RowTimes, Settings, System};
 use springpot::law::{Catalog, Derivative};
 use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
-use springpot::motion::{Drive, Forward, Motion};
 use springpot::signal::Signal;
-use springpot::simulate::{RowTimes, Settings, System};
 use std::sync::Arc;
 
 fn read(path: &str) -> Value {
@@ -198,8 +198,8 @@ fn slider_in_code(k: f64, c: f64, alpha: f64, derivative: Derivative, start: [f6
     };
     let drives = vec![Drive::Force(vec![Signal::constant(0.0)])];
     let forward = Forward { q: vec![start[0]], v: vec![start[1]], drives };
-    let motion = Motion::Forward(Box::new(forward));
-    System { model, elements: vec![element], motion, gripper: None, tells_joint_losses: false }
+    let motion = forward.into();
+    System { model: model.into(), elements: vec![element], motion, gripper: None, tells_joint_losses: false }
 }
 
 #[test]

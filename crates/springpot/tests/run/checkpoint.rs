@@ -2,7 +2,7 @@
 
 use crate::support::robots::{ARM, PATH, every, magnetorheological, prescribed, springpot, strut, thermoviscoelastic};
 use crate::support::{cases, shipped};
-use springpot::simulate::{Checkpoint, Report, Rows, RunError, Settings, Stop, System, resume, run};
+use springpot::integrate::{Checkpoint, Report, Rows, RunError, Settings, Stop, System, resume, run};
 use springpot_scenario::Cases;
 use std::io;
 use std::sync::atomic::Ordering;

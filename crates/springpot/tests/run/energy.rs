@@ -275,8 +275,7 @@ fn joint_damping_and_friction() {
         let plan = cases(&format!("{damped}{}{motion}{}", springpot(0.5, "caputo"), every(3.0, 0.02))).plan(0).unwrap();
         let system = plan.system();
         let loss = |t: f64| {
-            let (mut q, mut v, mut a) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-            system.motion.at(&system.model, t, &mut q, &mut v, &mut a).unwrap();
+            let v = system.state(t).unwrap().v;
             0.1 * v[1] * v[1] + 0.2 * v[1] * (v[1] / 1e-3).tanh() + 0.05 * v[2] * v[2]
         };
         let panels = 60_000;

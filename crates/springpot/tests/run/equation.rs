@@ -2,8 +2,8 @@
 
 use crate::support::robots::{ARM, SWING, every, springpot};
 use crate::support::{cases, scenarios, shipped};
-use springpot::motion::Motion;
-use springpot::simulate::{Equation, EquationError, RowTimes, Settings, Stop, run as simulate};
+use springpot::integrate::Motion;
+use springpot::integrate::{Equation, EquationError, RowTimes, Settings, Stop, run as simulate};
 use springpot_scenario::Cases;
 
 /// Times of a motion as shares of its duration; all but the end are no multiples of a step.

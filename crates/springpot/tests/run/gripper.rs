@@ -4,9 +4,9 @@ use crate::support::robots::{ARM, every, springpot};
 use crate::support::truth::derivatives;
 use crate::support::{Run, cases, largest, relative_difference, run, run_case, system};
 use springpot::dynamics::{Kinematics, angular_jacobian, angular_jacobian_rate, point_jacobian, point_jacobian_rate};
+use springpot::integrate::{RunError, System};
 use springpot::model::Parent;
 use springpot::motion::PathError;
-use springpot::simulate::{RunError, System};
 use springpot::spatial::{Rotation, Vec3};
 use std::fmt::Write as _;
 

@@ -1,10 +1,10 @@
 //! Gripper paths with loops and pulses that are short against the run; how much a path may take, and its interruption.
 
 use crate::support::{cases, run, run_case};
+use springpot::integrate::{RunError, Stop};
+use springpot::motion::PathError;
 use springpot::motion::gripper_path::{Course, GripperPath, Task};
-use springpot::motion::{Motion, PathError};
 use springpot::signal::{Expression, Signal};
-use springpot::simulate::{RunError, Stop};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -190,10 +190,10 @@ fn loops_are_followed(count: usize, seed: u64) {
 }
 
 /// A path of the arm of `silent`, not yet solved: its model and task.
-fn task(x: &str) -> (springpot::model::Model, Task) {
+fn task(x: &str) -> (std::sync::Arc<springpot::model::Model>, Task) {
     let text = silent();
     let system = cases(&text).plan(0).unwrap().system();
-    let Motion::GripperPath(_) = &system.motion else { panic!("a path") };
+    assert!(system.motion.has_path());
     let body = springpot::model::Parent::Body(3);
     let written = |text: &str| Signal::expression(Expression::parse(text).unwrap());
     let task = Task {

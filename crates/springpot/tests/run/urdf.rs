@@ -2,7 +2,7 @@
 
 use crate::support::robots::every;
 use crate::support::{Run, cases, largest, relative_difference, run, run_case, shipped};
-use springpot::simulate::{FRICTION_SPEED, LimitKind, LimitWatch, PassedLimit};
+use springpot::integrate::{FRICTION_SPEED, LimitKind, LimitWatch, PassedLimit};
 use std::path::PathBuf;
 
 const ARM: [&str; 7] =

@@ -7,9 +7,9 @@ pub(crate) mod oracle;
 pub(crate) mod robots;
 pub(crate) mod truth;
 
+use springpot::integrate::{Report, RunError, Settings, Stop, System, run as simulate};
 use springpot::law::Catalog;
 use springpot::observe::Table;
-use springpot::simulate::{Report, RunError, Settings, Stop, System, run as simulate};
 use springpot_scenario::{Cases, Scenario};
 use std::path::PathBuf;
 

@@ -4,11 +4,11 @@
 //! Gauss–Jacobi; all others lie at least half their width away from t and are done by Gauss–Legendre.
 
 use springpot::dynamics::{Kinematics, pair};
-use springpot::element::Element;
+use springpot::elements::Element;
 use springpot::fractional::Kind;
 use springpot::fractional::gamma::gamma;
+use springpot::integrate::{State, System};
 use springpot::law::{InputValue, Point};
-use springpot::simulate::System;
 use std::f64::consts::PI;
 
 /// Nodes and weights on [−1, 1].
@@ -137,9 +137,7 @@ fn is_far(from: f64, to: f64, t: f64) -> bool {
 
 /// Length, rate and gradient of an element along the motion of its system, by the rigid bodies alone.
 pub(crate) fn pair_at(system: &System, element: &Element, t: f64) -> (f64, f64, Vec<f64>) {
-    let n = system.model.nv();
-    let (mut q, mut v, mut a) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    system.motion.at(&system.model, t, &mut q, &mut v, &mut a).expect("a motion that can be followed");
+    let State { q, v, .. } = system.state(t).expect("a motion that can be followed");
     let kinematics = Kinematics::at_velocity(&system.model, &q, &v);
     let (pair, gradient) = pair(&system.model, &kinematics, &element.from, &element.to);
     (pair.length, pair.rate, gradient)

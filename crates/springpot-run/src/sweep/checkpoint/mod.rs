@@ -23,7 +23,7 @@ use crate::table::folder::{CASE, Folder, HEAD, JOURNAL, Targets, checkpoint_fold
 use crate::table::sealed::{self, CHECKPOINT, Journal, Recorded, SealError};
 use error::at;
 use record::{Head, Stretch, bytes, digest, digest_of, value};
-use springpot::simulate::System;
+use springpot::integrate::System;
 use springpot_scenario::{Cases, Plan};
 use std::collections::BTreeMap;
 use std::io;

@@ -4,7 +4,7 @@ use crate::table::sealed::SealError;
 use crate::table::{Format, Statistics};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use springpot::simulate::{Checkpoint, PassedLimit, Report, Stop, System, Watch};
+use springpot::integrate::{Checkpoint, PassedLimit, Report, Stop, System, Watch};
 use springpot_scenario::{Cases, Plan, RefusalKind, Scenario};
 use std::fmt::{self, Write as _};
 use std::io;

@@ -1,0 +1,50 @@
+//! Forward dynamics: what robots start from, and what drives their joints.
+
+use crate::model::Model;
+use crate::motion::JointPath;
+use crate::signal::Signal;
+
+/// A motion that follows from the equations of motion.
+#[derive(Debug, Clone)]
+pub struct Forward {
+    /// q(0), nq values.
+    pub q: Vec<f64>,
+    /// v(0), nv values.
+    pub v: Vec<f64>,
+    /// One for each joint that has coordinates of its own, in their order.
+    pub drives: Vec<Drive>,
+}
+
+impl Forward {
+    /// The functions of time that drive it.
+    pub(crate) fn signals(&self) -> Vec<&Signal> {
+        self.drives.iter().flat_map(Drive::signals).collect()
+    }
+
+    /// The velocities of `model`'s joints that forces drive, in rising order.
+    pub(crate) fn free_velocities(&self, model: &Model) -> Vec<usize> {
+        let drives = model.own_joints().zip(&self.drives);
+        drives.filter(|(_, drive)| matches!(drive, Drive::Force(_))).flat_map(|(j, _)| model.v_range(j)).collect()
+    }
+}
+
+/// What drives one joint.
+#[derive(Debug, Clone)]
+pub enum Drive {
+    /// An actuator force for each of its velocities, N·m or N.
+    Force(Vec<Signal>),
+    /// The joint moves as signals say, whatever force that takes.
+    Prescribed(JointPath),
+    /// The joint stays where it starts, whatever force that takes.
+    Locked,
+}
+
+impl Drive {
+    pub(crate) fn signals(&self) -> Vec<&Signal> {
+        match self {
+            Self::Force(signals) => signals.iter().collect(),
+            Self::Prescribed(path) => path.signals(),
+            Self::Locked => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What every part of a run is told.
+
+use super::System;
+use crate::law::InputValue;
+use serde::{Deserialize, Serialize};
+
+/// A system, and what is held from outside.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Context<'a> {
+    pub(super) system: &'a System,
+    pub(super) held: &'a Held,
+}
+
+/// Torques and inputs that somebody outside holds; the default holds nothing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Held {
+    /// Added to the actuator forces, nv values or none.
+    torques: Vec<f64>,
+    /// In place of the signal, for each input of each element, or none.
+    inputs: Vec<Vec<Option<f64>>>,
+}
+
+impl Held {
+    /// Nothing is held.
+    pub(super) const NONE: &'static Self = &Self { torques: Vec::new(), inputs: Vec::new() };
+
+    /// The torques on the velocities of a system, to be set.
+    pub(super) fn torques_mut(&mut self, nv: usize) -> &mut [f64] {
+        self.torques.resize(nv, 0.0);
+        &mut self.torques
+    }
+
+    /// Holds input `i` of element `e` of a system, or gives it back to its signal; `None` where there is no such input.
+    pub(super) fn hold_input(&mut self, system: &System, e: usize, i: usize, value: Option<f64>) -> Option<()> {
+        if self.inputs.is_empty() {
+            self.inputs = system.elements.iter().map(|element| vec![None; element.inputs.len()]).collect();
+        }
+        *self.inputs.get_mut(e)?.get_mut(i)? = value;
+        Some(())
+    }
+}
+
+impl Context<'_> {
+    /// Values and rates of the inputs of element `e` at t.
+    pub(super) fn inputs_at(&self, e: usize, t: f64, values: &mut [InputValue]) {
+        self.system.elements[e].inputs_at(t, values);
+        let Some(held) = self.held.inputs.get(e) else { return };
+        for (value, held) in values.iter_mut().zip(held) {
+            if let Some(held) = *held {
+                *value = InputValue { value: held, rate: 0.0 };
+            }
+        }
+    }
+
+    /// What is added to the actuator force on velocity `k`, N·m or N.
+    pub(super) fn torque(&self, k: usize) -> f64 {
+        self.held.torques.get(k).copied().unwrap_or(0.0)
+    }
+}
+
+impl System {
+    /// It alone.
+    pub(super) fn context(&self) -> Context<'_> {
+        Context { system: self, held: Held::NONE }
+    }
+}

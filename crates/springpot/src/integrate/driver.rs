@@ -1,0 +1,364 @@
+//! The one loop: which step is tried next, what becomes of it, and what is crossed between two of them.
+
+use super::Checkpoint;
+use super::context::Context;
+use super::output::Output;
+use super::recorder::Recorder;
+use super::state::DriverState;
+use super::stepper::{Behind, Stepper, Target, Trial};
+use super::{Report, RowTimes, RunError, Settings, Stop};
+use crate::observe::snapshot::Snapshot;
+use crate::signal::agenda::FINEST;
+use crate::signal::{self, Agenda};
+
+/// Steps above this many last bits of the end are whole multiples of such a bit.
+const COARSE: f64 = (1u64 << 20) as f64;
+
+/// Times that differ by less than this share of them are one.
+const TICK: f64 = 1e-12;
+
+/// Where the next row and the last one are: steps may end on rows that are far apart.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowsAhead {
+    pub(super) next: f64,
+    pub(super) last: f64,
+}
+
+/// A run between two steps, or with one that was worked out and is not yet taken into the past, so that it can be looked into.
+#[derive(Debug)]
+pub(super) struct Driver {
+    stepper: Box<dyn Stepper>,
+    pub(super) recorder: Recorder,
+    /// What the signals do.
+    agenda: Agenda,
+    longest_step: f64,
+    /// Where the last step taken into the past ended.
+    t: f64,
+    /// Size of the next step.
+    h: f64,
+    step: Option<Target>,
+    /// The far side of what is to be crossed before the next step.
+    crossing: Option<f64>,
+    /// Number of the end of the next step, where they have one size.
+    tick: usize,
+    steps: u64,
+    rejected_steps: u64,
+}
+
+impl Driver {
+    /// At t = 0.
+    ///
+    /// # Errors
+    /// What keeps a run from starting; [`RunError::Interrupted`].
+    pub(super) fn new(
+        cx: Context,
+        settings: &Settings,
+        stop: &Stop,
+        looked_ahead: impl FnOnce(&Self),
+    ) -> Result<Self, RunError> {
+        let mut driver = Self::unstarted(cx, settings, stop)?;
+        looked_ahead(&driver);
+        let first = driver.stepper.start(cx, &mut driver.recorder, &driver.agenda)?;
+        driver.recorder.open(cx, first)?;
+        driver.h = driver.aligned(first);
+        Ok(driver)
+    }
+
+    /// Where a run of the same system was.
+    ///
+    /// # Errors
+    /// [`RunError::OtherRun`] where the state is none of this system and settings; [`RunError::Interrupted`].
+    pub(super) fn resume(
+        cx: Context,
+        settings: &Settings,
+        state: DriverState,
+        stop: &Stop,
+        looked_ahead: impl FnOnce(&Self),
+    ) -> Result<Self, RunError> {
+        let mut driver = Self::unstarted(cx, settings, stop)?;
+        looked_ahead(&driver);
+        driver.go_on(cx, state)?;
+        Ok(driver)
+    }
+
+    fn unstarted(cx: Context, settings: &Settings, stop: &Stop) -> Result<Self, RunError> {
+        settings.check()?;
+        let stepper = super::method(cx, settings)?;
+        let longest_step = stepper.longest_step(cx, settings);
+        let agenda = match stepper.fixed_step() {
+            None => cx.system.agenda(settings, longest_step, stop)?,
+            Some(_) => Agenda::default(),
+        };
+        let mut recorder = Recorder::new(cx, settings);
+        stepper.set_up(&mut recorder);
+        Ok(Self {
+            stepper,
+            recorder,
+            agenda,
+            longest_step,
+            t: 0.0,
+            h: 0.0,
+            step: None,
+            crossing: None,
+            tick: 1,
+            steps: 0,
+            rejected_steps: 0,
+        })
+    }
+
+    /// How often the signals switch.
+    pub(super) fn switches(&self) -> Option<u64> {
+        self.stepper.fixed_step().is_none().then(|| self.agenda.switches())
+    }
+
+    /// Steps worked out so far.
+    pub(super) fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Time up to which everything is known, s.
+    pub(super) fn reached(&self) -> f64 {
+        self.step.map_or(self.t, |step| step.to)
+    }
+
+    /// Whether the end is reached.
+    pub(super) fn has_ended(&self) -> bool {
+        self.reached() >= self.recorder.settings.end
+    }
+
+    /// The step that can be looked into.
+    pub(super) fn step_at_hand(&self) -> Option<Target> {
+        self.step
+    }
+
+    /// Takes the step at hand into the past, or crosses what is behind it: `true` where something was crossed, whose rows are to be written before
+    /// it is asked again. After `false` the next step can be tried.
+    ///
+    /// # Errors
+    /// What must not jump.
+    pub(super) fn settle(&mut self, cx: Context) -> Result<bool, RunError> {
+        self.close(cx)?;
+        let Some(after) = self.crossing.take().or_else(|| self.kink_at_hand(cx)) else { return Ok(false) };
+        self.stepper.cross(cx, &mut self.recorder, after)?;
+        self.t = after;
+        // A little further, since a sign is 0 while it turns.
+        let past = cx.system.past_turns(after);
+        self.crossing = (past != after).then_some(past);
+        Ok(true)
+    }
+
+    /// Takes the step at hand into the past.
+    fn close(&mut self, cx: Context) -> Result<(), RunError> {
+        let Some(step) = self.step.take() else { return Ok(()) };
+        self.recorder.commit();
+        self.t = step.to;
+        self.crossing = step.crossing();
+        self.stepper.accept(cx, &self.recorder, &step)
+    }
+
+    /// The far side of a kink at the present time.
+    fn kink_at_hand(&self, cx: Context) -> Option<f64> {
+        if self.stepper.fixed_step().is_some() || self.has_ended() {
+            return None;
+        }
+        if self.t == 0.0 && cx.system.turns_at(0.0) {
+            return Some(f64::EPSILON * f64::EPSILON * self.recorder.settings.end);
+        }
+        let stop = self.agenda.next_stop(self.t).filter(|stop| stop.before <= self.t);
+        stop.and_then(|stop| stop.after)
+    }
+
+    /// What follows starts anew: something that is held from outside is about to change.
+    ///
+    /// # Errors
+    /// Where nothing can follow.
+    pub(super) fn disturb(&mut self, cx: Context) -> Result<(), RunError> {
+        self.close(cx)?;
+        self.crossing = self.crossing.or(Some(self.t));
+        Ok(())
+    }
+
+    /// Works out the next step, which ends at `until` at the latest; everything before it is settled.
+    ///
+    /// # Errors
+    /// Where no step leads on, or no more are allowed.
+    pub(super) fn advance(&mut self, cx: Context, until: f64, rows: Option<RowsAhead>) -> Result<(), RunError> {
+        let limit = self.recorder.settings.step_limit(self.agenda.switches());
+        loop {
+            if self.steps >= limit {
+                return Err(RunError::TooManySteps { t: self.t, limit: self.steps });
+            }
+            let target = self.target(until, rows);
+            match self.stepper.try_step(cx, &mut self.recorder, target)? {
+                Trial::Accepted { step, next } => {
+                    self.steps += 1;
+                    if let Some(size) = self.stepper.fixed_step() {
+                        self.tick += usize::from(step.to >= self.tick_time(size) * (1.0 - TICK));
+                    }
+                    // A step cut short by a stop says nothing against the size chosen before.
+                    let before = if step.size < self.h { self.h } else { 0.0 };
+                    self.h = self.aligned(next.max(before).min(self.longest_step));
+                    self.step = Some(step);
+                    return Ok(());
+                }
+                Trial::Rejected { size } => {
+                    self.rejected_steps += 1;
+                    self.h = self.aligned(size);
+                }
+                Trial::Changes => {
+                    self.crossing = Some(self.t);
+                    return Ok(());
+                }
+            }
+        }
+    }
+
+    /// A size that times can be added to without rounding, so that steps of one size are so to the bit and share their tables of lags.
+    fn aligned(&self, h: f64) -> f64 {
+        let bit = f64::EPSILON * self.recorder.settings.end.log2().ceil().exp2();
+        if h > COARSE * bit { (h / bit).floor() * bit } else { h }
+    }
+
+    /// The step that is tried next.
+    fn target(&self, until: f64, rows: Option<RowsAhead>) -> Target {
+        let (t, end) = (self.t, self.recorder.settings.end.min(until));
+        if let Some(step) = self.stepper.fixed_step() {
+            let tick = self.tick_time(step);
+            // What differs by rounding alone is the end that was asked for.
+            let to = if end <= tick * (1.0 + TICK) { end } else { tick };
+            // To the bit where it can be, so that the tables of the exponentials are made once.
+            let size = if (to - t - step).abs() <= 1e-9 * step { step } else { to - t };
+            return Target { from: t, to, size, behind: Behind::Step };
+        }
+        let stop = self.agenda.next_stop(t);
+        let stop_at = stop.map_or(end, |stop| stop.before.min(end));
+        let reach = self.stepper.reach(t, self.agenda.reach(t, self.h));
+        let sparse =
+            rows.filter(|rows| self.stepper.ends_on_sparse_rows() && rows.next > t && rows.next - rows.last >= reach);
+        let to = end_of(t, reach, sparse.map_or(stop_at, |rows| rows.next.min(stop_at)));
+        let size = to - t;
+        let behind = match stop.filter(|stop| stop.before == to) {
+            None => Behind::Step,
+            Some(signal::Stop { after: None, .. }) => Behind::Break,
+            Some(signal::Stop { after: Some(after), .. }) => Behind::Kink(after),
+        };
+        Target { from: t, to, size, behind }
+    }
+
+    /// Where the present step of one size ends, if nothing ends it earlier.
+    fn tick_time(&self, step: f64) -> f64 {
+        let ends = RowTimes::Step { step, end: self.recorder.settings.end };
+        ends.at(self.tick.min(ends.count() - 1))
+    }
+
+    /// Fills a snapshot at a time of the step at hand, or at the present time; `row` is that of named schemes. Gives θ inside the step.
+    ///
+    /// # Errors
+    /// What a row there may show.
+    pub(super) fn read(
+        &mut self,
+        cx: Context,
+        at: f64,
+        row: usize,
+        snapshot: &mut Snapshot,
+    ) -> Result<Option<f64>, RunError> {
+        let Some(Target { from, to, behind, .. }) = self.step else {
+            self.stepper.complete(cx, &mut self.recorder, 0)?;
+            self.recorder.read_between(cx, row, snapshot)?;
+            return Ok(None);
+        };
+        let theta = if at == to { 1.0 } else { (at - from) / (to - from) };
+        if at == to && behind != Behind::Break {
+            self.stepper.complete(cx, &mut self.recorder, 1)?;
+            snapshot.moment.clone_from(&self.recorder.moments[crate::fractional::step::MAX_NODES]);
+        } else {
+            self.stepper.interpolate(cx, &mut self.recorder, at, theta, &mut snapshot.moment)?;
+        }
+        self.recorder.read_step(cx, theta, row, snapshot)?;
+        Ok(Some(theta))
+    }
+
+    /// Runs to the end, `output` writing the rows.
+    ///
+    /// # Errors
+    /// What stops the run.
+    pub(super) fn run(&mut self, cx: Context, output: &mut Output, stop: &Stop) -> Result<(), RunError> {
+        output.emit(cx, self)?;
+        loop {
+            while self.settle(cx)? {
+                output.emit(cx, self)?;
+            }
+            if self.has_ended() {
+                // Steps of one size show the error of their size, whatever it is.
+                return if self.stepper.fixed_step().is_none() { output.verdict(cx, self) } else { Ok(()) };
+            }
+            let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
+            if output.rows.wants_checkpoint(self.t, stopped) {
+                let checkpoint = Checkpoint { driver: self.state(cx), written: output.written };
+                output.rows.checkpoint(checkpoint)?;
+            }
+            if stopped {
+                return Err(RunError::Interrupted { t: self.t });
+            }
+            let rows = output.next(&self.recorder.settings);
+            let rows = rows.map(|next| RowsAhead { next, last: output.written.last.unwrap_or(0.0) });
+            self.advance(cx, f64::INFINITY, rows)?;
+            output.emit(cx, self)?;
+        }
+    }
+
+    /// What it takes to go on; everything is settled.
+    pub(super) fn state(&self, cx: Context) -> DriverState {
+        DriverState {
+            system: cx.system.fingerprint(),
+            recorder: self.recorder.state(),
+            stepper: self.stepper.save(),
+            t: self.t,
+            h: self.h,
+            crossing: self.crossing,
+            tick: self.tick,
+            steps: self.steps,
+            rejected_steps: self.rejected_steps,
+        }
+    }
+
+    /// Goes on from a state of the same system and settings.
+    ///
+    /// # Errors
+    /// [`RunError::OtherRun`], and the driver as it was.
+    pub(super) fn go_on(&mut self, cx: Context, state: DriverState) -> Result<(), RunError> {
+        let DriverState { system, recorder, stepper, t, h, crossing, tick, steps, rejected_steps } = state;
+        if system != cx.system.fingerprint() || !self.stepper.fits(&stepper) || !self.recorder.go_on(recorder) {
+            return Err(RunError::OtherRun);
+        }
+        self.stepper.load(cx, &mut self.recorder, stepper)?;
+        (self.t, self.h, self.step, self.crossing) = (t, h, None, crossing);
+        (self.tick, self.steps, self.rejected_steps) = (tick, steps, rejected_steps);
+        Ok(())
+    }
+
+    /// What the run did, but for its rows.
+    pub(super) fn report(&self) -> Report {
+        Report {
+            steps: self.steps,
+            rejected_steps: self.rejected_steps,
+            newton_iterations: self.stepper.newton_iterations(),
+            modes: self.recorder.bank.modes(),
+            switches: self.switches(),
+            resolution: self.switches().map(|_| FINEST * self.recorder.settings.end),
+            ..Report::default()
+        }
+    }
+}
+
+/// The end of a step of size h from t that must not pass `stop`; the last two steps before it share what is left.
+fn end_of(t: f64, h: f64, stop: f64) -> f64 {
+    let left = stop - t;
+    if h >= left * (1.0 - 1e-9) {
+        stop
+    } else if h > 0.5 * left {
+        t + 0.5 * left
+    } else {
+        t + h
+    }
+}

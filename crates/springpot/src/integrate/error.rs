@@ -1,0 +1,250 @@
+//! What can stop a run.
+
+use crate::fractional::KernelError;
+use crate::fractional::scheme::SchemeError;
+use crate::motion::PathError;
+
+/// Why a run stopped or a simulation refused; what happens on the way names the time.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The points that an element joins met, so that its direction is undefined.
+    #[error("t = {t} s: element \"{element}\" has no direction: its points met (length {length:.1e} m)")]
+    ZeroLength {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Length, m.
+        length: f64,
+    },
+    /// A signal gave NaN or infinity.
+    #[error("t = {t} s: {what} is {value}, not a finite number")]
+    NotFinite {
+        /// Time, s.
+        t: f64,
+        /// Which signal or result.
+        what: String,
+        /// Its value.
+        value: f64,
+    },
+    /// An input broke a rule of its law.
+    #[error("t = {t} s: element \"{element}\": {rule}")]
+    Rule {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// The rule.
+        rule: String,
+    },
+    /// An input left the range of its law.
+    #[error("t = {t} s: element \"{element}\": input {input} = {value} lies outside {low} … {high}")]
+    InputRange {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Input.
+        input: String,
+        /// Its value, SI.
+        value: f64,
+        /// Smallest admissible value.
+        low: f64,
+        /// Largest admissible value.
+        high: f64,
+    },
+    /// A coordinate jumps.
+    #[error("t = {t} s: joint \"{joint}\" jumps by {jump:e}; a motion must be continuous")]
+    Jump {
+        /// Time, s.
+        t: f64,
+        /// Joint.
+        joint: String,
+        /// Height of the jump, rad or m.
+        jump: f64,
+    },
+    /// No step is small enough.
+    #[error(
+        "t = {t} s: no step meets the tolerance: {h:e} s still errs {error:.1} times too much in {subject}; raise solver.rtol"
+    )]
+    StepTooSmall {
+        /// Time, s.
+        t: f64,
+        /// Step tried, s.
+        h: f64,
+        /// Error in units of the tolerance.
+        error: f64,
+        /// Worst element, or the energy.
+        subject: String,
+    },
+    /// The step of a fixed-step method is too long.
+    #[error(
+        "t = {t} s: a step of {h} s is too long: no finite acceleration of {joint} solves it; take a shorter solver.step"
+    )]
+    FixedStep {
+        /// Time, s.
+        t: f64,
+        /// Step size, s.
+        h: f64,
+        /// Joint.
+        joint: String,
+    },
+    /// The equations of motion of a step have no solution that the iteration finds.
+    #[error("t = {t} s: the motion cannot go on: joint \"{joint}\" settles in no step down to {h:e} s")]
+    NoConvergence {
+        /// Time, s.
+        t: f64,
+        /// Step tried, s.
+        h: f64,
+        /// The joint that is farthest off.
+        joint: String,
+    },
+    /// Joints stick and slide without getting on.
+    #[error(
+        "t = {t} s: joint \"{joint}\" sticks and slides without getting on: {count} changes within {span:.1e} s; \
+         give its friction a speed in place of stick = true"
+    )]
+    Chatter {
+        /// Time, s.
+        t: f64,
+        /// The joint that changed last.
+        joint: String,
+        /// Changes between holding and sliding.
+        count: u32,
+        /// Within this time, s.
+        span: f64,
+    },
+    /// Which joints hold by friction and which slide has no answer.
+    #[error(
+        "t = {t} s: no friction between -force and force of joint \"{joint}\" goes with the forces on it; \
+         give its friction a speed in place of stick = true"
+    )]
+    NoHold {
+        /// Time, s.
+        t: f64,
+        /// A joint that finds no friction.
+        joint: String,
+    },
+    /// More steps than allowed.
+    #[error("t = {t} s: {limit} steps are used up (solver.max_steps)")]
+    TooManySteps {
+        /// Time, s.
+        t: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// Signals change more often than the run may take steps.
+    #[error(
+        "{what} changes too often: it takes at least {times:.1e} steps, and {limit} are allowed; raise solver.max_steps or shorten the run"
+    )]
+    TooBusy {
+        /// Which signal, or all of them.
+        what: String,
+        /// Steps that it takes at least.
+        times: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// A row contradicts the step that it lies in.
+    #[error(
+        "t = {t} s: the steps missed what the motion does: at this row the rate of element \"{element}\" departs from its step by {departure:.1e} of its largest derivative; the rows are kept; give solver.max_step a time in which the motion changes little"
+    )]
+    Missed {
+        /// Time of the first such row, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Departure in units of the largest D^alpha x so far.
+        departure: f64,
+    },
+    /// The energies do not balance.
+    #[error(
+        "t = {t} s: the energy balance is off by {residual:.1e} J of {turned_over:.1e} J turned over: the results are wrong or the motion is not what it seems; the rows are kept; try a smaller solver.max_step"
+    )]
+    Unbalanced {
+        /// Time of the largest residual, s.
+        t: f64,
+        /// The residual, J.
+        residual: f64,
+        /// The energy turned over, J.
+        turned_over: f64,
+    },
+    /// The memory of an element could not be built.
+    #[error("t = 0 s: element \"{element}\": {source}")]
+    Kernel {
+        /// Element.
+        element: String,
+        /// Reason.
+        source: KernelError,
+    },
+    /// A named offline scheme cannot run on this grid.
+    #[error("element \"{element}\": {source}")]
+    Scheme {
+        /// Element.
+        element: String,
+        /// Reason.
+        source: SchemeError,
+    },
+    /// Interrupted by the user.
+    #[error("interrupted at t = {t} s")]
+    Interrupted {
+        /// Time reached, s.
+        t: f64,
+    },
+    /// A checkpoint or state was taken from another system.
+    #[error("the checkpoint belongs to another run")]
+    OtherRun,
+    /// A setting with which no step can be taken.
+    #[error("{what} must be positive and finite, not {value}")]
+    Setting {
+        /// Its key in a scenario.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A named scheme works on complete motions alone.
+    #[error("element \"{element}\" has a named scheme, which works on complete motions alone: it cannot be stepped")]
+    NoStepping {
+        /// Element.
+        element: String,
+    },
+    /// A time that cannot be gone to or looked at.
+    #[error("t = {t} s lies outside {from} … {to} s")]
+    Outside {
+        /// Time, s.
+        t: f64,
+        /// Earliest time, s.
+        from: f64,
+        /// Latest time, s.
+        to: f64,
+    },
+    /// No force drives that velocity.
+    #[error("no force drives velocity {velocity}: there is none, or its motion is given")]
+    NotDriven {
+        /// Index of the velocity.
+        velocity: usize,
+    },
+    /// No such input.
+    #[error("element {element} has no input {input}")]
+    NoInput {
+        /// Index of the element.
+        element: usize,
+        /// Index of the input.
+        input: usize,
+    },
+    /// The motion cannot be followed.
+    #[error("{0}")]
+    Path(PathError),
+    /// Rows could not be written.
+    #[error("rows could not be written: {0}")]
+    Output(#[from] std::io::Error),
+}
+
+impl From<PathError> for RunError {
+    fn from(error: PathError) -> Self {
+        match error {
+            PathError::Interrupted { t } => Self::Interrupted { t },
+            error => Self::Path(error),
+        }
+    }
+}

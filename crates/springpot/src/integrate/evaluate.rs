@@ -1,0 +1,202 @@
+//! The robot and its elements at one time, before any law is asked.
+
+use super::context::Context;
+use super::resistance::{add_resistance, joint_loss};
+use super::{RunError, System};
+use crate::dynamics::{Kinematics, Pair, Workspace, kinetic_energy, pair_into, potential_energy, rnea_at_into};
+use crate::elements::Element;
+use crate::law::{InputValue, Point};
+use crate::model::Model;
+use crate::motion::{Trajectory, Wanted};
+use crate::observe::Snapshot;
+pub(super) use crate::observe::snapshot::{ElementMoment, Moment};
+use crate::observe::{ElementQuantity, Quantity};
+use crate::spatial::Vec3;
+
+/// Scratch of [`Context::evaluate`].
+#[derive(Debug)]
+pub(super) struct Scratch {
+    kinematics: Kinematics,
+    workspace: Workspace,
+}
+
+impl Scratch {
+    pub(super) fn new(model: &Model) -> Self {
+        Self { kinematics: Kinematics::new(model), workspace: Workspace::new(model) }
+    }
+}
+
+impl ElementMoment {
+    fn take(&mut self, element: &Element, pair: &Pair) {
+        self.length = pair.length;
+        self.stroke = pair.length - element.rest_length;
+        self.rate = pair.rate;
+        self.direction = pair.direction;
+    }
+
+    pub(super) fn point(&self, t: f64) -> Point<'_> {
+        Point { t, stroke: self.stroke, rate: self.rate, inputs: &self.inputs }
+    }
+}
+
+impl Moment {
+    pub(super) fn new(system: &System) -> Self {
+        let n = system.model.nv();
+        let element = |element: &Element| ElementMoment {
+            length: 0.0,
+            stroke: 0.0,
+            rate: 0.0,
+            direction: Vec3([0.0; 3]),
+            gradient: vec![0.0; n],
+            inputs: vec![InputValue::default(); element.inputs.len()],
+        };
+        Self {
+            t: 0.0,
+            q: vec![0.0; system.model.nq()],
+            v: vec![0.0; n],
+            a: vec![0.0; n],
+            rigid: vec![0.0; n],
+            driven: vec![None; n],
+            joint_loss: 0.0,
+            kinetic: 0.0,
+            potential: 0.0,
+            elements: system.elements.iter().map(element).collect(),
+            gripper: [0.0; 3],
+            gripper_error: None,
+        }
+    }
+
+    /// Whether it can be one of the same system as another.
+    pub(super) fn has_shape_of(&self, other: &Self) -> bool {
+        let sizes = |of: &Self| [of.q.len(), of.v.len(), of.a.len(), of.elements.len()];
+        let inputs = |of: &Self| of.elements.iter().map(|element| element.inputs.len()).collect::<Vec<_>>();
+        sizes(self) == sizes(other) && inputs(self) == inputs(other)
+    }
+
+    /// Power of the actuators were there no elements, W.
+    pub(super) fn rigid_power(&self) -> f64 {
+        self.rigid.iter().zip(&self.v).map(|(tau, v)| tau * v).sum()
+    }
+}
+
+impl Snapshot {
+    /// Room for what is known of a system.
+    pub(super) fn new(system: &System) -> Self {
+        Self { moment: Moment::new(system), elements: Vec::new(), actuators: 0.0, joints: 0.0, residual: 0.0 }
+    }
+}
+
+impl Context<'_> {
+    /// Fills `moment` for the time `t` of a trajectory; inputs are taken at `t_inputs`, which differs from `t` by one bit where a break point
+    /// is meant from its left side.
+    ///
+    /// # Errors
+    /// [`RunError`] where the motion cannot be followed, a signal is not finite, or an element has no direction.
+    pub(super) fn evaluate(
+        &self,
+        trajectory: &Trajectory,
+        t: f64,
+        t_inputs: f64,
+        scratch: &mut Scratch,
+        moment: &mut Moment,
+    ) -> Result<(), RunError> {
+        let wanted = trajectory.at(&self.system.model, t, &mut moment.q, &mut moment.v, &mut moment.a)?;
+        self.require_finite(t, moment)?;
+        self.fill(t, t_inputs, wanted, scratch, moment)
+    }
+
+    /// Fills `moment`, whose q, v and a are there, for the time `t`, inputs taken at `t_inputs`.
+    ///
+    /// # Errors
+    /// [`RunError`] where an input is not finite or breaks a rule, or an element has no direction.
+    pub(super) fn fill(
+        &self,
+        t: f64,
+        t_inputs: f64,
+        wanted: Option<Wanted>,
+        scratch: &mut Scratch,
+        moment: &mut Moment,
+    ) -> Result<(), RunError> {
+        moment.t = t;
+        let kinematics = &mut scratch.kinematics;
+        kinematics.update_velocity(&self.system.model, &moment.q, &moment.v);
+        let workspace = &mut scratch.workspace;
+        rnea_at_into(&self.system.model, kinematics, &moment.q, &moment.a, &[], workspace, &mut moment.rigid);
+        moment.kinetic = kinetic_energy(&self.system.model, kinematics);
+        moment.potential = potential_energy(&self.system.model, kinematics);
+        moment.joint_loss = add_resistance(&self.system.model, &moment.v, &mut moment.rigid);
+        for (e, (element, state)) in self.system.elements.iter().zip(&mut moment.elements).enumerate() {
+            let pair = pair_into(&self.system.model, kinematics, &element.from, &element.to, &mut state.gradient);
+            if pair.check().is_err() {
+                return Err(RunError::ZeroLength { t, element: element.name.clone(), length: pair.length });
+            }
+            state.take(element, &pair);
+            self.inputs_at(e, t_inputs, &mut state.inputs);
+            element.check_inputs(t, &state.inputs)?;
+        }
+        if let Some(site) = &self.system.gripper {
+            moment.gripper = kinematics.position(site).0;
+            moment.gripper_error = wanted.map(|Wanted { position }| {
+                let square = |k: usize| (moment.gripper[k] - position[k]).powi(2);
+                (square(0) + square(1) + square(2)).sqrt()
+            });
+        }
+        Ok(())
+    }
+
+    /// As [`Self::fill`] for all but the actuators and what rows alone ask for: from kinematics that are there, and from the `pairs` and
+    /// inputs of the elements.
+    pub(super) fn fill_energies<'s>(
+        &self,
+        t: f64,
+        kinematics: &Kinematics,
+        elements: impl Iterator<Item = (Pair, &'s [InputValue])>,
+        moment: &mut Moment,
+    ) {
+        moment.t = t;
+        moment.kinetic = kinetic_energy(&self.system.model, kinematics);
+        moment.potential = potential_energy(&self.system.model, kinematics);
+        moment.joint_loss = joint_loss(&self.system.model, &moment.v);
+        for ((element, state), (pair, inputs)) in self.system.elements.iter().zip(&mut moment.elements).zip(elements) {
+            state.take(element, &pair);
+            state.inputs.copy_from_slice(inputs);
+        }
+    }
+
+    fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {
+        let q = moment.q.iter().enumerate().map(|(k, x)| (Quantity::Coordinate(k), *x));
+        let v = moment.v.iter().enumerate().map(|(k, x)| (Quantity::Velocity(k), *x));
+        let a = moment.a.iter().enumerate().map(|(k, x)| (Quantity::Acceleration(k), *x));
+        if let Some((quantity, value)) = q.chain(v).chain(a).find(|(_, x)| !x.is_finite()) {
+            let what = self.system.observables().named(quantity).to_string();
+            return Err(RunError::NotFinite { t, what, value });
+        }
+        Ok(())
+    }
+}
+
+impl Element {
+    pub(super) fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {
+        for (row, input) in self.entry.inputs.iter().zip(inputs) {
+            if !input.value.is_finite() {
+                let what = Quantity::Element(&*self.name, ElementQuantity::InputValue(&*row.name)).to_string();
+                return Err(RunError::NotFinite { t, what, value: input.value });
+            }
+            if !row.range.contains(input.value) {
+                return Err(RunError::InputRange {
+                    t,
+                    element: self.name.clone(),
+                    input: row.name.to_string(),
+                    value: input.value,
+                    low: row.range.low,
+                    high: row.range.high,
+                });
+            }
+        }
+        self.law.check_inputs(inputs).map_err(|broken| RunError::Rule {
+            t,
+            element: self.name.clone(),
+            rule: broken.rule,
+        })
+    }
+}

@@ -1,0 +1,231 @@
+//! Steps of one size behind the driver: with the energy ledger, and what rows ask for where there are some.
+
+use super::between::{Accelerator, Between};
+use super::step::OneStage;
+use super::{FixedStep, ITERATIONS};
+use crate::actuation::{Drive, Forward};
+use crate::elements::ElementBank;
+use crate::fractional::step::{MAX_NODES, RADAU_NODES};
+use crate::fractional::{Form, Nodes};
+use crate::integrate::context::Context;
+use crate::integrate::evaluate::Moment;
+use crate::integrate::radau::drives::drive;
+use crate::integrate::recorder::Recorder;
+use crate::integrate::resistance::joint_loss;
+use crate::integrate::stepper::{Stepper, Target, Trial};
+use crate::integrate::{RunError, Settings, state};
+use crate::law::Singular;
+use crate::signal::Agenda;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Forward dynamics in steps of one size.
+///
+/// A row inside a step takes its place from the cubic Hermite form between the ends and its velocity from a straight line; its accelerations
+/// solve the equations of motion at the ends of the step. Signals are met at the stages, their kinks are stepped over. The residual of the
+/// ledger is the method's own error, of its order in the step.
+#[derive(Debug)]
+pub(in crate::integrate) struct Fixed {
+    by: FixedStep,
+    step: OneStage,
+    accelerator: Accelerator,
+    /// Whether signals prescribe joints, whose actuators follow from all forces.
+    has_paths: bool,
+    newton_iterations: u64,
+}
+
+/// Where the next step starts.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(in crate::integrate) struct StepperState {
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    newton_iterations: u64,
+}
+
+impl Fixed {
+    pub(in crate::integrate) fn new(cx: Context, forward: &Arc<Forward>, by: FixedStep) -> Result<Self, RunError> {
+        Ok(Self {
+            by,
+            step: OneStage::new(cx, forward, by.method)?,
+            accelerator: Accelerator::new(cx, forward),
+            has_paths: forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))),
+            newton_iterations: 0,
+        })
+    }
+
+    /// Tells the bank the step at the nodes of the ledger: lengths on a straight line between its ends, as its memories take it, and the
+    /// rates of the cubic through lengths and rates there.
+    fn tell_ledger(&self, cx: Context, bank: &mut ElementBank, target: &Target) {
+        bank.set_nodes(Nodes::Radau);
+        for (e, (element, step)) in cx.system.elements.iter().zip(&self.step.elements).enumerate() {
+            let [from, to] = &step.ends;
+            bank.set_resolution(e, element.resolution(from.length));
+            for (k, c) in [0.0].into_iter().chain(RADAU_NODES).enumerate() {
+                let travel = to.length - from.length;
+                let rate = 6.0 * c * (1.0 - c) * travel / target.size
+                    + (1.0 - c) * (1.0 - 3.0 * c) * from.rate
+                    + c * (3.0 * c - 2.0) * to.rate;
+                bank.set_stroke(e, k, from.length + c * travel - element.rest_length, rate);
+                cx.inputs_at(e, target.from + c * target.size, bank.inputs_mut(e, k));
+            }
+        }
+    }
+
+    /// Fills the moments at the nodes of the ledger as far as it asks for them.
+    fn fill_moments(&self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<(), RunError> {
+        let (step, bank) = (&self.step, &recorder.bank);
+        for (moment, c) in recorder.moments[1..].iter_mut().zip(RADAU_NODES) {
+            let at = if c == 1.0 { target.to } else { target.from + c * target.size };
+            if self.has_paths {
+                let ends = [&step.origin, &step.end];
+                Between::new(cx, &step.forward, ends, [&step.a, &step.a], target.size).place(at, c, moment);
+                cx.fill(at, at, None, &mut recorder.scratch, moment)?;
+                continue;
+            }
+            for (v, (from, to)) in moment.v.iter_mut().zip(step.origin.v.iter().zip(&step.end.v)) {
+                *v = from + c * (to - from);
+            }
+            drive(cx, &step.forward, at, moment);
+            moment.joint_loss = joint_loss(&step.model, &moment.v);
+        }
+        let end = &mut recorder.moments[MAX_NODES];
+        end.q.copy_from_slice(&step.end.q);
+        end.v.copy_from_slice(&step.end.v);
+        if !self.has_paths {
+            let elements = step.elements.iter().enumerate();
+            let elements = elements.map(|(e, element)| (element.ends[1], bank.point(e, MAX_NODES).inputs));
+            cx.fill_energies(target.to, &step.end.kinematics, elements, end);
+        }
+        Ok(())
+    }
+
+    /// Powers of actuators and joints at the start and at the nodes, elements with the force of the step.
+    fn fill_powers(&self, recorder: &mut Recorder) {
+        for (k, moment) in recorder.moments.iter().enumerate() {
+            let of_joint = |j: usize| {
+                let computed = || {
+                    let pull = self.step.pairs.iter().zip(&moment.elements);
+                    moment.rigid[j] + pull.map(|(pair, at)| pair.force * at.gradient[j]).sum::<f64>()
+                };
+                moment.driven[j].unwrap_or_else(computed)
+            };
+            let moving = moment.v.iter().enumerate().filter(|(_, v)| **v != 0.0);
+            recorder.powers.actuators[k] = moving.map(|(j, v)| of_joint(j) * v).sum();
+            recorder.powers.joints[k] = moment.joint_loss;
+        }
+    }
+
+    /// Accelerations and all else that a row asks for, at the start (0) or at the end (1) of the step.
+    fn accelerate(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
+        let Recorder { moments, bank, scratch, is_whole, .. } = recorder;
+        let moment = &mut moments[end * MAX_NODES];
+        let force = |e: usize, moment: &Moment| match end {
+            0 => bank.now(e, &moment.elements[e].point(moment.t)).map_or(0.0, |observation| observation.regular),
+            _ => bank.end(e).force(),
+        };
+        self.accelerator.fill(cx, &self.step.forward, moment.t, scratch, moment, force)?;
+        is_whole[end] = true;
+        Ok(())
+    }
+}
+
+impl Stepper for Fixed {
+    fn longest_step(&self, _: Context, _: &Settings) -> f64 {
+        self.by.step
+    }
+
+    fn fixed_step(&self) -> Option<f64> {
+        Some(self.by.step)
+    }
+
+    fn set_up(&self, recorder: &mut Recorder) {
+        recorder.takes_elements_work = false;
+        recorder.bank.set_singular(Singular::Moments);
+        (0..recorder.bank.len()).for_each(|e| recorder.bank.set_form(e, Form::Strokes));
+    }
+
+    fn start(&mut self, cx: Context, recorder: &mut Recorder, _: &Agenda) -> Result<f64, RunError> {
+        let [moment, ..] = &mut recorder.moments;
+        moment.q.copy_from_slice(&self.step.origin.q);
+        moment.v.copy_from_slice(&self.step.origin.v);
+        cx.fill(0.0, 0.0, None, &mut recorder.scratch, moment)?;
+        recorder.begin(cx)?;
+        self.accelerate(cx, recorder, 0)?;
+        if (0..recorder.bank.len()).any(|e| recorder.bank.is_singular(e)) {
+            let [moment, ..] = &mut recorder.moments;
+            moment.a.fill(f64::NAN);
+            moment.driven.fill(None);
+        }
+        Ok(self.by.step)
+    }
+
+    fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError> {
+        self.step.attempt(cx, &mut recorder.bank, target.to, target.size)?;
+        self.newton_iterations += u64::from(ITERATIONS);
+        self.tell_ledger(cx, &mut recorder.bank, &target);
+        self.fill_moments(cx, recorder, &target)?;
+        (0..recorder.bank.len()).for_each(|e| _ = recorder.bank.account(e));
+        recorder.is_whole[1] = false;
+        if self.has_paths {
+            self.accelerate(cx, recorder, 1)?;
+        }
+        self.fill_powers(recorder);
+        Ok(Trial::Accepted { step: target, next: self.by.step })
+    }
+
+    fn complete(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
+        if recorder.is_whole[end] { Ok(()) } else { self.accelerate(cx, recorder, end) }
+    }
+
+    fn interpolate(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        theta: f64,
+        moment: &mut Moment,
+    ) -> Result<(), RunError> {
+        self.complete(cx, recorder, 0)?;
+        self.complete(cx, recorder, 1)?;
+        let [start, .., end] = &recorder.moments;
+        let step = &self.step;
+        // Of a singular start there are none.
+        let first = if start.a.iter().all(|a| a.is_finite()) { &start.a } else { &step.a };
+        let h = recorder.bank.size();
+        let within = Between::new(cx, &step.forward, [&step.origin, &step.end], [first, &end.a], h);
+        within.place(at, theta, moment);
+        cx.fill(at, at, None, &mut recorder.scratch, moment)
+    }
+
+    fn accept(&mut self, _: Context, _: &Recorder, _: &Target) -> Result<(), RunError> {
+        self.step.accept();
+        Ok(())
+    }
+
+    fn cross(&mut self, _: Context, recorder: &mut Recorder, _: f64) -> Result<(), RunError> {
+        recorder.is_whole[0] = false;
+        Ok(())
+    }
+
+    fn newton_iterations(&self) -> Option<u64> {
+        Some(self.newton_iterations)
+    }
+
+    fn save(&self) -> state::StepperState {
+        let origin = &self.step.origin;
+        let (t, q, v) = (origin.t, origin.q.clone(), origin.v.clone());
+        state::StepperState::Fixed(Box::new(StepperState { t, q, v, newton_iterations: self.newton_iterations }))
+    }
+
+    fn fits(&self, state: &state::StepperState) -> bool {
+        matches!(state, state::StepperState::Fixed(_))
+    }
+
+    fn load(&mut self, cx: Context, _: &mut Recorder, state: state::StepperState) -> Result<(), RunError> {
+        let state::StepperState::Fixed(state) = state else { return Ok(()) };
+        self.newton_iterations = state.newton_iterations;
+        self.step.go_on(cx, state.t, &state.q, &state.v);
+        Ok(())
+    }
+}

@@ -1,0 +1,131 @@
+//! The rows of a run, and what they tell of it: whether its steps saw what the motion does, and whether its energies balance.
+
+use super::context::Context;
+use super::driver::Driver;
+use super::{Report, Rows, RunError, Settings};
+use crate::observe::snapshot::Snapshot;
+use serde::{Deserialize, Serialize};
+
+/// How much more than the tolerance the balance may be off, in units of the energy turned over, and what it may in any case.
+const IMBALANCE: f64 = 1e3;
+const LEAST_IMBALANCE: f64 = 1e-4;
+
+/// What of the rows must outlast a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Written {
+    /// Number of rows.
+    pub(super) rows: usize,
+    /// Time of the last one, s.
+    pub(super) last: Option<f64>,
+    /// Largest residual of the balance, J, and its time, s.
+    residual: f64,
+    residual_at: f64,
+    /// What rounding may do to the balance, J.
+    rounding: f64,
+    /// The first row whose rate is not that of its step: its time, the element, the departure in units of D^alpha x.
+    departure: Option<(f64, usize, f64)>,
+}
+
+/// Writes the rows of a run.
+pub(super) struct Output<'a> {
+    pub(super) rows: &'a mut dyn Rows,
+    pub(super) written: Written,
+    snapshot: Snapshot,
+    row: Vec<f64>,
+}
+
+impl<'a> Output<'a> {
+    pub(super) fn new(cx: Context, rows: &'a mut dyn Rows, written: Written) -> Self {
+        Self { rows, written, snapshot: Snapshot::new(cx.system), row: Vec::new() }
+    }
+
+    /// The time of the next row.
+    pub(super) fn next(&self, settings: &Settings) -> Option<f64> {
+        let rows = &settings.rows;
+        (self.written.rows < rows.count()).then(|| rows.at(self.written.rows))
+    }
+
+    /// Writes the rows of what the driver just did.
+    pub(super) fn emit(&mut self, cx: Context, driver: &mut Driver) -> Result<(), RunError> {
+        while let Some(at) = self.next(&driver.recorder.settings).filter(|at| *at <= driver.reached()) {
+            let theta = driver.read(cx, at, self.written.rows, &mut self.snapshot)?;
+            if let Some(theta) = theta
+                && self.written.departure.is_none()
+            {
+                let departure = driver.recorder.departure(theta, &self.snapshot);
+                self.written.departure = departure.map(|(e, size)| (self.snapshot.t(), e, size));
+            }
+            self.write(cx, driver)?;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, cx: Context, driver: &Driver) -> Result<(), RunError> {
+        self.take_residual(driver);
+        self.row.clear();
+        let inputs = cx.system.elements.iter().map(|element| element.entry.inputs.len());
+        // No field says -0.
+        cx.system.shape().each(inputs, &mut |quantity| self.row.push(self.snapshot.value(quantity) + 0.0));
+        let t = self.snapshot.t();
+        if let Some(k) = self.row.iter().position(|value| value.is_infinite()) {
+            let what = cx.system.columns().swap_remove(k).name;
+            return Err(RunError::NotFinite { t, what, value: self.row[k] });
+        }
+        self.rows.row(&self.row)?;
+        self.written.rows += 1;
+        self.written.last = Some(t);
+        Ok(())
+    }
+
+    /// Takes in how far the balance is off, and what rounding makes of it.
+    fn take_residual(&mut self, driver: &Driver) {
+        let (Snapshot { moment, elements, residual, .. }, written) = (&self.snapshot, &mut self.written);
+        if residual.abs() > written.residual {
+            written.residual_at = moment.t;
+        }
+        written.residual = if residual.is_nan() { f64::NAN } else { written.residual.max(residual.abs()) };
+        // Strokes are differences of lengths, heights of bodies are counted from the world's origin.
+        let forces = elements.iter().zip(&moment.elements).map(|(row, at)| (row.observation.force() * at.length).abs());
+        let origin = driver.recorder.potential_origin().abs();
+        let sizes = moment.potential.abs() + origin + forces.filter(|x| x.is_finite()).sum::<f64>();
+        written.rounding = written.rounding.max(64.0 * f64::EPSILON * sizes);
+    }
+
+    /// Whether the run may be believed; to be asked at its end.
+    ///
+    /// # Errors
+    /// [`RunError::Missed`] where a row contradicts its step, [`RunError::Unbalanced`] where the energies do not balance.
+    pub(super) fn verdict(&self, cx: Context, driver: &Driver) -> Result<(), RunError> {
+        let Written { departure, residual, residual_at: t, rounding, .. } = self.written;
+        if let Some((t, e, departure)) = departure {
+            return Err(RunError::Missed { t, element: cx.system.elements[e].name.clone(), departure });
+        }
+        let allowed = LEAST_IMBALANCE.max(IMBALANCE * driver.recorder.settings.rtol);
+        let turned_over = driver.recorder.turned_over();
+        if residual > allowed * turned_over + rounding {
+            return Err(RunError::Unbalanced { t, residual, turned_over });
+        }
+        Ok(())
+    }
+
+    /// What the run did.
+    pub(super) fn report(&self, driver: &Driver) -> Report {
+        let Written { rows, last, residual, .. } = self.written;
+        let known = rows > 0 && residual.is_finite();
+        Report {
+            rows: rows as u64,
+            t_reached: last,
+            energy_residual: known.then_some(residual),
+            energy_turned_over: known.then(|| driver.recorder.turned_over()),
+            ..driver.report()
+        }
+    }
+}
+
+impl Report {
+    /// Whether the energies of the run balance as far as a figure can show; `true` where they are not known.
+    pub fn is_balanced(&self) -> bool {
+        let known = self.energy_residual.zip(self.energy_turned_over);
+        known.is_none_or(|(residual, turned_over)| residual <= LEAST_IMBALANCE * turned_over)
+    }
+}

@@ -1,0 +1,103 @@
+//! Where the robot and its elements are, without running anything.
+
+use super::evaluate::{Moment, Scratch};
+use super::{Motion, RunError, System};
+use crate::dynamics::Kinematics;
+use crate::model::{Anchor, Model, Parent};
+use crate::spatial::Vec3;
+
+/// An element at t = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementStart {
+    /// l(0), m.
+    pub length: f64,
+    /// x(0), m.
+    pub stroke: f64,
+    /// ∂l/∂q_b, nv values.
+    pub gradient: Vec<f64>,
+    /// Whether its energies are unknown: a Riemann–Liouville start from x(0) ≠ 0, at which a springpot has an infinite force.
+    pub singular: bool,
+}
+
+/// The motion at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Coordinates, nq values.
+    pub q: Vec<f64>,
+    /// Velocities, nv values.
+    pub v: Vec<f64>,
+    /// Accelerations, nv values.
+    pub a: Vec<f64>,
+}
+
+/// The robot in one configuration.
+#[derive(Debug, Clone)]
+pub struct Pose<'a> {
+    model: &'a Model,
+    kinematics: Kinematics,
+}
+
+impl System {
+    /// Every element at t = 0.
+    ///
+    /// # Errors
+    /// What keeps a run from starting.
+    pub fn element_starts(&self) -> Result<Vec<ElementStart>, RunError> {
+        let mut moment = Moment::new(self);
+        let State { q, v, a } = self.state(0.0)?;
+        (moment.q, moment.v, moment.a) = (q, v, a);
+        self.context().fill(0.0, 0.0, None, &mut Scratch::new(&self.model), &mut moment)?;
+        let starts = self.elements.iter().zip(moment.elements).map(|(element, state)| {
+            let begun = element.begin(state.length, &state.inputs);
+            let singular = begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+            let singular = !singular.is_accounted();
+            Ok(ElementStart { length: state.length, stroke: state.stroke, gradient: state.gradient, singular })
+        });
+        starts.collect()
+    }
+
+    /// The robot at time t.
+    ///
+    /// # Errors
+    /// [`RunError::Path`] where the motion cannot be followed.
+    pub fn pose(&self, t: f64) -> Result<Pose<'_>, RunError> {
+        let state = self.state(t)?;
+        Ok(Pose { model: &self.model, kinematics: Kinematics::at_position(&self.model, &state.q) })
+    }
+
+    /// Coordinates, velocities and accelerations at time t; of forward dynamics where it starts, without acceleration.
+    ///
+    /// # Errors
+    /// [`RunError::Path`] where the motion cannot be followed.
+    pub fn state(&self, t: f64) -> Result<State, RunError> {
+        let (nq, nv) = (self.model.nq(), self.model.nv());
+        let mut state = State { q: vec![0.0; nq], v: vec![0.0; nv], a: vec![0.0; nv] };
+        match &self.motion {
+            Motion::Given(trajectory) => {
+                trajectory.at(&self.model, t, &mut state.q, &mut state.v, &mut state.a)?;
+            }
+            Motion::Forward(forward) => {
+                state.q.copy_from_slice(&forward.q);
+                state.v.copy_from_slice(&forward.v);
+            }
+        }
+        Ok(state)
+    }
+}
+
+impl Pose<'_> {
+    /// World position of a body's joint frame, m; the origin for a body that does not exist.
+    pub fn origin(&self, body: Parent) -> [f64; 3] {
+        self.point(&Anchor { body, point: [0.0; 3] })
+    }
+
+    /// World position of a point, m; the origin for a body that does not exist.
+    pub fn point(&self, anchor: &Anchor) -> [f64; 3] {
+        self.model.resolve(anchor).map_or([0.0; 3], |site| self.kinematics.position(&site).0)
+    }
+
+    /// World components of a direction given in a body's axes.
+    pub fn direction(&self, body: Parent, direction: [f64; 3]) -> [f64; 3] {
+        self.model.frame(body).map_or(direction, |frame| (self.kinematics.frame(&frame).rotation * Vec3(direction)).0)
+    }
+}

@@ -1,0 +1,101 @@
+//! A step evaluated for its energies, and the far side of breaks and kinks.
+
+use super::dense::Dense;
+use super::drives::drive;
+use super::{Radau, start};
+use crate::fractional::step::{MAX_NODES, RADAU_NODES};
+use crate::integrate::RunError;
+use crate::integrate::context::Context;
+use crate::integrate::recorder::Recorder;
+use crate::integrate::stepper::Target;
+use crate::law::{Observation, Point};
+
+impl Radau {
+    /// Works out the energies of the step that was just solved.
+    pub(super) fn evaluate_step(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        target: &Target,
+    ) -> Result<(), RunError> {
+        self.step.fit();
+        // Actuators of joints that signals move follow from all forces, and so does friction that holds.
+        let is_whole = self.has_paths || self.step.stick.rubbing().next().is_some();
+        let (t, h) = (target.from, target.size);
+        recorder.is_whole[1] = is_whole;
+        for (k, c) in RADAU_NODES.into_iter().enumerate() {
+            let is_end = k + 1 == MAX_NODES;
+            let at = if is_end { target.to } else { t + c * h };
+            let (moment, bank) = (&mut recorder.moments[k + 1], &recorder.bank);
+            if is_whole || is_end {
+                Dense { cx, step: &self.step, bank, h, scratch: &mut self.scratch }.place(at, c, moment);
+            } else {
+                drive(cx, &self.step.forward, at, moment);
+            }
+            let stage = &self.step.stages[k];
+            moment.q.copy_from_slice(&stage.q);
+            moment.v.copy_from_slice(&stage.v);
+            if is_whole {
+                let inputs_at = if is_end { target.end_inputs() } else { at };
+                cx.fill(at, inputs_at, None, &mut recorder.scratch, moment)?;
+                continue;
+            }
+            let elements = self.step.elements.iter().enumerate().map(|(e, element)| {
+                (element.pairs[k + 1].expect("a stage that was placed"), bank.point(e, k + 1).inputs)
+            });
+            cx.fill_energies(at, &stage.kinematics, elements, moment);
+        }
+        for e in 0..cx.system.elements.len() {
+            recorder.bank.account(e);
+        }
+        self.take_powers(recorder);
+        Ok(())
+    }
+
+    /// Power of the actuators and losses of the joints at the start of the step and at its nodes.
+    fn take_powers(&self, recorder: &mut Recorder) {
+        let bank = &recorder.bank;
+        for (k, moment) in recorder.moments.iter().enumerate() {
+            let mut power = 0.0;
+            for (j, v) in moment.v.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+                let computed = || {
+                    let pull = moment.elements.iter().zip(&self.step.origin.forces).enumerate();
+                    let pull = pull.map(|(e, (element, start))| {
+                        let force = if k == 0 { *start } else { bank.response(e).force[k - 1] };
+                        force * element.gradient[j]
+                    });
+                    moment.rigid[j] + pull.sum::<f64>()
+                };
+                power += moment.driven[j].unwrap_or_else(computed) * v;
+            }
+            recorder.powers.actuators[k] = power;
+            recorder.powers.joints[k] = moment.joint_loss;
+        }
+    }
+
+    /// Goes to the far side of a break or kink of the signals, where accelerations and prescribed velocities may jump.
+    pub(super) fn restart_at(&mut self, cx: Context, recorder: &mut Recorder, to: f64) -> Result<(), RunError> {
+        let (step, bank) = (&mut self.step, &recorder.bank);
+        let forward = step.forward.clone();
+        step.origin.t = to;
+        step.restart();
+        self.last = None;
+        start::take_jumps(cx, &forward, &mut step.origin)?;
+        let unknown = Observation { derivative: 0.0, regular: 0.0, singular: 0.0, stored: None };
+        let now = |e: usize, point: &Point| bank.now(e, point).unwrap_or(unknown);
+        start::decide(cx, &forward, &mut step.stick, &mut step.origin, |e, point, _| {
+            let Observation { regular, singular, .. } = now(e, point);
+            Ok(regular + if singular.is_nan() { 0.0 } else { singular })
+        })?;
+        step.free = step.stick.free();
+        start::accelerate(cx, &forward, &step.stick, &mut step.origin, |e, point, _| Ok(now(e, point).regular))?;
+        let mut right = recorder.moments[0].clone();
+        right.a.copy_from_slice(&step.origin.a);
+        right.q.copy_from_slice(&step.origin.q);
+        right.v.copy_from_slice(&step.origin.v);
+        drive(cx, &forward, to, &mut right);
+        cx.fill(to, to, None, &mut recorder.scratch, &mut right)?;
+        recorder.jump(right);
+        self.expect(cx, recorder)
+    }
+}

@@ -1,0 +1,185 @@
+//! The Newton iteration for the accelerations of the stages: three unknowns for each free velocity.
+
+use super::step::RadauStep;
+use super::tableau::{A, A_SQUARED};
+use crate::dynamics::{PairForce, rnea_at_into};
+use crate::elements::ElementBank;
+use crate::fractional::step::MAX_NODES;
+use crate::integrate::RunError;
+use crate::integrate::context::Context;
+use crate::integrate::resistance::add_smooth_resistance;
+
+/// Newton iterations after which a step is given up.
+const MOST_ITERATIONS: u32 = 10;
+
+/// How a step went.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Outcome {
+    /// The stages are found.
+    Converged { iterations: u32 },
+    /// They are not; the velocity that was farthest off.
+    Diverged { iterations: u32, worst: usize },
+}
+
+impl RadauStep {
+    /// Solves the step of size `h`; nothing but scratch changes. Inputs at the end are taken at `t_end`.
+    pub(super) fn attempt(
+        &mut self,
+        cx: Context,
+        bank: &mut ElementBank,
+        h: f64,
+        t_end: f64,
+    ) -> Result<Outcome, RunError> {
+        bank.start(self.origin.t, h);
+        self.take_inputs(cx, bank, h, t_end)?;
+        self.linearise(cx, bank)?;
+        self.choose_forms(cx, bank, h);
+        bank.prepare();
+        self.predict(h);
+        self.take_drives(cx, h, t_end)?;
+        self.allow(cx, bank, h);
+        let count = self.free.len();
+        let (mut before, mut iterations) = (f64::INFINITY, 0);
+        let mut worst = self.free.first().copied().unwrap_or(0);
+        if !self.place_stages(cx, bank, h) {
+            return Ok(Outcome::Diverged { iterations, worst });
+        }
+        respond(bank);
+        if count == 0 {
+            self.collect_regular(bank);
+            return Ok(Outcome::Converged { iterations });
+        }
+        if !self.factor(bank, h) {
+            return Ok(Outcome::Diverged { iterations, worst });
+        }
+        loop {
+            iterations += 1;
+            self.fill_residual(cx, bank);
+            if let Some(k) = self.residual.iter().position(|r| !r.is_finite()) {
+                return Ok(Outcome::Diverged { iterations, worst: self.free[k % count] });
+            }
+            self.newton.solve(&mut self.residual);
+            for (stage, change) in self.stages.iter_mut().zip(self.residual.chunks_exact(count)) {
+                for (&k, delta) in self.free.iter().zip(change) {
+                    stage.a[k] -= delta;
+                }
+            }
+            if iterations == 1 && self.allowed.iter().any(|[speed, _]| *speed <= f64::MIN_POSITIVE) {
+                self.allow(cx, bank, h);
+            }
+            let size;
+            (size, worst) = self.velocity_change(h);
+            let placed = size.is_finite() && self.place_stages(cx, bank, h);
+            if placed {
+                respond(bank);
+            }
+            if iterations > 1 {
+                self.contraction = size / before;
+            }
+            if !placed || (iterations > 2 && self.contraction >= 1.0) {
+                self.contraction = 0.0;
+                return Ok(Outcome::Diverged { iterations, worst });
+            }
+            let theta = self.contraction.clamp(1e-3, 0.9);
+            if size * theta / (1.0 - theta) <= self.enough(h) {
+                break;
+            }
+            if iterations == MOST_ITERATIONS {
+                return Ok(Outcome::Diverged { iterations, worst });
+            }
+            before = size;
+        }
+        self.collect_regular(bank);
+        Ok(Outcome::Converged { iterations })
+    }
+
+    /// RNEA(q_i, v_i, a_i) + resistance − drive, node by node, of the free velocities.
+    fn fill_residual(&mut self, cx: Context, bank: &ElementBank) {
+        self.residual.clear();
+        for i in 0..MAX_NODES {
+            self.pairs.clear();
+            for (e, element) in cx.system.elements.iter().enumerate() {
+                let (from, to, force) = (element.from, element.to, bank.response(e).force[i]);
+                self.pairs.push(PairForce { from, to, force, d_length: 0.0, d_rate: 0.0 });
+            }
+            let stage = &self.stages[i];
+            let (model, workspace) = (&self.model, &mut self.workspace);
+            rnea_at_into(model, &stage.kinematics, &stage.q, &stage.a, &self.pairs, workspace, &mut self.tau);
+            add_smooth_resistance(&self.model, &stage.v, &mut self.tau);
+            self.stick.add_sliding(&mut self.tau);
+            let forces = self.free.iter().zip(&self.drives[i]);
+            self.residual.extend(forces.map(|(&k, drive)| self.tau[k] - drive));
+        }
+    }
+
+    /// I⊗M + hA⊗D + h²A²⊗K + Σ (h² G A² + h P A)⊗ggᵀ over the free velocities.
+    fn factor(&mut self, bank: &ElementBank, h: f64) -> bool {
+        let (n, count, free) = (self.model.nv(), self.free.len(), &self.free);
+        let (slopes, elements) = (&self.slopes, &self.elements);
+        let size = MAX_NODES * count;
+        let product = |x: &[[f64; 3]; 3], y: &[[f64; 3]; 3], i: usize, j: usize| -> f64 {
+            (0..MAX_NODES).map(|m| x[i][m] * y[m][j]).sum()
+        };
+        self.newton.factor(size, |matrix| {
+            for i in 0..MAX_NODES {
+                for j in 0..MAX_NODES {
+                    let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
+                    for (r, &row) in free.iter().enumerate() {
+                        let line = &mut matrix[(i * count + r) * size + j * count..][..count];
+                        for (entry, &column) in line.iter_mut().zip(free) {
+                            let at = row * n + column;
+                            *entry = damping * slopes.d_v[at] + stiffness * slopes.d_q[at];
+                            if i == j {
+                                *entry += slopes.d_a[at];
+                            }
+                        }
+                    }
+                    for (e, element) in elements.iter().enumerate() {
+                        let response = bank.response(e);
+                        let factor = h * h * product(&response.d_stroke, &A_SQUARED, i, j)
+                            + h * product(&response.d_rate, &A, i, j);
+                        let g = &element.gradient;
+                        for (r, &row) in free.iter().enumerate() {
+                            let line = &mut matrix[(i * count + r) * size + j * count..][..count];
+                            for (entry, &column) in line.iter_mut().zip(free) {
+                                *entry += factor * g[row] * g[column];
+                            }
+                        }
+                    }
+                }
+            }
+        })
+    }
+
+    /// rms over stages and velocities of |h Σ_j A_ij Δa_j| in units of the velocities' tolerance, and the velocity with the largest
+    /// share; Δa is what `residual` holds.
+    fn velocity_change(&self, h: f64) -> (f64, usize) {
+        let count = self.free.len();
+        let (mut sum, mut worst, mut largest) = (0.0, self.free[0], 0.0);
+        for (r, &k) in self.free.iter().enumerate() {
+            let [tolerance, _] = self.allowed[r];
+            for row in &A {
+                let moved: f64 = (0..MAX_NODES).map(|j| row[j] * self.residual[j * count + r]).sum();
+                let square = (h * moved / tolerance).powi(2);
+                sum += square;
+                if square > largest {
+                    (worst, largest) = (k, square);
+                }
+            }
+        }
+        ((sum / (MAX_NODES * count) as f64).sqrt(), worst)
+    }
+
+    /// When the iteration may stop: a share of the tolerance, not below rounding.
+    fn enough(&self, h: f64) -> f64 {
+        let end = &self.stages[MAX_NODES - 1];
+        let moved = |k: usize| end.v[k].abs().max(self.origin.v[k].abs()) + h * end.a[k].abs();
+        let largest = self.free.iter().zip(&self.allowed).fold(0.0, |m: f64, (&k, [v, _])| m.max(moved(k) / v));
+        self.rtol.sqrt().min(0.03) + 2e-14 * largest
+    }
+}
+
+/// The laws' answers to the stages.
+fn respond(bank: &mut ElementBank) {
+    (0..bank.len()).for_each(|e| bank.evaluate_element(e));
+}

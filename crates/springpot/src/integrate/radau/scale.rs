@@ -1,0 +1,151 @@
+//! How large a motion is, so that a relative tolerance means the same from a nanometre to a kilometre.
+
+use super::step::RadauStep;
+use crate::elements::ElementBank;
+use crate::integrate::context::Context;
+use crate::model::Model;
+use serde::{Deserialize, Serialize};
+
+/// Share of the speed that all the energy turned over would give a joint alone: slower joints are not looked at more closely.
+const ENERGY_FLOOR: f64 = 1e-6;
+
+/// Relative tolerance of the motion's own size, and what it need not fall below.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tolerance {
+    pub(super) rtol: f64,
+    /// 0 where none was asked for.
+    pub(super) atol: f64,
+}
+
+impl Tolerance {
+    pub(super) fn of(&self, size: f64) -> f64 {
+        self.atol.max(self.rtol * size.abs())
+    }
+}
+
+/// The largest travel |q − q(0)| and speed |v| of every velocity, so far and as the forces at a start or restart let expect.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct Sizes {
+    from: Vec<f64>,
+    travel: Vec<f64>,
+    speed: Vec<f64>,
+    expected_travel: Vec<f64>,
+    expected_speed: Vec<f64>,
+}
+
+impl Sizes {
+    pub(super) fn new(q: &[f64], nv: usize) -> Self {
+        let zero = vec![0.0; nv];
+        Self {
+            from: q.to_vec(),
+            travel: zero.clone(),
+            speed: zero.clone(),
+            expected_travel: zero.clone(),
+            expected_speed: zero,
+        }
+    }
+
+    /// Takes a state of the run in.
+    pub(super) fn take(&mut self, model: &Model, q: &[f64], v: &[f64]) {
+        let travel = model.difference(&self.from, q);
+        for (largest, value) in self.travel.iter_mut().zip(&travel).chain(self.speed.iter_mut().zip(v)) {
+            *largest = largest.max(value.abs());
+        }
+    }
+
+    /// Where accelerations `a` begin in a system that answers them at the rate `omega` (rad/s): a/ω and a/ω².
+    pub(super) fn expect(&mut self, a: &[f64], omega: f64) {
+        let expected = self.expected_travel.iter_mut().zip(&mut self.expected_speed);
+        for ((travel, speed), a) in expected.zip(a).filter(|(_, a)| a.is_finite()) {
+            *speed = speed.max(a.abs() / omega);
+            *travel = travel.max(a.abs() / (omega * omega));
+        }
+    }
+
+    pub(super) fn speed(&self, k: usize) -> f64 {
+        self.speed[k].max(self.expected_speed[k])
+    }
+
+    pub(super) fn travel(&self, k: usize) -> f64 {
+        self.travel[k].max(self.expected_travel[k])
+    }
+}
+
+impl RadauStep {
+    /// What the errors of velocities and coordinates may be in a step of size `h`, in the order of the free velocities.
+    pub(super) fn allow(&mut self, cx: Context, bank: &ElementBank, h: f64) {
+        // What a stroke's rounding does to each force; from nothing that a run that goes on does not know.
+        self.rounded.clear();
+        for (e, element) in cx.system.elements.iter().enumerate() {
+            let stiffness = element.law.stiffness(&bank.point(e, 0), 1.0 / h);
+            self.rounded.push(stiffness * bank.resolution(e));
+        }
+        let (n, sizes, tolerance) = (self.model.nv(), &self.sizes, self.tolerance);
+        self.allowed.clear();
+        for &k in &self.free {
+            let mass = self.slopes.d_a[k * n + k];
+            let of_energy = if mass > 0.0 { ENERGY_FLOOR * (2.0 * self.energy / mass).sqrt() } else { 0.0 };
+            let speed = sizes.speed(k).max(self.origin.v[k].abs()).max(of_energy);
+            // A joint that no force moved yet is measured by what this very step does.
+            let own = || self.stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
+            let speed = if speed > 0.0 { speed } else { own() };
+            let travel = sizes.travel(k).max(h * speed);
+            // Strokes are differences of lengths: what they lose to rounding pushes the joints.
+            let push: f64 = self.elements.iter().zip(&self.rounded).map(|(e, s)| e.gradient[k].abs() * s).sum();
+            let noise = if mass > 0.0 { h * push / mass } else { 0.0 };
+            let place = self.coordinates[k].map_or(1.0, |c| self.origin.q[c]);
+            let rounding = 4.0 * f64::EPSILON * place.abs();
+            self.allowed.push([
+                (tolerance.of(speed) + noise).max(f64::MIN_POSITIVE),
+                (tolerance.of(travel) + rounding + h * noise).max(f64::MIN_POSITIVE),
+            ]);
+        }
+    }
+
+    /// The rate ω at which the system answers its accelerations at the origin, rad/s: the Rayleigh quotient of stiffness and mass along
+    /// them, with ω² aᵀMa = |aᵀKa| + Σ (k + c ω^α)(g·a)². Not below `slowest` and |a|/|v|, by the mass matrix.
+    pub(super) fn answering_rate(&self, cx: Context, bank: &ElementBank, slowest: f64) -> f64 {
+        let (n, a, slopes) = (self.model.nv(), &self.origin.a, &self.slopes);
+        let along = |matrix: &[f64], x: &[f64]| -> f64 {
+            let rows =
+                self.free.iter().map(|&r| x[r] * self.free.iter().map(|&c| matrix[r * n + c] * x[c]).sum::<f64>());
+            rows.sum()
+        };
+        let (mass, rigid) = (along(&slopes.d_a, a), along(&slopes.d_q, a).abs());
+        let moving = along(&slopes.d_a, &self.origin.v);
+        // What moves already is answered as fast as its velocities change.
+        let slowest = if moving > 0.0 { slowest.max((mass / moving).sqrt()) } else { slowest };
+        if !(mass > 0.0 && mass.is_finite() && rigid.is_finite()) {
+            return slowest;
+        }
+        let squares: Vec<f64> = self
+            .elements
+            .iter()
+            .map(|stage| self.free.iter().map(|&k| stage.gradient[k] * a[k]).sum::<f64>().powi(2))
+            .collect();
+        let mut omega = slowest.max((rigid / mass).sqrt());
+        for _ in 0..30 {
+            let each = cx.system.elements.iter().zip(&squares).enumerate();
+            let stiffness: f64 =
+                each.map(|(e, (element, square))| element.law.stiffness(&bank.point(e, 0), omega) * square).sum();
+            let next = slowest.max(((rigid + stiffness) / mass).sqrt());
+            if (next - omega).abs() <= 0.1 * omega {
+                return next;
+            }
+            omega = next;
+        }
+        omega
+    }
+
+    /// Expects what the accelerations at the origin begin.
+    pub(super) fn expect(&mut self, cx: Context, bank: &ElementBank, slowest: f64) {
+        let omega = self.answering_rate(cx, bank, slowest);
+        self.sizes.expect(&self.origin.a, omega);
+    }
+}
+
+/// Of a singular start with the stroke `jump`, how far it moves each velocity: |jump|·|g_k|/g·g.
+pub(super) fn jump_travel(jump: f64, gradient: &[f64], k: usize) -> f64 {
+    let square: f64 = gradient.iter().map(|g| g * g).sum();
+    if square > 0.0 { jump.abs() * gradient[k].abs() / square } else { 0.0 }
+}

@@ -1,0 +1,103 @@
+//! Steps that end where friction starts or ceases to hold a joint.
+
+use super::Radau;
+use super::stick::CHATTER;
+use super::watch::{Change, Look};
+use crate::integrate::RunError;
+use crate::integrate::context::Context;
+use crate::integrate::recorder::Recorder;
+use crate::integrate::stepper::{Behind, Target};
+
+/// Tries to end a step on a change.
+const MOST_TRIES: usize = 40;
+
+/// What becomes of a step that was solved within its tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Settled {
+    /// It stands like this, and has been solved so.
+    At(Target),
+    /// A step of this size is to be tried instead.
+    Shorter(f64),
+    /// Something changes at its start.
+    AtStart,
+}
+
+impl Radau {
+    /// Ends the step that was just solved at the first change between holding and sliding in it, if there is one.
+    ///
+    /// The step is solved anew to where its own interpolation sees the change, until the change is at its end to a thousandth
+    /// of the tolerance.
+    pub(super) fn settle(&mut self, cx: Context, recorder: &mut Recorder, solved: Target) -> Result<Settled, RunError> {
+        if self.step.stick.is_idle() {
+            return Ok(Settled::At(solved));
+        }
+        let mut step = solved;
+        let t = step.from;
+        let (mut low, mut high) = (t, f64::INFINITY);
+        let mut wanted = None;
+        for _ in 0..MOST_TRIES {
+            let Target { to: end, size, .. } = step;
+            let next = match (self.look(cx, recorder, &step)?, wanted) {
+                (Look::Unclear, _) => return Ok(Settled::Shorter(0.5 * size)),
+                (Look::AtEnd, _) | (Look::Nothing, None | Some(Change::Reversal)) => {
+                    return Ok(Settled::At(step));
+                }
+                (Look::Nothing, Some(change)) => {
+                    low = end;
+                    let [at_end, before] = [1.0, 0.999].map(|theta| self.value(cx, recorder, change, size, theta));
+                    end + 0.001 * size * at_end / (before - at_end)
+                }
+                (Look::Within(0.0, change), _) => {
+                    self.note(change);
+                    return Ok(Settled::AtStart);
+                }
+                (Look::Within(theta, change), _) => {
+                    (high, wanted) = (end, Some(change));
+                    // Where the time is too short to tell, a few bits on.
+                    (t + theta * size).max(t + 4.0 * f64::EPSILON * t)
+                }
+            };
+            let Some(change) = wanted else { return Ok(Settled::At(step)) };
+            if high - low <= 4.0 * f64::EPSILON * high {
+                self.note(change);
+                return Ok(Settled::At(step));
+            }
+            let to = if low < next && next < high { next } else { 0.5 * (low + high) };
+            step = Target { to, size: to - t, behind: Behind::Step, ..step };
+            if let Err(smaller) = self.attempt(cx, recorder, &step)? {
+                return Ok(Settled::Shorter(smaller));
+            }
+        }
+        Ok(Settled::Shorter(0.5 * step.size))
+    }
+
+    /// Notes a change that is here, whatever its value says.
+    fn note(&mut self, change: Change) {
+        let stick = &mut self.step.stick;
+        match change {
+            Change::Stop { k, .. } => {
+                stick.stopping.push(k);
+                stick.caught.push(k);
+            }
+            Change::BreakAway { .. } => stick.breaks_away = true,
+            Change::Reversal => {}
+        }
+    }
+
+    /// Brings to rest what stops at the origin.
+    ///
+    /// # Errors
+    /// [`RunError::Chatter`].
+    pub(super) fn stop_sliding(&mut self, end: f64) -> Result<(), RunError> {
+        let span = CHATTER * end;
+        let step = &mut self.step;
+        let t = step.origin.t;
+        for &k in &step.stick.stopping {
+            step.origin.v[k] = 0.0;
+        }
+        let Some(count) = step.stick.count_change(t, span) else { return Ok(()) };
+        let last = step.stick.stopping.first().copied();
+        let last = last.or_else(|| step.stick.rubbing().next().map(|(k, _)| k)).unwrap_or(0);
+        Err(RunError::Chatter { t, joint: step.model.v_labels()[last].name.clone(), count, span })
+    }
+}

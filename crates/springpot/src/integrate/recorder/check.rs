@@ -1,0 +1,45 @@
+//! Whether the steps of a run saw what the motion does.
+
+use super::Recorder;
+use crate::fractional::step::{MAX_NODES, lagrange_row};
+use crate::observe::snapshot::Snapshot;
+
+/// How much more than the tolerance a row may depart from its step, and what it may in any case: steps err less than the
+/// tolerance by far where they see the motion.
+const DEPARTURE: f64 = 1e3;
+const LEAST_DEPARTURE: f64 = 1e-5;
+
+impl Recorder {
+    /// Compares the rates at θ of the step with what its memories were told, the cubic through its nodes: the first element that departs too
+    /// far, and how far in units of D^alpha x.
+    ///
+    /// A departure δx' that lasts a step adds up to δx'·h^{1−alpha} to D^alpha x.
+    pub(in crate::integrate) fn departure(&self, theta: f64, snapshot: &Snapshot) -> Option<(usize, f64)> {
+        let (_, h) = self.span();
+        if theta >= 1.0 || h <= 0.0 {
+            return None;
+        }
+        let mut cubic = [0.0; MAX_NODES + 1];
+        for (k, weight) in cubic.iter_mut().enumerate() {
+            *weight = lagrange_row(k).iter().rev().fold(0.0, |sum, c| sum * theta + c);
+        }
+        let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
+        let taking_part = (0..self.bank.len()).filter(|&e| self.bank.takes_part(e));
+        for e in taking_part {
+            let (_, rates) = self.bank.told(e);
+            let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
+            let is = snapshot.moment.elements[e].rate;
+            let derivative = snapshot.elements[e].observation.derivative.abs();
+            for (m, error) in self.bank.errors(e).iter().enumerate().filter(|(_, error)| error.order > 0.0) {
+                let departure = (is - told).abs() * h.powf(1.0 - error.order);
+                let scale = self.bank.scale(e, m).max(if derivative.is_finite() { derivative } else { 0.0 });
+                let resolution = 8.0 * self.bank.resolution(e) * h.powf(-error.order);
+                let floor = self.settings.atol.unwrap_or(0.0) + resolution;
+                if departure > allowed * scale + floor {
+                    return Some((e, departure / scale));
+                }
+            }
+        }
+        None
+    }
+}

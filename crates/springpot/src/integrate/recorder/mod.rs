@@ -1,0 +1,245 @@
+//! What a run keeps of its steps: the kinematics of the step under way, its elements, and the energy accounts.
+//!
+//! A stepper fills the moments of a step (its start and its nodes) and tells the bank its strokes; the driver takes what was worked out into
+//! the past.
+
+mod balance;
+mod check;
+
+use super::context::Context;
+use super::evaluate::{Moment, Scratch};
+use super::ledger::{NodePower, Turnover};
+use super::on_grid::{GridDerivatives, on_grid_observation};
+use super::{RunError, Settings};
+use crate::elements::{ElementBank, Kept, MemoryRange};
+use crate::fractional::step::MAX_NODES;
+use crate::fractional::{Form, Nodes};
+use crate::law::{Observation, Point, Start};
+use crate::observe::snapshot::{ElementRow, Snapshot};
+use serde::{Deserialize, Serialize};
+
+/// Powers of the step that belong to no element.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct StepPowers {
+    pub(super) actuators: NodePower,
+    pub(super) joints: NodePower,
+}
+
+/// What a run keeps of its steps.
+#[derive(Debug)]
+pub(super) struct Recorder {
+    pub(super) settings: Settings,
+    pub(super) scratch: Scratch,
+    /// At the start of the step and at its nodes.
+    pub(super) moments: [Moment; MAX_NODES + 1],
+    /// Whether those at the start and at the end have all that a row asks for.
+    pub(super) is_whole: [bool; 2],
+    pub(super) bank: ElementBank,
+    pub(super) powers: StepPowers,
+    /// Whether actuators move the elements, as along kinematics given in advance.
+    pub(super) takes_elements_work: bool,
+    /// Of elements with named schemes.
+    pub(super) grid: GridDerivatives,
+    ledger: Ledger,
+}
+
+/// The energies since t = 0.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Ledger {
+    actuators: f64,
+    joints: f64,
+    potential_origin: f64,
+    /// Balance at t = 0.
+    origin: f64,
+    turnover: Turnover,
+}
+
+/// What of a recorder must outlast a step. Whatever else it holds follows from the system and its settings, or is filled anew by every
+/// step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct RecorderState {
+    elements: Vec<Option<Kept>>,
+    /// Where the next step starts.
+    pub(super) moment: Moment,
+    is_whole: bool,
+    ledger: Ledger,
+}
+
+impl Recorder {
+    pub(super) fn new(cx: Context, settings: &Settings) -> Self {
+        let moment = Moment::new(cx.system);
+        let laws = cx.system.elements.iter().map(|element| element.law.clone()).collect();
+        let mut bank = ElementBank::new(laws, Nodes::Radau, Form::Rates);
+        for (e, element) in cx.system.elements.iter().enumerate() {
+            bank.reserve_inputs(e, element.inputs.len());
+        }
+        Self {
+            settings: settings.clone(),
+            scratch: Scratch::new(&cx.system.model),
+            moments: std::array::from_fn(|_| moment.clone()),
+            is_whole: [true; 2],
+            bank,
+            powers: StepPowers::default(),
+            takes_elements_work: true,
+            grid: vec![None; cx.system.elements.len()],
+            ledger: Ledger::default(),
+        }
+    }
+
+    /// Begins the laws at the first moment, `moments[0]`, their memories without kernels.
+    pub(super) fn begin(&mut self, cx: Context) -> Result<(), RunError> {
+        for (e, element) in cx.system.elements.iter().enumerate().filter(|(e, _)| self.grid[*e].is_none()) {
+            let at = &self.moments[0].elements[e];
+            let start = Start { stroke: at.stroke, jump: element.jump(at.length), inputs: &at.inputs };
+            let begun = self.bank.begin_element(e, &start);
+            begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+        }
+        Ok(())
+    }
+
+    /// Opens memories and accounts of what has begun; `first` is the size of the first step.
+    pub(super) fn open(&mut self, cx: Context, first: f64) -> Result<(), RunError> {
+        let Settings { memory_rtol: tolerance, end: horizon, .. } = self.settings;
+        for (e, element) in cx.system.elements.iter().enumerate() {
+            let opened = self.bank.open_element(e, MemoryRange { tolerance, shortest: first, horizon });
+            opened.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+        }
+        self.ledger.potential_origin = self.moments[0].potential;
+        let mut start = Snapshot::new(cx.system);
+        self.read_between(cx, 0, &mut start)?;
+        let balance = self.balance(&start, 0.0, 0.0);
+        self.ledger.origin = balance.total();
+        // Taken here and at the ends of steps, never from rows: they must not change the steps.
+        self.ledger.turnover.take(&balance);
+        Ok(())
+    }
+
+    /// Tells the bank element `e` of the step, as the moments have it.
+    pub(super) fn tell(&mut self, cx: Context, e: usize) {
+        for (k, moment) in self.moments.iter().enumerate() {
+            let at = &moment.elements[e];
+            self.bank.set(e, k, at.stroke, at.rate, &at.inputs);
+        }
+        self.bank.set_resolution(e, cx.system.elements[e].resolution(self.moments[0].elements[e].length));
+    }
+
+    /// Makes sure that the moment at the start (0) or at the end (1) has all that a row asks for.
+    pub(super) fn complete(&mut self, cx: Context, end: usize) -> Result<(), RunError> {
+        if !self.is_whole[end] {
+            let moment = &mut self.moments[end * MAX_NODES];
+            cx.fill(moment.t, moment.t, None, &mut self.scratch, moment)?;
+            self.is_whole[end] = true;
+        }
+        Ok(())
+    }
+
+    /// Takes the step that was worked out into the past.
+    pub(super) fn commit(&mut self) {
+        let (actuators, joints) = self.work_until(1.0);
+        let end = &self.moments[MAX_NODES];
+        let elements = 0..self.bank.len();
+        let energies = elements.map(|e| (self.bank.end(e).stored, self.bank.energies_until(e, 1.0)));
+        let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);
+        for (e, (own, until)) in energies.enumerate() {
+            stored += if self.bank.takes_part(e) { own.unwrap_or(f64::NAN) } else { f64::NAN };
+            (dissipated, supplied) = (dissipated + until.0, supplied + until.1);
+        }
+        let balance = self.balance_of(end, [stored, dissipated, supplied], actuators, joints);
+        self.ledger.turnover.take(&balance);
+        self.ledger.actuators += actuators;
+        self.ledger.joints += joints;
+        self.bank.commit_account();
+        self.moments.swap(0, MAX_NODES);
+        self.is_whole.swap(0, 1);
+    }
+
+    /// Goes on from the far side of a kink, `right`, and records what jumps there.
+    pub(super) fn jump(&mut self, right: Moment) {
+        let left = std::mem::replace(&mut self.moments[0], right);
+        let right = &self.moments[0];
+        self.is_whole[0] = true;
+        // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
+        self.ledger.actuators += right.kinetic - left.kinetic;
+        for e in 0..self.bank.len() {
+            let was = left.elements[e].point(left.t);
+            let is = Point { inputs: &right.elements[e].inputs, ..was };
+            let stored = |at: &Point| self.bank.now(e, at).and_then(|observation| observation.stored);
+            if let Some((was, is)) = stored(&was).zip(stored(&is)) {
+                self.bank.add_supplied(e, is - was);
+            }
+        }
+    }
+
+    /// What the elements are between two steps, at the first moment; `row` is that of named schemes.
+    pub(super) fn read_between(&self, cx: Context, row: usize, snapshot: &mut Snapshot) -> Result<(), RunError> {
+        let moment = &self.moments[0];
+        snapshot.moment.clone_from(moment);
+        snapshot.elements.clear();
+        for e in 0..self.bank.len() {
+            let point = moment.elements[e].point(moment.t);
+            let (dissipated, input) = self.bank.energies(e);
+            let observation = match self.bank.now(e, &point) {
+                Some(observation) => observation,
+                None => self.on_grid(cx, e, &point, row)?,
+            };
+            snapshot.elements.push(ElementRow { observation, dissipated, input });
+        }
+        self.close_balance(snapshot, 0.0, 0.0);
+        Ok(())
+    }
+
+    /// What the elements are at θ of the step, where the kinematics are those of the snapshot; `row` is that of named schemes.
+    pub(super) fn read_step(
+        &self,
+        cx: Context,
+        theta: f64,
+        row: usize,
+        snapshot: &mut Snapshot,
+    ) -> Result<(), RunError> {
+        let Snapshot { moment, elements, .. } = snapshot;
+        elements.clear();
+        for e in 0..self.bank.len() {
+            let point = moment.elements[e].point(moment.t);
+            let (dissipated, input) = self.bank.energies_until(e, theta);
+            let observation = match self.bank.at(e, theta, &point) {
+                Some(observation) => observation,
+                None => self.on_grid(cx, e, &point, row)?,
+            };
+            elements.push(ElementRow { observation, dissipated, input });
+        }
+        let (actuators, joints) = self.work_until(theta);
+        self.close_balance(snapshot, actuators, joints);
+        Ok(())
+    }
+
+    /// An element with a named scheme.
+    fn on_grid(&self, cx: Context, e: usize, point: &Point, row: usize) -> Result<Observation, RunError> {
+        on_grid_observation(&cx.system.elements[e], point, self.grid[e].as_deref().unwrap_or_default(), row)
+    }
+
+    /// Balance and residual of a snapshot, `actuators` and `joints` being the work since the start of the step.
+    fn close_balance(&self, snapshot: &mut Snapshot, actuators: f64, joints: f64) {
+        let balance = self.balance(snapshot, actuators, joints);
+        snapshot.actuators = balance.actuators;
+        snapshot.joints = self.ledger.joints + joints;
+        snapshot.residual = balance.total() - self.ledger.origin;
+    }
+
+    /// What outlasts the steps.
+    pub(super) fn state(&self) -> RecorderState {
+        let (elements, moment) = (self.bank.kept(), self.moments[0].clone());
+        RecorderState { elements, moment, is_whole: self.is_whole[0], ledger: self.ledger }
+    }
+
+    /// Goes on from a state of the same system; `false`, and nothing changed, where it is of another one.
+    pub(super) fn go_on(&mut self, state: RecorderState) -> bool {
+        let RecorderState { elements, moment, is_whole, ledger } = state;
+        if !moment.has_shape_of(&self.moments[0]) || !self.bank.go_on(elements) {
+            return false;
+        }
+        self.moments[0] = moment;
+        self.is_whole[0] = is_whole;
+        self.ledger = ledger;
+        true
+    }
+}

@@ -1,0 +1,136 @@
+//! The signals that drive a run, and what they ask of its steps.
+
+use super::{Motion, RunError, Settings, System};
+use crate::actuation::Drive;
+use crate::motion::Trajectory;
+use crate::signal::{Agenda, AgendaError, Signal, Watched};
+use std::sync::atomic::AtomicBool;
+
+/// Share of a signal's range that may stay unseen between the nodes of a step, in units of rtol and within these bounds: what is
+/// seen at all is met to rtol by the control of the steps.
+const UNSEEN: f64 = 1e2;
+const UNSEEN_BOUNDS: [f64; 2] = [1e-6, 1e-2];
+
+/// How many times more an input may hide from which no motion follows.
+const INPUT_SLACK: f64 = 1e3;
+
+/// Steps that a run may take where nothing else is said, and how many more for every switch of its signals.
+const MAX_STEPS: u64 = 10_000_000;
+const STEPS_PER_SWITCH: u64 = 100;
+
+/// Neighbouring times at which rounding may leave the argument of a sign 0.
+const MOST_TURNING: usize = 256;
+
+impl System {
+    /// Looks through all signals before a run whose own steps are at most `longest`.
+    ///
+    /// # Errors
+    /// [`RunError`] where a signal changes more often than the run may take steps, or the run is interrupted.
+    pub(super) fn agenda(&self, settings: &Settings, longest: f64, stop: &AtomicBool) -> Result<Agenda, RunError> {
+        let named = self.watched();
+        let watched: Vec<Watched> = named.iter().map(|(_, watched)| *watched).collect();
+        let [least, most] = UNSEEN_BOUNDS;
+        let tolerance = (UNSEEN * settings.rtol).clamp(least, most);
+        let agenda = Agenda::new(&watched, settings.end, tolerance, Some(stop)).map_err(|error| match error {
+            AgendaError::Interrupted => RunError::Interrupted { t: 0.0 },
+            AgendaError::TooBusy { signal, cells } => {
+                RunError::TooBusy { what: named[signal].0.clone(), times: cells as f64, limit: settings.step_limit(0) }
+            }
+        })?;
+        let (least, limit) = (agenda.least_steps(settings.end, longest), settings.step_limit(agenda.switches()));
+        if least > limit as f64 {
+            return Err(RunError::TooBusy { what: "the motion".to_owned(), times: least, limit });
+        }
+        Ok(agenda)
+    }
+
+    /// How often the signals of a run that chooses its steps switch, as [`super::run`] finds out before its first row; `stop` interrupts.
+    ///
+    /// # Errors
+    /// [`RunError::TooBusy`] where a signal changes more often than the run may take steps, [`RunError::Interrupted`].
+    pub fn switches(&self, settings: &Settings, stop: &AtomicBool) -> Result<u64, RunError> {
+        Ok(self.agenda(settings, settings.end, stop)?.switches())
+    }
+
+    /// The first time from t on at which no sign turns, whose value there belongs to no step.
+    pub(super) fn past_turns(&self, t: f64) -> f64 {
+        let turns = |t: f64| self.signals().any(|signal| signal.turns_at(t));
+        let mut past = t;
+        for _ in 0..MOST_TURNING {
+            if !turns(past) {
+                break;
+            }
+            past = past.next_up();
+        }
+        past
+    }
+
+    /// Whether a sign turns at t.
+    pub(super) fn turns_at(&self, t: f64) -> bool {
+        self.signals().any(|signal| signal.turns_at(t))
+    }
+
+    fn signals(&self) -> impl Iterator<Item = &Signal> {
+        let inputs = self.elements.iter().flat_map(|element| &element.inputs);
+        let motion = match &self.motion {
+            Motion::Given(trajectory) => trajectory.signals(),
+            Motion::Forward(forward) => forward.signals(),
+        };
+        motion.into_iter().chain(inputs)
+    }
+
+    /// Every signal with its name.
+    fn watched(&self) -> Vec<(String, Watched<'_>)> {
+        let position = |signal| Watched { signal, is_position: true, slack: 1.0 };
+        let own = |signal| Watched { signal, is_position: false, slack: 1.0 };
+        let mut watched: Vec<(String, Watched)> = Vec::new();
+        let labels = self.model.v_labels();
+        match &self.motion {
+            Motion::Given(trajectory) => match &**trajectory {
+                Trajectory::Prescribed(joints) => {
+                    for (j, joint) in self.model.own_joints().zip(joints) {
+                        let name = format!("the motion of joint \"{}\"", self.model.joint_names()[j]);
+                        watched.extend(joint.signals().into_iter().map(|signal| (name.clone(), position(signal))));
+                    }
+                }
+                Trajectory::GripperPath(path) => {
+                    watched.extend(path.signals().map(|signal| ("the gripper's path".to_owned(), position(signal))));
+                }
+            },
+            Motion::Forward(forward) => {
+                for (j, drive) in self.model.own_joints().zip(&forward.drives) {
+                    let names = self.model.v_range(j).map(|k| format!("the torque on \"{}\"", labels[k].name));
+                    match drive {
+                        Drive::Force(signals) => watched.extend(names.zip(signals.iter().map(own))),
+                        Drive::Prescribed(joint) => {
+                            let name = format!("the motion of joint \"{}\"", self.model.joint_names()[j]);
+                            watched.extend(joint.signals().into_iter().map(|signal| (name.clone(), position(signal))));
+                        }
+                        Drive::Locked => {}
+                    }
+                }
+            }
+        }
+        for element in &self.elements {
+            for (entry, signal) in element.entry.inputs.iter().zip(&element.inputs) {
+                // Along a motion given in advance inputs change energies alone, which steps are held to as well.
+                let slack = if matches!(self.motion, Motion::Forward(_)) { 1.0 } else { INPUT_SLACK };
+                let name = format!("input {} of element \"{}\"", entry.name, element.name);
+                watched.push((name, Watched { slack, ..own(signal) }));
+            }
+        }
+        watched.retain(|(_, watched): &(String, Watched<'_>)| is_function(watched.signal));
+        watched
+    }
+}
+
+fn is_function(signal: &Signal) -> bool {
+    signal.is_constant().is_none()
+}
+
+impl Settings {
+    /// Inner steps that a run may take whose signals switch that often.
+    pub(super) fn step_limit(&self, switches: u64) -> u64 {
+        self.max_steps.unwrap_or_else(|| MAX_STEPS.saturating_add(STEPS_PER_SWITCH.saturating_mul(switches)))
+    }
+}

@@ -1,0 +1,146 @@
+//! What the driver asks of a method that takes steps.
+
+use super::context::Context;
+use super::evaluate::Moment;
+use super::recorder::Recorder;
+use super::state::StepperState;
+use super::{RunError, Settings};
+use crate::signal::Agenda;
+
+/// A step to be tried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Target {
+    /// Where it starts and ends, s.
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Its size, s.
+    pub(super) size: f64,
+    /// What is behind its end.
+    pub(super) behind: Behind,
+}
+
+/// What follows at the end of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Behind {
+    /// The next step.
+    Step,
+    /// The next step, beyond a break point of the signals: only their left side belongs to the step.
+    Break,
+    /// A kink or jump, whose first time on the far side this is.
+    Kink(f64),
+    /// A change of the robot's own: what follows starts anew.
+    Change,
+}
+
+impl Target {
+    /// The time of the inputs at its end.
+    pub(super) fn end_inputs(&self) -> f64 {
+        if self.behind == Behind::Break { self.to.next_down() } else { self.to }
+    }
+
+    /// Where the next step starts, if not at its end as if nothing were.
+    pub(super) fn crossing(&self) -> Option<f64> {
+        match self.behind {
+            Behind::Step => None,
+            Behind::Break | Behind::Change => Some(self.to),
+            Behind::Kink(after) => Some(after),
+        }
+    }
+}
+
+/// What became of a step that was tried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Trial {
+    /// It meets the tolerance, perhaps as a shorter one; `next` is the size that the one after it may have.
+    Accepted { step: Target, next: f64 },
+    /// It does not: this size may.
+    Rejected { size: f64 },
+    /// Something changes at its very start, which is to be crossed first.
+    Changes,
+}
+
+/// A method that takes steps. It fills the moments of the recorder and tells the bank.
+pub(super) trait Stepper: std::fmt::Debug + Send + Sync {
+    /// The longest step, s.
+    fn longest_step(&self, cx: Context, settings: &Settings) -> f64;
+
+    /// Makes the recorder of a new run fit for it.
+    fn set_up(&self, _recorder: &mut Recorder) {}
+
+    /// The size of steps that are all of one size, s; none of those that are chosen and end on what the signals do.
+    fn fixed_step(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether steps end on rows that are farther apart than steps are long.
+    fn ends_on_sparse_rows(&self) -> bool {
+        false
+    }
+
+    /// Goes to t = 0: the first moment is there and its elements have begun; gives the size of the first step.
+    ///
+    /// # Errors
+    /// What keeps a run from starting.
+    fn start(&mut self, cx: Context, recorder: &mut Recorder, agenda: &Agenda) -> Result<f64, RunError>;
+
+    /// How long a step from t may be, at most `h`, beyond what the signals ask for.
+    fn reach(&self, _t: f64, h: f64) -> f64 {
+        h
+    }
+
+    /// Works out a step without taking it into the past.
+    ///
+    /// # Errors
+    /// Where no step leads on.
+    fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError>;
+
+    /// Makes sure that the moment at the start (0) or at the end (1) of the step has all that a row asks for.
+    ///
+    /// # Errors
+    /// What a row there may show.
+    fn complete(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
+        recorder.complete(cx, end)
+    }
+
+    /// Fills a moment at t, θ inside the step that was worked out, 0 < θ ≤ 1.
+    ///
+    /// # Errors
+    /// What a row there may show.
+    fn interpolate(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        theta: f64,
+        moment: &mut Moment,
+    ) -> Result<(), RunError>;
+
+    /// Goes on to the end of the step that was worked out and that the recorder has taken.
+    ///
+    /// # Errors
+    /// Where nothing can follow.
+    fn accept(&mut self, cx: Context, recorder: &Recorder, step: &Target) -> Result<(), RunError>;
+
+    /// Goes from the present time to `after`, the far side of what jumps between them or there.
+    ///
+    /// # Errors
+    /// What must not jump.
+    fn cross(&mut self, cx: Context, recorder: &mut Recorder, after: f64) -> Result<(), RunError>;
+
+    /// Newton iterations so far, of methods that take some.
+    fn newton_iterations(&self) -> Option<u64> {
+        None
+    }
+
+    /// What the next step takes over from those before.
+    fn save(&self) -> StepperState;
+
+    /// Whether that is a state of this method.
+    fn fits(&self, state: &StepperState) -> bool;
+
+    /// Goes on from what was saved of this method, the recorder from what belongs to it.
+    ///
+    /// # Errors
+    /// What keeps a run from going on.
+    fn load(&mut self, cx: Context, recorder: &mut Recorder, state: StepperState) -> Result<(), RunError>;
+}

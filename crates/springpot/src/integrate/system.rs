@@ -1,0 +1,84 @@
+//! What is simulated: a robot with its elements and what moves it.
+
+use crate::actuation::Forward;
+use crate::elements::Element;
+use crate::model::{Model, Site};
+use crate::motion::Trajectory;
+use crate::observe::{Observables, Shape, Table};
+use crate::table::Column;
+use std::sync::Arc;
+
+/// A robot, its elements and its motion.
+#[derive(Debug, Clone)]
+pub struct System {
+    /// The robot.
+    pub model: Arc<Model>,
+    /// The elements.
+    pub elements: Vec<Element>,
+    /// How it moves.
+    pub motion: Motion,
+    /// The gripper, where there is one.
+    pub gripper: Option<Site>,
+    /// Whether the rows tell the energy lost in damping and friction of joints. It is part of the balance in any case.
+    pub tells_joint_losses: bool,
+}
+
+/// Whether motion or forces are given.
+#[derive(Debug, Clone)]
+pub enum Motion {
+    /// Kinematics given in advance; the actuator forces follow.
+    Given(Arc<Trajectory>),
+    /// Forward dynamics: the motion follows from the forces.
+    Forward(Arc<Forward>),
+}
+
+impl From<Trajectory> for Motion {
+    fn from(trajectory: Trajectory) -> Self {
+        Self::Given(trajectory.into())
+    }
+}
+
+impl From<Forward> for Motion {
+    fn from(forward: Forward) -> Self {
+        Self::Forward(forward.into())
+    }
+}
+
+impl Motion {
+    /// Whether it says where the gripper should be.
+    pub fn has_path(&self) -> bool {
+        matches!(self, Self::Given(trajectory) if trajectory.has_path())
+    }
+}
+
+impl System {
+    /// What can be observed of it, in the order of a run's rows.
+    pub fn observables(&self) -> Observables {
+        let mut observables = Observables::new(&self.model, &self.elements);
+        if self.gripper.is_some() {
+            observables = observables.with_gripper(self.motion.has_path());
+        }
+        if self.tells_joint_losses { observables.with_joint_losses() } else { observables }
+    }
+
+    /// The columns of a run's rows, in order.
+    pub fn columns(&self) -> Vec<Column> {
+        self.observables().columns()
+    }
+
+    /// A table for the rows of its runs.
+    pub fn table(&self) -> Table {
+        Table::new(&self.observables())
+    }
+
+    /// How many numbers its rows have.
+    pub(super) fn shape(&self) -> Shape {
+        Shape {
+            nq: self.model.nq(),
+            nv: self.model.nv(),
+            gripper: self.gripper.is_some(),
+            wanted: self.motion.has_path(),
+            joint_losses: self.tells_joint_losses,
+        }
+    }
+}
