@@ -188,6 +188,15 @@ impl Scenario {
         Ok(())
     }
 
+    /// The one case that the values of the file itself make: its sweeps are dropped, and its figures with them, which may ask for swept values.
+    #[must_use]
+    pub fn without_sweeps(mut self) -> Self {
+        if let document::Value::Table(entries) = &mut self.document.value {
+            entries.retain(|entry| !matches!(entry.key.as_str(), "sweep" | "figure"));
+        }
+        self
+    }
+
     /// Validates everything: robot, elements, motion, time, solver, figures, and every swept value once.
     ///
     /// # Errors

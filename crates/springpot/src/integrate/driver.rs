@@ -4,7 +4,7 @@ use super::Checkpoint;
 use super::context::Context;
 use super::output::Output;
 use super::recorder::Recorder;
-use super::state::DriverState;
+use super::state::{DriverState, fingerprint};
 use super::stepper::{Behind, Stepper, Target, Trial};
 use super::{Report, RowTimes, RunError, Settings, Stop};
 use crate::observe::snapshot::Snapshot;
@@ -147,8 +147,16 @@ impl Driver {
         Ok(true)
     }
 
-    /// Takes the step at hand into the past.
-    fn close(&mut self, cx: Context) -> Result<(), RunError> {
+    /// Whether something is to be crossed at the present time before anything else, as after [`Self::disturb`].
+    pub(super) fn is_disturbed(&self) -> bool {
+        self.step.is_none() && self.crossing.is_some()
+    }
+
+    /// Takes the step at hand into the past; what is behind it is not yet crossed.
+    ///
+    /// # Errors
+    /// Where nothing can follow.
+    pub(super) fn close(&mut self, cx: Context) -> Result<(), RunError> {
         let Some(step) = self.step.take() else { return Ok(()) };
         self.recorder.commit();
         self.t = step.to;
@@ -310,7 +318,7 @@ impl Driver {
     /// What it takes to go on; everything is settled.
     pub(super) fn state(&self, cx: Context) -> DriverState {
         DriverState {
-            system: cx.system.fingerprint(),
+            system: fingerprint(cx.system, &self.recorder.settings),
             recorder: self.recorder.state(),
             stepper: self.stepper.save(),
             t: self.t,
@@ -328,7 +336,8 @@ impl Driver {
     /// [`RunError::OtherRun`], and the driver as it was.
     pub(super) fn go_on(&mut self, cx: Context, state: DriverState) -> Result<(), RunError> {
         let DriverState { system, recorder, stepper, t, h, crossing, tick, steps, rejected_steps } = state;
-        if system != cx.system.fingerprint() || !self.stepper.fits(&stepper) || !self.recorder.go_on(recorder) {
+        let own = fingerprint(cx.system, &self.recorder.settings);
+        if system != own || !self.stepper.fits(&stepper) || !self.recorder.go_on(recorder) {
             return Err(RunError::OtherRun);
         }
         self.stepper.load(cx, &mut self.recorder, stepper)?;

@@ -107,7 +107,7 @@ impl Simulation {
     /// # Errors
     /// [`RunError::Outside`] where t is before the present time or beyond the end, and those of [`Self::step`].
     pub fn step_to(&mut self, t: f64) -> Result<(), RunError> {
-        self.check_time(t, self.t(), self.driver.recorder.settings.end)?;
+        self.check_time(t, self.t(), self.end())?;
         while self.t() < t {
             self.step_until(t)?;
         }
@@ -122,6 +122,11 @@ impl Simulation {
     /// Time, s.
     pub fn t(&self) -> f64 {
         self.driver.reached()
+    }
+
+    /// Where the motion ends, s.
+    pub fn end(&self) -> f64 {
+        self.driver.recorder.settings.end
     }
 
     /// Where the last step began, s: the earliest time of [`Self::interpolate`].
@@ -144,11 +149,15 @@ impl Simulation {
         &self.driver.recorder.moments[at]
     }
 
-    /// All that is known at the present time.
+    /// All that is known at the present time: what a step led to, or after [`Self::set_torque`] and [`Self::set_input`] what they make of it.
     ///
     /// # Errors
     /// [`RunError`] where an input breaks a rule of its law.
     pub fn snapshot(&mut self) -> Result<Snapshot, RunError> {
+        let cx = Context { system: &self.system, held: &self.held };
+        while self.driver.is_disturbed() {
+            self.driver.settle(cx)?;
+        }
         self.interpolate(self.t())
     }
 
@@ -233,10 +242,10 @@ impl Simulation {
     /// What it takes to go on from here, to the bit. The last step is in the past then and can no longer be looked into.
     ///
     /// # Errors
-    /// [`RunError`] where what follows at the present time cannot be, as a jump of a coordinate.
+    /// [`RunError::Chatter`] where nothing follows.
     pub fn state(&mut self) -> Result<SimulationState, RunError> {
         let cx = Context { system: &self.system, held: &self.held };
-        while self.driver.settle(cx)? {}
+        self.driver.close(cx)?;
         Ok(SimulationState { driver: self.driver.state(cx), held: self.held.clone() })
     }
 

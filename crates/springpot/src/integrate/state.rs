@@ -3,8 +3,9 @@
 use super::context::Held;
 use super::output::Written;
 use super::recorder::RecorderState;
-use super::{System, fixed, prescribed, radau};
+use super::{RowTimes, Settings, System, fixed, prescribed, radau};
 use serde::{Deserialize, Serialize};
+use std::fmt::{self, Write as _};
 
 /// The state of a run between two steps, memories included; see [`super::Rows::checkpoint`] and [`super::resume`].
 ///
@@ -67,21 +68,20 @@ impl SimulationState {
     }
 }
 
-impl System {
-    /// A number that tells apart systems whose joints or elements have other names or laws.
-    pub(super) fn fingerprint(&self) -> u64 {
-        // FNV-1a.
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        let mut take = |text: &str| {
-            for byte in text.bytes().chain([0]) {
-                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+/// A number that tells systems and settings apart: of all that is printed of them but for the rows and the number of steps allowed.
+pub(super) fn fingerprint(system: &System, settings: &Settings) -> u64 {
+    /// FNV-1a.
+    struct Hash(u64);
+    impl fmt::Write for Hash {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            for byte in text.bytes() {
+                self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
             }
-        };
-        self.model.joint_names().iter().for_each(|name| take(name));
-        for element in &self.elements {
-            take(&element.name);
-            take(&element.entry.name);
+            Ok(())
         }
-        hash
     }
+    let settings = Settings { rows: RowTimes::Times([].into()), max_steps: None, ..settings.clone() };
+    let mut hash = Hash(0xcbf2_9ce4_8422_2325);
+    let _ = write!(hash, "{system:?}{settings:?}");
+    hash.0
 }
