@@ -68,7 +68,8 @@ impl SimulationState {
     }
 }
 
-/// A number that tells systems and settings apart: of all that is printed of them but for the rows and the number of steps allowed.
+/// A number that tells systems and settings apart: of all that `Debug` prints of them, which is the same in every process, but for the rows and
+/// the number of steps allowed.
 pub(super) fn fingerprint(system: &System, settings: &Settings) -> u64 {
     /// FNV-1a.
     struct Hash(u64);

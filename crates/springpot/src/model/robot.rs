@@ -1,6 +1,6 @@
 //! The constant robot.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::degree::{Coordinates, Degree, JointMotion};
 use super::error::ModelError;
@@ -48,7 +48,7 @@ pub struct Model {
     // One entry per described body.
     pub(super) frames: Vec<Frame>,
     pub(super) body_names: Vec<String>,
-    pub(super) body_lookup: HashMap<String, usize>,
+    pub(super) body_lookup: BTreeMap<String, usize>,
     /// What the world is called besides "world".
     pub(super) world_names: Vec<String>,
 }
@@ -80,7 +80,7 @@ impl Model {
             world_names: Vec::new(),
             frames: Vec::new(),
             body_names: Vec::new(),
-            body_lookup: HashMap::new(),
+            body_lookup: BTreeMap::new(),
         }
     }
 
