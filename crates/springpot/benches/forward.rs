@@ -1,8 +1,9 @@
-//! One step of the fixed-step methods: the falling three-body arm and a Panda arm, each with a strut.
+//! One step of the fixed-step methods: the falling three-body arm and a Panda arm, each with a strut; and whole runs beside a bare loop.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use springpot::integrate::System;
+use springpot::Simulation;
 use springpot::integrate::fixed::{Loop, MemorySettings, Method};
+use springpot::integrate::{FixedStep, RowTimes, Settings, Stop, System, run};
 use springpot::law::Catalog;
 use springpot_scenario::Scenario;
 use std::hint::black_box;
@@ -46,5 +47,50 @@ fn advance(criterion: &mut Criterion) {
     }
 }
 
-criterion_group! { name = benches; config = Criterion::default().without_plots(); targets = advance }
+/// 10⁴ steps of the arm: a bare loop, a simulation with its energy ledger, and a run that writes two rows.
+fn whole(criterion: &mut Criterion) {
+    let system = system("thermoviscoelastic_temperature", "{}");
+    let settings = |method| Settings {
+        end: 1.0,
+        rows: RowTimes::Times([0.0, 1.0].into()),
+        rtol: 1e-6,
+        atol: None,
+        memory_rtol: 1e-8,
+        first_step: None,
+        max_step: None,
+        max_steps: None,
+        fixed_step: Some(FixedStep { method, step: 1e-4 }),
+    };
+    let mut group = criterion.benchmark_group("ten thousand steps of the arm");
+    group.sample_size(20);
+    for method in [Method::BackwardEuler, Method::Midpoint] {
+        let settings = settings(method);
+        let torque = vec![0.0; system.model.nv()];
+        group.bench_function(format!("{}, loop", method.name()), |bench| {
+            bench.iter(|| {
+                let memory = MemorySettings { tolerance: 1e-8, horizon: 1.0 };
+                let mut robot = Loop::new(&system, method, 1e-4, memory).expect("a loop");
+                (0..10_000).for_each(|_| robot.advance(&torque).expect("a step"));
+                robot.t()
+            });
+        });
+        group.bench_function(format!("{}, simulation", method.name()), |bench| {
+            bench.iter(|| {
+                let mut robot = Simulation::new(system.clone(), settings.clone()).expect("a simulation");
+                while robot.step().expect("a step") {}
+                robot.t()
+            });
+        });
+        group.bench_function(format!("{}, run", method.name()), |bench| {
+            bench.iter(|| {
+                let mut table = system.table();
+                run(&system, &settings, &mut table, &Stop::new(false)).1.expect("a run");
+                table
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group! { name = benches; config = Criterion::default().without_plots(); targets = advance, whole }
 criterion_main!(benches);

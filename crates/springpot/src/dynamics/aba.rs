@@ -1,8 +1,13 @@
 //! Forward dynamics by the articulated-body algorithm.
 
 use super::cholesky::{cholesky_into, cholesky_solve_into};
+use super::crba::crba_into;
+use super::joint;
+use super::kinematics::Kinematics;
 use super::moments::motions_at_rest;
-use super::{Kinematics, PairForce, Workspace, add_wrench, crba_into, joint, pair};
+use super::pair::{self, PairForce};
+use super::workspace::Workspace;
+use super::wrench::add_wrench;
 use crate::model::{DegreeMotion, JointMotion, Model};
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Scalar, Vec3};
 

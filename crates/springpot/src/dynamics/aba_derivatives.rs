@@ -1,8 +1,11 @@
 //! Derivatives of the forward dynamics.
 
+use super::aba::aba_into;
 use super::cholesky::{cholesky_into, inverse_from_cholesky_into, solve_matrix};
+use super::kinematics::Kinematics;
+use super::pair::PairForce;
 use super::rnea_derivatives::{RneaDerivatives, rnea_derivatives_into};
-use super::{Kinematics, PairForce, Workspace, aba_into};
+use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::Scalar;
 

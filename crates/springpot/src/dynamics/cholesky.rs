@@ -1,6 +1,8 @@
 //! The mass matrix factorised along the tree, and what follows from it.
 
-use super::{Kinematics, Workspace, crba_into};
+use super::crba::crba_into;
+use super::kinematics::Kinematics;
+use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::Scalar;
 

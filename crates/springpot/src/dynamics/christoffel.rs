@@ -1,7 +1,9 @@
 //! Christoffel symbols of the first kind, in closed form.
 
 use super::crba::composites;
-use super::{Kinematics, Workspace, joint};
+use super::joint;
+use super::kinematics::Kinematics;
+use super::workspace::Workspace;
 use crate::model::{Degree, Model};
 use crate::spatial::{Motion, Placement, Scalar, Symmetric3, Vec3};
 

@@ -1,7 +1,9 @@
 //! The centre of mass.
 
 use super::gravity::first_moments_beyond;
-use super::{Kinematics, Workspace, joint};
+use super::joint;
+use super::kinematics::Kinematics;
+use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::{Scalar, Vec3};
 

@@ -1,7 +1,9 @@
 //! The Coriolis matrix.
 
+use super::joint;
+use super::kinematics::Kinematics;
 use super::moments::motions_at_rest;
-use super::{Kinematics, Workspace, joint};
+use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::Scalar;
 
@@ -26,7 +28,7 @@ pub fn coriolis_into<T: Scalar>(
     motions_at_rest(model, kinematics, workspace);
     let ws = workspace;
     for j in (0..model.joint_count()).rev() {
-        let (composite, sway) = (ws.composite[j], ws.sway[j]);
+        let (composite, sway) = (ws.composite[j], ws.body_coriolis[j]);
         for k in model.degrees_of(j) {
             let (unit, rate) = (ws.unit[k], ws.unit_own_rate[k]);
             let column = composite * rate + sway.times(unit.angular);
@@ -41,7 +43,7 @@ pub fn coriolis_into<T: Scalar>(
         }
         if let Some(parent) = model.parent_link(j).checked_sub(1) {
             ws.composite[parent] += composite;
-            ws.sway[parent] += sway;
+            ws.body_coriolis[parent] += sway;
         }
     }
 }

@@ -1,6 +1,8 @@
 //! The mass matrix by composite inertias.
 
-use super::{Kinematics, Workspace, joint};
+use super::joint;
+use super::kinematics::Kinematics;
+use super::workspace::Workspace;
 use crate::model::{DegreeMotion, Model};
 use crate::spatial::{Inertia, Scalar, Vec3};
 

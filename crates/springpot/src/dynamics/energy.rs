@@ -1,6 +1,6 @@
 //! Kinetic and potential energy.
 
-use super::Kinematics;
+use super::kinematics::Kinematics;
 use crate::model::Model;
 use crate::spatial::{Inertia, Motion, Scalar, Vec3};
 

@@ -1,6 +1,7 @@
 //! Jacobian of a frame and its time derivative: six rows, world-aligned at the frame.
 
-use super::{Kinematics, joint};
+use super::joint;
+use super::kinematics::Kinematics;
 use crate::model::{Frame, Model};
 use crate::spatial::{Scalar, Vec3};
 

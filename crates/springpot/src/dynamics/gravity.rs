@@ -1,6 +1,8 @@
 //! The gravity vector.
 
-use super::{Kinematics, Workspace, joint};
+use super::joint;
+use super::kinematics::Kinematics;
+use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::{Scalar, Vec3};
 

@@ -1,6 +1,7 @@
 //! Jacobians of points and of the angular velocity, and their time derivatives.
 
-use super::{Kinematics, joint};
+use super::joint;
+use super::kinematics::Kinematics;
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
 

@@ -1,6 +1,7 @@
 //! The line between two points: how it changes with the degrees of freedom between its ends.
 
-use super::{Kinematics, joint};
+use super::joint;
+use super::kinematics::Kinematics;
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
 

@@ -12,6 +12,7 @@
 
 mod aba;
 mod aba_derivatives;
+mod body_coriolis;
 mod cholesky;
 mod christoffel;
 mod com;

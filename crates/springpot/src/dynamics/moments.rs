@@ -1,9 +1,12 @@
 //! Columns and moments of moving bodies about one point for the whole robot: the common ground of the Coriolis matrix and of
 //! the derivatives.
 
-use super::{Kinematics, Workspace, joint};
+use super::body_coriolis::BodyCoriolis;
+use super::joint;
+use super::kinematics::Kinematics;
+use super::workspace::Workspace;
 use crate::model::{JointMotion, Model};
-use crate::spatial::{Force, Inertia, Motion, Scalar, Symmetric3, Vec3};
+use crate::spatial::{Force, Inertia, Motion, Scalar, Vec3};
 
 /// The point, at rest, about which all of the robot is taken: where the first joint is, so that a robot far from the world's
 /// origin keeps its digits.
@@ -50,64 +53,7 @@ pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: O
         let inertia = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation).shifted(arm);
         let momentum = inertia * velocity;
         ws.force[j + 1] = inertia * acceleration + velocity.cross_force(momentum);
-        ws.sway[j] = Sway::new(&inertia, velocity, momentum);
+        ws.body_coriolis[j] = BodyCoriolis::new(&inertia, velocity, momentum);
         (ws.composite[j], ws.velocity[j + 1], ws.acceleration[j + 1]) = (inertia, velocity, acceleration);
-    }
-}
-
-/// How the mass of moving bodies sways: l = ∫ ṙ dm (linear momentum) and S = ∫ ṙ rᵀ dm.
-///
-/// They hold all that B = ½((v×*) I − I (v×) + (I v)×̄*) knows, with (f×̄*) w = w ×* f:
-/// B (α, β) = (tr(S) α − S α, α × l) in the order (moment, force). Being integrals, they add up over bodies.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Sway<T> {
-    pub(super) momentum: Vec3<T>,
-    /// Rows of S − tr(S) 1.
-    rows: [Vec3<T>; 3],
-}
-
-impl<T: Scalar> Sway<T> {
-    pub(super) const ZERO: Self = Self { momentum: Vec3::ZERO, rows: [Vec3::ZERO; 3] };
-
-    /// Of a body with `inertia` about the reference point that moves with `velocity`, and whose momentum is `momentum`.
-    ///
-    /// S = u hᵀ + \[ω\]× Π with the second moments Π = ∫ r rᵀ dm.
-    #[inline]
-    pub(super) fn new(inertia: &Inertia<T>, velocity: Motion<T>, momentum: Force<T>) -> Self {
-        let Symmetric3 { xx, yy, zz, xy, xz, yz } = inertia.rotational.second_moments();
-        let (omega, h) = (velocity.angular, inertia.first_moment);
-        let column = |c: usize, pi: Vec3<T>| velocity.linear.times_plus(h.0[c], omega.cross(pi)).0;
-        let (x, y, z) = (column(0, Vec3([xx, xy, xz])), column(1, Vec3([xy, yy, yz])), column(2, Vec3([xz, yz, zz])));
-        let rows = [
-            Vec3([-(y[1] + z[2]), y[0], z[0]]),
-            Vec3([x[1], -(x[0] + z[2]), z[1]]),
-            Vec3([x[2], y[2], -(x[0] + y[1])]),
-        ];
-        Self { momentum: momentum.linear, rows }
-    }
-
-    /// B (α, β), which β does not change.
-    #[inline]
-    pub(super) fn times(&self, alpha: Vec3<T>) -> Force<T> {
-        let [r0, r1, r2] = self.rows;
-        let angular = -Vec3([r0.dot(alpha), r1.dot(alpha), r2.dot(alpha)]);
-        Force { angular, linear: alpha.cross(self.momentum) }
-    }
-
-    /// The angular part of Bᵀ (η, φ); the linear part is 0.
-    #[inline]
-    pub(super) fn transposed_times(&self, motion: Motion<T>) -> Vec3<T> {
-        let ([x, y, z], [r0, r1, r2]) = (motion.angular.0, self.rows);
-        self.momentum.cross(motion.linear) - r2.times_plus(z, r1.times_plus(y, r0 * x))
-    }
-}
-
-impl<T: Scalar> std::ops::AddAssign for Sway<T> {
-    #[inline]
-    fn add_assign(&mut self, other: Self) {
-        self.momentum += other.momentum;
-        for (row, o) in self.rows.iter_mut().zip(other.rows) {
-            *row += o;
-        }
     }
 }

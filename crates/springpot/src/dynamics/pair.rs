@@ -1,7 +1,9 @@
 //! Two points of two bodies: their distance, its derivatives, and a force along the line that joins them.
 
+use super::joint;
+use super::kinematics::Kinematics;
 use super::line::Line;
-use super::{Kinematics, Workspace, joint};
+use super::workspace::Workspace;
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
 

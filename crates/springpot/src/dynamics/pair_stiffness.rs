@@ -1,7 +1,9 @@
 //! How the generalized force of a pair answers to positions and velocities.
 
+use super::kinematics::Kinematics;
 use super::line::Line;
-use super::{Kinematics, PairForce, Workspace};
+use super::pair::PairForce;
+use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::Scalar;
 

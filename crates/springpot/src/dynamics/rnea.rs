@@ -1,6 +1,9 @@
 //! Inverse dynamics by the recursive Newton–Euler algorithm.
 
-use super::{Kinematics, PairForce, Workspace, joint, pair};
+use super::joint;
+use super::kinematics::Kinematics;
+use super::pair::{self, PairForce};
+use super::workspace::Workspace;
 use crate::model::{JointMotion, Model};
 use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Vec3};
 

@@ -1,8 +1,11 @@
 //! Derivatives of the inverse dynamics.
 
+use super::joint;
+use super::kinematics::Kinematics;
 use super::moments::motions;
+use super::pair::PairForce;
 use super::pair_stiffness::add_pair_stiffness;
-use super::{Kinematics, PairForce, Workspace, joint};
+use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::Scalar;
 
@@ -62,7 +65,7 @@ pub fn rnea_derivatives_into<T: Scalar>(
     let (ws, degrees) = (&mut *workspace, model.degrees());
     let two = T::from_f64(2.0);
     for j in (0..model.joint_count()).rev() {
-        let (inertia, moving, load) = (ws.composite[j], ws.sway[j], ws.force[j + 1]);
+        let (inertia, moving, load) = (ws.composite[j], ws.body_coriolis[j], ws.force[j + 1]);
         for k in model.degrees_of(j) {
             let own = ws.unit[k];
             let at_rest = inertia * ws.unit_second_rate[k] + moving.times(ws.unit_rate[k].angular) * two;
@@ -96,7 +99,7 @@ pub fn rnea_derivatives_into<T: Scalar>(
         let parent = model.parent_link(j);
         if parent > 0 {
             ws.composite[parent - 1] += inertia;
-            ws.sway[parent - 1] += moving;
+            ws.body_coriolis[parent - 1] += moving;
             ws.force[parent] += load;
         }
     }

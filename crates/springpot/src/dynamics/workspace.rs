@@ -1,7 +1,7 @@
 //! Scratch memory of the algorithms.
 
+use super::body_coriolis::BodyCoriolis;
 use super::joint::Stands;
-use super::moments::Sway;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scalar, Vec3};
 
@@ -37,7 +37,7 @@ pub struct Workspace<T = f64> {
     pub(super) unit_rate: Vec<Motion<T>>,
     pub(super) unit_own_rate: Vec<Motion<T>>,
     pub(super) unit_second_rate: Vec<Motion<T>>,
-    pub(super) sway: Vec<Sway<T>>,
+    pub(super) body_coriolis: Vec<BodyCoriolis<T>>,
     /// ∂l/∂q and ∂l'/∂q of a pair.
     pub(super) gradient: Vec<T>,
     pub(super) rate_gradient: Vec<T>,
@@ -68,7 +68,7 @@ impl<T: Scalar> Workspace<T> {
             unit_rate: vec![Motion::ZERO; d],
             unit_own_rate: vec![Motion::ZERO; d],
             unit_second_rate: vec![Motion::ZERO; d],
-            sway: vec![Sway::ZERO; n],
+            body_coriolis: vec![BodyCoriolis::ZERO; n],
             gradient: vec![T::ZERO; d],
             rate_gradient: vec![T::ZERO; d],
             mass: vec![T::ZERO; dense * dense],

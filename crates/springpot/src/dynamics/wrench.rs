@@ -1,6 +1,7 @@
 //! Loads from outside: a force and a moment on a body.
 
-use super::{Kinematics, joint};
+use super::joint;
+use super::kinematics::Kinematics;
 use crate::model::{Model, Site};
 use crate::spatial::{Force, Scalar};
 

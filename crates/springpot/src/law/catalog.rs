@@ -1,6 +1,7 @@
 //! The catalog of laws: what the parser, the command line and the documentation know about them.
 
-use super::{Derivative, Network, kelvin_voigt, magnetorheological, piezo, thermoviscoelastic};
+use super::network::Network;
+use crate::fractional::Kind as Derivative;
 use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
@@ -179,25 +180,10 @@ impl fmt::Debug for Entry {
 /// A set of laws; a user's crate can add rows to the standard one. Copies share their rows.
 #[derive(Debug, Clone)]
 pub struct Catalog {
-    entries: Vec<Arc<Entry>>,
+    pub(super) entries: Vec<Arc<Entry>>,
 }
 
 impl Catalog {
-    /// The laws that come with Springpot.
-    pub fn standard() -> Self {
-        let entries = [
-            kelvin_voigt::spring(),
-            kelvin_voigt::dashpot(),
-            kelvin_voigt::springpot(),
-            kelvin_voigt::kelvin_voigt(),
-            kelvin_voigt::fractional_kelvin_voigt(),
-            thermoviscoelastic::thermoviscoelastic(),
-            piezo::piezo_kelvin_voigt(),
-            magnetorheological::magnetorheological(),
-        ];
-        Self { entries: entries.into_iter().map(Arc::new).collect() }
-    }
-
     /// Adds a law; a law of the same name is replaced.
     pub fn with(mut self, entry: impl Into<Arc<Entry>>) -> Self {
         let entry = entry.into();

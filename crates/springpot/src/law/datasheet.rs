@@ -38,7 +38,10 @@
 mod closed;
 mod fit;
 
-use super::{Catalog, Derivative, Entry, Network, Param, Point, Term};
+use super::catalog::{Catalog, Entry, Param};
+use super::network::Network;
+use super::step::{Point, Term};
+use crate::fractional::Kind as Derivative;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Plain laws: spring, dashpot, springpot, and their parallel combinations.
 
-use super::Network;
 use super::catalog::{Entry, Param, Range, alpha, at_least_one_positive};
+use super::network::Network;
 use std::sync::Arc;
 
 fn stiffness() -> Param {

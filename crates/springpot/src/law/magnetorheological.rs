@@ -1,8 +1,8 @@
 //! Magnetorheological element: a springpot whose coefficient follows the voltage of its coil.
 
-use super::Network;
 use super::catalog::{Entry, Input, Param, Range, alpha, at_least_one_positive, carrier};
 use super::leaf::Coefficient;
+use super::network::Network;
 use std::sync::Arc;
 
 /// F = E_c·x + (mu_0 + u·mu)·D^alpha x; the coefficient stands outside the derivative also when u varies.
@@ -41,7 +41,8 @@ pub(super) fn magnetorheological() -> Entry {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Derivative, InputValue};
+    use crate::fractional::Kind as Derivative;
+    use crate::law::step::InputValue;
 
     #[test]
     fn a_negative_coefficient_names_the_rule() {

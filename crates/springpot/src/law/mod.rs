@@ -33,6 +33,7 @@ pub mod step;
 mod kelvin_voigt;
 mod magnetorheological;
 mod piezo;
+mod standard;
 mod thermoviscoelastic;
 
 pub use crate::fractional::Kind as Derivative;

@@ -2,12 +2,12 @@
 
 mod series;
 
+use super::catalog::RuleError;
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
-use super::{
-    Derivative, InputValue, LocalError, Observation, Point, Powers, Response, RuleError, Start, State, StateMut,
-    StateRef, StateSize, Step, Term,
-};
+use super::state::{State, StateMut, StateRef, StateSize};
+use super::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::fractional::KernelError;
+use crate::fractional::Kind as Derivative;
 use std::sync::Arc;
 
 /// Most parts side by side in one series; more of them are nested.

@@ -1,7 +1,7 @@
 //! Fractional Kelvin–Voigt element with a piezo stack in it.
 
-use super::Network;
 use super::catalog::{Entry, Input, Param, Range, alpha, at_least_one_positive, carrier, damping};
+use super::network::Network;
 use std::sync::Arc;
 
 /// F = (E_c + E_pz)·x + E_d·D^alpha x − alpha_pz·E_pz·U: a positive voltage lengthens the stack and lowers the tension.

@@ -1,7 +1,7 @@
 //! Fractional Kelvin–Voigt element that expands with temperature.
 
-use super::Network;
 use super::catalog::{Entry, Input, Param, Range, alpha, at_least_one_positive, carrier, damping};
+use super::network::Network;
 use std::sync::Arc;
 
 const TEMPERATURE: Range = Range { low: 150.0, high: 1500.0 };

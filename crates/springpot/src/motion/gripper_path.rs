@@ -12,12 +12,13 @@ mod hermite;
 mod passage;
 mod solver;
 mod task;
+mod wanted;
 
 pub use error::PathError;
 pub(super) use solver::STEP_TOLERANCE;
 pub use task::Task;
+pub use wanted::Wanted;
 
-use super::Wanted;
 use crate::model::Model;
 use crate::signal::Signal;
 use follow::Follower;

@@ -7,8 +7,8 @@
 //! *windows* that bound the steps in them.
 
 use super::expression::Expression;
+use super::function::{Kind, Signal};
 use super::series::Series;
-use super::{Kind, Signal};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Cells into which a run is divided at first, and how many times shorter steps are nothing to speak of.

@@ -16,7 +16,7 @@ mod parse;
 pub use error::ExpressionError;
 pub use parse::number_length;
 
-use super::Jet;
+use super::jet::Jet;
 use super::jet::{Smooth, Value};
 use std::f64::consts::{PI, TAU};
 use std::fmt;

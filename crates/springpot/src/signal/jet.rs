@@ -1,6 +1,15 @@
 //! Arithmetic of values with their first two derivatives, and the functions of expressions on them.
 
-use super::Jet;
+/// Value and first two time derivatives of a signal.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Jet {
+    /// Value.
+    pub value: f64,
+    /// First time derivative.
+    pub first: f64,
+    /// Second time derivative.
+    pub second: f64,
+}
 
 /// What an expression is evaluated on: plain numbers, or jets.
 pub(super) trait Value: Copy {

@@ -1,6 +1,6 @@
 //! Samples as functions: straight lines, or a cubic spline.
 
-use super::Jet;
+use super::jet::Jet;
 
 /// Why samples are not a function of time.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -2,7 +2,12 @@
 
 use std::ops::AddAssign;
 
-use super::{Force, Inertia, Motion, Scalar, Symmetric3, Vec3};
+use super::force::Force;
+use super::inertia::Inertia;
+use super::motion::Motion;
+use super::scalar::Scalar;
+use super::symmetric::Symmetric3;
+use super::vector::Vec3;
 
 /// A symmetric 6 × 6 inertia about the origin of the frame in which it is expressed: (n, f) = [[A, B], [Bᵀ, C]] (α, β) with
 /// moment n, force f, angular α and linear β.

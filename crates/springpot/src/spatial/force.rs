@@ -2,7 +2,8 @@
 
 use std::ops::{Add, AddAssign, Mul, SubAssign};
 
-use super::{Scalar, Vec3};
+use super::scalar::Scalar;
+use super::vector::Vec3;
 
 /// A wrench (or a momentum): linear part, and moment about the origin of the frame in which it is expressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -2,7 +2,13 @@
 
 use std::ops::{Add, AddAssign, Mul};
 
-use super::{Force, Motion, Placement, Rotation, Scalar, Symmetric3, Vec3};
+use super::force::Force;
+use super::motion::Motion;
+use super::placement::Placement;
+use super::rotation::Rotation;
+use super::scalar::Scalar;
+use super::symmetric::Symmetric3;
+use super::vector::Vec3;
 
 /// Mass, first moments and inertia tensor of a rigid body about the origin of the frame in which it is expressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -2,7 +2,10 @@
 
 use std::ops::{Add, AddAssign, Mul};
 
-use super::{Force, Rotation, Scalar, Vec3};
+use super::force::Force;
+use super::rotation::Rotation;
+use super::scalar::Scalar;
+use super::vector::Vec3;
 
 /// Angular part and linear part at the origin of the frame in which it is expressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::Scalar;
+use super::scalar::Scalar;
 
 /// Two numbers that never meet.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

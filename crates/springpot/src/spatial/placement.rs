@@ -2,7 +2,11 @@
 
 use std::ops::Mul;
 
-use super::{Force, Motion, Rotation, Scalar, Vec3};
+use super::force::Force;
+use super::motion::Motion;
+use super::rotation::Rotation;
+use super::scalar::Scalar;
+use super::vector::Vec3;
 
 /// Pose of a child frame in its parent: a point with child components x has parent components R x + p.
 #[derive(Debug, Clone, Copy, PartialEq)]

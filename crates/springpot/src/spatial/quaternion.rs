@@ -2,7 +2,7 @@
 
 use std::ops::Mul;
 
-use super::Vec3;
+use super::vector::Vec3;
 
 /// A quaternion x, y, z, w (vector part first). Unit quaternions q and −q stand for the same attitude.
 #[derive(Debug, Clone, Copy, PartialEq)]

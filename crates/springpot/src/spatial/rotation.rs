@@ -2,7 +2,9 @@
 
 use std::ops::Mul;
 
-use super::{Quaternion, Scalar, Vec3};
+use super::quaternion::Quaternion;
+use super::scalar::Scalar;
+use super::vector::Vec3;
 
 /// A rotation matrix R, row-major: it takes components in the child frame to components in the parent frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,9 @@
 
 use std::ops::{Add, AddAssign, Mul};
 
-use super::{Rotation, Scalar, Vec3};
+use super::rotation::Rotation;
+use super::scalar::Scalar;
+use super::vector::Vec3;
 
 /// A symmetric 3 × 3 matrix; the off-diagonals are tensor components (xy stands in row x, column y).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

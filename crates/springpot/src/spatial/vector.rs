@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-use super::Scalar;
+use super::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 /// A three-vector in right-handed Cartesian components.

@@ -1,9 +1,10 @@
 //! D^a from node to node: what arrays on any steps and streams have in common.
 
+use super::definition::Definition;
+use super::error::DerivativeError;
 use super::hermite::{Form, Node};
 use super::march::March;
 use super::order::{Jump, Order};
-use super::{Definition, DerivativeError};
 
 /// A Hermite spline that grows by one node at a time.
 #[derive(Debug, Clone)]

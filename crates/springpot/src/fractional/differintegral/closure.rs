@@ -1,6 +1,6 @@
 //! Closures as Chebyshev polynomials on pieces as short as they must be.
 
-use super::FunctionError;
+use super::error::FunctionError;
 use super::piecewise::{Joint, Piece, Piecewise};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;

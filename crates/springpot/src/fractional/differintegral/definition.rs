@@ -1,6 +1,6 @@
 //! The three definitions of a derivative of any order.
 
-use crate::fractional::Kind;
+use crate::fractional::kind::Kind;
 use std::fmt;
 use std::str::FromStr;
 

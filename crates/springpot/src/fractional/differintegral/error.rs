@@ -1,7 +1,7 @@
 //! What can be wrong with an order, samples or a closure.
 
-use super::Method;
-use crate::fractional::KernelError;
+use super::method::Method;
+use crate::fractional::kernel::KernelError;
 use crate::fractional::scheme::SchemeError;
 
 /// Why nothing was differentiated. Rows count from 0.

@@ -1,6 +1,6 @@
 //! D^a along pieces, one after the other: constant time for each.
 
-use super::DerivativeError;
+use super::error::DerivativeError;
 use super::order::Order;
 use crate::fractional::history::History;
 use crate::fractional::kernel::{Kernel, KernelError};

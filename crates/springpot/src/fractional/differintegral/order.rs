@@ -2,7 +2,8 @@
 //!
 //! D^a x = I^beta y + jumps, y = x⁽ᵐ⁾, m = ⌈a⌉, beta = m − a; x⁽⁻¹⁾ and x⁽⁻²⁾ are running integrals from 0.
 
-use super::{Definition, DerivativeError};
+use super::definition::Definition;
+use super::error::DerivativeError;
 use crate::fractional::gamma::reciprocal_gamma;
 
 /// An order from −2 to 2, split.

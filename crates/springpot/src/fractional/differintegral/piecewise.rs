@@ -1,12 +1,13 @@
 //! Functions of time as polynomials between joints, and D^a of them at any time.
 
 use super::along::Start;
+use super::definition::Definition;
+use super::error::{DerivativeError, FunctionError};
 use super::first_slope::FirstSlope;
 use super::hermite::{Form, Node};
 use super::march::{KERNEL_TOLERANCE, past_of};
 use super::order::{Jump, Order};
 use super::sampled::{Nodes, negligible_slope};
-use super::{Definition, DerivativeError, FunctionError};
 use crate::fractional::gamma::reciprocal_gamma;
 use crate::fractional::kernel::Kernel;
 use crate::fractional::scheme::{Samples, Scheme, SchemeError};

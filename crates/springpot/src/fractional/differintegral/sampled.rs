@@ -1,12 +1,14 @@
 //! D^a of samples.
 
 use super::along::{Along, Start};
+use super::definition::Definition;
+use super::error::DerivativeError;
 use super::hermite::{Form, Node};
 use super::march::KERNEL_TOLERANCE;
+use super::method::Method;
 use super::order::Order;
 use super::stencil::{Equal, first_point};
 use super::uniform::{self, Grid};
-use super::{Definition, DerivativeError, Method};
 use crate::fractional::scheme::{Samples, Scheme};
 
 /// D^a x at every sample for −2 ≤ a ≤ 2, lower terminal t = 0.

@@ -1,7 +1,8 @@
 //! From a spectrum to a short series: trapezoidal rule in ln τ, Gauss rules for its ends, verification.
 
 use super::relaxation::REACH;
-use super::{PronyError, PronySeries, Relaxation, Slowest, Term, Window};
+use super::relaxation::Relaxation;
+use super::{PronyError, PronySeries, Slowest, Term, Window};
 use crate::fractional::mittag_leffler::Complex64;
 use crate::linalg::gauss_rule;
 use std::f64::consts::PI;

@@ -2,7 +2,7 @@
 
 use super::convolution::{causal_convolution, differences};
 use super::weights::weights;
-use crate::fractional::Kind;
+use crate::fractional::kind::Kind;
 
 /// h^−alpha Σ_k w_k x̃_{n−k} with (1−z)^alpha = Σ w_k z^k, on equal steps; k runs to `memory` where there is one.
 ///

@@ -1,7 +1,7 @@
 //! L1: the exact derivative or integral of the broken line through the samples.
 
-use super::SchemeError;
 use super::convolution::{causal_convolution, from_start};
+use super::error::SchemeError;
 use super::samples::{Samples, UniformPrefix};
 use crate::fractional::gamma::reciprocal_gamma;
 

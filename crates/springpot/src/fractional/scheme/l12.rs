@@ -1,7 +1,7 @@
 //! L1-2: the exact derivative or integral of parabolas through three samples each.
 
-use super::SchemeError;
 use super::convolution::{causal_convolution, differences, from_start};
+use super::error::SchemeError;
 use super::l1::{self, check_direct_terms, pieces, row_sum};
 use super::samples::Samples;
 use crate::fractional::gamma::reciprocal_gamma;

@@ -1,6 +1,7 @@
 //! Names of the schemes, as scenario files and the command line write them.
 
-use super::{Scheme, SchemeNameError};
+use super::Scheme;
+use super::error::SchemeNameError;
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::law::Build;
+use crate::law::catalog::Build;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const HZ: f64 = 2.0 * PI;

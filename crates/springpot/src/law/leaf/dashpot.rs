@@ -1,6 +1,8 @@
 //! The linear dashpot.
 
-use super::{Leaf, LocalError, Observation, Point, Powers, Response, StateRef, Step, Term};
+use super::contract::Leaf;
+use crate::law::state::StateRef;
+use crate::law::step::{LocalError, Observation, Point, Powers, Response, Step, Term};
 
 /// F = c·x'. Dissipates c·x'².
 #[derive(Debug, Clone, Copy, PartialEq)]

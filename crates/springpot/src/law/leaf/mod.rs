@@ -1,82 +1,13 @@
 //! The leaves of every law: what gives a force by itself.
 
+mod contract;
 mod dashpot;
 mod source;
 mod spring;
 mod springpot;
 
+pub use contract::Leaf;
 pub use dashpot::Dashpot;
 pub use source::Source;
 pub use spring::Spring;
 pub use springpot::{Coefficient, Springpot};
-
-use super::{
-    InputValue, LocalError, Observation, Point, Powers, Response, RuleError, Start, State, StateMut, StateRef,
-    StateSize, Step, Term,
-};
-use crate::fractional::KernelError;
-
-/// A part of a law that gives a force by itself: linear or not, with or without memories and inner variables.
-///
-/// It is asked at the nodes of a step and nowhere else. Asking is pure and may be done any number of times; [`Leaf::commit`] is the only
-/// change of its state, on accepted steps. What a leaf keeps is a share of the law's [`State`] whose size it declares: inner
-/// variables (a slip, a temperature) are collocated by the leaf at the same nodes ([`crate::fractional::Nodes::inverse`]) and eliminated there,
-/// so that to the outside it is a map from strokes and rates to forces. What is provided is that of a leaf that keeps nothing.
-pub trait Leaf: Send + Sync + std::fmt::Debug {
-    /// What it keeps between steps.
-    fn size(&self) -> StateSize {
-        StateSize::default()
-    }
-
-    /// Appends its memories and inner variables as they are at t = 0, as many as [`Leaf::size`] says.
-    ///
-    /// # Errors
-    /// [`KernelError`] where a memory cannot be.
-    fn begin(&self, _start: &Start, _state: &mut State) -> Result<(), KernelError> {
-        Ok(())
-    }
-
-    /// Makes ready what does not change while a step is worked out; no answer changes.
-    fn prepare(&self, _step: &Step, _state: StateMut) {}
-
-    /// Adds its forces at the nodes and their tangents.
-    fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response);
-
-    /// Takes an accepted step into the state.
-    fn commit(&self, _step: &Step, _state: StateMut) {}
-
-    /// Appends how well the step knows each of its memories and inner variables.
-    fn local_errors(&self, _step: &Step, _state: StateRef, _errors: &mut Vec<LocalError>) {}
-
-    /// Adds its energy flows at the start and at the nodes; zeros after a singular start.
-    fn powers(&self, _step: &Step, _state: StateRef, _powers: &mut Powers) {}
-
-    /// The leaf at t_n + theta·h, 0 < theta ≤ 1, where its exact kinematics are those of `at`.
-    fn at(&self, _step: &Step, _theta: f64, at: &Point, state: StateRef) -> Observation {
-        self.now(at, state)
-    }
-
-    /// The leaf between two steps, under the kinematics and inputs of `at`, which may have jumped since the last one.
-    fn now(&self, at: &Point, state: StateRef) -> Observation;
-
-    /// What it is like under small and fast strokes about `at`.
-    fn linearised(&self, at: &Point) -> Term;
-
-    /// F is an affine function of strokes and rates of a step.
-    fn is_linear(&self) -> bool {
-        false
-    }
-
-    /// s and order of the share s·t^−order of a singular start in F; `None` without one.
-    fn singular(&self, _inputs: &[InputValue], _state: StateRef) -> Option<Term> {
-        None
-    }
-
-    /// Rules over the inputs, to hold at every time.
-    ///
-    /// # Errors
-    /// [`RuleError`] names the broken rule.
-    fn check_inputs(&self, _inputs: &[InputValue]) -> Result<(), RuleError> {
-        Ok(())
-    }
-}

@@ -1,6 +1,8 @@
 //! A force that an input commands.
 
-use super::{Leaf, Observation, Point, Powers, Response, StateRef, Step, Term};
+use super::contract::Leaf;
+use crate::law::state::StateRef;
+use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
 
 /// F = −gain·(input − reference): expansion by heat or voltage, turned into force by a stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]

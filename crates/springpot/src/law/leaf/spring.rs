@@ -1,6 +1,8 @@
 //! The linear spring.
 
-use super::{Leaf, Observation, Point, Response, StateRef, Step, Term};
+use super::contract::Leaf;
+use crate::law::state::StateRef;
+use crate::law::step::{Observation, Point, Response, Step, Term};
 
 /// F = k·x. Stores ½k·x².
 #[derive(Debug, Clone, Copy, PartialEq)]

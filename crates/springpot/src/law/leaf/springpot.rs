@@ -1,12 +1,13 @@
 //! The springpot: a fractional derivative of the stroke.
 
-use super::{
-    InputValue, Leaf, LocalError, Observation, Point, Powers, Response, RuleError, Start, State, StateMut, StateRef,
-    StateSize, Step, Term,
-};
+use super::contract::Leaf;
+use crate::fractional::Kind as Derivative;
 use crate::fractional::step::MAX_NODES;
 use crate::fractional::{Form, KernelError, Memory, Nodes, RatePolynomial};
-use crate::law::{Derivative, Singular};
+use crate::law::catalog::RuleError;
+use crate::law::state::{State, StateMut, StateRef, StateSize};
+use crate::law::step::Singular;
+use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use std::borrow::Cow;
 
 /// A coefficient that may follow an input: constant + slope·input.

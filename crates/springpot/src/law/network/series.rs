@@ -6,9 +6,11 @@
 //! starts need not be consistent.
 
 use super::{MOST_IN_SERIES, Network, Onset, Reported};
+use crate::fractional::Kind as Derivative;
 use crate::fractional::step::MAX_NODES;
 use crate::fractional::{Form, KernelError, Nodes, RatePolynomial};
-use crate::law::{Derivative, LocalError, Point, Powers, Response, Start, State, StateMut, StateRef, Step};
+use crate::law::state::{State, StateMut, StateRef};
+use crate::law::step::{LocalError, Point, Powers, Response, Start, Step};
 
 type Matrix = [[f64; MAX_NODES]; MAX_NODES];
 type Values = [f64; MAX_NODES + 1];
@@ -180,7 +182,7 @@ pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: 
 struct Shorter {
     stroke: Values,
     rate: Values,
-    inputs: Vec<crate::law::InputValue>,
+    inputs: Vec<crate::law::step::InputValue>,
 }
 
 impl Shorter {
@@ -258,8 +260,8 @@ pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef) -> Report
 }
 
 /// What a series itself keeps: the strokes of its parts.
-fn own(parts: &[Network]) -> crate::law::StateSize {
-    crate::law::StateSize { memories: 0, variables: parts.len() }
+fn own(parts: &[Network]) -> crate::law::state::StateSize {
+    crate::law::state::StateSize { memories: 0, variables: parts.len() }
 }
 
 /// Finds the strokes of the parts under the strokes of `step`, from those at its start.

@@ -5,7 +5,7 @@ use super::limit;
 use super::problem::{UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
-use crate::model::{JointKind, JointSpec, Mimic};
+use crate::model::spec::{JointKind, JointSpec, Mimic};
 use crate::names::nearest;
 
 /// Types of the format, and of its neighbours, that are not built.

@@ -3,7 +3,7 @@
 use super::error::{Owner, UrdfError};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
-use crate::model::{JointKind, Limits};
+use crate::model::spec::{JointKind, Limits};
 
 /// Attributes of other programs and of later versions of the format.
 const UNUSED: [&str; 6] = ["acceleration", "deceleration", "jerk", "current", "command_effort", "gear_velocity"];

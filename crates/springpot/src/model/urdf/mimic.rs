@@ -6,7 +6,7 @@ use super::error::UrdfError;
 use super::joint::JointEntry;
 use super::problem::UrdfProblem;
 use super::reader::Reader;
-use crate::model::Mimic;
+use crate::model::spec::Mimic;
 use crate::names::nearest;
 
 /// Joints of a circle that a message names.

@@ -1,7 +1,8 @@
 //! What can be wrong with a URDF file.
 
 use super::error::Owner;
-use crate::model::{JointKind, ModelError};
+use crate::model::error::ModelError;
+use crate::model::spec::JointKind;
 
 /// What is wrong with a URDF file.
 #[derive(Debug, thiserror::Error)]

@@ -13,7 +13,7 @@ use super::source::Source;
 use super::tree::Tree;
 use super::warning::UrdfWarningKind;
 use super::{BodyLines, FLOATING_BASE, RootLink, Urdf, UrdfOptions, joint, link, mimic};
-use crate::model::{BodySpec, JointKind, JointSpec, Parent};
+use crate::model::spec::{BodySpec, JointKind, JointSpec, Parent};
 
 /// The inertial frame's name.
 const WORLD: &str = "world";

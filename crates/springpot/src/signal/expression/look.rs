@@ -2,7 +2,7 @@
 //! kinks lies there.
 
 use super::{Expression, MAX_STACK, Op, PI, Trace};
-use crate::signal::Jet;
+use crate::signal::jet::Jet;
 use crate::signal::jet::{Smooth, Value};
 use crate::signal::series::Series;
 use std::f64::consts::FRAC_PI_2;

@@ -1,0 +1,22 @@
+//! The laws that come with Springpot.
+
+use super::catalog::Catalog;
+use super::{kelvin_voigt, magnetorheological, piezo, thermoviscoelastic};
+use std::sync::Arc;
+
+impl Catalog {
+    /// The laws that come with Springpot.
+    pub fn standard() -> Self {
+        let entries = [
+            kelvin_voigt::spring(),
+            kelvin_voigt::dashpot(),
+            kelvin_voigt::springpot(),
+            kelvin_voigt::kelvin_voigt(),
+            kelvin_voigt::fractional_kelvin_voigt(),
+            thermoviscoelastic::thermoviscoelastic(),
+            piezo::piezo_kelvin_voigt(),
+            magnetorheological::magnetorheological(),
+        ];
+        Self { entries: entries.into_iter().map(Arc::new).collect() }
+    }
+}

@@ -1,0 +1,140 @@
+//! A function of time, whatever it is made of.
+
+use super::expression::Expression;
+use super::jet::Jet;
+use super::sampled::{SampleError, Samples};
+use std::sync::Arc;
+
+/// A function of time; cheap to clone.
+#[derive(Debug, Clone)]
+pub struct Signal {
+    pub(super) kind: Kind,
+    pub(super) scale: f64,
+    pub(super) offset: f64,
+}
+
+#[derive(Debug, Clone)]
+pub(super) enum Kind {
+    Constant(f64),
+    Expression(Arc<Expression>),
+    Samples(Arc<Samples>),
+}
+
+impl Signal {
+    fn new(kind: Kind) -> Self {
+        Self { kind, scale: 1.0, offset: 0.0 }
+    }
+
+    /// f(t) = value.
+    pub fn constant(value: f64) -> Self {
+        Self::new(Kind::Constant(value))
+    }
+
+    /// An expression of t.
+    pub fn expression(expression: Expression) -> Self {
+        Self::new(Kind::Expression(Arc::new(expression)))
+    }
+
+    /// Straight lines through (times_i, values_i): continuous, with a break at every sample inside.
+    ///
+    /// At least two samples, times strictly increasing, all finite. Outside the domain the first and last line go on.
+    pub fn linear(times: &[f64], values: &[f64]) -> Result<Self, SampleError> {
+        Ok(Self::new(Kind::Samples(Arc::new(Samples::linear(times, values)?))))
+    }
+
+    /// The C² cubic spline through (times_i, values_i) with not-a-knot ends: the third derivative is continuous at the
+    /// second and the last but one sample, so cubics are reproduced and the error is O(h⁴) up to the ends.
+    ///
+    /// At least two samples, times strictly increasing, all finite; three give the parabola and two the line. Outside the
+    /// domain the first and last polynomial go on.
+    pub fn spline(times: &[f64], values: &[f64]) -> Result<Self, SampleError> {
+        Ok(Self::new(Kind::Samples(Arc::new(Samples::spline(times, values)?))))
+    }
+
+    /// scale·signal + offset.
+    pub fn scaled(signal: Self, scale: f64, offset: f64) -> Self {
+        match signal.kind {
+            Kind::Constant(_) => Self::constant(scale * signal.value(0.0) + offset),
+            kind => Self { kind, scale: scale * signal.scale, offset: scale * signal.offset + offset },
+        }
+    }
+
+    /// Value and derivatives at `t`, in s. What is not finite is returned as it is.
+    pub fn at(&self, t: f64) -> Jet {
+        let jet = match &self.kind {
+            Kind::Constant(value) => return Jet::constant(*value),
+            Kind::Expression(expression) => expression.at(t),
+            Kind::Samples(samples) => samples.at(t),
+        };
+        Jet {
+            value: self.scale * jet.value + self.offset,
+            first: self.scale * jet.first,
+            second: self.scale * jet.second,
+        }
+    }
+
+    /// Value at `t`, in s: the same bits as `at(t).value`.
+    pub fn value(&self, t: f64) -> f64 {
+        let value = match &self.kind {
+            Kind::Constant(value) => return *value,
+            Kind::Expression(expression) => expression.value(t),
+            Kind::Samples(samples) => samples.at(t).value,
+        };
+        self.scale * value + self.offset
+    }
+
+    /// A number that changes where the expression has a kink or jump ([`Expression::branch`]); always 0 for other signals.
+    pub fn branch(&self, t: f64) -> u64 {
+        match &self.kind {
+            Kind::Expression(expression) => expression.branch(t),
+            Kind::Constant(_) | Kind::Samples(_) => 0,
+        }
+    }
+
+    /// Whether its value at `t` is that of this instant alone ([`Expression::turns_at`]).
+    pub fn turns_at(&self, t: f64) -> bool {
+        matches!(&self.kind, Kind::Expression(expression) if expression.turns_at(t))
+    }
+
+    /// Whether [`branch`](Self::branch) can change.
+    pub fn has_kinks(&self) -> bool {
+        matches!(&self.kind, Kind::Expression(expression) if expression.has_kinks())
+    }
+
+    /// Times inside the domain, increasing, where a derivative up to the third of sampled data jumps; none for others.
+    pub fn break_points(&self) -> &[f64] {
+        match &self.kind {
+            Kind::Samples(samples) => samples.break_points(),
+            Kind::Constant(_) | Kind::Expression(_) => &[],
+        }
+    }
+
+    /// First and last time of sampled data; `None`: defined everywhere.
+    pub fn domain(&self) -> Option<(f64, f64)> {
+        match &self.kind {
+            Kind::Samples(samples) => Some(samples.domain()),
+            Kind::Constant(_) | Kind::Expression(_) => None,
+        }
+    }
+
+    /// The value, if it is a number or an expression without t.
+    pub fn is_constant(&self) -> Option<f64> {
+        match &self.kind {
+            Kind::Constant(value) => Some(*value),
+            Kind::Expression(expression) => Some(self.scale * expression.is_constant()? + self.offset),
+            Kind::Samples(_) => None,
+        }
+    }
+}
+
+impl From<f64> for Signal {
+    fn from(value: f64) -> Self {
+        Self::constant(value)
+    }
+}
+
+impl From<Expression> for Signal {
+    fn from(expression: Expression) -> Self {
+        Self::expression(expression)
+    }
+}
