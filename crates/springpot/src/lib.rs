@@ -27,7 +27,7 @@
 //! A whole run in memory:
 //!
 //! ```
-//! use springpot::elements::Element;
+//! use springpot::elements::{Element, Line};
 //! use springpot::law::{Catalog, Derivative};
 //! use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
 //! use springpot::motion::{JointPath, Trajectory};
@@ -49,9 +49,12 @@
 //! let derivative = Derivative::Caputo;
 //! let strut = Element {
 //!     name: "strut".into(),
-//!     from: model.resolve(&Anchor { body: Parent::World, point: [0.0, 0.0, -0.3] })?,
-//!     to: model.resolve(&Anchor { body: Parent::Body(arm), point: [0.3, 0.0, 0.0] })?,
-//!     rest_length: 0.42,
+//!     measure: Line {
+//!         from: model.resolve(&Anchor { body: Parent::World, point: [0.0, 0.0, -0.3] })?,
+//!         to: model.resolve(&Anchor { body: Parent::Body(arm), point: [0.3, 0.0, 0.0] })?,
+//!     }
+//!     .into(),
+//!     rest: 0.42, // m
 //!     law: (entry.build)(&[50.0, 0.4], derivative)?, // c = 50 N·s^0.4/m
 //!     entry,
 //!     inputs: Vec::new(),
