@@ -217,8 +217,8 @@ impl<T: Scalar> Kinematics<T> {
         &self.joint_velocities
     }
 
-    /// Where moving joint `joint` stands, rad or m: of one that follows another, ratio · its coordinate + offset; without meaning for
-    /// a floating joint.
+    /// Where moving joint `joint` stands, rad or m; of one that follows another, ratio · its coordinate + offset. Without
+    /// meaning for a floating joint.
     #[inline]
     pub fn joint_coordinate(&self, joint: usize) -> T {
         self.stands.coordinate(joint)

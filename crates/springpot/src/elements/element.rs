@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 /// A massless one-dimensional material: a measure y of the configuration and a law.
 ///
-/// Stroke x = y − y0, force F; its generalized forces are Q_b = −F·∂y/∂q_b. Between two points ([`Line`](super::Line)) y is the length
-/// l, and F > 0 is tension: it pulls the points together. Laws are written for translation: on a rotation N reads N·m and m
-/// reads rad.
+/// Stroke x = y − y0, force F; its generalized forces are Q_b = −F·∂y/∂q_b. Between two points
+/// ([`Line`](super::Line)) y is the length l, and F > 0 is tension: it pulls the points together. Laws are written for
+/// translation: on a rotation N reads N·m and m reads rad.
 #[derive(Debug, Clone)]
 pub struct Element {
     /// Name.
@@ -41,7 +41,8 @@ impl Element {
         }
     }
 
-    /// The law's state at t = 0 at this coordinate y and under these inputs, its memories without kernels ([`Network::begin`]).
+    /// The law's state at t = 0 at this coordinate y and under these inputs, its memories without kernels
+    /// ([`Network::begin`]).
     ///
     /// # Errors
     /// [`KernelError`] where a memory cannot be.

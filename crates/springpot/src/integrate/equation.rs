@@ -44,7 +44,8 @@ pub struct Equation {
 pub struct ElementTerm {
     /// Its name.
     pub name: String,
-    /// y: the length of a line, m, or the coordinate of a joint, m or rad; on an angle m reads rad and N reads N·m in what follows.
+    /// y: the length of a line, m, or the coordinate of a joint, m or rad. On an angle m reads rad and N reads N·m in what
+    /// follows.
     pub length: f64,
     /// x = y − y0, m.
     pub stroke: f64,

@@ -132,8 +132,8 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// As [`Self::fill`] for all but the actuators and what rows alone ask for: from kinematics that are there, and from the readings
-    /// and inputs of the `elements`.
+    /// As [`Self::fill`] for all but the actuators and what rows alone ask for: from kinematics that are there, and from the
+    /// readings and inputs of the `elements`.
     pub(super) fn fill_energies<'s>(
         &self,
         t: f64,

@@ -9,7 +9,8 @@ use std::fmt;
 /// A number of an element. `Id` as in [`super::Quantity`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ElementQuantity<Id = usize> {
-    /// y: the length l of a line, m, or the coordinate of a joint, m or rad. On an angle m reads rad and N reads N·m in what follows.
+    /// y: the length l of a line, m, or the coordinate of a joint, m or rad. On an angle m reads rad and N reads N·m in what
+    /// follows.
     Length,
     /// x = y − y0, m.
     Stroke,

@@ -5,10 +5,11 @@ use super::{Direction, Forces, Measure, Pull, Reading};
 use crate::dynamics::Kinematics;
 use crate::model::{JointKind, Model};
 
-/// y = the coordinate of a joint of one degree of freedom, rad or m: ratio·q + offset of the joint that it follows, or its own q.
+/// The coordinate of a joint of one degree of freedom, rad or m: y = ratio·q + offset with the q of the joint that it
+/// follows, or y = q of its own.
 ///
-/// A force F > 0 (N·m or N) drives the coordinate down. Angles are not wrapped: a continuous joint winds up. It belongs to the
-/// [`Model`] that it was made of.
+/// A force F > 0 (N·m or N) drives the coordinate down. Angles are not wrapped: a continuous joint winds up. It belongs to
+/// the [`Model`] that it was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Joint {
     joint: usize,
@@ -36,8 +37,8 @@ pub enum JointMeasureError {
     },
     /// The joint has not one coordinate.
     #[error(
-        "joint \"{joint}\" is {}: an element acts on the coordinate of a joint of one degree of freedom, which is revolute, \
-         continuous or prismatic", kind.name()
+        "joint \"{joint}\" is {}: an element acts on the coordinate of a joint of one degree of freedom (revolute, \
+         continuous or prismatic)", kind.name()
     )]
     Kind {
         /// The joint.

@@ -1,7 +1,7 @@
 //! Measures: what an element sees of the configuration.
 //!
-//! A measure turns the configuration into one scalar y with rate y', gradient ∂y/∂q_b and second derivatives; a force F along it
-//! has the generalized forces Q_b = −F ∂y/∂q_b. It knows no law.
+//! A measure turns the configuration into one scalar y with rate y', gradient ∂y/∂q_b and second derivatives; a force F
+//! along it has the generalized forces Q_b = −F ∂y/∂q_b. It knows no law.
 
 mod forces;
 mod joint;
@@ -44,7 +44,8 @@ enum Direction {
 }
 
 impl Measure {
-    /// Reads y and y' into `reading` and ∂y/∂q_b into `gradient` (nv; all entries are written); needs velocities, does not allocate.
+    /// Reads y and y' into `reading` and ∂y/∂q_b into `gradient` (nv; all entries are written); needs velocities. Does not
+    /// allocate.
     ///
     /// Where [`Reading::check`] refuses, all but y is NaN or noise.
     #[inline]
@@ -70,7 +71,7 @@ impl Measure {
         }
     }
 
-    /// The largest term of y that is not y itself and does not change, m or rad: what its rounding is to be measured by beside y.
+    /// The constant term of y, m or rad: beside y the measure of its rounding.
     pub(super) fn offset(&self) -> f64 {
         match self {
             Self::Line(_) => 0.0,

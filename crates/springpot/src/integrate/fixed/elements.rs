@@ -59,9 +59,9 @@ impl OneStage {
 
     /// Asks the elements.
     ///
-    /// With the midpoint rule, which acts along ∂y/∂q at the stage, the law gets the mean of the strokes at both ends and the rate
-    /// (x_1 − x_0)/h. The work of a spring is then the energy that it takes up, but for terms of order h³: with strokes and rates of the stage
-    /// itself stiff elements make energy.
+    /// With the midpoint rule, which acts along ∂y/∂q at the stage, the law gets the mean of the strokes at both ends and the
+    /// rate (x_1 − x_0)/h. The work of a spring is then the energy that it takes up, but for terms of order h³: with strokes
+    /// and rates of the stage itself stiff elements make energy.
     pub(super) fn respond(&mut self, cx: Context, bank: &mut ElementBank, h: f64) -> Result<(), RunError> {
         let ends_at_stage = self.method.node() == 1.0;
         self.forces.clear();

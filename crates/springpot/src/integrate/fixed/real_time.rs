@@ -171,8 +171,8 @@ impl<'a> Loop<'a> {
         &self.stage.a
     }
 
-    /// Force of an element, N (N·m where it acts on an angle), positive in tension, as the last step took it: at its end with backward Euler's method, its mean with
-    /// the midpoint rule; 0 before the first step.
+    /// Force of an element, N (N·m where it acts on an angle), positive in tension, as the last step took it: at its end
+    /// with backward Euler's method, its mean with the midpoint rule; 0 before the first step.
     pub fn force(&self, element: usize) -> f64 {
         self.bank.response(element).force[0]
     }

@@ -54,8 +54,8 @@ impl Fixed {
         })
     }
 
-    /// Tells the bank the step at the nodes of the ledger: coordinates on a straight line between its ends, as its memories take it, and the
-    /// rates of the cubic through coordinates and rates there.
+    /// Tells the bank the step at the nodes of the ledger: coordinates of the measures on a straight line between its ends,
+    /// as its memories take it, and the rates of the cubic through coordinates and rates there.
     fn tell_ledger(&self, cx: Context, bank: &mut ElementBank, target: &Target) {
         bank.set_nodes(Nodes::Radau);
         for (e, (element, step)) in cx.system.elements.iter().zip(&self.step.elements).enumerate() {

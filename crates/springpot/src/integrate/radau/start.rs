@@ -59,7 +59,8 @@ fn begin(cx: Context, e: usize, point: &Point, coordinate: f64) -> Result<State,
     begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })
 }
 
-/// Decides which joints friction holds at the origin, with the whole `force` of each element, which is told its coordinate.
+/// Decides which joints friction holds at the origin, with the whole `force` of each element, which is told its
+/// coordinate.
 ///
 /// # Errors
 /// [`RunError::NoHold`].

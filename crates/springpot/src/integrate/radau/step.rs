@@ -41,7 +41,8 @@ pub(super) struct ElementStage {
     pub(super) readings: [Reading; MAX_NODES + 1],
     /// ∂y/∂q at the start.
     pub(super) gradient: Vec<f64>,
-    /// −M⁻¹ ∂y/∂q at the start: the accelerations that a unit of force gives. Only kept up to date where a run needs it.
+    /// −M⁻¹ ∂y/∂q at the start: the accelerations that a unit of force gives. Only kept up to date where a run needs
+    /// it.
     pub(super) share: Vec<f64>,
     /// What a singular start had in the force at the start of the step, N.
     pub(super) singular_before: f64,
