@@ -15,6 +15,7 @@ use std::time::Instant;
 
 use springpot::actuation::{Drive, Forward};
 use springpot::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pair, rnea_derivatives_into, rnea_into};
+use springpot::elements::{Line, Measure};
 use springpot::fractional::{Kernel, gamma::gamma};
 use springpot::integrate::{RowTimes, Settings, Stop, System, run};
 use springpot::law::Catalog;
@@ -83,14 +84,15 @@ fn springpot(system: &System, settings: &Settings, rtol: f64, repeats: usize) ->
 /// Average acceleration with D^alpha x by L1 over the whole past: q and v at the end.
 fn full_history(system: &System, alpha: f64, steps: usize) -> Vec<f64> {
     let (model, element) = (&system.model, &system.elements[0]);
+    let Measure::Line(Line { from, to }) = element.measure else { unreachable!("an element between two points") };
     let h = END / steps as f64;
     let scale = h.powf(-alpha) / gamma(2.0 - alpha);
     let power = |k: usize| (k as f64).powf(1.0 - alpha);
     let weights: Vec<f64> = (0..steps).map(|k| power(k + 1) - power(k)).collect();
     let (k, c, drive) = (50.0, 50.0, 0.0007 * 20.0 * 25.0);
     let stretch = |q: &[f64], v: &[f64]| {
-        let (here, gradient) = pair(model, &Kinematics::at_velocity(model, q, v), &element.from, &element.to);
-        (here.length - element.rest_length, gradient)
+        let (here, gradient) = pair(model, &Kinematics::at_velocity(model, q, v), &from, &to);
+        (here.length - element.rest, gradient)
     };
     let (mut q, mut v, mut a) = (vec![0.0; 3], vec![0.0; 3], vec![0.0; 3]);
     let mut workspace = Workspace::new(model);
@@ -98,8 +100,7 @@ fn full_history(system: &System, alpha: f64, steps: usize) -> Vec<f64> {
     let mut residual = vec![0.0; 3];
     let mut travels: Vec<f64> = Vec::with_capacity(steps);
     let mut before = stretch(&q, &v).0;
-    let start =
-        [PairForce { from: element.from, to: element.to, force: k * before - drive, d_length: 0.0, d_rate: 0.0 }];
+    let start = [PairForce { from, to, force: k * before - drive, d_length: 0.0, d_rate: 0.0 }];
     a.copy_from_slice(&springpot::dynamics::aba(model, &q, &v, &[0.0; 3], &start));
     for n in 0..steps {
         let past: f64 = travels.iter().rev().zip(&weights[1..]).map(|(travel, weight)| travel * weight).sum();
@@ -112,7 +113,7 @@ fn full_history(system: &System, alpha: f64, steps: usize) -> Vec<f64> {
             let stroke = stretch(&q, &v).0;
             let force = k * stroke + c * scale * (past + stroke - before) - drive;
             let stiffness = k + c * scale;
-            let pairs = [PairForce { from: element.from, to: element.to, force, d_length: stiffness, d_rate: 0.0 }];
+            let pairs = [PairForce { from, to, force, d_length: stiffness, d_rate: 0.0 }];
             rnea_into(model, &q, &v, &a, &pairs, &mut workspace, &mut residual);
             rnea_derivatives_into(
                 model,

@@ -147,7 +147,7 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u6
         line("", &parameters(plan_of));
         let Some(start) = start.map(|start| &start[e]) else { continue };
         let (length, stroke) = (range(start.length, warnings.lengths(e)), range(start.stroke, warnings.strokes(e)));
-        line("", &format!("l(0) = {length}, l0 = {} m", short(element.rest_length)));
+        line("", &format!("l(0) = {length}, l0 = {} m", short(element.rest)));
         line("", &format!("x(0) = {stroke}"));
         line("", &format!("dl/dq = {}", gradient(plan, start)));
     }

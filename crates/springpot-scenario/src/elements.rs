@@ -9,7 +9,7 @@ use super::refusal::RefusalKind;
 use super::robot::{Robot, checked_name, unique};
 use super::signals::{self, Wanted, celsius, how_outside, interval};
 use super::time::Duration;
-use springpot::elements::Element;
+use springpot::elements::{Element, Line};
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
 use springpot::integrate::RowTimes;
 use springpot::law::{Derivative, Entry, Param};
@@ -100,9 +100,8 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     let site = |anchor: &Anchor| robot.model().resolve(anchor).expect("an anchor that was read");
     let mut element = Element {
         name: String::new(),
-        from: site(&from),
-        to: site(&to),
-        rest_length: 0.0,
+        measure: Line { from: site(&from), to: site(&to) }.into(),
+        rest: 0.0,
         law: object?,
         entry: Arc::clone(law),
         inputs: inputs.iter().map(|input| input.signal.clone()).collect(),

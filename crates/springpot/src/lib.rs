@@ -15,10 +15,10 @@
 //! | [`fractional`] | derivatives and integrals of order −2 … 2: samples, streams, functions; kernel, memory, named schemes | nothing |
 //! | [`law`] | stroke history → force; the catalog of laws | `fractional` |
 //! | [`signal`] | functions of time with exact derivatives | nothing |
-//! | [`element`] | a law between two anchors | `model`, `law`, `signal` |
+//! | [`elements`] | a law along a measure: the distance of two points, the coordinate of a joint; the bank of laws | `model`, `dynamics`, `law`, `signal` |
 //! | [`motion`] | q, v, a as functions of time: prescribed, gripper paths | `dynamics`, `signal` |
-//! | [`observe`] | what can be observed: quantities with names, units and values; the table in memory | `element`, `table` |
-//! | [`simulate`] | the time loop: rows, step control, energy | all above |
+//! | [`observe`] | what can be observed: quantities with names, units and values; the table in memory | `elements`, `table` |
+//! | [`integrate`] | the time loop: rows, step control, energy | all above |
 //! | [`table`] | the columns of rows | nothing |
 //!
 //! It knows numbers only: no files but URDF, no threads, no terminal. Scenario files are read by the crate `springpot-scenario`, sweeps,
@@ -27,7 +27,7 @@
 //! A whole run in memory:
 //!
 //! ```
-//! use springpot::elements::Element;
+//! use springpot::elements::{Element, Line};
 //! use springpot::law::{Catalog, Derivative};
 //! use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
 //! use springpot::motion::{JointPath, Trajectory};
@@ -49,9 +49,12 @@
 //! let derivative = Derivative::Caputo;
 //! let strut = Element {
 //!     name: "strut".into(),
-//!     from: model.resolve(&Anchor { body: Parent::World, point: [0.0, 0.0, -0.3] })?,
-//!     to: model.resolve(&Anchor { body: Parent::Body(arm), point: [0.3, 0.0, 0.0] })?,
-//!     rest_length: 0.42,
+//!     measure: Line {
+//!         from: model.resolve(&Anchor { body: Parent::World, point: [0.0, 0.0, -0.3] })?,
+//!         to: model.resolve(&Anchor { body: Parent::Body(arm), point: [0.3, 0.0, 0.0] })?,
+//!     }
+//!     .into(),
+//!     rest: 0.42, // m
 //!     law: (entry.build)(&[50.0, 0.4], derivative)?, // c = 50 N·s^0.4/m
 //!     entry,
 //!     inputs: Vec::new(),

@@ -59,10 +59,10 @@ impl Warnings {
             widen(&mut element.length, start.length);
             widen(&mut element.stroke, start.stroke);
             let found = |found: &mut Option<Found>| {
-                let new = || Found { index, cases: 0, start: start.clone(), rest_length: plan.element.rest_length };
+                let new = || Found { index, cases: 0, start: start.clone(), rest_length: plan.element.rest };
                 found.get_or_insert_with(new).cases += 1;
             };
-            if start.stroke.abs() > LARGE_STROKE * plan.element.rest_length {
+            if start.stroke.abs() > LARGE_STROKE * plan.element.rest {
                 found(&mut element.large);
             }
             if start.singular {

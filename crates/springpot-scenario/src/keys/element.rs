@@ -49,5 +49,4 @@ pub(crate) static ELEMENT: Keys = Keys {
 };
 
 /// Its keys that are numbers of the element.
-pub(crate) const ELEMENT_FIELDS: &[Field<Element>] =
-    &[("rest_length", |element| Slot::Number(&mut element.rest_length))];
+pub(crate) const ELEMENT_FIELDS: &[Field<Element>] = &[("rest_length", |element| Slot::Number(&mut element.rest))];

@@ -54,7 +54,7 @@ fn the_example_is_planned_whole() {
     assert_eq!(strut.element.name, "strut");
     assert_eq!(strut.from, Anchor { body: Parent::Body(0), point: [0.14, -0.1, 0.08] });
     assert_eq!(strut.to, Anchor { body: Parent::Body(2), point: [-0.06, 0.1, 0.08] });
-    assert_eq!(strut.element.rest_length, 0.7);
+    assert_eq!(strut.element.rest, 0.7);
     assert_eq!(strut.element.entry.name, "thermoviscoelastic");
     assert_eq!(strut.inputs[0].constant, Some(298.15));
     assert_eq!(strut.inputs[0].written, "25 degC");

@@ -27,6 +27,12 @@ impl<T: Scalar> Stands<T> {
         T::sin_cos_each(&self.coordinates, &mut self.sines, &mut self.cosines);
     }
 
+    /// The coordinate of joint `j` of one degree, as last read.
+    #[inline]
+    pub(super) fn coordinate(&self, j: usize) -> T {
+        self.coordinates[j]
+    }
+
     /// The link frame of joint `j` in the frame of its parent link; `q` as it was read.
     #[inline]
     pub(super) fn placement(&self, model: &Model, j: usize, q: &[T]) -> Placement<T> {

@@ -217,6 +217,13 @@ impl<T: Scalar> Kinematics<T> {
         &self.joint_velocities
     }
 
+    /// Where moving joint `joint` stands, rad or m; of one that follows another, ratio · its coordinate + offset. Without
+    /// meaning for a floating joint.
+    #[inline]
+    pub fn joint_coordinate(&self, joint: usize) -> T {
+        self.stands.coordinate(joint)
+    }
+
     /// From the origin of the point's link to the point, world axes.
     #[inline]
     pub(super) fn arm(&self, site: &Site) -> Vec3<T> {

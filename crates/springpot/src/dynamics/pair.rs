@@ -6,12 +6,13 @@ use super::line::Line;
 use super::workspace::Workspace;
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// Multiples of the rounding unit of the positions below which a distance has no direction.
 const DIRECTION_TOLERANCE: f64 = 16.0 * f64::EPSILON;
 
 /// Distance of two points in one state.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pair<T = f64> {
     /// l = |l_vec| with l_vec = r_to − r_from, m.
     pub length: T,

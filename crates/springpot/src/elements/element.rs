@@ -1,26 +1,25 @@
-//! A material between two points: anchors + law + inputs. The only place where bodies and laws meet.
+//! A material: measure + law + inputs. The only place where bodies and laws meet.
 
+use super::Measure;
 use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
 use crate::law::{Derivative, Entry, InputValue, Network, Start, State};
-use crate::model::Site;
 use crate::signal::Signal;
 use std::sync::Arc;
 
-/// A massless one-dimensional material between point D_i (`from`) and point D_j (`to`).
+/// A massless one-dimensional material: a measure y of the configuration and a law.
 ///
-/// Length l = |r_Dj − r_Di|, stroke x = l − l0, force F > 0 in tension; it pulls the two points together, so that its
-/// generalized forces are Q_b = −F·∂l/∂q_b.
+/// Stroke x = y − y0, force F; its generalized forces are Q_b = −F·∂y/∂q_b. Between two points
+/// ([`Line`](super::Line)) y is the length l, and F > 0 is tension: it pulls the points together. Laws are written for
+/// translation: on a rotation N reads N·m and m reads rad.
 #[derive(Debug, Clone)]
 pub struct Element {
     /// Name.
     pub name: String,
-    /// D_i.
-    pub from: Site,
-    /// D_j.
-    pub to: Site,
-    /// l0, m.
-    pub rest_length: f64,
+    /// What it sees of the configuration.
+    pub measure: Measure,
+    /// y0, at which the stroke is 0, m or rad: the rest length of a line.
+    pub rest: f64,
     /// The law.
     pub law: Network,
     /// Its entry of the catalog, which copies of the element share.
@@ -42,22 +41,29 @@ impl Element {
         }
     }
 
-    /// The law's state at t = 0 at this length and under these inputs, its memories without kernels ([`Network::begin`]).
+    /// The law's state at t = 0 at this coordinate y and under these inputs, its memories without kernels
+    /// ([`Network::begin`]).
     ///
     /// # Errors
     /// [`KernelError`] where a memory cannot be.
-    pub fn begin(&self, length: f64, inputs: &[InputValue]) -> Result<State, KernelError> {
-        self.law.begin(&Start { stroke: length - self.rest_length, jump: self.jump(length), inputs })
+    pub fn begin(&self, coordinate: f64, inputs: &[InputValue]) -> Result<State, KernelError> {
+        self.law.begin(&Start { stroke: self.stroke(coordinate), jump: self.jump(coordinate), inputs })
     }
 
-    /// x(0) as a Riemann–Liouville start counts it: 0 where it is no more than the rounding of the lengths.
-    pub fn jump(&self, length: f64) -> f64 {
-        let stroke = length - self.rest_length;
-        if stroke.abs() <= self.resolution(length) { 0.0 } else { stroke }
+    /// x = y − y0, m or rad.
+    #[inline]
+    pub fn stroke(&self, coordinate: f64) -> f64 {
+        coordinate - self.rest
     }
 
-    /// Rounding of a stroke, m.
-    pub fn resolution(&self, length: f64) -> f64 {
-        8.0 * f64::EPSILON * length.max(self.rest_length)
+    /// x(0) as a Riemann–Liouville start counts it: 0 where it is no more than the rounding of the coordinates.
+    pub fn jump(&self, coordinate: f64) -> f64 {
+        let stroke = self.stroke(coordinate);
+        if stroke.abs() <= self.resolution(coordinate) { 0.0 } else { stroke }
+    }
+
+    /// Rounding of a stroke, m or rad.
+    pub fn resolution(&self, coordinate: f64) -> f64 {
+        8.0 * f64::EPSILON * coordinate.abs().max(self.rest.abs()).max(self.measure.offset())
     }
 }

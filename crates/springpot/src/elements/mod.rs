@@ -1,8 +1,11 @@
-//! Elements: a material between two points, and all elements of a system without a robot.
+//! Elements: a measure of the configuration with a law, and all elements of a system without a robot.
 
 mod bank;
 mod element;
+mod measure;
 
 pub(crate) use bank::Kept;
 pub use bank::{ElementBank, MemoryRange};
 pub use element::Element;
+pub(crate) use measure::{Forces, Pull};
+pub use measure::{Joint, JointMeasureError, Line, Measure, Reading};

@@ -44,9 +44,10 @@ pub struct Equation {
 pub struct ElementTerm {
     /// Its name.
     pub name: String,
-    /// l, m.
+    /// y: the length of a line, m, or the coordinate of a joint, m or rad. On an angle m reads rad and N reads N·m in what
+    /// follows.
     pub length: f64,
-    /// x = l − l0, m.
+    /// x = y − y0, m.
     pub stroke: f64,
     /// x', m/s.
     pub rate: f64,
@@ -54,7 +55,7 @@ pub struct ElementTerm {
     pub derivative: f64,
     /// F, N, positive in tension.
     pub force: f64,
-    /// Q_b = −F ∂l/∂q_b.
+    /// Q_b = −F ∂y/∂q_b.
     pub q_force: Vec<f64>,
     /// Values of its inputs in the order of its law, SI.
     pub inputs: Vec<f64>,

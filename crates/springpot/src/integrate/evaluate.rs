@@ -3,15 +3,14 @@
 use super::context::Context;
 use super::resistance::{add_resistance, joint_loss};
 use super::{RunError, System};
-use crate::dynamics::{Kinematics, Pair, Workspace, kinetic_energy, pair_into, potential_energy, rnea_at_into};
-use crate::elements::Element;
+use crate::dynamics::{Kinematics, Workspace, kinetic_energy, potential_energy, rnea_at_into};
+use crate::elements::{Element, Reading};
 use crate::law::{InputValue, Point};
 use crate::model::Model;
 use crate::motion::{Trajectory, Wanted};
 use crate::observe::Snapshot;
 pub(super) use crate::observe::snapshot::{ElementMoment, Moment};
 use crate::observe::{ElementQuantity, Quantity};
-use crate::spatial::Vec3;
 
 /// Scratch of [`Context::evaluate`].
 #[derive(Debug)]
@@ -27,15 +26,8 @@ impl Scratch {
 }
 
 impl ElementMoment {
-    fn take(&mut self, element: &Element, pair: &Pair) {
-        self.length = pair.length;
-        self.stroke = pair.length - element.rest_length;
-        self.rate = pair.rate;
-        self.direction = pair.direction;
-    }
-
     pub(super) fn point(&self, t: f64) -> Point<'_> {
-        Point { t, stroke: self.stroke, rate: self.rate, inputs: &self.inputs }
+        Point { t, stroke: self.stroke, rate: self.reading.rate, inputs: &self.inputs }
     }
 }
 
@@ -43,10 +35,8 @@ impl Moment {
     pub(super) fn new(system: &System) -> Self {
         let n = system.model.nv();
         let element = |element: &Element| ElementMoment {
-            length: 0.0,
+            reading: Reading::default(),
             stroke: 0.0,
-            rate: 0.0,
-            direction: Vec3([0.0; 3]),
             gradient: vec![0.0; n],
             inputs: vec![InputValue::default(); element.inputs.len()],
         };
@@ -126,11 +116,9 @@ impl Context<'_> {
         moment.potential = potential_energy(&self.system.model, kinematics);
         moment.joint_loss = add_resistance(&self.system.model, &moment.v, &mut moment.rigid);
         for (e, (element, state)) in self.system.elements.iter().zip(&mut moment.elements).enumerate() {
-            let pair = pair_into(&self.system.model, kinematics, &element.from, &element.to, &mut state.gradient);
-            if pair.check().is_err() {
-                return Err(RunError::ZeroLength { t, element: element.name.clone(), length: pair.length });
-            }
-            state.take(element, &pair);
+            element.measure.read_into(&self.system.model, kinematics, &mut state.gradient, &mut state.reading);
+            element.check_direction(t, &state.reading)?;
+            state.stroke = element.stroke(state.reading.coordinate);
             self.inputs_at(e, t_inputs, &mut state.inputs);
             element.check_inputs(t, &state.inputs)?;
         }
@@ -144,21 +132,23 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// As [`Self::fill`] for all but the actuators and what rows alone ask for: from kinematics that are there, and from the `pairs` and
-    /// inputs of the elements.
+    /// As [`Self::fill`] for all but the actuators and what rows alone ask for: from kinematics that are there, and from the
+    /// readings and inputs of the `elements`.
     pub(super) fn fill_energies<'s>(
         &self,
         t: f64,
         kinematics: &Kinematics,
-        elements: impl Iterator<Item = (Pair, &'s [InputValue])>,
+        elements: impl Iterator<Item = (&'s Reading, &'s [InputValue])>,
         moment: &mut Moment,
     ) {
         moment.t = t;
         moment.kinetic = kinetic_energy(&self.system.model, kinematics);
         moment.potential = potential_energy(&self.system.model, kinematics);
         moment.joint_loss = joint_loss(&self.system.model, &moment.v);
-        for ((element, state), (pair, inputs)) in self.system.elements.iter().zip(&mut moment.elements).zip(elements) {
-            state.take(element, &pair);
+        let states = self.system.elements.iter().zip(&mut moment.elements);
+        for ((element, state), (reading, inputs)) in states.zip(elements) {
+            state.reading.clone_from(reading);
+            state.stroke = element.stroke(reading.coordinate);
             state.inputs.copy_from_slice(inputs);
         }
     }
@@ -176,6 +166,14 @@ impl Context<'_> {
 }
 
 impl Element {
+    /// # Errors
+    /// [`RunError::ZeroLength`] where its force has no direction.
+    #[inline]
+    pub(super) fn check_direction(&self, t: f64, reading: &Reading) -> Result<(), RunError> {
+        let zero = |_| RunError::ZeroLength { t, element: self.name.clone(), length: reading.coordinate };
+        reading.check().map_err(zero)
+    }
+
     pub(super) fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {
         for (row, input) in self.entry.inputs.iter().zip(inputs) {
             if !input.value.is_finite() {

@@ -32,9 +32,9 @@ pub(super) fn derivatives(
         cx.evaluate(trajectory, t, t, scratch, &mut moment)?;
         for (e, state) in moment.elements.iter().enumerate() {
             // A start within rounding of 0 is no jump.
-            let stroke = if t == 0.0 { system.elements[e].jump(state.length) } else { state.stroke };
+            let stroke = if t == 0.0 { system.elements[e].jump(state.reading.coordinate) } else { state.stroke };
             strokes[e].push(stroke);
-            rates[e].push(state.rate);
+            rates[e].push(state.reading.rate);
         }
     }
     let derivative = |e: usize| {
@@ -68,6 +68,6 @@ pub(super) fn on_grid_observation(
 
 /// The state of a law that knows no past.
 fn begin(element: &Element, inputs: &[InputValue]) -> Result<State, RunError> {
-    let begun = element.begin(element.rest_length, inputs);
+    let begun = element.begin(element.rest, inputs);
     begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })
 }

@@ -84,8 +84,9 @@ impl<'a> Output<'a> {
             written.residual_at = moment.t;
         }
         written.residual = if residual.is_nan() { f64::NAN } else { written.residual.max(residual.abs()) };
-        // Strokes are differences of lengths, heights of bodies are counted from the world's origin.
-        let forces = elements.iter().zip(&moment.elements).map(|(row, at)| (row.observation.force() * at.length).abs());
+        // Strokes are differences of coordinates, heights of bodies are counted from the world's origin.
+        let forces = elements.iter().zip(&moment.elements);
+        let forces = forces.map(|(row, at)| (row.observation.force() * at.reading.coordinate).abs());
         let origin = driver.recorder.potential_origin().abs();
         let sizes = moment.potential.abs() + origin + forces.filter(|x| x.is_finite()).sum::<f64>();
         written.rounding = written.rounding.max(64.0 * f64::EPSILON * sizes);

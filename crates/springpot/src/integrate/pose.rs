@@ -9,11 +9,11 @@ use crate::spatial::Vec3;
 /// An element at t = 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementStart {
-    /// l(0), m.
+    /// y(0): the length of a line, m, or the coordinate of a joint, m or rad.
     pub length: f64,
-    /// x(0), m.
+    /// x(0), m or rad.
     pub stroke: f64,
-    /// ∂l/∂q_b, nv values.
+    /// ∂y/∂q_b, nv values.
     pub gradient: Vec<f64>,
     /// Whether its energies are unknown: a Riemann–Liouville start from x(0) ≠ 0, at which a springpot has an infinite force.
     pub singular: bool,
@@ -48,10 +48,11 @@ impl System {
         (moment.q, moment.v, moment.a) = (q, v, a);
         self.context().fill(0.0, 0.0, None, &mut Scratch::new(&self.model), &mut moment)?;
         let starts = self.elements.iter().zip(moment.elements).map(|(element, state)| {
-            let begun = element.begin(state.length, &state.inputs);
+            let begun = element.begin(state.reading.coordinate, &state.inputs);
             let singular = begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
             let singular = !singular.is_accounted();
-            Ok(ElementStart { length: state.length, stroke: state.stroke, gradient: state.gradient, singular })
+            let (length, stroke) = (state.reading.coordinate, state.stroke);
+            Ok(ElementStart { length, stroke, gradient: state.gradient, singular })
         });
         starts.collect()
     }

@@ -81,7 +81,10 @@ impl ModelBuilder {
             JointKind::Floating => Some(JointMotion::Floating),
         };
         let frame = match motion {
-            None => Frame { link: parent.link, placement: in_parent_link },
+            None => {
+                self.model.fixed_joints.push(joint.name);
+                Frame { link: parent.link, placement: in_parent_link }
+            }
             Some(motion) => self.add_link(parent.link, in_parent_link, motion, joint, body),
         };
         let model = &mut self.model;

@@ -45,6 +45,8 @@ pub struct Model {
     pub(super) last_degrees: Vec<usize>,
     /// One more than the velocity that the elimination of velocity i touches next, or 0.
     pub(super) pivots: Vec<usize>,
+    /// Names of the fixed joints.
+    pub(super) fixed_joints: Vec<String>,
     // One entry per described body.
     pub(super) frames: Vec<Frame>,
     pub(super) body_names: Vec<String>,
@@ -77,6 +79,7 @@ impl Model {
             carriers: Vec::new(),
             last_degrees: vec![0],
             pivots: Vec::new(),
+            fixed_joints: Vec::new(),
             world_names: Vec::new(),
             frames: Vec::new(),
             body_names: Vec::new(),
@@ -124,6 +127,11 @@ impl Model {
     /// Index of the moving joint called `name`.
     pub fn joint_index(&self, name: &str) -> Option<usize> {
         self.joint_names.iter().position(|other| other == name)
+    }
+
+    /// Whether a fixed joint is called `name`.
+    pub fn has_fixed_joint(&self, name: &str) -> bool {
+        self.fixed_joints.iter().any(|other| other == name)
     }
 
     /// What moving joint `joint` is; never [`JointKind::Fixed`].

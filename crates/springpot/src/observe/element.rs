@@ -9,9 +9,10 @@ use std::fmt;
 /// A number of an element. `Id` as in [`super::Quantity`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ElementQuantity<Id = usize> {
-    /// l, m.
+    /// y: the length l of a line, m, or the coordinate of a joint, m or rad. On an angle m reads rad and N reads N·m in what
+    /// follows.
     Length,
-    /// x = l − l0, m.
+    /// x = y − y0, m.
     Stroke,
     /// x', m/s.
     Rate,
@@ -19,7 +20,7 @@ pub enum ElementQuantity<Id = usize> {
     Derivative,
     /// F, N, positive in tension.
     Force,
-    /// Q_b = −F·∂l/∂q_b of a velocity b: N·m or N.
+    /// Q_b = −F·∂y/∂q_b of a velocity b: N·m or N.
     GeneralizedForce(Id),
     /// Energy stored, J; unknown where the derivative comes from a named scheme.
     Stored,
@@ -43,9 +44,9 @@ impl ElementQuantity {
     pub(super) fn value(self, row: &ElementRow, state: &ElementMoment) -> f64 {
         let ElementRow { observation, dissipated, input } = row;
         match self {
-            Self::Length => state.length,
+            Self::Length => state.reading.coordinate,
             Self::Stroke => state.stroke,
-            Self::Rate => state.rate,
+            Self::Rate => state.reading.rate,
             Self::Derivative => observation.derivative,
             Self::Force => observation.force(),
             Self::GeneralizedForce(k) => generalized_force(row, state, k),
@@ -58,11 +59,15 @@ impl ElementQuantity {
 
     /// Its unit.
     pub(super) fn unit<'a>(self, element: &'a ObservedElement, velocities: &[Label]) -> &'a str {
+        let of_element = |[rotation, translation]: [&'static str; 2]| match element.is_rotation {
+            true => rotation,
+            false => translation,
+        };
         match self {
-            Self::Length | Self::Stroke => "m",
-            Self::Rate => "m/s",
+            Self::Length | Self::Stroke => of_element(["rad", "m"]),
+            Self::Rate => of_element(["rad/s", "m/s"]),
             Self::Derivative => element.derivative_unit,
-            Self::Force => "N",
+            Self::Force => of_element(["N*m", "N"]),
             Self::GeneralizedForce(k) => of_measure(&velocities[k], FORCES),
             Self::Stored | Self::Dissipated | Self::Input => "J",
             Self::InputValue(i) => &element.entry.inputs[i].unit,
@@ -115,6 +120,16 @@ impl<'a> ElementQuantity<&'a str> {
         }
     }
 
+    /// [`Self::meaning`] where the element acts on the coordinate of a joint.
+    pub(super) fn meaning_on_joint(&self, element: &str) -> String {
+        match self {
+            Self::Length => format!("coordinate of the joint of {element}"),
+            Self::Stroke => format!("coordinate of the joint of {element} less its rest value"),
+            Self::Force => format!("force of {element}, positive where it drives the coordinate down"),
+            _ => self.meaning(element),
+        }
+    }
+
     /// What figures call it.
     pub(super) fn symbol(&self, element: &str) -> String {
         match self {
@@ -150,7 +165,7 @@ impl fmt::Display for ElementQuantity<&str> {
     }
 }
 
-/// Q_b = −F·∂l/∂q_b.
+/// Q_b = −F·∂y/∂q_b.
 pub(super) fn generalized_force(row: &ElementRow, state: &ElementMoment, b: usize) -> f64 {
     -row.observation.force() * state.gradient[b]
 }

@@ -1,7 +1,7 @@
 //! What can be observed of a system, in the order of its rows.
 
 use super::{Axis, ElementQuantity, EnergyQuantity, Quantity};
-use crate::elements::Element;
+use crate::elements::{self, Element};
 use crate::law::{Entry, InputValue, Point};
 use crate::model::{Label, Measure, Model};
 use crate::table::Column;
@@ -63,6 +63,9 @@ pub struct Observables {
 #[derive(Debug, Clone)]
 pub(super) struct ObservedElement {
     pub(super) name: String,
+    /// Whether it acts on the coordinate of a joint.
+    on_joint: bool,
+    pub(super) is_rotation: bool,
     pub(super) derivative_unit: &'static str,
     pub(super) entry: Arc<Entry>,
 }
@@ -72,6 +75,8 @@ impl Observables {
     pub fn new<'a>(model: &Model, elements: impl IntoIterator<Item = &'a Element>) -> Self {
         let element = |element: &Element| ObservedElement {
             name: element.name.clone(),
+            on_joint: matches!(element.measure, elements::Measure::Joint(_)),
+            is_rotation: element.measure.is_rotation(),
             derivative_unit: derivative_unit(element),
             entry: element.entry.clone(),
         };
@@ -133,6 +138,10 @@ impl Observables {
                 let words = &self.elements[e].entry.inputs[i].meaning;
                 Quantity::Element(&*self.elements[e].name, ElementQuantity::InputValue(&**words)).meaning()
             }
+            Quantity::Element(e, quantity) if self.elements[e].on_joint => {
+                let element = &self.elements[e];
+                quantity.named(element, &self.velocities).meaning_on_joint(&element.name)
+            }
             _ => named.meaning(),
         };
         Column::new(named.to_string(), self.unit(quantity), meaning)
@@ -190,9 +199,13 @@ pub(super) fn of_measure(label: &Label, [angle, length, quaternion]: [&'static s
 /// Unit of D^alpha x, the same for every alpha that a sweep may go through.
 fn derivative_unit(element: &Element) -> &'static str {
     let inputs = vec![InputValue::default(); element.inputs.len()];
+    let [any, zero, one] = match element.measure.is_rotation() {
+        true => ["rad/s^alpha", "rad", "rad/s"],
+        false => ["m/s^alpha", "m", "m/s"],
+    };
     match element.law.reported_order(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs }) {
-        _ if element.entry.params.iter().any(|param| param.name == "alpha") => "m/s^alpha",
-        0.0 => "m",
-        _ => "m/s",
+        _ if element.entry.params.iter().any(|param| param.name == "alpha") => any,
+        0.0 => zero,
+        _ => one,
     }
 }

@@ -2,19 +2,17 @@
 
 use super::element::generalized_force;
 use super::{Axis, EnergyQuantity, Quantity};
+use crate::elements::Reading;
 use crate::law::{InputValue, Observation};
-use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// State of one element at one time, before its law is asked.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct ElementMoment {
-    pub(crate) length: f64,
+    pub(crate) reading: Reading,
+    /// x = y − y0, m or rad.
     pub(crate) stroke: f64,
-    pub(crate) rate: f64,
-    /// l_vec/l.
-    pub(crate) direction: Vec3,
-    /// ∂l/∂q_b.
+    /// ∂y/∂q_b.
     pub(crate) gradient: Vec<f64>,
     pub(crate) inputs: Vec<InputValue>,
 }
@@ -83,7 +81,7 @@ impl Snapshot {
         &self.moment.a
     }
 
-    /// Force of an element, N, positive in tension; NaN at a singular start.
+    /// Force of an element, N (N·m where it acts on an angle), positive in tension; NaN at a singular start.
     ///
     /// # Panics
     /// Where there is no such element.

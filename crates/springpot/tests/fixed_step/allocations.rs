@@ -3,6 +3,7 @@
 #![allow(unsafe_code, reason = "a global allocator that counts")]
 
 use crate::loops::*;
+use springpot::elements::Joint;
 use springpot::integrate::System;
 use springpot::integrate::fixed::Loop;
 use std::alloc::{GlobalAlloc, Layout};
@@ -76,4 +77,7 @@ fn steps_do_not_allocate() {
         1,
     );
     measure("floating base", &system(&floating));
+    let mut on_joint = system(&arm(&(strut("caputo") + &free("start = { v = { q1 = 1 } }"))));
+    on_joint.elements[0].measure = Joint::named(&on_joint.model, "q2").unwrap().into();
+    measure("joint", &on_joint);
 }

@@ -9,7 +9,7 @@ fn unloaded(law: &str) -> System {
     let start = "start = { q = { q2 = 0.3, q3 = -0.9 }, v = { q1 = 2.5, q2 = 1 } }";
     let mut system = system(&arm(&(strut(law) + &free(start))));
     let length = Loop::new(&system, Method::BackwardEuler, 1e-3, MEMORY).unwrap().length(0);
-    system.elements[0].rest_length = length;
+    system.elements[0].rest = length;
     system
 }
 

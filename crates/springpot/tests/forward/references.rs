@@ -4,7 +4,7 @@ use crate::support::forward::{at, distance, falling, slider, state};
 use crate::support::{Run, run, run_system};
 use serde_json::Value;
 use springpot::actuation::{Drive, Forward};
-use springpot::elements::Element;
+use springpot::elements::{Element, Line};
 use springpot::integrate::{RowTimes, Settings, System};
 use springpot::law::{Catalog, Derivative};
 use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
@@ -187,9 +187,8 @@ fn slider_in_code(k: f64, c: f64, alpha: f64, derivative: Derivative, start: [f6
     let entry = Arc::clone(catalog.get("fractional-kelvin-voigt").unwrap());
     let element = Element {
         name: "e".into(),
-        from: site(Parent::World),
-        to: site(Parent::Body(0)),
-        rest_length: 8.0,
+        measure: Line { from: site(Parent::World), to: site(Parent::Body(0)) }.into(),
+        rest: 8.0,
         law: (entry.build)(&[k, c, alpha], derivative).unwrap(),
         entry,
         inputs: Vec::new(),

@@ -4,7 +4,7 @@
 //! Gauss–Jacobi; all others lie at least half their width away from t and are done by Gauss–Legendre.
 
 use springpot::dynamics::{Kinematics, pair};
-use springpot::elements::Element;
+use springpot::elements::{Element, Measure};
 use springpot::fractional::Kind;
 use springpot::fractional::gamma::gamma;
 use springpot::integrate::{State, System};
@@ -139,7 +139,8 @@ fn is_far(from: f64, to: f64, t: f64) -> bool {
 pub(crate) fn pair_at(system: &System, element: &Element, t: f64) -> (f64, f64, Vec<f64>) {
     let State { q, v, .. } = system.state(t).expect("a motion that can be followed");
     let kinematics = Kinematics::at_velocity(&system.model, &q, &v);
-    let (pair, gradient) = pair(&system.model, &kinematics, &element.from, &element.to);
+    let Measure::Line(line) = &element.measure else { panic!("an element between two points") };
+    let (pair, gradient) = pair(&system.model, &kinematics, &line.from, &line.to);
     (pair.length, pair.rate, gradient)
 }
 
@@ -156,8 +157,8 @@ pub(crate) fn derivatives(system: &System, index: usize, times: &[f64], width: f
     let jump = if element.derivative == Kind::RiemannLiouville { element.jump(start) } else { 0.0 };
     let value = |t: f64| match alpha {
         0.0 => {
-            let stroke = pair_at(system, element, t).0 - element.rest_length;
-            if element.derivative == Kind::Caputo { stroke - (start - element.rest_length) } else { stroke }
+            let stroke = pair_at(system, element, t).0 - element.rest;
+            if element.derivative == Kind::Caputo { stroke - (start - element.rest) } else { stroke }
         }
         1.0 => rate(t),
         _ => truth.caputo(t, &rate) + jump * t.powf(-alpha) / gamma(1.0 - alpha),

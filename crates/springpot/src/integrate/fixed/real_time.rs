@@ -111,8 +111,8 @@ impl<'a> Loop<'a> {
             let mut inputs = vec![Default::default(); element.inputs.len()];
             cx.inputs_at(e, 0.0, &mut inputs);
             element.check_inputs(0.0, &inputs)?;
-            let length = at.ends[0].length;
-            let start = Start { stroke: length - element.rest_length, jump: element.jump(length), inputs: &inputs };
+            let y = at.ends[0].coordinate;
+            let start = Start { stroke: element.stroke(y), jump: element.jump(y), inputs: &inputs };
             let begun = bank.begin_element(e, &start).and_then(|()| bank.open_element(e, range));
             begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
         }
@@ -171,23 +171,23 @@ impl<'a> Loop<'a> {
         &self.stage.a
     }
 
-    /// Force of an element, N, positive in tension, as the last step took it: at its end with backward Euler's method, its mean with
-    /// the midpoint rule; 0 before the first step.
+    /// Force of an element, N (N·m where it acts on an angle), positive in tension, as the last step took it: at its end
+    /// with backward Euler's method, its mean with the midpoint rule; 0 before the first step.
     pub fn force(&self, element: usize) -> f64 {
         self.bank.response(element).force[0]
     }
 
-    /// Length of an element, m.
+    /// Length of an element, m, or the coordinate of the joint that it acts on, m or rad.
     pub fn length(&self, element: usize) -> f64 {
-        self.stage.elements[element].ends[0].length
+        self.stage.elements[element].ends[0].coordinate
     }
 
-    /// Stroke of an element, length less rest length, m.
+    /// Stroke of an element, m or rad: what its length or coordinate has more than at rest.
     pub fn stroke(&self, element: usize) -> f64 {
-        self.length(element) - self.system.elements[element].rest_length
+        self.system.elements[element].stroke(self.length(element))
     }
 
-    /// Rate of an element's length, m/s.
+    /// Rate of an element's stroke, m/s or rad/s.
     pub fn rate(&self, element: usize) -> f64 {
         self.stage.elements[element].ends[0].rate
     }

@@ -54,19 +54,19 @@ impl Fixed {
         })
     }
 
-    /// Tells the bank the step at the nodes of the ledger: lengths on a straight line between its ends, as its memories take it, and the
-    /// rates of the cubic through lengths and rates there.
+    /// Tells the bank the step at the nodes of the ledger: coordinates of the measures on a straight line between its ends,
+    /// as its memories take it, and the rates of the cubic through coordinates and rates there.
     fn tell_ledger(&self, cx: Context, bank: &mut ElementBank, target: &Target) {
         bank.set_nodes(Nodes::Radau);
         for (e, (element, step)) in cx.system.elements.iter().zip(&self.step.elements).enumerate() {
             let [from, to] = &step.ends;
-            bank.set_resolution(e, element.resolution(from.length));
+            bank.set_resolution(e, element.resolution(from.coordinate));
             for (k, c) in [0.0].into_iter().chain(RADAU_NODES).enumerate() {
-                let travel = to.length - from.length;
+                let travel = to.coordinate - from.coordinate;
                 let rate = 6.0 * c * (1.0 - c) * travel / target.size
                     + (1.0 - c) * (1.0 - 3.0 * c) * from.rate
                     + c * (3.0 * c - 2.0) * to.rate;
-                bank.set_stroke(e, k, from.length + c * travel - element.rest_length, rate);
+                bank.set_stroke(e, k, element.stroke(from.coordinate + c * travel), rate);
                 cx.inputs_at(e, target.from + c * target.size, bank.inputs_mut(e, k));
             }
         }
@@ -94,7 +94,7 @@ impl Fixed {
         end.v.copy_from_slice(&step.end.v);
         if !self.has_paths {
             let elements = step.elements.iter().enumerate();
-            let elements = elements.map(|(e, element)| (element.ends[1], bank.point(e, MAX_NODES).inputs));
+            let elements = elements.map(|(e, element)| (&element.ends[1], bank.point(e, MAX_NODES).inputs));
             cx.fill_energies(target.to, &step.end.kinematics, elements, end);
         }
         Ok(())
@@ -105,8 +105,8 @@ impl Fixed {
         for (k, moment) in recorder.moments.iter().enumerate() {
             let of_joint = |j: usize| {
                 let computed = || {
-                    let pull = self.step.pairs.iter().zip(&moment.elements);
-                    moment.rigid[j] + pull.map(|(pair, at)| pair.force * at.gradient[j]).sum::<f64>()
+                    let pull = self.step.forces.values().iter().zip(&moment.elements);
+                    moment.rigid[j] + pull.map(|(force, at)| force * at.gradient[j]).sum::<f64>()
                 };
                 moment.driven[j].unwrap_or_else(computed)
             };

@@ -3,10 +3,8 @@
 use super::elements::ElementStep;
 use super::{ITERATIONS, Method};
 use crate::actuation::{Drive, Forward};
-use crate::dynamics::{
-    Kinematics, PairForce, RneaDerivatives, Workspace, pair_into, rnea_at_into, rnea_derivatives_into,
-};
-use crate::elements::ElementBank;
+use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
+use crate::elements::{ElementBank, Forces};
 use crate::integrate::RunError;
 use crate::integrate::context::Context;
 use crate::integrate::coulomb::Coulomb;
@@ -55,7 +53,7 @@ pub(super) struct OneStage {
     pub(super) newton: Lu,
     pub(super) residual: Vec<f64>,
     tau: Vec<f64>,
-    pub(super) pairs: Vec<PairForce>,
+    pub(super) forces: Forces,
     /// Largest change of a stage's velocity in the last iteration of the last step.
     pub(super) correction: f64,
 }
@@ -99,7 +97,7 @@ impl OneStage {
             newton: Lu::default(),
             residual: vec![0.0; free.len()],
             tau: vec![0.0; nv],
-            pairs: Vec::with_capacity(elements.len()),
+            forces: Forces::with_room_for(system.elements.iter().map(|element| &element.measure)),
             correction: 0.0,
             elements,
             free,
@@ -149,7 +147,7 @@ impl OneStage {
     pub(super) fn accept(&mut self) {
         std::mem::swap(&mut self.origin, &mut self.end);
         for element in &mut self.elements {
-            element.ends[0] = element.ends[1];
+            element.ends.swap(0, 1);
         }
     }
 
@@ -161,8 +159,7 @@ impl OneStage {
         origin.v.copy_from_slice(v);
         origin.kinematics.update_velocity(model, q, v);
         for (element, step) in cx.system.elements.iter().zip(&mut self.elements) {
-            let gradient = &mut step.gradients[1];
-            step.ends[0] = pair_into(model, &origin.kinematics, &element.from, &element.to, gradient);
+            element.measure.read_into(model, &origin.kinematics, &mut step.gradients[1], &mut step.ends[0]);
         }
     }
 
@@ -241,16 +238,18 @@ impl OneStage {
             return Ok(());
         }
         let (stage, workspace) = (&self.stage, &mut self.workspace);
-        rnea_at_into(&self.model, &stage.kinematics, &stage.q, &self.a, &self.pairs, workspace, &mut self.tau);
+        let (at, tau) = ((&stage.q[..], &self.a[..]), &mut self.tau);
+        self.forces.inverse_dynamics_into(&self.model, &stage.kinematics, at, workspace, tau);
         add_smooth_resistance(&self.model, &stage.v, &mut self.tau);
         for ((r, &k), drive) in self.residual.iter_mut().zip(free).zip(&self.drives) {
             *r = drive - self.tau[k];
         }
-        rnea_derivatives_into(&self.model, &stage.kinematics, &self.a, &self.pairs, workspace, &mut self.slopes);
+        let (a, slopes) = (&self.a, &mut self.slopes);
+        self.forces.inverse_dynamics_derivatives_into(&self.model, &stage.kinematics, a, workspace, slopes);
         add_secants(&self.model, &stage.v, &mut self.slopes.d_v);
         let (slopes, count) = (&mut self.slopes, free.len());
         if self.method.node() != 1.0 {
-            // ∂F/∂a = (κ² ∂F/∂x + κ ∂F/∂x') ∂l/∂q, taken at the end; added to the place of κ² K.
+            // ∂F/∂a = (κ² ∂F/∂x + κ ∂F/∂x') ∂y/∂q, taken at the end; added to the place of κ² K.
             for (e, step) in self.elements.iter().enumerate() {
                 let Response { d_stroke, d_rate, .. } = bank.response(e);
                 let stiffness = d_stroke[0][0] + d_rate[0][0] / kappa;
@@ -293,8 +292,8 @@ impl OneStage {
         for (element, step) in cx.system.elements.iter().zip(&self.elements) {
             let [start, end] = &step.ends;
             // One that turned by more than a right angle had length 0 on the way.
-            if end.check().is_err() || start.direction.dot(end.direction) <= 0.0 {
-                let length = start.length.min(end.length);
+            if end.check().is_err() || start.turned_over(end) {
+                let length = start.coordinate.min(end.coordinate);
                 return Err(RunError::ZeroLength { t: self.end.t, element: element.name.clone(), length });
             }
         }

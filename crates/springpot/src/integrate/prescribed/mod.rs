@@ -107,7 +107,7 @@ impl Prescribed {
             for (e, state) in moment.elements.iter().enumerate() {
                 widen(&mut strokes[e], state.stroke);
                 let element = &cx.system.elements[e];
-                if let Ok(law) = element.begin(element.rest_length, &state.inputs) {
+                if let Ok(law) = element.begin(element.rest, &state.inputs) {
                     forces[e] = forces[e].max(element.law.estimate(&state.point(t), &law, 1.0 / end).abs());
                 }
             }
@@ -204,12 +204,12 @@ fn gap(recorder: &Recorder, e: usize) -> f64 {
 fn turned_over(cx: Context, recorder: &Recorder, t: f64, h: f64) -> Result<Option<usize>, RunError> {
     for pair in recorder.moments.windows(2) {
         for (e, (a, b)) in pair[0].elements.iter().zip(&pair[1].elements).enumerate() {
-            if a.direction.dot(b.direction) > 0.0 {
+            if !a.reading.turned_over(&b.reading) {
                 continue;
             }
             let element = &cx.system.elements[e];
-            let length = a.length.min(b.length);
-            if h < 1e-9 * recorder.settings.end || length < 1e-9 * element.rest_length {
+            let length = a.reading.coordinate.min(b.reading.coordinate);
+            if h < 1e-9 * recorder.settings.end || length < 1e-9 * element.rest {
                 return Err(RunError::ZeroLength { t: t + 0.5 * h, element: element.name.clone(), length });
             }
             return Ok(Some(e));

@@ -124,8 +124,8 @@ impl Radau {
         let system = cx.system;
         let joint = |k: usize| system.model.v_labels()[k].name.clone();
         if let Some(e) = self.turned_over() {
-            let pairs = self.step.elements[e].pairs.iter().flatten();
-            let length = pairs.map(|pair| pair.length).fold(f64::INFINITY, f64::min);
+            let readings = self.step.elements[e].readings.iter();
+            let length = readings.map(|reading| reading.coordinate).fold(f64::INFINITY, f64::min);
             return RunError::ZeroLength { t, element: system.elements[e].name.clone(), length };
         }
         match worst {

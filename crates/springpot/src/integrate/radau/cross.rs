@@ -40,9 +40,8 @@ impl Radau {
                 cx.fill(at, inputs_at, None, &mut recorder.scratch, moment)?;
                 continue;
             }
-            let elements = self.step.elements.iter().enumerate().map(|(e, element)| {
-                (element.pairs[k + 1].expect("a stage that was placed"), bank.point(e, k + 1).inputs)
-            });
+            let elements = self.step.elements.iter().enumerate();
+            let elements = elements.map(|(e, element)| (&element.readings[k + 1], bank.point(e, k + 1).inputs));
             cx.fill_energies(at, &stage.kinematics, elements, moment);
         }
         for e in 0..cx.system.elements.len() {

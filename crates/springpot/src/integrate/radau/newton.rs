@@ -2,8 +2,7 @@
 
 use super::step::RadauStep;
 use super::tableau::{A, A_SQUARED};
-use crate::dynamics::{PairForce, rnea_at_into};
-use crate::elements::ElementBank;
+use crate::elements::{ElementBank, Pull};
 use crate::fractional::step::MAX_NODES;
 use crate::integrate::RunError;
 use crate::integrate::context::Context;
@@ -97,14 +96,13 @@ impl RadauStep {
     fn fill_residual(&mut self, cx: Context, bank: &ElementBank) {
         self.residual.clear();
         for i in 0..MAX_NODES {
-            self.pairs.clear();
+            self.forces.clear();
             for (e, element) in cx.system.elements.iter().enumerate() {
-                let (from, to, force) = (element.from, element.to, bank.response(e).force[i]);
-                self.pairs.push(PairForce { from, to, force, d_length: 0.0, d_rate: 0.0 });
+                self.forces.push(&element.measure, Pull::constant(bank.response(e).force[i]));
             }
             let stage = &self.stages[i];
-            let (model, workspace) = (&self.model, &mut self.workspace);
-            rnea_at_into(model, &stage.kinematics, &stage.q, &stage.a, &self.pairs, workspace, &mut self.tau);
+            let (at, workspace, tau) = ((&stage.q[..], &stage.a[..]), &mut self.workspace, &mut self.tau);
+            self.forces.inverse_dynamics_into(&self.model, &stage.kinematics, at, workspace, tau);
             add_smooth_resistance(&self.model, &stage.v, &mut self.tau);
             self.stick.add_sliding(&mut self.tau);
             let forces = self.free.iter().zip(&self.drives[i]);

@@ -4,8 +4,7 @@ use super::drives::{force_at, take_path};
 use super::step::RadauStep;
 use super::tableau::{A_SQUARED, GAMMA};
 use crate::actuation::Drive;
-use crate::dynamics::{PairForce, pair_into, rnea_derivatives_into};
-use crate::elements::{Element, ElementBank};
+use crate::elements::{Element, ElementBank, Pull};
 use crate::fractional::Form;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::integrate::RunError;
@@ -26,23 +25,21 @@ impl RadauStep {
             return Ok(());
         }
         self.start.update_velocity(&self.model, &self.origin.q, &self.origin.v);
-        self.pairs.clear();
+        self.forces.clear();
         for (element, force) in cx.system.elements.iter().zip(&self.origin.forces) {
-            let (from, to) = (element.from, element.to);
-            self.pairs.push(PairForce { from, to, force: *force, d_length: 0.0, d_rate: 0.0 });
+            self.forces.push(&element.measure, Pull::constant(*force));
         }
         let (origin, slopes) = (&self.origin, &mut self.slopes);
-        rnea_derivatives_into(&self.model, &self.start, &origin.a, &self.pairs, &mut self.workspace, slopes);
+        let workspace = &mut self.workspace;
+        self.forces.inverse_dynamics_derivatives_into(&self.model, &self.start, &origin.a, workspace, slopes);
         add_tangents(&self.model, &origin.v, &mut slopes.d_v);
         let t = origin.t;
         for (e, (element, stage)) in cx.system.elements.iter().zip(&mut self.elements).enumerate() {
-            let pair = pair_into(&self.model, &self.start, &element.from, &element.to, &mut stage.gradient);
-            if pair.check().is_err() {
-                return Err(RunError::ZeroLength { t, element: element.name.clone(), length: pair.length });
-            }
-            stage.pairs[0] = Some(pair);
-            bank.set_stroke(e, 0, pair.length - element.rest_length, pair.rate);
-            bank.set_resolution(e, element.resolution(pair.length));
+            let [reading, ..] = &mut stage.readings;
+            element.measure.read_into(&self.model, &self.start, &mut stage.gradient, reading);
+            element.check_direction(t, reading)?;
+            bank.set_stroke(e, 0, element.stroke(reading.coordinate), reading.rate);
+            bank.set_resolution(e, element.resolution(reading.coordinate));
         }
         if self.is_singular || self.may_yield {
             self.share_forces();
@@ -60,7 +57,7 @@ impl RadauStep {
         Ok(())
     }
 
-    /// −M⁻¹ ∂l/∂q of every element over the free velocities.
+    /// −M⁻¹ ∂y/∂q of every element over the free velocities.
     fn share_forces(&mut self) {
         let (n, free, slopes) = (self.model.nv(), &self.free, &self.slopes);
         let regular = self.mass.factor_part(n, &slopes.d_a, free);
@@ -182,9 +179,9 @@ impl RadauStep {
             stage.kinematics.update_velocity(&self.model, &stage.q, &stage.v);
             for (e, (element, step)) in cx.system.elements.iter().zip(&mut self.elements).enumerate() {
                 // The gradient is that of the start; `tau` is free until the residual is asked for.
-                let pair = pair_into(&self.model, &stage.kinematics, &element.from, &element.to, &mut self.tau);
-                step.pairs[i + 1] = Some(pair);
-                bank.set_stroke(e, i + 1, pair.length - element.rest_length, pair.rate);
+                let reading = &mut step.readings[i + 1];
+                element.measure.read_into(&self.model, &stage.kinematics, &mut self.tau, reading);
+                bank.set_stroke(e, i + 1, element.stroke(reading.coordinate), reading.rate);
             }
         }
         true

@@ -5,8 +5,8 @@ use super::scale::{Tolerance, jump_travel};
 use super::step::{Origin, RadauStep};
 use super::stick::Stick;
 use crate::actuation::{Drive, Forward};
-use crate::dynamics::{Kinematics, PairForce, crba, rnea};
-use crate::elements::ElementBank;
+use crate::dynamics::{Kinematics, crba};
+use crate::elements::{ElementBank, Forces, Pull};
 use crate::integrate::RunError;
 use crate::integrate::context::Context;
 use crate::integrate::jump::refuse_jumps;
@@ -20,7 +20,7 @@ const SOON: f64 = 1e-12;
 /// One element where a motion starts.
 pub(super) struct ElementStart {
     stroke: f64,
-    /// x(0) where it counts as different from 0, else 0, m.
+    /// x(0) where it counts as different from 0, else 0, m or rad.
     pub(super) jump: f64,
     gradient: Vec<f64>,
 }
@@ -38,28 +38,29 @@ pub(super) fn origin(
             origin.v[model.v_range(j)].fill(0.0);
         }
     }
-    decide(cx, forward, stick, &mut origin, |e, point, length| {
-        let (element, law) = (&system.elements[e], begin(cx, e, point, length)?);
+    decide(cx, forward, stick, &mut origin, |e, point, coordinate| {
+        let (element, law) = (&system.elements[e], begin(cx, e, point, coordinate)?);
         let mut force = element.law.now(point, &law).regular;
         // Infinite at t = 0: as it is soon after.
         let mut add = |term: Term| force += term.coefficient * SOON.powf(-term.order);
         element.law.for_each_singularity(point.inputs, &law, &mut add);
         Ok(force)
     })?;
-    let elements = accelerate(cx, forward, stick, &mut origin, |e, point, length| {
-        Ok(system.elements[e].law.now(point, &begin(cx, e, point, length)?).regular)
+    let elements = accelerate(cx, forward, stick, &mut origin, |e, point, coordinate| {
+        Ok(system.elements[e].law.now(point, &begin(cx, e, point, coordinate)?).regular)
     })?;
     Ok((origin, elements))
 }
 
 /// The state of a law at t = 0, before its first step is chosen.
-fn begin(cx: Context, e: usize, point: &Point, length: f64) -> Result<State, RunError> {
+fn begin(cx: Context, e: usize, point: &Point, coordinate: f64) -> Result<State, RunError> {
     let element = &cx.system.elements[e];
-    let begun = element.begin(length, point.inputs);
+    let begun = element.begin(coordinate, point.inputs);
     begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })
 }
 
-/// Decides which joints friction holds at the origin, with the whole `force` of each element, which is told its length.
+/// Decides which joints friction holds at the origin, with the whole `force` of each element, which is told its
+/// coordinate.
 ///
 /// # Errors
 /// [`RunError::NoHold`].
@@ -86,7 +87,7 @@ pub(super) fn decide(
 }
 
 /// Accelerations and forces of the elements at the origin's time, whatever came before: from M a = τ − nle − Σ g F with the
-/// `force` of each, which is told its length, without the share of a singular start.
+/// `force` of each, which is told its coordinate, without the share of a singular start.
 pub(super) fn accelerate(
     cx: Context,
     forward: &Forward,
@@ -132,24 +133,22 @@ fn balance(
         }
     }
     let kinematics = Kinematics::at_velocity(model, q, v);
-    let (mut elements, mut pairs) = (Vec::new(), Vec::new());
+    let (mut elements, mut pulls) = (Vec::new(), Forces::default());
     for (e, (element, known)) in system.elements.iter().zip(forces).enumerate() {
-        let (pair, gradient) = crate::dynamics::pair(model, &kinematics, &element.from, &element.to);
-        if pair.check().is_err() {
-            return Err(RunError::ZeroLength { t, element: element.name.clone(), length: pair.length });
-        }
+        let (reading, gradient) = element.measure.read(model, &kinematics);
+        element.check_direction(t, &reading)?;
         let mut inputs = vec![Default::default(); element.inputs.len()];
         cx.inputs_at(e, t, &mut inputs);
         element.check_inputs(t, &inputs)?;
-        let stroke = pair.length - element.rest_length;
-        let point = Point { t, stroke, rate: pair.rate, inputs: &inputs };
-        let jump = element.jump(pair.length);
-        let force = force(e, &point, pair.length)?;
-        pairs.push(PairForce { from: element.from, to: element.to, force, d_length: 0.0, d_rate: 0.0 });
+        let stroke = element.stroke(reading.coordinate);
+        let point = Point { t, stroke, rate: reading.rate, inputs: &inputs };
+        let jump = element.jump(reading.coordinate);
+        let force = force(e, &point, reading.coordinate)?;
+        pulls.push(&element.measure, Pull::constant(force));
         *known = force;
         elements.push(ElementStart { stroke, jump, gradient });
     }
-    let mut residual = rnea(model, q, v, a, &pairs);
+    let mut residual = pulls.inverse_dynamics(model, [q, v, a]);
     add_smooth_resistance(model, v, &mut residual);
     let mut drives = vec![0.0; model.nv()];
     for (j, drive) in model.own_joints().zip(&forward.drives) {

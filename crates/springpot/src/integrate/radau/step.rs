@@ -5,8 +5,8 @@ use super::stages::may_yield;
 use super::stick::{Sliding, Stick};
 use super::tableau::A;
 use crate::actuation::Forward;
-use crate::dynamics::{Kinematics, Pair, PairForce, RneaDerivatives, Workspace};
-use crate::elements::ElementBank;
+use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
+use crate::elements::{ElementBank, Forces, Reading};
 use crate::fractional::step::{MAX_NODES, lagrange_row};
 use crate::integrate::System;
 use crate::integrate::context::Context;
@@ -34,13 +34,15 @@ impl Origin {
     }
 }
 
-/// The points of one element over the step, at its start (0) and at the nodes.
+/// One element over the step.
 #[derive(Debug, Clone)]
 pub(super) struct ElementStage {
-    pub(super) pairs: [Option<Pair>; MAX_NODES + 1],
-    /// ∂l/∂q at the start.
+    /// At the start (0) and at the nodes.
+    pub(super) readings: [Reading; MAX_NODES + 1],
+    /// ∂y/∂q at the start.
     pub(super) gradient: Vec<f64>,
-    /// −M⁻¹ ∂l/∂q at the start: the accelerations that a unit of force gives. Only kept up to date where a run needs it.
+    /// −M⁻¹ ∂y/∂q at the start: the accelerations that a unit of force gives. Only kept up to date where a run needs
+    /// it.
     pub(super) share: Vec<f64>,
     /// What a singular start had in the force at the start of the step, N.
     pub(super) singular_before: f64,
@@ -49,12 +51,10 @@ pub(super) struct ElementStage {
 impl ElementStage {
     /// An element whose direction turned by more than a right angle between two nodes: its points passed each other.
     pub(super) fn turned_over(&self) -> bool {
-        self.pairs.windows(2).any(|pair| match (&pair[0], &pair[1]) {
-            (Some(a), Some(b)) => {
-                let met = b.length < a.length && b.check().is_err();
-                met || a.direction.dot(b.direction) <= 0.0
-            }
-            _ => false,
+        self.readings.windows(2).any(|two| {
+            let (before, after) = (&two[0], &two[1]);
+            let met = after.coordinate < before.coordinate && after.check().is_err();
+            met || before.turned_over(after)
         })
     }
 }
@@ -127,7 +127,7 @@ pub(super) struct RadauStep {
     pub(super) tau: Vec<f64>,
     /// Coordinates of joints that no force drives, while the others are moved.
     pub(super) held: Vec<f64>,
-    pub(super) pairs: Vec<PairForce>,
+    pub(super) forces: Forces,
     /// Actuator forces of the free velocities at the nodes.
     pub(super) drives: [Vec<f64>; MAX_NODES],
     /// Ratio of successive increments, carried from step to step.
@@ -165,7 +165,7 @@ impl RadauStep {
             kinematics: Kinematics::new(model),
         };
         let elements = system.elements.iter().map(|_| ElementStage {
-            pairs: [None; MAX_NODES + 1],
+            readings: Default::default(),
             gradient: vec![0.0; nv],
             share: vec![0.0; nv],
             singular_before: 0.0,
@@ -198,7 +198,7 @@ impl RadauStep {
             residual: Vec::new(),
             tau: vec![0.0; nv],
             held: Vec::new(),
-            pairs: Vec::new(),
+            forces: Forces::default(),
             drives: Default::default(),
             contraction: 0.0,
             sizes: Sizes::new(&forward.q, nv),

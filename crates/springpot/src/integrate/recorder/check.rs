@@ -28,7 +28,7 @@ impl Recorder {
         for e in taking_part {
             let (_, rates) = self.bank.told(e);
             let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
-            let is = snapshot.moment.elements[e].rate;
+            let is = snapshot.moment.elements[e].reading.rate;
             let derivative = snapshot.elements[e].observation.derivative.abs();
             for (m, error) in self.bank.errors(e).iter().enumerate().filter(|(_, error)| error.order > 0.0) {
                 let departure = (is - told).abs() * h.powf(1.0 - error.order);

@@ -90,7 +90,7 @@ impl Recorder {
     pub(super) fn begin(&mut self, cx: Context) -> Result<(), RunError> {
         for (e, element) in cx.system.elements.iter().enumerate().filter(|(e, _)| self.grid[*e].is_none()) {
             let at = &self.moments[0].elements[e];
-            let start = Start { stroke: at.stroke, jump: element.jump(at.length), inputs: &at.inputs };
+            let start = Start { stroke: at.stroke, jump: element.jump(at.reading.coordinate), inputs: &at.inputs };
             let begun = self.bank.begin_element(e, &start);
             begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
         }
@@ -118,9 +118,10 @@ impl Recorder {
     pub(super) fn tell(&mut self, cx: Context, e: usize) {
         for (k, moment) in self.moments.iter().enumerate() {
             let at = &moment.elements[e];
-            self.bank.set(e, k, at.stroke, at.rate, &at.inputs);
+            self.bank.set(e, k, at.stroke, at.reading.rate, &at.inputs);
         }
-        self.bank.set_resolution(e, cx.system.elements[e].resolution(self.moments[0].elements[e].length));
+        let start = self.moments[0].elements[e].reading.coordinate;
+        self.bank.set_resolution(e, cx.system.elements[e].resolution(start));
     }
 
     /// Makes sure that the moment at the start (0) or at the end (1) has all that a row asks for.

@@ -1,0 +1,119 @@
+//! The forces of all elements in one state, as the rigid-body algorithms take them.
+
+use super::Measure;
+use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, rnea, rnea_at_into, rnea_derivatives_into};
+use crate::model::Model;
+
+/// The force of an element, and how it answers to its coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pull {
+    /// F, N or N·m.
+    pub(crate) force: f64,
+    /// ∂F/∂y, 0 where the tangent is taken elsewhere.
+    pub(crate) d_coordinate: f64,
+    /// ∂F/∂y', likewise.
+    pub(crate) d_rate: f64,
+}
+
+/// A force on a joint's coordinate.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct JointForce {
+    pub(super) velocity: usize,
+    /// ∂y/∂q.
+    pub(super) slope: f64,
+    pub(super) pull: Pull,
+}
+
+/// The forces of all elements in one state: along lines as pairs, on joints as what they add to τ.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Forces {
+    values: Vec<f64>,
+    pub(super) pairs: Vec<PairForce>,
+    pub(super) joints: Vec<JointForce>,
+}
+
+impl Pull {
+    /// A force without a tangent.
+    #[inline]
+    pub(crate) const fn constant(force: f64) -> Self {
+        Self { force, d_coordinate: 0.0, d_rate: 0.0 }
+    }
+}
+
+impl Forces {
+    /// Room for the forces along all `measures`, so that no push allocates.
+    pub(crate) fn with_room_for<'m>(measures: impl Iterator<Item = &'m Measure>) -> Self {
+        let mut forces = Self::default();
+        measures.for_each(|measure| forces.push(measure, Pull::constant(0.0)));
+        forces.clear();
+        forces
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.values.clear();
+        self.pairs.clear();
+        self.joints.clear();
+    }
+
+    /// Adds the force of the next element.
+    #[inline]
+    pub(crate) fn push(&mut self, measure: &Measure, pull: Pull) {
+        self.values.push(pull.force);
+        match measure {
+            Measure::Line(line) => line.push(pull, self),
+            Measure::Joint(joint) => joint.push(pull, self),
+        }
+    }
+
+    /// F of every element, in order.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// τ = RNEA(q, v, a) − ΣQ with Q_b = −F ∂y/∂q_b, of kinematics with velocities.
+    #[inline]
+    pub(crate) fn inverse_dynamics_into(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics,
+        (q, a): (&[f64], &[f64]),
+        workspace: &mut Workspace,
+        tau: &mut [f64],
+    ) {
+        rnea_at_into(model, kinematics, q, a, &self.pairs, workspace, tau);
+        self.add_to(tau);
+    }
+
+    /// [`Self::inverse_dynamics_into`], allocating.
+    pub(crate) fn inverse_dynamics(&self, model: &Model, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
+        let mut tau = rnea(model, q, v, a, &self.pairs);
+        self.add_to(&mut tau);
+        tau
+    }
+
+    /// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a of [`Self::inverse_dynamics_into`]: of the elements ∂y (∂F/∂y ∂yᵀ + ∂F/∂y' ∂y'ᵀ) + F ∂²y.
+    #[inline]
+    pub(crate) fn inverse_dynamics_derivatives_into(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics,
+        a: &[f64],
+        workspace: &mut Workspace,
+        slopes: &mut RneaDerivatives,
+    ) {
+        rnea_derivatives_into(model, kinematics, a, &self.pairs, workspace, slopes);
+        for &JointForce { velocity, slope, pull: Pull { d_coordinate, d_rate, .. } } in &self.joints {
+            let at = velocity * (model.nv() + 1);
+            slopes.d_q[at] += slope * slope * d_coordinate;
+            slopes.d_v[at] += slope * slope * d_rate;
+        }
+    }
+
+    /// Adds F ∂y/∂q_b of the forces on joints.
+    #[inline]
+    fn add_to(&self, tau: &mut [f64]) {
+        for JointForce { velocity, slope, pull } in &self.joints {
+            tau[*velocity] += pull.force * slope;
+        }
+    }
+}

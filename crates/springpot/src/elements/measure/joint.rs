@@ -1,0 +1,125 @@
+//! The coordinate of a joint.
+
+use super::forces::JointForce;
+use super::{Direction, Forces, Measure, Pull, Reading};
+use crate::dynamics::Kinematics;
+use crate::model::{JointKind, Model};
+
+/// The coordinate of a joint of one degree of freedom, rad or m: y = ratio·q + offset with the q of the joint that it
+/// follows, or y = q of its own.
+///
+/// A force F > 0 (N·m or N) drives the coordinate down. Angles are not wrapped: a continuous joint winds up. It belongs to
+/// the [`Model`] that it was made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Joint {
+    joint: usize,
+    /// Which velocity moves it.
+    velocity: usize,
+    /// ∂y/∂q of that velocity.
+    ratio: f64,
+    offset: f64,
+    is_rotation: bool,
+}
+
+/// A joint has no coordinate that an element could act on.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum JointMeasureError {
+    /// There is no joint of this name.
+    #[error("the robot has no joint \"{0}\"")]
+    Unknown(String),
+    /// There is no moving joint of this index.
+    #[error("there is no joint {joint}: the robot has {count} moving joints")]
+    NoSuchJoint {
+        /// The index.
+        joint: usize,
+        /// Number of moving joints.
+        count: usize,
+    },
+    /// The joint has not one coordinate.
+    #[error(
+        "joint \"{joint}\" is {}: an element acts on the coordinate of a joint of one degree of freedom (revolute, \
+         continuous or prismatic)", kind.name()
+    )]
+    Kind {
+        /// The joint.
+        joint: String,
+        /// What it is.
+        kind: JointKind,
+    },
+}
+
+impl Joint {
+    /// The coordinate of moving joint `joint`.
+    ///
+    /// # Errors
+    /// [`JointMeasureError::NoSuchJoint`]; [`JointMeasureError::Kind`] for a floating joint.
+    pub fn new(model: &Model, joint: usize) -> Result<Self, JointMeasureError> {
+        let count = model.joint_count();
+        if joint >= count {
+            return Err(JointMeasureError::NoSuchJoint { joint, count });
+        }
+        let kind = model.joint_kind(joint);
+        if kind.nv() != 1 {
+            return Err(JointMeasureError::Kind { joint: model.joint_names()[joint].clone(), kind });
+        }
+        let (_, ratio, offset) = model.followed(joint).unwrap_or((joint, 1.0, 0.0));
+        let velocity = model.v_range(joint).start;
+        Ok(Self { joint, velocity, ratio, offset, is_rotation: kind != JointKind::Prismatic })
+    }
+
+    /// The coordinate of the joint called `name`.
+    ///
+    /// # Errors
+    /// [`JointMeasureError::Unknown`]; [`JointMeasureError::Kind`] for a floating or fixed joint.
+    pub fn named(model: &Model, name: &str) -> Result<Self, JointMeasureError> {
+        match model.joint_index(name) {
+            Some(joint) => Self::new(model, joint),
+            None if model.has_fixed_joint(name) => {
+                Err(JointMeasureError::Kind { joint: name.into(), kind: JointKind::Fixed })
+            }
+            None => Err(JointMeasureError::Unknown(name.into())),
+        }
+    }
+
+    /// Index of the moving joint.
+    pub fn joint(&self) -> usize {
+        self.joint
+    }
+
+    pub(super) fn is_rotation(&self) -> bool {
+        self.is_rotation
+    }
+
+    pub(super) fn offset(&self) -> f64 {
+        self.offset.abs()
+    }
+
+    #[inline]
+    pub(super) fn read_into(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics,
+        gradient: &mut [f64],
+        reading: &mut Reading,
+    ) {
+        let gradient = &mut gradient[..model.nv()];
+        gradient.fill(0.0);
+        gradient[self.velocity] = self.ratio;
+        *reading = Reading {
+            coordinate: kinematics.joint_coordinate(self.joint),
+            rate: self.ratio * kinematics.joint_velocities()[self.velocity],
+            direction: Direction::Fixed,
+        };
+    }
+
+    #[inline]
+    pub(super) fn push(&self, pull: Pull, forces: &mut Forces) {
+        forces.joints.push(JointForce { velocity: self.velocity, slope: self.ratio, pull });
+    }
+}
+
+impl From<Joint> for Measure {
+    fn from(joint: Joint) -> Self {
+        Self::Joint(joint)
+    }
+}
