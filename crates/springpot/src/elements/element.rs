@@ -1,6 +1,6 @@
 //! A material: measure + law + inputs. The only place where bodies and laws meet.
 
-use super::Measure;
+use super::measure::Measure;
 use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
 use crate::law::{Derivative, Entry, InputValue, Network, Start, State};

@@ -1,6 +1,6 @@
 //! What every part of a run is told.
 
-use super::System;
+use super::system::System;
 use crate::law::InputValue;
 use serde::{Deserialize, Serialize};
 

@@ -1,13 +1,15 @@
 //! The one loop: which step is tried next, what becomes of it, and what is crossed between two of them.
 
-use super::Checkpoint;
 use super::context::Context;
-use super::output::Output;
+use super::driver_state::{DriverState, fingerprint};
+use super::error::RunError;
 use super::recorder::Recorder;
-use super::state::{DriverState, fingerprint};
-use super::stepper::{Behind, Stepper, Target, Trial};
-use super::{Report, RowTimes, RunError, Settings, Stop};
-use crate::observe::snapshot::Snapshot;
+use super::report::Report;
+use super::row_times::RowTimes;
+use super::settings::{Settings, Stop};
+use super::solver::Solver;
+use super::stepper::{Behind, Target, Trial};
+use crate::observe::Snapshot;
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
 
@@ -27,7 +29,7 @@ pub(super) struct RowsAhead {
 /// A run between two steps, or with one that was worked out and is not yet taken into the past, so that it can be looked into.
 #[derive(Debug)]
 pub(super) struct Driver {
-    stepper: Box<dyn Stepper>,
+    solver: Solver,
     pub(super) recorder: Recorder,
     /// What the signals do.
     agenda: Agenda,
@@ -58,7 +60,7 @@ impl Driver {
     ) -> Result<Self, RunError> {
         let mut driver = Self::unstarted(cx, settings, stop)?;
         looked_ahead(&driver);
-        let first = driver.stepper.start(cx, &mut driver.recorder, &driver.agenda)?;
+        let first = driver.solver.stepper_mut().start(cx, &mut driver.recorder, &driver.agenda)?;
         driver.recorder.open(cx, first)?;
         driver.h = driver.aligned(first);
         Ok(driver)
@@ -83,16 +85,16 @@ impl Driver {
 
     fn unstarted(cx: Context, settings: &Settings, stop: &Stop) -> Result<Self, RunError> {
         settings.check()?;
-        let stepper = super::method(cx, settings)?;
-        let longest_step = stepper.longest_step(cx, settings);
-        let agenda = match stepper.fixed_step() {
+        let solver = Solver::new(cx, settings)?;
+        let longest_step = solver.stepper().longest_step(cx, settings);
+        let agenda = match solver.stepper().fixed_step() {
             None => cx.system.agenda(settings, longest_step, stop)?,
             Some(_) => Agenda::default(),
         };
         let mut recorder = Recorder::new(cx, settings);
-        stepper.set_up(&mut recorder);
+        solver.stepper().set_up(&mut recorder);
         Ok(Self {
-            stepper,
+            solver,
             recorder,
             agenda,
             longest_step,
@@ -108,7 +110,12 @@ impl Driver {
 
     /// How often the signals switch.
     pub(super) fn switches(&self) -> Option<u64> {
-        self.stepper.fixed_step().is_none().then(|| self.agenda.switches())
+        self.solver.stepper().fixed_step().is_none().then(|| self.agenda.switches())
+    }
+
+    /// Whether all steps have one size, whose error they show, whatever it is.
+    pub(super) fn has_fixed_steps(&self) -> bool {
+        self.solver.stepper().fixed_step().is_some()
     }
 
     /// Steps worked out so far.
@@ -139,7 +146,7 @@ impl Driver {
     pub(super) fn settle(&mut self, cx: Context) -> Result<bool, RunError> {
         self.close(cx)?;
         let Some(after) = self.crossing.take().or_else(|| self.kink_at_hand(cx)) else { return Ok(false) };
-        self.stepper.cross(cx, &mut self.recorder, after)?;
+        self.solver.stepper_mut().cross(cx, &mut self.recorder, after)?;
         self.t = after;
         // A little further, since a sign is 0 while it turns.
         let past = cx.system.past_turns(after);
@@ -161,12 +168,12 @@ impl Driver {
         self.recorder.commit();
         self.t = step.to;
         self.crossing = step.crossing();
-        self.stepper.accept(cx, &self.recorder, &step)
+        self.solver.stepper_mut().accept(cx, &self.recorder, &step)
     }
 
     /// The far side of a kink at the present time.
     fn kink_at_hand(&self, cx: Context) -> Option<f64> {
-        if self.stepper.fixed_step().is_some() || self.has_ended() {
+        if self.solver.stepper().fixed_step().is_some() || self.has_ended() {
             return None;
         }
         if self.t == 0.0 && cx.system.turns_at(0.0) {
@@ -197,10 +204,10 @@ impl Driver {
                 return Err(RunError::TooManySteps { t: self.t, limit: self.steps });
             }
             let target = self.target(until, rows);
-            match self.stepper.try_step(cx, &mut self.recorder, target)? {
+            match self.solver.stepper_mut().try_step(cx, &mut self.recorder, target)? {
                 Trial::Accepted { step, next } => {
                     self.steps += 1;
-                    if let Some(size) = self.stepper.fixed_step() {
+                    if let Some(size) = self.solver.stepper().fixed_step() {
                         self.tick += usize::from(step.to >= self.tick_time(size) * (1.0 - TICK));
                     }
                     // A step cut short by a stop says nothing against the size chosen before.
@@ -230,7 +237,7 @@ impl Driver {
     /// The step that is tried next.
     fn target(&self, until: f64, rows: Option<RowsAhead>) -> Target {
         let (t, end) = (self.t, self.recorder.settings.end.min(until));
-        if let Some(step) = self.stepper.fixed_step() {
+        if let Some(step) = self.solver.stepper().fixed_step() {
             let tick = self.tick_time(step);
             // What differs by rounding alone is the end that was asked for.
             let to = if end <= tick * (1.0 + TICK) { end } else { tick };
@@ -240,9 +247,10 @@ impl Driver {
         }
         let stop = self.agenda.next_stop(t);
         let stop_at = stop.map_or(end, |stop| stop.before.min(end));
-        let reach = self.stepper.reach(t, self.agenda.reach(t, self.h));
-        let sparse =
-            rows.filter(|rows| self.stepper.ends_on_sparse_rows() && rows.next > t && rows.next - rows.last >= reach);
+        let reach = self.solver.stepper().reach(t, self.agenda.reach(t, self.h));
+        let sparse = rows.filter(|rows| {
+            self.solver.stepper().ends_on_sparse_rows() && rows.next > t && rows.next - rows.last >= reach
+        });
         let to = end_of(t, reach, sparse.map_or(stop_at, |rows| rows.next.min(stop_at)));
         let size = to - t;
         let behind = match stop.filter(|stop| stop.before == to) {
@@ -271,48 +279,19 @@ impl Driver {
         snapshot: &mut Snapshot,
     ) -> Result<Option<f64>, RunError> {
         let Some(Target { from, to, behind, .. }) = self.step else {
-            self.stepper.complete(cx, &mut self.recorder, 0)?;
+            self.solver.stepper_mut().complete(cx, &mut self.recorder, 0)?;
             self.recorder.read_between(cx, row, snapshot)?;
             return Ok(None);
         };
         let theta = if at == to { 1.0 } else { (at - from) / (to - from) };
         if at == to && behind != Behind::Break {
-            self.stepper.complete(cx, &mut self.recorder, 1)?;
-            snapshot.moment.clone_from(&self.recorder.moments[crate::fractional::step::MAX_NODES]);
+            self.solver.stepper_mut().complete(cx, &mut self.recorder, 1)?;
+            snapshot.evaluation.clone_from(&self.recorder.evaluations[crate::fractional::step::MAX_NODES]);
         } else {
-            self.stepper.interpolate(cx, &mut self.recorder, at, theta, &mut snapshot.moment)?;
+            self.solver.stepper_mut().interpolate(cx, &mut self.recorder, at, theta, &mut snapshot.evaluation)?;
         }
         self.recorder.read_step(cx, theta, row, snapshot)?;
         Ok(Some(theta))
-    }
-
-    /// Runs to the end, `output` writing the rows.
-    ///
-    /// # Errors
-    /// What stops the run.
-    pub(super) fn run(&mut self, cx: Context, output: &mut Output, stop: &Stop) -> Result<(), RunError> {
-        output.emit(cx, self)?;
-        loop {
-            while self.settle(cx)? {
-                output.emit(cx, self)?;
-            }
-            if self.has_ended() {
-                // Steps of one size show the error of their size, whatever it is.
-                return if self.stepper.fixed_step().is_none() { output.verdict(cx, self) } else { Ok(()) };
-            }
-            let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
-            if output.rows.wants_checkpoint(self.t, stopped) {
-                let checkpoint = Checkpoint { driver: self.state(cx), written: output.written };
-                output.rows.checkpoint(checkpoint)?;
-            }
-            if stopped {
-                return Err(RunError::Interrupted { t: self.t });
-            }
-            let rows = output.next(&self.recorder.settings);
-            let rows = rows.map(|next| RowsAhead { next, last: output.written.last.unwrap_or(0.0) });
-            self.advance(cx, f64::INFINITY, rows)?;
-            output.emit(cx, self)?;
-        }
     }
 
     /// What it takes to go on; everything is settled.
@@ -320,7 +299,7 @@ impl Driver {
         DriverState {
             system: fingerprint(cx.system, &self.recorder.settings),
             recorder: self.recorder.state(),
-            stepper: self.stepper.save(),
+            solver: self.solver.save(),
             t: self.t,
             h: self.h,
             crossing: self.crossing,
@@ -335,12 +314,12 @@ impl Driver {
     /// # Errors
     /// [`RunError::OtherRun`], and the driver as it was.
     pub(super) fn go_on(&mut self, cx: Context, state: DriverState) -> Result<(), RunError> {
-        let DriverState { system, recorder, stepper, t, h, crossing, tick, steps, rejected_steps } = state;
+        let DriverState { system, recorder, solver, t, h, crossing, tick, steps, rejected_steps } = state;
         let own = fingerprint(cx.system, &self.recorder.settings);
-        if system != own || !self.stepper.fits(&stepper) || !self.recorder.go_on(recorder) {
+        if system != own || !self.solver.fits(&solver) || !self.recorder.go_on(recorder) {
             return Err(RunError::OtherRun);
         }
-        self.stepper.load(cx, &mut self.recorder, stepper)?;
+        self.solver.load(cx, &mut self.recorder, solver)?;
         (self.t, self.h, self.step, self.crossing) = (t, h, None, crossing);
         (self.tick, self.steps, self.rejected_steps) = (tick, steps, rejected_steps);
         Ok(())
@@ -351,7 +330,7 @@ impl Driver {
         Report {
             steps: self.steps,
             rejected_steps: self.rejected_steps,
-            newton_iterations: self.stepper.newton_iterations(),
+            newton_iterations: self.solver.stepper().newton_iterations(),
             modes: self.recorder.bank.modes(),
             switches: self.switches(),
             resolution: self.switches().map(|_| FINEST * self.recorder.settings.end),

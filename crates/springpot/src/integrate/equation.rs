@@ -1,7 +1,13 @@
 //! The equations of motion at one time, term by term.
 
+use super::error::RunError;
+use super::pose::State;
+use super::report::Report;
 use super::resistance::{add_resistance, holding_forces};
-use super::{Motion, Report, RowTimes, RunError, Settings, State, Stop, System, run};
+use super::row_times::RowTimes;
+use super::run::run;
+use super::settings::{Settings, Stop};
+use super::system::{Motion, System};
 use crate::dynamics::{Kinematics, christoffel, coriolis, crba, gravity};
 use crate::observe::{ElementQuantity, Quantity, Table};
 use std::sync::atomic::Ordering;

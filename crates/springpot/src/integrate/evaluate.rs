@@ -1,15 +1,16 @@
 //! The robot and its elements at one time, before any law is asked.
 
 use super::context::Context;
+use super::error::RunError;
 use super::resistance::{add_resistance, joint_loss};
-use super::{RunError, System};
+use super::system::System;
 use crate::dynamics::{Kinematics, Workspace, kinetic_energy, potential_energy, rnea_at_into};
 use crate::elements::{Element, Reading};
 use crate::law::{InputValue, Point};
 use crate::model::Model;
 use crate::motion::{Trajectory, Wanted};
 use crate::observe::Snapshot;
-pub(super) use crate::observe::snapshot::{ElementMoment, Moment};
+pub(super) use crate::observe::evaluation::{ElementEvaluation, Evaluation};
 use crate::observe::{ElementQuantity, Quantity};
 
 /// Scratch of [`Context::evaluate`].
@@ -25,16 +26,16 @@ impl Scratch {
     }
 }
 
-impl ElementMoment {
+impl ElementEvaluation {
     pub(super) fn point(&self, t: f64) -> Point<'_> {
         Point { t, stroke: self.stroke, rate: self.reading.rate, inputs: &self.inputs }
     }
 }
 
-impl Moment {
+impl Evaluation {
     pub(super) fn new(system: &System) -> Self {
         let n = system.model.nv();
-        let element = |element: &Element| ElementMoment {
+        let element = |element: &Element| ElementEvaluation {
             reading: Reading::default(),
             stroke: 0.0,
             gradient: vec![0.0; n],
@@ -72,12 +73,12 @@ impl Moment {
 impl Snapshot {
     /// Room for what is known of a system.
     pub(super) fn new(system: &System) -> Self {
-        Self { moment: Moment::new(system), elements: Vec::new(), actuators: 0.0, joints: 0.0, residual: 0.0 }
+        Self { evaluation: Evaluation::new(system), elements: Vec::new(), actuators: 0.0, joints: 0.0, residual: 0.0 }
     }
 }
 
 impl Context<'_> {
-    /// Fills `moment` for the time `t` of a trajectory; inputs are taken at `t_inputs`, which differs from `t` by one bit where a break point
+    /// Fills `evaluation` for the time `t` of a trajectory; inputs are taken at `t_inputs`, which differs from `t` by one bit where a break point
     /// is meant from its left side.
     ///
     /// # Errors
@@ -88,14 +89,14 @@ impl Context<'_> {
         t: f64,
         t_inputs: f64,
         scratch: &mut Scratch,
-        moment: &mut Moment,
+        evaluation: &mut Evaluation,
     ) -> Result<(), RunError> {
-        let wanted = trajectory.at(&self.system.model, t, &mut moment.q, &mut moment.v, &mut moment.a)?;
-        self.require_finite(t, moment)?;
-        self.fill(t, t_inputs, wanted, scratch, moment)
+        let wanted = trajectory.at(&self.system.model, t, &mut evaluation.q, &mut evaluation.v, &mut evaluation.a)?;
+        self.require_finite(t, evaluation)?;
+        self.fill(t, t_inputs, wanted, scratch, evaluation)
     }
 
-    /// Fills `moment`, whose q, v and a are there, for the time `t`, inputs taken at `t_inputs`.
+    /// Fills `evaluation`, whose q, v and a are there, for the time `t`, inputs taken at `t_inputs`.
     ///
     /// # Errors
     /// [`RunError`] where an input is not finite or breaks a rule, or an element has no direction.
@@ -105,17 +106,25 @@ impl Context<'_> {
         t_inputs: f64,
         wanted: Option<Wanted>,
         scratch: &mut Scratch,
-        moment: &mut Moment,
+        evaluation: &mut Evaluation,
     ) -> Result<(), RunError> {
-        moment.t = t;
+        evaluation.t = t;
         let kinematics = &mut scratch.kinematics;
-        kinematics.update_velocity(&self.system.model, &moment.q, &moment.v);
+        kinematics.update_velocity(&self.system.model, &evaluation.q, &evaluation.v);
         let workspace = &mut scratch.workspace;
-        rnea_at_into(&self.system.model, kinematics, &moment.q, &moment.a, &[], workspace, &mut moment.rigid);
-        moment.kinetic = kinetic_energy(&self.system.model, kinematics);
-        moment.potential = potential_energy(&self.system.model, kinematics);
-        moment.joint_loss = add_resistance(&self.system.model, &moment.v, &mut moment.rigid);
-        for (e, (element, state)) in self.system.elements.iter().zip(&mut moment.elements).enumerate() {
+        rnea_at_into(
+            &self.system.model,
+            kinematics,
+            &evaluation.q,
+            &evaluation.a,
+            &[],
+            workspace,
+            &mut evaluation.rigid,
+        );
+        evaluation.kinetic = kinetic_energy(&self.system.model, kinematics);
+        evaluation.potential = potential_energy(&self.system.model, kinematics);
+        evaluation.joint_loss = add_resistance(&self.system.model, &evaluation.v, &mut evaluation.rigid);
+        for (e, (element, state)) in self.system.elements.iter().zip(&mut evaluation.elements).enumerate() {
             element.measure.read_into(&self.system.model, kinematics, &mut state.gradient, &mut state.reading);
             element.check_direction(t, &state.reading)?;
             state.stroke = element.stroke(state.reading.coordinate);
@@ -123,9 +132,9 @@ impl Context<'_> {
             element.check_inputs(t, &state.inputs)?;
         }
         if let Some(site) = &self.system.gripper {
-            moment.gripper = kinematics.position(site).0;
-            moment.gripper_error = wanted.map(|Wanted { position }| {
-                let square = |k: usize| (moment.gripper[k] - position[k]).powi(2);
+            evaluation.gripper = kinematics.position(site).0;
+            evaluation.gripper_error = wanted.map(|Wanted { position }| {
+                let square = |k: usize| (evaluation.gripper[k] - position[k]).powi(2);
                 (square(0) + square(1) + square(2)).sqrt()
             });
         }
@@ -139,13 +148,13 @@ impl Context<'_> {
         t: f64,
         kinematics: &Kinematics,
         elements: impl Iterator<Item = (&'s Reading, &'s [InputValue])>,
-        moment: &mut Moment,
+        evaluation: &mut Evaluation,
     ) {
-        moment.t = t;
-        moment.kinetic = kinetic_energy(&self.system.model, kinematics);
-        moment.potential = potential_energy(&self.system.model, kinematics);
-        moment.joint_loss = joint_loss(&self.system.model, &moment.v);
-        let states = self.system.elements.iter().zip(&mut moment.elements);
+        evaluation.t = t;
+        evaluation.kinetic = kinetic_energy(&self.system.model, kinematics);
+        evaluation.potential = potential_energy(&self.system.model, kinematics);
+        evaluation.joint_loss = joint_loss(&self.system.model, &evaluation.v);
+        let states = self.system.elements.iter().zip(&mut evaluation.elements);
         for ((element, state), (reading, inputs)) in states.zip(elements) {
             state.reading.clone_from(reading);
             state.stroke = element.stroke(reading.coordinate);
@@ -153,10 +162,10 @@ impl Context<'_> {
         }
     }
 
-    fn require_finite(&self, t: f64, moment: &Moment) -> Result<(), RunError> {
-        let q = moment.q.iter().enumerate().map(|(k, x)| (Quantity::Coordinate(k), *x));
-        let v = moment.v.iter().enumerate().map(|(k, x)| (Quantity::Velocity(k), *x));
-        let a = moment.a.iter().enumerate().map(|(k, x)| (Quantity::Acceleration(k), *x));
+    fn require_finite(&self, t: f64, evaluation: &Evaluation) -> Result<(), RunError> {
+        let q = evaluation.q.iter().enumerate().map(|(k, x)| (Quantity::Coordinate(k), *x));
+        let v = evaluation.v.iter().enumerate().map(|(k, x)| (Quantity::Velocity(k), *x));
+        let a = evaluation.a.iter().enumerate().map(|(k, x)| (Quantity::Acceleration(k), *x));
         if let Some((quantity, value)) = q.chain(v).chain(a).find(|(_, x)| !x.is_finite()) {
             let what = self.system.observables().named(quantity).to_string();
             return Err(RunError::NotFinite { t, what, value });

@@ -1,6 +1,6 @@
 //! Coordinates may have kinks, no jumps.
 
-use super::RunError;
+use super::error::RunError;
 use crate::model::Model;
 
 /// Neighbouring times on either side of a kink by which rounding is judged.

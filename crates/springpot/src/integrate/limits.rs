@@ -1,6 +1,9 @@
 //! Limits of joints that a motion passes, seen in its rows.
 
-use super::{RowTimes, Settings, Stop, System, run};
+use super::row_times::RowTimes;
+use super::run::run;
+use super::settings::{Settings, Stop};
+use super::system::System;
 use crate::model::{JointKind, Limits, Model};
 use crate::observe::{Observables, Quantity};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -174,7 +177,7 @@ impl System {
     ///
     /// # Errors
     /// What keeps a run from starting.
-    pub fn first_row(&self, settings: &Settings) -> Result<Vec<f64>, super::RunError> {
+    pub fn first_row(&self, settings: &Settings) -> Result<Vec<f64>, super::error::RunError> {
         let settings = Settings { rows: RowTimes::Times([0.0].into()), ..settings.clone() };
         let mut table = self.table();
         // Stopped from the outset, it writes its first row and takes no step.

@@ -1,8 +1,9 @@
 //! Elements with a named offline scheme: their derivative is taken on the grid of the rows.
 
 use super::context::Context;
-use super::evaluate::{Moment, Scratch};
-use super::{RowTimes, RunError};
+use super::error::RunError;
+use super::evaluate::{Evaluation, Scratch};
+use super::row_times::RowTimes;
 use crate::elements::Element;
 use crate::fractional::scheme::Samples;
 use crate::law::{InputValue, Observation, Point, State};
@@ -26,11 +27,11 @@ pub(super) fn derivatives(
         return Ok(vec![None; system.elements.len()]);
     }
     let times = rows.all();
-    let mut moment = Moment::new(system);
+    let mut evaluation = Evaluation::new(system);
     let (mut strokes, mut rates) = (vec![Vec::new(); system.elements.len()], vec![Vec::new(); system.elements.len()]);
     for &t in &times {
-        cx.evaluate(trajectory, t, t, scratch, &mut moment)?;
-        for (e, state) in moment.elements.iter().enumerate() {
+        cx.evaluate(trajectory, t, t, scratch, &mut evaluation)?;
+        for (e, state) in evaluation.elements.iter().enumerate() {
             // A start within rounding of 0 is no jump.
             let stroke = if t == 0.0 { system.elements[e].jump(state.reading.coordinate) } else { state.stroke };
             strokes[e].push(stroke);
@@ -41,7 +42,7 @@ pub(super) fn derivatives(
         let element = &system.elements[e];
         let scheme = element.scheme.as_ref()?;
         let samples = Samples { t: &times, x: &strokes[e], rate: Some(&rates[e]) };
-        let derivatives = begin(element, &moment.elements[e].inputs).and_then(|state| {
+        let derivatives = begin(element, &evaluation.elements[e].inputs).and_then(|state| {
             let orders = state.memories().iter().map(crate::fractional::Memory::alpha);
             let values = orders.map(|alpha| scheme.differentiate(&samples, alpha, element.derivative));
             let values = values.collect::<Result<_, _>>();

@@ -2,29 +2,16 @@
 
 use super::context::Context;
 use super::driver::Driver;
-use super::{Report, Rows, RunError, Settings};
-use crate::observe::snapshot::Snapshot;
-use serde::{Deserialize, Serialize};
+use super::error::RunError;
+use super::report::Report;
+use super::rows::Rows;
+use super::settings::Settings;
+use super::written::Written;
+use crate::observe::Snapshot;
 
 /// How much more than the tolerance the balance may be off, in units of the energy turned over, and what it may in any case.
 const IMBALANCE: f64 = 1e3;
 const LEAST_IMBALANCE: f64 = 1e-4;
-
-/// What of the rows must outlast a step.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Written {
-    /// Number of rows.
-    pub(super) rows: usize,
-    /// Time of the last one, s.
-    pub(super) last: Option<f64>,
-    /// Largest residual of the balance, J, and its time, s.
-    residual: f64,
-    residual_at: f64,
-    /// What rounding may do to the balance, J.
-    rounding: f64,
-    /// The first row whose rate is not that of its step: its time, the element, the departure in units of D^alpha x.
-    departure: Option<(f64, usize, f64)>,
-}
 
 /// Writes the rows of a run.
 pub(super) struct Output<'a> {
@@ -79,16 +66,16 @@ impl<'a> Output<'a> {
 
     /// Takes in how far the balance is off, and what rounding makes of it.
     fn take_residual(&mut self, driver: &Driver) {
-        let (Snapshot { moment, elements, residual, .. }, written) = (&self.snapshot, &mut self.written);
+        let (Snapshot { evaluation, elements, residual, .. }, written) = (&self.snapshot, &mut self.written);
         if residual.abs() > written.residual {
-            written.residual_at = moment.t;
+            written.residual_at = evaluation.t;
         }
         written.residual = if residual.is_nan() { f64::NAN } else { written.residual.max(residual.abs()) };
         // Strokes are differences of coordinates, heights of bodies are counted from the world's origin.
-        let forces = elements.iter().zip(&moment.elements);
+        let forces = elements.iter().zip(&evaluation.elements);
         let forces = forces.map(|(row, at)| (row.observation.force() * at.reading.coordinate).abs());
         let origin = driver.recorder.potential_origin().abs();
-        let sizes = moment.potential.abs() + origin + forces.filter(|x| x.is_finite()).sum::<f64>();
+        let sizes = evaluation.potential.abs() + origin + forces.filter(|x| x.is_finite()).sum::<f64>();
         written.rounding = written.rounding.max(64.0 * f64::EPSILON * sizes);
     }
 

@@ -1,7 +1,8 @@
 //! Where the robot and its elements are, without running anything.
 
-use super::evaluate::{Moment, Scratch};
-use super::{Motion, RunError, System};
+use super::error::RunError;
+use super::evaluate::{Evaluation, Scratch};
+use super::system::{Motion, System};
 use crate::dynamics::Kinematics;
 use crate::model::{Anchor, Model, Parent};
 use crate::spatial::Vec3;
@@ -43,11 +44,11 @@ impl System {
     /// # Errors
     /// What keeps a run from starting.
     pub fn element_starts(&self) -> Result<Vec<ElementStart>, RunError> {
-        let mut moment = Moment::new(self);
+        let mut evaluation = Evaluation::new(self);
         let State { q, v, a } = self.state(0.0)?;
-        (moment.q, moment.v, moment.a) = (q, v, a);
-        self.context().fill(0.0, 0.0, None, &mut Scratch::new(&self.model), &mut moment)?;
-        let starts = self.elements.iter().zip(moment.elements).map(|(element, state)| {
+        (evaluation.q, evaluation.v, evaluation.a) = (q, v, a);
+        self.context().fill(0.0, 0.0, None, &mut Scratch::new(&self.model), &mut evaluation)?;
+        let starts = self.elements.iter().zip(evaluation.elements).map(|(element, state)| {
             let begun = element.begin(state.reading.coordinate, &state.inputs);
             let singular = begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
             let singular = !singular.is_accounted();

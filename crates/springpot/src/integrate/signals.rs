@@ -1,6 +1,8 @@
 //! The signals that drive a run, and what they ask of its steps.
 
-use super::{Motion, RunError, Settings, System};
+use super::error::RunError;
+use super::settings::Settings;
+use super::system::{Motion, System};
 use crate::actuation::Drive;
 use crate::motion::Trajectory;
 use crate::signal::{Agenda, AgendaError, Signal, Watched};

@@ -2,11 +2,16 @@
 
 use super::context::{Context, Held};
 use super::driver::Driver;
-use super::evaluate::Moment;
-use super::{Motion, Report, RowTimes, RunError, Settings, SimulationState, Stop, System};
+use super::error::RunError;
+use super::evaluate::Evaluation;
+use super::report::Report;
+use super::row_times::RowTimes;
+use super::settings::{Settings, Stop};
+use super::state::SimulationState;
+use super::system::{Motion, System};
 use crate::actuation::Drive;
 use crate::fractional::step::MAX_NODES;
-use crate::observe::snapshot::Snapshot;
+use crate::observe::Snapshot;
 use std::sync::Arc;
 
 /// A system on its way, driven step by step by whoever owns it: a controller, another engine, a notebook.
@@ -144,9 +149,9 @@ impl Simulation {
         &self.present().v
     }
 
-    fn present(&self) -> &Moment {
+    fn present(&self) -> &Evaluation {
         let at = if self.driver.step_at_hand().is_some() { MAX_NODES } else { 0 };
-        &self.driver.recorder.moments[at]
+        &self.driver.recorder.evaluations[at]
     }
 
     /// All that is known at the present time: what a step led to, or after [`Self::set_torque`] and [`Self::set_input`] what they make of it.

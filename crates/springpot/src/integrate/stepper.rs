@@ -1,10 +1,10 @@
 //! What the driver asks of a method that takes steps.
 
 use super::context::Context;
-use super::evaluate::Moment;
+use super::error::RunError;
+use super::evaluate::Evaluation;
 use super::recorder::Recorder;
-use super::state::StepperState;
-use super::{RunError, Settings};
+use super::settings::Settings;
 use crate::signal::Agenda;
 
 /// A step to be tried.
@@ -59,7 +59,7 @@ pub(super) enum Trial {
     Changes,
 }
 
-/// A method that takes steps. It fills the moments of the recorder and tells the bank.
+/// A method that takes steps. It fills the evaluations of the recorder and tells the bank.
 pub(super) trait Stepper: std::fmt::Debug + Send + Sync {
     /// The longest step, s.
     fn longest_step(&self, cx: Context, settings: &Settings) -> f64;
@@ -77,7 +77,7 @@ pub(super) trait Stepper: std::fmt::Debug + Send + Sync {
         false
     }
 
-    /// Goes to t = 0: the first moment is there and its elements have begun; gives the size of the first step.
+    /// Goes to t = 0: the first evaluation is there and its elements have begun; gives the size of the first step.
     ///
     /// # Errors
     /// What keeps a run from starting.
@@ -94,7 +94,7 @@ pub(super) trait Stepper: std::fmt::Debug + Send + Sync {
     /// Where no step leads on.
     fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError>;
 
-    /// Makes sure that the moment at the start (0) or at the end (1) of the step has all that a row asks for.
+    /// Makes sure that the evaluation at the start (0) or at the end (1) of the step has all that a row asks for.
     ///
     /// # Errors
     /// What a row there may show.
@@ -102,7 +102,7 @@ pub(super) trait Stepper: std::fmt::Debug + Send + Sync {
         recorder.complete(cx, end)
     }
 
-    /// Fills a moment at t, θ inside the step that was worked out, 0 < θ ≤ 1.
+    /// Fills an evaluation at t, θ inside the step that was worked out, 0 < θ ≤ 1.
     ///
     /// # Errors
     /// What a row there may show.
@@ -112,7 +112,7 @@ pub(super) trait Stepper: std::fmt::Debug + Send + Sync {
         recorder: &mut Recorder,
         at: f64,
         theta: f64,
-        moment: &mut Moment,
+        evaluation: &mut Evaluation,
     ) -> Result<(), RunError>;
 
     /// Goes on to the end of the step that was worked out and that the recorder has taken.
@@ -131,16 +131,4 @@ pub(super) trait Stepper: std::fmt::Debug + Send + Sync {
     fn newton_iterations(&self) -> Option<u64> {
         None
     }
-
-    /// What the next step takes over from those before.
-    fn save(&self) -> StepperState;
-
-    /// Whether that is a state of this method.
-    fn fits(&self, state: &StepperState) -> bool;
-
-    /// Goes on from what was saved of this method, the recorder from what belongs to it.
-    ///
-    /// # Errors
-    /// What keeps a run from going on.
-    fn load(&mut self, cx: Context, recorder: &mut Recorder, state: StepperState) -> Result<(), RunError>;
 }

@@ -1,6 +1,7 @@
 //! The catalog of laws: what the parser, the command line and the documentation know about them.
 
 use super::network::Network;
+use super::rule::RuleError;
 use crate::fractional::Kind as Derivative;
 use std::borrow::Cow;
 use std::fmt;
@@ -84,16 +85,6 @@ impl Input {
     ) -> Self {
         Self { name: name.into(), unit: unit.into(), meaning: meaning.into(), range }
     }
-}
-
-/// A rule between parameters that a law needs to be passive.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{rule}")]
-pub struct RuleError {
-    /// The rule, in words.
-    pub rule: String,
-    /// The parameter to change.
-    pub parameter: Cow<'static, str>,
 }
 
 /// The order of the fractional derivative, as every law names it.

@@ -2,8 +2,8 @@
 
 mod series;
 
-use super::catalog::RuleError;
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
+use super::rule::RuleError;
 use super::state::{State, StateMut, StateRef, StateSize};
 use super::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::fractional::KernelError;

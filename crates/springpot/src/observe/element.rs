@@ -1,8 +1,8 @@
 //! What can be observed of an element: names, units, words and values.
 
-use super::observables::{FORCES, ObservedElement, of_measure};
-use super::snapshot::{ElementMoment, ElementRow};
-use super::symbol::at_joint;
+use super::evaluation::{ElementEvaluation, ElementRow};
+use super::subscript::at_joint;
+use super::units::{FORCES, ObservedElement, of_measure};
 use crate::model::Label;
 use std::fmt;
 
@@ -41,7 +41,7 @@ impl<Id> ElementQuantity<Id> {
 
 impl ElementQuantity {
     /// Its value in a row, NaN where unknown.
-    pub(super) fn value(self, row: &ElementRow, state: &ElementMoment) -> f64 {
+    pub(super) fn value(self, row: &ElementRow, state: &ElementEvaluation) -> f64 {
         let ElementRow { observation, dissipated, input } = row;
         match self {
             Self::Length => state.reading.coordinate,
@@ -49,7 +49,7 @@ impl ElementQuantity {
             Self::Rate => state.reading.rate,
             Self::Derivative => observation.derivative,
             Self::Force => observation.force(),
-            Self::GeneralizedForce(k) => generalized_force(row, state, k),
+            Self::GeneralizedForce(k) => row.generalized_force(state, k),
             Self::Stored => observation.stored.unwrap_or(f64::NAN),
             Self::Dissipated => observation.stored.map_or(f64::NAN, |_| *dissipated),
             Self::Input => *input,
@@ -163,9 +163,4 @@ impl fmt::Display for ElementQuantity<&str> {
             Self::InputValue(input) => input,
         })
     }
-}
-
-/// Q_b = −F·∂y/∂q_b.
-pub(super) fn generalized_force(row: &ElementRow, state: &ElementMoment, b: usize) -> f64 {
-    -row.observation.force() * state.gradient[b]
 }

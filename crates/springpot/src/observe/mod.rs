@@ -4,11 +4,14 @@
 //! system in the order of its rows. A [`Table`] keeps the rows of a run in memory, its columns by name or by quantity.
 
 mod element;
+pub(crate) mod evaluation;
 mod observables;
 mod quantity;
-pub(crate) mod snapshot;
+mod snapshot;
+mod subscript;
 pub mod symbol;
 mod table;
+mod units;
 
 pub use element::ElementQuantity;
 pub use observables::Observables;

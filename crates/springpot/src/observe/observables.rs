@@ -1,14 +1,12 @@
 //! What can be observed of a system, in the order of its rows.
 
-use super::{Axis, ElementQuantity, EnergyQuantity, Quantity};
+use super::element::ElementQuantity;
+use super::quantity::{Axis, EnergyQuantity, Quantity};
+use super::units::{FORCES, ObservedElement, of_measure};
 use crate::elements::{self, Element};
-use crate::law::{Entry, InputValue, Point};
-use crate::model::{Label, Measure, Model};
+use crate::law::{InputValue, Point};
+use crate::model::{Label, Model};
 use crate::table::Column;
-use std::sync::Arc;
-
-/// Units of generalized forces, by [`Measure`]: of an angle, a length, a quaternion.
-pub(super) const FORCES: [&str; 3] = ["N*m", "N", ""];
 
 /// How many numbers a system has, and which of those that not all systems have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,17 +55,6 @@ pub struct Observables {
     coordinates: Vec<Label>,
     velocities: Vec<Label>,
     elements: Vec<ObservedElement>,
-}
-
-/// What names and units of an element's quantities follow from.
-#[derive(Debug, Clone)]
-pub(super) struct ObservedElement {
-    pub(super) name: String,
-    /// Whether it acts on the coordinate of a joint.
-    on_joint: bool,
-    pub(super) is_rotation: bool,
-    pub(super) derivative_unit: &'static str,
-    pub(super) entry: Arc<Entry>,
 }
 
 impl Observables {
@@ -184,15 +171,6 @@ impl Observables {
             Quantity::Gripper(_) | Quantity::GripperError => "m",
             Quantity::Energy(_) => "J",
         }
-    }
-}
-
-/// The unit of a number, from those for angles, lengths and quaternions.
-pub(super) fn of_measure(label: &Label, [angle, length, quaternion]: [&'static str; 3]) -> &'static str {
-    match label.measure {
-        Measure::Angle => angle,
-        Measure::Length => length,
-        Measure::Quaternion => quaternion,
     }
 }
 

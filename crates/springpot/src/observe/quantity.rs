@@ -1,6 +1,6 @@
 //! One number of a row: which it is, and what it is called.
 
-use super::ElementQuantity;
+use super::element::ElementQuantity;
 use std::fmt;
 
 /// What can be observed. `Id` says which coordinate, velocity, element or input: its index in a system, or its name as in columns.

@@ -1,6 +1,8 @@
 //! Quantities as a reader of a figure wants them.
 
-use super::{EnergyQuantity, Quantity};
+use super::quantity::{EnergyQuantity, Quantity};
+use super::subscript::at_joint;
+pub use super::subscript::subscript;
 
 impl Quantity<&str> {
     /// Symbol or words without unit: "q̇₂", "Q₂ of strut", "energy residual".
@@ -46,19 +48,6 @@ fn state(symbol: &str, of_floating: &[(&str, &str, &str)], dot: &str, label: &st
         Some(digits) => format!("{symbol}{}", subscript(digits)),
         None => format!("{symbol} of {label}"),
     })
-}
-
-/// `q2` becomes ₂, other names " at NAME".
-pub(super) fn at_joint(label: &str) -> String {
-    match label.strip_prefix('q').filter(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit())) {
-        Some(digits) => subscript(digits),
-        None => format!(" at {label}"),
-    }
-}
-
-/// Digits as an index: `12` becomes ₁₂; other characters stay.
-pub fn subscript(digits: &str) -> String {
-    digits.chars().map(|c| c.to_digit(10).and_then(|d| char::from_u32('₀' as u32 + d)).unwrap_or(c)).collect()
 }
 
 #[cfg(test)]

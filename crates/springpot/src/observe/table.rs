@@ -1,6 +1,7 @@
 //! The rows of a run in memory.
 
-use super::{Observables, Quantity};
+use super::observables::Observables;
+use super::quantity::Quantity;
 use crate::table::Column;
 use std::collections::HashMap;
 

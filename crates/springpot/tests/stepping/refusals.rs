@@ -19,7 +19,7 @@ fn states_of_other_systems_and_settings_are_refused() {
     // One number of one law, or one setting, makes another system of it.
     let (_, system, settings) = &all[2];
     let mut stiffer = system.clone();
-    stiffer.elements[0].rest_length += 1e-9;
+    stiffer.elements[0].rest += 1e-9;
     let finer = Settings { rtol: 0.5 * settings.rtol, ..settings.clone() };
     for (system, settings) in [(&stiffer, settings), (system, &finer)] {
         let error = start(system, settings).set_state(&states[2]).unwrap_err();

@@ -1,7 +1,8 @@
 //! The coordinate of a joint.
 
 use super::forces::JointForce;
-use super::{Direction, Forces, Measure, Pull, Reading};
+use super::forces::{Forces, Pull};
+use super::{Direction, Measure, Reading};
 use crate::dynamics::Kinematics;
 use crate::model::{JointKind, Model};
 

@@ -1,6 +1,7 @@
 //! The distance of two points.
 
-use super::{Direction, Forces, Measure, Pull, Reading};
+use super::forces::{Forces, Pull};
+use super::{Direction, Measure, Reading};
 use crate::dynamics::{Kinematics, PairForce, pair_into};
 use crate::model::{Model, Site};
 

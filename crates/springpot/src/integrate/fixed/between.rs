@@ -4,10 +4,10 @@ use super::rub::SLACK;
 use super::step::Place;
 use crate::actuation::Forward;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
 use crate::integrate::coulomb::{Candidate, Coulomb};
-use crate::integrate::evaluate::{Moment, Scratch};
+use crate::integrate::error::RunError;
+use crate::integrate::evaluate::{Evaluation, Scratch};
 use crate::integrate::radau::drives::drive;
 use crate::integrate::resistance::holding_forces;
 use crate::linalg::Lu;
@@ -45,17 +45,17 @@ impl<'a> Between<'a> {
     }
 
     /// Fills q, v, a and what drives the joints at t = t_n + θh.
-    pub(super) fn place(&self, t: f64, theta: f64, moment: &mut Moment) {
+    pub(super) fn place(&self, t: f64, theta: f64, evaluation: &mut Evaluation) {
         let mut xi = vec![0.0; self.xi.len()];
         let rest = 1.0 - theta;
         for (k, xi) in xi.iter_mut().enumerate() {
             let (v, w) = (self.h * self.from.v[k], self.h * self.xi_rate[k]);
             *xi = theta * (rest * rest * v - theta * rest * w) + theta * theta * (3.0 - 2.0 * theta) * self.xi[k];
-            moment.v[k] = rest * self.from.v[k] + theta * self.to.v[k];
-            moment.a[k] = rest * self.a[0][k] + theta * self.a[1][k];
+            evaluation.v[k] = rest * self.from.v[k] + theta * self.to.v[k];
+            evaluation.a[k] = rest * self.a[0][k] + theta * self.a[1][k];
         }
-        self.cx.system.model.integrate_into(&self.from.q, &xi, &mut moment.q);
-        drive(self.cx, self.forward, t, moment);
+        self.cx.system.model.integrate_into(&self.from.q, &xi, &mut evaluation.q);
+        drive(self.cx, self.forward, t, evaluation);
     }
 }
 
@@ -86,47 +86,48 @@ impl Accelerator {
         }
     }
 
-    /// Fills a `moment`, whose q and v are there, for the time `t`: the accelerations of the joints that no signal moves solve
-    /// M a = τ − nle − Σ g F under the `forces` of the elements, which see the moment's kinematics.
+    /// Fills an `evaluation`, whose q and v are there, for the time `t`: the accelerations of the joints that no signal moves solve
+    /// M a = τ − nle − Σ g F under the `forces` of the elements, which see the evaluation's kinematics.
     pub(super) fn fill(
         &mut self,
         cx: Context,
         forward: &Forward,
         t: f64,
         scratch: &mut Scratch,
-        moment: &mut Moment,
-        mut forces: impl FnMut(usize, &Moment) -> f64,
+        evaluation: &mut Evaluation,
+        mut forces: impl FnMut(usize, &Evaluation) -> f64,
     ) -> Result<(), RunError> {
         let model = &cx.system.model;
         for &k in &self.free {
-            moment.a[k] = 0.0;
+            evaluation.a[k] = 0.0;
         }
-        drive(cx, forward, t, moment);
-        cx.fill(t, t, None, scratch, moment)?;
-        let mut push: Vec<f64> = self.free.iter().map(|&k| moment.driven[k].unwrap_or(0.0) - moment.rigid[k]).collect();
+        drive(cx, forward, t, evaluation);
+        cx.fill(t, t, None, scratch, evaluation)?;
+        let mut push: Vec<f64> =
+            self.free.iter().map(|&k| evaluation.driven[k].unwrap_or(0.0) - evaluation.rigid[k]).collect();
         for e in 0..cx.system.elements.len() {
-            let force = forces(e, moment);
+            let force = forces(e, evaluation);
             for (push, &k) in push.iter_mut().zip(&self.free) {
-                *push -= force * moment.elements[e].gradient[k];
+                *push -= force * evaluation.elements[e].gradient[k];
             }
         }
-        self.kinematics.update_position(model, &moment.q);
+        self.kinematics.update_position(model, &evaluation.q);
         crba_into(model, &self.kinematics, &mut self.workspace, &mut self.mass);
         if self.lu.factor_part(model.nv(), &self.mass, &self.free) {
             self.lu.solve(&mut push);
-            self.hold(t, model, moment, &mut push)?;
+            self.hold(t, model, evaluation, &mut push)?;
         }
         for (push, &k) in push.iter().zip(&self.free) {
-            moment.a[k] = *push;
+            evaluation.a[k] = *push;
         }
-        cx.fill(t, t, None, scratch, moment)
+        cx.fill(t, t, None, scratch, evaluation)
     }
 
     /// Takes the friction that sticks off the accelerations `a` of the joints at rest.
-    fn hold(&mut self, t: f64, model: &Model, moment: &Moment, a: &mut [f64]) -> Result<(), RunError> {
+    fn hold(&mut self, t: f64, model: &Model, evaluation: &Evaluation, a: &mut [f64]) -> Result<(), RunError> {
         let Self { free, limits, coulomb, lu, .. } = self;
         coulomb.candidates.clear();
-        for (place, &k) in free.iter().enumerate().filter(|(_, k)| limits[**k] > 0.0 && moment.v[**k] == 0.0) {
+        for (place, &k) in free.iter().enumerate().filter(|(_, k)| limits[**k] > 0.0 && evaluation.v[**k] == 0.0) {
             coulomb.candidates.push(Candidate { place, limit: limits[k], slack: SLACK * limits[k], offset: 0.0 });
         }
         if coulomb.candidates.is_empty() {

@@ -1,36 +1,11 @@
 //! The elements over one step of a fixed-step method.
 
+use super::element_step::ElementStep;
 use super::step::OneStage;
-use crate::dynamics::Kinematics;
-use crate::elements::{Element, ElementBank, Pull, Reading};
-use crate::integrate::RunError;
+use crate::elements::{ElementBank, Pull};
 use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
 use crate::law::Response;
-use crate::model::Model;
-
-/// One element over a step.
-#[derive(Debug, Clone)]
-pub(super) struct ElementStep {
-    /// At the start and at the end.
-    pub(super) ends: [Reading; 2],
-    /// At the stage, where that is not the end.
-    stage: Reading,
-    /// ∂y/∂q at the stage and at the end.
-    pub(super) gradients: [Vec<f64>; 2],
-}
-
-impl ElementStep {
-    /// At the start of a motion.
-    ///
-    /// # Errors
-    /// [`RunError::ZeroLength`].
-    pub(super) fn new(element: &Element, model: &Model, start: &Kinematics) -> Result<Self, RunError> {
-        let (reading, gradient) = element.measure.read(model, start);
-        element.check_direction(0.0, &reading)?;
-        let ends = [reading.clone(), reading.clone()];
-        Ok(Self { ends, stage: reading, gradients: [gradient.clone(), gradient] })
-    }
-}
 
 impl OneStage {
     /// Begins the step of the elements, whose stage is at the time `at`: what they know before it is found.

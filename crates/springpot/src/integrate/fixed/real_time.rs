@@ -1,12 +1,13 @@
 //! A robot with its elements in a controller's loop.
 
-use super::Method;
 use super::step::OneStage;
 use crate::dynamics::{kinetic_energy, potential_energy};
 use crate::elements::{ElementBank, MemoryRange};
 use crate::fractional::Form;
 use crate::integrate::context::{Context, Held};
-use crate::integrate::{Motion, RunError, System};
+use crate::integrate::error::RunError;
+use crate::integrate::fixed_step::Method;
+use crate::integrate::system::{Motion, System};
 use crate::law::{Point, Singular, Start};
 
 /// How the memories of the elements are built.

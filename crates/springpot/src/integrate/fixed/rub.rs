@@ -1,8 +1,8 @@
 //! Friction that sticks, over one step: f ∈ F·Sgn(v) at its end.
 
 use super::step::OneStage;
-use crate::integrate::RunError;
 use crate::integrate::coulomb::Candidate;
+use crate::integrate::error::RunError;
 
 /// By how much friction may exceed its limit and still hold, as a share of it: far below the error of a step.
 pub(super) const SLACK: f64 = 1e-10;

@@ -1,19 +1,20 @@
 //! Steps of one size behind the driver: with the energy ledger, and what rows ask for where there are some.
 
 use super::between::{Accelerator, Between};
-use super::step::OneStage;
-use super::{FixedStep, ITERATIONS};
+use super::step::{ITERATIONS, OneStage};
 use crate::actuation::{Drive, Forward};
 use crate::elements::ElementBank;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::fractional::{Form, Nodes};
 use crate::integrate::context::Context;
-use crate::integrate::evaluate::Moment;
+use crate::integrate::error::RunError;
+use crate::integrate::evaluate::Evaluation;
+use crate::integrate::fixed_step::FixedStep;
 use crate::integrate::radau::drives::drive;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::resistance::joint_loss;
+use crate::integrate::settings::Settings;
 use crate::integrate::stepper::{Stepper, Target, Trial};
-use crate::integrate::{RunError, Settings, state};
 use crate::law::Singular;
 use crate::signal::Agenda;
 use serde::{Deserialize, Serialize};
@@ -54,6 +55,19 @@ impl Fixed {
         })
     }
 
+    /// What the next step takes over from those before.
+    pub(in crate::integrate) fn save(&self) -> StepperState {
+        let origin = &self.step.origin;
+        let (t, q, v) = (origin.t, origin.q.clone(), origin.v.clone());
+        StepperState { t, q, v, newton_iterations: self.newton_iterations }
+    }
+
+    /// Goes on from what was saved.
+    pub(in crate::integrate) fn load(&mut self, cx: Context, state: StepperState) {
+        self.newton_iterations = state.newton_iterations;
+        self.step.go_on(cx, state.t, &state.q, &state.v);
+    }
+
     /// Tells the bank the step at the nodes of the ledger: coordinates of the measures on a straight line between its ends,
     /// as its memories take it, and the rates of the cubic through coordinates and rates there.
     fn tell_ledger(&self, cx: Context, bank: &mut ElementBank, target: &Target) {
@@ -72,24 +86,24 @@ impl Fixed {
         }
     }
 
-    /// Fills the moments at the nodes of the ledger as far as it asks for them.
+    /// Fills the evaluations at the nodes of the ledger as far as it asks for them.
     fn fill_moments(&self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<(), RunError> {
         let (step, bank) = (&self.step, &recorder.bank);
-        for (moment, c) in recorder.moments[1..].iter_mut().zip(RADAU_NODES) {
+        for (evaluation, c) in recorder.evaluations[1..].iter_mut().zip(RADAU_NODES) {
             let at = if c == 1.0 { target.to } else { target.from + c * target.size };
             if self.has_paths {
                 let ends = [&step.origin, &step.end];
-                Between::new(cx, &step.forward, ends, [&step.a, &step.a], target.size).place(at, c, moment);
-                cx.fill(at, at, None, &mut recorder.scratch, moment)?;
+                Between::new(cx, &step.forward, ends, [&step.a, &step.a], target.size).place(at, c, evaluation);
+                cx.fill(at, at, None, &mut recorder.scratch, evaluation)?;
                 continue;
             }
-            for (v, (from, to)) in moment.v.iter_mut().zip(step.origin.v.iter().zip(&step.end.v)) {
+            for (v, (from, to)) in evaluation.v.iter_mut().zip(step.origin.v.iter().zip(&step.end.v)) {
                 *v = from + c * (to - from);
             }
-            drive(cx, &step.forward, at, moment);
-            moment.joint_loss = joint_loss(&step.model, &moment.v);
+            drive(cx, &step.forward, at, evaluation);
+            evaluation.joint_loss = joint_loss(&step.model, &evaluation.v);
         }
-        let end = &mut recorder.moments[MAX_NODES];
+        let end = &mut recorder.evaluations[MAX_NODES];
         end.q.copy_from_slice(&step.end.q);
         end.v.copy_from_slice(&step.end.v);
         if !self.has_paths {
@@ -102,29 +116,31 @@ impl Fixed {
 
     /// Powers of actuators and joints at the start and at the nodes, elements with the force of the step.
     fn fill_powers(&self, recorder: &mut Recorder) {
-        for (k, moment) in recorder.moments.iter().enumerate() {
+        for (k, evaluation) in recorder.evaluations.iter().enumerate() {
             let of_joint = |j: usize| {
                 let computed = || {
-                    let pull = self.step.forces.values().iter().zip(&moment.elements);
-                    moment.rigid[j] + pull.map(|(force, at)| force * at.gradient[j]).sum::<f64>()
+                    let pull = self.step.forces.values().iter().zip(&evaluation.elements);
+                    evaluation.rigid[j] + pull.map(|(force, at)| force * at.gradient[j]).sum::<f64>()
                 };
-                moment.driven[j].unwrap_or_else(computed)
+                evaluation.driven[j].unwrap_or_else(computed)
             };
-            let moving = moment.v.iter().enumerate().filter(|(_, v)| **v != 0.0);
+            let moving = evaluation.v.iter().enumerate().filter(|(_, v)| **v != 0.0);
             recorder.powers.actuators[k] = moving.map(|(j, v)| of_joint(j) * v).sum();
-            recorder.powers.joints[k] = moment.joint_loss;
+            recorder.powers.joints[k] = evaluation.joint_loss;
         }
     }
 
     /// Accelerations and all else that a row asks for, at the start (0) or at the end (1) of the step.
     fn accelerate(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
-        let Recorder { moments, bank, scratch, is_whole, .. } = recorder;
-        let moment = &mut moments[end * MAX_NODES];
-        let force = |e: usize, moment: &Moment| match end {
-            0 => bank.now(e, &moment.elements[e].point(moment.t)).map_or(0.0, |observation| observation.regular),
+        let Recorder { evaluations, bank, scratch, is_whole, .. } = recorder;
+        let evaluation = &mut evaluations[end * MAX_NODES];
+        let force = |e: usize, evaluation: &Evaluation| match end {
+            0 => {
+                bank.now(e, &evaluation.elements[e].point(evaluation.t)).map_or(0.0, |observation| observation.regular)
+            }
             _ => bank.end(e).force(),
         };
-        self.accelerator.fill(cx, &self.step.forward, moment.t, scratch, moment, force)?;
+        self.accelerator.fill(cx, &self.step.forward, evaluation.t, scratch, evaluation, force)?;
         is_whole[end] = true;
         Ok(())
     }
@@ -146,16 +162,16 @@ impl Stepper for Fixed {
     }
 
     fn start(&mut self, cx: Context, recorder: &mut Recorder, _: &Agenda) -> Result<f64, RunError> {
-        let [moment, ..] = &mut recorder.moments;
-        moment.q.copy_from_slice(&self.step.origin.q);
-        moment.v.copy_from_slice(&self.step.origin.v);
-        cx.fill(0.0, 0.0, None, &mut recorder.scratch, moment)?;
+        let [evaluation, ..] = &mut recorder.evaluations;
+        evaluation.q.copy_from_slice(&self.step.origin.q);
+        evaluation.v.copy_from_slice(&self.step.origin.v);
+        cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
         recorder.begin(cx)?;
         self.accelerate(cx, recorder, 0)?;
         if (0..recorder.bank.len()).any(|e| recorder.bank.is_singular(e)) {
-            let [moment, ..] = &mut recorder.moments;
-            moment.a.fill(f64::NAN);
-            moment.driven.fill(None);
+            let [evaluation, ..] = &mut recorder.evaluations;
+            evaluation.a.fill(f64::NAN);
+            evaluation.driven.fill(None);
         }
         Ok(self.by.step)
     }
@@ -184,18 +200,18 @@ impl Stepper for Fixed {
         recorder: &mut Recorder,
         at: f64,
         theta: f64,
-        moment: &mut Moment,
+        evaluation: &mut Evaluation,
     ) -> Result<(), RunError> {
         self.complete(cx, recorder, 0)?;
         self.complete(cx, recorder, 1)?;
-        let [start, .., end] = &recorder.moments;
+        let [start, .., end] = &recorder.evaluations;
         let step = &self.step;
         // Of a singular start there are none.
         let first = if start.a.iter().all(|a| a.is_finite()) { &start.a } else { &step.a };
         let h = recorder.bank.size();
         let within = Between::new(cx, &step.forward, [&step.origin, &step.end], [first, &end.a], h);
-        within.place(at, theta, moment);
-        cx.fill(at, at, None, &mut recorder.scratch, moment)
+        within.place(at, theta, evaluation);
+        cx.fill(at, at, None, &mut recorder.scratch, evaluation)
     }
 
     fn accept(&mut self, _: Context, _: &Recorder, _: &Target) -> Result<(), RunError> {
@@ -210,22 +226,5 @@ impl Stepper for Fixed {
 
     fn newton_iterations(&self) -> Option<u64> {
         Some(self.newton_iterations)
-    }
-
-    fn save(&self) -> state::StepperState {
-        let origin = &self.step.origin;
-        let (t, q, v) = (origin.t, origin.q.clone(), origin.v.clone());
-        state::StepperState::Fixed(Box::new(StepperState { t, q, v, newton_iterations: self.newton_iterations }))
-    }
-
-    fn fits(&self, state: &state::StepperState) -> bool {
-        matches!(state, state::StepperState::Fixed(_))
-    }
-
-    fn load(&mut self, cx: Context, _: &mut Recorder, state: state::StepperState) -> Result<(), RunError> {
-        let state::StepperState::Fixed(state) = state else { return Ok(()) };
-        self.newton_iterations = state.newton_iterations;
-        self.step.go_on(cx, state.t, &state.q, &state.v);
-        Ok(())
     }
 }

@@ -1,18 +1,21 @@
 //! One step of a fixed-step method: one stage, a fixed number of Newton iterations.
 
-use super::elements::ElementStep;
-use super::{ITERATIONS, Method};
+use super::element_step::ElementStep;
 use crate::actuation::{Drive, Forward};
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{ElementBank, Forces};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
 use crate::integrate::coulomb::Coulomb;
+use crate::integrate::error::RunError;
+use crate::integrate::fixed_step::Method;
 use crate::integrate::resistance::{add_secants, add_smooth_resistance, holding_forces};
 use crate::law::Response;
 use crate::linalg::Lu;
 use crate::model::Model;
 use std::sync::Arc;
+
+/// Newton iterations of every step.
+pub const ITERATIONS: u32 = 3;
 
 /// The robot at one time.
 #[derive(Debug, Clone)]

@@ -6,12 +6,13 @@
 mod reversal;
 
 use super::context::Context;
-use super::evaluate::Moment;
+use super::error::RunError;
+use super::evaluate::Evaluation;
 use super::jump::refuse_jumps;
 use super::on_grid;
 use super::recorder::{Recorder, StepPowers};
+use super::settings::Settings;
 use super::stepper::{Behind, Stepper, Target, Trial};
-use super::{RunError, Settings, state};
 use crate::fractional::step::{MAX_NODES, RADAU_NODES, RADAU_WEIGHTS};
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
@@ -44,8 +45,8 @@ pub(super) struct Prescribed {
     energy_floor: f64,
     /// Velocities at which friction sticks: their power has a kink where they turn round.
     rubbing: Vec<usize>,
-    /// The first moment behind the step that was worked out.
-    behind: Option<Moment>,
+    /// The first evaluation behind the step that was worked out.
+    behind: Option<Evaluation>,
     /// Where the last step that was refused starts, and how far each stroke was then from the integral of its rates, m.
     refused: Option<(f64, Vec<f64>)>,
 }
@@ -89,22 +90,38 @@ impl Prescribed {
         Self { trajectory: trajectory.clone(), energy_floor: 0.0, rubbing, behind: None, refused: None }
     }
 
+    /// What the next step takes over from those before.
+    pub(super) fn save(&self) -> StepperState {
+        StepperState { energy_floor: self.energy_floor }
+    }
+
+    /// Goes on from what was saved.
+    ///
+    /// # Errors
+    /// What a named scheme refuses.
+    pub(super) fn load(&mut self, cx: Context, recorder: &mut Recorder, state: StepperState) -> Result<(), RunError> {
+        self.energy_floor = state.energy_floor;
+        let rows = recorder.settings.rows.clone();
+        recorder.grid = on_grid::derivatives(cx, &self.trajectory, &rows, &mut recorder.scratch)?;
+        Ok(())
+    }
+
     /// A lower bound of the energy that the motion turns over, from 65 samples of it.
     fn estimate_energy_scale(&self, cx: Context, recorder: &mut Recorder) -> f64 {
         let end = recorder.settings.end;
-        let mut moment = Moment::new(cx.system);
+        let mut evaluation = Evaluation::new(cx.system);
         let (mut potential, mut kinetic) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0f64);
         let mut strokes = vec![[f64::INFINITY, f64::NEG_INFINITY]; cx.system.elements.len()];
         let mut forces = vec![0.0f64; cx.system.elements.len()];
         for k in 0..=64 {
             let t = end * k as f64 / 64.0;
-            if cx.evaluate(&self.trajectory, t, t, &mut recorder.scratch, &mut moment).is_err() {
+            if cx.evaluate(&self.trajectory, t, t, &mut recorder.scratch, &mut evaluation).is_err() {
                 break;
             }
             let widen = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
-            kinetic = kinetic.max(moment.kinetic);
-            widen(&mut potential, moment.potential);
-            for (e, state) in moment.elements.iter().enumerate() {
+            kinetic = kinetic.max(evaluation.kinetic);
+            widen(&mut potential, evaluation.potential);
+            for (e, state) in evaluation.elements.iter().enumerate() {
                 widen(&mut strokes[e], state.stroke);
                 let element = &cx.system.elements[e];
                 if let Ok(law) = element.begin(element.rest, &state.inputs) {
@@ -122,16 +139,16 @@ impl Prescribed {
         for (k, c) in RADAU_NODES.into_iter().enumerate() {
             let at = if c == 1.0 { step.to } else { t + c * h };
             let inputs_at = if c == 1.0 { step.end_inputs() } else { at };
-            cx.evaluate(&self.trajectory, at, inputs_at, &mut recorder.scratch, &mut recorder.moments[k + 1])?;
+            cx.evaluate(&self.trajectory, at, inputs_at, &mut recorder.scratch, &mut recorder.evaluations[k + 1])?;
         }
         recorder.is_whole[1] = true;
         if let Some(element) = turned_over(cx, recorder, t, h)? {
             return Ok(StepError { memory: 1e3, alpha: 0.0, element: Some(element), energy: 0.0 });
         }
         recorder.powers = StepPowers::default();
-        for (k, moment) in recorder.moments.iter().enumerate() {
-            recorder.powers.actuators[k] = moment.rigid_power();
-            recorder.powers.joints[k] = moment.joint_loss;
+        for (k, evaluation) in recorder.evaluations.iter().enumerate() {
+            recorder.powers.actuators[k] = evaluation.rigid_power();
+            recorder.powers.joints[k] = evaluation.joint_loss;
         }
         let mut error = StepError { memory: 0.0, alpha: 0.0, element: None, energy: 0.0 };
         recorder.bank.start(t, h);
@@ -157,16 +174,22 @@ impl Prescribed {
     fn noise(&self, recorder: &Recorder, e: usize, t: f64) -> f64 {
         let Some((_, before)) = self.refused.as_ref().filter(|(from, _)| *from == t) else { return 0.0 };
         let left = gap(recorder, e);
-        let gradient = recorder.moments[0].elements[e].gradient.iter();
+        let gradient = recorder.evaluations[0].elements[e].gradient.iter();
         let solved: f64 = gradient.map(|g| g.abs() * self.trajectory.solved_to()).sum();
         if left > SHRINKS * before[e] { (2.0 * left).min(solved) } else { 0.0 }
     }
 
-    /// The first moment behind a kink, to which coordinates must not jump from that at index `from` of the recorder.
-    fn look_across(&self, cx: Context, recorder: &mut Recorder, from: usize, after: f64) -> Result<Moment, RunError> {
-        let mut right = recorder.moments[from].clone();
+    /// The first evaluation behind a kink, to which coordinates must not jump from that at index `from` of the recorder.
+    fn look_across(
+        &self,
+        cx: Context,
+        recorder: &mut Recorder,
+        from: usize,
+        after: f64,
+    ) -> Result<Evaluation, RunError> {
+        let mut right = recorder.evaluations[from].clone();
         cx.evaluate(&self.trajectory, after, after, &mut recorder.scratch, &mut right)?;
-        let (left, model) = (&recorder.moments[from], &cx.system.model);
+        let (left, model) = (&recorder.evaluations[from], &cx.system.model);
         if left.t == after {
             return Ok(right);
         }
@@ -202,7 +225,7 @@ fn gap(recorder: &Recorder, e: usize) -> f64 {
 
 /// An element whose direction turned by more than a right angle between two nodes: its points passed each other.
 fn turned_over(cx: Context, recorder: &Recorder, t: f64, h: f64) -> Result<Option<usize>, RunError> {
-    for pair in recorder.moments.windows(2) {
+    for pair in recorder.evaluations.windows(2) {
         for (e, (a, b)) in pair[0].elements.iter().zip(&pair[1].elements).enumerate() {
             if !a.reading.turned_over(&b.reading) {
                 continue;
@@ -225,7 +248,7 @@ impl Stepper for Prescribed {
 
     fn start(&mut self, cx: Context, recorder: &mut Recorder, agenda: &Agenda) -> Result<f64, RunError> {
         let settings = recorder.settings.clone();
-        cx.evaluate(&self.trajectory, 0.0, 0.0, &mut recorder.scratch, &mut recorder.moments[0])?;
+        cx.evaluate(&self.trajectory, 0.0, 0.0, &mut recorder.scratch, &mut recorder.evaluations[0])?;
         recorder.grid = on_grid::derivatives(cx, &self.trajectory, &settings.rows, &mut recorder.scratch)?;
         self.energy_floor = self.estimate_energy_scale(cx, recorder);
         recorder.begin(cx)?;
@@ -269,9 +292,9 @@ impl Stepper for Prescribed {
         recorder: &mut Recorder,
         at: f64,
         _: f64,
-        moment: &mut Moment,
+        evaluation: &mut Evaluation,
     ) -> Result<(), RunError> {
-        cx.evaluate(&self.trajectory, at, at, &mut recorder.scratch, moment)
+        cx.evaluate(&self.trajectory, at, at, &mut recorder.scratch, evaluation)
     }
 
     fn accept(&mut self, _: Context, _: &Recorder, _: &Target) -> Result<(), RunError> {
@@ -284,22 +307,6 @@ impl Stepper for Prescribed {
             _ => self.look_across(cx, recorder, 0, after)?,
         };
         recorder.jump(right);
-        Ok(())
-    }
-
-    fn save(&self) -> state::StepperState {
-        state::StepperState::Prescribed(StepperState { energy_floor: self.energy_floor })
-    }
-
-    fn fits(&self, state: &state::StepperState) -> bool {
-        matches!(state, state::StepperState::Prescribed(_))
-    }
-
-    fn load(&mut self, cx: Context, recorder: &mut Recorder, state: state::StepperState) -> Result<(), RunError> {
-        let state::StepperState::Prescribed(StepperState { energy_floor }) = state else { return Ok(()) };
-        self.energy_floor = energy_floor;
-        let rows = recorder.settings.rows.clone();
-        recorder.grid = on_grid::derivatives(cx, &self.trajectory, &rows, &mut recorder.scratch)?;
         Ok(())
     }
 }

@@ -2,8 +2,8 @@
 
 use super::Prescribed;
 use crate::fractional::step::{MAX_NODES, lagrange_row};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::resistance::holding_forces;
 use crate::integrate::stepper::Target;
@@ -33,7 +33,7 @@ impl Prescribed {
         let Target { from: t, to, size: h, .. } = *step;
         let mut first: Option<f64> = None;
         for &k in &self.rubbing {
-            let values: [f64; MAX_NODES + 1] = std::array::from_fn(|node| recorder.moments[node].v[k]);
+            let values: [f64; MAX_NODES + 1] = std::array::from_fn(|node| recorder.evaluations[node].v[k]);
             let largest = values.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
             let cubic: [f64; 4] =
                 std::array::from_fn(|p| (0..=MAX_NODES).map(|node| lagrange_row(node)[p] * values[node]).sum());
@@ -44,7 +44,7 @@ impl Prescribed {
             }
             let Some(near) = first_zero(|theta| sign * foreseen(theta.max(EARLY))) else { continue };
             // The velocity itself, from a place before the zero to one behind it.
-            let [_, .., end] = &recorder.moments;
+            let [_, .., end] = &recorder.evaluations;
             let (mut q, mut v, mut a) = (end.q.clone(), end.v.clone(), end.a.clone());
             let mut velocity = |theta: f64| -> Result<f64, RunError> {
                 self.trajectory.at(&cx.system.model, t + theta * h, &mut q, &mut v, &mut a)?;

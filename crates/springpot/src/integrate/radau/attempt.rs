@@ -1,10 +1,10 @@
 //! One step tried: its errors, the size of the next one, and what to say where no step is small enough.
 
-use super::Radau;
+use super::method::Radau;
 use super::newton::Outcome;
 use crate::fractional::step::MAX_NODES;
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::Target;
 

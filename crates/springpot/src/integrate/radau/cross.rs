@@ -2,10 +2,11 @@
 
 use super::dense::Dense;
 use super::drives::drive;
-use super::{Radau, start};
+use super::method::Radau;
+use super::start;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::Target;
 use crate::law::{Observation, Point};
@@ -26,23 +27,23 @@ impl Radau {
         for (k, c) in RADAU_NODES.into_iter().enumerate() {
             let is_end = k + 1 == MAX_NODES;
             let at = if is_end { target.to } else { t + c * h };
-            let (moment, bank) = (&mut recorder.moments[k + 1], &recorder.bank);
+            let (evaluation, bank) = (&mut recorder.evaluations[k + 1], &recorder.bank);
             if is_whole || is_end {
-                Dense { cx, step: &self.step, bank, h, scratch: &mut self.scratch }.place(at, c, moment);
+                Dense { cx, step: &self.step, bank, h, scratch: &mut self.scratch }.place(at, c, evaluation);
             } else {
-                drive(cx, &self.step.forward, at, moment);
+                drive(cx, &self.step.forward, at, evaluation);
             }
             let stage = &self.step.stages[k];
-            moment.q.copy_from_slice(&stage.q);
-            moment.v.copy_from_slice(&stage.v);
+            evaluation.q.copy_from_slice(&stage.q);
+            evaluation.v.copy_from_slice(&stage.v);
             if is_whole {
                 let inputs_at = if is_end { target.end_inputs() } else { at };
-                cx.fill(at, inputs_at, None, &mut recorder.scratch, moment)?;
+                cx.fill(at, inputs_at, None, &mut recorder.scratch, evaluation)?;
                 continue;
             }
             let elements = self.step.elements.iter().enumerate();
             let elements = elements.map(|(e, element)| (&element.readings[k + 1], bank.point(e, k + 1).inputs));
-            cx.fill_energies(at, &stage.kinematics, elements, moment);
+            cx.fill_energies(at, &stage.kinematics, elements, evaluation);
         }
         for e in 0..cx.system.elements.len() {
             recorder.bank.account(e);
@@ -54,21 +55,21 @@ impl Radau {
     /// Power of the actuators and losses of the joints at the start of the step and at its nodes.
     fn take_powers(&self, recorder: &mut Recorder) {
         let bank = &recorder.bank;
-        for (k, moment) in recorder.moments.iter().enumerate() {
+        for (k, evaluation) in recorder.evaluations.iter().enumerate() {
             let mut power = 0.0;
-            for (j, v) in moment.v.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+            for (j, v) in evaluation.v.iter().enumerate().filter(|(_, v)| **v != 0.0) {
                 let computed = || {
-                    let pull = moment.elements.iter().zip(&self.step.origin.forces).enumerate();
+                    let pull = evaluation.elements.iter().zip(&self.step.origin.forces).enumerate();
                     let pull = pull.map(|(e, (element, start))| {
                         let force = if k == 0 { *start } else { bank.response(e).force[k - 1] };
                         force * element.gradient[j]
                     });
-                    moment.rigid[j] + pull.sum::<f64>()
+                    evaluation.rigid[j] + pull.sum::<f64>()
                 };
-                power += moment.driven[j].unwrap_or_else(computed) * v;
+                power += evaluation.driven[j].unwrap_or_else(computed) * v;
             }
             recorder.powers.actuators[k] = power;
-            recorder.powers.joints[k] = moment.joint_loss;
+            recorder.powers.joints[k] = evaluation.joint_loss;
         }
     }
 
@@ -88,7 +89,7 @@ impl Radau {
         })?;
         step.free = step.stick.free();
         start::accelerate(cx, &forward, &step.stick, &mut step.origin, |e, point, _| Ok(now(e, point).regular))?;
-        let mut right = recorder.moments[0].clone();
+        let mut right = recorder.evaluations[0].clone();
         right.a.copy_from_slice(&step.origin.a);
         right.q.copy_from_slice(&step.origin.q);
         right.v.copy_from_slice(&step.origin.v);

@@ -5,7 +5,7 @@ use super::step::RadauStep;
 use crate::actuation::Drive;
 use crate::elements::ElementBank;
 use crate::integrate::context::Context;
-use crate::integrate::evaluate::Moment;
+use crate::integrate::evaluate::Evaluation;
 use crate::law::InputValue;
 use crate::model::JointKind;
 
@@ -29,7 +29,7 @@ pub(super) struct Scratch {
 
 impl Dense<'_> {
     /// Fills q, v, a and what drives the joints at t = t_n + θh.
-    pub(super) fn place(&mut self, t: f64, theta: f64, moment: &mut Moment) {
+    pub(super) fn place(&mut self, t: f64, theta: f64, evaluation: &mut Evaluation) {
         self.take_singular(t);
         let (step, h, scratch) = (self.step, self.h, &mut *self.scratch);
         let (model, origin) = (&step.model, &step.origin);
@@ -46,8 +46,8 @@ impl Dense<'_> {
                     [0, 1, 2].map(|order| sum[order] + element.share[k] * part[order])
                 });
                 let start = origin.v[k];
-                moment.a[k] = a + extra[0];
-                moment.v[k] = start + h * push + extra[1];
+                evaluation.a[k] = a + extra[0];
+                evaluation.v[k] = start + h * push + extra[1];
                 scratch.xi[k] = if model.joint_kind(j) == JointKind::Floating {
                     h * integrals(step.turning.each_ref().map(|u| u[k]), theta)[1]
                 } else {
@@ -55,8 +55,8 @@ impl Dense<'_> {
                 };
             }
         }
-        model.integrate_into(&origin.q, &scratch.xi, &mut moment.q);
-        drive(self.cx, &step.forward, t, moment);
+        model.integrate_into(&origin.q, &scratch.xi, &mut evaluation.q);
+        drive(self.cx, &step.forward, t, evaluation);
     }
 
     /// Velocity `k`, which a force drives, at t = t_n + θh.

@@ -1,9 +1,9 @@
 //! What drives the joints: checked where it is asked for.
 
 use crate::actuation::{Drive, Forward};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
-use crate::integrate::evaluate::Moment;
+use crate::integrate::error::RunError;
+use crate::integrate::evaluate::Evaluation;
 use crate::model::Model;
 use crate::motion::JointPath;
 use crate::signal::Signal;
@@ -40,23 +40,23 @@ pub(super) fn take_path(
 }
 
 /// What drives the joints at t, and the places of those that signals move.
-pub(in crate::integrate) fn drive(cx: Context, forward: &Forward, t: f64, moment: &mut Moment) {
+pub(in crate::integrate) fn drive(cx: Context, forward: &Forward, t: f64, evaluation: &mut Evaluation) {
     let model = &cx.system.model;
     for (j, drive) in model.own_joints().zip(&forward.drives) {
         let (q, v) = (model.q_range(j), model.v_range(j));
         match drive {
             Drive::Force(signals) => {
                 for (k, signal) in v.zip(signals) {
-                    moment.driven[k] = Some(signal.at(t).value + cx.torque(k));
+                    evaluation.driven[k] = Some(signal.at(t).value + cx.torque(k));
                 }
             }
             Drive::Prescribed(path) => {
-                path.at(t, &mut moment.q[q], &mut moment.v[v.clone()], &mut moment.a[v]);
+                path.at(t, &mut evaluation.q[q], &mut evaluation.v[v.clone()], &mut evaluation.a[v]);
             }
             Drive::Locked => {
-                moment.q[q.clone()].copy_from_slice(&forward.q[q]);
-                moment.v[v.clone()].fill(0.0);
-                moment.a[v].fill(0.0);
+                evaluation.q[q.clone()].copy_from_slice(&forward.q[q]);
+                evaluation.v[v.clone()].fill(0.0);
+                evaluation.a[v].fill(0.0);
             }
         }
     }

@@ -4,8 +4,8 @@ use super::step::RadauStep;
 use super::tableau::{A, A_SQUARED};
 use crate::elements::{ElementBank, Pull};
 use crate::fractional::step::MAX_NODES;
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
 use crate::integrate::resistance::add_smooth_resistance;
 
 /// Newton iterations after which a step is given up.

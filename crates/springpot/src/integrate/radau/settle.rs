@@ -1,26 +1,15 @@
 //! Steps that end where friction starts or ceases to hold a joint.
 
-use super::Radau;
+use super::events::{Change, Look, Settled};
+use super::method::Radau;
 use super::stick::CHATTER;
-use super::watch::{Change, Look};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::{Behind, Target};
 
 /// Tries to end a step on a change.
 const MOST_TRIES: usize = 40;
-
-/// What becomes of a step that was solved within its tolerance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Settled {
-    /// It stands like this, and has been solved so.
-    At(Target),
-    /// A step of this size is to be tried instead.
-    Shorter(f64),
-    /// Something changes at its start.
-    AtStart,
-}
 
 impl Radau {
     /// Ends the step that was just solved at the first change between holding and sliding in it, if there is one.

@@ -1,16 +1,15 @@
 //! The stages of a step: where they are, what drives them, and the linearisation at its start.
 
 use super::drives::{force_at, take_path};
-use super::step::RadauStep;
+use super::step::{RadauStep, may_yield};
 use super::tableau::{A_SQUARED, GAMMA};
 use crate::actuation::Drive;
-use crate::elements::{Element, ElementBank, Pull};
+use crate::elements::{ElementBank, Pull};
 use crate::fractional::Form;
 use crate::fractional::step::{MAX_NODES, RADAU_NODES};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
 use crate::integrate::resistance::add_tangents;
-use crate::law::{InputValue, Point};
 
 /// Above this stiffness a springpot of order below ½ takes its polynomial through strokes, which is stable however stiff.
 const STIFF: f64 = 10.0;
@@ -239,13 +238,4 @@ impl RadauStep {
         }
         false
     }
-}
-
-/// Whether a springpot of the element can be unstable where it is stiff.
-pub(super) fn may_yield(element: &Element) -> bool {
-    let inputs = vec![InputValue::default(); element.inputs.len()];
-    let mut may_yield = false;
-    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
-    element.law.for_each_springpot(&at, &mut |term| may_yield |= term.is_yielding());
-    may_yield
 }

@@ -1,14 +1,15 @@
-//! The first moment and the first step.
+//! The first evaluation and the first step.
 
 use super::drives::{force_at, take_path};
-use super::scale::{Tolerance, jump_travel};
+use super::scale::jump_travel;
+use super::sizes::Tolerance;
 use super::step::{Origin, RadauStep};
 use super::stick::Stick;
 use crate::actuation::{Drive, Forward};
 use crate::dynamics::{Kinematics, crba};
 use crate::elements::{ElementBank, Forces, Pull};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
 use crate::integrate::jump::refuse_jumps;
 use crate::integrate::resistance::add_smooth_resistance;
 use crate::law::{Derivative, Point, State, Term};

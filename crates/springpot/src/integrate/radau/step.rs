@@ -1,15 +1,15 @@
 //! What one step of Radau IIA(5) in the accelerations works on: its start, its stages, its elements.
 
-use super::scale::{Sizes, Tolerance};
-use super::stages::may_yield;
+use super::sizes::{Sizes, Tolerance};
 use super::stick::{Sliding, Stick};
 use super::tableau::A;
 use crate::actuation::Forward;
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
-use crate::elements::{ElementBank, Forces, Reading};
+use crate::elements::{Element, ElementBank, Forces, Reading};
 use crate::fractional::step::{MAX_NODES, lagrange_row};
-use crate::integrate::System;
 use crate::integrate::context::Context;
+use crate::integrate::system::System;
+use crate::law::{InputValue, Point};
 use crate::linalg::Lu;
 use crate::model::{JointKind, Model};
 use serde::{Deserialize, Serialize};
@@ -294,4 +294,13 @@ fn coordinates(model: &Model) -> Vec<Option<usize>> {
         coordinates[model.v_range(j).start] = Some(model.q_range(j).start);
     }
     coordinates
+}
+
+/// Whether a springpot of the element can be unstable where it is stiff.
+pub(super) fn may_yield(element: &Element) -> bool {
+    let inputs = vec![InputValue::default(); element.inputs.len()];
+    let mut may_yield = false;
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
+    element.law.for_each_springpot(&at, &mut |term| may_yield |= term.is_yielding());
+    may_yield
 }

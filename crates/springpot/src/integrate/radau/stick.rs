@@ -2,7 +2,7 @@
 
 use crate::actuation::{Drive, Forward};
 use crate::integrate::coulomb::{Candidate, Coulomb};
-use crate::integrate::evaluate::Moment;
+use crate::integrate::evaluate::Evaluation;
 use crate::integrate::resistance::holding_forces;
 use crate::linalg::Lu;
 use crate::model::Model;
@@ -44,8 +44,8 @@ pub(super) struct Stick {
     pub(super) stopping: Vec<usize>,
     pub(super) caught: Vec<usize>,
     pub(super) breaks_away: bool,
-    /// A moment to look into a step from.
-    pub(super) spare: Option<Moment>,
+    /// An evaluation to look into a step from.
+    pub(super) spare: Option<Evaluation>,
     coulomb: Coulomb,
 }
 

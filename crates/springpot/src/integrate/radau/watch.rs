@@ -1,11 +1,12 @@
 //! When joints stop, break away and turn round within a step that was just solved.
 
-use super::Radau;
+use super::events::{Change, Look};
+use super::method::Radau;
 use crate::actuation::Drive;
 use crate::fractional::step::{MAX_NODES, lagrange_row};
-use crate::integrate::RunError;
 use crate::integrate::context::Context;
-use crate::integrate::evaluate::{ElementMoment, Moment};
+use crate::integrate::error::RunError;
+use crate::integrate::evaluate::{ElementEvaluation, Evaluation};
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::Target;
 use crate::integrate::zero::{SAMPLES, first_zero};
@@ -24,30 +25,6 @@ const AT_REST: f64 = 1e-9;
 
 /// Where a velocity that leaves rest is first looked at.
 const START: f64 = 1e-9;
-
-/// What may happen to a joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Change {
-    /// Velocity `k`, which has the sign `direction`, comes to rest.
-    Stop { k: usize, direction: f64 },
-    /// Velocity `k` is no longer held against a force of the sign `direction`.
-    BreakAway { k: usize, direction: f64 },
-    /// A joint that signals move turns round.
-    Reversal,
-}
-
-/// What is seen of a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Look {
-    /// Nothing changes.
-    Nothing,
-    /// Holding forces cannot be followed over so long a step.
-    Unclear,
-    /// The first change is at θ.
-    Within(f64, Change),
-    /// What changes does so at the end, and is noted with the stick.
-    AtEnd,
-}
 
 /// A holding force at the start and at the nodes of a step.
 struct Holding {
@@ -148,12 +125,12 @@ impl Radau {
     fn holding(&self, recorder: &Recorder, k: usize) -> Holding {
         let bank = &recorder.bank;
         let (mut values, mut size) = ([0.0; MAX_NODES + 1], 0.0f64);
-        for (i, (value, moment)) in values.iter_mut().zip(&recorder.moments).enumerate() {
-            let driven = moment.driven[k].unwrap_or(0.0);
-            let (mut pull, mut terms) = (0.0, driven.abs() + moment.rigid[k].abs());
-            for (e, element) in moment.elements.iter().enumerate() {
+        for (i, (value, evaluation)) in values.iter_mut().zip(&recorder.evaluations).enumerate() {
+            let driven = evaluation.driven[k].unwrap_or(0.0);
+            let (mut pull, mut terms) = (0.0, driven.abs() + evaluation.rigid[k].abs());
+            for (e, element) in evaluation.elements.iter().enumerate() {
                 let force = match i {
-                    0 => bank.now(e, &element.point(moment.t)).map_or(0.0, |observation| observation.force()),
+                    0 => bank.now(e, &element.point(evaluation.t)).map_or(0.0, |observation| observation.force()),
                     MAX_NODES => bank.end(e).force(),
                     _ => bank.response(e).force[i - 1],
                 };
@@ -161,7 +138,7 @@ impl Radau {
                 pull += share;
                 terms += share.abs();
             }
-            *value = driven - moment.rigid[k] - pull;
+            *value = driven - evaluation.rigid[k] - pull;
             size = if terms.is_finite() { size.max(terms) } else { size };
         }
         // At a singular start nothing is known.
@@ -176,21 +153,21 @@ impl Radau {
 
     /// The forces (nv) with which friction would hold every velocity, between the nodes.
     fn look_between(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<[Vec<f64>; 3], RunError> {
-        let mut moment = self.step.stick.spare.take().unwrap_or_else(|| Moment::new(cx.system));
+        let mut evaluation = self.step.stick.spare.take().unwrap_or_else(|| Evaluation::new(cx.system));
         let mut forces: [Vec<f64>; 3] = Default::default();
         for (theta, forces) in BETWEEN.into_iter().zip(&mut forces) {
             let at = (step.from + theta * step.size).min(step.to);
-            self.dense(cx, recorder, step.size).place(at, theta, &mut moment);
-            cx.fill(at, at, None, &mut recorder.scratch, &mut moment)?;
-            let pull = |(e, element): (usize, &ElementMoment)| recorder.bank.at(e, theta, &element.point(at));
-            let pulls = moment.elements.iter().enumerate().map(pull);
+            self.dense(cx, recorder, step.size).place(at, theta, &mut evaluation);
+            cx.fill(at, at, None, &mut recorder.scratch, &mut evaluation)?;
+            let pull = |(e, element): (usize, &ElementEvaluation)| recorder.bank.at(e, theta, &element.point(at));
+            let pulls = evaluation.elements.iter().enumerate().map(pull);
             let pulls: Vec<f64> = pulls.map(|seen| seen.map_or(0.0, |observation| observation.force())).collect();
             forces.extend((0..cx.system.model.nv()).map(|k| {
-                let pull = pulls.iter().zip(&moment.elements).map(|(force, element)| force * element.gradient[k]);
-                moment.driven[k].unwrap_or(0.0) - moment.rigid[k] - pull.sum::<f64>()
+                let pull = pulls.iter().zip(&evaluation.elements).map(|(force, element)| force * element.gradient[k]);
+                evaluation.driven[k].unwrap_or(0.0) - evaluation.rigid[k] - pull.sum::<f64>()
             }));
         }
-        self.step.stick.spare = Some(moment);
+        self.step.stick.spare = Some(evaluation);
         Ok(forces)
     }
 

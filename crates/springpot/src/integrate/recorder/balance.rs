@@ -2,9 +2,10 @@
 
 use super::Recorder;
 use crate::fractional::step::MAX_NODES;
-use crate::integrate::evaluate::Moment;
+use crate::integrate::evaluate::Evaluation;
 use crate::integrate::ledger::{Balance, NodePower, singular_work, work, work_defect};
-use crate::observe::snapshot::{ElementRow, Snapshot};
+use crate::observe::Snapshot;
+use crate::observe::evaluation::ElementRow;
 
 /// A step this short, as a share of the motion, is kept whatever it does to the energy ledger: behind a kink of the rates the
 /// powers rise like t^{1−alpha}, which no step resolves, and such a step turns over next to nothing.
@@ -27,7 +28,7 @@ const ONSET: f64 = 0.1;
 impl Recorder {
     /// Time and size of the step.
     pub(super) fn span(&self) -> (f64, f64) {
-        let [from, .., to] = &self.moments;
+        let [from, .., to] = &self.evaluations;
         (from.t, to.t - from.t)
     }
 
@@ -79,20 +80,25 @@ impl Recorder {
     pub(super) fn balance(&self, snapshot: &Snapshot, actuators: f64, joints: f64) -> Balance {
         let sum = |of: fn(&ElementRow) -> f64| snapshot.elements.iter().map(of).sum::<f64>();
         let stored = sum(|row| row.observation.stored.unwrap_or(f64::NAN));
-        self.balance_of(&snapshot.moment, [stored, sum(|row| row.dissipated), sum(|row| row.input)], actuators, joints)
+        self.balance_of(
+            &snapshot.evaluation,
+            [stored, sum(|row| row.dissipated), sum(|row| row.input)],
+            actuators,
+            joints,
+        )
     }
 
     /// The balance of what elements have stored, dissipated and been supplied with.
     pub(super) fn balance_of(
         &self,
-        moment: &Moment,
+        evaluation: &Evaluation,
         [stored, dissipated, input]: [f64; 3],
         actuators: f64,
         joints: f64,
     ) -> Balance {
         Balance {
-            kinetic: moment.kinetic,
-            potential: moment.potential - self.ledger.potential_origin,
+            kinetic: evaluation.kinetic,
+            potential: evaluation.potential - self.ledger.potential_origin,
             stored,
             dissipated: dissipated + (self.ledger.joints + joints),
             input,

@@ -2,7 +2,7 @@
 
 use super::Recorder;
 use crate::fractional::step::{MAX_NODES, lagrange_row};
-use crate::observe::snapshot::Snapshot;
+use crate::observe::Snapshot;
 
 /// How much more than the tolerance a row may depart from its step, and what it may in any case: steps err less than the
 /// tolerance by far where they see the motion.
@@ -28,7 +28,7 @@ impl Recorder {
         for e in taking_part {
             let (_, rates) = self.bank.told(e);
             let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
-            let is = snapshot.moment.elements[e].reading.rate;
+            let is = snapshot.evaluation.elements[e].reading.rate;
             let derivative = snapshot.elements[e].observation.derivative.abs();
             for (m, error) in self.bank.errors(e).iter().enumerate().filter(|(_, error)| error.order > 0.0) {
                 let departure = (is - told).abs() * h.powf(1.0 - error.order);

@@ -1,21 +1,23 @@
 //! What a run keeps of its steps: the kinematics of the step under way, its elements, and the energy accounts.
 //!
-//! A stepper fills the moments of a step (its start and its nodes) and tells the bank its strokes; the driver takes what was worked out into
+//! A stepper fills the evaluations of a step (its start and its nodes) and tells the bank its strokes; the driver takes what was worked out into
 //! the past.
 
 mod balance;
 mod check;
 
 use super::context::Context;
-use super::evaluate::{Moment, Scratch};
+use super::error::RunError;
+use super::evaluate::{Evaluation, Scratch};
 use super::ledger::{NodePower, Turnover};
 use super::on_grid::{GridDerivatives, on_grid_observation};
-use super::{RunError, Settings};
+use super::settings::Settings;
 use crate::elements::{ElementBank, Kept, MemoryRange};
 use crate::fractional::step::MAX_NODES;
 use crate::fractional::{Form, Nodes};
 use crate::law::{Observation, Point, Start};
-use crate::observe::snapshot::{ElementRow, Snapshot};
+use crate::observe::Snapshot;
+use crate::observe::evaluation::ElementRow;
 use serde::{Deserialize, Serialize};
 
 /// Powers of the step that belong to no element.
@@ -31,7 +33,7 @@ pub(super) struct Recorder {
     pub(super) settings: Settings,
     pub(super) scratch: Scratch,
     /// At the start of the step and at its nodes.
-    pub(super) moments: [Moment; MAX_NODES + 1],
+    pub(super) evaluations: [Evaluation; MAX_NODES + 1],
     /// Whether those at the start and at the end have all that a row asks for.
     pub(super) is_whole: [bool; 2],
     pub(super) bank: ElementBank,
@@ -60,14 +62,14 @@ struct Ledger {
 pub(super) struct RecorderState {
     elements: Vec<Option<Kept>>,
     /// Where the next step starts.
-    pub(super) moment: Moment,
+    pub(super) evaluation: Evaluation,
     is_whole: bool,
     ledger: Ledger,
 }
 
 impl Recorder {
     pub(super) fn new(cx: Context, settings: &Settings) -> Self {
-        let moment = Moment::new(cx.system);
+        let evaluation = Evaluation::new(cx.system);
         let laws = cx.system.elements.iter().map(|element| element.law.clone()).collect();
         let mut bank = ElementBank::new(laws, Nodes::Radau, Form::Rates);
         for (e, element) in cx.system.elements.iter().enumerate() {
@@ -76,7 +78,7 @@ impl Recorder {
         Self {
             settings: settings.clone(),
             scratch: Scratch::new(&cx.system.model),
-            moments: std::array::from_fn(|_| moment.clone()),
+            evaluations: std::array::from_fn(|_| evaluation.clone()),
             is_whole: [true; 2],
             bank,
             powers: StepPowers::default(),
@@ -86,10 +88,10 @@ impl Recorder {
         }
     }
 
-    /// Begins the laws at the first moment, `moments[0]`, their memories without kernels.
+    /// Begins the laws at the first evaluation, `evaluations[0]`, their memories without kernels.
     pub(super) fn begin(&mut self, cx: Context) -> Result<(), RunError> {
         for (e, element) in cx.system.elements.iter().enumerate().filter(|(e, _)| self.grid[*e].is_none()) {
-            let at = &self.moments[0].elements[e];
+            let at = &self.evaluations[0].elements[e];
             let start = Start { stroke: at.stroke, jump: element.jump(at.reading.coordinate), inputs: &at.inputs };
             let begun = self.bank.begin_element(e, &start);
             begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
@@ -104,7 +106,7 @@ impl Recorder {
             let opened = self.bank.open_element(e, MemoryRange { tolerance, shortest: first, horizon });
             opened.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
         }
-        self.ledger.potential_origin = self.moments[0].potential;
+        self.ledger.potential_origin = self.evaluations[0].potential;
         let mut start = Snapshot::new(cx.system);
         self.read_between(cx, 0, &mut start)?;
         let balance = self.balance(&start, 0.0, 0.0);
@@ -114,21 +116,21 @@ impl Recorder {
         Ok(())
     }
 
-    /// Tells the bank element `e` of the step, as the moments have it.
+    /// Tells the bank element `e` of the step, as the evaluations have it.
     pub(super) fn tell(&mut self, cx: Context, e: usize) {
-        for (k, moment) in self.moments.iter().enumerate() {
-            let at = &moment.elements[e];
+        for (k, evaluation) in self.evaluations.iter().enumerate() {
+            let at = &evaluation.elements[e];
             self.bank.set(e, k, at.stroke, at.reading.rate, &at.inputs);
         }
-        let start = self.moments[0].elements[e].reading.coordinate;
+        let start = self.evaluations[0].elements[e].reading.coordinate;
         self.bank.set_resolution(e, cx.system.elements[e].resolution(start));
     }
 
-    /// Makes sure that the moment at the start (0) or at the end (1) has all that a row asks for.
+    /// Makes sure that the evaluation at the start (0) or at the end (1) has all that a row asks for.
     pub(super) fn complete(&mut self, cx: Context, end: usize) -> Result<(), RunError> {
         if !self.is_whole[end] {
-            let moment = &mut self.moments[end * MAX_NODES];
-            cx.fill(moment.t, moment.t, None, &mut self.scratch, moment)?;
+            let evaluation = &mut self.evaluations[end * MAX_NODES];
+            cx.fill(evaluation.t, evaluation.t, None, &mut self.scratch, evaluation)?;
             self.is_whole[end] = true;
         }
         Ok(())
@@ -137,7 +139,7 @@ impl Recorder {
     /// Takes the step that was worked out into the past.
     pub(super) fn commit(&mut self) {
         let (actuators, joints) = self.work_until(1.0);
-        let end = &self.moments[MAX_NODES];
+        let end = &self.evaluations[MAX_NODES];
         let elements = 0..self.bank.len();
         let energies = elements.map(|e| (self.bank.end(e).stored, self.bank.energies_until(e, 1.0)));
         let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);
@@ -150,14 +152,14 @@ impl Recorder {
         self.ledger.actuators += actuators;
         self.ledger.joints += joints;
         self.bank.commit_account();
-        self.moments.swap(0, MAX_NODES);
+        self.evaluations.swap(0, MAX_NODES);
         self.is_whole.swap(0, 1);
     }
 
     /// Goes on from the far side of a kink, `right`, and records what jumps there.
-    pub(super) fn jump(&mut self, right: Moment) {
-        let left = std::mem::replace(&mut self.moments[0], right);
-        let right = &self.moments[0];
+    pub(super) fn jump(&mut self, right: Evaluation) {
+        let left = std::mem::replace(&mut self.evaluations[0], right);
+        let right = &self.evaluations[0];
         self.is_whole[0] = true;
         // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
         self.ledger.actuators += right.kinetic - left.kinetic;
@@ -171,13 +173,13 @@ impl Recorder {
         }
     }
 
-    /// What the elements are between two steps, at the first moment; `row` is that of named schemes.
+    /// What the elements are between two steps, at the first evaluation; `row` is that of named schemes.
     pub(super) fn read_between(&self, cx: Context, row: usize, snapshot: &mut Snapshot) -> Result<(), RunError> {
-        let moment = &self.moments[0];
-        snapshot.moment.clone_from(moment);
+        let evaluation = &self.evaluations[0];
+        snapshot.evaluation.clone_from(evaluation);
         snapshot.elements.clear();
         for e in 0..self.bank.len() {
-            let point = moment.elements[e].point(moment.t);
+            let point = evaluation.elements[e].point(evaluation.t);
             let (dissipated, input) = self.bank.energies(e);
             let observation = match self.bank.now(e, &point) {
                 Some(observation) => observation,
@@ -197,10 +199,10 @@ impl Recorder {
         row: usize,
         snapshot: &mut Snapshot,
     ) -> Result<(), RunError> {
-        let Snapshot { moment, elements, .. } = snapshot;
+        let Snapshot { evaluation, elements, .. } = snapshot;
         elements.clear();
         for e in 0..self.bank.len() {
-            let point = moment.elements[e].point(moment.t);
+            let point = evaluation.elements[e].point(evaluation.t);
             let (dissipated, input) = self.bank.energies_until(e, theta);
             let observation = match self.bank.at(e, theta, &point) {
                 Some(observation) => observation,
@@ -228,17 +230,17 @@ impl Recorder {
 
     /// What outlasts the steps.
     pub(super) fn state(&self) -> RecorderState {
-        let (elements, moment) = (self.bank.kept(), self.moments[0].clone());
-        RecorderState { elements, moment, is_whole: self.is_whole[0], ledger: self.ledger }
+        let (elements, evaluation) = (self.bank.kept(), self.evaluations[0].clone());
+        RecorderState { elements, evaluation, is_whole: self.is_whole[0], ledger: self.ledger }
     }
 
     /// Goes on from a state of the same system; `false`, and nothing changed, where it is of another one.
     pub(super) fn go_on(&mut self, state: RecorderState) -> bool {
-        let RecorderState { elements, moment, is_whole, ledger } = state;
-        if !moment.has_shape_of(&self.moments[0]) || !self.bank.go_on(elements) {
+        let RecorderState { elements, evaluation, is_whole, ledger } = state;
+        if !evaluation.has_shape_of(&self.evaluations[0]) || !self.bank.go_on(elements) {
             return false;
         }
-        self.moments[0] = moment;
+        self.evaluations[0] = evaluation;
         self.is_whole[0] = is_whole;
         self.ledger = ledger;
         true

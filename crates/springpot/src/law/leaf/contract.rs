@@ -1,7 +1,7 @@
 //! What every leaf answers.
 
 use crate::fractional::KernelError;
-use crate::law::catalog::RuleError;
+use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 

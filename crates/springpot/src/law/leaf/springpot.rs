@@ -4,7 +4,7 @@ use super::contract::Leaf;
 use crate::fractional::Kind as Derivative;
 use crate::fractional::step::MAX_NODES;
 use crate::fractional::{Form, KernelError, Memory, Nodes, RatePolynomial};
-use crate::law::catalog::RuleError;
+use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::Singular;
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};

@@ -1,0 +1,198 @@
+//! The method behind the driver.
+
+use super::dense::{Dense, Scratch};
+use super::drives::drive;
+use super::events::Settled;
+use super::sizes::Tolerance;
+use super::start;
+use super::step::{Carried, RadauStep};
+use crate::actuation::{Drive, Forward};
+use crate::integrate::context::Context;
+use crate::integrate::error::RunError;
+use crate::integrate::evaluate::Evaluation;
+use crate::integrate::recorder::Recorder;
+use crate::integrate::settings::Settings;
+use crate::integrate::stepper::{Behind, Stepper, Target, Trial};
+use crate::integrate::system::{Motion, System};
+use crate::law::Singular;
+use crate::signal::Agenda;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The estimate is of order 3, the method of order 5: the estimate may reach this share of rtol^⅔.
+const ESTIMATE_SHARE: f64 = 0.03;
+
+/// The longest step as a share of the run, so that no signal is stepped over: where something varies with time, and where nothing
+/// does.
+const LONGEST_STEP: [f64; 2] = [1.0 / 500.0, 1.0 / 50.0];
+
+/// Forward dynamics in steps that are chosen for the tolerance.
+#[derive(Debug)]
+pub(in crate::integrate) struct Radau {
+    pub(super) step: RadauStep,
+    /// Whether signals prescribe joints.
+    pub(super) has_paths: bool,
+    /// Size and error of the last step kept.
+    pub(super) last: Option<(f64, f64)>,
+    /// Whether a law has inner variables, of which the motion may show nothing.
+    pub(super) has_inner_variables: bool,
+    pub(super) newton_iterations: u64,
+    pub(super) scratch: Scratch,
+}
+
+/// What the next step takes over from those before.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(in crate::integrate) struct StepperState {
+    carried: Carried,
+    /// Size and error of the last step kept.
+    last: Option<(f64, f64)>,
+    newton_iterations: u64,
+}
+
+impl Radau {
+    pub(in crate::integrate) fn new(cx: Context, forward: &Arc<Forward>, settings: &Settings) -> Self {
+        let rtol = settings.rtol;
+        let mapped = ESTIMATE_SHARE * rtol.powf(2.0 / 3.0);
+        let tolerance = Tolerance { rtol: mapped, atol: settings.atol.unwrap_or(0.0) * mapped / rtol };
+        Self {
+            step: RadauStep::new(cx, forward, tolerance, rtol),
+            has_paths: forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))),
+            last: None,
+            has_inner_variables: cx.system.elements.iter().any(|element| element.law.has_inner_variables()),
+            newton_iterations: 0,
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// What the next step takes over from those before.
+    pub(in crate::integrate) fn save(&self) -> StepperState {
+        let (carried, last, newton_iterations) = (self.step.carried(), self.last, self.newton_iterations);
+        StepperState { carried, last, newton_iterations }
+    }
+
+    /// Goes on from what was saved.
+    pub(in crate::integrate) fn load(&mut self, state: StepperState) {
+        let StepperState { carried, last, newton_iterations } = state;
+        self.step.restore(carried);
+        (self.last, self.newton_iterations) = (last, newton_iterations);
+    }
+
+    /// How large a motion the forces at the origin begin.
+    pub(super) fn expect(&mut self, cx: Context, recorder: &mut Recorder) -> Result<(), RunError> {
+        let (t, bank) = (self.step.origin.t, &mut recorder.bank);
+        bank.start(t, 0.0);
+        self.step.take_inputs(cx, bank, 0.0, t)?;
+        self.step.linearise(cx, bank)?;
+        self.step.sizes.take(&self.step.model, &self.step.origin.q, &self.step.origin.v);
+        self.step.expect(cx, bank, 1.0 / recorder.settings.end);
+        Ok(())
+    }
+
+    /// The step of size `h` that was fitted, as a function of time.
+    pub(super) fn dense<'s>(&'s mut self, cx: Context<'s>, recorder: &'s Recorder, h: f64) -> Dense<'s> {
+        Dense { cx, step: &self.step, bank: &recorder.bank, h, scratch: &mut self.scratch }
+    }
+}
+
+impl Stepper for Radau {
+    fn longest_step(&self, cx: Context, settings: &Settings) -> f64 {
+        let [varying, constant] = LONGEST_STEP;
+        let share = if cx.system.varies() { varying } else { constant };
+        settings.max_step.unwrap_or(settings.end * share).min(settings.end)
+    }
+
+    fn set_up(&self, recorder: &mut Recorder) {
+        recorder.takes_elements_work = false;
+        recorder.bank.set_singular(Singular::Moments);
+    }
+
+    fn ends_on_sparse_rows(&self) -> bool {
+        true
+    }
+
+    fn start(&mut self, cx: Context, recorder: &mut Recorder, agenda: &Agenda) -> Result<f64, RunError> {
+        let settings = recorder.settings.clone();
+        let forward = self.step.forward.clone();
+        let (origin, elements) = start::origin(cx, &forward, &mut self.step.stick)?;
+        self.step.free = self.step.stick.free();
+        let [evaluation, ..] = &mut recorder.evaluations;
+        evaluation.q.copy_from_slice(&origin.q);
+        evaluation.v.copy_from_slice(&origin.v);
+        evaluation.a.copy_from_slice(&origin.a);
+        drive(cx, &forward, 0.0, evaluation);
+        cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
+        recorder.begin(cx)?;
+        self.step.origin = origin;
+        self.step.is_singular = (0..recorder.bank.len()).any(|e| recorder.bank.is_singular(e));
+        if self.step.is_singular {
+            let [evaluation, ..] = &mut recorder.evaluations;
+            evaluation.a.fill(f64::NAN);
+            evaluation.driven.fill(None);
+            cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
+        }
+        self.expect(cx, recorder)?;
+        let strict = Tolerance { rtol: settings.rtol, atol: settings.atol.unwrap_or(0.0) };
+        let chosen = start::first_step(cx, (&self.step, &recorder.bank), &elements, strict, settings.end);
+        Ok(agenda.reach(0.0, settings.first_step.unwrap_or(chosen).min(self.longest_step(cx, &settings))))
+    }
+
+    fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError> {
+        let factor = match self.attempt(cx, recorder, &target)? {
+            Err(size) => return Ok(Trial::Rejected { size }),
+            Ok(factor) => factor,
+        };
+        let step = match self.settle(cx, recorder, target)? {
+            Settled::Shorter(size) => return Ok(Trial::Rejected { size }),
+            Settled::AtStart => {
+                self.stop_sliding(recorder.settings.end)?;
+                return Ok(Trial::Changes);
+            }
+            Settled::At(step) => step,
+        };
+        let changes = self.step.stick.changes() && step.behind == Behind::Step;
+        let behind = if changes { Behind::Change } else { step.behind };
+        Ok(Trial::Accepted { step: Target { behind, ..step }, next: target.size * factor })
+    }
+
+    fn interpolate(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        theta: f64,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError> {
+        let h = recorder.bank.size();
+        self.dense(cx, recorder, h).place(at, theta, evaluation);
+        cx.fill(at, at, None, &mut recorder.scratch, evaluation)
+    }
+
+    fn accept(&mut self, _: Context, recorder: &Recorder, step: &Target) -> Result<(), RunError> {
+        self.step.accept(&recorder.bank, step.size, step.to);
+        if self.step.stick.changes() {
+            self.stop_sliding(recorder.settings.end)?;
+        }
+        Ok(())
+    }
+
+    fn cross(&mut self, cx: Context, recorder: &mut Recorder, after: f64) -> Result<(), RunError> {
+        self.restart_at(cx, recorder, after)
+    }
+
+    fn newton_iterations(&self) -> Option<u64> {
+        Some(self.newton_iterations)
+    }
+}
+
+impl System {
+    /// Whether anything that drives the robot varies with time.
+    fn varies(&self) -> bool {
+        let Motion::Forward(forward) = &self.motion else { return true };
+        let drives = forward.drives.iter().any(|drive| match drive {
+            Drive::Force(signals) => signals.iter().any(|signal| signal.is_constant().is_none()),
+            Drive::Prescribed(_) => true,
+            Drive::Locked => false,
+        });
+        drives || self.elements.iter().flat_map(|e| &e.inputs).any(|signal| signal.is_constant().is_none())
+    }
+}
