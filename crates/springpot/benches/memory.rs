@@ -1,10 +1,10 @@
 //! D^½ of uniform samples, and the price of one step of the memory as the past grows.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use springpot::collocation::{Nodes, RADAU_NODES};
 use springpot::fractional::scheme::Samples;
 use springpot::fractional::{
-    Definition, Form, Kind, Memory, Method, Nodes, RatePolynomial, RatedStream, StepStart, derivative,
-    step::RADAU_NODES,
+    Definition, Form, Kind, Memory, Method, RatePolynomial, RatedStream, StepStart, derivative,
 };
 use std::hint::black_box;
 

@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release -p springpot --example bank`
 
+use springpot::collocation::Nodes;
 use springpot::elements::{ElementBank, MemoryRange};
-use springpot::fractional::{Form, KernelError, Nodes};
+use springpot::fractional::{Form, KernelError};
 use springpot::law::{Derivative, Network, Start};
 
 fn main() -> Result<(), KernelError> {

@@ -12,13 +12,15 @@
 //! | [`spatial`] | vectors, rotations, spatial quantities, over one scalar | nothing |
 //! | [`model`] | the robot: bodies, joints, anchors, from code or a URDF file; constant once built | `spatial` |
 //! | [`dynamics`] | kinematics, RNEA, CRBA, ABA and their derivatives, Coriolis terms, pairs of anchors | `model` |
-//! | [`fractional`] | derivatives and integrals of order −2 … 2: samples, streams, functions; kernel, memory, named schemes | nothing |
+//! | [`collocation`] | nodes of a step, their matrices and quadratures | nothing |
+//! | [`fractional`] | derivatives and integrals of order −2 … 2: samples, streams, functions; kernel, memory, named schemes | `collocation` |
 //! | [`law`] | stroke history → force; the catalog of laws | `fractional` |
 //! | [`signal`] | functions of time with exact derivatives | nothing |
-//! | [`elements`] | a law along a measure: the distance of two points, the coordinate of a joint; the bank of laws | `model`, `dynamics`, `law`, `signal` |
-//! | [`motion`] | q, v, a as functions of time: prescribed, gripper paths | `dynamics`, `signal` |
+//! | [`elements`] | an element: measure (distance of points, coordinate of a joint), law, inputs; all of them without a robot | `dynamics`, `law`, `signal` |
+//! | [`motion`] | kinematics given in advance: signals, gripper paths | `dynamics`, `signal` |
+//! | [`actuation`] | forward dynamics: start, torques, prescribed and locked joints | `model`, `motion` |
 //! | [`observe`] | what can be observed: quantities with names, units and values; the table in memory | `elements`, `table` |
-//! | [`integrate`] | the time loop: rows, step control, energy | all above |
+//! | [`integrate`] | runs and simulations: steps, rows, energy | all above |
 //! | [`table`] | the columns of rows | nothing |
 //!
 //! It knows numbers only: no files but URDF, no threads, no terminal. Scenario files are read by the crate `springpot-scenario`, sweeps,
@@ -87,6 +89,7 @@
 //! ```
 
 pub mod actuation;
+pub mod collocation;
 pub mod dynamics;
 pub mod elements;
 pub mod fractional;

@@ -1,7 +1,8 @@
 //! All elements of a system, step by step.
 
-use crate::fractional::step::MAX_NODES;
-use crate::fractional::{Form, KernelError, Nodes};
+use crate::collocation::MAX_NODES;
+use crate::collocation::Nodes;
+use crate::fractional::{Form, KernelError};
 use crate::law::{
     InputValue, LocalError, Network, Observation, Point, Power, Powers, Response, Singular, Start, State, Step, Term,
 };
@@ -26,7 +27,8 @@ pub struct MemoryRange {
 ///
 /// ```
 /// use springpot::elements::{ElementBank, MemoryRange};
-/// use springpot::fractional::{Form, Nodes};
+/// use springpot::collocation::Nodes;
+/// use springpot::fractional::Form;
 /// use springpot::law::{Derivative, Network, Start};
 ///
 /// // A springpot under x = t²: D^½ t² = 8/(3√π) t^{3/2}.

@@ -1,6 +1,7 @@
 //! The share of the step under way in D^alpha x: the exact kernel against the step's polynomial.
 
-use super::step::{MAX_NODES, Nodes, RADAU_NODES, RatePolynomial, TABLEAU, local_factors};
+use super::step::{RatePolynomial, local_factors};
+use crate::collocation::{MAX_NODES, Nodes, RADAU_NODES, TABLEAU};
 use serde::{Deserialize, Serialize};
 
 /// What the order says of every step, and h^{1−alpha} of the last one.

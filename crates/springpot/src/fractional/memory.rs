@@ -10,7 +10,8 @@
 //! a known motion the same map is evaluated:
 //!
 //! ```
-//! use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
+//! use springpot::collocation::{Nodes, RADAU_NODES};
+//! use springpot::fractional::{Form, Kind, Memory, RatePolynomial, StepStart};
 //!
 //! // D^½ of x = t², from its rates at the three Radau nodes of every step; the steps may have any size.
 //! let mut memory = Memory::new(0.5, Kind::Caputo, 0.0, 0.0, 1e-11, 1e-3, 2.0)?;
@@ -40,7 +41,8 @@ use super::history::{History, Squares};
 use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
 use super::local::Local;
-use super::step::{Form, MAX_NODES, NODE_POLYNOMIAL, Nodes, RADAU_INVERSE, RADAU_NODES, RatePolynomial};
+use super::step::{Form, NODE_POLYNOMIAL, RatePolynomial};
+use crate::collocation::{MAX_NODES, Nodes, RADAU_INVERSE, RADAU_NODES};
 use serde::{Deserialize, Serialize};
 
 /// Square of what the polynomial with its zeros at the nodes of a step has next to them; between them it is 0.003 to 0.018.

@@ -79,4 +79,4 @@ pub use differintegral::{
 pub use kernel::{Kernel, KernelError};
 pub use kind::Kind;
 pub use memory::{Affine, Energy, Memory, StepStart};
-pub use step::{Form, Nodes, RatePolynomial};
+pub use step::{Form, RatePolynomial};

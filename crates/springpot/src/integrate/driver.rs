@@ -286,7 +286,7 @@ impl Driver {
         let theta = if at == to { 1.0 } else { (at - from) / (to - from) };
         if at == to && behind != Behind::Break {
             self.solver.stepper_mut().complete(cx, &mut self.recorder, 1)?;
-            snapshot.evaluation.clone_from(&self.recorder.evaluations[crate::fractional::step::MAX_NODES]);
+            snapshot.evaluation.clone_from(&self.recorder.evaluations[crate::collocation::MAX_NODES]);
         } else {
             self.solver.stepper_mut().interpolate(cx, &mut self.recorder, at, theta, &mut snapshot.evaluation)?;
         }

@@ -1,6 +1,6 @@
 //! Which steps of one size.
 
-use crate::fractional::Nodes;
+use crate::collocation::Nodes;
 
 /// A fixed-step method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,7 +1,7 @@
 //! The energy accounts of a run: kinetic + potential + stored + dissipated − input − actuators stays what it was at t = 0.
 
-use crate::fractional::Nodes;
-use crate::fractional::step::{MAX_NODES, lagrange_row, quadrature, quadrature_defect};
+use crate::collocation::Nodes;
+use crate::collocation::{MAX_NODES, lagrange_row, quadrature, quadrature_defect};
 use serde::{Deserialize, Serialize};
 
 /// Gauss–Legendre rule on [−1, 1], 12 points: positive nodes and weights.
@@ -104,7 +104,7 @@ impl Turnover {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fractional::step::RADAU_NODES;
+    use crate::collocation::RADAU_NODES;
 
     #[test]
     fn work_is_exact_for_cubics() {

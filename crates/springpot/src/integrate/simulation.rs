@@ -10,7 +10,7 @@ use super::settings::{Settings, Stop};
 use super::state::SimulationState;
 use super::system::{Motion, System};
 use crate::actuation::Drive;
-use crate::fractional::step::MAX_NODES;
+use crate::collocation::MAX_NODES;
 use crate::observe::Snapshot;
 use std::sync::Arc;
 

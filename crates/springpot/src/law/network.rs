@@ -19,7 +19,8 @@ const MOST_IN_SERIES: usize = 8;
 /// step to forces there; what it keeps between steps is a [`State`] outside it.
 ///
 /// ```
-/// use springpot::fractional::{Form, Nodes};
+/// use springpot::collocation::Nodes;
+/// use springpot::fractional::Form;
 /// use springpot::law::{Derivative, Network, Singular, Start, Step};
 ///
 /// // A fractional Maxwell element: a spring, and a springpot behind it.

@@ -1,7 +1,8 @@
 //! What laws are asked, and what they answer.
 
-use crate::fractional::step::{MAX_NODES, quadrature};
-use crate::fractional::{Form, Nodes, StepStart};
+use crate::collocation::Nodes;
+use crate::collocation::{MAX_NODES, quadrature};
+use crate::fractional::{Form, StepStart};
 use serde::{Deserialize, Serialize};
 
 /// Value and rate of one input at one time, SI.

@@ -6,6 +6,7 @@
 //! q, v and a, by continuation of the branch.
 
 mod chebyshev;
+mod course;
 mod error;
 mod follow;
 mod hermite;
@@ -14,6 +15,7 @@ mod solver;
 mod task;
 mod wanted;
 
+pub use course::Course;
 pub use error::PathError;
 pub(super) use solver::STEP_TOLERANCE;
 pub use task::Task;
@@ -26,21 +28,6 @@ use hermite::Knots;
 use passage::Passage;
 use solver::{ITERATIONS, Miss, Solver};
 use std::fmt;
-use std::sync::atomic::AtomicBool;
-
-/// Knots after which a path is given up: 200 MB for seven joints.
-const MOST_KNOTS: usize = 1_000_000;
-
-/// How far and how closely a path is followed.
-#[derive(Debug, Clone, Copy)]
-pub struct Course<'a> {
-    /// End of the path, s; it starts at 0.
-    pub end: f64,
-    /// Longest stretch between two knots, s.
-    pub max_step: Option<f64>,
-    /// Interrupts from outside.
-    pub stop: &'a AtomicBool,
-}
 
 /// A solved gripper path.
 #[derive(Clone)]

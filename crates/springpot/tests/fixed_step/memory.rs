@@ -1,7 +1,8 @@
 //! The memory's mean over a step against closed forms.
 
+use springpot::collocation::Nodes;
 use springpot::fractional::gamma::gamma;
-use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart};
+use springpot::fractional::{Form, Kind, Memory, RatePolynomial, StepStart};
 
 /// Steps of uneven size; strokes x = x(0) + 3t, for which the constant rate is exact.
 fn steps() -> Vec<f64> {

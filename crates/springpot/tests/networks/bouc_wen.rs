@@ -1,7 +1,7 @@
 //! A leaf with an inner variable, built from public items alone: Bouc–Wen hysteresis.
 
 use crate::{along, departure, force, slider};
-use springpot::fractional::step::{MAX_NODES, quadrature, quadrature_defect};
+use springpot::collocation::{MAX_NODES, quadrature, quadrature_defect};
 use springpot::law::{
     Leaf, LocalError, Network, Observation, Point, Powers, Response, Start, State, StateMut, StateRef, StateSize, Step,
     Term,

@@ -5,8 +5,9 @@ use crate::support::robots::{ARM, PATH, SWING, every, magnetorheological, prescr
 use crate::support::truth::{Truth, gauss_jacobi};
 use crate::support::{Run, cases, largest, run, run_case, scenarios, shipped};
 use serde_json::Value;
-use springpot::fractional::step::RADAU_NODES;
-use springpot::fractional::{Form, Kind, Nodes};
+use springpot::collocation::Nodes;
+use springpot::collocation::RADAU_NODES;
+use springpot::fractional::{Form, Kind};
 use springpot::law::{Catalog, Point, Power, Start, State, Step};
 use std::f64::consts::PI;
 
@@ -350,7 +351,7 @@ fn work_less_ledger(alpha: f64, at: usize, edit: &dyn Fn(&mut Value)) -> f64 {
             singular: springpot::law::Singular::Value,
         };
         let response = law.evaluate(&step, &state);
-        let weights = springpot::fractional::step::RADAU_WEIGHTS;
+        let weights = springpot::collocation::RADAU_WEIGHTS;
         work += (0..3).map(|i| h * weights[i] * response.force[i] * rate[i + 1]).sum::<f64>();
         dissipated += Power::integrate(&law.powers(&step, &state), Nodes::Radau, h, 1.0).dissipation;
         law.commit(&step, &mut state);

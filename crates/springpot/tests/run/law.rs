@@ -1,7 +1,8 @@
 //! Laws on their own: tangents, sums, the catalog, and the rules that keep an element passive.
 
 use crate::steps::random_steps;
-use springpot::fractional::{Form, Nodes};
+use springpot::collocation::Nodes;
+use springpot::fractional::Form;
 use springpot::law::{Catalog, Derivative, Entry, InputValue, Network, Point, Start, State, Step};
 use springpot_scenario::units::{Unit, parse_quantity};
 use std::sync::Arc;

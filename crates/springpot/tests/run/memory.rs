@@ -3,8 +3,9 @@
 use crate::steps::{Interpolation, march, random_steps, uniform};
 use crate::support::oracle::{file, number};
 use crate::support::{largest, truth::Truth};
+use springpot::collocation::{Nodes, RADAU_NODES};
 use springpot::fractional::gamma::gamma;
-use springpot::fractional::{Form, Kind, Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
+use springpot::fractional::{Form, Kind, Memory, RatePolynomial, StepStart};
 
 const ALPHAS: [f64; 3] = [0.1, 0.5, 0.9];
 

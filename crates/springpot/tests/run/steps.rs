@@ -2,7 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses its share")]
 
-use springpot::fractional::{Memory, Nodes, RatePolynomial, StepStart, step::RADAU_NODES};
+use springpot::collocation::{Nodes, RADAU_NODES};
+use springpot::fractional::{Memory, RatePolynomial, StepStart};
 
 /// How a step's polynomial is made.
 #[derive(Clone, Copy, Debug)]

@@ -3,9 +3,10 @@
 use super::between::{Accelerator, Between};
 use super::step::{ITERATIONS, OneStage};
 use crate::actuation::{Drive, Forward};
+use crate::collocation::Nodes;
+use crate::collocation::{MAX_NODES, RADAU_NODES};
 use crate::elements::ElementBank;
-use crate::fractional::step::{MAX_NODES, RADAU_NODES};
-use crate::fractional::{Form, Nodes};
+use crate::fractional::Form;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::evaluate::Evaluation;

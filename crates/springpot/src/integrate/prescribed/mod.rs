@@ -13,7 +13,7 @@ use super::on_grid;
 use super::recorder::{Recorder, StepPowers};
 use super::settings::Settings;
 use super::stepper::{Behind, Stepper, Target, Trial};
-use crate::fractional::step::{MAX_NODES, RADAU_NODES, RADAU_WEIGHTS};
+use crate::collocation::{MAX_NODES, RADAU_NODES, RADAU_WEIGHTS};
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
 use serde::{Deserialize, Serialize};

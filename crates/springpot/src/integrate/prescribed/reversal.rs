@@ -1,7 +1,7 @@
 //! Where joints turn round against friction that sticks: its power |v|·F has a kink there, on which steps end.
 
 use super::Prescribed;
-use crate::fractional::step::{MAX_NODES, lagrange_row};
+use crate::collocation::{MAX_NODES, lagrange_row};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;

@@ -2,7 +2,7 @@
 
 use super::method::Radau;
 use super::newton::Outcome;
-use crate::fractional::step::MAX_NODES;
+use crate::collocation::MAX_NODES;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;

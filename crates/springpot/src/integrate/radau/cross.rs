@@ -4,7 +4,7 @@ use super::dense::Dense;
 use super::drives::drive;
 use super::method::Radau;
 use super::start;
-use crate::fractional::step::{MAX_NODES, RADAU_NODES};
+use crate::collocation::{MAX_NODES, RADAU_NODES};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;

@@ -1,9 +1,9 @@
 //! The embedded error estimate of a step.
 
 use super::step::RadauStep;
-use super::tableau::{ESTIMATE, GAMMA, LEFT, RIGHT};
+use crate::collocation::MAX_NODES;
+use crate::collocation::radau::{ESTIMATE, GAMMA, LEFT, RIGHT};
 use crate::elements::ElementBank;
-use crate::fractional::step::MAX_NODES;
 
 impl RadauStep {
     /// Accelerations without what a singular start adds: a_i − s σ_i with s σ = −M⁻¹ Σ g F_singular.

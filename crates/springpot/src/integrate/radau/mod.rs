@@ -20,7 +20,6 @@ mod stages;
 mod start;
 mod step;
 mod stick;
-mod tableau;
 mod watch;
 
 pub(super) use method::{Radau, StepperState};

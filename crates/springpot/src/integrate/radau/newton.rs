@@ -1,9 +1,9 @@
 //! The Newton iteration for the accelerations of the stages: three unknowns for each free velocity.
 
 use super::step::RadauStep;
-use super::tableau::{A, A_SQUARED};
+use crate::collocation::MAX_NODES;
+use crate::collocation::radau::{A, A_SQUARED};
 use crate::elements::{ElementBank, Pull};
-use crate::fractional::step::MAX_NODES;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::resistance::add_smooth_resistance;

@@ -2,11 +2,11 @@
 
 use super::drives::{force_at, take_path};
 use super::step::{RadauStep, may_yield};
-use super::tableau::{A_SQUARED, GAMMA};
 use crate::actuation::Drive;
+use crate::collocation::radau::{A_SQUARED, GAMMA};
+use crate::collocation::{MAX_NODES, RADAU_NODES};
 use crate::elements::{ElementBank, Pull};
 use crate::fractional::Form;
-use crate::fractional::step::{MAX_NODES, RADAU_NODES};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::resistance::add_tangents;

@@ -2,11 +2,11 @@
 
 use super::sizes::{Sizes, Tolerance};
 use super::stick::{Sliding, Stick};
-use super::tableau::A;
 use crate::actuation::Forward;
+use crate::collocation::radau::A;
+use crate::collocation::{MAX_NODES, lagrange_row};
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{Element, ElementBank, Forces, Reading};
-use crate::fractional::step::{MAX_NODES, lagrange_row};
 use crate::integrate::context::Context;
 use crate::integrate::system::System;
 use crate::law::{InputValue, Point};

@@ -3,7 +3,7 @@
 use super::events::{Change, Look};
 use super::method::Radau;
 use crate::actuation::Drive;
-use crate::fractional::step::{MAX_NODES, lagrange_row};
+use crate::collocation::{MAX_NODES, lagrange_row};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::evaluate::{ElementEvaluation, Evaluation};

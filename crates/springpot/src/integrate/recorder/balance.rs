@@ -1,7 +1,7 @@
 //! The balance of energies, and what a step may add to its error.
 
 use super::Recorder;
-use crate::fractional::step::MAX_NODES;
+use crate::collocation::MAX_NODES;
 use crate::integrate::evaluate::Evaluation;
 use crate::integrate::ledger::{Balance, NodePower, singular_work, work, work_defect};
 use crate::observe::Snapshot;

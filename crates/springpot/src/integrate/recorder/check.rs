@@ -1,7 +1,7 @@
 //! Whether the steps of a run saw what the motion does.
 
 use super::Recorder;
-use crate::fractional::step::{MAX_NODES, lagrange_row};
+use crate::collocation::{MAX_NODES, lagrange_row};
 use crate::observe::Snapshot;
 
 /// How much more than the tolerance a row may depart from its step, and what it may in any case: steps err less than the

@@ -9,7 +9,7 @@ use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Respo
 ///
 /// It is asked at the nodes of a step and nowhere else. Asking is pure and may be done any number of times; [`Leaf::commit`] is the only
 /// change of its state, on accepted steps. What a leaf keeps is a share of the law's [`State`] whose size it declares: inner
-/// variables (a slip, a temperature) are collocated by the leaf at the same nodes ([`crate::fractional::Nodes::inverse`]) and eliminated there,
+/// variables (a slip, a temperature) are collocated by the leaf at the same nodes ([`crate::collocation::Nodes::inverse`]) and eliminated there,
 /// so that to the outside it is a map from strokes and rates to forces. What is provided is that of a leaf that keeps nothing.
 pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// What it keeps between steps.

@@ -1,9 +1,10 @@
 //! The springpot: a fractional derivative of the stroke.
 
 use super::contract::Leaf;
+use crate::collocation::MAX_NODES;
+use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
-use crate::fractional::step::MAX_NODES;
-use crate::fractional::{Form, KernelError, Memory, Nodes, RatePolynomial};
+use crate::fractional::{Form, KernelError, Memory, RatePolynomial};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::Singular;

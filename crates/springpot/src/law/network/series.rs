@@ -6,9 +6,10 @@
 //! starts need not be consistent.
 
 use super::{MOST_IN_SERIES, Network, Onset, Reported};
+use crate::collocation::MAX_NODES;
+use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
-use crate::fractional::step::MAX_NODES;
-use crate::fractional::{Form, KernelError, Nodes, RatePolynomial};
+use crate::fractional::{Form, KernelError, RatePolynomial};
 use crate::law::state::{State, StateMut, StateRef};
 use crate::law::step::{LocalError, Point, Powers, Response, Start, Step};
 

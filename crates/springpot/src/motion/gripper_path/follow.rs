@@ -4,11 +4,11 @@
 //! lead Newton's method, of a redundant one it must be q itself, and q' = J⁺ṙ be integrated to rounding, both but for what Newton's
 //! method puts right. They never skip what the path's signals do ([`Agenda`]).
 
+use super::course::{Course, MOST_KNOTS};
 use super::error::PathError;
 use super::hermite::{Knot, Knots, quintic_into};
 use super::passage::{CLOSE, Passage, SINGULAR, Search};
 use super::solver::{ITERATIONS, Miss, START_ITERATIONS, Solver};
-use super::{Course, MOST_KNOTS};
 use crate::signal::{Agenda, AgendaError, Watched};
 use std::sync::atomic::Ordering;
 
