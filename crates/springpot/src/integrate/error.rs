@@ -240,6 +240,13 @@ pub enum RunError {
     Output(#[from] std::io::Error),
 }
 
+impl RunError {
+    /// That of an element whose memory cannot be built.
+    pub(super) fn of_kernel(element: &str) -> impl Fn(KernelError) -> Self + '_ {
+        move |source| Self::Kernel { element: element.to_owned(), source }
+    }
+}
+
 impl From<PathError> for RunError {
     fn from(error: PathError) -> Self {
         match error {

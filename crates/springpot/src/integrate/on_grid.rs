@@ -70,5 +70,5 @@ pub(super) fn on_grid_observation(
 /// The state of a law that knows no past.
 fn begin(element: &Element, inputs: &[InputValue]) -> Result<State, RunError> {
     let begun = element.begin(element.rest, inputs);
-    begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })
+    begun.map_err(RunError::of_kernel(&element.name))
 }

@@ -50,7 +50,7 @@ impl System {
         self.context().fill(0.0, 0.0, None, &mut Scratch::new(&self.model), &mut evaluation)?;
         let starts = self.elements.iter().zip(evaluation.elements).map(|(element, state)| {
             let begun = element.begin(state.reading.coordinate, &state.inputs);
-            let singular = begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+            let singular = begun.map_err(RunError::of_kernel(&element.name))?;
             let singular = !singular.is_accounted();
             let (length, stroke) = (state.reading.coordinate, state.stroke);
             Ok(ElementStart { length, stroke, gradient: state.gradient, singular })

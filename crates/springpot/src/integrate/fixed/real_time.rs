@@ -115,7 +115,7 @@ impl<'a> Loop<'a> {
             let y = at.ends[0].coordinate;
             let start = Start { stroke: element.stroke(y), jump: element.jump(y), inputs: &inputs };
             let begun = bank.begin_element(e, &start).and_then(|()| bank.open_element(e, range));
-            begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+            begun.map_err(RunError::of_kernel(&element.name))?;
         }
         // Here and not in the first step, so that none allocates.
         stage.begin_elements(cx, &mut bank, step, stage.stage_time(time(1, step), step))?;

@@ -57,7 +57,7 @@ pub(super) fn origin(
 fn begin(cx: Context, e: usize, point: &Point, coordinate: f64) -> Result<State, RunError> {
     let element = &cx.system.elements[e];
     let begun = element.begin(coordinate, point.inputs);
-    begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })
+    begun.map_err(RunError::of_kernel(&element.name))
 }
 
 /// Decides which joints friction holds at the origin, with the whole `force` of each element, which is told its

@@ -95,7 +95,7 @@ impl Recorder {
             let at = &self.evaluations[0].elements[e];
             let start = Start { stroke: at.stroke, jump: element.jump(at.reading.coordinate), inputs: &at.inputs };
             let begun = self.bank.begin_element(e, &start);
-            begun.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+            begun.map_err(RunError::of_kernel(&element.name))?;
         }
         Ok(())
     }
@@ -105,7 +105,7 @@ impl Recorder {
         let Settings { memory_rtol: tolerance, end: horizon, .. } = self.settings;
         for (e, element) in cx.system.elements.iter().enumerate() {
             let opened = self.bank.open_element(e, MemoryRange { tolerance, shortest: first, horizon });
-            opened.map_err(|source| RunError::Kernel { element: element.name.clone(), source })?;
+            opened.map_err(RunError::of_kernel(&element.name))?;
         }
         self.ledger.potential_origin = self.evaluations[0].potential;
         let mut start = Snapshot::new(cx.system);
