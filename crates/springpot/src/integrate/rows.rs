@@ -5,13 +5,13 @@ use crate::observe::Table;
 
 /// Takes the rows of a run.
 pub trait Rows {
-    /// One complete row, in the order of [`System::columns`]; NaN stands for an empty field.
+    /// One complete row, in the order of [`super::System::columns`]; NaN stands for an empty field.
     ///
     /// # Errors
     /// Whatever keeps the row from being kept; the run stops.
     fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
 
-    /// Before the first row, how often the signals of the run will switch ([`Report::switches`]).
+    /// Before the first row, how often the signals of the run will switch ([`super::Report::switches`]).
     fn looked_ahead(&mut self, _switches: u64) {}
 
     /// Whether [`Self::checkpoint`] is to be called now, at time `t` between two steps; `last` where the run stops here because it
@@ -20,7 +20,7 @@ pub trait Rows {
         false
     }
 
-    /// The state from which [`resume`] goes on; all rows that belong to it were handed over.
+    /// The state from which [`super::resume`] goes on; all rows that belong to it were handed over.
     ///
     /// # Errors
     /// Whatever keeps it from being kept; the run stops.
