@@ -60,8 +60,8 @@ pub use error::{SchemeError, SchemeNameError};
 pub use rates::differenced_rates;
 pub use samples::{Samples, UniformPrefix};
 
-use super::Kind;
 use super::gamma::reciprocal_gamma;
+use super::kind::Kind;
 use expansion::Form;
 use std::ops::RangeInclusive;
 

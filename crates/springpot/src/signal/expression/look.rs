@@ -1,11 +1,12 @@
 //! What an expression does in a cell of time, without asking at single times: bounds of its derivatives, and whether any of its
 //! kinks lies there.
 
-use super::{Expression, MAX_STACK, Op, PI, Trace};
+use super::formula::Expression;
+use super::program::{MAX_STACK, Op, Trace, stack_after, triangle};
 use crate::signal::jet::Jet;
 use crate::signal::jet::{Smooth, Value};
 use crate::signal::series::Series;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// An expression seen over a whole cell.
 #[derive(Debug, Clone, Copy)]
@@ -108,8 +109,7 @@ impl Expression {
         let wanted = bit.trailing_zeros() as usize;
         let mut kinks = self.program.iter().enumerate().filter(|(_, op)| op.has_kink());
         let Some((at, &op)) = kinks.nth(wanted) else { return (f64::NAN, f64::NAN) };
-        let (stack, top) =
-            super::stack_after::<Jet, MAX_STACK>(&self.program[..at], Jet::time(t), &mut Trace::default());
+        let (stack, top) = stack_after::<Jet, MAX_STACK>(&self.program[..at], Jet::time(t), &mut Trace::default());
         let argument = match op {
             Op::Min | Op::Max => stack[top - 2].sub(stack[top - 1]),
             Op::Atan2 => stack[top - 2],
@@ -134,10 +134,8 @@ fn unary(op: Op, u: &Series, judge: &mut Judge) -> Series {
             function.bound(u)
         }
         Op::Negate => u.neg(),
-        Op::AsinSin => fold(u, judge.side(&Smooth::Cos.bound(u)), -FRAC_PI_2, super::triangle),
-        Op::AcosCos => {
-            fold(u, judge.side(&Smooth::Sin.bound(u)), 0.0, |x| (x - super::TAU * (x / super::TAU).round()).abs())
-        }
+        Op::AsinSin => fold(u, judge.side(&Smooth::Cos.bound(u)), -FRAC_PI_2, triangle),
+        Op::AcosCos => fold(u, judge.side(&Smooth::Sin.bound(u)), 0.0, |x| (x - TAU * (x / TAU).round()).abs()),
         Op::Abs => match judge.side(u) {
             Verdict::Stays(false) => *u,
             Verdict::Stays(true) => u.neg(),

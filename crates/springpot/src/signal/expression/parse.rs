@@ -1,6 +1,8 @@
 //! Precedence climbing (V. R. Pratt, "Top down operator precedence", POPL 1973) from text to a postfix program.
 
-use super::{ExpressionError, MAX_DEPTH, MAX_LENGTH, MAX_STACK, NAMES, Name, Op, Smooth, Trace, lookup, run};
+use super::error::ExpressionError;
+use super::program::{MAX_DEPTH, MAX_LENGTH, MAX_STACK, NAMES, Name, Op, Trace, lookup, run};
+use crate::signal::jet::Smooth;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 

@@ -1,0 +1,99 @@
+//! An expression as a function of time.
+
+use super::error::ExpressionError;
+use super::parse;
+use super::program::{MAX_KINKS, Op, Trace, run};
+use crate::signal::jet::Jet;
+use std::fmt;
+use std::str::FromStr;
+
+/// A function of t, kept as a flat program in postfix order; evaluation neither recurses nor allocates.
+///
+/// ```
+/// use springpot::signal::Expression;
+/// let x: Expression = "0.7*t^2".parse()?;
+/// let jet = x.at(0.0);
+/// assert_eq!((jet.value, jet.first, jet.second), (0.0, 0.0, 1.4));
+/// # Ok::<(), springpot::signal::ExpressionError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expression {
+    pub(super) source: String,
+    pub(super) program: Vec<Op>,
+    pub(super) kinks: usize,
+}
+
+impl Expression {
+    /// Reads an expression.
+    pub fn parse(source: &str) -> Result<Self, ExpressionError> {
+        let program = parse::program(source)?;
+        let kinks = program.iter().filter(|op| op.has_kink()).count();
+        if kinks > MAX_KINKS {
+            return Err(ExpressionError::TooManyKinks { given: kinks, limit: MAX_KINKS });
+        }
+        Ok(Self { source: source.to_owned(), program, kinks })
+    }
+
+    /// The text it was read from.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// The value at `t`: the same number as `at(t).value`. NaN and infinities are returned as they are.
+    pub fn value(&self, t: f64) -> f64 {
+        run(&self.program, t, &mut Trace::default())
+    }
+
+    /// Value and exact first two derivatives at `t`; at a kink or jump the derivatives are those from the right.
+    pub fn at(&self, t: f64) -> Jet {
+        run(&self.program, Jet::time(t), &mut Trace::default())
+    }
+
+    /// One bit for each abs, sign, step (argument below zero), min, max (first argument below the second), atan2 (below
+    /// the cut along the negative x axis), sqrt, asin, acos (argument falling) and triangle wave (falling), just after `t`:
+    /// between two times with the same number none of them has switched an odd number of times; kinks and jumps lie where it changes.
+    pub fn branch(&self, t: f64) -> u64 {
+        self.trace(t).branch
+    }
+
+    /// Whether a sign, a step or an atan2 jumps at `t` itself, so that its value there is not that just after `t`.
+    pub fn turns_at(&self, t: f64) -> bool {
+        self.trace(t).turns
+    }
+
+    fn trace(&self, t: f64) -> Trace {
+        let mut trace = Trace::default();
+        if self.has_kinks() {
+            run(&self.program, Jet::time(t), &mut trace);
+        }
+        trace
+    }
+
+    /// Whether [`branch`](Self::branch) can change.
+    pub fn has_kinks(&self) -> bool {
+        self.kinks > 0
+    }
+
+    /// The value, if `t` does not occur.
+    pub fn is_constant(&self) -> Option<f64> {
+        match self.program[..] {
+            [Op::Number(value)] => Some(value),
+            _ => None,
+        }
+    }
+}
+
+impl FromStr for Expression {
+    type Err = ExpressionError;
+
+    fn from_str(source: &str) -> Result<Self, ExpressionError> {
+        Self::parse(source)
+    }
+}
+
+/// The text it was read from.
+impl fmt::Display for Expression {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.source)
+    }
+}

@@ -1,0 +1,222 @@
+//! The program that an expression is, and what it is run on.
+
+use crate::signal::jet::{Smooth, Value};
+use std::f64::consts::{PI, TAU};
+
+/// Longest text of an expression, in bytes.
+pub const MAX_LENGTH: usize = 4096;
+/// Deepest nesting of an expression.
+pub const MAX_DEPTH: usize = 64;
+/// Most functions that may have a kink (abs, sign, step, min, max, atan2, sqrt, asin, acos) in one expression.
+pub const MAX_KINKS: usize = 64;
+/// Most intermediate results at a time, and those of most expressions.
+pub(super) const MAX_STACK: usize = 32;
+pub(super) const SMALL_STACK: usize = 8;
+
+/// One instruction; operands come before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Op {
+    Number(f64),
+    Time,
+    Negate,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Smooth(Smooth),
+    Abs,
+    Sign,
+    Step,
+    Min,
+    Max,
+    Atan2,
+    /// asin(sin u): a triangle wave.
+    AsinSin,
+    /// acos(cos u): a triangle wave.
+    AcosCos,
+}
+
+impl Op {
+    pub(super) fn operands(self) -> usize {
+        match self {
+            Self::Number(_) | Self::Time => 0,
+            Self::Negate | Self::Smooth(_) | Self::Abs | Self::Sign | Self::Step | Self::AsinSin | Self::AcosCos => 1,
+            Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Power => 2,
+            Self::Min | Self::Max | Self::Atan2 => 2,
+        }
+    }
+
+    pub(super) fn has_kink(self) -> bool {
+        match self {
+            Self::Abs | Self::Sign | Self::Step | Self::Min | Self::Max | Self::Atan2 => true,
+            Self::AsinSin | Self::AcosCos => true,
+            Self::Smooth(function) => function.may_touch(),
+            _ => false,
+        }
+    }
+}
+
+/// What a name stands for.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Name {
+    Operand(Op),
+    Function(Op),
+}
+
+pub(super) const NAMES: [(&str, Name); 22] = [
+    ("t", Name::Operand(Op::Time)),
+    ("pi", Name::Operand(Op::Number(std::f64::consts::PI))),
+    ("\u{3c0}", Name::Operand(Op::Number(std::f64::consts::PI))),
+    ("e", Name::Operand(Op::Number(std::f64::consts::E))),
+    ("sin", Name::Function(Op::Smooth(Smooth::Sin))),
+    ("cos", Name::Function(Op::Smooth(Smooth::Cos))),
+    ("tan", Name::Function(Op::Smooth(Smooth::Tan))),
+    ("asin", Name::Function(Op::Smooth(Smooth::Asin))),
+    ("acos", Name::Function(Op::Smooth(Smooth::Acos))),
+    ("atan", Name::Function(Op::Smooth(Smooth::Atan))),
+    ("atan2", Name::Function(Op::Atan2)),
+    ("sinh", Name::Function(Op::Smooth(Smooth::Sinh))),
+    ("cosh", Name::Function(Op::Smooth(Smooth::Cosh))),
+    ("tanh", Name::Function(Op::Smooth(Smooth::Tanh))),
+    ("exp", Name::Function(Op::Smooth(Smooth::Exp))),
+    ("log", Name::Function(Op::Smooth(Smooth::Log))),
+    ("sqrt", Name::Function(Op::Smooth(Smooth::Sqrt))),
+    ("abs", Name::Function(Op::Abs)),
+    ("sign", Name::Function(Op::Sign)),
+    ("min", Name::Function(Op::Min)),
+    ("max", Name::Function(Op::Max)),
+    ("step", Name::Function(Op::Step)),
+];
+
+pub(super) fn lookup(name: &str) -> Option<Name> {
+    NAMES.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
+}
+
+/// Whether an expression knows this name.
+pub fn is_name(name: &str) -> bool {
+    lookup(name).is_some()
+}
+
+/// What kinks did while a program ran.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Trace {
+    pub(super) branch: u64,
+    /// Bits in `branch`.
+    pub(super) count: u32,
+    /// Whether the value is that of this instant alone.
+    pub(super) turns: bool,
+}
+
+impl Trace {
+    pub(super) fn take(&mut self, below: bool) -> bool {
+        self.branch |= u64::from(below) << self.count;
+        self.count = (self.count + 1) % u64::BITS;
+        below
+    }
+}
+
+/// Runs a program that `parse` has checked: operands present, at most `MAX_STACK` of them.
+pub(super) fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace) -> V {
+    // A stack of n takes 2n − 1 instructions at least.
+    if program.len() < 2 * SMALL_STACK {
+        stack_after::<V, SMALL_STACK>(program, time, trace).0[0]
+    } else {
+        stack_after::<V, MAX_STACK>(program, time, trace).0[0]
+    }
+}
+
+/// The intermediate results that a program, or the beginning of one, leaves, and how many they are.
+pub(super) fn stack_after<V: Value, const STACK: usize>(
+    program: &[Op],
+    time: V,
+    trace: &mut Trace,
+) -> ([V; STACK], usize) {
+    let mut stack = [time; STACK];
+    let mut top = 0;
+    for &op in program {
+        let result = match op.operands() {
+            0 => match op {
+                Op::Number(value) => V::constant(value),
+                _ => time,
+            },
+            1 => {
+                top -= 1;
+                unary(op, stack[top], trace)
+            }
+            _ => {
+                top -= 2;
+                binary(op, stack[top], stack[top + 1], trace)
+            }
+        };
+        stack[top] = result;
+        top += 1;
+    }
+    (stack, top)
+}
+
+fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace) -> V {
+    let u = argument.value();
+    match op {
+        Op::Smooth(function) => {
+            if function.may_touch() {
+                trace.take(argument.is_falling());
+            }
+            function.apply(argument)
+        }
+        Op::Negate => argument.neg(),
+        Op::AsinSin | Op::AcosCos => {
+            let (wave, value) = match op {
+                Op::AsinSin => (Smooth::Cos, triangle(u)),
+                _ => (Smooth::Sin, (u - TAU * (u / TAU).round()).abs()),
+            };
+            let falls = trace.take(wave.apply(argument).is_below_zero());
+            argument.apply(value, || (if falls { -1.0 } else { 1.0 }, 0.0))
+        }
+        _ => {
+            let below = trace.take(argument.is_below_zero());
+            match op {
+                Op::Abs => argument.apply(u.abs(), || (if below { -1.0 } else { 1.0 }, 0.0)),
+                _ if u.is_nan() => argument,
+                Op::Sign => {
+                    trace.turns |= u == 0.0 && (below || argument.neg().is_below_zero());
+                    V::constant(if u == 0.0 { 0.0 } else { u.signum() })
+                }
+                _ => {
+                    trace.turns |= u == 0.0 && below;
+                    V::constant(if u >= 0.0 { 1.0 } else { 0.0 })
+                }
+            }
+        }
+    }
+}
+
+/// asin(sin u) without the loss of digits at its crests.
+pub(super) fn triangle(u: f64) -> f64 {
+    let turns = (u / PI).round();
+    let rest = u - PI * turns;
+    if turns % 2.0 == 0.0 { rest } else { -rest }
+}
+
+fn binary<V: Value>(op: Op, first: V, second: V, trace: &mut Trace) -> V {
+    match op {
+        Op::Add => first.add(second),
+        Op::Subtract => first.sub(second),
+        Op::Multiply => first.mul(second),
+        Op::Divide => first.div(second),
+        Op::Power => first.pow(second),
+        Op::Atan2 => {
+            let below = trace.take(second.value() < 0.0 && first.is_below_zero());
+            trace.turns |= below && first.value() == 0.0;
+            first.atan2(second)
+        }
+        _ => {
+            let below = trace.take(first.sub(second).is_below_zero());
+            let (u, v) = (first.value(), second.value());
+            // A NaN must not be chosen away.
+            let chosen = if u.is_nan() || (!v.is_nan() && below == (op == Op::Min)) { first } else { second };
+            // Of two zeros the sign must not depend on where the derivatives are taken from.
+            if u == v { chosen.apply(u, || (1.0, 0.0)) } else { chosen }
+        }
+    }
+}
