@@ -203,7 +203,7 @@ pub enum RunError {
         value: f64,
     },
     /// A named scheme works on complete motions alone.
-    #[error("element \"{element}\" has a named scheme, which works on complete motions alone: it cannot be stepped")]
+    #[error("element \"{element}\" has a named scheme, which works on motions given in advance and complete alone")]
     NoStepping {
         /// Element.
         element: String,

@@ -67,9 +67,7 @@ impl Simulation {
     /// works on complete motions alone.
     pub fn new(system: impl Into<Arc<System>>, settings: Settings) -> Result<Self, RunError> {
         let system: Arc<System> = system.into();
-        if let Some(element) = system.elements.iter().find(|element| element.scheme.is_some()) {
-            return Err(RunError::NoStepping { element: element.name.clone() });
-        }
+        system.refuse_schemes()?;
         let driver = Driver::new(system.context(), &settings, &Stop::new(false), |_| {})?;
         Ok(Self { system, held: Held::default(), driver, samples: None, sample: 0 })
     }

@@ -8,7 +8,7 @@ use super::radau::{self, Radau};
 use super::recorder::Recorder;
 use super::settings::Settings;
 use super::stepper::Stepper;
-use super::system::Motion;
+use super::system::{Motion, System};
 use serde::{Deserialize, Serialize};
 
 /// One of the methods.
@@ -27,12 +27,28 @@ pub(super) enum SolverState {
     Fixed(Box<fixed::StepperState>),
 }
 
+impl System {
+    /// Refuses elements whose forces are only known of a complete motion.
+    ///
+    /// # Errors
+    /// [`RunError::NoStepping`].
+    pub(super) fn refuse_schemes(&self) -> Result<(), RunError> {
+        match self.elements.iter().find(|element| element.scheme.is_some()) {
+            Some(element) => Err(RunError::NoStepping { element: element.name.clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
 impl Solver {
     /// The method that a system's motion and the settings ask for.
     ///
     /// # Errors
     /// What keeps a run from starting.
     pub(super) fn new(cx: Context, settings: &Settings) -> Result<Self, RunError> {
+        if let Motion::Forward(_) = cx.system.motion {
+            cx.system.refuse_schemes()?;
+        }
         Ok(match (&cx.system.motion, settings.fixed_step) {
             (Motion::Given(trajectory), _) => Self::Prescribed(Box::new(Prescribed::new(cx, trajectory))),
             (Motion::Forward(forward), None) => Self::Radau(Box::new(Radau::new(cx, forward, settings))),

@@ -1,7 +1,9 @@
 //! A leaf with an inner variable, built from public items alone: Bouc–Wen hysteresis.
 
 use crate::{along, departure, force, slider};
-use springpot::collocation::{MAX_NODES, quadrature, quadrature_defect};
+use springpot::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
+use springpot::elements::{ElementBank, MemoryRange};
+use springpot::fractional::Form;
 use springpot::law::{
     Leaf, LocalError, Network, Observation, Point, Powers, Response, Start, State, StateMut, StateRef, StateSize, Step,
     Term,
@@ -103,7 +105,9 @@ impl Leaf for BoucWen {
     }
 
     fn commit(&self, step: &Step, state: StateMut) {
-        state.variables[0] = self.solve(step, state.variables[0]).0[step.nodes.count()];
+        let start = state.variables[0];
+        let last = self.solve(step, start).0[step.nodes.count()];
+        state.variables[0] = if step.nodes == Nodes::Midpoint { 2.0 * last - start } else { last };
     }
 
     fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
@@ -195,4 +199,35 @@ fn it_moves_a_robot_and_stands_in_networks() {
     let [alone, behind] = [Network::leaf(leaf), behind].map(|law| slider(&[law], &along("0.1*sin(t)"), 4.0, 40, 1e-9));
     let error = departure(&force(&behind), &force(&alone));
     assert!(error < 1e-5, "{error:e}");
+}
+
+/// In steps whose node stands for their middle an inner variable goes on to their ends.
+#[test]
+fn steps_with_one_node_converge() {
+    let leaf = BoucWen { k: 50.0, a: 1.0, beta: 300.0, gamma: 300.0 };
+    let (x, end) = (|t: f64| 0.1 * t.sin(), 1.5);
+    let forces = closed_form(&leaf, (1..=6000).map(|k| x(end * f64::from(k) / 6000.0)));
+    for (nodes, order) in [(Nodes::One, 0.9), (Nodes::Midpoint, 1.8)] {
+        let error = |steps: u32| {
+            let h = end / f64::from(steps);
+            let mut bank = ElementBank::new(vec![Network::leaf(leaf)], nodes, Form::Strokes);
+            let memory = MemoryRange { tolerance: 1e-9, shortest: h, horizon: end };
+            bank.begin(&[Start { stroke: 0.0, jump: 0.0, inputs: &[] }], memory).unwrap();
+            let mut worst = 0.0f64;
+            for n in 0..steps {
+                let (t, from, to) = (f64::from(n) * h, x(f64::from(n) * h), x(f64::from(n + 1) * h));
+                bank.start(t, h);
+                bank.set(0, 0, from, t.cos() * 0.1, &[]);
+                let c = nodes.positions()[0];
+                bank.set(0, 1, from + c * (to - from), (to - from) / h, &[]);
+                bank.evaluate();
+                let at = ((t + c * h) / end * 6000.0).round() as usize;
+                worst = worst.max((bank.force(0) - forces[at - 1]).abs());
+                bank.commit();
+            }
+            worst
+        };
+        let found = (error(150) / error(600)).log2() / 2.0;
+        assert!(found > order, "{nodes:?}: order {found}");
+    }
 }

@@ -5,7 +5,7 @@ use crate::support::forward::{every, falling};
 use crate::support::robots::{ARM, prescribed, springpot};
 use crate::support::{cases, system};
 use springpot::Simulation;
-use springpot::integrate::{FixedStep, RunError, Settings, fixed::Method};
+use springpot::integrate::{FixedStep, RunError, Settings, Stop, fixed::Method, run};
 
 #[test]
 fn states_of_other_systems_and_settings_are_refused() {
@@ -99,4 +99,9 @@ fn named_schemes_cannot_be_stepped() {
     let plan = cases(&format!("{ARM}{law}{swing}{}", every(0.4, 0.01, 1e-9))).plan(0).unwrap();
     let error = Simulation::new(plan.system(), plan.settings.clone()).unwrap_err().to_string();
     assert!(error.starts_with("element \"strut\" has a named scheme"), "{error}");
+    // A run of forward dynamics knows no complete motion either; the reader of scenarios refuses it before.
+    let (_, mut falling, settings) = systems().swap_remove(2);
+    falling.elements[0].scheme = plan.system().elements[0].scheme.clone();
+    let (_, outcome) = run(&falling, &settings, &mut falling.table(), &Stop::new(false));
+    assert!(matches!(outcome, Err(RunError::NoStepping { .. })), "{outcome:?}");
 }

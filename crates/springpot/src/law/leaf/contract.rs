@@ -31,7 +31,8 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// Adds its forces at the nodes and their tangents.
     fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response);
 
-    /// Takes an accepted step into the state.
+    /// Takes an accepted step into the state. With [`crate::collocation::Nodes::Midpoint`] what is known at the node is that of the middle of the
+    /// step: an inner variable ends as far beyond it as it began before it.
     fn commit(&self, _step: &Step, _state: StateMut) {}
 
     /// Appends how well the step knows each of its memories and inner variables.
