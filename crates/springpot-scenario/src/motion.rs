@@ -1,4 +1,4 @@
-//! `[motion]`: prescribed joints and gripper paths; robots that move by themselves are read by `forward`.
+//! `[motion]`: prescribed joints and gripper paths; forward dynamics is read by `forward`.
 
 use super::forward;
 use super::keys::{MOTION, POSE, Shape};

@@ -175,7 +175,7 @@ pub enum MotionPlan {
         /// Where the motion stands in the scenario.
         place: Place,
     },
-    /// The robot moves by itself.
+    /// Forward dynamics.
     Forward(Box<ForwardPlan>),
 }
 

@@ -46,7 +46,7 @@ impl Plan {
         solver.into()
     }
 
-    /// What moves the robot on, where it moves by itself.
+    /// The method of forward dynamics.
     fn method(&self) -> Option<&'static str> {
         matches!(self.motion, MotionPlan::Forward(_))
             .then(|| self.settings.fixed_step.map_or(ADAPTIVE, |by| by.method.name()))

@@ -91,7 +91,7 @@ pub struct Outcome {
     pub steps: u64,
     /// Inner steps tried and not kept.
     pub rejected_steps: u64,
-    /// Newton iterations over all cases, of robots that move by themselves.
+    /// Newton iterations over all cases, of forward dynamics.
     pub newton_iterations: Option<u64>,
     /// Simulated time over all cases, s.
     pub simulated: f64,

@@ -283,7 +283,7 @@ impl<'a> Scan<'a> {
     }
 
     fn run(&mut self) -> Result<(), AgendaError> {
-        self.glance();
+        self.sample();
         // What a first look finds may be much larger than what samples showed.
         for attempt in 0.. {
             self.used = Scale { integral: self.integral_scale(), ..self.seen };
@@ -297,7 +297,7 @@ impl<'a> Scan<'a> {
     }
 
     /// The scales as samples show them.
-    fn glance(&mut self) {
+    fn sample(&mut self) {
         let count = 4 * CELLS;
         let step = self.end / count as f64;
         for k in 0..count {
