@@ -101,7 +101,7 @@ fn named_schemes_cannot_be_stepped() {
     assert!(error.starts_with("element \"strut\" has a named scheme"), "{error}");
     // A run of forward dynamics knows no complete motion either; the reader of scenarios refuses it before.
     let (_, mut falling, settings) = systems().swap_remove(2);
-    falling.elements[0].scheme = plan.system().elements[0].scheme.clone();
+    falling.elements[0].scheme = plan.system().elements[0].scheme;
     let (_, outcome) = run(&falling, &settings, &mut falling.table(), &Stop::new(false));
     assert!(matches!(outcome, Err(RunError::NoStepping { .. })), "{outcome:?}");
 }
