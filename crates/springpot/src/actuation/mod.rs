@@ -16,6 +16,11 @@ pub struct Forward {
 }
 
 impl Forward {
+    /// Whether signals prescribe joints, whose actuators follow from all forces.
+    pub(crate) fn has_paths(&self) -> bool {
+        self.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_)))
+    }
+
     /// The functions of time that drive it.
     pub(crate) fn signals(&self) -> Vec<&Signal> {
         self.drives.iter().flat_map(Drive::signals).collect()

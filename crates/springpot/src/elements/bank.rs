@@ -380,6 +380,11 @@ impl ElementBank {
         self.elements[e].kept.as_ref().is_some_and(|kept| kept.state.is_singular())
     }
 
+    /// Whether one of the elements starts so.
+    pub(crate) fn has_singular(&self) -> bool {
+        (0..self.len()).any(|e| self.is_singular(e))
+    }
+
     /// Hands over s and alpha of every share s·t^−alpha of a singular start in the force of element `e`.
     pub(crate) fn for_each_singularity(&self, e: usize, inputs: &[InputValue], take: &mut dyn FnMut(Term)) {
         let Banked { law, kept, .. } = &self.elements[e];

@@ -41,13 +41,18 @@ impl Element {
         }
     }
 
+    /// What the law starts from at t = 0 at this coordinate y and under these inputs.
+    pub fn start<'i>(&self, coordinate: f64, inputs: &'i [InputValue]) -> Start<'i> {
+        Start { stroke: self.stroke(coordinate), jump: self.jump(coordinate), inputs }
+    }
+
     /// The law's state at t = 0 at this coordinate y and under these inputs, its memories without kernels
     /// ([`Network::begin`]).
     ///
     /// # Errors
     /// [`KernelError`] where a memory cannot be.
     pub fn begin(&self, coordinate: f64, inputs: &[InputValue]) -> Result<State, KernelError> {
-        self.law.begin(&Start { stroke: self.stroke(coordinate), jump: self.jump(coordinate), inputs })
+        self.law.begin(&self.start(coordinate, inputs))
     }
 
     /// x = y − y0, m or rad.

@@ -280,7 +280,8 @@ impl Driver {
     ) -> Result<Option<f64>, RunError> {
         let Some(Target { from, to, behind, .. }) = self.step else {
             self.solver.stepper_mut().complete(cx, &mut self.recorder, 0)?;
-            self.recorder.read_between(cx, row, snapshot)?;
+            snapshot.evaluation.clone_from(&self.recorder.evaluations[0]);
+            self.recorder.read(cx, None, row, snapshot)?;
             return Ok(None);
         };
         let theta = if at == to { 1.0 } else { (at - from) / (to - from) };
@@ -290,7 +291,7 @@ impl Driver {
         } else {
             self.solver.stepper_mut().interpolate(cx, &mut self.recorder, at, theta, &mut snapshot.evaluation)?;
         }
-        self.recorder.read_step(cx, theta, row, snapshot)?;
+        self.recorder.read(cx, Some(theta), row, snapshot)?;
         Ok(Some(theta))
     }
 

@@ -72,10 +72,6 @@ impl Simulation {
         Ok(Self { system, held: Held::default(), driver, samples: None, sample: 0 })
     }
 
-    fn cx(&self) -> Context<'_> {
-        Context { system: &self.system, held: &self.held }
-    }
-
     /// Takes one step, which ends at the next sample at the latest: `false`, and nothing done, where the end is reached.
     ///
     /// # Errors
@@ -157,10 +153,6 @@ impl Simulation {
     /// # Errors
     /// [`RunError`] where an input breaks a rule of its law.
     pub fn snapshot(&mut self) -> Result<Snapshot, RunError> {
-        let cx = Context { system: &self.system, held: &self.held };
-        while self.driver.is_disturbed() {
-            self.driver.settle(cx)?;
-        }
         self.interpolate(self.t())
     }
 
@@ -181,6 +173,9 @@ impl Simulation {
     pub fn interpolate_into(&mut self, t: f64, snapshot: &mut Snapshot) -> Result<(), RunError> {
         self.check_time(t, self.t_before(), self.t())?;
         let cx = Context { system: &self.system, held: &self.held };
+        while self.driver.is_disturbed() {
+            self.driver.settle(cx)?;
+        }
         self.driver.read(cx, t, 0, snapshot)?;
         Ok(())
     }
@@ -210,7 +205,7 @@ impl Simulation {
             return Err(RunError::NotFinite { t, what, value: torque });
         }
         let nv = model.nv();
-        if self.cx().torque(velocity) != torque {
+        if (Context { system: &self.system, held: &self.held }).torque(velocity) != torque {
             self.disturb()?;
             self.held.torques_mut(nv)[velocity] = torque;
         }

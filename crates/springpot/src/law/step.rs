@@ -155,6 +155,11 @@ impl Observation {
     pub fn force(&self) -> f64 {
         self.regular + self.singular
     }
+
+    /// F without the share of a singular start where that is infinite, at t = 0, N.
+    pub fn finite_force(&self) -> f64 {
+        self.regular + if self.singular.is_nan() { 0.0 } else { self.singular }
+    }
 }
 
 impl Term {

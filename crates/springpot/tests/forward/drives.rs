@@ -1,6 +1,6 @@
 //! Joints that are prescribed, locked, driven or followed, each against the same robot made otherwise.
 
-use crate::support::forward::{distance, every, falling, largest};
+use crate::support::forward::{distance, every, falling, largest, slider, state};
 use crate::support::robots::{ARM, strut};
 use crate::support::{Run, run};
 
@@ -176,4 +176,26 @@ fn a_corner_in_a_prescribed_path_kicks_the_free_joints() {
     assert!(largest(swing.clone()) > 0.5);
     println!("balance {:.1e}", run.residual());
     assert!(run.residual() < 1e-8);
+}
+
+/// M a = tau − F of the vertical slider without gravity, in rows where the torque switches, long after a singular start and in steps of
+/// every kind.
+#[test]
+fn rows_where_torques_switch_know_the_share_of_a_singular_start() {
+    let law = "law = \"springpot\"\nparameters = { c = 50, alpha = 0.4 }\nderivative = \"riemann-liouville\"";
+    let torque = "\ntorque = { q = \"5*sign(t-0.2)*sin(7*t)\" }";
+    let text = slider("2", 0.0, law, &(state("0.1", "0") + torque));
+    let rows = |end: f64| every(end, 0.1, 1e-9);
+    for text in [
+        text.clone() + &rows(0.5),
+        text.clone() + &rows(0.5) + "method = \"midpoint\"\nstep = \"2 ms\"\n",
+        text.clone() + "prescribed = {}" + &rows(0.5),
+    ] {
+        let run = run(&text);
+        let (a, tau, force) = (run.column("a.q"), run.column("tau.q"), run.column("e.force"));
+        for k in 1..a.len() {
+            let left = 2.0 * a[k] - (tau[k] - force[k]);
+            assert!(left.abs() < 1e-9, "row {k}: {left:e} of {}", force[k]);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Torques and inputs held from outside act as signals with the same values.
 
 use crate::support::forward::{every, falling};
-use crate::support::robots::{ARM, prescribed, thermoviscoelastic};
+use crate::support::robots::{ARM, magnetorheological, prescribed, thermoviscoelastic};
 use crate::support::{cases, run, run_system};
 use springpot::Simulation;
 use springpot::integrate::{FixedStep, Settings, fixed::Method};
@@ -116,4 +116,33 @@ fn a_controllers_loop_in_steps_of_one_size() {
         let allowed = if method == Method::BackwardEuler { 2e-3 } else { 1e-12 };
         assert!(miss < allowed, "{method:?}: {miss:e}");
     }
+}
+
+/// A jump of a held input supplies what it changes the stored energy by: the balance of steps of one size knows it too.
+#[test]
+fn held_inputs_supply_energy_in_steps_of_one_size() {
+    use springpot::observe::{ElementQuantity, EnergyQuantity, Quantity};
+    let strut = magnetorheological(0.5, "caputo");
+    let text = format!("{ARM}{strut}\n[motion]\nkind = \"forward\"\n{}", every(0.3, 0.1, 1e-9));
+    let plan = cases(&text).plan(0).unwrap();
+    let residual_after = |volts: &[f64], look: bool| {
+        let fixed_step = Some(FixedStep { method: Method::Midpoint, step: 1e-3 });
+        let settings = Settings { fixed_step, ..plan.settings.clone() };
+        let mut simulation = Simulation::new(plan.system(), settings).unwrap();
+        for (k, volt) in volts.iter().enumerate() {
+            simulation.step_to(0.1 * (k + 1) as f64).unwrap();
+            simulation.set_input(0, 0, Some(*volt)).unwrap();
+            if look {
+                simulation.interpolate(simulation.t()).unwrap();
+            }
+        }
+        simulation.step_to(0.3).unwrap();
+        let last = simulation.snapshot().unwrap();
+        let supplied = last.value(Quantity::Element(0, ElementQuantity::Input));
+        (last.value(Quantity::Energy(EnergyQuantity::Residual)), supplied)
+    };
+    let ((own, _), (switched, supplied)) = (residual_after(&[], false), residual_after(&[8.0, 3.0], false));
+    println!("{own:e} {switched:e} {supplied}");
+    assert!((switched - own).abs() < 0.01 * supplied.abs(), "{switched:e} {own:e} {supplied}");
+    assert_eq!(residual_after(&[8.0, 3.0], true), (switched, supplied));
 }

@@ -8,7 +8,7 @@ use crate::integrate::context::{Context, Held};
 use crate::integrate::error::RunError;
 use crate::integrate::fixed_step::Method;
 use crate::integrate::system::{Motion, System};
-use crate::law::{Point, Singular, Start};
+use crate::law::{Point, Singular};
 
 /// How the memories of the elements are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,9 +112,9 @@ impl<'a> Loop<'a> {
             let mut inputs = vec![Default::default(); element.inputs.len()];
             cx.inputs_at(e, 0.0, &mut inputs);
             element.check_inputs(0.0, &inputs)?;
-            let y = at.ends[0].coordinate;
-            let start = Start { stroke: element.stroke(y), jump: element.jump(y), inputs: &inputs };
-            let begun = bank.begin_element(e, &start).and_then(|()| bank.open_element(e, range));
+            let begun = bank
+                .begin_element(e, &element.start(at.ends[0].coordinate, &inputs))
+                .and_then(|()| bank.open_element(e, range));
             begun.map_err(RunError::of_kernel(&element.name))?;
         }
         // Here and not in the first step, so that none allocates.

@@ -2,7 +2,7 @@
 
 use super::between::{Accelerator, Between};
 use super::step::{ITERATIONS, OneStage};
-use crate::actuation::{Drive, Forward};
+use crate::actuation::Forward;
 use crate::collocation::Nodes;
 use crate::collocation::{MAX_NODES, RADAU_NODES};
 use crate::elements::ElementBank;
@@ -51,7 +51,7 @@ impl Fixed {
             by,
             step: OneStage::new(cx, forward, by.method)?,
             accelerator: Accelerator::new(cx, forward),
-            has_paths: forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))),
+            has_paths: forward.has_paths(),
             newton_iterations: 0,
         })
     }
@@ -88,7 +88,7 @@ impl Fixed {
     }
 
     /// Fills the evaluations at the nodes of the ledger as far as it asks for them.
-    fn fill_moments(&self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<(), RunError> {
+    fn fill_evaluations(&self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<(), RunError> {
         let (step, bank) = (&self.step, &recorder.bank);
         for (evaluation, c) in recorder.evaluations[1..].iter_mut().zip(RADAU_NODES) {
             let at = if c == 1.0 { target.to } else { target.from + c * target.size };
@@ -136,9 +136,7 @@ impl Fixed {
         let Recorder { evaluations, bank, scratch, is_whole, .. } = recorder;
         let evaluation = &mut evaluations[end * MAX_NODES];
         let force = |e: usize, evaluation: &Evaluation| match end {
-            0 => {
-                bank.now(e, &evaluation.elements[e].point(evaluation.t)).map_or(0.0, |observation| observation.regular)
-            }
+            0 => bank.now(e, &evaluation.elements[e].point(evaluation.t)).map_or(0.0, |now| now.finite_force()),
             _ => bank.end(e).force(),
         };
         self.accelerator.fill(cx, &self.step.forward, evaluation.t, scratch, evaluation, force)?;
@@ -169,7 +167,7 @@ impl Stepper for Fixed {
         cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
         recorder.begin(cx)?;
         self.accelerate(cx, recorder, 0)?;
-        if (0..recorder.bank.len()).any(|e| recorder.bank.is_singular(e)) {
+        if recorder.bank.has_singular() {
             let [evaluation, ..] = &mut recorder.evaluations;
             evaluation.a.fill(f64::NAN);
             evaluation.driven.fill(None);
@@ -181,7 +179,7 @@ impl Stepper for Fixed {
         self.step.attempt(cx, &mut recorder.bank, target.to, target.size)?;
         self.newton_iterations += u64::from(ITERATIONS);
         self.tell_ledger(cx, &mut recorder.bank, &target);
-        self.fill_moments(cx, recorder, &target)?;
+        self.fill_evaluations(cx, recorder, &target)?;
         (0..recorder.bank.len()).for_each(|e| _ = recorder.bank.account(e));
         recorder.is_whole[1] = false;
         if self.has_paths {
@@ -220,7 +218,11 @@ impl Stepper for Fixed {
         Ok(())
     }
 
-    fn cross(&mut self, _: Context, recorder: &mut Recorder, _: f64) -> Result<(), RunError> {
+    fn cross(&mut self, cx: Context, recorder: &mut Recorder, to: f64) -> Result<(), RunError> {
+        let mut right = recorder.evaluations[0].clone();
+        cx.fill(to, to, None, &mut recorder.scratch, &mut right)?;
+        recorder.jump(right);
+        // Its accelerations are worked out where a row asks for them.
         recorder.is_whole[0] = false;
         Ok(())
     }

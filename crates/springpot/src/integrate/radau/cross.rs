@@ -9,7 +9,7 @@ use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::Target;
-use crate::law::{Observation, Point};
+use crate::law::Point;
 
 impl Radau {
     /// Works out the energies of the step that was just solved.
@@ -81,16 +81,16 @@ impl Radau {
         step.restart();
         self.last = None;
         start::take_jumps(cx, &forward, &mut step.origin)?;
-        let unknown = Observation { derivative: 0.0, regular: 0.0, singular: 0.0, stored: None };
-        let now = |e: usize, point: &Point| bank.now(e, point).unwrap_or(unknown);
-        start::decide(cx, &forward, &mut step.stick, &mut step.origin, |e, point, _| {
-            let Observation { regular, singular, .. } = now(e, point);
-            Ok(regular + if singular.is_nan() { 0.0 } else { singular })
-        })?;
+        let force = |e: usize, point: &Point| bank.now(e, point).map_or(0.0, |now| now.finite_force());
+        start::decide(cx, &forward, &mut step.stick, &mut step.origin, |e, point, _| Ok(force(e, point)))?;
         step.free = step.stick.free();
-        start::accelerate(cx, &forward, &step.stick, &mut step.origin, |e, point, _| Ok(now(e, point).regular))?;
+        start::accelerate(cx, &forward, &step.stick, &mut step.origin, |e, point, _| Ok(force(e, point)))?;
         let mut right = recorder.evaluations[0].clone();
         right.a.copy_from_slice(&step.origin.a);
+        if step.is_singular {
+            let regular = |e: usize, point: &Point| bank.now(e, point).map_or(0.0, |now| now.regular);
+            start::accelerate(cx, &forward, &step.stick, &mut step.origin, |e, point, _| Ok(regular(e, point)))?;
+        }
         right.q.copy_from_slice(&step.origin.q);
         right.v.copy_from_slice(&step.origin.v);
         drive(cx, &forward, to, &mut right);

@@ -56,7 +56,7 @@ impl Radau {
         let tolerance = Tolerance { rtol: mapped, atol: settings.atol.unwrap_or(0.0) * mapped / rtol };
         Self {
             step: RadauStep::new(cx, forward, tolerance, rtol),
-            has_paths: forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))),
+            has_paths: forward.has_paths(),
             last: None,
             has_inner_variables: cx.system.elements.iter().any(|element| element.law.has_inner_variables()),
             newton_iterations: 0,
@@ -123,7 +123,7 @@ impl Stepper for Radau {
         cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
         recorder.begin(cx)?;
         self.step.origin = origin;
-        self.step.is_singular = (0..recorder.bank.len()).any(|e| recorder.bank.is_singular(e));
+        self.step.is_singular = recorder.bank.has_singular();
         if self.step.is_singular {
             let [evaluation, ..] = &mut recorder.evaluations;
             evaluation.a.fill(f64::NAN);

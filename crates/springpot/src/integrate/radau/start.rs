@@ -166,7 +166,7 @@ fn balance(
 /// Takes over what prescribed joints jump to at the origin's time. A velocity that jumps takes an impulse of its actuator, and the
 /// free joints get their share of it: M_ff Δv_f = −M_fp Δv_p.
 pub(super) fn take_jumps(cx: Context, forward: &Forward, origin: &mut Origin) -> Result<(), RunError> {
-    if !forward.drives.iter().any(|drive| matches!(drive, Drive::Prescribed(_))) {
+    if !forward.has_paths() {
         return Ok(());
     }
     let model = &cx.system.model;

@@ -16,7 +16,7 @@ use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::elements::{ElementBank, Kept, MemoryRange};
 use crate::fractional::Form;
-use crate::law::{Observation, Point, Start};
+use crate::law::{Observation, Point};
 use crate::observe::Snapshot;
 use crate::observe::evaluation::ElementRow;
 use serde::{Deserialize, Serialize};
@@ -93,8 +93,7 @@ impl Recorder {
     pub(super) fn begin(&mut self, cx: Context) -> Result<(), RunError> {
         for (e, element) in cx.system.elements.iter().enumerate().filter(|(e, _)| self.grid[*e].is_none()) {
             let at = &self.evaluations[0].elements[e];
-            let start = Start { stroke: at.stroke, jump: element.jump(at.reading.coordinate), inputs: &at.inputs };
-            let begun = self.bank.begin_element(e, &start);
+            let begun = self.bank.begin_element(e, &element.start(at.reading.coordinate, &at.inputs));
             begun.map_err(RunError::of_kernel(&element.name))?;
         }
         Ok(())
@@ -109,7 +108,8 @@ impl Recorder {
         }
         self.ledger.potential_origin = self.evaluations[0].potential;
         let mut start = Snapshot::new(cx.system);
-        self.read_between(cx, 0, &mut start)?;
+        start.evaluation.clone_from(&self.evaluations[0]);
+        self.read(cx, None, 0, &mut start)?;
         let balance = self.balance(&start, 0.0, 0.0);
         self.ledger.origin = balance.total();
         // Taken here and at the ends of steps, never from rows: they must not change the steps.
@@ -141,11 +141,11 @@ impl Recorder {
     pub(super) fn commit(&mut self) {
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[MAX_NODES];
-        let elements = 0..self.bank.len();
-        let energies = elements.map(|e| (self.bank.end(e).stored, self.bank.energies_until(e, 1.0)));
         let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);
-        for (e, (own, until)) in energies.enumerate() {
-            stored += if self.bank.takes_part(e) { own.unwrap_or(f64::NAN) } else { f64::NAN };
+        for e in 0..self.bank.len() {
+            let until = self.bank.energies_until(e, 1.0);
+            // Of an element that takes no part all three are unknown.
+            stored += self.bank.end(e).stored.unwrap_or(f64::NAN);
             (dissipated, supplied) = (dissipated + until.0, supplied + until.1);
         }
         let balance = self.balance_of(end, [stored, dissipated, supplied], actuators, joints);
@@ -174,29 +174,12 @@ impl Recorder {
         }
     }
 
-    /// What the elements are between two steps, at the first evaluation; `row` is that of named schemes.
-    pub(super) fn read_between(&self, cx: Context, row: usize, snapshot: &mut Snapshot) -> Result<(), RunError> {
-        let evaluation = &self.evaluations[0];
-        snapshot.evaluation.clone_from(evaluation);
-        snapshot.elements.clear();
-        for e in 0..self.bank.len() {
-            let point = evaluation.elements[e].point(evaluation.t);
-            let (dissipated, input) = self.bank.energies(e);
-            let observation = match self.bank.now(e, &point) {
-                Some(observation) => observation,
-                None => self.on_grid(cx, e, &point, row)?,
-            };
-            snapshot.elements.push(ElementRow { observation, dissipated, input });
-        }
-        self.close_balance(snapshot, 0.0, 0.0);
-        Ok(())
-    }
-
-    /// What the elements are at θ of the step, where the kinematics are those of the snapshot; `row` is that of named schemes.
-    pub(super) fn read_step(
+    /// Fills the elements and the balance of a snapshot whose evaluation is there: at θ of the step that was accounted, or between two steps
+    /// (`None`), at the first evaluation. `row` is that of named schemes.
+    pub(super) fn read(
         &self,
         cx: Context,
-        theta: f64,
+        theta: Option<f64>,
         row: usize,
         snapshot: &mut Snapshot,
     ) -> Result<(), RunError> {
@@ -204,29 +187,27 @@ impl Recorder {
         elements.clear();
         for e in 0..self.bank.len() {
             let point = evaluation.elements[e].point(evaluation.t);
-            let (dissipated, input) = self.bank.energies_until(e, theta);
-            let observation = match self.bank.at(e, theta, &point) {
+            let (observation, (dissipated, input)) = match theta {
+                Some(theta) => (self.bank.at(e, theta, &point), self.bank.energies_until(e, theta)),
+                None => (self.bank.now(e, &point), self.bank.energies(e)),
+            };
+            let observation = match observation {
                 Some(observation) => observation,
                 None => self.on_grid(cx, e, &point, row)?,
             };
             elements.push(ElementRow { observation, dissipated, input });
         }
-        let (actuators, joints) = self.work_until(theta);
-        self.close_balance(snapshot, actuators, joints);
+        let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
+        let balance = self.balance(snapshot, actuators, joints);
+        snapshot.actuators = balance.actuators;
+        snapshot.joints = self.ledger.joints + joints;
+        snapshot.residual = balance.total() - self.ledger.origin;
         Ok(())
     }
 
     /// An element with a named scheme.
     fn on_grid(&self, cx: Context, e: usize, point: &Point, row: usize) -> Result<Observation, RunError> {
         on_grid_observation(&cx.system.elements[e], point, self.grid[e].as_deref().unwrap_or_default(), row)
-    }
-
-    /// Balance and residual of a snapshot, `actuators` and `joints` being the work since the start of the step.
-    fn close_balance(&self, snapshot: &mut Snapshot, actuators: f64, joints: f64) {
-        let balance = self.balance(snapshot, actuators, joints);
-        snapshot.actuators = balance.actuators;
-        snapshot.joints = self.ledger.joints + joints;
-        snapshot.residual = balance.total() - self.ledger.origin;
     }
 
     /// What outlasts the steps.
