@@ -3,7 +3,7 @@
 use super::element::ElementQuantity;
 use super::quantity::{Axis, EnergyQuantity, Quantity};
 use super::units::{FORCES, ObservedElement, of_measure};
-use crate::elements::{self, Element};
+use crate::elements::Element;
 use crate::law::{InputValue, Point};
 use crate::model::{Label, Model};
 use crate::table::Column;
@@ -62,7 +62,7 @@ impl Observables {
     pub fn new<'a>(model: &Model, elements: impl IntoIterator<Item = &'a Element>) -> Self {
         let element = |element: &Element| ObservedElement {
             name: element.name.clone(),
-            on_joint: matches!(element.measure, elements::Measure::Joint(_)),
+            on_joint: element.measure.is_on_joint(),
             is_rotation: element.measure.is_rotation(),
             derivative_unit: derivative_unit(element),
             entry: element.entry.clone(),

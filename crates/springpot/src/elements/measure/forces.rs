@@ -59,10 +59,7 @@ impl Forces {
     #[inline]
     pub(crate) fn push(&mut self, measure: &Measure, pull: Pull) {
         self.values.push(pull.force);
-        match measure {
-            Measure::Line(line) => line.push(pull, self),
-            Measure::Joint(joint) => joint.push(pull, self),
-        }
+        measure.push(pull, self);
     }
 
     /// F of every element, in order.

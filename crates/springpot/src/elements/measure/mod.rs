@@ -71,6 +71,20 @@ impl Measure {
         }
     }
 
+    /// Whether it is the coordinate of a joint.
+    pub(crate) fn is_on_joint(&self) -> bool {
+        matches!(self, Self::Joint(_))
+    }
+
+    /// Adds a force along y to all others.
+    #[inline]
+    fn push(&self, pull: Pull, forces: &mut Forces) {
+        match self {
+            Self::Line(line) => line.push(pull, forces),
+            Self::Joint(joint) => joint.push(pull, forces),
+        }
+    }
+
     /// The constant term of y, m or rad: beside y the measure of its rounding.
     pub(super) fn offset(&self) -> f64 {
         match self {

@@ -1,41 +1,6 @@
 //! What a scheme can refuse.
 
-use super::Scheme;
-
-/// A scheme's name or number that does not exist.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum SchemeNameError {
-    /// No scheme has this name.
-    #[error(
-        "unknown scheme \"{0}\": right are grunwald-letnikov, grunwald-letnikov(N) with N ≥ {memory}, l1, l1-2, \
-         fbdf-1 to fbdf-6, expansion-2004(N) with N from {min_2004} to {max} and expansion-2008(N) with N from \
-         {min_2008} to {max}",
-        memory = Scheme::MEMORY.start(),
-        min_2004 = Scheme::TERMS_2004.start(), min_2008 = Scheme::TERMS_2008.start(), max = Scheme::TERMS_2008.end()
-    )]
-    Unknown(String),
-    /// Fractional backward differences have order 1 to 6.
-    #[error("fbdf-{0} does not exist: the order of the fractional backward difference is 1 to 6")]
-    Order(u32),
-    /// The short memory's number of samples is out of range.
-    #[error(
-        "grunwald-letnikov({0}): the memory must have {min} to {max} samples",
-        min = Scheme::MEMORY.start(), max = Scheme::MEMORY.end()
-    )]
-    Memory(u32),
-    /// The expansion's number of terms is out of range.
-    #[error("expansion-{form}({terms}): the number of terms must lie between {min} and {max}")]
-    Terms {
-        /// Year of the form: 2004 or 2008.
-        form: u16,
-        /// What was asked for.
-        terms: u32,
-        /// Fewest terms.
-        min: u32,
-        /// Most terms.
-        max: u32,
-    },
-}
+use super::named::{Scheme, SchemeNameError};
 
 /// Why samples were not differentiated. Rows count from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! Samples of a function and the shape of their grid.
 
-use super::Scheme;
 use super::error::SchemeError;
+use super::named::Scheme;
 
 /// Samples of x(t) at increasing times, the first at t = 0.
 ///
