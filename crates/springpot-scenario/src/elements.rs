@@ -12,7 +12,7 @@ use super::time::Duration;
 use springpot::elements::{Element, Line};
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
 use springpot::integrate::RowTimes;
-use springpot::law::{Derivative, Entry, Param};
+use springpot::law::{Derivative, Entry, Param, RuleError};
 use springpot::model::Anchor;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -88,26 +88,25 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     let parameters = parameters(table, law);
     let inputs = inputs(table, law, time);
     let (parameters, derivative) = (parameters?, derivative?);
-    let object = (law.build)(&parameters, derivative).map_err(|error| {
+    let refuse = |error: RuleError| {
         let table_field = table.get("parameters");
         let node = table_field.as_ref().map_or(table.node, |field| field.node);
         let place = node.get(&error.parameter).map_or(&node.place, |parameter| &parameter.place);
         let message = format!("{}: law {:?} needs {}", table.what, law.name, error.rule);
         table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{}`", error.parameter)))
-    });
-    let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
-    let ((_, from), (_, to), inputs) = (from?, to?, inputs?);
-    let site = |anchor: &Anchor| robot.model().resolve(anchor).expect("an anchor that was read");
-    let mut element = Element {
-        name: String::new(),
-        measure: Line { from: site(&from), to: site(&to) }.into(),
-        rest: 0.0,
-        law: object?,
-        entry: Arc::clone(law),
-        inputs: inputs.iter().map(|input| input.signal.clone()).collect(),
-        derivative,
-        scheme: scheme?,
     };
+    // What the law refuses is told beside what is wrong with the ends.
+    let Ok(((_, from), (_, to))) = from.and_then(|from| Ok((from, to?))) else {
+        _ = (law.build)(&parameters, derivative).map_err(refuse);
+        return Err(Refused);
+    };
+    let site = |anchor: &Anchor| robot.model().resolve(anchor).expect("an anchor that was read");
+    let line = Line { from: site(&from), to: site(&to) };
+    let element = Element::new("", line, 0.0, law, &parameters, derivative).map_err(refuse);
+    let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
+    let (inputs, mut element) = (inputs?, element?);
+    element.inputs = inputs.iter().map(|input| input.signal.clone()).collect();
+    element.scheme = scheme?;
     table.fill(ELEMENT_FIELDS, &mut element)?;
     Ok(ElementPlan { element, from, to, parameters, inputs, place })
 }

@@ -1,7 +1,7 @@
 //! `[time]` and `[solver]`.
 
 use super::document::{Node, Value, shorten};
-use super::keys::solver::{ADAPTIVE, FIXED, SMALLEST_MEMORY_RTOL, unfilled};
+use super::keys::solver::{ADAPTIVE, FIXED, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
 use super::keys::{SOLVER, SOLVER_FIELDS, TIME};
 use super::names;
 use super::reader::{Field, Read, Table};
@@ -94,7 +94,7 @@ pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Setti
     // Where [time] is refused, what is wrong with [solver] is told all the same.
     let rows = RowTimes::Times(Vec::new().into());
     let Duration { end, rows } = time.clone().unwrap_or(Duration { end: 0.0, rows });
-    let mut settings = unfilled(end, rows);
+    let mut settings = Settings::new(end, rows);
     let read = table.fill(SOLVER_FIELDS, &mut settings);
     if table.get("memory_rtol").is_none() {
         settings.memory_rtol = (settings.rtol / MEMORY_SHARE).max(SMALLEST_MEMORY_RTOL);
@@ -124,7 +124,7 @@ fn fixed_step(table: &Table<'_>) -> Read<Option<FixedStep>> {
         }
         (Some(_), None) => Err(table.missing("step", "step = \"1 ms\", as fixed-step methods need it")),
         (Some(method), Some(step)) => {
-            for key in ["atol", "first_step", "max_step"] {
+            for key in OF_CHOSEN_STEPS {
                 if let Some(field) = table.get(key) {
                     let message = format!("has no effect with method = {:?}, whose steps are all alike", method.name());
                     return Err(field.refuse(RefusalKind::Rule, message, Some("leave it out".to_owned())));

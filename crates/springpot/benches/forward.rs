@@ -51,15 +51,10 @@ fn advance(criterion: &mut Criterion) {
 fn whole(criterion: &mut Criterion) {
     let system = system("thermoviscoelastic_temperature", "{}");
     let settings = |method| Settings {
-        end: 1.0,
-        rows: RowTimes::Times([0.0, 1.0].into()),
         rtol: 1e-6,
-        atol: None,
         memory_rtol: 1e-8,
-        first_step: None,
-        max_step: None,
-        max_steps: None,
         fixed_step: Some(FixedStep { method, step: 1e-4 }),
+        ..Settings::new(1.0, RowTimes::Times([0.0, 1.0].into()))
     };
     let mut group = criterion.benchmark_group("ten thousand steps of the arm");
     group.sample_size(20);

@@ -47,36 +47,18 @@
 //! })?;
 //! let model = builder.finish()?;
 //!
-//! let entry = Catalog::standard().get("springpot").expect("a law that comes with Springpot").clone();
-//! let derivative = Derivative::Caputo;
-//! let strut = Element {
-//!     name: "strut".into(),
-//!     measure: Line {
-//!         from: model.resolve(&Anchor { body: Parent::World, point: [0.0, 0.0, -0.3] })?,
-//!         to: model.resolve(&Anchor { body: Parent::Body(arm), point: [0.3, 0.0, 0.0] })?,
-//!     }
-//!     .into(),
-//!     rest: 0.42, // m
-//!     law: (entry.build)(&[50.0, 0.4], derivative)?, // c = 50 N·s^0.4/m
-//!     entry,
-//!     inputs: Vec::new(),
-//!     derivative,
-//!     scheme: None,
+//! let line = Line {
+//!     from: model.resolve(&Anchor { body: Parent::World, point: [0.0, 0.0, -0.3] })?,
+//!     to: model.resolve(&Anchor { body: Parent::Body(arm), point: [0.3, 0.0, 0.0] })?,
 //! };
+//! let laws = Catalog::standard();
+//! let law = laws.get("springpot").expect("a law that comes with Springpot");
+//! // Rest length 0.42 m, c = 50 N·s^0.4/m.
+//! let strut = Element::new("strut", line, 0.42, law, &[50.0, 0.4], Derivative::Caputo)?;
 //! let swing = Signal::expression(Expression::parse("0.5*sin(2*pi*t)")?);
-//! let motion = Trajectory::Prescribed(vec![JointPath::Coordinate(swing)]).into();
-//! let system = System { model: model.into(), elements: vec![strut], motion, gripper: None, tells_joint_losses: false };
-//! let settings = Settings {
-//!     end: 1.0,
-//!     rows: RowTimes::Step { step: 0.01, end: 1.0 },
-//!     rtol: 1e-9,
-//!     atol: None,
-//!     memory_rtol: 1e-11,
-//!     first_step: None,
-//!     max_step: None,
-//!     max_steps: None,
-//!     fixed_step: None,
-//! };
+//! let motion = Trajectory::Prescribed(vec![JointPath::Coordinate(swing)]);
+//! let system = System::new(model, vec![strut], motion);
+//! let settings = Settings::new(1.0, RowTimes::Step { step: 0.01, end: 1.0 });
 //!
 //! let mut table = system.table();
 //! let (report, outcome) = run(&system, &settings, &mut table, &Stop::new(false));

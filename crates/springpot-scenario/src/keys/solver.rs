@@ -1,8 +1,8 @@
 //! `[time]` and `[solver]`, and where the numbers of `[solver]` go.
 
 use super::{Bound, Field, Keys, Need, Shape, Slot, key};
+use springpot::integrate::Settings;
 use springpot::integrate::fixed::Method;
-use springpot::integrate::{RowTimes, Settings};
 
 pub(crate) static TIME: Keys = Keys {
     words: "Duration and rows.",
@@ -31,6 +31,8 @@ pub(crate) const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
 pub(crate) const SMALLEST_MEMORY_RTOL: f64 = 1e-12;
 const LARGEST_RTOL: f64 = 0.1;
 const SUCH_AS: &str = "write a relative error such as 1e-9";
+/// What steps of one size have no use for.
+pub(crate) const OF_CHOSEN_STEPS: [&str; 3] = ["atol", "first_step", "max_step"];
 const FORWARD: &[&str] = &["forward"];
 
 /// The kinds of it that `only` knows: `forward`, runs of that kind of motion.
@@ -99,18 +101,3 @@ pub(crate) const SOLVER_FIELDS: &[Field<Settings>] = &[
     ("max_step", |settings| Slot::Perhaps(&mut settings.max_step)),
     ("max_steps", |settings| Slot::Count(&mut settings.max_steps)),
 ];
-
-/// Settings whose keys have not been read.
-pub(crate) fn unfilled(end: f64, rows: RowTimes) -> Settings {
-    Settings {
-        end,
-        rows,
-        rtol: f64::NAN,
-        atol: None,
-        memory_rtol: f64::NAN,
-        first_step: None,
-        max_step: None,
-        max_steps: None,
-        fixed_step: None,
-    }
-}

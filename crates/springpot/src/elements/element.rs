@@ -3,7 +3,7 @@
 use super::measure::Measure;
 use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
-use crate::law::{Derivative, Entry, InputValue, Network, Start, State};
+use crate::law::{Derivative, Entry, InputValue, Network, RuleError, Start, State};
 use crate::signal::Signal;
 use std::sync::Arc;
 
@@ -33,6 +33,30 @@ pub struct Element {
 }
 
 impl Element {
+    /// An element with the law of an `entry` under these parameters (SI, in its order), with its exact memory and without inputs.
+    ///
+    /// # Errors
+    /// [`RuleError`] where the law does not take the parameters.
+    pub fn new(
+        name: impl Into<String>,
+        measure: impl Into<Measure>,
+        rest: f64,
+        entry: &Arc<Entry>,
+        parameters: &[f64],
+        derivative: Derivative,
+    ) -> Result<Self, RuleError> {
+        Ok(Self {
+            name: name.into(),
+            measure: measure.into(),
+            rest,
+            law: (entry.build)(parameters, derivative)?,
+            entry: Arc::clone(entry),
+            inputs: Vec::new(),
+            derivative,
+            scheme: None,
+        })
+    }
+
     /// Values and rates of the inputs at t.
     pub fn inputs_at(&self, t: f64, values: &mut [InputValue]) {
         for (value, signal) in values.iter_mut().zip(&self.inputs) {

@@ -30,6 +30,21 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// A run to `end`, s, with a tolerance of 1e-9 and kernels a hundred times as exact; whatever can be left out is.
+    pub fn new(end: f64, rows: RowTimes) -> Self {
+        Self {
+            end,
+            rows,
+            rtol: 1e-9,
+            atol: None,
+            memory_rtol: 1e-11,
+            first_step: None,
+            max_step: None,
+            max_steps: None,
+            fixed_step: None,
+        }
+    }
+
     /// Whether steps can be taken with them.
     pub(super) fn check(&self) -> Result<(), RunError> {
         let Self { end, rtol, atol, memory_rtol, first_step, max_step, fixed_step, .. } = self;

@@ -52,6 +52,12 @@ impl Motion {
 }
 
 impl System {
+    /// A system without a gripper, whose rows tell nothing of losses in joints.
+    pub fn new(model: impl Into<Arc<Model>>, elements: Vec<Element>, motion: impl Into<Motion>) -> Self {
+        let (model, motion) = (model.into(), motion.into());
+        Self { model, elements, motion, gripper: None, tells_joint_losses: false }
+    }
+
     /// What can be observed of it, in the order of a run's rows.
     pub fn observables(&self) -> Observables {
         let mut observables = Observables::new(&self.model, &self.elements);

@@ -25,18 +25,8 @@ use std::collections::HashMap;
 /// })?;
 /// let motion = Trajectory::Prescribed(vec![JointPath::Coordinate(Signal::expression(Expression::parse("t^2")?))]);
 /// let model = builder.finish()?;
-/// let system = System { model: model.into(), elements: Vec::new(), motion: motion.into(), gripper: None, tells_joint_losses: false };
-/// let settings = Settings {
-///     end: 1.0,
-///     rows: RowTimes::Step { step: 0.5, end: 1.0 },
-///     rtol: 1e-9,
-///     atol: None,
-///     memory_rtol: 1e-11,
-///     first_step: None,
-///     max_step: None,
-///     max_steps: None,
-///     fixed_step: None,
-/// };
+/// let system = System::new(model, Vec::new(), motion);
+/// let settings = Settings::new(1.0, RowTimes::Step { step: 0.5, end: 1.0 });
 ///
 /// let mut table = system.table();
 /// run(&system, &settings, &mut table, &Stop::new(false)).1?;

@@ -44,17 +44,7 @@ pub(crate) fn state(robot: &Loop) -> Vec<f64> {
 
 /// How runs of tests are carried out; `None`: with error control.
 pub(crate) fn settings(end: f64, rows: &[f64], fixed_step: Option<FixedStep>) -> Settings {
-    Settings {
-        end,
-        rows: RowTimes::Times(rows.into()),
-        rtol: 1e-10,
-        atol: None,
-        memory_rtol: 1e-12,
-        first_step: None,
-        max_step: None,
-        max_steps: None,
-        fixed_step,
-    }
+    Settings { rtol: 1e-10, memory_rtol: 1e-12, fixed_step, ..Settings::new(end, RowTimes::Times(rows.into())) }
 }
 
 /// The rows of a run, what it did and how it ended.

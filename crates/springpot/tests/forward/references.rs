@@ -9,7 +9,6 @@ use springpot::integrate::{RowTimes, Settings, System};
 use springpot::law::{Catalog, Derivative};
 use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
 use springpot::signal::Signal;
-use std::sync::Arc;
 
 fn read(path: &str) -> Value {
     let file = format!("{}/../../testdata/{path}", env!("CARGO_MANIFEST_DIR"));
@@ -184,21 +183,12 @@ fn slider_in_code(k: f64, c: f64, alpha: f64, derivative: Derivative, start: [f6
     let model = builder.finish().unwrap();
     let site = |body| model.resolve(&Anchor { body, point: [0.0; 3] }).unwrap();
     let catalog = Catalog::standard();
-    let entry = Arc::clone(catalog.get("fractional-kelvin-voigt").unwrap());
-    let element = Element {
-        name: "e".into(),
-        measure: Line { from: site(Parent::World), to: site(Parent::Body(0)) }.into(),
-        rest: 8.0,
-        law: (entry.build)(&[k, c, alpha], derivative).unwrap(),
-        entry,
-        inputs: Vec::new(),
-        derivative,
-        scheme: None,
-    };
+    let line = Line { from: site(Parent::World), to: site(Parent::Body(0)) };
+    let law = catalog.get("fractional-kelvin-voigt").unwrap();
+    let element = Element::new("e", line, 8.0, law, &[k, c, alpha], derivative).unwrap();
     let drives = vec![Drive::Force(vec![Signal::constant(0.0)])];
     let forward = Forward { q: vec![start[0]], v: vec![start[1]], drives };
-    let motion = forward.into();
-    System { model: model.into(), elements: vec![element], motion, gripper: None, tells_joint_losses: false }
+    System::new(model, vec![element], forward)
 }
 
 #[test]
@@ -214,17 +204,8 @@ fn the_library_alone_gives_the_same_bits_as_a_scenario() {
         let derivative = if kind == "caputo" { Derivative::Caputo } else { Derivative::RiemannLiouville };
         let start = [number(&case["x0"]), number(&case["v0"])];
         let system = slider_in_code(50.0, 30.0, alpha, derivative, start);
-        let settings = Settings {
-            end: 5.0,
-            rows: RowTimes::Times(times.clone().into()),
-            rtol: 1e-10,
-            atol: None,
-            memory_rtol: 1e-12,
-            first_step: None,
-            max_step: None,
-            max_steps: None,
-            fixed_step: None,
-        };
+        let settings =
+            Settings { rtol: 1e-10, memory_rtol: 1e-12, ..Settings::new(5.0, RowTimes::Times(times.clone().into())) };
         let code = run_system(&system, &settings);
         let law = format!(
             "law = \"fractional-kelvin-voigt\"\nparameters = {{ {} }}\nderivative = \"{kind}\"",

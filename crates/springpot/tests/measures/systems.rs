@@ -9,7 +9,6 @@ use springpot::law::{Catalog, Derivative};
 use springpot::model::{BodySpec, JointKind, JointSpec, Mimic, Model, ModelBuilder, Parent};
 use springpot::motion::{JointPath, Trajectory};
 use springpot::signal::{Expression, Signal};
-use std::sync::Arc;
 
 pub(crate) fn signal(text: &str) -> Signal {
     Signal::expression(Expression::parse(text).unwrap())
@@ -27,9 +26,7 @@ pub(crate) fn element_with(
     rest: f64,
     (law, parameters): (&str, &[f64]),
 ) -> Element {
-    let entry = Arc::clone(Catalog::standard().get(law).unwrap());
-    let law = (entry.build)(parameters, derivative).unwrap();
-    Element { name: name.into(), measure, rest, law, entry, inputs: Vec::new(), derivative, scheme: None }
+    Element::new(name, measure, rest, Catalog::standard().get(law).unwrap(), parameters, derivative).unwrap()
 }
 
 pub(crate) fn body(name: &str, parent: Parent, joint: JointSpec) -> BodySpec {
@@ -72,7 +69,7 @@ pub(crate) fn joint(model: &Model, name: &str) -> Joint {
 
 pub(crate) fn system(model: Model, elements: Vec<Element>, motion: impl Into<Motion>) -> System {
     let motion = motion.into();
-    System { model: model.into(), elements, motion, gripper: None, tells_joint_losses: false }
+    System::new(model, elements, motion)
 }
 
 /// Forward dynamics without actuators.
@@ -89,15 +86,9 @@ pub(crate) fn given(paths: &[&str]) -> Trajectory {
 /// 40 rows.
 pub(crate) fn settings(end: f64, rtol: f64) -> Settings {
     Settings {
-        end,
-        rows: RowTimes::Step { step: end / 40.0, end },
         rtol,
-        atol: None,
         memory_rtol: (rtol / 100.0).max(1e-13),
-        first_step: None,
-        max_step: None,
-        max_steps: None,
-        fixed_step: None,
+        ..Settings::new(end, RowTimes::Step { step: end / 40.0, end })
     }
 }
 
