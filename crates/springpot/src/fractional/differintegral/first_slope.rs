@@ -1,7 +1,5 @@
 //! x'(0) of a function that polynomials cannot follow at its start, such as t^1.05.
 
-use super::piecewise::Piecewise;
-
 /// Ratio of the times between which mean slopes are compared.
 const STRIDE: f64 = 256.0;
 
@@ -16,22 +14,19 @@ pub(super) struct FirstSlope {
 impl FirstSlope {
     /// The limit of the mean slopes (x(τ) − x(0))/τ = s + C τ^{p−1} as τ → 0, by Aitken's extrapolation from three
     /// times; two such limits differ by what other powers there are.
-    pub(super) fn of(function: &Piecewise) -> Self {
-        let first = &function.pieces[0];
-        if !first.is_chord() {
-            return Self { value: first.slope(false), doubt: 0.0 };
-        }
-        let (origin, span) = (function.start(), function.end() - function.start());
-        let held = first.x[0];
+    ///
+    /// `value` is x on [`origin`, `origin` + `span`]; its first chord is `width` long and has this `slope`.
+    pub(super) fn of(value: impl Fn(f64) -> f64, [origin, span]: [f64; 2], [width, slope]: [f64; 2]) -> Self {
+        let held = value(origin);
         // Mean slopes with their rounding.
         let mut means: Vec<[f64; 2]> = Vec::new();
-        let mut tau = first.width;
+        let mut tau = width;
         while tau <= span && means.len() < 8 {
-            let x = function.value(origin + tau);
+            let x = value(origin + tau);
             means.push([(x - held) / tau, 4.0 * f64::EPSILON * x.abs().max(held.abs()) / tau]);
             tau *= STRIDE;
         }
-        let own = Self { value: first.slope(false), doubt: first.slope(false).abs() };
+        let own = Self { value: slope, doubt: slope.abs() };
         let mut limits = means.windows(3).filter_map(limit);
         let Some(nearest) = limits.next() else { return own };
         match limits.next() {

@@ -227,7 +227,8 @@ impl Differintegral {
         let mut doubt = 0.0;
         if first.is_chord() {
             // A chord's slope is not that of x at 0, which the first row and Caputo's definition ask for.
-            let slope = FirstSlope::of(function);
+            let domain = [function.start(), function.end() - function.start()];
+            let slope = FirstSlope::of(|t| function.value(t), domain, [first.width, first.slope(false)]);
             let there = Node { slope: slope.value, ..node };
             start.value = Start::new(&order, definition, &there, negligible.max(slope.doubt)).value;
             if definition == Definition::Caputo && order.whole == 2 && order.is_singular() {
