@@ -2,12 +2,12 @@
 
 use super::document::Node;
 use super::figures::{self, ColumnGlob, FigurePlan};
-use super::keys::SCENARIO;
 use super::path;
 use super::plan::{MotionPlan, Plan};
 use super::reader::{Context, Read, Table};
 use super::refusal::{Place, RefusalKind, Refusals};
 use super::robot::Robot;
+use super::root::SCENARIO;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
 use super::urdf::UrdfCache;

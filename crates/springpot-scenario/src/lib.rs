@@ -51,6 +51,7 @@ mod reader;
 mod refusal;
 mod resolved;
 mod robot;
+mod root;
 mod schema;
 mod signals;
 mod sweep;

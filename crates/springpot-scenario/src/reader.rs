@@ -211,6 +211,15 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// The word under `key`, `kind` says what it names; where it is left out, the one that stands for it.
+    pub(crate) fn word(&self, key: &'a str, kind: &str) -> Read<&'a str> {
+        match (self.get(key), self.default(key)) {
+            (Some(field), _) => field.word(kind),
+            (None, Need::Word(word)) => Ok(word),
+            (None, _) => Err(self.lacks(key)),
+        }
+    }
+
     /// Puts the numbers of the table into the fields of `made`; where they are left out, what stands for them.
     pub(crate) fn fill<T>(&self, fields: &'static [keys::Field<T>], made: &mut T) -> Read<()> {
         let mut read = Ok(());

@@ -1,6 +1,6 @@
 //! The plan as JSON, for the record of a run.
 
-use super::figures::{FigureKind, FigurePlan};
+use super::figures::FigurePlan;
 use super::keys::solver::ADAPTIVE;
 use super::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
 use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
@@ -32,7 +32,7 @@ impl Plan {
             "motion": self.motion(),
             "time": time,
             "solver": self.solver(),
-            "figures": self.figures.iter().map(figure).collect::<Vec<_>>(),
+            "figures": self.figures.iter().map(FigurePlan::record).collect::<Vec<_>>(),
             "columns": self.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
         })
     }
@@ -194,19 +194,4 @@ fn joint(plan: &JointPlan) -> Value {
 
 fn signal(signal: &SignalPlan) -> Value {
     signal.constant.map_or_else(|| json!(signal.written), |value| json!(value))
-}
-
-fn figure(figure: &FigurePlan) -> Value {
-    let units: Map<String, Value> =
-        figure.units.iter().map(|unit| (unit.column.text.clone(), json!(unit.unit))).collect();
-    let mut json = json!({ "name": figure.name, "title": figure.title, "units": units });
-    match &figure.kind {
-        FigureKind::Robot => json["kind"] = json!("robot"),
-        FigureKind::Curves { x, y } => {
-            json["kind"] = json!("curves");
-            json["x"] = json!(x.text);
-            json["y"] = y.iter().map(|glob| glob.text.clone()).collect();
-        }
-    }
-    json
 }

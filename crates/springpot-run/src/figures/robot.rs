@@ -1,8 +1,9 @@
 //! The robot at t = 0 as a mechanism sketch.
 
+use super::source::Source;
 use springpot::integrate::{Pose, System};
 use springpot::model::{Anchor, JointKind, Parent};
-use springpot_report::{ElementMark, JointMark, Link, RobotDrawing, WORLD};
+use springpot_report::{ElementMark, JointMark, Link, Rendered, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan};
 
 /// Most links of a sketch.
@@ -11,8 +12,12 @@ const MOST_LINKS: usize = 1_000;
 /// What is this near to a line of the sketch, as a share of the robot's size, is on it.
 const ON_LINE: f64 = 0.04;
 
+pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
+    drawing(source.figure, source.system, source.plan)?.render().map_err(|error| error.to_string())
+}
+
 /// The robot at t = 0 with its joints, elements and gripper.
-pub(super) fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDrawing, String> {
+fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDrawing, String> {
     let pose = system.pose(0.0).map_err(|error| error.to_string())?;
     let skeleton = Skeleton::of(plan, &pose)?;
     let mut drawing = RobotDrawing { title: figure.title.clone(), ..RobotDrawing::default() };

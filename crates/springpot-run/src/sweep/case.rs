@@ -30,7 +30,7 @@ pub struct CaseResult {
     pub no_ledger: Option<String>,
     /// The limits of joints that it passes.
     pub limits: Vec<PassedLimit>,
-    /// The curves that figures draw, by their index in [`super::FigureData`], where this case is drawn.
+    /// The curves that figures draw, by their index in [`super::FigureCurve`], where this case is drawn.
     pub curves: Option<BTreeMap<usize, KeptCurve>>,
 }
 

@@ -50,7 +50,7 @@ impl<'a> Kept<'a> {
         self.columns.len()
     }
 
-    /// The curves, by their index in [`super::FigureData`].
+    /// The curves, by their index in [`super::FigureCurve`].
     pub(super) fn into_curves(self) -> BTreeMap<usize, KeptCurve> {
         self.curves.into_iter().map(|(index, (_, curve))| (index, curve)).collect()
     }

@@ -8,12 +8,15 @@ mod layout;
 mod limits;
 mod output;
 mod record;
+mod wanted;
 
 pub use case::CaseResult;
 pub use checkpoint::{CheckpointError, Checkpoints, Origin, Unfinished};
 pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
-pub use layout::{FigureData, Layout, LeftOut, MAX_CURVES};
+pub use layout::Layout;
 pub use limits::{CasesPassing, LimitTally};
+pub(crate) use wanted::Wanted;
+pub use wanted::{FigureCurve, FigureData, LeftOut, MAX_CURVES};
 
 use crate::table::disk::DiskFile;
 use crate::table::folder::Folder;

@@ -4,8 +4,8 @@
 //! the place of a misspelt one, the JSON schema, and a test that compares them with the tables of docs/SCENARIO.md.
 
 mod element;
-mod figure;
 mod motion;
+mod output;
 mod robot;
 pub(crate) mod solver;
 mod sweep;
@@ -13,8 +13,8 @@ mod sweep;
 mod tests;
 
 pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
-pub(crate) use figure::{FIGURE, OUTPUT};
 pub(crate) use motion::{FORCES, MOTION, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
+pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, WITH_AXIS};
 pub(crate) use solver::{SOLVER, SOLVER_FIELDS, TIME};
 pub use sweep::MAX_CASES;
@@ -153,12 +153,13 @@ pub(crate) enum Need {
     Said(&'static str),
 }
 
-const fn key(name: &'static str, shape: Shape, need: Need, words: &'static str) -> Key {
+pub(crate) const fn key(name: &'static str, shape: Shape, need: Need, words: &'static str) -> Key {
     Key { name, shape, need, words, only: &[] }
 }
 
 impl Key {
-    const fn only(self, only: &'static [&'static str]) -> Self {
+    /// The same key, of these kinds only.
+    pub(crate) const fn only(self, only: &'static [&'static str]) -> Self {
         Self { only, ..self }
     }
 
@@ -209,6 +210,12 @@ impl Keys {
         keys.iter().filter(move |key| key.only.is_empty() || key.only.contains(&kind))
     }
 
+    /// Keys that belong to other kinds of the table than `kind`.
+    pub(crate) fn not_of<'k>(&self, kind: &'k str) -> impl Iterator<Item = &'static Key> + use<'k> {
+        let keys = self.keys;
+        keys.iter().filter(move |key| !key.only.is_empty() && !key.only.contains(&kind))
+    }
+
     /// Whether `name` belongs to some kinds of the table only.
     pub(crate) fn is_of_a_kind(&self, name: &str) -> bool {
         self.get(name).is_some_and(|key| !key.only.is_empty())
@@ -241,39 +248,3 @@ pub(crate) fn record<T: Clone>(fields: &[Field<T>], made: &T) -> Map<String, Val
     };
     fields.iter().map(|(key, slot)| ((*key).to_owned(), value(slot(&mut made)))).collect()
 }
-
-/// The whole scenario.
-pub(crate) static SCENARIO: Keys = Keys {
-    words: "A Springpot scenario.",
-    keys: &[
-        key("title", Shape::Text, Need::Optional, "Title, shown by check and in run.json."),
-        key(
-            "robot",
-            Shape::Table(&ROBOT),
-            Need::Required("[robot] with urdf = \"arm.urdf\", or a [[robot.body]] for each body"),
-            "Gravity, bodies or a URDF file, gripper.",
-        ),
-        key("element", Shape::Tables(&ELEMENT, None), Need::Optional, "Materials between two points."),
-        key(
-            "motion",
-            Shape::Table(&MOTION),
-            Need::Required("[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\""),
-            "What moves the robot.",
-        ),
-        key(
-            "time",
-            Shape::Table(&TIME),
-            Need::Required("[time] with end = \"10 s\" and output_step = \"10 ms\""),
-            "Duration and rows.",
-        ),
-        key("solver", Shape::Table(&SOLVER), Need::Optional, "Accuracy and steps."),
-        key(
-            "sweep",
-            Shape::Tables(&SWEEP, Some(MAX_BLOCKS)),
-            Need::Optional,
-            "Parameters to vary; several blocks make a grid.",
-        ),
-        key("figure", Shape::Tables(&FIGURE, None), Need::Optional, "Figures to draw."),
-        key("output", Shape::Table(&OUTPUT), Need::Optional, "What is written."),
-    ],
-};

@@ -1,5 +1,7 @@
 //! The tables of keys beside those of docs/SCENARIO.md, and what must hold of any key.
 
+use super::super::figures::FIGURE;
+use super::super::root::SCENARIO;
 use super::*;
 use std::fs;
 
@@ -152,6 +154,13 @@ fn the_document_has_the_same_keys() {
                     let (name, unit) = (key.name, unit_of(key));
                     assert!(row.said.contains(&unit), "{heading}: {name} is in {unit}: {}", row.said);
                     assert!(is_said(key, &row.last), "{heading}: {name}: {} is not {:?}", row.last, key.default());
+                    for word in key.choices() {
+                        assert!(
+                            row.said.contains(&format!("`\"{word}\"`")),
+                            "{heading}: {name} may be {word}: {}",
+                            row.said
+                        );
+                    }
                     compared += 1;
                 }
             }
@@ -169,5 +178,21 @@ fn the_document_has_the_same_keys() {
             ];
             assert!(named.iter().any(|name| text.contains(name)), "{}", key.name);
         }
+    }
+}
+
+#[test]
+fn the_document_says_which_keys_a_figure_cannot_have() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/SCENARIO.md");
+    let text = fs::read_to_string(path).unwrap();
+    let (_, section) = text.split_once("\n## [[figure]]\n").unwrap();
+    let kinds = FIGURE.get("kind").unwrap().choices();
+    assert!(kinds.len() >= 2);
+    for kind in kinds {
+        let keys: Vec<String> = FIGURE.not_of(kind).map(|key| format!("`{}`", key.name)).collect();
+        let Some((last, others)) = keys.split_last() else { continue };
+        let list = if others.is_empty() { last.clone() } else { format!("{} or {last}", others.join(", ")) };
+        let said = section.split("`kind = ").find(|part| part.starts_with(&format!("\"{kind}\"`")));
+        assert!(said.is_some_and(|said| said.contains(&format!("takes no {list}"))), "{kind} takes no {list}");
     }
 }

@@ -1,6 +1,7 @@
 //! What a file must hold where no sweep can bring it.
 
-use super::super::keys::{ELEMENT, JOINT, Keys, MOTION, Need, SCENARIO, Shape, WITH_AXIS};
+use super::super::keys::{ELEMENT, JOINT, Keys, MOTION, Need, Shape, WITH_AXIS};
+use super::super::root::SCENARIO;
 use super::rules::{alternatives, required_of, where_kind};
 use serde_json::{Map, Value, json};
 use springpot::law::{Catalog, Entry};

@@ -1,6 +1,7 @@
 //! What keys have to do with one another.
 
-use super::super::keys::{ELEMENT, FIGURE, FROM_URDF, JOINT, Key, Keys, MOTION, Need, ROBOT, SIGNAL, TIME};
+use super::super::figures::FIGURE;
+use super::super::keys::{ELEMENT, FROM_URDF, JOINT, Key, Keys, MOTION, Need, ROBOT, SIGNAL, TIME};
 use super::shapes::{quantity, signal};
 use serde_json::{Map, Value, json};
 use springpot::law::{Catalog, Entry, Input, Param, Range};
@@ -25,7 +26,7 @@ pub(super) fn add(schema: &mut Value, keys: &Keys, catalog: &Catalog) {
             "dependencies": { "csv": ["column"], "column": ["csv"] },
         })
     } else if is(&FIGURE) {
-        of_figure()
+        by_kind(&FIGURE)
     } else {
         return;
     };
@@ -69,12 +70,31 @@ fn of_motion() -> Value {
     json!({ "allOf": kinds.iter().map(of_kind).chain([not_both]).collect::<Vec<_>>() })
 }
 
-fn of_figure() -> Value {
-    let of_curves: Vec<&str> =
-        FIGURE.keys.iter().filter(|key| key.only.contains(&"curves")).map(|key| key.name).collect();
-    let mut rule = where_kind(&["robot"], json!({ "propertyNames": { "not": { "enum": of_curves } } }));
-    rule["else"] = json!({ "required": required_of(&FIGURE, "curves") });
-    rule
+/// Which keys may and which must stand beside each kind; where `kind` is left out, the rules of what stands for it hold.
+fn by_kind(keys: &'static Keys) -> Value {
+    let rule = |kind: &str| {
+        let mut rule = Map::new();
+        let others: Vec<&str> = keys.not_of(kind).map(|key| key.name).collect();
+        if !others.is_empty() {
+            rule.insert("propertyNames".to_owned(), json!({ "not": { "enum": others } }));
+        }
+        let required = required_of(keys, kind);
+        if !required.is_empty() {
+            rule.insert("required".to_owned(), required.into());
+        }
+        Value::Object(rule)
+    };
+    let row = keys.get("kind");
+    let default = match row.map(|key| key.need) {
+        Some(Need::Word(word)) => word,
+        _ => "",
+    };
+    let written = row.map(Key::choices).unwrap_or_default().into_iter().filter(|kind| *kind != default);
+    written.rev().fold(rule(default), |otherwise, kind| {
+        let mut rule = where_kind(&[kind], rule(kind));
+        rule["else"] = otherwise;
+        rule
+    })
 }
 
 /// A law's own parameters and inputs.

@@ -218,6 +218,10 @@ fn figures_get_names_units_and_kinds() {
     assert_eq!(first.units[0].unit, "N*cm");
     assert!(matches!(&first.kind, FigureKind::Curves { x, .. } if x.text == "strut.stroke"));
     assert_eq!(second.kind, FigureKind::Robot);
+    let resolved = cases.plan(0).unwrap().resolved();
+    let kinds: Vec<&str> =
+        resolved["figures"].as_array().unwrap().iter().map(|figure| figure["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["curves", "robot"]);
 }
 
 #[test]

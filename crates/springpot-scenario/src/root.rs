@@ -1,0 +1,40 @@
+//! The keys of a whole scenario, above the tables that it holds.
+
+use super::figures::FIGURE;
+use super::keys::{ELEMENT, Keys, MAX_BLOCKS, MOTION, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
+
+/// The whole scenario.
+pub(crate) static SCENARIO: Keys = Keys {
+    words: "A Springpot scenario.",
+    keys: &[
+        key("title", Shape::Text, Need::Optional, "Title, shown by check and in run.json."),
+        key(
+            "robot",
+            Shape::Table(&ROBOT),
+            Need::Required("[robot] with urdf = \"arm.urdf\", or a [[robot.body]] for each body"),
+            "Gravity, bodies or a URDF file, gripper.",
+        ),
+        key("element", Shape::Tables(&ELEMENT, None), Need::Optional, "Materials between two points."),
+        key(
+            "motion",
+            Shape::Table(&MOTION),
+            Need::Required("[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\""),
+            "What moves the robot.",
+        ),
+        key(
+            "time",
+            Shape::Table(&TIME),
+            Need::Required("[time] with end = \"10 s\" and output_step = \"10 ms\""),
+            "Duration and rows.",
+        ),
+        key("solver", Shape::Table(&SOLVER), Need::Optional, "Accuracy and steps."),
+        key(
+            "sweep",
+            Shape::Tables(&SWEEP, Some(MAX_BLOCKS)),
+            Need::Optional,
+            "Parameters to vary; several blocks make a grid.",
+        ),
+        key("figure", Shape::Tables(&FIGURE, None), Need::Optional, "Figures to draw."),
+        key("output", Shape::Table(&OUTPUT), Need::Optional, "What is written."),
+    ],
+};
