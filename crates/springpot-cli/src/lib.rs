@@ -33,6 +33,7 @@ mod info;
 mod init;
 mod laws;
 mod manual;
+mod mistakes;
 mod numbers;
 mod output;
 mod plain;
@@ -108,8 +109,10 @@ pub fn main_from(catalog: &Catalog, arguments: impl IntoIterator<Item = OsString
 
 /// As [`main_from`], with all results of runs on `disk`.
 pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let arguments = match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => arguments,
+        Err(error) if mistakes::told(&error, &arguments) => return Ending::Refused.into(),
         Err(error) => {
             let printed_all = error.print();
             if error.use_stderr() {

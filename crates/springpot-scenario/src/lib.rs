@@ -63,7 +63,7 @@ mod urdf;
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
 pub use keys::MAX_CASES;
-pub use names::suggest;
+pub use names::{list, suggest};
 pub use path::toml_key;
 pub use plan::{
     BodyPlaces, DrivePlan, ElementPlan, ForwardPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan,

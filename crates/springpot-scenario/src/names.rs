@@ -11,7 +11,7 @@ pub(crate) fn is_file_name(name: &str) -> bool {
 }
 
 /// `a, b and c`, shortened after twelve.
-pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+pub fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 12;
     let names: Vec<&str> = names.into_iter().collect();
     let shown = names.len().min(SHOWN);

@@ -21,7 +21,13 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|candidate| {
             // What only lacks a prefix is meant: `joint1` for `panda_joint1`.
             let is_end = name.len() > 2 && candidate.ends_with(name);
-            let likeness = if is_end { 1.0 } else { strsim::jaro_winkler(&folded, &candidate.to_lowercase()) };
+            let other = candidate.to_lowercase();
+            // A letter too few or too many, of which the measure thinks ill in short names.
+            let is_slip = folded.len().min(other.len()) > 1
+                && folded.len() != other.len()
+                && strsim::levenshtein(&folded, &other) == 1;
+            let likeness = if is_end { 1.0 } else { strsim::jaro_winkler(&folded, &other) };
+            let likeness = if is_slip { likeness.max(0.9) } else { likeness };
             (likeness, candidate)
         })
         .filter(|(likeness, _)| *likeness > 0.78)
@@ -50,6 +56,8 @@ mod tests {
         assert_eq!(nearest("rest_lenght", keys), Some("rest_length"));
         assert_eq!(nearest("Law", keys), Some("law"));
         assert_eq!(nearest("zzz", keys), None);
+        assert_eq!(nearest("rn", ["check", "run"]), Some("run"));
+        assert_eq!(nearest("q1", ["q2", "q"]), None);
         assert_eq!(nearest("joint2", ["panda_joint1", "panda_joint2", "joint3x"]), Some("panda_joint2"));
         assert_eq!(nearest("joint2", ["left_joint2", "right_joint2"]), Some("right_joint2"));
     }

@@ -105,14 +105,27 @@ fn help_is_where_it_is_looked_for() {
 fn mistyped_commands_get_a_suggestion() {
     let place = Place::new();
     for (arguments, words) in [
-        (&["rum", "arm.toml"][..], "a similar subcommand exists: 'run'"),
-        (&["chek", "arm.toml"], "a similar subcommand exists: 'check'"),
-        (&["run", "arm.toml", "--job", "2"], "a similar argument exists: '--jobs'"),
+        (&["rum", "arm.toml"][..], "no command \"rum\"\n  help: did you mean `run`?"),
+        (&["rn", "arm.toml"], "did you mean `run`?"),
+        (&["chek", "arm.toml"], "did you mean `check`?"),
+        (&["control"], "help: there is run, check, info,"),
+        (
+            &["arm.toml"],
+            "no command, but a file\n  help: `springpot run arm.toml` runs it, `springpot check arm.toml` looks at it",
+        ),
+        (
+            &["ur5.urdf"],
+            "`springpot init ur5.urdf` writes a scenario with this robot, `springpot info ur5.urdf` describes it",
+        ),
+        (&["rows.csv"], "`springpot derivative rows.csv --column NAME --order 0.5` differentiates a column"),
+        (&["run", "arm.toml", "--job", "2"], "`springpot run` has no option --job\n  help: did you mean --jobs?"),
+        (&["run", "arm.toml", "-v"], "has no option -v\n  help: there is --set, --out,"),
+        (&["check", "arm.toml", "--where", "x=1"], "`springpot plot` has one"),
         (&["run"], "<SCENARIO>"),
         (&["run", "arm.toml", "--jobs", "0"], "invalid value '0' for '--jobs <N>'"),
         (&["run", "arm.toml", "--jobs", "many"], "invalid value 'many' for '--jobs <N>'"),
         (&["run", "arm.toml", "--out", ""], "a value is required for '--out <DIR>'"),
-        (&["run", "arm.toml", "other.toml"], "unexpected argument 'other.toml'"),
+        (&["run", "arm.toml", "other.toml"], "`springpot run` takes no \"other.toml\" after"),
         (&["dynamics", "arm.toml"], "<--states <FILE>|--at <TIME>>"),
         (&["dynamics", "arm.toml", "--at", "1", "--states", "s.json"], "cannot be used with"),
         (&["dynamics", "arm.toml", "--at", "1", "--christoffel"], "cannot be used with"),

@@ -1,0 +1,88 @@
+//! Commands and options that do not exist: what was meant, or else what there is.
+
+use crate::arguments::Arguments;
+use crate::diagnostic;
+use clap::CommandFactory as _;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use springpot::names::nearest;
+use springpot_scenario::{list, suggest};
+use std::ffi::OsString;
+use std::path::Path;
+
+/// Prints what is wrong with the arguments; `false` where clap says it well enough.
+pub(crate) fn told(error: &clap::Error, arguments: &[OsString]) -> bool {
+    let said = |kind| match error.get(kind) {
+        Some(ContextValue::String(said)) => Some(said.clone()),
+        _ => None,
+    };
+    match error.kind() {
+        ErrorKind::InvalidSubcommand => said(ContextKind::InvalidSubcommand).is_some_and(|name| command(&name)),
+        ErrorKind::UnknownArgument => said(ContextKind::InvalidArg).is_some_and(|name| option(&name, arguments)),
+        _ => false,
+    }
+}
+
+fn command(name: &str) -> bool {
+    let (message, help) = match instead(name) {
+        Some(help) => (format!("{name:?} is no command, but a file"), help),
+        None => {
+            let all = Arguments::command();
+            let names: Vec<&str> = all.get_subcommands().map(clap::Command::get_name).collect();
+            (format!("there is no command {name:?}"), suggest(name, names))
+        }
+    };
+    diagnostic::error_with_help(message, help);
+    true
+}
+
+/// What to type for a file, by its ending.
+fn instead(name: &str) -> Option<String> {
+    let file = Path::new(name);
+    let is_like = |ending: &str| file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending));
+    let with = |lines: [(&str, &str); 2]| {
+        let [(first, does), (second, also)] = lines.map(|(command, does)| (format!("springpot {command}"), does));
+        Some(format!("`{first}` {does}, `{second}` {also}"))
+    };
+    if is_like("toml") {
+        return with([(&format!("run {name}"), "runs it"), (&format!("check {name}"), "looks at it first")]);
+    }
+    if is_like("urdf") {
+        let (init, info) = (format!("init {name}"), format!("info {name}"));
+        return with([(&init, "writes a scenario with this robot"), (&info, "describes it")]);
+    }
+    if is_like("csv") {
+        let (plot, derivative) = ("plot FOLDER COLUMN", format!("derivative {name} --column NAME --order 0.5"));
+        return with([(plot, "draws results"), (&derivative, "differentiates a column")]);
+    }
+    if file.join("run.json").is_file() {
+        let (plot, resume) = (format!("plot {name} COLUMN"), format!("run --resume {name}"));
+        return with([(&plot, "draws its results"), (&resume, "goes on with a run that was interrupted")]);
+    }
+    None
+}
+
+fn option(name: &str, arguments: &[OsString]) -> bool {
+    let all = Arguments::command();
+    let chosen = arguments.iter().filter_map(|argument| argument.to_str()).find_map(|text| all.find_subcommand(text));
+    let Some(chosen) = chosen else { return false };
+    let of = chosen.get_name();
+    let Some(bare) = name.strip_prefix("--").or_else(|| name.strip_prefix('-')) else {
+        let message = format!("`springpot {of}` takes no {name:?} after what stands before it");
+        diagnostic::error_with_help(message, format!("`springpot {of} --help` shows how it is written"));
+        return true;
+    };
+    let has = |command: &clap::Command, long: &str| command.get_arguments().any(|own| own.get_long() == Some(long));
+    let own: Vec<&str> = chosen.get_arguments().filter_map(clap::Arg::get_long).collect();
+    let other = all.get_subcommands().find(|command| has(command, bare)).map(clap::Command::get_name);
+    let help = match (nearest(bare, own.iter().copied()), other) {
+        (Some(right), _) => format!("did you mean --{right}? "),
+        (None, Some(other)) => format!("`springpot {other}` has one. "),
+        (None, None) => {
+            let own: Vec<String> = own.iter().map(|long| format!("--{long}")).collect();
+            format!("there is {}. ", list(own.iter().map(String::as_str)))
+        }
+    };
+    let help = format!("{help}`springpot {of} --help` explains all");
+    diagnostic::error_with_help(format!("`springpot {of}` has no option {name}"), help);
+    true
+}
