@@ -76,6 +76,7 @@ Examples:
   springpot derivative motion.csv --column x --order 0.5
   springpot derivative motion.csv --column x --column y --order 0.5 --order -1
   springpot derivative motion.csv --column x --order 1.5 --error --out bend.csv
+  springpot derivative sweep.csv --column x --order 0.5 --where case=2
   springpot derivative - --column force --order -0.5 --scheme exponential
 
 Negative orders integrate. Writes the columns of the file, time first, then one called \"D^0.5 x\" for every column and order; rows where the derivative is \
@@ -331,6 +332,9 @@ pub(crate) struct DerivativeOptions {
     /// Column of the times [default: t, else the first]
     #[arg(long, value_name = "NAME")]
     pub(crate) time: Option<String>,
+    /// Take the rows where a column has a value, as those of one case; may be given several times
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    pub(crate) selection: Vec<String>,
     /// caputo, riemann-liouville or grunwald-letnikov
     #[arg(long, value_name = "KIND", default_value = "caputo")]
     pub(crate) kind: Definition,

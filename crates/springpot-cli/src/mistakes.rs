@@ -73,11 +73,12 @@ fn option(name: &str, arguments: &[OsString]) -> bool {
     };
     let has = |command: &clap::Command, long: &str| command.get_arguments().any(|own| own.get_long() == Some(long));
     let own: Vec<&str> = chosen.get_arguments().filter_map(clap::Arg::get_long).collect();
-    let other = all.get_subcommands().find(|command| has(command, bare)).map(clap::Command::get_name);
-    let help = match (nearest(bare, own.iter().copied()), other) {
+    let others: Vec<&str> =
+        all.get_subcommands().filter(|command| has(command, bare)).map(clap::Command::get_name).collect();
+    let help = match (nearest(bare, own.iter().copied()), others.as_slice()) {
         (Some(right), _) => format!("did you mean --{right}? "),
-        (None, Some(other)) => format!("`springpot {other}` has one. "),
-        (None, None) => {
+        (None, [_, ..]) => format!("it is one of `springpot {}`. ", others.join("`, `springpot ")),
+        (None, []) => {
             let own: Vec<String> = own.iter().map(|long| format!("--{long}")).collect();
             format!("there is {}. ", list(own.iter().map(String::as_str)))
         }

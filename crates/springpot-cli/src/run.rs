@@ -87,6 +87,10 @@ fn no_results(out: &Path, error: FolderError, goes_on: Option<bool>) -> Ending {
         FolderError::Pending { .. } => {
             (error.to_string(), Some(format!("to put them there once that can be: {}", to_go_on(out))), Ending::Failed)
         }
+        FolderError::File(_) if out.is_file() => {
+            let help = "name a folder with --out: the files of a run are written into it";
+            (format!("the results cannot be written to {folder}: it is a file"), Some(help.to_owned()), Ending::Failed)
+        }
         FolderError::File(error) => {
             let help = goes_on.map(|goes_on| match goes_on {
                 true => format!("to go on once they can: {}", to_go_on(out)),

@@ -43,6 +43,7 @@ mod figures;
 mod forward;
 mod inputs;
 mod keys;
+mod mistaken;
 mod motion;
 mod names;
 mod path;
@@ -108,11 +109,17 @@ impl Scenario {
             let source = Source { name: name.clone(), text: "".into() };
             Place { source: Arc::new(source), span: 0..0 }.refuse(RefusalKind::File, message)
         };
-        let unopened = |error| refuse(format!("cannot be opened: {error}"));
+        let unopened = |error: std::io::Error| {
+            let refusal = refuse(format!("cannot be opened: {error}"));
+            match mistaken::meant(path).filter(|_| error.kind() == std::io::ErrorKind::NotFound) {
+                Some(help) => refusal.help(help),
+                None => refusal,
+            }
+        };
         // Looked at before it is opened: opening a pipe would wait for its other end.
         if !std::fs::metadata(path).map_err(unopened)?.is_file() {
             let refusal = refuse("cannot be read: not a regular file".to_owned());
-            return Err(refusal.help("a scenario is read from a file, which paths in it are relative to").into());
+            return Err(refusal.help(mistaken::folder(path)).into());
         }
         let mut bytes = Vec::new();
         let file = std::fs::File::open(path).map_err(unopened)?;
@@ -122,7 +129,14 @@ impl Scenario {
             return Err(too_large(&name).into());
         }
         match String::from_utf8(bytes) {
-            Ok(text) => Self::parse(&text, name, path.parent().unwrap_or(Path::new(""))),
+            Ok(text) => {
+                let parsed = Self::parse(&text, name.clone(), path.parent().unwrap_or(Path::new("")));
+                // What is no TOML may be something else that people have at hand.
+                parsed.map_err(|refusals| match mistaken::instead(path, &text) {
+                    Some((what, help)) => refuse(what.to_owned()).help(help).into(),
+                    None => refusals,
+                })
+            }
             Err(error) => {
                 let at = error.utf8_error().valid_up_to();
                 let text: Arc<str> = String::from_utf8_lossy(error.as_bytes()).into();
@@ -185,6 +199,10 @@ impl Scenario {
         };
         let path_start = assignment.len() - assignment.trim_start().len();
         let path_place = place(path_start..path_start + path.len());
+        if let Some(earlier) = self.overrides.iter().find(|earlier| earlier.path == path) {
+            let message = format!("{path} is set twice, and was {} before", earlier.value.written());
+            return Err(path_place.refuse(RefusalKind::Rule, message).help("leave one of them out").into());
+        }
         self.overrides.push(Override { path: path.to_owned(), place: path_place, value });
         Ok(())
     }

@@ -37,6 +37,9 @@ enum Problem {
     /// An order asked for twice.
     #[error("--order {0} is given twice")]
     OrderTwice(f64),
+    /// A choice of rows without a value.
+    #[error("--where {0:?} has no `=`; write COLUMN=VALUE")]
+    NoValue(String),
     /// Two points make a line, whatever x does between them.
     #[error("{given} rows of numbers; at least three are needed")]
     TooFewRows { line: u64, given: usize },
@@ -58,6 +61,11 @@ enum Problem {
 }
 
 impl Problem {
+    fn help(&self) -> Option<&'static str> {
+        let restarts = matches!(self, Self::Csv(CsvProblem::TimeNotIncreasing { time, before, .. }) if time < before);
+        restarts.then_some("where the rows of several cases follow one another, choose one: --where COLUMN=VALUE")
+    }
+
     fn line(&self) -> Option<u64> {
         match self {
             Self::Csv(problem) => problem.line(),
@@ -84,7 +92,11 @@ pub(crate) fn derivative(options: &DerivativeOptions) -> Ending {
         },
         Err(problem) => {
             let place = problem.line().map_or_else(String::new, |line| format!(":{line}"));
-            diagnostic::error(format!("{name}{place}: {problem}"));
+            let message = format!("{name}{place}: {problem}");
+            match problem.help() {
+                Some(help) => diagnostic::error_with_help(message, help.to_owned()),
+                None => diagnostic::error(message),
+            }
             Ending::Refused
         }
     }
@@ -151,6 +163,9 @@ fn differentiate(
     }
     let mut sheet = Sheet::default();
     while let Some(row) = rows.next_row()? {
+        if !layout.takes(&row) {
+            continue;
+        }
         sheet.push(&layout, &row)?;
         if sheet.size() > HELD {
             return match options.scheme {

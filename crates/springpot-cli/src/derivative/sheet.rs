@@ -19,6 +19,8 @@ pub(super) struct Layout {
     /// The input's columns as they are written: time first.
     written: Vec<usize>,
     names: Vec<String>,
+    /// Columns and the cells that rows are taken with.
+    taken: Vec<(usize, String)>,
 }
 
 impl Layout {
@@ -38,10 +40,16 @@ impl Layout {
                 return Err(Problem::ColumnTwice(name.clone()));
             }
         }
+        let taken = options.selection.iter().map(|wanted| {
+            // Of paths and texts with `=` in them it is the first that splits.
+            let (name, value) = wanted.split_once('=').ok_or_else(|| Problem::NoValue(wanted.clone()))?;
+            Ok((rows.find(name.trim())?, value.trim().to_owned()))
+        });
+        let taken = taken.collect::<Result<Vec<_>, Problem>>()?;
         let mut written = vec![time];
         written.extend((0..names.len()).filter(|column| *column != time));
         let (orders, definition) = (options.orders.clone(), options.kind);
-        Ok(Self { time, columns, orders, definition, written, names: names.to_vec() })
+        Ok(Self { time, columns, orders, definition, written, names: names.to_vec(), taken })
     }
 
     /// Refuses an order before a row is read.
@@ -60,6 +68,15 @@ impl Layout {
     /// Number of columns to differentiate.
     pub(super) fn count(&self) -> usize {
         self.columns.len()
+    }
+
+    /// Whether the row is one of those asked for.
+    pub(super) fn takes(&self, row: &CsvRow) -> bool {
+        self.taken.iter().all(|(column, wanted)| {
+            let number = |text: &str| text.parse::<f64>().ok();
+            let is_equal = |cell: &str| cell == wanted || number(cell).is_some_and(|cell| number(wanted) == Some(cell));
+            row.text(*column).is_ok_and(is_equal)
+        })
     }
 
     /// The header line; `with_error` puts an estimate behind every derivative.

@@ -23,6 +23,9 @@ pub(super) fn differentiate(
     }
     drop(held);
     while let Some(row) = rows.next_row()? {
+        if !layout.takes(&row) {
+            continue;
+        }
         let time = layout.time(&row, writer.last)?;
         let values = layout.values(&row).collect::<Result<Vec<_>, _>>()?;
         let mut text = Vec::new();

@@ -8,6 +8,7 @@ mod dynamics_refusals;
 mod equation;
 mod failures;
 mod figures;
+mod first_week;
 mod formats;
 mod friction;
 mod help;

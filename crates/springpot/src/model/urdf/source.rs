@@ -141,7 +141,10 @@ impl<'a> Source<'a> {
             XmlError::DtdDetected => "it has a <!DOCTYPE>, which no robot needs".to_owned(),
             XmlError::UnexpectedEndOfStream => "the text ends too early".to_owned(),
             XmlError::NoRootNode => "there is no element in it".to_owned(),
-            XmlError::UnclosedRootNode => "the outermost element is never closed".to_owned(),
+            XmlError::UnclosedRootNode => {
+                let lines = self.text.trim_end().lines().count();
+                format!("the outermost element is never closed; the text ends on line {lines}")
+            }
             XmlError::UnknownNamespace(prefix, _) if prefix == "xacro" => {
                 return UrdfError::new(self.file, place, UrdfProblem::Xacro { element: "xacro:…".to_owned() });
             }

@@ -1,0 +1,94 @@
+//! Mistakes of the first week: each is told with its place, its value and what would be right.
+
+use crate::support::{Ended, Place};
+
+/// A refusal that says all of `words`.
+#[track_caller]
+fn refused(ended: &Ended, words: &[&str]) {
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
+    says(ended, words);
+}
+
+#[track_caller]
+fn says(ended: &Ended, words: &[&str]) {
+    // Lines of the terminal end where they fill it.
+    let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in words {
+        assert!(said.contains(words), "{words:?} is not in {}", ended.stderr);
+    }
+}
+
+#[test]
+fn a_robot_a_table_and_a_folder_are_no_scenarios() {
+    let place = Place::new();
+    place.write("ur5.urdf", "<?xml version=\"1.0\"?>\n<robot name=\"r\"><link name=\"a\"/></robot>\n");
+    place.write("scene.xml", "<mujoco model=\"m\"/>\n");
+    place.write("rows.csv", "t,x\n0,1\n");
+    place.write("states.json", "{\"states\": []}\n");
+    std::fs::create_dir(place.path("empty")).unwrap();
+    place.done(&["run", "arm.toml", "--out", "finished"]);
+    let init = "`springpot init ur5.urdf` writes a scenario with it, `springpot info ur5.urdf` describes it";
+    for (file, words) in [
+        ("ur5.urdf", &["error: ur5.urdf: a robot in URDF, not a scenario", init][..]),
+        ("scene.xml", &["scene.xml: XML, not a scenario", "`springpot init` writes one"]),
+        ("rows.csv", &["rows.csv: a table, not a scenario", "`springpot plot FOLDER COLUMN`"]),
+        ("states.json", &["states.json: JSON, not a scenario"]),
+        (".", &["not a regular file", "it holds arm.toml"]),
+        (
+            "finished",
+            &["it holds the results of a run: `springpot plot finished COLUMN`", "springpot run --resume finished"],
+        ),
+        ("empty", &["a scenario is read from a file"]),
+        ("arm", &["arm: cannot be opened", "did you mean arm.toml?"]),
+        ("amr.toml", &["did you mean arm.toml?"]),
+    ] {
+        for command in ["run", "check"] {
+            refused(&place.springpot(&[command, file]), words);
+        }
+    }
+}
+
+#[test]
+fn what_is_set_twice_is_refused() {
+    let place = Place::new();
+    let alpha = ["--set", "element.damper.alpha=0.3", "--set", "element.damper.alpha=0.4"];
+    let ended = place.springpot(&[&["check", "arm.toml"][..], &alpha].concat());
+    refused(&ended, &["element.damper.alpha is set twice, and was 0.3 before", "leave one of them out"]);
+}
+
+#[test]
+fn a_file_is_no_folder_for_results() {
+    let place = Place::new();
+    let before = place.read("arm.toml");
+    let ended = place.springpot(&["run", "arm.toml", "--quiet", "--out", "arm.toml"]);
+    assert_eq!(ended.code, Some(1));
+    says(&ended, &["the results cannot be written to arm.toml: it is a file", "name a folder with --out"]);
+    assert_eq!(place.read("arm.toml"), before);
+}
+
+#[test]
+fn one_case_of_a_sweep_is_differentiated() {
+    let place = Place::new();
+    let rows = |case: f64| (0..20).map(|k| format!("{case},{k},{}\n", case * f64::from(k * k))).collect::<String>();
+    place.write("sweep.csv", format!("alpha,t,x\n{}{}", rows(0.5), rows(2.0)));
+    let derivative = ["derivative", "sweep.csv", "--column", "x", "--order", "1"];
+    for scheme in ["spline", "exponential"] {
+        let with = |more: &[&'static str]| [&derivative[..], &["--scheme", scheme], more].concat();
+        let words = ["sweep.csv:22: times must increase, but 0 follows 19", "choose one: --where COLUMN=VALUE"];
+        refused(&place.springpot(&with(&[])), &words);
+        let ended = place.done(&with(&["--where", "alpha=2"]));
+        let last: Vec<f64> = ended.stdout.lines().last().unwrap().split(',').map(|x| x.parse().unwrap()).collect();
+        assert_eq!(ended.stdout.lines().count(), 21);
+        assert!((last[3] - 76.0).abs() < 1e-6, "{last:?}");
+        refused(&place.springpot(&with(&["--where", "alpha=3"])), &["0 rows of numbers"]);
+        refused(&place.springpot(&with(&["--where", "alhpa=2"])), &["no column `alhpa`", "alpha"]);
+        refused(&place.springpot(&with(&["--where", "alpha"])), &["--where \"alpha\" has no `=`"]);
+    }
+}
+
+#[test]
+fn a_robot_that_was_cut_short_says_where() {
+    let place = Place::new();
+    place.write("cut.urdf", "<robot name=\"r\">\n<link name=\"a\">\n<inertial>\n<mass value=\"1\"/>\n");
+    refused(&place.springpot(&["info", "cut.urdf"]), &["cut.urdf:1:1", "never closed; the text ends on line 4"]);
+}
