@@ -1,7 +1,7 @@
 //! `[motion]`: prescribed joints and gripper paths; forward dynamics is read by `forward`.
 
 use super::forward;
-use super::keys::{MOTION, POSE, Shape};
+use super::keys::{MOTION, MotionKind, POSE, Shape};
 use super::path;
 use super::plan::{JointPlan, MotionPlan, PosePlan, SignalPlan};
 use super::reader::{Field, Read, Refused, Table, all};
@@ -22,15 +22,17 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
     if field.node.entries().is_none() {
         return Err(field.wrong_type("a table: [motion]"));
     }
-    let Some(kind) = field.node.get("kind") else {
+    let row = MOTION.get("kind");
+    let Some(node) = field.node.get("kind") else {
         let refusal = field.node.place.refuse(RefusalKind::Missing, "[motion] has no `kind`");
-        return Err(root.ctx.refuse(refusal.help("write kind = \"prescribed\", \"gripper-path\" or \"forward\"")));
+        let right = row.map(|row| row.right()).unwrap_or_default();
+        return Err(root.ctx.refuse(refusal.help(format!("write {right}"))));
     };
-    let kind = Field { key: "kind", row: MOTION.get("kind"), node: kind, owner: "[motion]".into(), ..field.clone() };
-    match kind.word("kind of motion")? {
-        "prescribed" => prescribed(&field, robot, end),
-        "gripper-path" => gripper_path(&field, robot, end),
-        _ => forward::read(&field, robot, end),
+    let word = Field { key: "kind", row, node, owner: "[motion]".into(), ..field.clone() }.word("kind of motion")?;
+    match MotionKind::named(word).expect("a word that may stand there") {
+        MotionKind::Prescribed => prescribed(&field, robot, end),
+        MotionKind::GripperPath => gripper_path(&field, robot, end),
+        MotionKind::Forward => forward::read(&field, robot, end),
     }
 }
 

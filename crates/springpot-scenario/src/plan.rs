@@ -1,6 +1,7 @@
 //! The plan: a scenario validated and resolved, in SI units, with every default filled in.
 
 use super::figures::{ColumnGlob, FigurePlan};
+use super::keys::MotionKind;
 use super::refusal::Place;
 use springpot::elements::Element;
 use springpot::integrate::Settings;
@@ -207,9 +208,10 @@ impl MotionPlan {
     /// Its kind as the scenario names it.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Prescribed { .. } => "prescribed",
-            Self::GripperPath { .. } => "gripper-path",
-            Self::Forward(_) => "forward",
+            Self::Prescribed { .. } => MotionKind::Prescribed,
+            Self::GripperPath { .. } => MotionKind::GripperPath,
+            Self::Forward(_) => MotionKind::Forward,
         }
+        .name()
     }
 }

@@ -1,6 +1,6 @@
 //! `[time]` and `[solver]`, and where the numbers of `[solver]` go.
 
-use super::{Bound, Field, Keys, Need, Shape, Slot, key};
+use super::{Bound, Field, Keys, MotionKind, Need, Shape, Slot, key};
 use springpot::integrate::fixed::Method;
 use springpot::integrate::{RowTimes, Settings};
 
@@ -31,7 +31,7 @@ pub(crate) const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
 pub(crate) const SMALLEST_MEMORY_RTOL: f64 = 1e-12;
 const LARGEST_RTOL: f64 = 0.1;
 const SUCH_AS: &str = "write a relative error such as 1e-9";
-const FORWARD: &[&str] = &["forward"];
+const FORWARD: &[&str] = &[MotionKind::Forward.name()];
 
 /// The kinds of it that `only` knows: `forward`, runs of that kind of motion.
 pub(crate) static SOLVER: Keys = Keys {
