@@ -10,7 +10,7 @@ use springpot::elements::Element;
 use springpot::integrate::{ElementStart, RowTimes, RunError, Stop, System};
 use springpot::law::{Catalog, Entry};
 use springpot_run::sweep::Layout;
-use springpot_scenario::{Cases, ElementPlan, MotionPlan, Plan, Refusals, SignalPlan, json_schema};
+use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, SignalPlan, json_schema};
 use std::ops::RangeInclusive;
 use std::path::Path;
 use warnings::Warnings;
@@ -92,10 +92,7 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
 
 /// The first case, and each other value of each sweep with the rest at their first values.
 fn looked_at(cases: &Cases, plan: &Plan) -> Vec<usize> {
-    let most = match plan.motion {
-        MotionPlan::Prescribed { .. } | MotionPlan::Forward(_) => LOOKED_AT,
-        MotionPlan::GripperPath { .. } => PATHS_FOLLOWED,
-    };
+    let most = if plan.motion.has_path() { PATHS_FOLLOWED } else { LOOKED_AT };
     let mut indices = vec![0];
     let mut stride = cases.len();
     for axis in 0..cases.axis_count() {

@@ -3,7 +3,7 @@
 use super::document::Node;
 use super::figures::{self, ColumnGlob, FigurePlan};
 use super::path;
-use super::plan::{MotionPlan, Plan};
+use super::plan::Plan;
 use super::reader::{Context, Read, Table};
 use super::refusal::{Place, RefusalKind, Refusals};
 use super::robot::Robot;
@@ -358,7 +358,8 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     };
     let elements = elements::read(&root, &robot, time.as_ref().ok());
     let motion = motion::read(&root, &robot, time.as_ref().ok().map(|time| time.end));
-    if let (Ok(elements), Ok(MotionPlan::Forward(_))) = (&elements, &motion)
+    if let (Ok(elements), Ok(motion)) = (&elements, &motion)
+        && motion.is_forward()
         && let Some(element) = elements.iter().find(|plan| plan.element.scheme.is_some())
     {
         let message = format!("element {:?} has a `scheme`, but the robot moves by itself", element.element.name);

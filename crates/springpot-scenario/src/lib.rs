@@ -40,7 +40,6 @@ pub mod csv;
 mod document;
 mod elements;
 mod figures;
-mod forward;
 mod inputs;
 mod keys;
 mod mistaken;
@@ -64,12 +63,10 @@ mod urdf;
 pub use cases::{Cases, SweptValue};
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
 pub use keys::MAX_CASES;
+pub use motion::MotionPlan;
 pub use names::{list, suggest};
 pub use path::toml_key;
-pub use plan::{
-    BodyPlaces, DrivePlan, ElementPlan, ForwardPlan, Gripper, JointPlan, MotionPlan, Plan, PosePlan, RobotPlan,
-    SignalPlan, UrdfPlan,
-};
+pub use plan::{BodyPlaces, ElementPlan, Gripper, Plan, RobotPlan, SignalPlan, UrdfPlan};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use schema::json_schema;
 

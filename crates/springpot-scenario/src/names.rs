@@ -2,6 +2,8 @@
 
 pub(crate) use springpot::names::{is_name, nearest};
 
+use std::borrow::Borrow;
+
 /// Whether `name` is safe as the name of a file on every system.
 pub(crate) fn is_file_name(name: &str) -> bool {
     name.len() <= 100
@@ -20,6 +22,16 @@ pub fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
         (_, None) => "none".to_owned(),
         (_, Some((last, []))) => (*last).to_owned(),
         (_, Some((last, others))) => format!("{} and {last}", others.join(", ")),
+    }
+}
+
+/// `a, b or c`.
+pub(crate) fn either<S: Borrow<str>>(choices: impl IntoIterator<Item = S>) -> String {
+    let choices: Vec<S> = choices.into_iter().collect();
+    match choices.split_last() {
+        None => "none".to_owned(),
+        Some((last, [])) => last.borrow().to_owned(),
+        Some((last, others)) => format!("{} or {}", others.join(", "), last.borrow()),
     }
 }
 
@@ -50,5 +62,6 @@ mod tests {
     fn what_is_suggested() {
         assert_eq!(suggest("rest_lenght", ["law", "rest_length"]), "did you mean `rest_length`?");
         assert_eq!(suggest("zzz", ["a", "b", "c"]), "there is a, b and c");
+        assert_eq!(either(["a", "b", "c"]), "a, b or c");
     }
 }

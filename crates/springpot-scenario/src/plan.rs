@@ -1,6 +1,7 @@
 //! The plan: a scenario validated and resolved, in SI units, with every default filled in.
 
 use super::figures::{ColumnGlob, FigurePlan};
+use super::motion::MotionPlan;
 use super::refusal::Place;
 use springpot::elements::Element;
 use springpot::integrate::Settings;
@@ -135,81 +136,4 @@ pub struct ElementPlan {
     pub inputs: Vec<SignalPlan>,
     /// Where its parameters stand in the scenario (the element itself where it has none).
     pub place: Place,
-}
-
-/// How one joint moves.
-#[derive(Debug, Clone)]
-pub enum JointPlan {
-    /// A joint of one degree: its coordinate, rad or m.
-    Coordinate(SignalPlan),
-    /// A floating joint.
-    Pose(Box<PosePlan>),
-}
-
-/// How a floating joint moves.
-#[derive(Debug, Clone)]
-pub struct PosePlan {
-    /// x, y, z of the joint's frame in the frame that it hangs on, m.
-    pub position: [SignalPlan; 3],
-    /// Roll, pitch, yaw of the joint's frame there, R = Rz(yaw)·Ry(pitch)·Rx(roll), rad.
-    pub rpy: [SignalPlan; 3],
-}
-
-/// What moves the robot.
-#[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "one per run")]
-pub enum MotionPlan {
-    /// Every coordinate is a function of time.
-    Prescribed {
-        /// The joints that have coordinates of their own, in the order of q.
-        joints: Vec<JointPlan>,
-    },
-    /// The gripper follows a path.
-    GripperPath {
-        /// x, y, z in the world frame, m.
-        position: [SignalPlan; 3],
-        /// Roll, pitch, yaw of the gripper's body, rad.
-        rpy: Option<[SignalPlan; 3]>,
-        /// Coordinates near the start of the path (every joint has one), in the order of q, rad or m.
-        guess: Vec<f64>,
-        /// Where the motion stands in the scenario.
-        place: Place,
-    },
-    /// Forward dynamics.
-    Forward(Box<ForwardPlan>),
-}
-
-/// A motion that follows from the equations of motion.
-#[derive(Debug, Clone)]
-pub struct ForwardPlan {
-    /// q(0), in the order of q.
-    pub q: Vec<f64>,
-    /// v(0), in the order of v.
-    pub v: Vec<f64>,
-    /// The joints that have coordinates of their own, in the order of q.
-    pub drives: Vec<DrivePlan>,
-    /// Where the motion stands in the scenario.
-    pub place: Place,
-}
-
-/// What drives one joint.
-#[derive(Debug, Clone)]
-pub enum DrivePlan {
-    /// An actuator force for each of its velocities, N·m or N.
-    Force(Vec<SignalPlan>),
-    /// It moves as signals say.
-    Prescribed(JointPlan),
-    /// It stays where it starts.
-    Locked,
-}
-
-impl MotionPlan {
-    /// Its kind as the scenario names it.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Prescribed { .. } => "prescribed",
-            Self::GripperPath { .. } => "gripper-path",
-            Self::Forward(_) => "forward",
-        }
-    }
 }

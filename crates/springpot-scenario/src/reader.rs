@@ -252,7 +252,10 @@ impl<'a> Table<'a> {
 
     /// Refuses the absence of a key that must be there.
     pub(crate) fn lacks(&self, key: &str) -> Refused {
-        self.missing(key, self.row(key).map_or(key, |row| row.right()))
+        match self.row(key) {
+            Some(row) => self.missing(key, &row.right()),
+            None => self.missing(key, key),
+        }
     }
 
     /// Refuses the absence of `key`, unless a misspelled key stands for it.

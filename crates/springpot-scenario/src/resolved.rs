@@ -3,7 +3,7 @@
 use super::figures::FigurePlan;
 use super::keys::solver::ADAPTIVE;
 use super::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
-use super::plan::{DrivePlan, ElementPlan, JointPlan, MotionPlan, Plan, SignalPlan, UrdfPlan};
+use super::plan::{ElementPlan, Plan, SignalPlan, UrdfPlan};
 use serde_json::{Map, Value, json};
 use springpot::integrate::RowTimes;
 use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
@@ -29,7 +29,7 @@ impl Plan {
             "bodies": self.bodies.iter().map(|body| self.body(body)).collect::<Vec<_>>(),
             "gripper": self.gripper.as_ref().map(|gripper| self.anchor(&gripper.anchor)),
             "elements": self.elements.iter().map(|element| self.element(element)).collect::<Vec<_>>(),
-            "motion": self.motion(),
+            "motion": self.motion.resolved(),
             "time": time,
             "solver": self.solver(),
             "figures": self.figures.iter().map(FigurePlan::record).collect::<Vec<_>>(),
@@ -48,8 +48,7 @@ impl Plan {
 
     /// The method of forward dynamics.
     fn method(&self) -> Option<&'static str> {
-        matches!(self.motion, MotionPlan::Forward(_))
-            .then(|| self.settings.fixed_step.map_or(ADAPTIVE, |by| by.method.name()))
+        self.motion.is_forward().then(|| self.settings.fixed_step.map_or(ADAPTIVE, |by| by.method.name()))
     }
 
     fn body_name(&self, body: Parent) -> &str {
@@ -93,7 +92,7 @@ impl Plan {
         let parameters: Map<String, Value> =
             element.entry.params.iter().zip(parameters).map(|(p, v)| (p.name.to_string(), json!(v))).collect();
         let inputs: Map<String, Value> =
-            element.entry.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_string(), signal(s))).collect();
+            element.entry.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_string(), s.record())).collect();
         let mut value = json!({
             "name": element.name,
             "from": self.anchor(from),
@@ -108,36 +107,6 @@ impl Plan {
             value.extend(record(ELEMENT_FIELDS, element));
         }
         value
-    }
-
-    fn motion(&self) -> Value {
-        match &self.motion {
-            MotionPlan::Prescribed { joints } => {
-                let joints: Map<String, Value> =
-                    self.own_joint_names().zip(joints).map(|(name, plan)| (name.to_owned(), joint(plan))).collect();
-                json!({ "kind": "prescribed", "joints": joints })
-            }
-            MotionPlan::GripperPath { position: [x, y, z], rpy, guess, .. } => {
-                let guess: Map<String, Value> =
-                    self.own_joint_names().zip(guess).map(|(name, guess)| (name.to_owned(), json!(guess))).collect();
-                json!({
-                    "kind": "gripper-path",
-                    "x": signal(x),
-                    "y": signal(y),
-                    "z": signal(z),
-                    "rpy": rpy.as_ref().map(|rpy| rpy.each_ref().map(signal)),
-                    "guess": guess,
-                })
-            }
-            MotionPlan::Forward(plan) => {
-                let drives: Map<String, Value> = self
-                    .own_joint_names()
-                    .zip(&plan.drives)
-                    .map(|(name, plan)| (name.to_owned(), drive(plan)))
-                    .collect();
-                json!({ "kind": "forward", "start": { "q": plan.q, "v": plan.v }, "joints": drives })
-            }
-        }
     }
 }
 
@@ -171,27 +140,9 @@ fn limits(limits: &Limits) -> Value {
         .collect()
 }
 
-fn drive(plan: &DrivePlan) -> Value {
-    match plan {
-        DrivePlan::Force(signals) => match &signals[..] {
-            [only] => json!({ "torque": signal(only) }),
-            several => json!({ "torque": several.iter().map(signal).collect::<Vec<_>>() }),
-        },
-        DrivePlan::Prescribed(plan) => json!({ "prescribed": joint(plan) }),
-        DrivePlan::Locked => json!("locked"),
+impl SignalPlan {
+    /// A number in SI, or what varies as it was written.
+    pub(crate) fn record(&self) -> Value {
+        self.constant.map_or_else(|| json!(self.written), |value| json!(value))
     }
-}
-
-fn joint(plan: &JointPlan) -> Value {
-    match plan {
-        JointPlan::Coordinate(coordinate) => signal(coordinate),
-        JointPlan::Pose(pose) => {
-            let [x, y, z] = pose.position.each_ref().map(signal);
-            json!({ "x": x, "y": y, "z": z, "rpy": pose.rpy.each_ref().map(signal) })
-        }
-    }
-}
-
-fn signal(signal: &SignalPlan) -> Value {
-    signal.constant.map_or_else(|| json!(signal.written), |value| json!(value))
 }

@@ -15,12 +15,7 @@ pub(crate) static SCENARIO: Keys = Keys {
             "Gravity, bodies or a URDF file, gripper.",
         ),
         key("element", Shape::Tables(&ELEMENT, None), Need::Optional, "Materials between two points."),
-        key(
-            "motion",
-            Shape::Table(&MOTION),
-            Need::Required("[motion] with kind = \"prescribed\", \"gripper-path\" or \"forward\""),
-            "What moves the robot.",
-        ),
+        key("motion", Shape::Table(&MOTION), Need::Kind, "What moves the robot."),
         key(
             "time",
             Shape::Table(&TIME),

@@ -1,8 +1,8 @@
 //! `[time]` and `[solver]`.
 
-use super::document::{Node, Value, shorten};
+use super::document::{Node, shorten};
 use super::keys::solver::{ADAPTIVE, FIXED, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
-use super::keys::{SOLVER, SOLVER_FIELDS, TIME};
+use super::keys::{MotionKind, SOLVER, SOLVER_FIELDS, TIME};
 use super::names;
 use super::reader::{Field, Read, Table};
 use super::refusal::RefusalKind;
@@ -80,10 +80,11 @@ fn output_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
 
 /// Reads `[solver]`: how a run of the duration `time` is carried out.
 pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Settings> {
-    let kind = if moves_by_itself(root) { "forward" } else { "" };
+    let kind = if moves_by_itself(root) { MotionKind::Forward.name() } else { "" };
     let forward_only = |key: &str| {
         SOLVER.is_of_a_kind(key).then(|| {
-            let why = "belongs to forward runs; along a prescribed motion or a gripper path the run chooses its steps";
+            let given = MotionKind::given();
+            let why = format!("belongs to forward runs; along {given} the run chooses its steps");
             (RefusalKind::Rule, format!("`{key}` of [solver] {why}"))
         })
     };
@@ -106,7 +107,7 @@ pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Setti
 /// Whether the motion follows from forces, as far as one can see before it is read.
 fn moves_by_itself(root: &Table<'_>) -> bool {
     let kind = root.get("motion").and_then(|motion| motion.node.get("kind"));
-    kind.is_some_and(|kind| matches!(&kind.value, Value::Text(kind) if kind == "forward"))
+    kind.is_some_and(|kind| kind.text() == Some(MotionKind::Forward.name()))
 }
 
 /// `method` and `step`.

@@ -13,14 +13,16 @@ mod sweep;
 mod tests;
 
 pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
-pub(crate) use motion::{FORCES, MOTION, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
+pub(crate) use motion::{FORCES, MOTION, MotionKind, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
 pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, WITH_AXIS};
 pub(crate) use solver::{SOLVER, SOLVER_FIELDS, TIME};
 pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
 
+use super::names;
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 
 /// A table of a scenario and its keys.
 #[derive(Debug)]
@@ -37,7 +39,7 @@ pub(crate) struct Key {
     pub(crate) name: &'static str,
     pub(crate) shape: Shape,
     pub(crate) need: Need,
-    /// What it says, as a sentence.
+    /// What it says, as a sentence; nothing where it follows from its kinds.
     pub(crate) words: &'static str,
     /// The kinds of its table that it belongs to, such as the kinds of motion; empty: all.
     pub(crate) only: &'static [&'static str],
@@ -54,6 +56,8 @@ pub(crate) enum Shape {
     FileName,
     /// One of these words.
     Words(fn() -> Vec<&'static str>),
+    /// One of the kinds of its table: their names, and what they are.
+    Kinds(fn() -> Vec<(&'static str, &'static str)>),
     /// true or false.
     Flag,
     /// A number or a quantity in a unit; an empty unit is that of a pure number.
@@ -137,6 +141,8 @@ pub(crate) enum Need {
     Written(&'static str),
     /// It must be there, as these words say; the file may leave it to a sweep.
     Required(&'static str),
+    /// It must be there and tell the kind of a table; the file may leave it to a sweep.
+    Kind,
     /// It or another one must be there.
     OneOf,
     /// Nothing stands for it.
@@ -166,7 +172,7 @@ impl Key {
     /// What stands for it where it is left out, as a file would say it; `None` where nothing does, or it cannot be left out.
     pub(crate) fn default(&self) -> Option<String> {
         match self.need {
-            Need::Written(_) | Need::Required(_) | Need::OneOf | Need::Optional => None,
+            Need::Written(_) | Need::Required(_) | Need::Kind | Need::OneOf | Need::Optional => None,
             Need::Number(number) if number != 0.0 && number.abs() < 0.01 => Some(format!("{number:e}")),
             Need::Number(number) => Some(number.to_string()),
             Need::Vector([x, y, z]) => Some(format!("[{x}, {y}, {z}]")),
@@ -177,19 +183,43 @@ impl Key {
     }
 
     /// What to write where it must be there and is not.
-    pub(crate) fn right(&self) -> &'static str {
-        match self.need {
-            Need::Written(right) | Need::Required(right) => right,
-            _ => self.name,
+    pub(crate) fn right(&self) -> Cow<'static, str> {
+        match (self.need, self.shape) {
+            (Need::Written(right) | Need::Required(right), _) => right.into(),
+            (Need::Kind, Shape::Table(keys)) => {
+                let kind = keys.get("kind").map(Self::right).unwrap_or_default();
+                format!("[{}] with {kind}", self.name).into()
+            }
+            (Need::Kind, _) => {
+                let choices = self.choices().into_iter().map(|choice| format!("{choice:?}"));
+                format!("{} = {}", self.name, names::either(choices)).into()
+            }
+            _ => self.name.into(),
         }
+    }
+
+    /// What it says, as a sentence; of the kinds of a table, what they are.
+    pub(crate) fn sentence(&self) -> Cow<'static, str> {
+        let Shape::Kinds(kinds) = self.shape else { return self.words.into() };
+        let kinds: Vec<&str> = kinds().into_iter().map(|(_, words)| words).collect();
+        let (last, others) = kinds.split_last().expect("a table of kinds has some");
+        format!("{}, or {last}.", others.join(", ")).into()
     }
 
     /// The words that may stand there; none where it takes no words.
     pub(crate) fn choices(&self) -> Vec<&'static str> {
         match self.shape {
             Shape::Words(words) => words(),
+            Shape::Kinds(kinds) => kinds().into_iter().map(|(name, _)| name).collect(),
             _ => Vec::new(),
         }
+    }
+}
+
+impl Need {
+    /// Whether something must be there, in the file or by a sweep.
+    pub(crate) fn is_required(self) -> bool {
+        matches!(self, Self::Required(_) | Self::Kind)
     }
 }
 

@@ -1,10 +1,60 @@
 //! `[motion]` and signals.
 
+use super::super::names;
 use super::{Bound, Each, Key, Keys, Need, Shape, key};
 
-const PRESCRIBED: &[&str] = &["prescribed"];
-const GRIPPER_PATH: &[&str] = &["gripper-path"];
-const FORWARD: &[&str] = &["forward"];
+/// A kind of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MotionKind {
+    Prescribed,
+    GripperPath,
+    Forward,
+}
+
+/// What is said of a kind of motion.
+struct Row {
+    name: &'static str,
+    /// What it is, in a list of all kinds.
+    words: &'static str,
+    /// What its runs go along, where that is given in advance.
+    along: Option<&'static str>,
+}
+
+impl MotionKind {
+    /// In the order in which messages list them.
+    pub(crate) const ALL: &'static [Self] = &[Self::Prescribed, Self::GripperPath, Self::Forward];
+
+    const fn row(self) -> Row {
+        match self {
+            Self::Prescribed => {
+                Row { name: "prescribed", words: "Prescribed joints", along: Some("a prescribed motion") }
+            }
+            Self::GripperPath => {
+                Row { name: "gripper-path", words: "a path of the gripper", along: Some("a gripper path") }
+            }
+            Self::Forward => Row { name: "forward", words: "forward: forces", along: None },
+        }
+    }
+
+    /// As scenarios name it.
+    pub(crate) const fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The kind of that name.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|kind| kind.name() == name)
+    }
+
+    /// What runs go along whose motion is given in advance.
+    pub(crate) fn given() -> String {
+        names::either(Self::ALL.iter().filter_map(|kind| kind.row().along))
+    }
+}
+
+const PRESCRIBED: &[&str] = &[MotionKind::Prescribed.name()];
+const GRIPPER_PATH: &[&str] = &[MotionKind::GripperPath.name()];
+const FORWARD: &[&str] = &[MotionKind::Forward.name()];
 
 /// The kinds of it that `only` knows are the kinds of motion.
 pub(crate) static MOTION: Keys = Keys {
@@ -12,9 +62,9 @@ pub(crate) static MOTION: Keys = Keys {
     keys: &[
         key(
             "kind",
-            Shape::Words(|| vec!["prescribed", "gripper-path", "forward"]),
-            Need::Required("kind = \"prescribed\", \"gripper-path\" or \"forward\""),
-            "Prescribed joints, a path of the gripper, or forward: forces.",
+            Shape::Kinds(|| MotionKind::ALL.iter().map(|kind| (kind.name(), kind.row().words)).collect()),
+            Need::Kind,
+            "",
         ),
         key("joints", Shape::ByJoint(Each::Path), Need::OneOf, "How every joint moves.").only(PRESCRIBED),
         key("csv", Shape::Text, Need::OneOf, "A CSV file with the column t and one column for every joint, SI.")

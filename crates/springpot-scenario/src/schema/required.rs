@@ -15,10 +15,10 @@ pub(super) fn required(catalog: &Catalog) -> Value {
 /// What a table must hold, and the tables in it; `None` where that is nothing.
 fn of(keys: &'static Keys, catalog: &Catalog) -> Option<Value> {
     let mut schema = Map::new();
-    let must = |need| matches!(need, Need::Written(_) | Need::Required(_));
+    let must = |need: Need| matches!(need, Need::Written(_)) || need.is_required();
     let names: Vec<&str> =
         keys.keys.iter().filter(|key| key.only.is_empty() && must(key.need)).map(|key| key.name).collect();
-    if names.iter().any(|name| keys.get(name).is_some_and(|key| matches!(key.need, Need::Required(_)))) {
+    if names.iter().any(|name| keys.get(name).is_some_and(|key| key.need.is_required())) {
         schema.insert("required".to_owned(), names.into());
     }
     let within = keys.keys.iter().filter_map(|key| {

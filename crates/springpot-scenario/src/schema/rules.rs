@@ -42,7 +42,7 @@ pub(super) fn alternatives(keys: &'static Keys) -> Vec<&'static str> {
 
 /// What must be there of the keys that belong to `kind` alone.
 pub(super) fn required_of(keys: &'static Keys, kind: &str) -> Vec<&'static str> {
-    let required = |key: &&&Key| !key.only.is_empty() && matches!(key.need, Need::Required(_));
+    let required = |key: &&&Key| !key.only.is_empty() && key.need.is_required();
     keys.of(kind).collect::<Vec<_>>().iter().filter(required).map(|key| key.name).collect()
 }
 

@@ -28,7 +28,7 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         let stop = if default.ends_with('…') { "" } else { "." };
         format!(" Default: {default}{stop}")
     });
-    let words = format!("{kinds}{}{default}", key.words);
+    let words = format!("{kinds}{}{default}", key.sentence());
     match key.shape {
         Shape::Text => described(text(), &words),
         Shape::Name(reserved) => {
@@ -41,7 +41,7 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         Shape::FileName => json!({
             "type": "string", "pattern": "^[A-Za-z0-9_][A-Za-z0-9_.-]*$", "maxLength": 100, "description": words,
         }),
-        Shape::Words(choices) => described(one_of(&choices()), &words),
+        Shape::Words(_) | Shape::Kinds(_) => described(one_of(&key.choices()), &words),
         Shape::Flag => json!({ "type": "boolean", "description": words }),
         Shape::Number(unit, bound) => bounded(quantity(unit, &words), bound),
         Shape::JointNumber(units, bound) => joint_number(units, bound, &words),

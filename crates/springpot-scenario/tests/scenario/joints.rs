@@ -1,9 +1,11 @@
 //! Joints of `[[robot.body]]` and how they are prescribed: continuous and floating ones.
 
-use crate::support::{assert_all_refused, cases, catalog, edited};
+use crate::support::{assert_all_refused, cases, catalog, edited, pose};
+use serde_json::json;
 use springpot::model::JointKind;
+use springpot::motion::PosePath;
 use springpot_scenario::RefusalKind::*;
-use springpot_scenario::{JointPlan, MotionPlan, PosePlan, Scenario};
+use springpot_scenario::Scenario;
 use std::fmt::Write as _;
 
 /// A boat that floats with a wheel on it.
@@ -29,22 +31,17 @@ end = 1
 output_step = 0.1
 "#;
 
-fn pose(text: &str) -> PosePlan {
-    let plan = cases(text).unwrap().plan(0).unwrap();
-    let MotionPlan::Prescribed { joints } = plan.motion else { panic!("prescribed") };
-    let Some(JointPlan::Pose(pose)) = joints.into_iter().next() else { panic!("a pose") };
-    *pose
-}
-
 #[test]
 fn continuous_and_floating_joints_are_planned() {
     let plan = cases(BOAT).unwrap().plan(0).unwrap();
     assert_eq!([0, 1].map(|j| plan.model.joint_kind(j)), [JointKind::Floating, JointKind::Continuous]);
     assert_eq!((plan.model.damping()[1], plan.model.friction()[1]), (0.1, 0.2));
-    let pose = pose(BOAT);
-    assert_eq!(pose.position.each_ref().map(|signal| signal.written.as_str()), ["2*t", "0", "10 cm"]);
-    assert_eq!(pose.position[2].constant, Some(0.1));
-    assert!((pose.rpy[2].constant.unwrap() - 30f64.to_radians()).abs() < 1e-15);
+    let pose = pose(&plan);
+    assert_eq!(pose.position.each_ref().map(|signal| signal.value(0.5)), [1.0, 0.0, 0.1]);
+    assert!((pose.rpy[2].is_constant().unwrap() - 30f64.to_radians()).abs() < 1e-15);
+    let written = &plan.resolved()["motion"]["joints"]["sea"];
+    assert_eq!(["x", "y", "z"].map(|axis| &written[axis]), [&json!("2*t"), &json!(0.0), &json!(0.1)]);
+    assert_eq!(written["rpy"][0], "0.1*sin(t)");
 
     let columns: Vec<(String, String)> = plan.system().columns().into_iter().map(|c| (c.name, c.unit)).collect();
     let mut expected = vec![("t".to_owned(), "s".to_owned())];
@@ -64,10 +61,8 @@ fn continuous_and_floating_joints_are_planned() {
 #[test]
 fn what_is_left_out_of_a_pose_is_zero() {
     let rests = edited(BOAT, &[("{ x = \"2*t\", z = \"10 cm\", rpy = [\"0.1*sin(t)\", 0, \"30 deg\"] }", "{}")]);
-    let PosePlan { position, rpy } = pose(&rests);
-    assert!(
-        position.iter().chain(&rpy).all(|signal| signal.constant == Some(0.0) && signal.signal.at(0.5).value == 0.0)
-    );
+    let PosePath { position, rpy } = pose(&cases(&rests).unwrap().plan(0).unwrap());
+    assert!(position.iter().chain(&rpy).all(|signal| signal.is_constant() == Some(0.0) && signal.value(0.5) == 0.0));
 }
 
 #[test]

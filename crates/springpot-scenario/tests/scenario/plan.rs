@@ -4,7 +4,7 @@ use crate::support::{EXAMPLE, cases, catalog, coordinates, edited, parameter, pa
 use springpot::integrate::RowTimes;
 use springpot::law::Derivative;
 use springpot::model::{Anchor, JointKind, Parent};
-use springpot_scenario::{FigureKind, MotionPlan, SweptValue};
+use springpot_scenario::{FigureKind, SweptValue};
 
 #[test]
 fn the_example_is_planned_whole() {
@@ -62,9 +62,10 @@ fn the_example_is_planned_whole() {
     assert_eq!(strut.element.scheme, None);
 
     let joints = coordinates(&plan);
-    let written: Vec<&str> = joints.iter().map(|joint| joint.written.as_str()).collect();
-    assert_eq!(written, ["0", "0.1*sin(8*t)", "0.1*t"]);
-    assert_eq!(joints[0].constant, Some(0.0));
+    assert_eq!(joints[0].is_constant(), Some(0.0));
+    assert_eq!([1, 2].map(|joint: usize| joints[joint].value(0.5)), [0.1 * 4f64.sin(), 0.05]);
+    let written = serde_json::json!({ "q1": 0.0, "q2": "0.1*sin(8*t)", "q3": "0.1*t" });
+    assert_eq!(plan.resolved()["motion"]["joints"], written);
 
     assert_eq!(plan.settings.end, 10.0);
     assert_eq!(plan.settings.rows, RowTimes::Step { step: 0.01, end: 10.0 });
@@ -132,14 +133,16 @@ fn a_gripper_path_is_planned() {
         )],
     );
     let plan = cases(&text).unwrap().plan(0).unwrap();
-    let MotionPlan::GripperPath { position, rpy, guess, .. } = &plan.motion else { panic!("a path") };
-    assert_eq!(position[0].constant, Some(0.8));
-    assert_eq!(position[1].written, "0.1*sin(t)");
-    assert_eq!(rpy.as_ref().unwrap()[1].constant, Some(std::f64::consts::FRAC_PI_2));
-    assert_eq!(guess, &[0.0, 0.0, 1.0]);
-    let resolved = plan.resolved();
-    assert_eq!(resolved["motion"]["kind"], "gripper-path");
-    assert_eq!(resolved["motion"]["guess"]["q3"], 1.0);
+    assert!(plan.motion.has_path() && !plan.motion.is_forward());
+    let expected = serde_json::json!({
+        "kind": "gripper-path",
+        "x": 0.8,
+        "y": "0.1*sin(t)",
+        "z": 0.3,
+        "rpy": [0.0, std::f64::consts::FRAC_PI_2, 0.0],
+        "guess": { "q1": 0.0, "q2": 0.0, "q3": 1.0 },
+    });
+    assert_eq!(plan.resolved()["motion"], expected);
 }
 
 #[test]
@@ -164,7 +167,7 @@ fn joints_take_quantities_of_their_kind() {
     assert_eq!((plan.bodies[1].joint.damping, plan.bodies[1].joint.friction), (0.1, 0.2));
     assert_eq!(plan.bodies[0].joint.rpy[2], std::f64::consts::PI);
     let joints = coordinates(&plan);
-    assert_eq!(joints[0].constant, Some(0.05));
+    assert_eq!(joints[0].is_constant(), Some(0.05));
 }
 
 #[test]
@@ -241,7 +244,7 @@ fn signals_come_from_tables_and_csv_files() {
     let plan = scenario.cases(&catalog()).unwrap().plan(0).unwrap();
     let joints = coordinates(&plan);
     assert_eq!(joints.len(), 3);
-    assert_eq!(joints[1].signal.at(0.0).value, 0.5);
+    assert_eq!(joints[1].at(0.0).value, 0.5);
     assert_eq!(plan.elements[0].inputs[0].signal.at(0.0).value, 293.15);
 }
 

@@ -1,9 +1,10 @@
 //! Robots from URDF files in scenarios: what is planned, and what is refused where.
 
-use crate::support::{catalog, marked};
+use crate::support::{catalog, marked, pose};
 use springpot::model::{Anchor, JointKind, Parent};
+use springpot::signal::Signal;
 use springpot_scenario::RefusalKind::{self, *};
-use springpot_scenario::{Cases, JointPlan, MotionPlan, Refusals, Scenario};
+use springpot_scenario::{Cases, Refusals, Scenario};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -118,10 +119,9 @@ fn floating_base_and_ignore_mimic_change_the_joints() {
     assert_eq!(plan.bodies[0].joint.kind, JointKind::Floating);
     assert_eq!(plan.own_joint_names().collect::<Vec<_>>(), ["floating_base", "rail", "left swing"]);
     assert_eq!(plan.resolved()["urdf"]["floating_base"], true);
-    let MotionPlan::Prescribed { joints } = &plan.motion else { panic!("prescribed") };
-    let JointPlan::Pose(pose) = &joints[0] else { panic!("a pose") };
-    assert_eq!(pose.position.each_ref().map(|signal| signal.written.as_str()), ["0", "0", "0.3*t"]);
-    assert_eq!(pose.rpy.each_ref().map(|signal| signal.constant), [Some(0.0); 3]);
+    let pose = pose(&plan);
+    assert_eq!(pose.position.each_ref().map(|signal| signal.value(0.5)), [0.0, 0.0, 0.15]);
+    assert_eq!(pose.rpy.each_ref().map(Signal::is_constant), [Some(0.0); 3]);
     assert_eq!(
         plan.resolved()["motion"]["joints"]["floating_base"],
         serde_json::json!({ "x": 0.0, "y": 0.0, "z": "0.3*t", "rpy": [0.0, 0.0, 0.0] })

@@ -2,8 +2,11 @@
 
 #![allow(dead_code, reason = "each test uses its share")]
 
+use springpot::integrate::Motion;
 use springpot::law::Catalog;
-use springpot_scenario::{Cases, JointPlan, MotionPlan, Plan, RefusalKind, Refusals, Scenario, SignalPlan};
+use springpot::motion::{JointPath, PosePath, Trajectory};
+use springpot::signal::Signal;
+use springpot_scenario::{Cases, Plan, RefusalKind, Refusals, Scenario};
 
 /// The example of the format, as the documentation shows it.
 pub(crate) const EXAMPLE: &str = include_str!("thermoviscoelastic.toml");
@@ -80,14 +83,28 @@ pub(crate) fn parameter(plan: &Plan, name: &str) -> f64 {
     element.parameters[at]
 }
 
+/// How the joints of a prescribed motion move.
+pub(crate) fn paths(plan: &Plan) -> Vec<JointPath> {
+    let Motion::Given(trajectory) = plan.system().motion else { panic!("given") };
+    let Trajectory::Prescribed(paths) = &*trajectory else { panic!("prescribed") };
+    paths.clone()
+}
+
 /// The signals of a prescribed motion of joints of one degree.
-pub(crate) fn coordinates(plan: &Plan) -> Vec<&SignalPlan> {
-    let MotionPlan::Prescribed { joints } = &plan.motion else { panic!("prescribed") };
-    fn of_one_degree(joint: &JointPlan) -> &SignalPlan {
-        match joint {
-            JointPlan::Coordinate(signal) => signal,
-            JointPlan::Pose(_) => panic!("a floating joint"),
+pub(crate) fn coordinates(plan: &Plan) -> Vec<Signal> {
+    fn of_one_degree(path: JointPath) -> Signal {
+        match path {
+            JointPath::Coordinate(signal) => signal,
+            JointPath::Pose(_) => panic!("a floating joint"),
         }
     }
-    joints.iter().map(of_one_degree).collect()
+    paths(plan).into_iter().map(of_one_degree).collect()
+}
+
+/// How the first joint of a prescribed motion moves, which floats.
+pub(crate) fn pose(plan: &Plan) -> PosePath {
+    match paths(plan).swap_remove(0) {
+        JointPath::Pose(pose) => *pose,
+        JointPath::Coordinate(_) => panic!("a joint of one degree"),
+    }
 }

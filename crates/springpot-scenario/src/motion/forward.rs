@@ -1,29 +1,30 @@
-//! `[motion] kind = "forward"`: where the robot starts and what drives its joints.
+//! Forward dynamics: where the robot starts and what drives its joints.
 
-use super::document::shorten;
-use super::keys::{FORCES, MOTION, START, START_POSE, START_VELOCITIES};
-use super::motion::{open_joints, path_of_joint, signal};
-use super::names;
-use super::plan::{DrivePlan, ForwardPlan, MotionPlan, SignalPlan};
-use super::reader::{Field, Read, Table, all};
-use super::refusal::RefusalKind;
-use super::robot::{OwnJoint, Robot};
-use super::signals::{self, Wanted};
+use super::joints::{open_joints, path_of_joint, signal, zero};
+use super::{Made, ready};
+use crate::document::shorten;
+use crate::keys::{FORCES, START, START_POSE, START_VELOCITIES};
+use crate::names;
+use crate::plan::SignalPlan;
+use crate::reader::{Field, Read, Table, all};
+use crate::refusal::RefusalKind;
+use crate::robot::{OwnJoint, Robot};
+use crate::signals::{self, Wanted};
+use serde_json::{Map, Value, json};
+use springpot::actuation::{Drive, Forward};
 use springpot::law::Range;
 use springpot::model::JointKind;
-use springpot::signal::Signal;
 use springpot::spatial::Quaternion;
 use std::collections::HashSet;
 
-/// Reads a motion of kind "forward".
-pub(super) fn read(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<MotionPlan> {
-    let table = Table::of_kind(field.ctx, field.node, "[motion]", (&MOTION, "forward"), |_| None)?;
+/// Reads what belongs to the kind "forward".
+pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Made> {
     let start = table.get("start").map(|field| start(&field, robot)).transpose();
     let torque = table.get("torque").map(|field| open_joints(&field, robot)).transpose();
     let prescribed = table.get("prescribed").map(|field| open_joints(&field, robot)).transpose();
     let locked = table.get("locked").map_or_else(|| Ok(HashSet::new()), |field| locked(&field, robot));
     let (torque, prescribed, locked) = (torque?, prescribed?, locked?);
-    let place = &field.node.place;
+    let place = &table.node.place;
     let drives = all(robot.own_joints().map(|joint| {
         let given = |table: &Option<Table<'_>>| table.as_ref().and_then(|table| table.get(joint.name)).is_some();
         let is_locked = locked.contains(joint.name);
@@ -33,21 +34,34 @@ pub(super) fn read(field: &Field<'_>, robot: &Robot, end: Option<f64>) -> Read<M
             let which: Vec<&str> = kinds.iter().filter(|(_, is)| *is).map(|(kind, _)| *kind).collect();
             let message = format!("[motion] moves joint {:?} in more than one way: {}", joint.name, which.join(", "));
             let refusal = place.refuse(RefusalKind::Rule, message);
-            return Err(field.ctx.refuse(refusal.help("leave it in one of them")));
+            return Err(table.ctx.refuse(refusal.help("leave it in one of them")));
         }
         if is_locked {
-            return Ok(DrivePlan::Locked);
+            return Ok((Drive::Locked, json!("locked")));
         }
         if let Some(field) = prescribed.as_ref().and_then(|table| table.get(joint.name)) {
-            return path_of_joint(&field, &joint, end).map(DrivePlan::Prescribed);
+            let (path, record) = path_of_joint(&field, &joint, end)?;
+            return Ok((Drive::Prescribed(path), json!({ "prescribed": record })));
         }
-        match torque.as_ref().and_then(|table| table.get(joint.name)) {
-            Some(field) => force(&field, &joint, end).map(DrivePlan::Force),
-            None => Ok(DrivePlan::Force((0..joint.kind.nv()).map(|_| zero(field)).collect())),
-        }
+        let forces = match torque.as_ref().and_then(|table| table.get(joint.name)) {
+            Some(field) => force(&field, &joint, end)?,
+            None => (0..joint.kind.nv()).map(|_| zero(place)).collect(),
+        };
+        Ok(driven_by(forces))
     }));
     let (q, v) = start?.unwrap_or_else(|| (robot.model().neutral(), vec![0.0; robot.model().nv()]));
-    Ok(MotionPlan::Forward(Box::new(ForwardPlan { q, v, drives: drives?, place: place.clone() })))
+    let (drives, records): (Vec<Drive>, Vec<Value>) = drives?.into_iter().unzip();
+    let records: Map<String, Value> = robot.own_joints().map(|joint| joint.name.to_owned()).zip(records).collect();
+    Ok(ready([("start", json!({ "q": q, "v": v })), ("joints", records.into())], Forward { q, v, drives }))
+}
+
+/// A joint that forces drive, and the record of it.
+fn driven_by(forces: Vec<SignalPlan>) -> (Drive, Value) {
+    let record = match &forces[..] {
+        [only] => only.record(),
+        several => several.iter().map(SignalPlan::record).collect(),
+    };
+    (Drive::Force(forces.into_iter().map(|force| force.signal).collect()), json!({ "torque": record }))
 }
 
 /// `start = { q = {…}, v = {…} }`; what is left out is 0.
@@ -123,16 +137,6 @@ fn force(field: &Field<'_>, joint: &OwnJoint<'_>, end: Option<f64>) -> Read<Vec<
     let table = field.table(&FORCES)?;
     all(FORCES.names().into_iter().map(|name| match table.get(name) {
         Some(field) => signal(&field, false, end),
-        None => Ok(zero(field)),
+        None => Ok(zero(&field.node.place)),
     }))
-}
-
-/// What stands for a signal that is left out.
-pub(super) fn zero(field: &Field<'_>) -> SignalPlan {
-    SignalPlan {
-        signal: Signal::constant(0.0),
-        constant: Some(0.0),
-        written: "0".to_owned(),
-        place: field.node.place.clone(),
-    }
 }

@@ -1,0 +1,85 @@
+//! The gripper follows a path.
+
+use super::joints::{open_joints, rpy, signal};
+use super::{Made, Maker, record};
+use crate::plan::SignalPlan;
+use crate::reader::{Field, Read, Refused, Table, all};
+use crate::refusal::RefusalKind;
+use crate::robot::Robot;
+use serde_json::{Map, Value, json};
+use springpot::integrate::Motion;
+use springpot::model::Model;
+use springpot::model::urdf::FLOATING_BASE;
+use springpot::motion::gripper_path::{Course, Task};
+use springpot::motion::{GripperPath, Trajectory};
+use std::sync::Arc;
+
+/// A path that is followed from near a guess.
+#[derive(Debug)]
+struct Path {
+    task: Task,
+    /// Coordinates near the start (every joint has one), in the order of q, rad or m.
+    guess: Vec<f64>,
+}
+
+impl Maker for Path {
+    fn motion(&self, model: &Model, course: &Course<'_>) -> Motion {
+        let path = GripperPath::new(model, self.task.clone(), &self.guess, course);
+        Trajectory::GripperPath(Box::new(path)).into()
+    }
+
+    fn has_path(&self) -> bool {
+        true
+    }
+}
+
+/// Reads what belongs to the kind "gripper-path".
+pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Made> {
+    if robot.gripper.is_none() {
+        let message = "kind = \"gripper-path\" needs a gripper, but the robot has none";
+        let place = table.get("kind").map_or(&table.node.place, |field| &field.node.place);
+        let right = "write [robot.gripper] with body = \"NAME\" and point = [x, y, z]";
+        table.ctx.refuse(place.refuse(RefusalKind::Missing, message).help(right));
+    }
+    if let Some(joint) = robot.own_joints().find(|joint| joint.kind.nv() != 1) {
+        let name = joint.name;
+        let message = format!("kind = \"gripper-path\" moves joints of one degree, but joint {name:?} is floating");
+        let place = table.get("kind").map_or(&table.node.place, |field| &field.node.place);
+        let right = match &robot.parts.urdf {
+            Some(_) if name == FLOATING_BASE => "leave floating_base out, or write kind = \"prescribed\"",
+            _ => "write kind = \"prescribed\", or a joint of another kind",
+        };
+        return Err(table.ctx.refuse(place.refuse(RefusalKind::Rule, message).help(right)));
+    }
+    let axis = |key: &'static str| {
+        let field = table.require(key)?;
+        signal(&field, true, end)
+    };
+    let (x, y, z) = (axis("x"), axis("y"), axis("z"));
+    let rpy = table.get("rpy").map(|field| rpy(&field, end)).transpose();
+    let guess = table.get("guess").map_or_else(|| Ok(vec![0.0; robot.model().nq()]), |field| guess(&field, robot));
+    let (x, y, z, rpy, guess) = (x?, y?, z?, rpy?, guess?);
+    let gripper = robot.gripper.as_ref().ok_or(Refused)?;
+    let guesses: Map<String, Value> =
+        robot.own_joints().map(|joint| joint.name.to_owned()).zip(guess.iter().map(|guess| json!(guess))).collect();
+    let record = record([
+        ("x", x.record()),
+        ("y", y.record()),
+        ("z", z.record()),
+        ("rpy", json!(rpy.as_ref().map(|rpy| rpy.each_ref().map(SignalPlan::record)))),
+        ("guess", guesses.into()),
+    ]);
+    let model = robot.model();
+    let task = Task {
+        site: model.resolve(&gripper.anchor).expect("an anchor that was read"),
+        frame: model.frame(gripper.anchor.body).expect("a body that was read"),
+        position: [x, y, z].map(|signal| signal.signal),
+        rpy: rpy.map(|rpy| rpy.map(|signal| signal.signal)),
+    };
+    Ok((record, Arc::new(Path { task, guess })))
+}
+
+fn guess(field: &Field<'_>, robot: &Robot) -> Read<Vec<f64>> {
+    let given = open_joints(field, robot)?;
+    all(robot.own_joints().map(|joint| given.get(joint.name).map_or(Ok(0.0), |field| field.number(joint.unit()))))
+}
