@@ -4,7 +4,6 @@ use super::error::RunError;
 use super::settings::Settings;
 use super::system::{Motion, System};
 use crate::actuation::Drive;
-use crate::motion::Trajectory;
 use crate::signal::{Agenda, AgendaError, Signal, Watched};
 use std::sync::atomic::AtomicBool;
 
@@ -88,17 +87,10 @@ impl System {
         let mut watched: Vec<(String, Watched)> = Vec::new();
         let labels = self.model.v_labels();
         match &self.motion {
-            Motion::Given(trajectory) => match &**trajectory {
-                Trajectory::Prescribed(joints) => {
-                    for (j, joint) in self.model.own_joints().zip(joints) {
-                        let name = format!("the motion of joint \"{}\"", self.model.joint_names()[j]);
-                        watched.extend(joint.signals().into_iter().map(|signal| (name.clone(), position(signal))));
-                    }
-                }
-                Trajectory::GripperPath(path) => {
-                    watched.extend(path.signals().map(|signal| ("the gripper's path".to_owned(), position(signal))));
-                }
-            },
+            Motion::Given(trajectory) => {
+                let named = trajectory.named_signals(&self.model).into_iter();
+                watched.extend(named.map(|(name, signal)| (name, position(signal))));
+            }
             Motion::Forward(forward) => {
                 for (j, drive) in self.model.own_joints().zip(&forward.drives) {
                     let names = self.model.v_range(j).map(|k| format!("the torque on \"{}\"", labels[k].name));

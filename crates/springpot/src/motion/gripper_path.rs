@@ -17,16 +17,16 @@ mod wanted;
 
 pub use course::Course;
 pub use error::PathError;
-pub(super) use solver::STEP_TOLERANCE;
 pub use task::Task;
 pub use wanted::Wanted;
 
+use super::source::Source;
 use crate::model::Model;
 use crate::signal::Signal;
 use follow::Follower;
 use hermite::Knots;
 use passage::Passage;
-use solver::{ITERATIONS, Miss, Solver};
+use solver::{ITERATIONS, Miss, STEP_TOLERANCE, Solver};
 use std::fmt;
 
 /// A solved gripper path.
@@ -42,7 +42,7 @@ pub struct GripperPath {
 impl GripperPath {
     /// Follows the path from t = 0 to the end of the `course`, starting near `guess` (nv values).
     ///
-    /// A path that cannot be followed to its end is no error here: [`Self::at`] says so from the time on where it happens. An
+    /// A path that cannot be followed to its end is no error here: [`Source::at`] says so from the time on where it happens. An
     /// interrupted one is a path that ends there.
     pub fn new(model: &Model, task: Task, guess: &[f64], course: &Course) -> Self {
         let (knots, passages, failure) = match Follower::new(Solver::new(model, &task), course) {
@@ -54,12 +54,17 @@ impl GripperPath {
         };
         Self { task, knots, passages, failure }
     }
+}
 
-    /// q, v, a at t and the wanted position.
-    ///
-    /// # Errors
-    /// [`PathError`] from the time on from which the path cannot be followed.
-    pub fn at(&self, model: &Model, t: f64, q: &mut [f64], v: &mut [f64], a: &mut [f64]) -> Result<Wanted, PathError> {
+impl Source for GripperPath {
+    fn at(
+        &self,
+        model: &Model,
+        t: f64,
+        q: &mut [f64],
+        v: &mut [f64],
+        a: &mut [f64],
+    ) -> Result<Option<Wanted>, PathError> {
         let last = self.knots.times().last().copied().unwrap_or(-1.0);
         if let (true, Some(failure)) = (t > last, self.failure) {
             return Err(failure);
@@ -69,7 +74,7 @@ impl GripperPath {
         let next = self.passages.partition_point(|passage| passage.to < t);
         if let Some(passage) = self.passages.get(next).filter(|passage| passage.from <= t) {
             passage.polynomial.at(t, [q, v, a]);
-            return Ok(wanted);
+            return Ok(Some(wanted));
         }
         self.knots.interpolate_into(t, q);
         let mut solver = Solver::new(model, &self.task);
@@ -77,11 +82,27 @@ impl GripperPath {
             return Err(PathError::OutOfReach { t, at: t, distance, angle });
         }
         solver.derivatives_into(&target, q, v, a);
-        Ok(wanted)
+        Ok(Some(wanted))
     }
 
-    /// How long a step from t may be, at most h: as long as a stretch of the path, two knots apart, wherever it leads.
-    pub(super) fn reach(&self, t: f64, h: f64) -> f64 {
+    fn signals(&self) -> Vec<&Signal> {
+        self.task.signals().collect()
+    }
+
+    fn named_signals(&self, _: &Model) -> Vec<(String, &Signal)> {
+        self.task.signals().map(|signal| ("the gripper's path".to_owned(), signal)).collect()
+    }
+
+    fn solved_to(&self) -> f64 {
+        STEP_TOLERANCE
+    }
+
+    fn has_path(&self) -> bool {
+        true
+    }
+
+    /// As long as a stretch of the path, two knots apart, wherever it leads.
+    fn reach(&self, t: f64, h: f64) -> f64 {
         let times = self.knots.times();
         let first = times.partition_point(|knot| *knot <= t).saturating_sub(1);
         let mut reach = h;
@@ -98,14 +119,8 @@ impl GripperPath {
         reach
     }
 
-    /// Where and why the path ends early.
-    pub fn failure(&self) -> Option<PathError> {
+    fn failure(&self) -> Option<PathError> {
         self.failure
-    }
-
-    /// The signals of the path.
-    pub fn signals(&self) -> impl Iterator<Item = &Signal> {
-        self.task.signals()
     }
 }
 

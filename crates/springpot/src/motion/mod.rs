@@ -3,8 +3,10 @@
 mod attitude;
 pub mod gripper_path;
 mod prescribed;
+mod source;
 mod trajectory;
 
 pub use gripper_path::{GripperPath, PathError, Wanted};
 pub use prescribed::{JointPath, PosePath};
+pub use source::Source;
 pub use trajectory::Trajectory;

@@ -1,6 +1,8 @@
 //! Joints that move as signals say.
 
 use super::attitude::Attitude;
+use super::gripper_path::{PathError, Wanted};
+use super::source::Source;
 use crate::model::Model;
 use crate::signal::{Jet, Signal};
 use crate::spatial::Vec3;
@@ -32,10 +34,33 @@ impl JointPath {
     }
 }
 
-/// q (nq), v and a (nv) at t; `joints` are the joints that have coordinates of their own, in their order.
-pub(super) fn at(model: &Model, joints: &[JointPath], t: f64, q: &mut [f64], v: &mut [f64], a: &mut [f64]) {
-    for (j, joint) in model.own_joints().zip(joints) {
-        joint.at(t, &mut q[model.q_range(j)], &mut v[model.v_range(j)], &mut a[model.v_range(j)]);
+/// The joints that have coordinates of their own, in their order.
+impl Source for Vec<JointPath> {
+    fn at(
+        &self,
+        model: &Model,
+        t: f64,
+        q: &mut [f64],
+        v: &mut [f64],
+        a: &mut [f64],
+    ) -> Result<Option<Wanted>, PathError> {
+        for (j, joint) in model.own_joints().zip(self) {
+            joint.at(t, &mut q[model.q_range(j)], &mut v[model.v_range(j)], &mut a[model.v_range(j)]);
+        }
+        Ok(None)
+    }
+
+    fn signals(&self) -> Vec<&Signal> {
+        self.iter().flat_map(JointPath::signals).collect()
+    }
+
+    fn named_signals(&self, model: &Model) -> Vec<(String, &Signal)> {
+        let mut named = Vec::new();
+        for (j, joint) in model.own_joints().zip(self) {
+            let name = format!("the motion of joint \"{}\"", model.joint_names()[j]);
+            named.extend(joint.signals().into_iter().map(|signal| (name.clone(), signal)));
+        }
+        named
     }
 }
 

@@ -1,9 +1,11 @@
 //! Kinematics given in advance, whatever they are made of.
 
-use super::gripper_path::{self, GripperPath, PathError, Wanted};
-use super::prescribed::{self, JointPath};
+use super::gripper_path::{GripperPath, PathError, Wanted};
+use super::prescribed::JointPath;
+use super::source::Source;
 use crate::model::Model;
 use crate::signal::Signal;
+use std::sync::Arc;
 
 /// Kinematics given in advance.
 #[derive(Debug, Clone)]
@@ -12,9 +14,24 @@ pub enum Trajectory {
     Prescribed(Vec<JointPath>),
     /// The gripper follows a path; the coordinates come from inverse kinematics.
     GripperPath(Box<GripperPath>),
+    /// Any other source.
+    Source(Arc<dyn Source>),
 }
 
 impl Trajectory {
+    /// Kinematics that `source` gives.
+    pub fn source(source: impl Source + 'static) -> Self {
+        Self::Source(Arc::new(source))
+    }
+
+    fn asked(&self) -> &dyn Source {
+        match self {
+            Self::Prescribed(joints) => joints,
+            Self::GripperPath(path) => &**path,
+            Self::Source(source) => &**source,
+        }
+    }
+
     /// q (nq values), v and a (nv values each) at t, and where the gripper should be.
     ///
     /// # Errors
@@ -27,47 +44,37 @@ impl Trajectory {
         v: &mut [f64],
         a: &mut [f64],
     ) -> Result<Option<Wanted>, PathError> {
-        match self {
-            Self::Prescribed(joints) => {
-                prescribed::at(model, joints, t, q, v, a);
-                Ok(None)
-            }
-            Self::GripperPath(path) => path.at(model, t, q, v, a).map(Some),
-        }
+        self.asked().at(model, t, q, v, a)
     }
 
     /// The functions of time that it follows.
     pub(crate) fn signals(&self) -> Vec<&Signal> {
-        match self {
-            Self::Prescribed(joints) => joints.iter().flat_map(JointPath::signals).collect(),
-            Self::GripperPath(path) => path.signals().collect(),
-        }
+        self.asked().signals()
+    }
+
+    /// The same, each with what messages call it.
+    pub(crate) fn named_signals(&self, model: &Model) -> Vec<(String, &Signal)> {
+        self.asked().named_signals(model)
     }
 
     /// How far coordinates may be from where the path has them, rad or m: 0 where signals say it.
     pub(crate) fn solved_to(&self) -> f64 {
-        if let Self::GripperPath(_) = self { gripper_path::STEP_TOLERANCE } else { 0.0 }
+        self.asked().solved_to()
     }
 
     /// Whether it says where the gripper should be.
     pub fn has_path(&self) -> bool {
-        matches!(self, Self::GripperPath(_))
+        self.asked().has_path()
     }
 
     /// How long a step from t may be, at most h, so that its nodes see what the coordinates do beyond what the signals do: near
     /// singular configurations a gripper path turns joints at once.
     pub fn reach(&self, t: f64, h: f64) -> f64 {
-        match self {
-            Self::Prescribed(_) => h,
-            Self::GripperPath(path) => path.reach(t, h),
-        }
+        self.asked().reach(t, h)
     }
 
     /// Where and why the motion ends early, if it does.
     pub fn failure(&self) -> Option<PathError> {
-        match self {
-            Self::Prescribed(_) => None,
-            Self::GripperPath(path) => path.failure(),
-        }
+        self.asked().failure()
     }
 }

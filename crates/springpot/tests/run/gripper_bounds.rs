@@ -2,8 +2,8 @@
 
 use crate::support::{cases, run, run_case};
 use springpot::integrate::{RunError, Stop};
-use springpot::motion::PathError;
 use springpot::motion::gripper_path::{Course, GripperPath, Task};
+use springpot::motion::{PathError, Source};
 use springpot::signal::{Expression, Signal};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
