@@ -29,6 +29,7 @@ Examples:
   springpot run scenarios/thermoviscoelastic_order.toml
   springpot run arm.toml --set element.strut.alpha=0.3 --out soft
   springpot run arm.toml --set 'element.strut.T=40 degC' --out warm
+  springpot run arm.toml --sweep element.strut.alpha=0.2,0.5,0.8
   springpot run arm.toml --format parquet
   springpot run arm.toml --checkpoint-every '10 s'
   springpot run --resume results/arm
@@ -225,6 +226,9 @@ pub(crate) struct RunOptions {
     /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE", conflicts_with = "resume")]
     pub(crate) overrides: Vec<String>,
+    /// Sweep a parameter: PATH=v1,v2,... or PATH=from:to:count[:log]; may be given several times
+    #[arg(long = "sweep", value_name = "PATH=VALUES", conflicts_with = "resume")]
+    pub(crate) sweeps: Vec<String>,
     /// Folder of the results [default: results/<file stem>]
     #[arg(long, value_name = "DIR", conflicts_with = "resume")]
     pub(crate) out: Option<PathBuf>,
@@ -257,8 +261,11 @@ pub(crate) struct CheckOptions {
     /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,
+    /// Sweep a parameter: PATH=v1,v2,... or PATH=from:to:count[:log]; may be given several times
+    #[arg(long = "sweep", value_name = "PATH=VALUES")]
+    pub(crate) sweeps: Vec<String>,
     /// Print the JSON schema of scenario files, with which editors complete them
-    #[arg(long, conflicts_with_all = ["file", "overrides", "quiet"])]
+    #[arg(long, conflicts_with_all = ["file", "overrides", "sweeps", "quiet"])]
     pub(crate) schema: bool,
     /// Print nothing but warnings and errors
     #[arg(long, short)]

@@ -45,7 +45,9 @@ pub(crate) fn check(options: &CheckOptions, catalog: &Catalog) -> Ending {
 
 /// Prints the plan of the first case, and what is known to fail or deserves a warning in any.
 fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<Ending, Refusals> {
-    let cases = diagnostic::open(file, &options.overrides, catalog)?;
+    let mut scenario = diagnostic::scenario(file, &options.overrides)?;
+    options.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
+    let cases = scenario.cases(catalog)?;
     let plan = cases.plan(0)?;
     let system = plan.system();
     Layout::new(&cases, &system)?;

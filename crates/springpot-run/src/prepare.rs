@@ -20,6 +20,8 @@ pub struct NewRun {
     pub file: PathBuf,
     /// Values that are set, `PATH=VALUE`.
     pub overrides: Vec<String>,
+    /// Parameters that are swept, `PATH=v1,v2,…` ([`Scenario::sweep`]).
+    pub sweeps: Vec<String>,
     /// The folder of the results; `None`: `results/<file stem>` in the current folder.
     pub out: Option<PathBuf>,
     /// The format of the rows at the end.
@@ -34,7 +36,8 @@ impl NewRun {
     /// A run of a scenario's file with nothing changed.
     pub fn of(file: impl Into<PathBuf>) -> Self {
         let format = Format::default();
-        Self { file: file.into(), overrides: Vec::new(), out: None, format, figures: true, checkpoint_every: None }
+        let (overrides, sweeps) = (Vec::new(), Vec::new());
+        Self { file: file.into(), overrides, sweeps, out: None, format, figures: true, checkpoint_every: None }
     }
 }
 
@@ -111,10 +114,11 @@ impl Prepared {
     /// # Errors
     /// The scenario is refused, or the folder takes no results of it.
     pub fn begin(asked: NewRun, with: Surroundings<'_>, warn: Warn<'_>) -> Result<Self, BeginError> {
-        let NewRun { file, overrides, out, format, figures, checkpoint_every: every } = asked;
+        let NewRun { file, overrides, sweeps, out, format, figures, checkpoint_every: every } = asked;
         let out = out.unwrap_or_else(|| default_folder(&file));
         let mut scenario = Scenario::read(&file)?;
         overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
+        sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
         let Read { cases, plan, system, layout } = read(&scenario, with, warn)?;
         let no_results = |error| BeginError::Folder { folder: out.clone(), error };
         let mut folder = Folder::open(&out, with.disk.clone(), with.holder).map_err(no_results)?;
@@ -124,8 +128,8 @@ impl Prepared {
         let targets = Targets { figures: &names, checkpoints: every.is_some(), is_input: &is_input };
         folder.begin(targets).map_err(no_results)?;
         let checkpoints = every.map(|every| {
-            let origin = Origin::of(&file, &scenario, &overrides, figures, every)?;
-            Checkpoints::begin(&folder, Origin { format, ..origin }, &cases, &plan, &system)
+            let origin = Origin::of(&file, &scenario, figures, every)?;
+            Checkpoints::begin(&folder, Origin { format, overrides, sweeps, ..origin }, &cases, &plan, &system)
         });
         let checkpoints = checkpoints.transpose().map_err(|error| no_results(error.into()))?;
         Ok(Self { cases, plan, system, layout, folder, checkpoints, figures, format })

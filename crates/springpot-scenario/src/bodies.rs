@@ -1,5 +1,6 @@
 //! `[[robot.body]]`: a robot body by body.
 
+use super::constants;
 use super::keys::{BODY, FRICTION, INERTIA, JOINT, WITH_AXIS};
 use super::plan::BodyPlaces;
 use super::reader::{Field, Read, Refused, Table, all};
@@ -179,7 +180,7 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
 
 /// A number, or `{ force = …, speed = …, stick = … }`.
 fn friction(field: &Field<'_>, slides: bool, places: &mut BodyPlaces) -> Read<(f64, FrictionLaw)> {
-    if field.node.entries().is_none() {
+    if field.node.entries().is_none() || constants::is_expression(field.node) {
         return Ok((field.joint_quantity(slides)?, FrictionLaw::default()));
     }
     let table = field.table(&FRICTION)?;

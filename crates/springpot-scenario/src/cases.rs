@@ -11,7 +11,7 @@ use super::root::SCENARIO;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
 use super::urdf::UrdfCache;
-use super::{Scenario, elements, motion, robot, time};
+use super::{Scenario, constants, elements, motion, overrides, robot, time};
 use springpot::law::Catalog;
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
@@ -66,7 +66,7 @@ impl Cases {
         let cases = Self::with_sweeps(scenario, catalog)?;
         let document = cases.document_at(&vec![0; cases.axes.len()]);
         let ctx = cases.context();
-        let read = Table::of(&ctx, &document, "the scenario", &SCENARIO).and_then(|root| robot::read(&root));
+        let read = root(&ctx, &document).and_then(|root| robot::read(&root));
         ctx.finish(read)
     }
 
@@ -141,10 +141,10 @@ impl Cases {
         for (axis, &k) in position.iter().enumerate() {
             let targets = 0..self.axes[axis].targets.len();
             match self.numbers[axis].get(k) {
-                Some(numbers) => values.extend(targets.map(|at| self.swept_value(axis, k, numbers[at]))),
+                Some(numbers) => values.extend(targets.map(|at| self.swept_value((axis, at), k, numbers[at]))),
                 None => {
                     let numbers = self.read_numbers(axis, k);
-                    values.extend(targets.map(|at| self.swept_value(axis, k, numbers[at])));
+                    values.extend(targets.map(|at| self.swept_value((axis, at), k, numbers[at])));
                 }
             }
         }
@@ -155,7 +155,7 @@ impl Cases {
     pub fn labels(&self, i: usize) -> Vec<String> {
         let position = self.position(i);
         let axes = self.axes.iter().zip(position);
-        axes.flat_map(|(axis, k)| axis.targets.iter().map(move |_| axis.label(k))).collect()
+        axes.flat_map(|(axis, k)| (0..axis.targets.len()).map(move |at| axis.label_of(k, at))).collect()
     }
 
     /// The swept values of case `i` by name, as written: `element.strut.alpha = 0.5, …`; empty where nothing is swept.
@@ -201,8 +201,8 @@ impl Cases {
         Context::new(&self.catalog, &self.folder, &self.tables, &self.robots)
     }
 
-    fn swept_value(&self, axis: usize, k: usize, number: Option<f64>) -> SweptValue {
-        number.map_or_else(|| SweptValue::Text(self.axes[axis].label(k)), SweptValue::Number)
+    fn swept_value(&self, (axis, at): (usize, usize), k: usize, number: Option<f64>) -> SweptValue {
+        number.map_or_else(|| SweptValue::Text(self.axes[axis].label_of(k, at)), SweptValue::Number)
     }
 
     /// The document with the swept values of one case.
@@ -210,8 +210,8 @@ impl Cases {
         let mut document = self.document.clone();
         let mut tag = 0;
         for (axis, &k) in self.axes.iter().zip(position) {
-            for target in &axis.targets {
-                path::set(&mut document, target, axis.node(k, tag));
+            for (at, target) in axis.targets.iter().enumerate() {
+                path::set(&mut document, target, axis.node(k, at, tag));
                 tag += 1;
             }
         }
@@ -241,19 +241,14 @@ impl Cases {
         let mut document = std::mem::replace(&mut self.document, Node::empty_table(&scenario.document.place));
         let ctx = self.context();
         let read = (|| {
-            let mut set = Vec::new();
-            for item in &scenario.overrides {
-                let target = path::resolve(&ctx, &document, &item.path, &item.place)?;
-                path::set(&mut document, &target, item.value.clone());
-                set.push(target);
-            }
+            let set = overrides::apply(&ctx, scenario, &mut document)?;
             let root = Table::of(&ctx, &document, "the scenario", &SCENARIO)?;
             let axes = sweep::read(&root)?;
             for swept in axes.iter().flat_map(|axis| &axis.targets) {
                 if let Some(target) = set.iter().find(|target| target.overlaps(swept)) {
                     let message = format!("--set {} has no effect: it is swept", target.written);
                     let refusal = target.place.refuse(RefusalKind::Rule, message);
-                    return Err(ctx.refuse(refusal.help("remove its [[sweep]], or set what is not swept")));
+                    return Err(ctx.refuse(refusal.help("sweep it: --sweep PATH=v1,v2,…; or remove its [[sweep]]")));
                 }
             }
             Ok(axes)
@@ -265,9 +260,27 @@ impl Cases {
         Ok(())
     }
 
+    /// Reads what the file itself says where something is swept, each beside the first values of all other sweeps.
+    fn judge_unswept(&self) -> Result<(), Refusals> {
+        for (axis, swept) in self.axes.iter().enumerate() {
+            let written: Vec<Option<&Node>> =
+                swept.targets.iter().map(|target| path::get(&self.document, target)).collect();
+            let Some(written) = written.into_iter().collect::<Option<Vec<_>>>() else { continue };
+            let mut document = self.document_at(&vec![0; self.axes.len()]);
+            for (target, node) in self.axes[axis].targets.iter().zip(written) {
+                path::set(&mut document, target, node.clone());
+            }
+            let ctx = self.context();
+            let read = read_plan(&ctx, &document);
+            ctx.finish(read)?;
+        }
+        Ok(())
+    }
+
     /// Plans the first case, then every other value of every sweep with the rest at their first values.
     fn try_values(&mut self) -> Result<(), Refusals> {
         let first = self.plan(0)?;
+        self.judge_unswept()?;
         let columns = columns_of(&first);
         let losses = Cell::new(has_joint_losses(&first));
         let mut numbers = Vec::with_capacity(self.axes.len());
@@ -284,7 +297,7 @@ impl Cases {
                     if columns_of(&plan) == columns {
                         return Ok(());
                     }
-                    let place: Place = values.node(k, 0).place;
+                    let place: Place = values.node(k, 0, 0).place;
                     let what = values.targets.first().map_or("", |target| target.written.as_str());
                     let message =
                         format!("{what} = {}: the case has other columns than the first one", values.label(k));
@@ -306,9 +319,10 @@ impl Cases {
     #[allow(clippy::type_complexity)]
     fn read_figures(&self, ctx: &Context<'_>) -> Read<(Arc<[FigurePlan]>, Option<Arc<[ColumnGlob]>>)> {
         let root = Table::of(ctx, &self.document, "the scenario", &SCENARIO)?;
-        let labels: Vec<OnceCell<HashMap<String, usize>>> = self.axes.iter().map(|_| OnceCell::new()).collect();
+        let unread = |axis: &Axis| axis.targets.iter().map(|_| OnceCell::new()).collect();
+        let labels: Vec<Vec<OnceCell<HashMap<String, usize>>>> = self.axes.iter().map(unread).collect();
         let figures = figures::read(&root, &self.axes, &|axis, at, node| {
-            let labels = labels[axis].get_or_init(|| self.axes[axis].labels());
+            let labels = labels[axis][at].get_or_init(|| self.axes[axis].labels(at));
             labels.get(&node.label()).copied().or_else(|| self.find(axis, at, node))
         });
         let columns = figures::read_columns(&root);
@@ -343,9 +357,17 @@ fn columns_of(plan: &Plan) -> Vec<String> {
     observables.quantities().into_iter().map(|quantity| observables.named(quantity).to_string()).collect()
 }
 
+/// The whole scenario, its constants known to the context.
+fn root<'a>(ctx: &'a Context<'a>, document: &'a Node) -> Read<Table<'a>> {
+    let root = Table::of(ctx, document, "the scenario", &SCENARIO)?;
+    // What else is wrong is told all the same.
+    _ = constants::read(&root);
+    Ok(root)
+}
+
 /// Reads everything but sweeps and what is the same in every case.
 fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
-    let root = Table::of(ctx, document, "the scenario", &SCENARIO)?;
+    let root = root(ctx, document)?;
     let title = root.get("title").map(|field| field.text().map(str::to_owned)).transpose();
     let time = time::read(&root);
     let settings = time::read_solver(&root, &time);
@@ -367,7 +389,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         let help = "leave the scheme out: named schemes need a motion that is given in advance";
         return Err(ctx.refuse(refusal.help(help)));
     }
-    Ok(Plan {
+    let mut plan = Plan {
         title: title?,
         gravity: robot.gravity,
         bodies: robot.parts.bodies,
@@ -381,5 +403,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         settings: time.and(settings)?,
         figures: Arc::new([]),
         columns: None,
-    })
+    };
+    plan.rest_at_start();
+    Ok(plan)
 }

@@ -1,7 +1,7 @@
 //! `[[element]]`: anchors, law, parameters, inputs.
 
 use super::document::shorten;
-use super::keys::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
+use super::keys::{AT_START, ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
 use super::names;
 use super::plan::{ElementPlan, SignalPlan};
 use super::reader::{Field, Read, Refused, Table, all};
@@ -107,8 +107,11 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     let (inputs, mut element) = (inputs?, element?);
     element.inputs = inputs.iter().map(|input| input.signal.clone()).collect();
     element.scheme = scheme?;
-    table.fill(ELEMENT_FIELDS, &mut element)?;
-    Ok(ElementPlan { element, from, to, parameters, inputs, place })
+    let rest_at_start = table.get("rest_length").is_some_and(|field| field.node.text() == Some(AT_START));
+    if !rest_at_start {
+        table.fill(ELEMENT_FIELDS, &mut element)?;
+    }
+    Ok(ElementPlan { element, rest_at_start, from, to, parameters, inputs, place })
 }
 
 fn law<'a>(field: &Field<'a>) -> Read<&'a Arc<Entry>> {

@@ -11,7 +11,12 @@ impl Scenario {
     /// Every file there is that a text of the scenario leads to, be it in the file, swept or set, from the root of the file system.
     pub fn named_files(&self) -> Vec<PathBuf> {
         let mut texts = Vec::new();
-        self.overrides.iter().map(|one| &one.value).chain([&self.document]).for_each(|node| collect(node, &mut texts));
+        self.overrides
+            .iter()
+            .chain(&self.sweeps)
+            .map(|one| &one.value)
+            .chain([&self.document])
+            .for_each(|node| collect(node, &mut texts));
         texts.sort_unstable();
         texts.dedup();
         let paths = texts.into_iter().filter_map(|text| self.folder.join(text).canonicalize().ok());

@@ -36,6 +36,7 @@
 
 mod bodies;
 mod cases;
+mod constants;
 pub mod csv;
 mod document;
 mod elements;
@@ -45,6 +46,7 @@ mod keys;
 mod mistaken;
 mod motion;
 mod names;
+mod overrides;
 mod path;
 mod plan;
 mod reader;
@@ -71,6 +73,7 @@ pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use schema::json_schema;
 
 use document::{MAX_BYTES, Node};
+use overrides::Override;
 use robot::Robot;
 use springpot::law::Catalog;
 use std::io::Read as _;
@@ -84,14 +87,8 @@ pub struct Scenario {
     source: Arc<Source>,
     folder: PathBuf,
     overrides: Vec<Override>,
-}
-
-/// One `--set PATH=VALUE`.
-#[derive(Debug, Clone)]
-struct Override {
-    path: String,
-    place: Place,
-    value: Node,
+    /// Sweeps that take the place of its own, or stand beside them: paths and `values`.
+    sweeps: Vec<Override>,
 }
 
 impl Scenario {
@@ -156,52 +153,12 @@ impl Scenario {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let source = Arc::new(Source { name, text: text.into() });
         let document = Node::document(&source)?;
-        Ok(Self { document, source, folder: folder.into(), overrides: Vec::new() })
+        Ok(Self { document, source, folder: folder.into(), overrides: Vec::new(), sweeps: Vec::new() })
     }
 
     /// The text as written.
     pub fn source(&self) -> &Source {
         &self.source
-    }
-
-    /// Overrides one value: `PATH=VALUE`, as in `element.strut.alpha=0.5`. VALUE is read as a TOML value, else as a text.
-    /// What the path leads to is checked with everything else, in [`Scenario::cases`].
-    ///
-    /// # Errors
-    /// No `=`, an empty path or an empty value.
-    pub fn set(&mut self, assignment: &str) -> Result<(), Refusals> {
-        let source = Arc::new(Source { name: "--set".to_owned(), text: assignment.into() });
-        let place = |span| Place { source: source.clone(), span };
-        let refuse = |message: &str| {
-            let refusal = place(0..assignment.len()).refuse(RefusalKind::Syntax, message);
-            refusal.help("write PATH=VALUE, as in element.strut.alpha=0.5 or element.strut.T=\"25 degC\"")
-        };
-        if assignment.len() as u64 > MAX_BYTES {
-            return Err(refuse("--set takes no more than 4 MiB").into());
-        }
-        let Some(equals) = path::equals_sign(assignment) else {
-            return Err(refuse(&format!("--set {:?} has no `=`", document::shorten(assignment))).into());
-        };
-        let value = assignment[equals + 1..].trim();
-        let path = assignment[..equals].trim();
-        if value.is_empty() || path.is_empty() {
-            let what = if path.is_empty() { "path" } else { "value" };
-            return Err(refuse(&format!("--set {:?} has no {what}", document::shorten(assignment))).into());
-        }
-        let start = equals + 1 + (assignment[equals + 1..].len() - assignment[equals + 1..].trim_start().len());
-        let span = start..start + value.len();
-        let value = match Node::value(&source, span.clone())? {
-            Some(node) => node,
-            None => Node { value: document::Value::Text(value.to_owned()), place: place(span), tag: None },
-        };
-        let path_start = assignment.len() - assignment.trim_start().len();
-        let path_place = place(path_start..path_start + path.len());
-        if let Some(earlier) = self.overrides.iter().find(|earlier| earlier.path == path) {
-            let message = format!("{path} is set twice, and was {} before", earlier.value.written());
-            return Err(path_place.refuse(RefusalKind::Rule, message).help("leave one of them out").into());
-        }
-        self.overrides.push(Override { path: path.to_owned(), place: path_place, value });
-        Ok(())
     }
 
     /// The one case that the values of the file itself make: its sweeps are dropped, and its figures with them, which may ask for swept values.

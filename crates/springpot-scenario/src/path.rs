@@ -36,10 +36,15 @@ impl Target {
 
     /// The top-level key and the last one.
     pub(crate) fn ends(&self) -> (&str, &str) {
-        match (self.steps.first(), self.steps.last()) {
-            (Some(Step::Key(first)), Some(Step::Key(last))) => (first, last),
-            _ => ("", ""),
-        }
+        (key(self.steps.first()), key(self.steps.last()))
+    }
+}
+
+/// The key of a step by name.
+fn key(step: Option<&Step>) -> &str {
+    match step {
+        Some(Step::Key(key)) => key,
+        _ => "",
     }
 }
 
@@ -108,7 +113,7 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
     };
     if keys[0] == "sweep" {
         let message = format!("{:?} is not a path: a [[sweep]] has no name", shorten(path));
-        return Err(refuse(RefusalKind::BadName, message, "set the parameter in the file's [[sweep]]".to_owned()));
+        return Err(refuse(RefusalKind::BadName, message, "write --sweep PATH=v1,v2,…".to_owned()));
     }
     let mut node = Some(document);
     let mut steps = Vec::with_capacity(keys.len() + 1);
@@ -150,6 +155,16 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
                 steps.push(Step::Index(index));
                 node = Some(&items[index]);
             }
+            Value::Array(items) if items.iter().all(|item| item.entries().is_none()) && !items.is_empty() => {
+                let Some(index) = key.parse().ok().filter(|&index: &usize| index < items.len()) else {
+                    let message =
+                        format!("path {:?}: `{}` has no component `{}`", shorten(path), walked(), shorten(key));
+                    let help = format!("components count from 0: 0 to {}", items.len() - 1);
+                    return Err(refuse(RefusalKind::UnknownName, message, help));
+                };
+                steps.push(Step::Index(index));
+                node = Some(&items[index]);
+            }
             _ => {
                 let message = format!("path {:?}: `{}` is {} and has no keys", shorten(path), walked(), here.kind());
                 let help = format!("end the path at `{}`; an array is given as a whole", walked());
@@ -157,7 +172,8 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
             }
         }
     }
-    if matches!(steps.last(), Some(Step::Index(_))) || (keys.len() == 1 && node.is_some_and(is_section)) {
+    let is_table = node.is_some_and(|node| node.entries().is_some());
+    if matches!(steps.last(), Some(Step::Index(_))) && is_table || (keys.len() == 1 && node.is_some_and(is_section)) {
         let message = format!("path {:?} leads to a whole table", shorten(path));
         return Err(refuse(RefusalKind::WrongType, message, "go on to one of its keys".to_owned()));
     }
@@ -216,6 +232,15 @@ fn names_of_element<'a>(ctx: &Context<'a>, element: &Node) -> Option<Vec<&'a str
     let parameters = law.params.iter().map(|param| &*param.name);
     let inputs = law.inputs.iter().map(|input| &*input.name);
     Some(parameters.chain(inputs).chain(ELEMENT.names()).collect())
+}
+
+/// What stands where `target` leads.
+pub(crate) fn get<'n>(document: &'n Node, target: &Target) -> Option<&'n Node> {
+    target.steps.iter().try_fold(document, |node, step| match (step, &node.value) {
+        (Step::Index(index), Value::Array(items)) => items.get(*index).map(|item| &**item),
+        (Step::Key(key), Value::Table(_)) => node.get(key).map(|node| &**node),
+        _ => None,
+    })
 }
 
 /// Puts `value` where `target` leads; tables on the way are made where they lack.

@@ -126,6 +126,8 @@ pub struct SignalPlan {
 pub struct ElementPlan {
     /// The element.
     pub element: Element,
+    /// Whether its rest length is its length at t = 0 of this case.
+    pub rest_at_start: bool,
     /// Its first end.
     pub from: Anchor,
     /// Its second end.

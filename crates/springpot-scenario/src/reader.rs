@@ -1,6 +1,7 @@
 //! Reading tables by hand: every key is asked for by name, everything wrong is noted with its place.
 
-use super::document::{Entry, Node, Value, shorten};
+use super::constants::{self, Constant};
+use super::document::{self, Entry, Node, Value, shorten};
 use super::keys::{self, Bound, Key, Keys, Need, Shape, Slot};
 use super::names;
 use super::refusal::{Refusal, RefusalKind, Refusals};
@@ -33,11 +34,14 @@ pub(crate) struct Context<'a> {
     refusals: RefCell<Vec<Refusal>>,
     /// SI value of every swept number, by tag.
     swept: RefCell<Vec<Option<f64>>>,
+    /// The constants read so far.
+    constants: RefCell<Vec<Constant>>,
 }
 
 impl<'a> Context<'a> {
     pub(crate) fn new(catalog: &'a Catalog, folder: &'a Path, tables: &'a CsvCache, robots: &'a UrdfCache) -> Self {
-        Self { catalog, folder, tables, robots, refusals: RefCell::default(), swept: RefCell::default() }
+        let (refusals, swept, constants) = <(RefCell<_>, RefCell<_>, RefCell<_>)>::default();
+        Self { catalog, folder, tables, robots, refusals, swept, constants }
     }
 
     /// Notes a refusal.
@@ -61,6 +65,16 @@ impl<'a> Context<'a> {
             Ok(value) if refusals.is_empty() => Ok(value),
             _ => Err(Refusals::of(refusals)),
         }
+    }
+
+    /// Makes a constant known to all expressions that are read from now on.
+    pub(crate) fn know(&self, name: &str, value: f64) {
+        self.constants.borrow_mut().push((name.to_owned(), value));
+    }
+
+    /// The constants read so far.
+    pub(crate) fn constants(&self) -> std::cell::Ref<'_, Vec<Constant>> {
+        self.constants.borrow()
     }
 
     /// Remembers the SI value of a swept number.
@@ -108,6 +122,12 @@ impl<'a> Table<'a> {
         keys: &'static Keys,
     ) -> Read<Self> {
         Ok(Self { keys: Some(keys), ..Self::open(ctx, node, what, &keys.names())? })
+    }
+
+    /// Opens `node` as a table with any keys.
+    pub(crate) fn of_any(ctx: &'a Context<'a>, node: &'a Node, what: impl Into<Arc<str>>) -> Read<Self> {
+        let keys: Vec<&str> = node.entries().unwrap_or_default().iter().map(|entry| entry.key.as_str()).collect();
+        Self::open(ctx, node, what, &keys)
     }
 
     /// Opens `node` as a table of the kind `kind` with those of `keys` that belong to it; `reason` may say why another one cannot
@@ -368,7 +388,14 @@ impl<'a> Field<'a> {
 
     /// A whole number from `low` to `high`.
     fn integer(&self, low: i64, high: i64) -> Read<i64> {
-        match self.node.value {
+        let value = match &self.node.value {
+            Value::Table(_) if constants::is_expression(self.node) => {
+                let value = constants::expression(self, Some(""), &|_| None)?;
+                Value::Number { value, integer: document::whole(value) }
+            }
+            value => value.clone(),
+        };
+        match value {
             Value::Number { integer: Some(integer), .. } if (low..=high).contains(&integer) => {
                 self.ctx.note_swept(self.node, integer as f64);
                 Ok(integer)
@@ -399,6 +426,9 @@ impl<'a> Field<'a> {
                 let refusal = place.refuse(RefusalKind::BadQuantity, format!("{self}: {error}"));
                 self.ctx.refuse(refusal.label(unit_label(unit)).help(unit_help(unit)))
             })?,
+            Value::Table(_) if constants::is_expression(self.node) => {
+                constants::expression(self, Some(unit), exponents)?
+            }
             _ => return Err(self.wrong_type(&format!("a number{}", or_quantity(unit)))),
         };
         if !value.is_finite() {
@@ -417,7 +447,7 @@ impl<'a> Field<'a> {
     /// As [`Self::quantity`], of a joint that slides or turns.
     pub(crate) fn joint_quantity(&self, slides: bool) -> Read<f64> {
         let (unit, bound) = match self.row.map(|row| row.shape) {
-            Some(Shape::Number(unit, bound)) => (unit, bound),
+            Some(Shape::Number(unit, bound) | Shape::NumberOrWord(unit, bound, _)) => (unit, bound),
             Some(Shape::JointNumber(units, bound) | Shape::JointNumberOr(units, bound, _)) => {
                 (units[usize::from(slides)], bound)
             }

@@ -8,6 +8,7 @@ pub(crate) static SCENARIO: Keys = Keys {
     words: "A Springpot scenario.",
     keys: &[
         key("title", Shape::Text, Need::Optional, "Title, shown by check and in run.json."),
+        key("constants", Shape::Scalars, Need::Optional, "Numbers by name, for every expression."),
         key(
             "robot",
             Shape::Table(&ROBOT),

@@ -103,7 +103,7 @@ fn constant(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
 }
 
 fn expression(field: &Field<'_>, text: &str) -> Read<Expression> {
-    Expression::parse(text).map_err(|error| {
+    Expression::parse_with(text, &field.ctx.constants()).map_err(|error| {
         let place = field.node.place_in_text(error.span());
         field.ctx.refuse(
             place

@@ -1,6 +1,6 @@
 //! `[[sweep]]`: which parameters move, and through which values.
 
-use super::document::{Node, Value, shorten, shortest};
+use super::document::{Node, Value, shorten, shortest, whole};
 use super::keys::{MAX_BLOCKS, MAX_CASES, MAX_TOGETHER, SPAN, SWEEP};
 use super::path::{self, Target};
 use super::reader::{Field, Read, Table, all};
@@ -20,7 +20,10 @@ pub(crate) struct Axis {
 /// The values of a sweep.
 #[derive(Debug, Clone)]
 pub(crate) enum Values {
+    /// What all parameters take.
     List(Vec<Arc<Node>>),
+    /// What each of them takes, value by value.
+    Zipped(Vec<Vec<Arc<Node>>>),
     Span(Span),
 }
 
@@ -40,14 +43,16 @@ impl Axis {
     pub(crate) fn len(&self) -> usize {
         match &self.values {
             Values::List(list) => list.len(),
+            Values::Zipped(rows) => rows.len(),
             Values::Span(span) => span.count,
         }
     }
 
-    /// Value `k` as a node that carries `tag`.
-    pub(crate) fn node(&self, k: usize, tag: usize) -> Node {
+    /// Value `k` of the parameter `at` as a node that carries `tag`.
+    pub(crate) fn node(&self, k: usize, at: usize, tag: usize) -> Node {
         match &self.values {
             Values::List(list) => Node { tag: Some(tag), ..Node::clone(&list[k]) },
+            Values::Zipped(rows) => Node { tag: Some(tag), ..Node::clone(&rows[k][at]) },
             Values::Span(span) => {
                 let number = span.number(k);
                 let value = if span.unit.is_empty() {
@@ -60,10 +65,11 @@ impl Axis {
         }
     }
 
-    /// Index of every label of a list, for looking up many.
-    pub(crate) fn labels(&self) -> HashMap<String, usize> {
+    /// Index of every label of a list that the parameter `at` takes, for looking up many.
+    pub(crate) fn labels(&self, at: usize) -> HashMap<String, usize> {
         match &self.values {
             Values::List(list) => list.iter().enumerate().rev().map(|(k, node)| (node.label(), k)).collect(),
+            Values::Zipped(rows) => rows.iter().enumerate().rev().map(|(k, row)| (row[at].label(), k)).collect(),
             Values::Span(_) => HashMap::new(),
         }
     }
@@ -82,10 +88,19 @@ impl Axis {
         }
     }
 
-    /// Value `k` for a legend, as written.
+    /// Value `k` for a legend, as written; of parameters that take their own, all of them.
     pub(crate) fn label(&self, k: usize) -> String {
         match &self.values {
+            Values::Zipped(rows) => rows[k].iter().map(|node| node.label()).collect::<Vec<_>>().join(", "),
+            _ => self.label_of(k, 0),
+        }
+    }
+
+    /// Value `k` of the parameter `at`, as written.
+    pub(crate) fn label_of(&self, k: usize, at: usize) -> String {
+        match &self.values {
             Values::List(list) => list[k].label(),
+            Values::Zipped(rows) => rows[k][at].label(),
             Values::Span(span) if span.unit.is_empty() => shortest(span.number(k)),
             Values::Span(span) => format!("{} {}", shortest(span.number(k)), span.unit),
         }
@@ -123,11 +138,6 @@ impl Span {
         };
         format!("{exact:.14e}").parse().unwrap_or(exact)
     }
-}
-
-fn whole(number: f64) -> Option<i64> {
-    const EXACT: f64 = 9_007_199_254_740_992.0;
-    (number.fract() == 0.0 && number.abs() <= EXACT).then_some(number as i64)
 }
 
 /// Reads every `[[sweep]]`. The first block is the outer loop of the grid, the last runs fastest.
@@ -173,8 +183,11 @@ fn axis(root: &Table<'_>, item: &Field<'_>, i: usize) -> Read<Axis> {
     let what = format!("[[sweep]] {}", i + 1);
     let table = Table::of_kind(item.ctx, item.node, what, (&SWEEP, ""), direct)?;
     let targets = table.require("parameter").and_then(|field| targets(&field, root.node));
-    let values = table.require("values").and_then(|field| values(&field));
-    Ok(Axis { targets: targets?, values: values?, place: item.node.place.clone() })
+    let values_field = table.require("values");
+    let values = values_field.as_ref().map_err(|refused| *refused).and_then(values);
+    let (targets, values) = (targets?, values?);
+    let values = zipped(values, targets.len(), &values_field?)?;
+    Ok(Axis { values, targets, place: item.node.place.clone() })
 }
 
 fn targets(field: &Field<'_>, document: &Node) -> Read<Vec<Target>> {
@@ -197,6 +210,23 @@ fn targets(field: &Field<'_>, document: &Node) -> Read<Vec<Target>> {
             _ => Ok(target),
         }
     }))
+}
+
+/// Arrays as long as there are parameters give each of them its own value.
+fn zipped(values: Values, count: usize, field: &Field<'_>) -> Read<Values> {
+    let Values::List(items) = &values else { return Ok(values) };
+    let row = |item: &Arc<Node>| item.items().filter(|row| row.len() == count).map(<[_]>::to_vec);
+    if count == 1 || !items.iter().any(|item| row(item).is_some()) {
+        return Ok(values);
+    }
+    let rows = items.iter().map(|item| {
+        row(item).ok_or_else(|| {
+            let item = field.item(item);
+            let message = format!("holds {} beside values for each of {count} parameters", item.node.written());
+            item.refuse(RefusalKind::Rule, message, Some(format!("write {count} values in each pair of brackets")))
+        })
+    });
+    all(rows.collect::<Vec<_>>()).map(Values::Zipped)
 }
 
 fn values(field: &Field<'_>) -> Read<Values> {

@@ -6,6 +6,9 @@ use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::Course;
 use springpot::observe::Observables;
 
+/// So much of a gripper path is solved where its start alone is wanted.
+const BEGINNING: f64 = 1e-9;
+
 impl Plan {
     /// The robot, its elements and its motion. A gripper path is solved here, as far as it can be followed.
     pub fn system(&self) -> System {
@@ -21,6 +24,20 @@ impl Plan {
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: self.model.clone(),
             tells_joint_losses: self.tells_joint_losses,
+        }
+    }
+
+    /// Gives the elements that rest where they start their length at t = 0. Where the motion cannot start, a run says why.
+    pub(crate) fn rest_at_start(&mut self) {
+        if !self.elements.iter().any(|plan| plan.rest_at_start) {
+            return;
+        }
+        let course = Course { end: self.settings.end * BEGINNING, max_step: None, stop: &Stop::new(false) };
+        let motion = self.motion.made(&self.model, &course);
+        let elements = self.elements.iter().map(|plan| plan.element.clone()).collect();
+        let Ok(starts) = System::new(self.model.clone(), elements, motion).element_starts() else { return };
+        for (plan, start) in self.elements.iter_mut().zip(starts).filter(|(plan, _)| plan.rest_at_start) {
+            plan.element.rest = start.length;
         }
     }
 

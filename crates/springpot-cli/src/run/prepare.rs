@@ -51,6 +51,7 @@ pub(super) fn prepare(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> R
             let asked = NewRun {
                 file: file.clone(),
                 overrides: options.overrides.clone(),
+                sweeps: options.sweeps.clone(),
                 out: options.out.clone(),
                 format: Format::named(&options.format).unwrap_or_default(),
                 figures,

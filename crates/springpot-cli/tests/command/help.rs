@@ -119,7 +119,7 @@ fn mistyped_commands_get_a_suggestion() {
         ),
         (&["rows.csv"], "`springpot derivative rows.csv --column NAME --order 0.5` differentiates a column"),
         (&["run", "arm.toml", "--job", "2"], "`springpot run` has no option --job\n  help: did you mean --jobs?"),
-        (&["run", "arm.toml", "-v"], "has no option -v\n  help: there is --set, --out,"),
+        (&["run", "arm.toml", "-v"], "has no option -v\n  help: there is --set, --sweep,"),
         (&["check", "arm.toml", "--where", "x=1"], "it is one of `springpot derivative`, `springpot plot`"),
         (&["run"], "<SCENARIO>"),
         (&["run", "arm.toml", "--jobs", "0"], "invalid value '0' for '--jobs <N>'"),

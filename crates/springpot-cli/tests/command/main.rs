@@ -27,6 +27,7 @@ mod results;
 #[cfg(unix)]
 mod resume;
 mod robots;
+mod studies;
 mod support;
 #[cfg(target_os = "linux")]
 mod terminal;

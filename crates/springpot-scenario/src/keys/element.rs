@@ -8,6 +8,9 @@ use springpot::law::Derivative;
 /// Names that would collide with columns of the results.
 pub(crate) const RESERVED_NAMES: [&str; 7] = ["t", "q", "v", "a", "tau", "energy", "gripper"];
 
+/// The rest length that is the length at t = 0.
+pub(crate) const START: &str = "start";
+
 pub(crate) static ELEMENT: Keys = Keys {
     words: "A material between two points of two bodies.",
     keys: &[
@@ -26,9 +29,9 @@ pub(crate) static ELEMENT: Keys = Keys {
         key("to", Shape::Table(&ANCHOR), Need::Required("to = { body = \"NAME\", point = [x, y, z] }"), "Second end."),
         key(
             "rest_length",
-            Shape::Number("m", Bound::Length),
-            Need::Required("rest_length = \"70 cm\""),
-            "Length at which the stroke is 0.",
+            Shape::NumberOrWord("m", Bound::Length, START),
+            Need::Required("rest_length = \"70 cm\" or \"start\""),
+            "Length at which the stroke is 0; \"start\": the length at t = 0, exactly.",
         ),
         key("law", Shape::Law, Need::Required("law = \"…\""), "Name of the law: `springpot laws` lists them."),
         key("parameters", Shape::ByName, Need::Optional, "Parameters, as the law says."),

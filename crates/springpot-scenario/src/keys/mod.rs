@@ -3,6 +3,7 @@
 //! Everything that lists keys reads these tables: the readers (which keys there are, units, ranges, defaults), what is suggested in
 //! the place of a misspelt one, the JSON schema, and a test that compares them with the tables of docs/SCENARIO.md.
 
+mod constants;
 mod element;
 mod motion;
 mod output;
@@ -12,7 +13,8 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
+pub(crate) use constants::SCALAR;
+pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES, START as AT_START};
 pub(crate) use motion::{FORCES, MOTION, MotionKind, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
 pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, WITH_AXIS};
@@ -62,6 +64,8 @@ pub(crate) enum Shape {
     Flag,
     /// A number or a quantity in a unit; an empty unit is that of a pure number.
     Number(&'static str, Bound),
+    /// A number as above, or this word.
+    NumberOrWord(&'static str, Bound, &'static str),
     /// A number that belongs to a joint: in the first unit where it turns, in the second where it slides.
     JointNumber([&'static str; 2], Bound),
     /// A whole number from the first on, to the second if there is one.
@@ -100,6 +104,8 @@ pub(crate) enum Shape {
     TextsByName,
     /// A table of anything under names that other keys give.
     ByName,
+    /// A table of numbers in any units, under names of its own.
+    Scalars,
     /// A law of the catalog.
     Law,
     /// A named scheme, or the exact memory.

@@ -1,6 +1,6 @@
 //! A key's shape as a schema.
 
-use super::super::keys::{Bound, Each, FORCES, Key, Keys, Need, POSE, SIGNAL, Shape};
+use super::super::keys::{Bound, Each, FORCES, Key, Keys, Need, POSE, SCALAR, SIGNAL, Shape};
 use serde_json::{Map, Value, json};
 use springpot::fractional::scheme::Scheme;
 use springpot::law::Catalog;
@@ -44,6 +44,10 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         Shape::Words(_) | Shape::Kinds(_) => described(one_of(&key.choices()), &words),
         Shape::Flag => json!({ "type": "boolean", "description": words }),
         Shape::Number(unit, bound) => bounded(quantity(unit, &words), bound),
+        Shape::NumberOrWord(unit, bound, word) => {
+            let number = bounded(quantity(unit, "A number."), bound);
+            json!({ "description": words, "anyOf": [number, { "const": word }] })
+        }
         Shape::JointNumber(units, bound) => joint_number(units, bound, &words),
         Shape::JointNumberOr(units, bound, keys) => {
             let force = keys.keys.first().map_or(words.as_str(), |key| key.words);
@@ -51,7 +55,8 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             json!({ "description": words, "anyOf": [joint_number(units, bound, force), table] })
         }
         Shape::Whole(low, high) => {
-            let mut schema = json!({ "type": "integer", "minimum": low, "description": words });
+            let or_scalar = json!([{ "anyOf": [{ "type": "integer" }, { "$ref": "#/definitions/scalar" }] }]);
+            let mut schema = json!({ "allOf": or_scalar, "minimum": low, "description": words });
             if let Some(high) = high {
                 schema["maximum"] = high.into();
             }
@@ -97,11 +102,14 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
                 Each::Force => json!({ "$ref": "#/definitions/force" }),
                 Each::Coordinate => joint_number(["rad", "m"], Bound::Any, "Coordinate."),
                 Each::NumberOr(keys) => {
-                    let number = json!({ "type": ["number", "string"], "pattern": QUANTITY });
+                    let number = json!({ "$ref": "#/definitions/quantity" });
                     json!({ "anyOf": [number, object(keys.words, keys, catalog)] })
                 }
             };
             json!({ "type": "object", "additionalProperties": each, "description": words })
+        }
+        Shape::Scalars => {
+            json!({ "type": "object", "additionalProperties": { "$ref": "#/definitions/quantity" }, "description": words })
         }
         Shape::TextsByName => json!({ "type": "object", "additionalProperties": text(), "description": words }),
         Shape::ByName => json!({ "type": "object", "description": words }),
@@ -122,6 +130,10 @@ pub(super) fn definitions(catalog: &Catalog) -> Value {
     let table = object(SIGNAL.words, &SIGNAL, catalog);
     json!({
         "signal": { "anyOf": [{ "type": "number" }, { "type": "string", "minLength": 1 }, table] },
+        "quantity": {
+            "anyOf": [{ "type": "number" }, { "type": "string", "pattern": QUANTITY }, { "$ref": "#/definitions/scalar" }],
+        },
+        "scalar": object(SCALAR.words, &SCALAR, catalog),
         "path": or_table(&POSE),
         "force": or_table(&FORCES),
     })
@@ -154,7 +166,8 @@ const QUANTITY: &str = r"^\s*[+\-−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+\-]?[0-9]
 /// A number in `unit`, or a quantity.
 pub(super) fn quantity(unit: &str, description: &str) -> Value {
     let unit = if unit.is_empty() { "a pure number".to_owned() } else { format!("{unit}, or \"NUMBER UNIT\"") };
-    json!({ "type": ["number", "string"], "pattern": QUANTITY, "description": format!("{description} In {unit}.") })
+    let quantity = json!([{ "$ref": "#/definitions/quantity" }]);
+    json!({ "allOf": quantity, "description": format!("{description} In {unit}.") })
 }
 
 fn bounded(mut schema: Value, bound: Bound) -> Value {

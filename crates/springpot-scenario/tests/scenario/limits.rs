@@ -25,7 +25,11 @@ fn sweeps_are_refused() {
             (&[(parameter, "parameter = ‸\"solvr.rtol\"")], UnknownKey, "did you mean `solver`?"),
             (&[(parameter, "parameter = ‸\"element..alpha\"")], BadName, "is not a path"),
             (&[(parameter, "parameter = ‸\"element.strut\"")], WrongType, "leads to a whole table"),
-            (&[(parameter, "parameter = ‸\"robot.body.forearm.com.x\"")], UnknownName, "an array is given as a whole"),
+            (
+                &[(parameter, "parameter = ‸\"robot.body.forearm.com.x\"")],
+                UnknownName,
+                "components count from 0: 0 to 2",
+            ),
             (&[(parameter, "parameter = ‸\"element.strut.name\"")], Rule, "cannot be swept"),
             (&[(parameter, "parameter = ‸\"title\"")], Rule, "cannot be swept"),
             (&[(parameter, "parameter = ‸3")], WrongType, "a path or an array of paths"),

@@ -241,7 +241,7 @@ fn overrides_are_refused_in_their_own_text() {
         ("element.strut.T=25", 17, "25 K? write \"25 degC\""),
         ("element.strut.T=25 degX", 20, "unknown unit `degX`"),
         ("element.strut.rest_length=\"3 kg\"", 30, "`kg` does not fit: this place takes"),
-        ("robot.body.forearm.com.x=1", 1, "an array is given as a whole"),
+        ("robot.body.forearm.com.x=1", 1, "components count from 0: 0 to 2"),
         ("sweep.x=1", 1, "a [[sweep]] has no name"),
         ("a b=1", 1, "is not a path"),
         ("element=1", 1, "leads to a whole table"),

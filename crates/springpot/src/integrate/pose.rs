@@ -3,6 +3,7 @@
 use super::error::RunError;
 use super::evaluate::{Evaluation, Scratch};
 use super::system::{Motion, System};
+use crate::actuation::Drive;
 use crate::dynamics::Kinematics;
 use crate::model::{Anchor, Model, Parent};
 use crate::spatial::Vec3;
@@ -67,7 +68,7 @@ impl System {
         Ok(Pose { model: &self.model, kinematics: Kinematics::at_position(&self.model, &state.q) })
     }
 
-    /// Coordinates, velocities and accelerations at time t; of forward dynamics where it starts, without acceleration.
+    /// Coordinates, velocities and accelerations at time t; of forward dynamics where it starts, without the accelerations that follow from forces.
     ///
     /// # Errors
     /// [`RunError::Path`] where the motion cannot be followed.
@@ -81,6 +82,12 @@ impl System {
             Motion::Forward(forward) => {
                 state.q.copy_from_slice(&forward.q);
                 state.v.copy_from_slice(&forward.v);
+                for (j, drive) in self.model.own_joints().zip(&forward.drives) {
+                    let (q, v) = (self.model.q_range(j), self.model.v_range(j));
+                    if let Drive::Prescribed(path) = drive {
+                        path.at(0.0, &mut state.q[q], &mut state.v[v.clone()], &mut state.a[v]);
+                    }
+                }
             }
         }
         Ok(state)

@@ -22,6 +22,8 @@ pub struct Origin {
     pub text: String,
     /// The values that were set, `PATH=VALUE`.
     pub overrides: Vec<String>,
+    /// The parameters that were swept, `PATH=v1,v2,…`.
+    pub sweeps: Vec<String>,
     /// Whether figures are drawn.
     pub figures: bool,
     /// Simulated time from one checkpoint to the next, s.
@@ -95,16 +97,17 @@ pub(in crate::sweep) struct CaseDone {
 }
 
 impl Origin {
-    /// The origin of a run of `scenario`, read from `file`.
+    /// The origin of a run of `scenario`, read from `file`, with nothing set or swept.
     ///
     /// # Errors
     /// The file system's, where the file is gone.
-    pub fn of(file: &Path, scenario: &Scenario, overrides: &[String], figures: bool, every: f64) -> io::Result<Self> {
+    pub fn of(file: &Path, scenario: &Scenario, figures: bool, every: f64) -> io::Result<Self> {
         Ok(Self {
             typed: file.display().to_string(),
             file: file.canonicalize()?,
             text: scenario.source().text.to_string(),
-            overrides: overrides.to_vec(),
+            overrides: Vec::new(),
+            sweeps: Vec::new(),
             figures,
             every,
             format: Format::Csv,
@@ -127,6 +130,7 @@ impl Origin {
         let folder = if same { typed } else { &self.file }.parent().unwrap_or(Path::new(""));
         let mut scenario = Scenario::parse(&self.text, &*self.typed, folder)?;
         self.overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
+        self.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
         Ok(Some(scenario))
     }
 }

@@ -25,8 +25,26 @@ pub struct Expression {
 
 impl Expression {
     /// Reads an expression.
+    ///
+    /// # Errors
+    /// What stands there in place of an expression, and what is too long, too deep or has too many kinks.
     pub fn parse(source: &str) -> Result<Self, ExpressionError> {
-        let program = parse::program(source)?;
+        Self::parse_with(source, &[])
+    }
+
+    /// Reads an expression that may name these constants besides what all expressions know; where both have a name, it is not the constant's.
+    ///
+    /// ```
+    /// use springpot::signal::Expression;
+    /// let x = Expression::parse_with("A*sin(2*pi*f*t)", &[("A".to_owned(), 0.005), ("f".to_owned(), 2.0)])?;
+    /// assert!((x.value(0.125) - 0.005).abs() < 1e-17);
+    /// # Ok::<(), springpot::signal::ExpressionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Expression::parse`].
+    pub fn parse_with(source: &str, constants: &[(String, f64)]) -> Result<Self, ExpressionError> {
+        let program = parse::program(source, constants)?;
         let kinks = program.iter().filter(|op| op.has_kink()).count();
         if kinks > MAX_KINKS {
             return Err(ExpressionError::TooManyKinks { given: kinks, limit: MAX_KINKS });

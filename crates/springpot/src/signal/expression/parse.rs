@@ -8,11 +8,11 @@ use std::ops::Range;
 
 const SIGN: u8 = 5;
 
-pub(super) fn program(text: &str) -> Result<Vec<Op>, ExpressionError> {
+pub(super) fn program(text: &str, constants: &[(String, f64)]) -> Result<Vec<Op>, ExpressionError> {
     if text.len() > MAX_LENGTH {
         return Err(ExpressionError::TooLong { length: text.len(), limit: MAX_LENGTH });
     }
-    let mut parser = Parser { text, at: 0, depth: 0, height: 0, program: Vec::new() };
+    let mut parser = Parser { text, constants, at: 0, depth: 0, height: 0, program: Vec::new() };
     parser.expression(0)?;
     match parser.peek() {
         None => Ok(parser.program),
@@ -46,6 +46,7 @@ pub fn number_length(text: &str) -> Option<usize> {
 
 struct Parser<'a> {
     text: &'a str,
+    constants: &'a [(String, f64)],
     at: usize,
     depth: usize,
     /// Intermediate results on the stack after the program so far.
@@ -131,7 +132,13 @@ impl Parser<'_> {
             Some(Name::Operand(op)) => self.emit(op),
             Some(Name::Function(op)) if self.peek() == Some('(') => self.call(name, op, at.start),
             Some(Name::Function(_)) => Err(ExpressionError::NeedsParentheses { function: name.to_owned(), at }),
-            None => Err(ExpressionError::UnknownName { name: name.to_owned(), suggestion: suggest(name), at }),
+            None => match self.constants.iter().find(|(constant, _)| constant == name) {
+                Some(&(_, value)) => self.emit(Op::Number(value)),
+                None => {
+                    let suggestion = suggest(name, self.constants);
+                    Err(ExpressionError::UnknownName { name: name.to_owned(), suggestion, at })
+                }
+            },
         }
     }
 
@@ -281,19 +288,20 @@ const OTHER_SPELLINGS: [(&str, &str); 12] = [
     ("fabs", "abs"),
 ];
 
-fn suggest(name: &str) -> Option<String> {
+fn suggest(name: &str, constants: &[(String, f64)]) -> Option<String> {
     let lower = name.to_lowercase();
     let spelled = OTHER_SPELLINGS.iter().find(|(other, _)| *other == lower).map(|(_, ours)| *ours);
     let meant = spelled.or_else(|| NAMES.iter().map(|(known, _)| *known).find(|known| *known == lower));
-    meant.or_else(|| nearest(name)).map(str::to_owned)
+    meant.or_else(|| nearest(name, constants)).map(str::to_owned)
 }
 
-fn nearest(name: &str) -> Option<&'static str> {
+fn nearest<'c>(name: &str, constants: &'c [(String, f64)]) -> Option<&'c str> {
     // Long names are nobody's slip, and the distance takes quadratic time.
     if name.len() > 16 || name.chars().count() < 3 {
         return None;
     }
-    let known = NAMES.iter().map(|(known, _)| *known).filter(|known| known.len() > 2);
+    let own = constants.iter().map(|(constant, _)| constant.as_str());
+    let known = NAMES.iter().map(|(known, _)| *known).chain(own).filter(|known| known.len() > 2);
     let measured = known.map(|known| (strsim::damerau_levenshtein(name, known), known));
     measured.filter(|(distance, _)| *distance <= 2).min_by_key(|(distance, _)| *distance).map(|(_, known)| known)
 }
