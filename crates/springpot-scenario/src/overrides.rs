@@ -1,10 +1,10 @@
 //! What the command line says in place of the file: values (`--set`) and sweeps (`--sweep`).
 
-use super::document::{self, MAX_BYTES, Node, Value};
+use super::document::{self, Entry, MAX_BYTES, Node, Value};
 use super::path::{self, Target};
 use super::reader::{Context, Read};
 use super::refusal::{Place, Refusal, RefusalKind, Refusals, Source};
-use super::{Scenario, document::Entry};
+use super::Scenario;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -189,7 +189,7 @@ fn replace_sweep(ctx: &Context<'_>, document: &mut Node, target: &Target, item: 
             let keys = node.text().and_then(path::keys);
             keys.is_some() && keys == path::keys(&item.path)
         };
-        if paths.iter().any(|path| leads_there(path)) {
+        if paths.iter().any(leads_there) {
             if paths.len() > 1 {
                 let message = format!("{} is swept together with others in the file", target.written);
                 let refusal: Refusal = item.place.refuse(RefusalKind::Rule, message);
