@@ -1,23 +1,16 @@
 //! `springpot check`.
 
-mod warnings;
-
 use crate::arguments::CheckOptions;
 use crate::numbers::{count, short};
-use crate::run::in_case;
-use crate::{Ending, diagnostic, plain, printed, terminal};
+use crate::{Ending, diagnostic, failures, plain, printed, starts, terminal};
 use springpot::elements::Element;
-use springpot::integrate::{ElementStart, RowTimes, RunError, Stop, System};
+use springpot::integrate::{ElementStart, RowTimes, Stop};
 use springpot::law::{Catalog, Entry};
 use springpot_run::sweep::Layout;
+use springpot_run::{Depth, Survey, Trouble};
 use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, SignalPlan, json_schema};
 use std::ops::RangeInclusive;
 use std::path::Path;
-use warnings::Warnings;
-
-/// Values of each sweep that are looked at; fewer where a gripper path must be followed for each.
-const LOOKED_AT: usize = 1_000;
-const PATHS_FOLLOWED: usize = 50;
 
 /// Values of a sweep that are printed.
 const PRINTED: usize = 12;
@@ -52,66 +45,27 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
     let system = plan.system();
     Layout::new(&cases, &system)?;
 
-    let mut warnings = Warnings::new(&plan);
-    let mut failures: Vec<(usize, RunError)> = Vec::new();
-    let mut first: Option<Vec<ElementStart>> = None;
+    let mut survey = Survey::of(&cases, &plan, &system, Depth::Paths, &Stop::new(false))?;
     let switches = match plan.settings.fixed_step {
         Some(_) => 0,
         None => system.switches(&plan.settings, &Stop::new(false)).unwrap_or_else(|error| {
-            failures.push((0, error));
+            survey.failures.insert(0, (0, Trouble::of(&error, &plan)));
             0
         }),
     };
-    for index in looked_at(&cases, &plan) {
-        let case = if index == 0 { None } else { Some(cases.plan(index)?) };
-        let case_system = case.as_ref().map(Plan::system);
-        let (plan, system) = (case.as_ref().unwrap_or(&plan), case_system.as_ref().unwrap_or(&system));
-        warnings.looked_at += 1;
-        match system.element_starts() {
-            Ok(starts) => {
-                warnings.take(index, plan, system, &starts);
-                failures.extend(path_failure(plan, system).map(|failure| (index, failure)));
-                if index == 0 {
-                    first = Some(starts);
-                }
-            }
-            Err(error) => failures.push((index, error)),
-        }
-    }
     let ending = match options.quiet {
         true => Ending::Done,
-        false => printed(terminal::try_print(&text(&cases, &plan, first.as_deref(), switches, &warnings))),
+        false => printed(terminal::try_print(&text(&cases, &plan, switches, &survey))),
     };
-    warnings.print(&cases);
-    if let Some((index, failure)) = failures.first() {
-        diagnostic::error(in_case(&cases, *index, &failure.to_string()));
-    }
-    if failures.len() > 1 {
-        diagnostic::error(format!("{} of the {} cases looked at cannot run", failures.len(), warnings.looked_at));
-    }
-    Ok(if failures.is_empty() { ending } else { Ending::Failed })
-}
-
-/// The first case, and each other value of each sweep with the rest at their first values.
-fn looked_at(cases: &Cases, plan: &Plan) -> Vec<usize> {
-    let most = if plan.motion.has_path() { PATHS_FOLLOWED } else { LOOKED_AT };
-    let mut indices = vec![0];
-    let mut stride = cases.len();
-    for axis in 0..cases.axis_count() {
-        let count = cases.axis_len(axis);
-        stride /= count;
-        indices.extend((1..count.min(most)).map(|k| k * stride));
-    }
-    indices
-}
-
-/// Why and where a gripper path ends early.
-fn path_failure(plan: &Plan, system: &System) -> Option<RunError> {
-    system.motion.has_path().then(|| system.pose(plan.settings.end).err()).flatten()
+    diagnostic::robot_warnings(&cases);
+    starts::warn(&survey, &cases);
+    starts::warn_of_limits(&survey, &cases);
+    failures::tell(&survey, &cases);
+    Ok(if survey.failures.is_empty() { ending } else { Ending::Failed })
 }
 
 /// The description of a scenario.
-fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u64, warnings: &Warnings) -> String {
+fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
     let width = terminal::stdout_width().or(Some(80));
     let mut text = String::new();
     let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, width));
@@ -144,8 +98,9 @@ fn text(cases: &Cases, plan: &Plan, start: Option<&[ElementStart]>, switches: u6
         line("element", &format!("{}: {}, {}", element.name, element.entry.name, memory(element)));
         line("", &element.entry.equation);
         line("", &parameters(plan_of));
-        let Some(start) = start.map(|start| &start[e]) else { continue };
-        let (length, stroke) = (range(start.length, warnings.lengths(e)), range(start.stroke, warnings.strokes(e)));
+        let Some(start) = survey.first.as_ref().map(|starts| &starts[e]) else { continue };
+        let (length, stroke) =
+            (range(start.length, survey.elements[e].lengths()), range(start.stroke, survey.elements[e].strokes()));
         line("", &format!("l(0) = {length}, l0 = {} m", short(element.rest)));
         line("", &format!("x(0) = {stroke}"));
         line("", &format!("dl/dq = {}", gradient(plan, start)));

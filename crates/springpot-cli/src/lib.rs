@@ -28,6 +28,7 @@ mod derivative;
 mod diagnostic;
 mod dynamics;
 mod excerpt;
+mod failures;
 mod grid;
 mod info;
 mod init;
@@ -43,6 +44,7 @@ mod prony;
 mod robot;
 mod run;
 mod signals;
+mod starts;
 mod terminal;
 
 use arguments::{Arguments, Command, RunOptions};

@@ -7,7 +7,7 @@ use self::finished::Said;
 use self::prepare::{Unprepared, prepare};
 use crate::arguments::RunOptions;
 use crate::numbers::count;
-use crate::{Ending, diagnostic, progress, signals, terminal};
+use crate::{Ending, diagnostic, failures, progress, signals, starts, terminal};
 use springpot::law::Catalog;
 use springpot_run::sweep::{Progress, Status, SweepError};
 use springpot_run::table::disk::Disk;
@@ -37,10 +37,19 @@ pub(crate) fn run(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> Endin
             diagnostic::refused(&refused);
             return Ending::Refused;
         }
+        Err(Unprepared::Hopeless(cases, survey)) => {
+            starts::warn(&survey, &cases);
+            failures::tell(&survey, &cases);
+            terminal::print_error("nothing was run, and earlier results are as they were\n");
+            return Ending::Refused;
+        }
         Err(Unprepared::Shown) => return Ending::Refused,
         Err(Unprepared::Settled(status)) => return if status == "done" { Ending::Done } else { Ending::Failed },
         Err(Unprepared::Folder(out, error)) => return no_results(&out, error, None),
     };
+    if let Some(survey) = &prepared.survey {
+        starts::warn(survey, &prepared.cases);
+    }
     let (out, goes_on) = (prepared.folder.path().to_owned(), prepared.checkpoints.is_some());
     match execute(options, prepared) {
         Ok(finished) => {

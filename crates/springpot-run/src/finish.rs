@@ -49,7 +49,7 @@ impl Prepared {
     /// # Errors
     /// The folder cannot be written.
     pub fn finish(self, outcome: Outcome, progress: &Progress, warn: Warn<'_>) -> Result<Finished, FolderError> {
-        let Self { cases, plan, system, layout, mut folder, checkpoints, figures, format } = self;
+        let Self { cases, plan, system, layout, mut folder, checkpoints, figures, format, .. } = self;
         let (rows, end) = (progress.rows.load(Ordering::Relaxed), plan.settings.end);
         let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
         let is_put = match outcome.status {

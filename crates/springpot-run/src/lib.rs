@@ -32,8 +32,12 @@ pub mod figures;
 mod finish;
 pub mod labels;
 mod prepare;
+mod survey;
 pub mod sweep;
 pub mod table;
+mod trouble;
 
 pub use finish::Finished;
 pub use prepare::{BeginError, NewRun, Prepared, Surroundings, Warn};
+pub use survey::{Depth, ElementSurvey, Found, Survey};
+pub use trouble::Trouble;

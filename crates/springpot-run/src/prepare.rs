@@ -1,5 +1,6 @@
 //! What must be right before anything is run, whether a run begins or goes on.
 
+use crate::survey::{Depth, Survey};
 use crate::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
 use crate::table::Format;
 use crate::table::disk::Disk;
@@ -73,6 +74,8 @@ pub struct Prepared {
     pub figures: bool,
     /// The format of the rows at the end.
     pub format: Format,
+    /// What was seen before the run; `None` where one goes on.
+    pub survey: Option<Survey>,
 }
 
 /// Why a new run cannot begin.
@@ -81,6 +84,14 @@ pub enum BeginError {
     /// The scenario is refused.
     #[error(transparent)]
     Refused(#[from] Refusals),
+    /// No case can run to its end.
+    #[error("none of the cases can run: {}", survey.failures.first().map_or("", |(_, why)| &why.message))]
+    Hopeless {
+        /// The cases.
+        cases: Box<Cases>,
+        /// What is wrong with them.
+        survey: Box<Survey>,
+    },
     /// The folder of the results takes none.
     #[error("{}: {error}", folder.display())]
     Folder {
@@ -120,6 +131,10 @@ impl Prepared {
         overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
         sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
         let Read { cases, plan, system, layout } = read(&scenario, with, warn)?;
+        let survey = Survey::of(&cases, &plan, &system, Depth::Starts, with.stop)?;
+        if survey.is_hopeless(&cases) {
+            return Err(BeginError::Hopeless { cases: cases.into(), survey: survey.into() });
+        }
         let no_results = |error| BeginError::Folder { folder: out.clone(), error };
         let mut folder = Folder::open(&out, with.disk.clone(), with.holder).map_err(no_results)?;
         warn_of_no_lock(&folder, warn);
@@ -132,7 +147,7 @@ impl Prepared {
             Checkpoints::begin(&folder, Origin { format, overrides, sweeps, ..origin }, &cases, &plan, &system)
         });
         let checkpoints = checkpoints.transpose().map_err(|error| no_results(error.into()))?;
-        Ok(Self { cases, plan, system, layout, folder, checkpoints, figures, format })
+        Ok(Self { cases, plan, system, layout, folder, checkpoints, figures, format, survey: Some(survey) })
     }
 
     /// Goes on with the run whose checkpoint is in `folder`. With `every`, s, checkpoints are written at other times from now on;
@@ -159,7 +174,7 @@ impl Prepared {
         let targets = Targets { figures: &names, checkpoints: true, is_input: &is_input };
         let (checkpoints, folder) = unfinished.take_up(&cases, (&plan, &system), &layout, every, targets)?;
         let (checkpoints, format) = (Some(checkpoints), origin.format);
-        Ok(Self { cases, plan, system, layout, folder, checkpoints, figures, format })
+        Ok(Self { cases, plan, system, layout, folder, checkpoints, figures, format, survey: None })
     }
 }
 

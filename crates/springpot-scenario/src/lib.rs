@@ -38,6 +38,7 @@ mod bodies;
 mod cases;
 mod constants;
 pub mod csv;
+mod cure;
 mod document;
 mod elements;
 mod figures;
@@ -63,6 +64,7 @@ pub mod units;
 mod urdf;
 
 pub use cases::{Cases, SweptValue};
+pub use cure::Cure;
 pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
 pub use keys::MAX_CASES;
 pub use motion::MotionPlan;

@@ -7,7 +7,7 @@ mod prescribed;
 
 use super::keys::{MOTION, MotionKind};
 use super::reader::{Field, Read, Table};
-use super::refusal::RefusalKind;
+use super::refusal::{Place, RefusalKind};
 use super::robot::Robot;
 use serde_json::{Map, Value, json};
 use springpot::integrate::Motion;
@@ -23,6 +23,10 @@ pub struct MotionPlan {
     /// What the record of a run has of it besides its kind.
     record: Map<String, Value>,
     maker: Arc<dyn Maker>,
+    /// Where it stands, and where the motion of each joint does that has one of its own.
+    place: Place,
+    joints: Vec<(String, Place)>,
+    has_orientation: bool,
 }
 
 /// What makes the motion of a run.
@@ -72,6 +76,16 @@ impl MotionPlan {
         self.maker.has_path()
     }
 
+    /// Where the motion of a joint stands in the scenario; that of the whole where there is none.
+    pub fn place_of(&self, joint: &str) -> &Place {
+        self.joints.iter().find(|(name, _)| name == joint).map_or(&self.place, |(_, place)| place)
+    }
+
+    /// Whether it says how the gripper is to be turned.
+    pub(crate) fn has_orientation(&self) -> bool {
+        self.has_orientation
+    }
+
     /// The motion of `model`, solved along `course`.
     pub(crate) fn made(&self, model: &Model, course: &Course<'_>) -> Motion {
         self.maker.motion(model, course)
@@ -107,5 +121,8 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
         MotionKind::GripperPath => gripper_path::read(&table, robot, end)?,
         MotionKind::Forward => forward::read(&table, robot, end)?,
     };
-    Ok(MotionPlan { kind, record, maker })
+    let of_joints = ["joints", "prescribed"].into_iter().filter_map(|key| field.node.get(key)?.entries()).flatten();
+    let joints = of_joints.map(|entry| (entry.key.clone(), entry.node.place.clone())).collect();
+    let (place, has_orientation) = (field.node.place.clone(), field.node.get("rpy").is_some());
+    Ok(MotionPlan { kind, record, maker, place, joints, has_orientation })
 }

@@ -1,10 +1,10 @@
 //! What the command line says in place of the file: values (`--set`) and sweeps (`--sweep`).
 
+use super::Scenario;
 use super::document::{self, Entry, MAX_BYTES, Node, Value};
 use super::path::{self, Target};
 use super::reader::{Context, Read};
 use super::refusal::{Place, Refusal, RefusalKind, Refusals, Source};
-use super::Scenario;
 use std::ops::Range;
 use std::sync::Arc;
 

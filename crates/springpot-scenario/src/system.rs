@@ -17,14 +17,23 @@ impl Plan {
 
     /// [`Self::system`], but a gripper path is followed until `stop` is set: it then ends there.
     pub fn system_unless(&self, stop: &Stop) -> System {
-        let course = Course { end: self.settings.end, max_step: self.settings.max_step, stop };
+        self.system_along(&Course { end: self.settings.end, max_step: self.settings.max_step, stop })
+    }
+
+    fn system_along(&self, course: &Course<'_>) -> System {
         System {
             elements: self.elements.iter().map(|plan| plan.element.clone()).collect(),
-            motion: self.motion.made(&self.model, &course),
+            motion: self.motion.made(&self.model, course),
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: self.model.clone(),
             tells_joint_losses: self.tells_joint_losses,
         }
+    }
+
+    /// [`Self::system`], but of a gripper path no more than its beginning is solved.
+    pub fn system_at_start(&self) -> System {
+        let course = Course { end: self.settings.end * BEGINNING, max_step: None, stop: &Stop::new(false) };
+        self.system_along(&course)
     }
 
     /// Gives the elements that rest where they start their length at t = 0. Where the motion cannot start, a run says why.
@@ -32,10 +41,7 @@ impl Plan {
         if !self.elements.iter().any(|plan| plan.rest_at_start) {
             return;
         }
-        let course = Course { end: self.settings.end * BEGINNING, max_step: None, stop: &Stop::new(false) };
-        let motion = self.motion.made(&self.model, &course);
-        let elements = self.elements.iter().map(|plan| plan.element.clone()).collect();
-        let Ok(starts) = System::new(self.model.clone(), elements, motion).element_starts() else { return };
+        let Ok(starts) = self.system_at_start().element_starts() else { return };
         for (plan, start) in self.elements.iter_mut().zip(starts).filter(|(plan, _)| plan.rest_at_start) {
             plan.element.rest = start.length;
         }

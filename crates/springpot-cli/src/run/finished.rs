@@ -1,14 +1,11 @@
 //! What is said of a run that came to an end.
 
-use super::{NAMED_LIMITS, in_case, in_cases};
+use super::{NAMED_LIMITS, in_cases};
 use crate::numbers::{brief, count, rough, short};
-use crate::{diagnostic, terminal};
+use crate::{diagnostic, failures, terminal};
 use springpot_run::Finished;
 use springpot_run::sweep::{CaseResult, CasesPassing, Status};
 use std::time::Duration;
-
-/// Failed cases that are named one by one.
-const NAMED: usize = 5;
 
 /// What is said of it.
 pub(super) struct Said(pub(super) Finished);
@@ -42,14 +39,8 @@ impl Said {
     pub(super) fn complain(&self) {
         let Finished { cases, outcome, .. } = &self.0;
         let failed: Vec<&CaseResult> = outcome.cases.iter().filter(|c| c.error.is_some() && !c.interrupted).collect();
-        for case in failed.iter().take(NAMED) {
-            let error = case.error.as_deref().unwrap_or_default();
-            diagnostic::error(in_case(cases, case.index, error));
-        }
-        if outcome.failed > NAMED {
-            let more = count(outcome.failed - NAMED, "more case", "more cases");
-            diagnostic::error(format!("{more} failed; run.json says which and why"));
-        }
+        let failed: Vec<_> = failed.iter().filter_map(|case| Some((case.index, case.error.as_ref()?))).collect();
+        failures::tell_all(&failed, outcome.done + outcome.failed, cases);
         match outcome.status {
             Status::Done => {}
             Status::Failed => terminal::print_error(&format!("failed{}\n", self.how_far())),

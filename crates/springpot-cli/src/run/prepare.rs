@@ -7,9 +7,9 @@ use springpot_run::sweep::CheckpointError;
 use springpot_run::table::Format;
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::FolderError;
-use springpot_run::{BeginError, NewRun, Prepared, Surroundings};
-use springpot_scenario::Refusals;
+use springpot_run::{BeginError, NewRun, Prepared, Surroundings, Survey};
 use springpot_scenario::units::parse_quantity;
+use springpot_scenario::{Cases, Refusals};
 use std::path::{Path, PathBuf};
 
 /// Why nothing is run.
@@ -18,6 +18,8 @@ pub(super) enum Unprepared {
     Refused(Refusals),
     /// What is wrong was said.
     Shown,
+    /// No case can run to its end.
+    Hopeless(Box<Cases>, Box<Survey>),
     /// The folder of the results takes none.
     Folder(PathBuf, FolderError),
     /// The results of an earlier run were put in their place, and nothing is left to do; how it ended.
@@ -28,6 +30,7 @@ impl From<BeginError> for Unprepared {
     fn from(error: BeginError) -> Self {
         match error {
             BeginError::Refused(refusals) => Self::Refused(refusals),
+            BeginError::Hopeless { cases, survey } => Self::Hopeless(cases, survey),
             BeginError::Folder { folder, error } => Self::Folder(folder, error),
         }
     }

@@ -20,10 +20,11 @@ fn a_failing_case_does_not_stop_the_others() {
         assert_eq!(ended.code, Some(1), "{}", ended.stderr);
         let errors: Vec<&str> = ended.stderr.lines().collect();
         assert!(
-            errors[0].starts_with("error: element.damper.u = 1 - 20*t: t = 0.17") && errors[0].contains("mu_0 + u·mu"),
+            errors[0].starts_with("error: element.damper.u = 1 - 20*t and 1 other case: t = 0.17")
+                && errors[0].contains("mu_0 + u·mu"),
             "{errors:?}"
         );
-        assert!(errors[1].starts_with("error: element.damper.u = -3 V: t = 0 s: "), "{errors:?}");
+        assert!(errors[1].starts_with("  help: arm.toml:38:18: change the input or the parameters"), "{errors:?}");
         assert_eq!(
             errors[2..],
             ["failed: 2 of 4 cases done, 2 failed, the earliest before the first row; all rows are complete"]
@@ -55,7 +56,11 @@ fn a_single_run_that_fails_keeps_its_rows() {
     let place = Place::with(&text);
     let ended = place.springpot(&["run", "arm.toml"]);
     assert_eq!(ended.code, Some(1));
-    let [error, how_far] = ended.stderr.lines().collect::<Vec<_>>()[..] else { panic!("{}", ended.stderr) };
+    let [warning, _, error, help, how_far] = ended.stderr.lines().collect::<Vec<_>>()[..] else {
+        panic!("{}", ended.stderr)
+    };
+    assert!(warning.starts_with("warning: element \"damper\" starts with a stroke of -0.25 m"), "{warning}");
+    assert!(help.starts_with("  help: arm.toml:26:14: a force along a line needs a length"), "{help}");
     assert!(error.starts_with("error: t = 0.2") && error.contains("element \"damper\" has no direction"), "{error}");
     assert_eq!(how_far, "failed after the row at t = 0.2 s of 0.35 s; all rows are complete");
     assert_eq!(place.table("results/arm/results.csv").numbers("t"), [0.0, 0.1, 0.2]);
@@ -274,13 +279,12 @@ fn a_failure_before_the_first_row_leaves_the_last_results() {
     };
     let fails = ["run", "arm.toml", "--set", "element.damper.u=-3 V", "--checkpoint-every", "0.1"];
     let ended = place.springpot(&fails);
-    assert_eq!((ended.code, files(&place).len()), (Some(1), 0), "{}", ended.stderr);
-    assert!(ended.stdout.contains("results/arm: no row was written, and nothing else"), "{}", ended.stdout);
+    assert_eq!((ended.code, place.path("results").exists()), (Some(2), false), "{}", ended.stderr);
+    assert!(ended.stderr.contains("nothing was run, and earlier results are as they were"), "{}", ended.stderr);
     place.done(&["run", "arm.toml"]);
     let before = files(&place);
     let ended = place.springpot(&fails);
-    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
-    assert!(ended.stdout.contains("no row was written; the earlier ones are as they were"), "{}", ended.stdout);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     assert_eq!(files(&place), before);
     // A refusal, too.
     assert_eq!(place.springpot(&["run", "arm.toml", "--set", "time.end=-1"]).code, Some(2));

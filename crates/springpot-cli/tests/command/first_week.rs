@@ -92,3 +92,52 @@ fn a_robot_that_was_cut_short_says_where() {
     place.write("cut.urdf", "<robot name=\"r\">\n<link name=\"a\">\n<inertial>\n<mass value=\"1\"/>\n");
     refused(&place.springpot(&["info", "cut.urdf"]), &["cut.urdf:1:1", "never closed; the text ends on line 4"]);
 }
+
+#[test]
+fn run_says_what_check_says() {
+    let place = Place::new();
+    let large = ["--set", "element.damper.rest_length=500"];
+    let singular = ["--set", "element.damper.derivative=riemann-liouville", "--set", "element.damper.rest_length=0.49"];
+    let short = ["--set", "time.end=5 ms", "--set", "time.output_step=2 s"];
+    for (set, words) in [
+        (
+            &large[..],
+            &["starts with a stroke of -499.5 m, more than 20 % of its rest length 500 m", "rest_length = \"start\""][..],
+        ),
+        (&singular, &["starts with x(0) = 0.01 m and the Riemann-Liouville derivative", "\"caputo\" says"]),
+        (&short, &["the run ends at 0.005 s, before a row is due: rows come every 2 s", "are they swapped?"]),
+    ] {
+        for command in ["check", "run"] {
+            says(&place.done(&[&[command, "arm.toml", "--quiet"][..], set].concat()), words);
+        }
+    }
+}
+
+#[test]
+fn what_cannot_run_is_refused_before_it_begins() {
+    let place = Place::new();
+    place.done(&["run", "arm.toml", "--quiet"]);
+    let before = place.read("results/arm/results.csv");
+    let jump = "motion.joints.x=0.01*step(t - 0.1)";
+    for (set, words) in [
+        (
+            "element.damper.u=-9 V",
+            &["mu_0 + u·mu ≥ 0 is broken", "--set:1:18: change the input or the parameters", "springpot laws"][..],
+        ),
+        (jump, &["t = 0.1 s: joint \"x\" jumps by 1e-2", "--set:1:17: velocities may jump, coordinates may not"]),
+    ] {
+        let ended = place.springpot(&["run", "arm.toml", "--set", set]);
+        refused(&ended, words);
+        says(&ended, &["nothing was run, and earlier results are as they were"]);
+        let checked = place.springpot(&["check", "arm.toml", "--quiet", "--set", set]);
+        assert_eq!(checked.code, Some(1));
+        says(&checked, words);
+    }
+    assert_eq!(place.read("results/arm/results.csv"), before);
+    // Where some cases can run they do, and the others are one message.
+    let some = ["--sweep", "element.damper.u=-9 V,1 V,-8 V,2 V", "--out", "some"];
+    let ended = place.springpot(&[&["run", "arm.toml", "--quiet"][..], &some].concat());
+    assert_eq!(ended.code, Some(1));
+    says(&ended, &["element.damper.u = -9 V and 1 other case: t = 0 s", "2 of 4 cases done, 2 failed"]);
+    assert_eq!(ended.stderr.matches("error: ").count(), 1, "{}", ended.stderr);
+}

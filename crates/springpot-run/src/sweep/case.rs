@@ -7,6 +7,7 @@ use super::kept::Kept;
 use super::output::{self, CaseRows, Output};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
+use crate::trouble::Trouble;
 use springpot::integrate::{self, LimitWatch, PassedLimit, Report, RunError, System};
 use std::collections::BTreeMap;
 use std::io;
@@ -21,7 +22,7 @@ pub struct CaseResult {
     /// Steps, rows, energy.
     pub report: Report,
     /// Why it stopped early.
-    pub error: Option<String>,
+    pub error: Option<Trouble>,
     /// Whether it stopped because it was interrupted.
     pub interrupted: bool,
     /// Wall time.
@@ -52,7 +53,8 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
     let (report, no_ledger, limits, outcome) = match sweep.cases.plan(index) {
         Err(refusals) => {
             let why = Some("no row was written".into());
-            (Report::default(), why, Vec::new(), Err(CaseError::Refused(refusals.to_string())))
+            let trouble = Trouble { message: refusals.to_string(), ..Trouble::default() };
+            (Report::default(), why, Vec::new(), Err((trouble, None)))
         }
         Ok(plan) => {
             let stop = sweep.options.stop;
@@ -66,16 +68,20 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
                     integrate::resume(&system, &settings, state.run, &mut rows, stop)
                 }
             };
-            (report, why_no_ledger(&system, &report), rows.watch.passed(), outcome.map_err(CaseError::Run))
+            (
+                report,
+                why_no_ledger(&system, &report),
+                rows.watch.passed(),
+                outcome.map_err(|error| (Trouble::of(&error, &plan), Some(error))),
+            )
         }
     };
-    let error = match outcome {
+    let (error, interrupted) = match outcome {
+        Ok(()) => (None, false),
         // What was kept last is what can be gone on from.
-        Err(CaseError::Run(RunError::Output(error))) => return Err(error),
-        outcome => outcome.err(),
+        Err((_, Some(RunError::Output(error)))) => return Err(error),
+        Err((trouble, error)) => (Some(trouble), matches!(error, Some(RunError::Interrupted { .. }))),
     };
-    let interrupted = matches!(error, Some(CaseError::Run(RunError::Interrupted { .. })));
-    let error = error.map(|error| error.to_string());
     let (wall, statistics) = (output.wall(), output.statistics.clone());
     let curves = output.close(|output| {
         if interrupted || output.files.is_none() {
@@ -142,15 +148,4 @@ fn why_no_ledger(system: &System, report: &Report) -> Option<String> {
     Some(singular.map_or("an energy is not finite".into(), |(element, _)| {
         format!("element \"{}\" starts with x(0) != 0 and the Riemann-Liouville derivative", element.name)
     }))
-}
-
-/// Why a case has no complete run.
-#[derive(Debug, thiserror::Error)]
-enum CaseError {
-    /// Its combination of values is not admissible.
-    #[error("{0}")]
-    Refused(String),
-    /// The run stopped.
-    #[error(transparent)]
-    Run(RunError),
 }

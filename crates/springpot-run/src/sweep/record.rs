@@ -96,7 +96,7 @@ fn one(cases: &Cases, case: &CaseResult) -> Value {
         "index": case.index,
         "parameters": parameters,
         "status": status,
-        "error": case.error,
+        "error": case.error.as_ref().map(|trouble| &trouble.message),
         "ledger": case.no_ledger.as_ref().map(|why| format!("unknown: {why}")),
         "limits": case.limits,
         "wall_time": case.wall.as_secs_f64(),

@@ -75,22 +75,35 @@ impl System {
     pub fn state(&self, t: f64) -> Result<State, RunError> {
         let (nq, nv) = (self.model.nq(), self.model.nv());
         let mut state = State { q: vec![0.0; nq], v: vec![0.0; nv], a: vec![0.0; nv] };
+        if let Motion::Forward(forward) = &self.motion {
+            state.q.copy_from_slice(&forward.q);
+            state.v.copy_from_slice(&forward.v);
+        }
+        let at_start = matches!(self.motion, Motion::Forward(_));
+        self.place(if at_start { 0.0 } else { t }, &mut state)?;
+        Ok(state)
+    }
+
+    /// Puts what is given in advance of the motion at time t into `state`: all of it, or prescribed joints.
+    ///
+    /// # Errors
+    /// [`RunError::Path`] where the motion cannot be followed.
+    pub(super) fn place(&self, t: f64, state: &mut State) -> Result<(), RunError> {
+        let State { q, v, a } = state;
         match &self.motion {
             Motion::Given(trajectory) => {
-                trajectory.at(&self.model, t, &mut state.q, &mut state.v, &mut state.a)?;
+                trajectory.at(&self.model, t, q, v, a)?;
             }
             Motion::Forward(forward) => {
-                state.q.copy_from_slice(&forward.q);
-                state.v.copy_from_slice(&forward.v);
                 for (j, drive) in self.model.own_joints().zip(&forward.drives) {
-                    let (q, v) = (self.model.q_range(j), self.model.v_range(j));
+                    let (own, velocities) = (self.model.q_range(j), self.model.v_range(j));
                     if let Drive::Prescribed(path) = drive {
-                        path.at(0.0, &mut state.q[q], &mut state.v[v.clone()], &mut state.a[v]);
+                        path.at(t, &mut q[own], &mut v[velocities.clone()], &mut a[velocities]);
                     }
                 }
             }
         }
-        Ok(state)
+        Ok(())
     }
 }
 

@@ -1,6 +1,7 @@
 //! The signals that drive a run, and what they ask of its steps.
 
 use super::error::RunError;
+use super::jump::refuse_jumps;
 use super::settings::Settings;
 use super::system::{Motion, System};
 use crate::actuation::Drive;
@@ -21,6 +22,9 @@ const STEPS_PER_SWITCH: u64 = 100;
 
 /// Neighbouring times at which rounding may leave the argument of a sign 0.
 const MOST_TURNING: usize = 256;
+
+/// Kinks and jumps that are looked at before a run.
+const MOST_LOOKED_AT: usize = 10_000;
 
 impl System {
     /// Looks through all signals before a run whose own steps are at most `longest`.
@@ -51,6 +55,35 @@ impl System {
     /// [`RunError::TooBusy`] where a signal changes more often than the run may take steps, [`RunError::Interrupted`].
     pub fn switches(&self, settings: &Settings, stop: &AtomicBool) -> Result<u64, RunError> {
         Ok(self.agenda(settings, settings.end, stop)?.switches())
+    }
+
+    /// Looks at the kinks and jumps of the signals, up to a number of them, for coordinates that jump there; on gripper paths a run looks for
+    /// itself.
+    ///
+    /// # Errors
+    /// [`RunError::Jump`], and as [`Self::switches`].
+    pub fn look_for_jumps(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
+        if self.motion.has_path() || settings.fixed_step.is_some() {
+            return Ok(());
+        }
+        let agenda = self.agenda(settings, settings.end, stop)?;
+        let (mut left, mut right) = (self.state(0.0)?, self.state(0.0)?);
+        let mut t = 0.0;
+        for _ in 0..MOST_LOOKED_AT {
+            let Some(kink) = agenda.next_stop(t).filter(|stop| stop.before < settings.end) else { break };
+            let after = kink.after.unwrap_or(kink.before).max(t.next_up());
+            self.place(kink.before, &mut left)?;
+            self.place(after, &mut right)?;
+            let speed = |k: usize| left.v[k].abs() + right.v[k].abs();
+            let mut spare = right.clone();
+            refuse_jumps(&self.model, (kink.before, &left.q), (after, &right.q), speed, 0.0, |at, places| {
+                self.place(at, &mut spare)?;
+                places.clone_from(&spare.q);
+                Ok(())
+            })?;
+            t = after;
+        }
+        Ok(())
     }
 
     /// The first time from t on at which no sign turns, whose value there belongs to no step.

@@ -2,6 +2,7 @@
 
 use crate::table::sealed::SealError;
 use crate::table::{Format, Statistics};
+use crate::trouble::Trouble;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use springpot::integrate::{Checkpoint, PassedLimit, Report, Stop, System, Watch};
@@ -91,7 +92,7 @@ pub(in crate::sweep) struct CaseDone {
     pub(in crate::sweep) index: usize,
     pub(in crate::sweep) written: Written,
     pub(in crate::sweep) report: Report,
-    pub(in crate::sweep) error: Option<String>,
+    pub(in crate::sweep) error: Option<Trouble>,
     pub(in crate::sweep) no_ledger: Option<String>,
     pub(in crate::sweep) limits: Vec<PassedLimit>,
 }

@@ -1,0 +1,189 @@
+//! What is known of the cases before any of them is run: where elements start, and which cases cannot.
+
+use crate::sweep::LimitTally;
+use crate::trouble::Trouble;
+use springpot::integrate::{ElementStart, LimitWatch, RowTimes, Stop, System};
+use springpot_scenario::{Cases, Plan, Refusals};
+use std::ops::RangeInclusive;
+
+/// A stroke at t = 0 beyond this share of the rest length is worth a warning.
+const LARGE_STROKE: f64 = 0.2;
+/// Values of each sweep that are looked at; fewer where a gripper path must be followed for each.
+const LOOKED_AT: usize = 1_000;
+const PATHS_FOLLOWED: usize = 50;
+
+/// How closely cases are looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// Where they start.
+    Starts,
+    /// Also whether gripper paths can be followed to their end.
+    Paths,
+}
+
+/// The first case, and each other value of each sweep with the rest at their first values.
+#[derive(Debug)]
+pub struct Survey {
+    /// Number of cases that were looked at.
+    pub looked_at: usize,
+    /// By element.
+    pub elements: Vec<ElementSurvey>,
+    /// Joints that start beyond their limits.
+    pub limits: LimitTally,
+    /// Cases that cannot run, each with why.
+    pub failures: Vec<(usize, Trouble)>,
+    /// Whether the run ends before its second row is due; the end and the distance of the rows, s.
+    pub short: Option<[f64; 2]>,
+    /// Every element where the first case starts.
+    pub first: Option<Vec<ElementStart>>,
+}
+
+/// The starts of one element.
+#[derive(Debug)]
+pub struct ElementSurvey {
+    /// The element.
+    pub name: String,
+    length: [f64; 2],
+    stroke: [f64; 2],
+    /// It starts far from its rest length.
+    pub large: Option<Found>,
+    /// It starts with an infinite force.
+    pub singular: Option<Found>,
+}
+
+/// The first case of several in which something was found.
+#[derive(Debug)]
+pub struct Found {
+    /// The case.
+    pub index: usize,
+    /// How many there are.
+    pub cases: usize,
+    /// Where the element starts.
+    pub start: ElementStart,
+    /// Its rest length, m.
+    pub rest_length: f64,
+}
+
+impl Survey {
+    /// Looks at the cases; `plan` and `system` are the first one. Cases whose combination of values is refused are left out.
+    ///
+    /// # Errors
+    /// Of [`Depth::Paths`]: the refusals of a combination of values.
+    pub fn of(cases: &Cases, plan: &Plan, system: &System, depth: Depth, stop: &Stop) -> Result<Self, Refusals> {
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let element = |name: &String| ElementSurvey {
+            name: name.clone(),
+            length: none,
+            stroke: none,
+            large: None,
+            singular: None,
+        };
+        let mut survey = Self {
+            looked_at: 0,
+            elements: plan.elements.iter().map(|plan| element(&plan.element.name)).collect(),
+            limits: LimitTally::default(),
+            failures: Vec::new(),
+            short: short_run(plan),
+            first: None,
+        };
+        for index in looked_at(cases, plan, depth) {
+            if index == 0 {
+                survey.look(index, plan, system, depth, stop);
+                continue;
+            }
+            match cases.plan(index) {
+                Ok(plan) => {
+                    let system = if depth == Depth::Paths { plan.system() } else { plan.system_at_start() };
+                    survey.look(index, &plan, &system, depth, stop);
+                }
+                Err(refusals) if depth == Depth::Paths => return Err(refusals),
+                Err(_) => {}
+            }
+        }
+        Ok(survey)
+    }
+
+    fn look(&mut self, index: usize, plan: &Plan, system: &System, depth: Depth, stop: &Stop) {
+        self.looked_at += 1;
+        match system.element_starts() {
+            Ok(starts) => {
+                self.take(index, plan, system, &starts);
+                if index == 0 {
+                    self.first = Some(starts);
+                }
+            }
+            Err(error) => return self.failures.push((index, Trouble::of(&error, plan))),
+        }
+        let ends_early = || system.motion.has_path().then(|| system.pose(plan.settings.end).err()).flatten();
+        let failure = match depth {
+            Depth::Paths => ends_early().or_else(|| system.look_for_jumps(&plan.settings, stop).err()),
+            Depth::Starts => system.look_for_jumps(&plan.settings, stop).err(),
+        };
+        self.failures.extend(failure.map(|failure| (index, Trouble::of(&failure, plan))));
+    }
+
+    /// Takes the start of one case.
+    fn take(&mut self, index: usize, plan: &Plan, system: &System, starts: &[ElementStart]) {
+        if let Ok(row) = system.first_row(&plan.settings) {
+            let mut watch = LimitWatch::new(system);
+            watch.see(&row);
+            self.limits.take(index, &watch.passed());
+        }
+        for ((element, plan), start) in self.elements.iter_mut().zip(&plan.elements).zip(starts) {
+            widen(&mut element.length, start.length);
+            widen(&mut element.stroke, start.stroke);
+            let found = |found: &mut Option<Found>| {
+                let new = || Found { index, cases: 0, start: start.clone(), rest_length: plan.element.rest };
+                found.get_or_insert_with(new).cases += 1;
+            };
+            if start.stroke.abs() > LARGE_STROKE * plan.element.rest {
+                found(&mut element.large);
+            }
+            if start.singular {
+                found(&mut element.singular);
+            }
+        }
+    }
+
+    /// Whether every case is known not to run to its end.
+    pub fn is_hopeless(&self, cases: &Cases) -> bool {
+        self.failures.len() == cases.len()
+    }
+}
+
+impl ElementSurvey {
+    /// Smallest and largest l(0), m.
+    pub fn lengths(&self) -> RangeInclusive<f64> {
+        self.length[0]..=self.length[1]
+    }
+
+    /// Smallest and largest x(0), m.
+    pub fn strokes(&self) -> RangeInclusive<f64> {
+        self.stroke[0]..=self.stroke[1]
+    }
+}
+
+/// The first case, and each other value of each sweep with the rest at their first values.
+fn looked_at(cases: &Cases, plan: &Plan, depth: Depth) -> Vec<usize> {
+    let most = if depth == Depth::Paths && plan.motion.has_path() { PATHS_FOLLOWED } else { LOOKED_AT };
+    let mut indices = vec![0];
+    let mut stride = cases.len();
+    for axis in 0..cases.axis_count() {
+        let count = cases.axis_len(axis);
+        stride /= count;
+        indices.extend((1..count.min(most)).map(|k| k * stride));
+    }
+    indices
+}
+
+/// End and distance of the rows where no second row is due before the end.
+fn short_run(plan: &Plan) -> Option<[f64; 2]> {
+    match &plan.settings.rows {
+        RowTimes::Step { step, end } if step > end => Some([*end, *step]),
+        _ => None,
+    }
+}
+
+fn widen(range: &mut [f64; 2], value: f64) {
+    *range = [range[0].min(value), range[1].max(value)];
+}

@@ -1,0 +1,28 @@
+//! Why a case has no complete run, for those who read it.
+
+use serde::{Deserialize, Serialize};
+use springpot::integrate::RunError;
+use springpot_scenario::{Cure, Plan};
+
+/// Why a case has no complete run, where the cause stands, and what can be done.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Trouble {
+    /// Why.
+    pub message: String,
+    /// File, line and column of the cause, where it is known.
+    pub place: Option<String>,
+    /// What can be done, where the message does not say it.
+    pub help: Option<String>,
+}
+
+impl Trouble {
+    /// What an error means for the scenario that was planned.
+    pub fn of(error: &RunError, plan: &Plan) -> Self {
+        let Cure { place, help } = plan.cure(error);
+        let place = place.map(|place| {
+            let (line, column) = place.position();
+            format!("{}:{line}:{column}", place.source.name)
+        });
+        Self { message: error.to_string(), place, help }
+    }
+}
