@@ -133,6 +133,8 @@ Exit codes: 0 done, 1 the figure cannot be drawn or written, 2 the results, a co
 Examples:
   springpot init
   springpot init panda.urdf --out panda_mount.toml
+  springpot init panda.urdf --from panda_link0 --to panda_link3
+  springpot init quadrotor.urdf --floating-base
 
 Without a robot: an arm with one element, in scenario.toml. \
 With one: its joints and an element between two of its links, in \
@@ -199,6 +201,15 @@ pub(crate) struct InitOptions {
     /// Robot (URDF file)
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: Option<PathBuf>,
+    /// Let its root link float on a joint called floating_base
+    #[arg(long, requires = "robot")]
+    pub(crate) floating_base: bool,
+    /// Link that the element begins at
+    #[arg(long, value_name = "LINK", requires = "robot")]
+    pub(crate) from: Option<String>,
+    /// Link that it ends at
+    #[arg(long, value_name = "LINK", requires = "robot")]
+    pub(crate) to: Option<String>,
     /// File to write [default: scenario.toml, or the name of the robot's file with .toml]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,

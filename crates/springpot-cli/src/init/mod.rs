@@ -19,7 +19,7 @@ pub(crate) fn init(options: &InitOptions, catalog: &Catalog) -> Ending {
     }
     let text = match &options.robot {
         None => STARTER.to_owned(),
-        Some(robot) => match robot::scenario(robot, &out, catalog) {
+        Some(robot) => match robot::scenario(robot, &out, options, catalog) {
             Ok(text) => text,
             Err(ending) => return ending,
         },

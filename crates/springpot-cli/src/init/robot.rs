@@ -1,10 +1,11 @@
 //! A starter for a robot from a URDF file: its joints, and an element between two of its links.
 
+use crate::arguments::InitOptions;
 use crate::{Ending, diagnostic};
 use springpot::law::Catalog;
 use springpot::model::urdf::{Urdf, UrdfOptions};
 use springpot::model::{BodySpec, JointKind, Limits, Model, Parent};
-use springpot_scenario::{Scenario, toml_key};
+use springpot_scenario::{Scenario, suggest, toml_key};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 
@@ -22,8 +23,9 @@ const SWING: f64 = 0.2;
 const SLIDE: f64 = 0.02;
 
 /// The starter for `robot`, to be written to `out`; what is wrong with the robot goes to stderr.
-pub(super) fn scenario(robot: &Path, out: &Path, catalog: &Catalog) -> Result<String, Ending> {
-    let read = Urdf::read(robot, &UrdfOptions::default()).and_then(|urdf| {
+pub(super) fn scenario(robot: &Path, out: &Path, options: &InitOptions, catalog: &Catalog) -> Result<String, Ending> {
+    let floats = options.floating_base;
+    let read = Urdf::read(robot, &UrdfOptions { floating_base: floats, ..UrdfOptions::default() }).and_then(|urdf| {
         let model = urdf.model(GRAVITY)?;
         Ok((urdf, model))
     });
@@ -33,12 +35,16 @@ pub(super) fn scenario(robot: &Path, out: &Path, catalog: &Catalog) -> Result<St
     })?;
     if model.joint_count() == 0 {
         let message = format!("{}: no joint moves: all are fixed", robot.display());
-        let help = "write a scenario by hand with floating_base = true in its [robot]".to_owned();
+        let help = format!("with `springpot init {} --floating-base` its root link floats", robot.display());
         diagnostic::error_with_help(message, help);
         return Err(Ending::Refused);
     }
-    let starter = Starter { urdf: &urdf, model: &model, catalog, path: relative(robot, out), folder: folder(out) };
-    Ok(starter.text(&starter.best_strut()))
+    let path = relative(robot, out);
+    let starter = Starter { urdf: &urdf, model: &model, catalog, path, folder: folder(out), floats };
+    let [from, to] =
+        [&options.from, &options.to].map(|name| name.as_deref().map(|name| starter.link(name)).transpose());
+    let pairs = starter.pairs_of(from?, to?)?;
+    Ok(starter.text(&starter.best_strut(pairs)))
 }
 
 /// Two points, and the joints between them.
@@ -47,8 +53,10 @@ struct Strut {
     to: (Parent, [f64; 3]),
     /// Joints whose coordinates change its length.
     joints: Vec<usize>,
-    rest_length: f64,
 }
+
+/// Two links, and the joints between them.
+type Pair = (Parent, Parent, Vec<usize>);
 
 struct Starter<'a> {
     urdf: &'a Urdf,
@@ -57,24 +65,37 @@ struct Starter<'a> {
     /// The robot's file as the scenario names it.
     path: String,
     folder: PathBuf,
+    /// Whether the root link floats.
+    floats: bool,
 }
 
 impl Starter<'_> {
-    /// The first pair of links across two joints, else across one, whose distance changes well.
-    fn best_strut(&self) -> Strut {
+    /// The link of that name.
+    fn link(&self, name: &str) -> Result<Parent, Ending> {
+        let known = self.bodies().iter().map(|body| body.name.as_str());
+        if let Some(index) = known.clone().position(|own| own == name) {
+            return Ok(Parent::Body(index));
+        }
+        if name == "world" {
+            return Ok(Parent::World);
+        }
+        let help = suggest(name, known.collect::<Vec<_>>());
+        diagnostic::error_with_help(format!("the robot has no link {name:?}"), help);
+        Err(Ending::Refused)
+    }
+
+    /// The first of the `pairs` whose distance changes well.
+    fn best_strut(&self, pairs: Vec<Pair>) -> Strut {
         let mut best: Option<(f64, Strut)> = None;
-        for (from, joints) in self.pairs().into_iter().take(MOST_PAIRS) {
+        for (from, to, joints) in pairs.into_iter().take(MOST_PAIRS) {
             for offset in OFFSETS {
-                let to = Parent::Body(self.model.joint_body(joints[joints.len() - 1]));
                 let at = |k: usize| round(self.com(from)[k] + offset[k]);
                 let strut = Strut {
                     from: (from, [0, 1, 2].map(at)),
                     to: (to, self.com(to).map(round)),
                     joints: joints.clone(),
-                    rest_length: 0.0,
                 };
                 let Some((length, change)) = self.measured(&strut) else { continue };
-                let strut = Strut { rest_length: round(length), ..strut };
                 if length >= LENGTH && change >= CHANGE {
                     return strut;
                 }
@@ -88,26 +109,66 @@ impl Starter<'_> {
             from: (Parent::World, OFFSETS[1]),
             to: (Parent::Body(self.model.joint_body(0)), [0.05, 0.0, 0.0]),
             joints: vec![0],
-            rest_length: 0.1,
         };
         best.map_or_else(any, |(_, strut)| strut)
     }
 
     /// Links to begin at, with the joints from there to the other end: two joints apart first, moving links before the
     /// world.
-    fn pairs(&self) -> Vec<(Parent, Vec<usize>)> {
+    fn pairs(&self) -> Vec<Pair> {
         let parent = |joint: usize| self.model.parent_link(joint).checked_sub(1);
         let body = |link: Option<usize>| link.map_or(Parent::World, |joint| Parent::Body(self.model.joint_body(joint)));
         let joints = 0..self.model.joint_count();
         let two = joints.clone().filter_map(|j| parent(j).map(|above| (body(parent(above)), vec![above, j])));
         let one = joints.map(|j| (body(parent(j)), vec![j]));
         let (moving, fixed): (Vec<_>, Vec<_>) = two.partition(|(from, _)| *from != Parent::World);
-        moving.into_iter().chain(fixed).chain(one).collect()
+        let to = |joints: &[usize]| Parent::Body(self.model.joint_body(joints[joints.len() - 1]));
+        moving.into_iter().chain(fixed).chain(one).map(|(from, joints)| (from, to(&joints), joints)).collect()
+    }
+
+    /// The pairs of which the ends that are given are part; without any, [`Self::pairs`].
+    fn pairs_of(&self, from: Option<Parent>, to: Option<Parent>) -> Result<Vec<Pair>, Ending> {
+        if from.is_none() && to.is_none() {
+            return Ok(self.pairs());
+        }
+        let all = || std::iter::once(Parent::World).chain((0..self.bodies().len()).map(Parent::Body));
+        let ends = |given: Option<Parent>| -> Vec<Parent> { given.map_or_else(|| all().collect(), |end| vec![end]) };
+        let (from_ends, to_ends) = (ends(from), ends(to));
+        let pairs = from_ends.iter().flat_map(|from| to_ends.iter().map(|to| (*from, *to, self.between(*from, *to))));
+        let mut pairs: Vec<Pair> = pairs.filter(|(.., joints)| !joints.is_empty()).collect();
+        pairs.sort_by_key(|(.., joints)| joints.len().abs_diff(2));
+        if pairs.is_empty() {
+            let names = [from, to].into_iter().flatten().map(|end| format!("{:?}", self.name(end))).collect::<Vec<_>>();
+            let message = format!("no joint moves between {} and another link", names.join(" and "));
+            diagnostic::error_with_help(message, "`springpot info` shows links and joints".to_owned());
+            return Err(Ending::Refused);
+        }
+        Ok(pairs)
+    }
+
+    /// The joints that move one link against another.
+    fn between(&self, one: Parent, other: Parent) -> Vec<usize> {
+        let (mut joints, others) = (self.above(one), self.above(other));
+        let shared: Vec<usize> = joints.iter().copied().filter(|joint| others.contains(joint)).collect();
+        joints.extend(others);
+        joints.retain(|joint| !shared.contains(joint));
+        joints
+    }
+
+    /// The moving joints between a link and the world.
+    fn above(&self, mut link: Parent) -> Vec<usize> {
+        let mut joints = Vec::new();
+        while let Parent::Body(index) = link {
+            let body = &self.bodies()[index];
+            joints.extend(self.model.joint_index(&body.joint.name));
+            link = body.parent;
+        }
+        joints
     }
 
     /// l(0) and the largest |∂l/∂q|; `None` where the scenario is not admissible.
     fn measured(&self, strut: &Strut) -> Option<(f64, f64)> {
-        let text = self.text(&Strut { rest_length: 1.0, joints: strut.joints.clone(), ..*strut });
+        let text = self.text(strut);
         let cases = Scenario::parse(&text, "", &self.folder).ok()?.cases(self.catalog).ok()?;
         let starts = cases.plan(0).ok()?.system().element_starts().ok()?;
         let start = starts.first()?;
@@ -146,6 +207,7 @@ impl Starter<'_> {
              # The root link is the world; with floating_base = true it floats. `springpot info` shows links, joints and limits.\n\
              [robot]\n\
              urdf = {urdf}\n\
+             {floating_base}\
              \n\
              # A material between two points, each in the frame of its link.\n\
              # `springpot laws` lists the laws, `springpot laws --from DATA` reads a data sheet.\n\
@@ -153,7 +215,7 @@ impl Starter<'_> {
              name = \"strut\"\n\
              from = {from}\n\
              to = {to}\n\
-             rest_length = \"{rest} cm\"   # its length at t = 0, nearly; the stroke is length less rest length\n\
+             rest_length = \"start\"   # its length at t = 0; the stroke is length less rest length\n\
              law = \"fractional-kelvin-voigt\"   # F = k·x + c·D^alpha x\n\
              parameters = {{ k = \"2 N/cm\", c = \"50 N*s^alpha/m\", alpha = 0.4 }}\n\
              \n\
@@ -187,7 +249,7 @@ impl Starter<'_> {
             urdf = quoted(&self.path),
             from = anchor(strut.from),
             to = anchor(strut.to),
-            rest = round(100.0 * strut.rest_length),
+            floating_base = if self.floats { "floating_base = true\n" } else { "" },
             joints = self.joints(&strut.joints),
         )
     }
@@ -201,6 +263,7 @@ impl Starter<'_> {
         let mut text = String::new();
         for j in (0..names.len()).filter(|&j| self.model.followed(j).is_none()) {
             let signal = match self.model.joint_kind(j) {
+                JointKind::Floating if moving.contains(&j) => format!("{{ z = \"{SLIDE}*sin(2*pi*t)\" }}"),
                 JointKind::Floating => "{}".to_owned(),
                 kind => signal(kind, self.model.limits(j), moving.contains(&j)),
             };

@@ -93,8 +93,42 @@ fn nothing_is_overwritten_and_bad_robots_are_refused() {
          <joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>",
     );
     let refused = place.springpot(&["init", "rigid.urdf"]);
+    let help = "with `springpot init rigid.urdf --floating-base` its root link floats";
     assert!(refused.code == Some(2) && refused.stderr.contains("no joint moves"), "{}", refused.stderr);
+    assert!(refused.stderr.contains(help), "{}", refused.stderr);
     let failed = place.springpot(&["init", "--out", "nowhere/x.toml"]);
     assert!(failed.code == Some(1) && failed.stderr.contains("cannot be written"), "{}", failed.stderr);
     assert_eq!(place.files("."), ["arm.toml", "bad.urdf", "rigid.urdf"]);
+}
+
+#[test]
+fn links_and_a_floating_base_are_chosen() {
+    let place = Place::new();
+    let panda = testdata("multibody/panda.urdf");
+    for (arguments, from, to) in [
+        (&["--from", "panda_link1", "--to", "panda_link4"][..], "panda_link1", "panda_link4"),
+        (&["--from", "world", "--to", "panda_link2"], "world", "panda_link2"),
+        (&["--to", "panda_link6"], "", "panda_link6"),
+    ] {
+        place.done(&[&["init", &panda, "--out", "chosen.toml"][..], arguments].concat());
+        let text = runs(&place, "chosen.toml");
+        assert!(text.contains(&format!("from = {{ body = \"{from}")), "{text}");
+        assert!(text.contains(&format!("to = {{ body = \"{to}\"")), "{text}");
+        std::fs::remove_file(place.path("chosen.toml")).unwrap();
+    }
+    for (arguments, words) in [
+        (&["--from", "panda_lnk1"][..], "no link \"panda_lnk1\"\n  help: did you mean `panda_link1`?"),
+        (
+            &["--from", "panda_link1", "--to", "panda_link1"],
+            "no joint moves between \"panda_link1\" and \"panda_link1\"",
+        ),
+    ] {
+        let refused = place.springpot(&[&["init", &panda, "--out", "chosen.toml"][..], arguments].concat());
+        assert!(refused.code == Some(2) && refused.stderr.contains(words), "{}", refused.stderr);
+    }
+    let inertial = "<inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>";
+    place.write("drone.urdf", format!("<robot name=\"d\"><link name=\"frame\">{inertial}</link></robot>"));
+    place.done(&["init", "drone.urdf", "--floating-base"]);
+    let text = runs(&place, "drone.toml");
+    assert!(text.contains("floating_base = true\n") && text.contains("floating_base = { z = \"0.02*sin(2*pi*t)\" }\n"), "{text}");
 }
