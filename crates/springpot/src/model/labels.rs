@@ -2,7 +2,7 @@
 
 use super::dimension::Dimension;
 use super::robot::Model;
-use super::spec::JointKind;
+use super::spec::Space;
 
 /// One number of q or v: the joint's name, with a component where the joint has several.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,16 +42,16 @@ impl Model {
         self.labels(&VELOCITIES)
     }
 
-    fn labels(&self, of_floating: &[(&str, Dimension)]) -> Vec<Label> {
+    fn labels(&self, of_pose: &[(&str, Dimension)]) -> Vec<Label> {
         let own = (0..self.joint_count()).filter(|&j| self.followed(j).is_none());
         own.flat_map(|j| {
             let joint = &self.joint_names()[j];
             let one = |dimension| vec![Label { name: joint.clone(), dimension }];
-            match self.joint_kind(j) {
-                JointKind::Fixed => Vec::new(),
-                JointKind::Revolute | JointKind::Continuous => one(Dimension::Angle),
-                JointKind::Prismatic => one(Dimension::Length),
-                JointKind::Floating => of_floating
+            match self.joint_kind(j).space() {
+                Space::Point => Vec::new(),
+                Space::Line(dimension) => one(dimension),
+                Space::Circle => one(Dimension::Angle),
+                Space::Pose => of_pose
                     .iter()
                     .map(|&(part, dimension)| Label { name: format!("{joint}.{part}"), dimension })
                     .collect(),

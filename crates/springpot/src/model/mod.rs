@@ -42,5 +42,5 @@ pub use error::{Field, ModelError, Subject};
 pub use frame::{Frame, Site};
 pub use labels::Label;
 pub use robot::Model;
-pub use spec::{Anchor, BodySpec, FRICTION_SPEED, FrictionLaw, JointKind, JointSpec, Limits, Mimic, Parent};
+pub use spec::{Anchor, BodySpec, FRICTION_SPEED, FrictionLaw, JointKind, JointSpec, Limits, Mimic, Parent, Space};
 pub use state::StateError;
