@@ -5,7 +5,9 @@ use super::plan::BodyPlaces;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Parts, checked_name, unique, unknown_body};
-use springpot::model::{BodySpec, FrictionLaw, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent};
+use springpot::model::{
+    BodySpec, Dimension, FrictionLaw, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent,
+};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -156,7 +158,7 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
     };
     let origin = table.vector("origin");
     let rpy = table.vector("rpy");
-    let slides = matches!(kind, Ok(JointKind::Prismatic));
+    let slides = kind.is_ok_and(|kind| kind.dimension() == Some(Dimension::Length));
     let damping = table.joint_number("damping", slides);
     let friction = match table.get("friction") {
         Some(field) => friction(&field, slides, places),
