@@ -1,6 +1,6 @@
 //! `[[robot.body]]`: a robot body by body.
 
-use super::keys::{BODY, FRICTION, INERTIA, JOINT, WITH_AXIS};
+use super::keys::{BODY, FRICTION, INERTIA, JOINT, keys_of};
 use super::plan::BodyPlaces;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
@@ -143,7 +143,7 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
         let message = || format!("`{key}` of {what} has no meaning: {why}");
         JOINT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
     };
-    let of_kind = if plain.is_some() { "" } else { WITH_AXIS };
+    let of_kind = keys_of(kind.unwrap_or(JointKind::Revolute));
     let table = Table::of_kind(field.ctx, field.node, what.clone(), (&JOINT, of_kind), reason)?;
     for field in table.fields() {
         places.fields.push((format!("joint.{}", field.key), field.node.place.clone()));
