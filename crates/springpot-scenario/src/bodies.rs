@@ -1,12 +1,14 @@
 //! `[[robot.body]]`: a robot body by body.
 
 use super::constants;
-use super::keys::{BODY, FRICTION, INERTIA, JOINT, WITH_AXIS};
+use super::keys::{BODY, FRICTION, INERTIA, JOINT, keys_of};
 use super::plan::BodyPlaces;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Parts, checked_name, unique, unknown_body};
-use springpot::model::{BodySpec, FrictionLaw, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent};
+use springpot::model::{
+    BodySpec, Dimension, FrictionLaw, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent,
+};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -142,7 +144,7 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
         let message = || format!("`{key}` of {what} has no meaning: {why}");
         JOINT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
     };
-    let of_kind = if plain.is_some() { "" } else { WITH_AXIS };
+    let of_kind = keys_of(kind.unwrap_or(JointKind::Revolute));
     let table = Table::of_kind(field.ctx, field.node, what.clone(), (&JOINT, of_kind), reason)?;
     for field in table.fields() {
         places.fields.push((format!("joint.{}", field.key), field.node.place.clone()));
@@ -157,7 +159,7 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
     };
     let origin = table.vector("origin");
     let rpy = table.vector("rpy");
-    let slides = matches!(kind, Ok(JointKind::Prismatic));
+    let slides = kind.is_ok_and(|kind| kind.dimension() == Some(Dimension::Length));
     let damping = table.joint_number("damping", slides);
     let friction = match table.get("friction") {
         Some(field) => friction(&field, slides, places),

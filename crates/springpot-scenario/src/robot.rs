@@ -7,7 +7,7 @@ use super::plan::{BodyPlaces, Gripper, UrdfPlan};
 use super::reader::{Field, Read, Refused, Table};
 use super::refusal::{Place, RefusalKind};
 use super::{bodies, urdf};
-use springpot::model::{Anchor, BodySpec, JointKind, Model, Parent};
+use springpot::model::{Anchor, BodySpec, JointKind, Model, Parent, Units};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
@@ -41,7 +41,12 @@ pub(crate) struct OwnJoint<'a> {
 impl OwnJoint<'_> {
     /// Unit of the coordinate of a joint of one degree.
     pub(crate) fn unit(&self) -> &'static str {
-        if self.kind == JointKind::Prismatic { "m" } else { "rad" }
+        self.units().coordinate
+    }
+
+    /// Units of a joint of one degree.
+    pub(crate) fn units(&self) -> Units {
+        self.kind.dimension().expect("a joint of one degree").units()
     }
 }
 

@@ -13,7 +13,7 @@ use crate::robot::{Refused, Robot};
 use crate::{Ending, diagnostic, plain, printed, robot};
 use answer::Answers;
 use springpot::law::Catalog;
-use springpot::model::{Frame, JointKind};
+use springpot::model::{Dimension, Frame};
 use springpot_scenario::suggest;
 use states::States;
 use std::collections::BTreeMap;
@@ -108,7 +108,7 @@ fn joint_losses(robot: &Robot) -> Option<String> {
     let model = &robot.model;
     let mut groups: BTreeMap<(&str, u64, &str), Vec<&str>> = BTreeMap::new();
     for (j, name) in model.joint_names().iter().enumerate() {
-        let slides = model.joint_kind(j) == JointKind::Prismatic;
+        let slides = model.joint_kind(j).dimension() == Some(Dimension::Length);
         let (damping, friction) = if slides { ("N·s/m", "N") } else { ("N·m·s/rad", "N·m") };
         for (what, value, unit) in
             [("damping", model.damping()[j], damping), ("friction", model.friction()[j], friction)]

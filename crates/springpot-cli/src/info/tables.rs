@@ -4,7 +4,7 @@ use crate::grid::{Grid, Set};
 use crate::numbers::brief;
 use crate::plain;
 use crate::robot::Robot;
-use springpot::model::{JointKind, Limits, Parent};
+use springpot::model::{Dimension, Limits, Parent};
 use std::ops::Range;
 
 /// Branches in branches that are drawn; deeper ones stand at the same indentation.
@@ -81,12 +81,7 @@ pub(super) fn joints(robot: &Robot) -> Grid {
             if own { numbers(model.v_range(j)) } else { String::new() },
             shown(ranges, lower),
             shown(ranges, upper),
-            match kind {
-                JointKind::Revolute | JointKind::Continuous => "rad",
-                JointKind::Prismatic => "m",
-                JointKind::Fixed | JointKind::Floating => "",
-            }
-            .to_owned(),
+            kind.dimension().map_or("", |dimension| dimension.units().coordinate).to_owned(),
             shown(speeds, velocity),
             shown(efforts, effort),
             shown(damped, model.damping()[j]),
@@ -100,9 +95,6 @@ pub(super) fn joints(robot: &Robot) -> Grid {
 pub(super) fn units(robot: &Robot) -> String {
     let model = &robot.model;
     let all = 0..model.joint_count();
-    let is = |j: usize, slides: bool| {
-        model.joint_kind(j).nv() == 1 && slides == (model.joint_kind(j) == JointKind::Prismatic)
-    };
     let finite = |what: fn(&Limits) -> f64| all.clone().any(|j| what(model.limits(j)).is_finite());
     let shown = [
         (finite(|limits| limits.velocity), "speed", ["rad/s", "m/s"]),
@@ -110,10 +102,10 @@ pub(super) fn units(robot: &Robot) -> String {
         (model.damping().iter().any(|d| *d != 0.0), "damping", ["N·m·s/rad", "N·s/m"]),
         (model.friction().iter().any(|f| *f != 0.0), "friction", ["N·m", "N"]),
     ];
-    let kinds: Vec<usize> = [false, true]
+    let kinds: Vec<usize> = [Dimension::Angle, Dimension::Length]
         .into_iter()
         .enumerate()
-        .filter(|(_, slides)| all.clone().any(|j| is(j, *slides)))
+        .filter(|(_, dimension)| all.clone().any(|j| model.joint_kind(j).dimension() == Some(*dimension)))
         .map(|(k, _)| k)
         .collect();
     let shown = shown.into_iter().filter(|(shown, ..)| *shown);

@@ -4,7 +4,7 @@ use crate::arguments::InitOptions;
 use crate::{Ending, diagnostic};
 use springpot::law::Catalog;
 use springpot::model::urdf::{Urdf, UrdfOptions};
-use springpot::model::{BodySpec, JointKind, Limits, Model, Parent};
+use springpot::model::{BodySpec, Dimension, JointKind, Limits, Model, Parent};
 use springpot_scenario::{Scenario, suggest, toml_key};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
@@ -275,7 +275,7 @@ impl Starter<'_> {
 
 /// A swing within the limits, or rest, about 0 or, where the limits leave that out, about their middle.
 fn signal(kind: JointKind, limits: &Limits, moves: bool) -> String {
-    let most = if kind == JointKind::Prismatic { SLIDE } else { SWING };
+    let most = if kind.dimension() == Some(Dimension::Length) { SLIDE } else { SWING };
     let finite = limits.lower.is_finite() && limits.upper.is_finite() && limits.lower < limits.upper;
     let middle = match finite {
         true if limits.lower + most > 0.0 || limits.upper - most < 0.0 => round(0.5 * (limits.lower + limits.upper)),

@@ -2,7 +2,7 @@
 
 use super::source::Source;
 use springpot::integrate::{Pose, System};
-use springpot::model::{Anchor, JointKind, Parent};
+use springpot::model::{Anchor, Dimension, JointKind, Parent};
 use springpot_report::{ElementMark, JointMark, Link, Rendered, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan};
 
@@ -26,10 +26,10 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
         drawing.links.push(Link { name: (*name).to_owned(), points: bone.line(near) });
     }
     for (index, body) in plan.bodies.iter().enumerate() {
-        let kind = match body.joint.kind {
-            JointKind::Revolute | JointKind::Continuous => springpot_report::JointKind::Revolute,
-            JointKind::Prismatic => springpot_report::JointKind::Prismatic,
-            JointKind::Fixed | JointKind::Floating => continue,
+        let kind = match body.joint.kind.dimension() {
+            Some(Dimension::Length) => springpot_report::JointKind::Prismatic,
+            Some(_) => springpot_report::JointKind::Revolute,
+            None => continue,
         };
         let body_index = Parent::Body(index);
         let (position, axis) = (pose.origin(body_index), pose.direction(body_index, body.joint.axis));

@@ -9,7 +9,7 @@ const KILOGRAM_METRE_SQUARED: &str = "kg*m^2";
 /// N·m where a joint turns, N where it slides.
 const FORCE: [&str; 2] = ["N*m", "N"];
 /// The kind of joints with an axis.
-pub(crate) const WITH_AXIS: &str = "with an axis";
+const WITH_AXIS: &str = "with an axis";
 /// The kind of robots from a URDF file.
 pub(crate) const FROM_URDF: &str = "with urdf";
 const WITH_URDF: &[&str] = &[FROM_URDF];
@@ -109,6 +109,11 @@ pub(crate) static INERTIA: Keys = Keys {
 
 /// What joints with an axis take alone.
 const AXIS: &[&str] = &[WITH_AXIS];
+
+/// What `only` of [`JOINT`] calls a kind of joint.
+pub(crate) const fn keys_of(kind: JointKind) -> &'static str {
+    if kind.has_axis() { WITH_AXIS } else { "" }
+}
 
 /// The kinds of it that `only` knows: joints with an axis.
 pub(crate) static JOINT: Keys = Keys {

@@ -89,7 +89,7 @@ fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
                     *v = table.number(name)?;
                 }
             } else {
-                v[0] = field.number(if joint.kind == JointKind::Prismatic { "m/s" } else { "rad/s" })?;
+                v[0] = field.number(joint.units().velocity)?;
             }
         }
         Ok(())
@@ -131,7 +131,7 @@ fn locked<'a>(field: &Field<'a>, robot: &Robot) -> Read<HashSet<&'a str>> {
 /// The actuator force of a joint.
 fn force(field: &Field<'_>, joint: &OwnJoint<'_>, end: Option<f64>) -> Read<Vec<SignalPlan>> {
     if joint.kind != JointKind::Floating {
-        let unit = if joint.kind == JointKind::Prismatic { "N" } else { "N*m" };
+        let unit = joint.units().force;
         return Ok(vec![signals::read(field, Wanted { unit, range: Range::ANY, smooth: false, end })?]);
     }
     let table = field.table(&FORCES)?;

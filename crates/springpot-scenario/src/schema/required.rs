@@ -1,11 +1,10 @@
 //! What a file must hold where no sweep can bring it.
 
-use super::super::keys::{ELEMENT, JOINT, Keys, MOTION, Need, Shape, WITH_AXIS};
+use super::super::keys::{ELEMENT, JOINT, Keys, MOTION, Need, Shape};
 use super::super::root::SCENARIO;
-use super::rules::{alternatives, required_of, where_kind};
+use super::rules::{alternatives, joints, required_of, where_kind};
 use serde_json::{Map, Value, json};
 use springpot::law::{Catalog, Entry};
-use springpot::model::JointKind;
 
 /// Required keys alone; types stand elsewhere.
 pub(super) fn required(catalog: &Catalog) -> Value {
@@ -52,10 +51,10 @@ fn of(keys: &'static Keys, catalog: &Catalog) -> Option<Value> {
         schema.extend(one);
     }
     if std::ptr::eq(keys, &JOINT) {
-        let moving = JointKind::ALL.into_iter().filter(|kind| kind.has_axis()).map(JointKind::name);
-        let moving: Vec<&str> = moving.collect();
-        let axis = where_kind(&moving, json!({ "required": required_of(&JOINT, WITH_AXIS) }));
-        schema.insert("allOf".to_owned(), json!([axis]));
+        let needed = joints().into_iter().map(|(of, kinds)| (kinds, required_of(&JOINT, of)));
+        let needed = needed.filter(|(_, needed)| !needed.is_empty());
+        let rules = needed.map(|(kinds, needed)| where_kind(&kinds, json!({ "required": needed })));
+        schema.insert("allOf".to_owned(), rules.collect());
     }
     if std::ptr::eq(keys, &ELEMENT) {
         schema.insert("allOf".to_owned(), catalog.entries().iter().filter_map(|law| of_law(law)).collect());

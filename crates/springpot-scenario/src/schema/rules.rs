@@ -1,7 +1,7 @@
 //! What keys have to do with one another.
 
 use super::super::figures::FIGURE;
-use super::super::keys::{ELEMENT, FROM_URDF, JOINT, Key, Keys, MOTION, Need, ROBOT, SIGNAL, TIME};
+use super::super::keys::{ELEMENT, FROM_URDF, JOINT, Key, Keys, MOTION, Need, ROBOT, SIGNAL, TIME, keys_of};
 use super::shapes::{quantity, signal};
 use serde_json::{Map, Value, json};
 use springpot::law::{Catalog, Entry, Input, Param, Range};
@@ -13,7 +13,7 @@ pub(super) fn add(schema: &mut Value, keys: &Keys, catalog: &Catalog) {
     let rules = if is(&ROBOT) {
         of_robot()
     } else if is(&JOINT) {
-        json!({ "allOf": [without_axis()] })
+        of_joint()
     } else if is(&ELEMENT) {
         json!({ "allOf": catalog.entries().iter().map(|law| of_law(law)).collect::<Vec<_>>() })
     } else if is(&MOTION) {
@@ -58,9 +58,26 @@ fn of_robot() -> Value {
     json!({ "dependencies": needs, "not": { "required": alternatives(&ROBOT) } })
 }
 
-fn without_axis() -> Value {
-    let plain: Vec<&str> = JointKind::ALL.into_iter().filter(|kind| !kind.has_axis()).map(JointKind::name).collect();
-    where_kind(&plain, json!({ "propertyNames": { "enum": JOINT.names_for("") } }))
+/// The kinds of joint by what `only` calls them.
+pub(super) fn joints() -> Vec<(&'static str, Vec<&'static str>)> {
+    let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+    for kind in JointKind::ALL {
+        let of = keys_of(kind);
+        match groups.iter_mut().find(|(group, _)| *group == of) {
+            Some((_, kinds)) => kinds.push(kind.name()),
+            None => groups.push((of, vec![kind.name()])),
+        }
+    }
+    groups
+}
+
+fn of_joint() -> Value {
+    let some = |of: &str| JOINT.names_for(of).len() < JOINT.keys.len();
+    let rules = joints()
+        .into_iter()
+        .filter(|(of, _)| some(of))
+        .map(|(of, kinds)| where_kind(&kinds, json!({ "propertyNames": { "enum": JOINT.names_for(of) } })));
+    json!({ "allOf": rules.collect::<Vec<_>>() })
 }
 
 fn of_motion() -> Value {

@@ -8,7 +8,7 @@ use super::moments::motions_at_rest;
 use super::pair::{self, PairForce};
 use super::workspace::Workspace;
 use super::wrench::add_wrench;
-use crate::model::{DegreeMotion, JointMotion, Model};
+use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Scalar, Vec3};
 
 /// Accelerations a = M(q)⁻¹ (τ + ΣQ − C(q, v) v − g(q)), rad/s² or m/s², with Q_b = −F ∂l/∂q_b of every pair force.
@@ -40,18 +40,7 @@ pub fn aba_into<T: Scalar>(
         let inertia = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation);
         force[j + 1] = velocity.cross_force(inertia * velocity);
         articulated[j] = ArticulatedInertia::from_rigid(&inertia);
-        // v × S q̇
-        bias[j] = match model.motion(j) {
-            JointMotion::Revolute => {
-                let turning = link.rotation.z_axis() * joint::speed(model, j, v);
-                Motion { angular: velocity.angular.cross(turning), linear: velocity.linear.cross(turning) }
-            }
-            JointMotion::Prismatic => {
-                let sliding = link.rotation.z_axis() * joint::speed(model, j, v);
-                Motion { angular: Vec3::ZERO, linear: velocity.angular.cross(sliding) }
-            }
-            JointMotion::Floating => velocity.cross(joint::twist(model, j, v).rotated(&link.rotation)),
-        };
+        bias[j] = joint::bias(model, j, link, velocity, v);
     }
     for pair in pairs {
         let pull = pair::pull(pair, |site| kinematics.position(site));
@@ -64,10 +53,7 @@ pub fn aba_into<T: Scalar>(
         let own = model.degrees_of(j);
         for k in own.clone().rev() {
             let unit = joint::unit_motion(&degrees[k], link, Vec3::ZERO);
-            let u = match degrees[k].motion {
-                DegreeMotion::Turn(_) => inertia.times_angular(unit.angular),
-                DegreeMotion::Shift(_) => inertia.times_linear(unit.linear),
-            };
+            let u = joint::load(&degrees[k], &inertia, unit);
             (column[k], inverse_pivot[k]) = (u, T::ONE / unit.dot(u));
             effort[k] = tau[k] - unit.dot(load);
             if k > own.start || model.parent_link(j) > 0 {

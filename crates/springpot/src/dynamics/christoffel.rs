@@ -88,7 +88,7 @@ impl<T: Scalar> Deeper<T> {
     /// ∫ T_k × T_h dm over what this degree k carries, for a degree h on `link` that carries k.
     ///
     /// With T_k = v_k + w_k × r, T_h = v_h + w_h × r at this degree's origin and m, H = ∫ r dm, P = ∫ r rᵀ dm, it is
-    /// v_k × (m v_h + w_h × H) + (w_k × H) × v_h + P (w_k × w_h); one of v_k and w_k is 0.
+    /// v_k × (m v_h + w_h × H) + (w_k × H) × v_h + P (w_k × w_h).
     #[inline]
     fn moment_against(&self, h: &Degree, link: &Placement<T>) -> Vec3<T> {
         let velocity = joint::point_column(h, link, self.origin);

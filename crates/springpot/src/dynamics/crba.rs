@@ -3,7 +3,7 @@
 use super::joint;
 use super::kinematics::Kinematics;
 use super::workspace::Workspace;
-use crate::model::{DegreeMotion, Model};
+use crate::model::Model;
 use crate::spatial::{Inertia, Scalar, Vec3};
 
 /// Mass matrix M(q), the basic metric tensor a_ab = Σ_i m_i T_a(C_i)·T_b(C_i) + Om_a·J_i Om_b.
@@ -20,21 +20,11 @@ pub fn crba_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace
         let (link, column) = (kinematics.link(degree.link), degree.index);
         let unit = joint::unit_motion(degree, link, Vec3::ZERO);
         let composite = &workspace.composite[degree.link - 1];
-        let momentum = match degree.motion {
-            DegreeMotion::Turn(_) => composite.turned_by(unit.angular),
-            DegreeMotion::Shift(_) => composite.shifted_by(unit.linear),
-        };
+        let momentum = joint::momentum(degree, composite, unit);
         mass[column * n + column] += unit.dot(momentum);
         for c in joint::carriers(model, k) {
             let carrier = kinematics.link(degrees[c].link);
-            let felt = joint::unit_motion(&degrees[c], carrier, Vec3::ZERO);
-            let entry = match degrees[c].motion {
-                DegreeMotion::Turn(_) => {
-                    let arm = link.translation - carrier.translation;
-                    felt.angular.dot(momentum.angular + arm.cross(momentum.linear))
-                }
-                DegreeMotion::Shift(_) => felt.linear.dot(momentum.linear),
-            };
+            let entry = joint::felt(&degrees[c], carrier, momentum, link.translation);
             let row = degrees[c].index;
             mass[row * n + column] += entry;
             mass[column * n + row] += entry;

@@ -1,7 +1,12 @@
-//! What a joint does: the only place besides the recursions that tells joints apart.
+//! What a joint does: the only place that tells joints apart. A kind of motion is a file beside this one,
+//! whose functions bear the names of those here.
+
+mod floating;
+mod prismatic;
+mod revolute;
 
 use crate::model::{Axis, Degree, DegreeMotion, JointMotion, Model};
-use crate::spatial::{Motion, Placement, Rotation, Scalar, Vec3};
+use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scalar, Vec3};
 
 /// Where the joints stand: coordinate, sine and cosine of each; without meaning for a floating joint.
 #[derive(Debug, Clone)]
@@ -38,75 +43,170 @@ impl<T: Scalar> Stands<T> {
     pub(super) fn placement(&self, model: &Model, j: usize, q: &[T]) -> Placement<T> {
         let at_zero = Placement::from_f64(model.joint_placement(j));
         match model.motion(j) {
-            JointMotion::Revolute => {
-                Placement { rotation: at_zero.rotation.turned_about_z(self.sines[j], self.cosines[j]), ..at_zero }
-            }
-            JointMotion::Prismatic => {
-                let translation = at_zero.rotation.z_axis().times_plus(self.coordinates[j], at_zero.translation);
-                Placement { translation, ..at_zero }
-            }
-            JointMotion::Floating => floating_placement(model, j, q),
+            JointMotion::Revolute => revolute::placement(at_zero, self.sines[j], self.cosines[j]),
+            JointMotion::Prismatic => prismatic::placement(at_zero, self.coordinates[j]),
+            JointMotion::Floating => floating::placement(model, j, q),
         }
     }
 }
 
 /// The velocity (or acceleration) of a joint of one degree.
 #[inline]
-pub(super) fn speed<T: Scalar>(model: &Model, j: usize, v: &[T]) -> T {
+fn speed<T: Scalar>(model: &Model, j: usize, v: &[T]) -> T {
     let own = model.coordinates(j);
     v[own.v] * T::from_f64(own.ratio)
 }
 
 /// The velocity (or acceleration) of a floating joint, in the axes of its link.
 #[inline]
-pub(super) fn twist<T: Scalar>(model: &Model, j: usize, v: &[T]) -> Motion<T> {
-    let first = model.coordinates(j).v;
-    let v = &v[first..first + 6];
-    Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) }
+fn twist<T: Scalar>(model: &Model, j: usize, v: &[T]) -> Motion<T> {
+    floating::twist(&v[model.coordinates(j).v..])
 }
 
-/// Apart, so that joints of one degree keep a short path.
-#[inline(never)]
-fn floating_placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placement<T> {
-    let first = model.coordinates(j).q;
-    let q = &q[first..first + 7];
-    let own = Placement {
-        rotation: Rotation::from_quaternion_components([q[3], q[4], q[5], q[6]]),
-        translation: Vec3([q[0], q[1], q[2]]),
-    };
-    Placement::from_f64(model.joint_placement(j)) * own
-}
-
-/// The axis of a degree of freedom in world axes, as long as its ratio, and whether it turns about it.
+/// The velocity of `link`, which joint `j` moves with `v` (nv), where its parent carries its origin along with `carried`.
 #[inline]
-fn axis<T: Scalar>(degree: &Degree, link: &Placement<T>) -> (Vec3<T>, bool) {
-    let (axis, turns) = match degree.motion {
-        DegreeMotion::Turn(axis) => (axis, true),
-        DegreeMotion::Shift(axis) => (axis, false),
-    };
-    let axis = match axis {
+pub(super) fn velocity<T: Scalar>(
+    model: &Model,
+    j: usize,
+    link: &Placement<T>,
+    carried: Motion<T>,
+    v: &[T],
+) -> Motion<T> {
+    let axis = || link.rotation.z_axis();
+    match model.motion(j) {
+        JointMotion::Revolute => revolute::velocity(carried, axis(), speed(model, j, v)),
+        JointMotion::Prismatic => prismatic::velocity(carried, axis(), speed(model, j, v)),
+        JointMotion::Floating => floating::velocity(carried, &link.rotation, twist(model, j, v)),
+    }
+}
+
+/// The acceleration of `link`, which joint `j` moves with `v` and `a` (nv), where its parent, which turns with `omega`,
+/// carries its origin along with `carried`.
+#[inline]
+pub(super) fn acceleration<T: Scalar>(
+    model: &Model,
+    j: usize,
+    link: &Placement<T>,
+    (carried, omega): (Motion<T>, Vec3<T>),
+    [v, a]: [&[T]; 2],
+) -> Motion<T> {
+    let axis = || link.rotation.z_axis();
+    let speeds = || [speed(model, j, v), speed(model, j, a)];
+    match model.motion(j) {
+        JointMotion::Revolute => revolute::acceleration(carried, omega, axis(), speeds()),
+        JointMotion::Prismatic => prismatic::acceleration(carried, omega, axis(), speeds()),
+        JointMotion::Floating => {
+            let twists = [twist(model, j, v), twist(model, j, a)];
+            floating::acceleration(carried, omega, &link.rotation, twists)
+        }
+    }
+}
+
+/// v += S q̇ and a += S q̈ + v × S q̇, with S along z: from the motion of the parent, seen at the origin of the link of joint `j` in
+/// its axes, to that of the link.
+#[inline]
+pub(super) fn advance<T: Scalar>(
+    model: &Model,
+    j: usize,
+    velocity: &mut Motion<T>,
+    acceleration: &mut Motion<T>,
+    v: &[T],
+    a: Option<&[T]>,
+) {
+    match model.motion(j) {
+        JointMotion::Revolute => {
+            let push = a.map_or(T::ZERO, |a| speed(model, j, a));
+            revolute::advance(velocity, acceleration, speed(model, j, v), push);
+        }
+        JointMotion::Prismatic => {
+            let push = a.map_or(T::ZERO, |a| speed(model, j, a));
+            prismatic::advance(velocity, acceleration, speed(model, j, v), push);
+        }
+        JointMotion::Floating => {
+            let push = a.map_or(Motion::ZERO, |a| twist(model, j, a));
+            floating::advance(velocity, acceleration, twist(model, j, v), push);
+        }
+    }
+}
+
+/// Adds Sᵀ f to `tau` (nv), 0 until then where the joint floats: what joint `j` feels of a force on its link, in the link's axes.
+#[inline]
+pub(super) fn add_effort<T: Scalar>(model: &Model, j: usize, force: Force<T>, tau: &mut [T]) {
+    let own = model.coordinates(j);
+    match model.motion(j) {
+        JointMotion::Revolute => tau[own.v] += revolute::effort(force) * T::from_f64(own.ratio),
+        JointMotion::Prismatic => tau[own.v] += prismatic::effort(force) * T::from_f64(own.ratio),
+        JointMotion::Floating => floating::write_effort(force, &mut tau[own.v..]),
+    }
+}
+
+/// v × S q̇ of joint `j`, whose `link` moves with `velocity`, in world axes.
+#[inline]
+pub(super) fn bias<T: Scalar>(model: &Model, j: usize, link: &Placement<T>, velocity: Motion<T>, v: &[T]) -> Motion<T> {
+    let own = || link.rotation.z_axis() * speed(model, j, v);
+    match model.motion(j) {
+        JointMotion::Revolute => revolute::bias(velocity, own()),
+        JointMotion::Prismatic => prismatic::bias(velocity, own()),
+        JointMotion::Floating => floating::bias(velocity, &link.rotation, twist(model, j, v)),
+    }
+}
+
+/// The axis of a degree of freedom in world axes, as long as its ratio.
+#[inline]
+fn axis<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
+    let axis = match degree.motion.axis() {
         Axis::Z => link.rotation.z_axis(),
         Axis::Y => link.rotation.column(1),
         Axis::X => link.rotation.column(0),
     };
-    (axis * T::from_f64(degree.ratio), turns)
+    axis * T::from_f64(degree.ratio)
 }
 
 /// The motion of the degree's link at unit velocity, at a point from which the link's origin is seen at `arm`; world axes.
 #[inline]
 pub(super) fn unit_motion<T: Scalar>(degree: &Degree, link: &Placement<T>, arm: Vec3<T>) -> Motion<T> {
-    match axis(degree, link) {
-        (axis, true) => Motion { angular: axis, linear: arm.cross(axis) },
-        (axis, false) => Motion { angular: Vec3::ZERO, linear: axis },
+    let axis = axis(degree, link);
+    match degree.motion {
+        DegreeMotion::Turn(_) => revolute::unit_motion(axis, arm),
+        DegreeMotion::Shift(_) => prismatic::unit_motion(axis),
+    }
+}
+
+/// The force that the acceleration `unit` of a degree takes: I S.
+#[inline]
+pub(super) fn load<T: Scalar>(degree: &Degree, inertia: &ArticulatedInertia<T>, unit: Motion<T>) -> Force<T> {
+    match degree.motion {
+        DegreeMotion::Turn(_) => revolute::load(inertia, unit),
+        DegreeMotion::Shift(_) => prismatic::load(inertia, unit),
+    }
+}
+
+/// The momentum of what moves with a degree at `unit` velocity: I S.
+#[inline]
+pub(super) fn momentum<T: Scalar>(degree: &Degree, inertia: &Inertia<T>, unit: Motion<T>) -> Force<T> {
+    match degree.motion {
+        DegreeMotion::Turn(_) => revolute::momentum(inertia, unit),
+        DegreeMotion::Shift(_) => prismatic::momentum(inertia, unit),
+    }
+}
+
+/// What a degree on `link` feels of a momentum about `point`.
+#[inline]
+pub(super) fn felt<T: Scalar>(degree: &Degree, link: &Placement<T>, momentum: Force<T>, point: Vec3<T>) -> T {
+    let unit = unit_motion(degree, link, Vec3::ZERO);
+    match degree.motion {
+        DegreeMotion::Turn(_) => revolute::felt(unit, point - link.translation, momentum),
+        DegreeMotion::Shift(_) => prismatic::felt(unit, momentum),
     }
 }
 
 /// ∂r_P/∂q_k = T_k(P) for a point P that degree k carries: e × (r_P − O) or e, with its axis e and the link's origin O.
 #[inline]
 pub(super) fn point_column<T: Scalar>(degree: &Degree, link: &Placement<T>, point: Vec3<T>) -> Vec3<T> {
-    match axis(degree, link) {
-        (axis, true) => axis.cross(point - link.translation),
-        (axis, false) => axis,
+    let axis = axis(degree, link);
+    match degree.motion {
+        DegreeMotion::Turn(_) => revolute::point_column(axis, point - link.translation),
+        DegreeMotion::Shift(_) => axis,
     }
 }
 
@@ -120,21 +220,22 @@ pub(super) fn point_column_rate<T: Scalar>(
     point: Vec3<T>,
     velocity: Vec3<T>,
 ) -> Vec3<T> {
-    match axis(degree, link) {
-        (axis, true) => {
-            let rate = motion.angular.cross(axis);
-            rate.cross(point - link.translation) + axis.cross(velocity - motion.linear)
+    let axis = axis(degree, link);
+    let rate = motion.angular.cross(axis);
+    match degree.motion {
+        DegreeMotion::Turn(_) => {
+            revolute::point_column_rate(axis, rate, point - link.translation, velocity - motion.linear)
         }
-        (axis, false) => motion.angular.cross(axis),
+        DegreeMotion::Shift(_) => rate,
     }
 }
 
 /// ∂ω/∂v_k = Om_k of a link that degree k carries: its axis e if it turns, else 0.
 #[inline]
 pub(super) fn angular_column<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
-    match axis(degree, link) {
-        (axis, true) => axis,
-        (_, false) => Vec3::ZERO,
+    match degree.motion {
+        DegreeMotion::Turn(_) => axis(degree, link),
+        DegreeMotion::Shift(_) => Vec3::ZERO,
     }
 }
 
@@ -146,9 +247,10 @@ pub(super) fn first_moment_column<T: Scalar>(
     link: &Placement<T>,
     first: Vec3<T>,
 ) -> Vec3<T> {
-    match axis(degree, link) {
-        (axis, true) => axis.cross(first),
-        (axis, false) => axis * T::from_f64(model.subtree_mass(degree.link - 1)),
+    let axis = axis(degree, link);
+    match degree.motion {
+        DegreeMotion::Turn(_) => revolute::point_column(axis, first),
+        DegreeMotion::Shift(_) => axis * T::from_f64(model.subtree_mass(degree.link - 1)),
     }
 }
 

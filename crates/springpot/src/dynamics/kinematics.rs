@@ -1,7 +1,7 @@
 //! Forward kinematics: where the links are and how they move.
 
 use super::joint::{self, Stands};
-use crate::model::{Frame, JointMotion, Model, Site};
+use crate::model::{Frame, Model, Site};
 use crate::spatial::{Motion, Placement, Scalar, Vec3};
 
 /// How far the last update went.
@@ -108,20 +108,10 @@ impl<T: Scalar> Kinematics<T> {
         for j in 0..model.joint_count() {
             let parent = model.parent_link(j);
             let link = &self.placements[j + 1];
-            let (axis, arm) = (link.rotation.z_axis(), link.translation - self.placements[parent].translation);
+            let arm = link.translation - self.placements[parent].translation;
             let Motion { angular, linear } = self.velocities[parent];
-            let carried = linear + angular.cross(arm);
-            self.velocities[j + 1] = match model.motion(j) {
-                JointMotion::Revolute => {
-                    Motion { angular: axis.times_plus(joint::speed(model, j, v), angular), linear: carried }
-                }
-                JointMotion::Prismatic => {
-                    Motion { angular, linear: axis.times_plus(joint::speed(model, j, v), carried) }
-                }
-                JointMotion::Floating => {
-                    Motion { angular, linear: carried } + joint::twist(model, j, v).rotated(&link.rotation)
-                }
-            };
+            let carried = Motion { angular, linear: linear + angular.cross(arm) };
+            self.velocities[j + 1] = joint::velocity(model, j, link, carried, v);
         }
     }
 
@@ -133,34 +123,14 @@ impl<T: Scalar> Kinematics<T> {
         self.update_velocity(model, q, v);
         self.level = Level::Acceleration;
         let (v, a) = (&v[..model.nv()], &a[..model.nv()]);
-        let two = T::from_f64(2.0);
         for j in 0..model.joint_count() {
             let parent = model.parent_link(j);
             let link = &self.placements[j + 1];
-            let (axis, arm) = (link.rotation.z_axis(), link.translation - self.placements[parent].translation);
+            let arm = link.translation - self.placements[parent].translation;
             let omega = self.velocities[parent].angular;
             let Motion { angular, linear } = self.accelerations[parent];
-            let carried = linear + angular.cross(arm) + omega.cross(omega.cross(arm));
-            let gyration = omega.cross(axis);
-            self.accelerations[j + 1] = match model.motion(j) {
-                JointMotion::Revolute => {
-                    let (speed, push) = (joint::speed(model, j, v), joint::speed(model, j, a));
-                    Motion { angular: axis.times_plus(push, gyration.times_plus(speed, angular)), linear: carried }
-                }
-                JointMotion::Prismatic => {
-                    let (speed, push) = (joint::speed(model, j, v), joint::speed(model, j, a));
-                    Motion { angular, linear: axis.times_plus(push, gyration.times_plus(two * speed, carried)) }
-                }
-                JointMotion::Floating => {
-                    let own = joint::twist(model, j, v).rotated(&link.rotation);
-                    let push = joint::twist(model, j, a).rotated(&link.rotation);
-                    let both = omega + omega + own.angular;
-                    Motion {
-                        angular: angular + omega.cross(own.angular) + push.angular,
-                        linear: carried + both.cross(own.linear) + push.linear,
-                    }
-                }
-            };
+            let carried = Motion { angular, linear: linear + angular.cross(arm) + omega.cross(omega.cross(arm)) };
+            self.accelerations[j + 1] = joint::acceleration(model, j, link, (carried, omega), [v, a]);
         }
     }
 

@@ -5,7 +5,7 @@ use super::body_coriolis::BodyCoriolis;
 use super::joint;
 use super::kinematics::Kinematics;
 use super::workspace::Workspace;
-use crate::model::{JointMotion, Model};
+use crate::model::Model;
 use crate::spatial::{Force, Inertia, Motion, Scalar, Vec3};
 
 /// The point, at rest, about which all of the robot is taken: where the first joint is, so that a robot far from the world's
@@ -45,7 +45,7 @@ pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: O
             (ws.unit[k], ws.unit_rate[k], ws.unit_own_rate[k]) = (unit, rate, rate);
             ws.unit_second_rate[k] = pushed.cross(unit) + carrier.cross(rate);
         }
-        if model.motion(j) == JointMotion::Floating {
+        if model.degrees_of(j).len() > 1 {
             for k in model.degrees_of(j) {
                 ws.unit_own_rate[k] = velocity.cross(ws.unit[k]);
             }

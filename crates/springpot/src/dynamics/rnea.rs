@@ -4,7 +4,7 @@ use super::joint;
 use super::kinematics::Kinematics;
 use super::pair::{self, PairForce};
 use super::workspace::Workspace;
-use crate::model::{JointMotion, Model};
+use crate::model::Model;
 use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Vec3};
 
 /// Actuator forces τ = M(q) a + C(q, v) v + g(q) − ΣQ, N·m or N, with Q_b = −F ∂l/∂q_b of every pair force.
@@ -81,30 +81,7 @@ fn inverse_dynamics<T: Scalar>(
         let local = kinematics.map_or(&ws.stands, Kinematics::stands).placement(model, j, q);
         let mut velocity = local.motion_to_child(ws.velocity[parent]);
         let mut acceleration = local.motion_to_child(ws.acceleration[parent]);
-        // With S along z: v += S q̇, a += S q̈ + v × S q̇.
-        match model.motion(j) {
-            JointMotion::Revolute => {
-                let speed = joint::speed(model, j, v);
-                let push = a.map_or(T::ZERO, |a| joint::speed(model, j, a));
-                let ([wx, wy, _], [ux, uy, _]) = (velocity.angular.0, velocity.linear.0);
-                velocity.angular.0[2] += speed;
-                acceleration.angular += Vec3([wy * speed, -(wx * speed), push]);
-                acceleration.linear += Vec3([uy * speed, -(ux * speed), T::ZERO]);
-            }
-            JointMotion::Prismatic => {
-                let speed = joint::speed(model, j, v);
-                let push = a.map_or(T::ZERO, |a| joint::speed(model, j, a));
-                let [wx, wy, _] = velocity.angular.0;
-                velocity.linear.0[2] += speed;
-                acceleration.linear += Vec3([wy * speed, -(wx * speed), push]);
-            }
-            JointMotion::Floating => {
-                let own = joint::twist(model, j, v);
-                acceleration += velocity.cross(own);
-                acceleration += a.map_or(Motion::ZERO, |a| joint::twist(model, j, a));
-                velocity += own;
-            }
-        }
+        joint::advance(model, j, &mut velocity, &mut acceleration, v, a);
         let inertia = Inertia::from_f64(model.link_inertia(j));
         ws.force[j + 1] = inertia * acceleration + velocity.cross_force(inertia * velocity);
         ws.velocity[j + 1] = velocity;
@@ -121,15 +98,7 @@ fn inverse_dynamics<T: Scalar>(
     tau.fill(T::ZERO);
     for j in (0..n).rev() {
         let force = ws.force[j + 1];
-        let own = model.coordinates(j);
-        match model.motion(j) {
-            JointMotion::Revolute => tau[own.v] += force.angular.0[2] * T::from_f64(own.ratio),
-            JointMotion::Prismatic => tau[own.v] += force.linear.0[2] * T::from_f64(own.ratio),
-            JointMotion::Floating => {
-                tau[own.v..own.v + 3].copy_from_slice(&force.linear.0);
-                tau[own.v + 3..own.v + 6].copy_from_slice(&force.angular.0);
-            }
-        }
+        joint::add_effort(model, j, force, tau);
         let on_parent = ws.local[j].force_to_parent(force);
         ws.force[model.parent_link(j)] += on_parent;
     }

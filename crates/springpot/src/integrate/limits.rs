@@ -4,17 +4,13 @@ use super::row_times::RowTimes;
 use super::run::run;
 use super::settings::{Settings, Stop};
 use super::system::System;
-use crate::model::{JointKind, Limits, Model};
+use crate::model::{Dimension, Limits, Model};
 use crate::observe::{Observables, Quantity};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
 /// What is beyond a limit by less than this, in its unit and as a share of it, is rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// Units of coordinate, velocity and actuator force, of joints that slide and of those that turn.
-const SLIDING: [&str; 3] = ["m", "m/s", "N"];
-const TURNING: [&str; 3] = ["rad", "rad/s", "N*m"];
 
 /// The limits that a joint may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -204,19 +200,17 @@ fn position(observables: &Observables, quantity: Quantity) -> usize {
 
 fn of_joint(model: &Model, observables: &Observables, joint: usize) -> Vec<Watched> {
     let (q, v) = (model.q_range(joint).start, model.v_range(joint).start);
-    if model.joint_kind(joint).nv() != 1 {
-        return Vec::new();
-    }
-    let units = if model.joint_kind(joint) == JointKind::Prismatic { SLIDING } else { TURNING };
+    let Some(dimension) = model.joint_kind(joint).dimension() else { return Vec::new() };
+    let units = dimension.units();
     let followed = model.followed(joint);
     let (ratio, offset) = followed.map_or((1.0, 0.0), |(_, ratio, offset)| (ratio, offset));
     let Limits { lower, upper, velocity, effort } = *model.limits(joint);
     let effort = if followed.is_some() { f64::INFINITY } else { effort };
     let all = [
-        (LimitKind::Lower, lower, units[0], Quantity::Coordinate(q), offset),
-        (LimitKind::Upper, upper, units[0], Quantity::Coordinate(q), offset),
-        (LimitKind::Velocity, velocity, units[1], Quantity::Velocity(v), 0.0),
-        (LimitKind::Effort, effort, units[2], Quantity::Torque(v), 0.0),
+        (LimitKind::Lower, lower, units.coordinate, Quantity::Coordinate(q), offset),
+        (LimitKind::Upper, upper, units.coordinate, Quantity::Coordinate(q), offset),
+        (LimitKind::Velocity, velocity, units.velocity, Quantity::Velocity(v), 0.0),
+        (LimitKind::Effort, effort, units.force, Quantity::Torque(v), 0.0),
     ];
     let finite = all.into_iter().filter(|(_, limit, ..)| limit.is_finite());
     let name = &model.joint_names()[joint];
@@ -250,6 +244,8 @@ fn brief(x: f64) -> f64 {
 /// One of the six units.
 fn unit<'de, D: Deserializer<'de>>(deserializer: D) -> Result<&'static str, D::Error> {
     let text = String::deserialize(deserializer)?;
-    let known = SLIDING.into_iter().chain(TURNING).find(|unit| **unit == text);
+    let units = [Dimension::Length, Dimension::Angle].map(Dimension::units);
+    let mut units = units.into_iter().flat_map(|units| [units.coordinate, units.velocity, units.force]);
+    let known = units.find(|unit| *unit == text);
     known.ok_or_else(|| serde::de::Error::custom("not a unit of a limit"))
 }

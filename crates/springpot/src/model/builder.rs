@@ -7,7 +7,7 @@ use super::degree::JointMotion;
 use super::error::{Field, ModelError};
 use super::frame::Frame;
 use super::robot::Model;
-use super::spec::{BodySpec, JointKind, JointSpec, Mimic, Parent};
+use super::spec::{BodySpec, JointSpec, Mimic, Parent};
 use super::validate::Rules;
 use super::{mass_check, numbering, validate};
 use crate::spatial::{Inertia, Placement, Rotation, Symmetric3, Vec3};
@@ -74,13 +74,7 @@ impl ModelBuilder {
         let joint = spec.joint;
         let offset = Placement { rotation: Rotation::from_rpy(joint.rpy), translation: joint.origin.into() };
         let in_parent_link = parent.placement * offset;
-        let motion = match joint.kind {
-            JointKind::Fixed => None,
-            JointKind::Revolute | JointKind::Continuous => Some(JointMotion::Revolute),
-            JointKind::Prismatic => Some(JointMotion::Prismatic),
-            JointKind::Floating => Some(JointMotion::Floating),
-        };
-        let frame = match motion {
+        let frame = match joint.motion() {
             None => {
                 self.model.fixed_joints.push(joint.name);
                 Frame { link: parent.link, placement: in_parent_link }

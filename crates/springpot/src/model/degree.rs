@@ -1,5 +1,7 @@
 //! Degrees of freedom: what the columns of Jacobians and mass matrices stand for.
 
+use crate::spatial::{Motion, Vec3};
+
 /// What a joint does in the frame of the link that it moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum JointMotion {
@@ -28,6 +30,29 @@ pub(crate) enum DegreeMotion {
     Shift(Axis),
 }
 
+impl DegreeMotion {
+    /// The axis.
+    #[inline]
+    pub(crate) const fn axis(self) -> Axis {
+        match self {
+            Self::Turn(axis) | Self::Shift(axis) => axis,
+        }
+    }
+
+    /// The motion of the link at unit velocity, in its own frame.
+    pub(crate) fn unit(self) -> Motion {
+        let along = match self.axis() {
+            Axis::X => Vec3([1.0, 0.0, 0.0]),
+            Axis::Y => Vec3([0.0, 1.0, 0.0]),
+            Axis::Z => Vec3([0.0, 0.0, 1.0]),
+        };
+        match self {
+            Self::Turn(_) => Motion { angular: along, ..Motion::ZERO },
+            Self::Shift(_) => Motion { linear: along, ..Motion::ZERO },
+        }
+    }
+}
+
 /// One degree of freedom of a joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Degree {
@@ -53,13 +78,13 @@ pub(crate) struct Coordinates {
 
 impl JointMotion {
     /// The degrees of freedom in the order of v.
-    pub(crate) const fn degrees(self) -> &'static [DegreeMotion] {
+    pub(crate) fn degrees(self) -> Vec<DegreeMotion> {
         use DegreeMotion::{Shift, Turn};
         match self {
-            Self::Revolute => &[Turn(Axis::Z)],
-            Self::Prismatic => &[Shift(Axis::Z)],
+            Self::Revolute => vec![Turn(Axis::Z)],
+            Self::Prismatic => vec![Shift(Axis::Z)],
             Self::Floating => {
-                &[Shift(Axis::X), Shift(Axis::Y), Shift(Axis::Z), Turn(Axis::X), Turn(Axis::Y), Turn(Axis::Z)]
+                vec![Shift(Axis::X), Shift(Axis::Y), Shift(Axis::Z), Turn(Axis::X), Turn(Axis::Y), Turn(Axis::Z)]
             }
         }
     }

@@ -1,18 +1,8 @@
 //! What the numbers of q and v are called.
 
+use super::dimension::Dimension;
 use super::robot::Model;
-use super::spec::JointKind;
-
-/// What a coordinate or a velocity measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
-    /// An angle, rad.
-    Angle,
-    /// A length, m.
-    Length,
-    /// A component of a quaternion, without unit.
-    Quaternion,
-}
+use super::spec::Space;
 
 /// One number of q or v: the joint's name, with a component where the joint has several.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,25 +10,25 @@ pub struct Label {
     /// `q1`, `floating_base.x`, `floating_base.wz`, …
     pub name: String,
     /// What it measures.
-    pub measure: Measure,
+    pub dimension: Dimension,
 }
 
-const COORDINATES: [(&str, Measure); 7] = [
-    ("x", Measure::Length),
-    ("y", Measure::Length),
-    ("z", Measure::Length),
-    ("qx", Measure::Quaternion),
-    ("qy", Measure::Quaternion),
-    ("qz", Measure::Quaternion),
-    ("qw", Measure::Quaternion),
+const COORDINATES: [(&str, Dimension); 7] = [
+    ("x", Dimension::Length),
+    ("y", Dimension::Length),
+    ("z", Dimension::Length),
+    ("qx", Dimension::Quaternion),
+    ("qy", Dimension::Quaternion),
+    ("qz", Dimension::Quaternion),
+    ("qw", Dimension::Quaternion),
 ];
-const VELOCITIES: [(&str, Measure); 6] = [
-    ("vx", Measure::Length),
-    ("vy", Measure::Length),
-    ("vz", Measure::Length),
-    ("wx", Measure::Angle),
-    ("wy", Measure::Angle),
-    ("wz", Measure::Angle),
+const VELOCITIES: [(&str, Dimension); 6] = [
+    ("vx", Dimension::Length),
+    ("vy", Dimension::Length),
+    ("vz", Dimension::Length),
+    ("wx", Dimension::Angle),
+    ("wy", Dimension::Angle),
+    ("wz", Dimension::Angle),
 ];
 
 impl Model {
@@ -52,18 +42,18 @@ impl Model {
         self.labels(&VELOCITIES)
     }
 
-    fn labels(&self, of_floating: &[(&str, Measure)]) -> Vec<Label> {
+    fn labels(&self, of_pose: &[(&str, Dimension)]) -> Vec<Label> {
         let own = (0..self.joint_count()).filter(|&j| self.followed(j).is_none());
         own.flat_map(|j| {
             let joint = &self.joint_names()[j];
-            let one = |measure| vec![Label { name: joint.clone(), measure }];
-            match self.joint_kind(j) {
-                JointKind::Fixed => Vec::new(),
-                JointKind::Revolute | JointKind::Continuous => one(Measure::Angle),
-                JointKind::Prismatic => one(Measure::Length),
-                JointKind::Floating => of_floating
+            let one = |dimension| vec![Label { name: joint.clone(), dimension }];
+            match self.joint_kind(j).space() {
+                Space::Point => Vec::new(),
+                Space::Line(dimension) => one(dimension),
+                Space::Circle => one(Dimension::Angle),
+                Space::Pose => of_pose
                     .iter()
-                    .map(|&(part, measure)| Label { name: format!("{joint}.{part}"), measure })
+                    .map(|&(part, dimension)| Label { name: format!("{joint}.{part}"), dimension })
                     .collect(),
             }
         })

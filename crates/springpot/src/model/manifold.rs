@@ -1,7 +1,8 @@
 //! The configuration manifold: steps between configurations and what a configuration may be.
 
+use super::dimension::Dimension;
 use super::robot::Model;
-use super::spec::{JointKind, Limits};
+use super::spec::{Limits, Space};
 use crate::spatial::{Motion, Quaternion, Rotation, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -10,10 +11,10 @@ impl Model {
     /// The configuration in which every joint stands at 0: floating joints at their origin, unturned.
     pub fn neutral(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.nq()];
-        for (j, kind) in self.own_joints_and_kinds() {
-            match kind {
-                JointKind::Fixed | JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => {}
-                JointKind::Floating => q[self.q_range(j).end - 1] = 1.0,
+        for (j, space) in self.own_joints_and_spaces() {
+            match space {
+                Space::Point | Space::Line(_) | Space::Circle => {}
+                Space::Pose => q[self.q_range(j).end - 1] = 1.0,
             }
         }
         q
@@ -25,12 +26,12 @@ impl Model {
     /// Source: Blanco-Claraco, A tutorial on SE(3) transformation parameterizations and on-manifold optimization, 2010.
     pub fn integrate_into(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
         out[..self.nq()].copy_from_slice(&q[..self.nq()]);
-        for (j, kind) in self.own_joints_and_kinds() {
+        for (j, space) in self.own_joints_and_spaces() {
             let (q, v) = (&mut out[self.q_range(j)], &v[self.v_range(j)]);
-            match kind {
-                JointKind::Fixed => {}
-                JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => q[0] += v[0],
-                JointKind::Floating => {
+            match space {
+                Space::Point => {}
+                Space::Line(_) | Space::Circle => q[0] += v[0],
+                Space::Pose => {
                     let (shift, turn) = (Vec3([v[0], v[1], v[2]]), Vec3([v[3], v[4], v[5]]));
                     let attitude = Quaternion::new([q[3], q[4], q[5], q[6]]).normalised();
                     let moved = Rotation::from_quaternion(attitude) * left_jacobian(turn, shift);
@@ -54,13 +55,13 @@ impl Model {
     ///
     /// The shorter way round where there are two: the turn of a continuous or floating joint is at most π.
     pub fn difference_into(&self, from: &[f64], to: &[f64], v: &mut [f64]) {
-        for (j, kind) in self.own_joints_and_kinds() {
+        for (j, space) in self.own_joints_and_spaces() {
             let (from, to, v) = (&from[self.q_range(j)], &to[self.q_range(j)], &mut v[self.v_range(j)]);
-            match kind {
-                JointKind::Fixed => {}
-                JointKind::Revolute | JointKind::Prismatic => v[0] = to[0] - from[0],
-                JointKind::Continuous => v[0] = wrapped(to[0] - from[0]),
-                JointKind::Floating => {
+            match space {
+                Space::Point => {}
+                Space::Line(_) => v[0] = to[0] - from[0],
+                Space::Circle => v[0] = wrapped(to[0] - from[0]),
+                Space::Pose => {
                     let attitude = |q: &[f64]| Quaternion::new([q[3], q[4], q[5], q[6]]).normalised();
                     let (start, end) = (attitude(from), attitude(to));
                     let turn = (start.conjugate() * end).rotation_vector();
@@ -83,12 +84,12 @@ impl Model {
     /// Brings `q` back to the manifold, where it already is but for rounding: quaternions to length 1 (with qw ≥ 0), angles
     /// of continuous joints into (−π, π]. A quaternion of length 0 becomes NaN.
     pub fn normalise(&self, q: &mut [f64]) {
-        for (j, kind) in self.own_joints_and_kinds() {
+        for (j, space) in self.own_joints_and_spaces() {
             let q = &mut q[self.q_range(j)];
-            match kind {
-                JointKind::Fixed | JointKind::Revolute | JointKind::Prismatic => {}
-                JointKind::Continuous => q[0] = wrapped(q[0]),
-                JointKind::Floating => {
+            match space {
+                Space::Point | Space::Line(_) => {}
+                Space::Circle => q[0] = wrapped(q[0]),
+                Space::Pose => {
                     let unit = Quaternion::new([q[3], q[4], q[5], q[6]]).normalised().0;
                     let sign = if unit[3] < 0.0 { -1.0 } else { 1.0 };
                     q[3..].copy_from_slice(&unit.map(|x| sign * x));
@@ -103,19 +104,19 @@ impl Model {
         let mut state = seed;
         let mut uniform = || splitmix(&mut state);
         let mut q = self.neutral();
-        for (j, kind) in self.own_joints_and_kinds() {
+        for (j, space) in self.own_joints_and_spaces() {
             let q = &mut q[self.q_range(j)];
             let Limits { lower, upper, .. } = *self.limits(j);
             let mut within = |reach: f64| {
                 let (low, high) = if lower.is_finite() && upper.is_finite() { (lower, upper) } else { (-reach, reach) };
                 low + (high - low) * uniform()
             };
-            match kind {
-                JointKind::Fixed => {}
-                JointKind::Revolute => q[0] = within(PI),
-                JointKind::Continuous => q[0] = PI * (2.0 * uniform() - 1.0),
-                JointKind::Prismatic => q[0] = within(1.0),
-                JointKind::Floating => {
+            match space {
+                Space::Point => {}
+                Space::Line(Dimension::Angle) => q[0] = within(PI),
+                Space::Line(_) => q[0] = within(1.0),
+                Space::Circle => q[0] = PI * (2.0 * uniform() - 1.0),
+                Space::Pose => {
                     q[..3].fill_with(|| 2.0 * uniform() - 1.0);
                     // Shoemake, Uniform random rotations, Graphics Gems III, 1992.
                     let (share, first, second) = (uniform(), TAU * uniform(), TAU * uniform());
@@ -134,13 +135,13 @@ impl Model {
     /// Source: Bullo and Murray, Proportional derivative (PD) control on the Euclidean group, 1995 (the inverse of the
     /// exponential's differential).
     pub fn tangent_rate_into(&self, xi: &[f64], v: &[f64], rate: &mut [f64]) {
-        for (j, kind) in self.own_joints_and_kinds() {
+        for (j, space) in self.own_joints_and_spaces() {
             let range = self.v_range(j);
             let (xi, v, rate) = (&xi[range.clone()], &v[range.clone()], &mut rate[range]);
-            match kind {
-                JointKind::Fixed => {}
-                JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => rate[0] = v[0],
-                JointKind::Floating => {
+            match space {
+                Space::Point => {}
+                Space::Line(_) | Space::Circle => rate[0] = v[0],
+                Space::Pose => {
                     let twist =
                         |v: &[f64]| Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) };
                     let (xi, v) = (twist(xi), twist(v));
@@ -160,8 +161,8 @@ impl Model {
         (0..self.joint_count()).filter(|&j| self.followed(j).is_none())
     }
 
-    fn own_joints_and_kinds(&self) -> impl Iterator<Item = (usize, JointKind)> + '_ {
-        self.own_joints().map(|j| (j, self.joint_kind(j)))
+    fn own_joints_and_spaces(&self) -> impl Iterator<Item = (usize, Space)> + '_ {
+        self.own_joints().map(|j| (j, self.joint_kind(j).space()))
     }
 }
 

@@ -1,10 +1,9 @@
 //! Whether the mass matrix is positive definite.
 
-use super::degree::{DegreeMotion, JointMotion};
 use super::error::ModelError;
 use super::robot::Model;
 use super::validate;
-use crate::spatial::{Inertia, Placement, Vec3};
+use crate::spatial::{Inertia, Motion, Placement, Vec3};
 
 /// A pivot below this share of what it was computed from is rounding.
 const PIVOT_TOLERANCE: f64 = 1e-14;
@@ -39,18 +38,20 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
         let mut reduced = articulated[j];
         let mut lost = Vec::with_capacity(6);
         // Joints that follow one another share their inertia: a singularity of theirs is not looked for.
-        let degrees = if model.followed[j].is_some() || leads[j] { &[] } else { model.motions[j].degrees() };
-        for degree in degrees.iter().rev() {
-            let axis = match degree {
-                DegreeMotion::Turn(axis) => *axis as usize,
-                DegreeMotion::Shift(axis) => 3 + *axis as usize,
-            };
-            let column = reduced.map(|row| row[axis]);
-            let pivot = column[axis];
+        let degrees = if model.followed[j].is_some() || leads[j] { 0..0 } else { model.degrees_of(j) };
+        for degree in model.degrees[degrees].iter().rev() {
+            let Motion { angular, linear } = degree.motion.unit();
+            let unit = [angular.0, linear.0];
+            let unit = unit.as_flattened();
+            // What it does not move is left out: it may be infinite.
+            let moved = || (0..6).filter(|&k| unit[k] != 0.0);
+            let column = reduced.map(|row| moved().map(|k| row[k] * unit[k]).sum::<f64>());
+            let pivot = moved().map(|k| column[k] * unit[k]).sum::<f64>();
+            let before = moved().map(|k| gross[j][k / 3] * unit[k] * unit[k]).sum::<f64>();
             if !pivot.is_finite() {
                 return Err(ModelError::Overflow { body, name: name() });
             }
-            if pivot <= PIVOT_TOLERANCE * gross[j][axis / 3] {
+            if pivot <= PIVOT_TOLERANCE * before {
                 return Err(ModelError::SingularMassMatrix { body, name: name(), joint: model.joint_names[j].clone() });
             }
             for r in 0..6 {
@@ -110,17 +111,14 @@ fn generic_placement(model: &Model, j: usize, length: f64) -> Placement {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let generic = 0.37 + ((j + 1) as f64 * GOLDEN).fract();
     let at_zero = model.placements[j];
-    match model.motions[j] {
-        JointMotion::Revolute => {
-            let (sin, cos) = generic.sin_cos();
-            Placement { rotation: at_zero.rotation.turned_about_z(sin, cos), ..at_zero }
-        }
-        // Wherever a floating joint stands, it takes up all that it carries.
-        JointMotion::Floating => at_zero,
-        JointMotion::Prismatic => {
-            let translation = at_zero.rotation.z_axis().times_plus(generic * length, at_zero.translation);
-            Placement { translation, ..at_zero }
-        }
+    // Wherever a floating joint stands, it takes up all that it carries.
+    let [degree] = model.degrees[model.degrees_of(j)] else { return at_zero };
+    let Motion { angular: Vec3([.., turn]), linear: Vec3([.., shift]) } = degree.motion.unit();
+    let coordinate = if turn == 0.0 { generic * length } else { generic };
+    let (sin, cos) = (turn * coordinate).sin_cos();
+    Placement {
+        rotation: at_zero.rotation.turned_about_z(sin, cos),
+        translation: at_zero.rotation.z_axis().times_plus(shift * coordinate, at_zero.translation),
     }
 }
 

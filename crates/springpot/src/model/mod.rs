@@ -21,6 +21,7 @@
 
 mod builder;
 mod degree;
+mod dimension;
 mod error;
 mod frame;
 mod labels;
@@ -36,9 +37,10 @@ mod validate;
 
 pub use builder::ModelBuilder;
 pub(crate) use degree::{Axis, Degree, DegreeMotion, JointMotion};
+pub use dimension::{Dimension, Units};
 pub use error::{Field, ModelError, Subject};
 pub use frame::{Frame, Site};
-pub use labels::{Label, Measure};
+pub use labels::Label;
 pub use robot::Model;
-pub use spec::{Anchor, BodySpec, FRICTION_SPEED, FrictionLaw, JointKind, JointSpec, Limits, Mimic, Parent};
+pub use spec::{Anchor, BodySpec, FRICTION_SPEED, FrictionLaw, JointKind, JointSpec, Limits, Mimic, Parent, Space};
 pub use state::StateError;

@@ -26,7 +26,7 @@ pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), 
         model.coordinates.push(Coordinates { q, v, ratio, offset });
         model.followed.push(leader.map(|(source, ..)| source));
         let mut carrier = model.last_degrees[model.parents[j]];
-        for (k, &motion) in model.motions[j].degrees().iter().enumerate() {
+        for (k, motion) in model.motions[j].degrees().into_iter().enumerate() {
             model.degrees.push(Degree { link: j + 1, motion, index: v + k, ratio });
             model.carriers.push(carrier);
             carrier = model.degrees.len();

@@ -278,8 +278,8 @@ impl Model {
     /// The degrees of moving joint `joint`.
     #[inline]
     pub(crate) fn degrees_of(&self, joint: usize) -> Range<usize> {
-        let end = self.last_degrees[joint + 1];
-        end - self.motions[joint].degrees().len()..end
+        // Links stand in the order of their joints, and each has a degree at least.
+        self.last_degrees[joint]..self.last_degrees[joint + 1]
     }
 
     /// One more than the degree that carries degree `k`, or 0.

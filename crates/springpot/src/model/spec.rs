@@ -1,5 +1,8 @@
 //! The robot as it is described.
 
+use super::degree::JointMotion;
+use super::dimension::Dimension;
+
 /// Where a body hangs: on the world or on an earlier body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parent {
@@ -7,6 +10,19 @@ pub enum Parent {
     World,
     /// Index of an earlier body of the builder.
     Body(usize),
+}
+
+/// The values that the coordinates of a joint have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Space {
+    /// No coordinate.
+    Point,
+    /// One number.
+    Line(Dimension),
+    /// One angle; angles a full turn apart are the same configuration.
+    Circle,
+    /// The origin x, y, z and a quaternion qx, qy, qz, qw; six velocities, linear and angular.
+    Pose,
 }
 
 /// The kinds of joint.
@@ -40,21 +56,41 @@ impl JointKind {
         }
     }
 
+    /// What its coordinates may be.
+    pub const fn space(self) -> Space {
+        match self {
+            Self::Fixed => Space::Point,
+            Self::Revolute => Space::Line(Dimension::Angle),
+            Self::Continuous => Space::Circle,
+            Self::Prismatic => Space::Line(Dimension::Length),
+            Self::Floating => Space::Pose,
+        }
+    }
+
+    /// What its coordinate measures, if it has one alone.
+    pub const fn dimension(self) -> Option<Dimension> {
+        match self.space() {
+            Space::Line(dimension) => Some(dimension),
+            Space::Circle => Some(Dimension::Angle),
+            Space::Point | Space::Pose => None,
+        }
+    }
+
     /// Number of coordinates.
     pub const fn nq(self) -> usize {
-        match self {
-            Self::Fixed => 0,
-            Self::Revolute | Self::Continuous | Self::Prismatic => 1,
-            Self::Floating => 7,
+        match self.space() {
+            Space::Point => 0,
+            Space::Line(_) | Space::Circle => 1,
+            Space::Pose => 7,
         }
     }
 
     /// Number of velocities.
     pub const fn nv(self) -> usize {
-        match self {
-            Self::Fixed => 0,
-            Self::Revolute | Self::Continuous | Self::Prismatic => 1,
-            Self::Floating => 6,
+        match self.space() {
+            Space::Point => 0,
+            Space::Line(_) | Space::Circle => 1,
+            Space::Pose => 6,
         }
     }
 
@@ -160,6 +196,16 @@ impl JointSpec {
     /// A floating joint without rpy.
     pub fn floating(name: impl Into<String>, origin: [f64; 3]) -> Self {
         Self::plain(name.into(), JointKind::Floating, [0.0, 0.0, 1.0], origin)
+    }
+
+    /// How it moves its body; `None` where it does not.
+    pub(super) const fn motion(&self) -> Option<JointMotion> {
+        match self.kind {
+            JointKind::Fixed => None,
+            JointKind::Revolute | JointKind::Continuous => Some(JointMotion::Revolute),
+            JointKind::Prismatic => Some(JointMotion::Prismatic),
+            JointKind::Floating => Some(JointMotion::Floating),
+        }
     }
 
     fn plain(name: String, kind: JointKind, axis: [f64; 3], origin: [f64; 3]) -> Self {

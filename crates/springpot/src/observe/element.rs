@@ -2,7 +2,7 @@
 
 use super::evaluation::{ElementEvaluation, ElementRow};
 use super::subscript::at_joint;
-use super::units::{FORCES, ObservedElement, of_measure};
+use super::units::ObservedElement;
 use crate::model::Label;
 use std::fmt;
 
@@ -68,7 +68,7 @@ impl ElementQuantity {
             Self::Rate => of_element(["rad/s", "m/s"]),
             Self::Derivative => element.derivative_unit,
             Self::Force => of_element(["N*m", "N"]),
-            Self::GeneralizedForce(k) => of_measure(&velocities[k], FORCES),
+            Self::GeneralizedForce(k) => velocities[k].dimension.units().force,
             Self::Stored | Self::Dissipated | Self::Input => "J",
             Self::InputValue(i) => &element.entry.inputs[i].unit,
         }

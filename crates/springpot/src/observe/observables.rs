@@ -2,7 +2,7 @@
 
 use super::element::ElementQuantity;
 use super::quantity::{Axis, EnergyQuantity, Quantity};
-use super::units::{FORCES, ObservedElement, of_measure};
+use super::units::ObservedElement;
 use crate::elements::Element;
 use crate::law::{InputValue, Point};
 use crate::model::{Label, Model};
@@ -163,10 +163,10 @@ impl Observables {
     pub fn unit(&self, quantity: Quantity) -> &str {
         match quantity {
             Quantity::Time => "s",
-            Quantity::Coordinate(k) => of_measure(&self.coordinates[k], ["rad", "m", "1"]),
-            Quantity::Velocity(k) => of_measure(&self.velocities[k], ["rad/s", "m/s", ""]),
-            Quantity::Acceleration(k) => of_measure(&self.velocities[k], ["rad/s^2", "m/s^2", ""]),
-            Quantity::Torque(k) => of_measure(&self.velocities[k], FORCES),
+            Quantity::Coordinate(k) => self.coordinates[k].dimension.units().coordinate,
+            Quantity::Velocity(k) => self.velocities[k].dimension.units().velocity,
+            Quantity::Acceleration(k) => self.velocities[k].dimension.units().acceleration,
+            Quantity::Torque(k) => self.velocities[k].dimension.units().force,
             Quantity::Element(e, quantity) => quantity.unit(&self.elements[e], &self.velocities),
             Quantity::Gripper(_) | Quantity::GripperError => "m",
             Quantity::Energy(_) => "J",

@@ -4,7 +4,7 @@ use super::forces::JointForce;
 use super::forces::{Forces, Pull};
 use super::{Direction, Measure, Reading};
 use crate::dynamics::Kinematics;
-use crate::model::{JointKind, Model};
+use crate::model::{Dimension, JointKind, Model};
 
 /// The coordinate of a joint of one degree of freedom, rad or m: y = ratio·q + offset with the q of the joint that it
 /// follows, or y = q of its own.
@@ -38,8 +38,7 @@ pub enum JointMeasureError {
     },
     /// The joint has not one coordinate.
     #[error(
-        "joint \"{joint}\" is {}: an element acts on the coordinate of a joint of one degree of freedom (revolute, \
-         continuous or prismatic)", kind.name()
+        "joint \"{joint}\" is {}: an element acts on the coordinate of a joint of one degree of freedom ({})", kind.name(), of_one_degree()
     )]
     Kind {
         /// The joint.
@@ -47,6 +46,14 @@ pub enum JointMeasureError {
         /// What it is.
         kind: JointKind,
     },
+}
+
+/// `revolute, continuous or prismatic`.
+fn of_one_degree() -> String {
+    let kinds = JointKind::ALL.into_iter().filter(|kind| kind.dimension().is_some());
+    let names: Vec<&str> = kinds.map(JointKind::name).collect();
+    let (others, last) = names.split_at(names.len() - 1);
+    format!("{} or {}", others.join(", "), last.concat())
 }
 
 impl Joint {
@@ -60,12 +67,12 @@ impl Joint {
             return Err(JointMeasureError::NoSuchJoint { joint, count });
         }
         let kind = model.joint_kind(joint);
-        if kind.nv() != 1 {
+        let Some(dimension) = kind.dimension() else {
             return Err(JointMeasureError::Kind { joint: model.joint_names()[joint].clone(), kind });
-        }
+        };
         let (_, ratio, offset) = model.followed(joint).unwrap_or((joint, 1.0, 0.0));
         let velocity = model.v_range(joint).start;
-        Ok(Self { joint, velocity, ratio, offset, is_rotation: kind != JointKind::Prismatic })
+        Ok(Self { joint, velocity, ratio, offset, is_rotation: dimension == Dimension::Angle })
     }
 
     /// The coordinate of the joint called `name`.

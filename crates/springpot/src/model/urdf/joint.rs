@@ -2,7 +2,7 @@
 
 use super::error::{Owner, UrdfError};
 use super::limit;
-use super::problem::{UrdfProblem, brief};
+use super::problem::{TYPES, UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
 use crate::model::spec::{JointKind, JointSpec, Mimic};
@@ -76,7 +76,7 @@ pub(super) fn read<'a>(
 
 fn read_kind<'a>(reader: &Reader<'a>, node: Node<'a>, name: &str, owner: &Owner) -> Result<JointKind, UrdfError> {
     let written = reader.required(node, owner, "type")?;
-    if let Some(kind) = JointKind::ALL.into_iter().find(|kind| kind.name() == written) {
+    if let Some(kind) = TYPES.into_iter().find(|kind| kind.name() == written) {
         return Ok(kind);
     }
     let (joint, kind) = (name.to_owned(), written.chars().take(40).collect());
@@ -85,7 +85,7 @@ fn read_kind<'a>(reader: &Reader<'a>, node: Node<'a>, name: &str, owner: &Owner)
         if OTHER_TYPES.contains(&written) {
             UrdfProblem::UnsupportedJointType { joint, kind }
         } else {
-            let suggestion = nearest(written, JointKind::ALL.map(JointKind::name)).map(str::to_owned);
+            let suggestion = nearest(written, TYPES.map(JointKind::name)).map(str::to_owned);
             UrdfProblem::UnknownJointType { joint, kind, suggestion }
         },
     ))

@@ -3,7 +3,7 @@
 use super::error::{Owner, UrdfError};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
-use crate::model::spec::{JointKind, Limits};
+use crate::model::spec::{JointKind, Limits, Space};
 
 /// Attributes of other programs and of later versions of the format.
 const UNUSED: [&str; 6] = ["acceleration", "deceleration", "jerk", "current", "command_effort", "gear_velocity"];
@@ -20,7 +20,7 @@ pub(super) fn read<'a>(
     owner: &Owner,
     kind: JointKind,
 ) -> Result<Limits, UrdfError> {
-    let turns_freely = kind == JointKind::Continuous;
+    let turns_freely = kind.space() == Space::Circle;
     let Some(node) = limit else {
         if !turns_freely {
             reader.warnings.add(UrdfWarningKind::NoLimit, owner, reader.line(joint), "");

@@ -119,10 +119,10 @@ impl Urdf {
     ///
     /// # Errors
     /// A file that cannot be read or is no UTF-8, no XML or no URDF; names that are missing, empty, not unique or
-    /// reserved; links that are not one tree; types of joints other than [`JointKind::ALL`]; numbers that are missing,
-    /// too few, too many or not finite (limits may be `inf`); negative mass, damping or friction; on a moving joint, a
-    /// principal moment below −1e-12 of the largest; the axis 0 0 0; mimic joints that follow no joint of one degree,
-    /// or one another; xacro. Each names the link or joint and has its line.
+    /// reserved; links that are not one tree; types of joints besides fixed, revolute, continuous, prismatic and
+    /// floating; numbers that are missing, too few, too many or not finite (limits may be `inf`); negative mass, damping
+    /// or friction; on a moving joint, a principal moment below −1e-12 of the largest; the axis 0 0 0; mimic joints that
+    /// follow no joint of one degree, or one another; xacro. Each names the link or joint and has its line.
     pub fn read(path: &Path, options: &UrdfOptions) -> Result<Self, UrdfError> {
         robot::read(&source::read(path)?, Some(path), options)
     }

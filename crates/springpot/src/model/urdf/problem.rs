@@ -4,6 +4,10 @@ use super::error::Owner;
 use crate::model::error::ModelError;
 use crate::model::spec::JointKind;
 
+/// The types of joints that are read.
+pub(super) const TYPES: [JointKind; 5] =
+    [JointKind::Fixed, JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic, JointKind::Floating];
+
 /// What is wrong with a URDF file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -294,7 +298,7 @@ fn numbers(count: usize) -> String {
 }
 
 fn kinds() -> String {
-    JointKind::ALL.map(JointKind::name).join(", ")
+    TYPES.map(JointKind::name).join(", ")
 }
 
 fn meant(suggestion: &Option<String>) -> String {

@@ -1,0 +1,72 @@
+//! Turns: a joint that turns about the z axis of its link, a degree of freedom that turns about any.
+
+use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scalar, Vec3};
+
+#[inline]
+pub(super) fn placement<T: Scalar>(at_zero: Placement<T>, sine: T, cosine: T) -> Placement<T> {
+    Placement { rotation: at_zero.rotation.turned_about_z(sine, cosine), ..at_zero }
+}
+
+#[inline]
+pub(super) fn velocity<T: Scalar>(carried: Motion<T>, axis: Vec3<T>, speed: T) -> Motion<T> {
+    Motion { angular: axis.times_plus(speed, carried.angular), ..carried }
+}
+
+#[inline]
+pub(super) fn acceleration<T: Scalar>(
+    carried: Motion<T>,
+    omega: Vec3<T>,
+    axis: Vec3<T>,
+    [speed, push]: [T; 2],
+) -> Motion<T> {
+    let gyration = omega.cross(axis);
+    Motion { angular: axis.times_plus(push, gyration.times_plus(speed, carried.angular)), ..carried }
+}
+
+#[inline]
+pub(super) fn advance<T: Scalar>(velocity: &mut Motion<T>, acceleration: &mut Motion<T>, speed: T, push: T) {
+    let ([wx, wy, _], [ux, uy, _]) = (velocity.angular.0, velocity.linear.0);
+    velocity.angular.0[2] += speed;
+    acceleration.angular += Vec3([wy * speed, -(wx * speed), push]);
+    acceleration.linear += Vec3([uy * speed, -(ux * speed), T::ZERO]);
+}
+
+#[inline]
+pub(super) fn effort<T: Scalar>(force: Force<T>) -> T {
+    force.angular.0[2]
+}
+
+#[inline]
+pub(super) fn bias<T: Scalar>(velocity: Motion<T>, turning: Vec3<T>) -> Motion<T> {
+    Motion { angular: velocity.angular.cross(turning), linear: velocity.linear.cross(turning) }
+}
+
+#[inline]
+pub(super) fn unit_motion<T: Scalar>(axis: Vec3<T>, arm: Vec3<T>) -> Motion<T> {
+    Motion { angular: axis, linear: arm.cross(axis) }
+}
+
+#[inline]
+pub(super) fn point_column<T: Scalar>(axis: Vec3<T>, arm: Vec3<T>) -> Vec3<T> {
+    axis.cross(arm)
+}
+
+#[inline]
+pub(super) fn point_column_rate<T: Scalar>(axis: Vec3<T>, rate: Vec3<T>, arm: Vec3<T>, arm_rate: Vec3<T>) -> Vec3<T> {
+    rate.cross(arm) + axis.cross(arm_rate)
+}
+
+#[inline]
+pub(super) fn load<T: Scalar>(inertia: &ArticulatedInertia<T>, unit: Motion<T>) -> Force<T> {
+    inertia.times_angular(unit.angular)
+}
+
+#[inline]
+pub(super) fn momentum<T: Scalar>(inertia: &Inertia<T>, unit: Motion<T>) -> Force<T> {
+    inertia.turned_by(unit.angular)
+}
+
+#[inline]
+pub(super) fn felt<T: Scalar>(unit: Motion<T>, arm: Vec3<T>, momentum: Force<T>) -> T {
+    unit.angular.dot(momentum.angular + arm.cross(momentum.linear))
+}
