@@ -130,5 +130,8 @@ fn links_and_a_floating_base_are_chosen() {
     place.write("drone.urdf", format!("<robot name=\"d\"><link name=\"frame\">{inertial}</link></robot>"));
     place.done(&["init", "drone.urdf", "--floating-base"]);
     let text = runs(&place, "drone.toml");
-    assert!(text.contains("floating_base = true\n") && text.contains("floating_base = { z = \"0.02*sin(2*pi*t)\" }\n"), "{text}");
+    assert!(
+        text.contains("floating_base = true\n") && text.contains("floating_base = { z = \"0.02*sin(2*pi*t)\" }\n"),
+        "{text}"
+    );
 }
