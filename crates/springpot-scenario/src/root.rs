@@ -1,7 +1,8 @@
 //! The keys of a whole scenario, above the tables that it holds.
 
 use super::figures::FIGURE;
-use super::keys::{ELEMENT, Keys, MAX_BLOCKS, MOTION, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
+use super::keys::{ELEMENT, Keys, MAX_BLOCKS, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
+use super::motion::MOTION;
 
 /// The whole scenario.
 pub(crate) static SCENARIO: Keys = Keys {

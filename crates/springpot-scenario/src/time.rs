@@ -2,7 +2,8 @@
 
 use super::document::{Node, shorten};
 use super::keys::solver::{ADAPTIVE, FIXED, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
-use super::keys::{MotionKind, SOLVER, SOLVER_FIELDS, TIME};
+use super::keys::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME};
+use super::motion::MotionKind;
 use super::names;
 use super::reader::{Field, Read, Table};
 use super::refusal::RefusalKind;
@@ -80,7 +81,7 @@ fn output_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
 
 /// Reads `[solver]`: how a run of the duration `time` is carried out.
 pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Settings> {
-    let kind = if moves_by_itself(root) { MotionKind::Forward.name() } else { "" };
+    let kind = if moves_by_itself(root) { FORWARD_RUNS } else { "" };
     let forward_only = |key: &str| {
         SOLVER.is_of_a_kind(key).then(|| {
             let given = MotionKind::given();
@@ -107,7 +108,7 @@ pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Setti
 /// Whether the motion follows from forces, as far as one can see before it is read.
 fn moves_by_itself(root: &Table<'_>) -> bool {
     let kind = root.get("motion").and_then(|motion| motion.node.get("kind"));
-    kind.is_some_and(|kind| kind.text() == Some(MotionKind::Forward.name()))
+    kind.is_some_and(|kind| kind.text() == Some(FORWARD_RUNS))
 }
 
 /// `method` and `step`.

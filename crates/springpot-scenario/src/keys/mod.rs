@@ -15,10 +15,10 @@ mod tests;
 
 pub(crate) use constants::SCALAR;
 pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES, START as AT_START};
-pub(crate) use motion::{FORCES, MOTION, MotionKind, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
+pub(crate) use motion::{FORCES, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
 pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, keys_of};
-pub(crate) use solver::{SOLVER, SOLVER_FIELDS, TIME};
+pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME};
 pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
 

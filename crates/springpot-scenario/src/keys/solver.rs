@@ -1,6 +1,6 @@
 //! `[time]` and `[solver]`, and where the numbers of `[solver]` go.
 
-use super::{Bound, Field, Keys, MotionKind, Need, Shape, Slot, key};
+use super::{Bound, Field, Keys, Need, Shape, Slot, key};
 use springpot::integrate::Settings;
 use springpot::integrate::fixed::Method;
 
@@ -33,7 +33,9 @@ const LARGEST_RTOL: f64 = 0.1;
 const SUCH_AS: &str = "write a relative error such as 1e-9";
 /// What steps of one size have no use for.
 pub(crate) const OF_CHOSEN_STEPS: [&str; 3] = ["atol", "first_step", "max_step"];
-const FORWARD: &[&str] = &[MotionKind::Forward.name()];
+/// The kind of motion that follows from forces.
+pub(crate) const FORWARD_RUNS: &str = "forward";
+const FORWARD: &[&str] = &[FORWARD_RUNS];
 
 /// The kinds of it that `only` knows: `forward`, runs of that kind of motion.
 pub(crate) static SOLVER: Keys = Keys {

@@ -1,6 +1,7 @@
 //! The tables of keys beside those of docs/SCENARIO.md, and what must hold of any key.
 
 use super::super::figures::FIGURE;
+use super::super::motion::{MOTION, MotionKind};
 use super::super::root::SCENARIO;
 use super::*;
 use std::fs;

@@ -1,6 +1,7 @@
 //! What a file must hold where no sweep can bring it.
 
-use super::super::keys::{ELEMENT, JOINT, Keys, MOTION, Need, Shape};
+use super::super::keys::{ELEMENT, JOINT, Keys, Need, Shape};
+use super::super::motion::MOTION;
 use super::super::root::SCENARIO;
 use super::rules::{alternatives, joints, required_of, where_kind};
 use serde_json::{Map, Value, json};

@@ -1,7 +1,8 @@
 //! What keys have to do with one another.
 
 use super::super::figures::FIGURE;
-use super::super::keys::{ELEMENT, FROM_URDF, JOINT, Key, Keys, MOTION, Need, ROBOT, SIGNAL, TIME, keys_of};
+use super::super::keys::{ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ROBOT, SIGNAL, TIME, keys_of};
+use super::super::motion::MOTION;
 use super::shapes::{quantity, signal};
 use serde_json::{Map, Value, json};
 use springpot::law::{Catalog, Entry, Input, Param, Range};
