@@ -9,6 +9,7 @@ use springpot_scenario::Cases;
 
 /// Prints warnings of elements that start far from their rest, or with an infinite force, and of runs shorter than a row.
 pub(crate) fn warn(survey: &Survey, cases: &Cases) {
+    survey.warnings.iter().for_each(|warning| diagnostic::warning(warning.clone(), None));
     let placed = |found: &Found, message: &str| in_cases(cases, survey.looked_at, found.index, found.cases, message);
     for ElementSurvey { name, large, singular, .. } in &survey.elements {
         if let Some(found) = large {

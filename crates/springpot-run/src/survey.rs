@@ -3,6 +3,7 @@
 use crate::sweep::LimitTally;
 use crate::trouble::Trouble;
 use springpot::integrate::{ElementStart, LimitWatch, RowTimes, Stop, System};
+use springpot::model::JointKind;
 use springpot_scenario::{Cases, Plan, Refusals};
 use std::ops::RangeInclusive;
 
@@ -11,6 +12,10 @@ const LARGE_STROKE: f64 = 0.2;
 /// Values of each sweep that are looked at; fewer where a gripper path must be followed for each.
 const LOOKED_AT: usize = 1_000;
 const PATHS_FOLLOWED: usize = 50;
+
+/// A revolute joint that turns faster on average, rad/s, may have been given in degrees; and at how many times it is looked at.
+const FAST_TURN: f64 = 10.0;
+const TURNS_LOOKED_AT: u32 = 257;
 
 /// How closely cases are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,6 +39,8 @@ pub struct Survey {
     pub failures: Vec<(usize, Trouble)>,
     /// Whether the run ends before its second row is due; the end and the distance of the rows, s.
     pub short: Option<[f64; 2]>,
+    /// What deserves a warning in the files and the motion of the first case.
+    pub warnings: Vec<String>,
     /// Every element where the first case starts.
     pub first: Option<Vec<ElementStart>>,
 }
@@ -84,6 +91,7 @@ impl Survey {
             limits: LimitTally::default(),
             failures: Vec::new(),
             short: short_run(plan),
+            warnings: plan.warnings.iter().cloned().chain(fast_turns(plan, system)).collect(),
             first: None,
         };
         for index in looked_at(cases, plan, depth) {
@@ -182,6 +190,27 @@ fn short_run(plan: &Plan) -> Option<[f64; 2]> {
         RowTimes::Step { step, end } if step > end => Some([*end, *step]),
         _ => None,
     }
+}
+
+/// Joints that turn by tens of radians per second over the whole run, as where degrees are taken for radians.
+fn fast_turns(plan: &Plan, system: &System) -> Vec<String> {
+    if plan.motion.is_forward() || plan.motion.has_path() {
+        return Vec::new();
+    }
+    let mut speeds = vec![0.0; system.model.nv()];
+    for k in 0..TURNS_LOOKED_AT {
+        let Ok(state) = system.state(plan.settings.end * f64::from(k) / f64::from(TURNS_LOOKED_AT)) else {
+            return Vec::new();
+        };
+        speeds.iter_mut().zip(state.v).for_each(|(sum, v)| *sum += v.abs() / f64::from(TURNS_LOOKED_AT));
+    }
+    let turning = |j: &usize| system.model.joint_kind(*j) == JointKind::Revolute;
+    let fast = system.model.own_joints().filter(turning).filter_map(|j| {
+        let speed = speeds[system.model.v_range(j).start];
+        let name = &system.model.joint_names()[j];
+        (speed > FAST_TURN).then(|| format!("joint \"{name}\" turns by {speed:.0} rad/s on average: if its motion is in degrees, say so with unit = \"deg\""))
+    });
+    fast.collect()
 }
 
 fn widen(range: &mut [f64; 2], value: f64) {

@@ -400,6 +400,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         elements: elements?,
         motion: motion?,
         tells_joint_losses: false,
+        warnings: ctx.warnings(),
         settings: time.and(settings)?,
         figures: Arc::new([]),
         columns: None,

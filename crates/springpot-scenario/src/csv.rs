@@ -19,6 +19,24 @@ pub const MAX_LINE: u64 = 1 << 20;
 /// Name of the time column where none is given.
 pub const TIME: &str = "t";
 
+/// How a file writes its rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dialect {
+    /// Name of the time column.
+    pub time: String,
+    /// What its times are multiplied with, s.
+    pub time_scale: f64,
+    /// What stands between cells; where it is `;` a comma is the decimal point.
+    pub separator: char,
+}
+
+impl Default for Dialect {
+    /// `t` in seconds, separated by commas.
+    fn default() -> Self {
+        Self { time: TIME.to_owned(), time_scale: 1.0, separator: ',' }
+    }
+}
+
 /// A table read from a CSV file.
 ///
 /// The first row names the columns; the time column, `t` wherever it stands, has finite and increasing numbers. Other
@@ -50,6 +68,11 @@ impl CsvTable {
     ///
     /// The file's lines are counted first: one that is too large is refused before memory is taken for it.
     pub fn read_with_time(path: impl AsRef<Path>, time: &str) -> Result<Self, CsvError> {
+        Self::read_as(path, &Dialect { time: time.to_owned(), ..Dialect::default() })
+    }
+
+    /// Reads a file that is written in a dialect of its own.
+    pub fn read_as(path: impl AsRef<Path>, dialect: &Dialect) -> Result<Self, CsvError> {
         let path = path.as_ref();
         let with_file = |problem: CsvProblem| CsvError { file: path.to_owned(), problem };
         let unreadable = |source| with_file(CsvProblem::Unreadable { source });
@@ -59,13 +82,14 @@ impl CsvTable {
             return Err(with_file(CsvProblem::NotAFile));
         }
         let lines = count_lines(BufReader::with_capacity(1 << 16, open()?)).map_err(with_file)?;
-        parse(path, BufReader::with_capacity(1 << 16, open()?), time, lines).map_err(with_file)
+        parse(path, BufReader::with_capacity(1 << 16, open()?), dialect, lines).map_err(with_file)
     }
 
     /// Reads a table from memory; `file` is the name that errors give it.
     pub fn from_bytes(file: impl AsRef<Path>, bytes: &[u8], time: &str) -> Result<Self, CsvError> {
         let file = file.as_ref();
-        let table = count_lines(bytes).and_then(|lines| parse(file, bytes, time, lines));
+        let dialect = Dialect { time: time.to_owned(), ..Dialect::default() };
+        let table = count_lines(bytes).and_then(|lines| parse(file, bytes, &dialect, lines));
         table.map_err(|problem| CsvError { file: file.to_owned(), problem })
     }
 
@@ -79,7 +103,7 @@ impl CsvTable {
         &self.headers
     }
 
-    /// Times in the file's unit, increasing; at least two.
+    /// Times, s, increasing; at least two.
     pub fn time(&self) -> &[f64] {
         &self.columns[self.time].numbers
     }
@@ -126,9 +150,9 @@ fn count_lines(mut reader: impl BufRead) -> Result<u64, CsvProblem> {
     }
 }
 
-fn parse(file: &Path, reader: impl Read, time_name: &str, lines: u64) -> Result<CsvTable, CsvProblem> {
-    let mut rows = CsvRows::new(reader)?;
-    let time = rows.find(time_name)?;
+fn parse(file: &Path, reader: impl Read, dialect: &Dialect, lines: u64) -> Result<CsvTable, CsvProblem> {
+    let mut rows = CsvRows::separated(reader, dialect.separator)?;
+    let time = rows.find(&dialect.time)?;
     let headers = rows.headers().to_vec();
     if lines.saturating_mul(headers.len() as u64) > MAX_NUMBERS {
         return Err(CsvProblem::TooLarge { limit: MAX_NUMBERS, what: "numbers" });
@@ -143,13 +167,14 @@ fn parse(file: &Path, reader: impl Read, time_name: &str, lines: u64) -> Result<
     if given < 2 {
         return Err(CsvProblem::TooFewRows { line: rows.line(), given });
     }
+    columns[time].numbers.iter_mut().for_each(|time| *time *= dialect.time_scale);
     Ok(CsvTable { file: file.to_owned(), headers, header_line: rows.header_line(), time, columns })
 }
 
 fn read_row(row: &CsvRow, time: usize, columns: &mut [Column]) -> Result<(), CsvProblem> {
     for (index, column) in columns.iter_mut().enumerate() {
         let text = row.text(index)?;
-        let number = text.parse().unwrap_or(f64::NAN);
+        let number = row.parse(text).unwrap_or(f64::NAN);
         if !number.is_finite() && index == time {
             row.number(index)?;
         }

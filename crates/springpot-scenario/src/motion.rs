@@ -5,7 +5,7 @@ mod gripper_path;
 mod joints;
 mod prescribed;
 
-use super::keys::{Each, FORWARD_RUNS, Key, Keys, Need, START, Shape, key};
+use super::keys::{Each, FORWARD_RUNS, Key, Keys, Need, OUTSIDE, SEPARATOR, START, Shape, TIME_COLUMN, TIME_UNIT, key};
 use super::names;
 use super::reader::{Field, Read, Table};
 use super::refusal::{Place, RefusalKind};
@@ -83,6 +83,17 @@ pub(crate) static MOTION: Keys = Keys {
         key("joints", Shape::ByJoint(Each::Path), Need::OneOf, "How every joint moves.").only(PRESCRIBED),
         key("csv", Shape::Text, Need::OneOf, "A CSV file with the column t and one column for every joint, SI.")
             .only(PRESCRIBED),
+        key(
+            "unit",
+            Shape::UnitOrByName,
+            Need::Said("SI"),
+            "Unit of the joints' columns, or a table of units by joint.",
+        )
+        .only(PRESCRIBED),
+        TIME_COLUMN.only(PRESCRIBED),
+        TIME_UNIT.only(PRESCRIBED),
+        SEPARATOR.only(PRESCRIBED),
+        OUTSIDE.only(PRESCRIBED),
         coordinate("x").only(GRIPPER_PATH),
         coordinate("y").only(GRIPPER_PATH),
         coordinate("z").only(GRIPPER_PATH),

@@ -36,12 +36,14 @@ pub(crate) struct Context<'a> {
     swept: RefCell<Vec<Option<f64>>>,
     /// The constants read so far.
     constants: RefCell<Vec<Constant>>,
+    /// What deserves a warning.
+    warnings: RefCell<Vec<String>>,
 }
 
 impl<'a> Context<'a> {
     pub(crate) fn new(catalog: &'a Catalog, folder: &'a Path, tables: &'a CsvCache, robots: &'a UrdfCache) -> Self {
-        let (refusals, swept, constants) = <(RefCell<_>, RefCell<_>, RefCell<_>)>::default();
-        Self { catalog, folder, tables, robots, refusals, swept, constants }
+        let (refusals, swept, constants, warnings) = Default::default();
+        Self { catalog, folder, tables, robots, refusals, swept, constants, warnings }
     }
 
     /// Notes a refusal.
@@ -65,6 +67,19 @@ impl<'a> Context<'a> {
             Ok(value) if refusals.is_empty() => Ok(value),
             _ => Err(Refusals::of(refusals)),
         }
+    }
+
+    /// Notes what deserves a warning.
+    pub(crate) fn warn(&self, message: String) {
+        let mut warnings = self.warnings.borrow_mut();
+        if !warnings.contains(&message) {
+            warnings.push(message);
+        }
+    }
+
+    /// What was noted so far.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        self.warnings.borrow().clone()
     }
 
     /// Makes a constant known to all expressions that are read from now on.

@@ -4,10 +4,10 @@ use super::document::{Value, shorten};
 use super::keys::SIGNAL;
 use super::names;
 use super::plan::SignalPlan;
-use super::reader::{Field, Read, Refused, unit_help};
+use super::reader::{Field, Read, Refused, Table, unit_help};
 use super::refusal::RefusalKind;
 use super::units::{self, Unit};
-use crate::csv::{CsvError, CsvTable};
+use crate::csv::{CsvError, CsvProblem, CsvTable, Dialect};
 use springpot::law::Range;
 use springpot::signal::{Expression, SampleError, Signal};
 use std::collections::HashMap;
@@ -21,24 +21,26 @@ const NO_EXPONENTS: &dyn Fn(&str) -> Option<f64> = &|_| None;
 /// CSV files that were read and the signals made of them, so that the cases of a sweep share them.
 #[derive(Debug, Default)]
 pub(crate) struct CsvCache {
-    tables: Mutex<HashMap<PathBuf, Arc<CsvTable>>>,
-    signals: Mutex<HashMap<(PathBuf, String, bool), Signal>>,
+    tables: Mutex<HashMap<(PathBuf, String), Arc<CsvTable>>>,
+    signals: Mutex<HashMap<(PathBuf, String, String, bool), Signal>>,
 }
 
 impl CsvCache {
-    fn table(&self, path: &Path) -> Result<Arc<CsvTable>, CsvError> {
+    fn table(&self, path: &Path, dialect: &Dialect) -> Result<Arc<CsvTable>, CsvError> {
+        let key = (path.to_owned(), format!("{dialect:?}"));
         let mut tables = self.tables.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(table) = tables.get(path) {
+        if let Some(table) = tables.get(&key) {
             return Ok(table.clone());
         }
-        let table = Arc::new(CsvTable::read(path)?);
-        tables.insert(path.to_owned(), table.clone());
+        let table = Arc::new(CsvTable::read_as(path, dialect)?);
+        tables.insert(key, table.clone());
         Ok(table)
     }
 
     /// The signal of a column: a spline where it has to be smooth, else straight lines.
-    fn signal(&self, table: &CsvTable, column: &str, smooth: bool) -> Result<Signal, ColumnError> {
-        let key = (table.file().to_owned(), column.to_owned(), smooth);
+    fn signal(&self, samples: &CsvSamples, column: &str, smooth: bool) -> Result<Signal, ColumnError> {
+        let table = &*samples.table;
+        let key = (table.file().to_owned(), format!("{:?}", samples.dialect), column.to_owned(), smooth);
         let mut signals = self.signals.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(signal) = signals.get(&key) {
             return Ok(signal.clone());
@@ -117,13 +119,14 @@ fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
     let table = field.table(&SIGNAL)?;
     let signal = match (table.get("expression"), table.get("csv")) {
         (Some(text), None) => {
-            if let Some(column) = table.get("column") {
-                return Err(column.refuse(RefusalKind::UnknownKey, "belongs to `csv`, not to `expression`", None));
+            let of_csv = ["column", "time", "time_unit", "separator", "outside"];
+            if let Some(field) = of_csv.into_iter().find_map(|key| table.get(key)) {
+                return Err(field.refuse(RefusalKind::UnknownKey, "belongs to `csv`, not to `expression`", None));
             }
             Signal::expression(expression(&text, text.text()?)?)
         }
         (None, Some(csv)) => {
-            let samples = csv_table(&csv, wanted.end)?;
+            let samples = csv_table(&table, &csv, wanted.end)?;
             let column = table.require_with("column", "column = \"NAME\": the column of the CSV file")?;
             samples_signal(&column, &samples, column.text()?, wanted.smooth)?
         }
@@ -144,7 +147,7 @@ fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
 }
 
 /// The signal converted from the unit in `field` to SI.
-fn in_unit(field: &Field<'_>, signal: Signal, expected: &str) -> Read<Signal> {
+pub(crate) fn in_unit(field: &Field<'_>, signal: Signal, expected: &str) -> Read<Signal> {
     let text = field.text()?;
     let unit = Unit::parse(text, NO_EXPONENTS).map_err(|error| {
         let place = field.node.place_in_text(error.span());
@@ -168,38 +171,84 @@ fn unit_name_help(unit: &str) -> String {
     format!("write a unit of the dimension of {}", named(unit))
 }
 
-/// Reads the CSV file that `field` names and checks that it covers the run.
-pub(crate) fn csv_table(field: &Field<'_>, end: Option<f64>) -> Read<Arc<CsvTable>> {
+/// A CSV file, how it is written, and what holds outside its times.
+pub(crate) struct CsvSamples {
+    pub(crate) table: Arc<CsvTable>,
+    dialect: Dialect,
+    held: bool,
+}
+
+/// More than so many times the run are covered by no file whose times are in the unit that is said.
+const FAR_LONGER: f64 = 50.0;
+
+/// Reads the CSV file that `field` names, in the dialect that `table` says, and checks that it covers the run.
+pub(crate) fn csv_table(table: &Table<'_>, field: &Field<'_>, end: Option<f64>) -> Read<CsvSamples> {
     let name = field.text()?;
     let path = field.ctx.folder.join(name);
-    let table = field.ctx.tables.table(&path).map_err(|error| {
-        let help = "write the path of a CSV file, relative to the scenario, with a column t in seconds".to_owned();
+    let time = table.get("time").map_or(Ok(crate::csv::TIME), |field| field.text())?;
+    let separator = table.word("separator", "separator")?.chars().next().unwrap_or(',');
+    let held = table.word("outside", "rule")? == "hold";
+    let time_scale = match table.get("time_unit") {
+        None => 1.0,
+        Some(field) => time_scale(&field)?,
+    };
+    let dialect = Dialect { time: time.to_owned(), time_scale, separator };
+    let read = field.ctx.tables.table(&path, &dialect).map_err(|error| {
+        let help = match &error.problem {
+            CsvProblem::OtherSeparator { separator, .. } => format!("write separator = {separator:?}"),
+            CsvProblem::MissingColumn { suggestion: Some(column), name, .. } if name == time => {
+                format!("write time = {column:?}")
+            }
+            _ => "write the path of a CSV file, relative to the scenario, with a column t in seconds, or say time and time_unit".to_owned(),
+        };
         field.refuse(RefusalKind::File, format!("cannot be read: {error}"), Some(help))
     })?;
-    let (Some(&first), Some(&last)) = (table.time().first(), table.time().last()) else {
+    let (Some(&first), Some(&last)) = (read.time().first(), read.time().last()) else {
         return Err(field.refuse(RefusalKind::Missing, format!("has no rows: {:?}", shorten(name)), None));
     };
+    let samples = CsvSamples { table: read, dialect, held };
     match end {
-        Some(end) if first > 0.0 || last < end => {
+        Some(end) if !held && (first > 0.0 || last < end) => {
             let message = format!("covers t from {first} s to {last} s, but the run needs 0 s to {end} s");
-            let help = "end the run earlier, or bring samples for the whole of it".to_owned();
-            Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)))
+            let help = "end the run earlier, bring samples for the whole of it, or write outside = \"hold\"; time_unit says the unit of its times";
+            Err(field.refuse(RefusalKind::OutOfRange, message, Some(help.to_owned())))
         }
-        _ => Ok(table),
+        Some(end) => {
+            if last > FAR_LONGER * end {
+                let advice = "if its times are in milliseconds, write time_unit = \"ms\"";
+                field.ctx.warn(format!("{name:?} covers {last} s, and the run ends at {end} s: {advice}"));
+            }
+            Ok(samples)
+        }
+        None => Ok(samples),
+    }
+}
+
+/// Seconds in the unit that `field` names.
+fn time_scale(field: &Field<'_>) -> Read<f64> {
+    let text = field.text()?;
+    let fits = |unit: &Unit| Unit::parse("s", NO_EXPONENTS).is_ok_and(|second| unit.dimension() == second.dimension());
+    match Unit::parse(text, NO_EXPONENTS) {
+        Ok(unit) if fits(&unit) => Ok(unit.scale()),
+        _ => {
+            let message = format!("is {:?}, which is no unit of time", shorten(text));
+            Err(field.refuse(RefusalKind::BadQuantity, message, Some("write s, ms, min or h".to_owned())))
+        }
     }
 }
 
 /// The signal in the column `name`; refusals point at `field`.
-pub(crate) fn samples_signal(field: &Field<'_>, table: &CsvTable, name: &str, smooth: bool) -> Read<Signal> {
-    let columns = table.headers().iter().map(String::as_str);
+pub(crate) fn samples_signal(field: &Field<'_>, samples: &CsvSamples, name: &str, smooth: bool) -> Read<Signal> {
+    let columns = samples.table.headers().iter().map(String::as_str);
     if !columns.clone().any(|column| column == name) {
         let message = format!("is {:?}, but the CSV file has no such column", shorten(name));
         return Err(field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, columns))));
     }
-    field.ctx.tables.signal(table, name, smooth).map_err(|error| {
+    let signal = field.ctx.tables.signal(samples, name, smooth).map_err(|error| {
         let help = format!("column {:?} needs a finite number in every row", shorten(name));
         field.refuse(RefusalKind::File, format!("cannot be used: {error}"), Some(help))
-    })
+    })?;
+    Ok(if samples.held { signal.held() } else { signal })
 }
 
 /// Refuses a signal that leaves its range or is not finite at a time that is looked at.

@@ -141,3 +141,75 @@ fn what_cannot_run_is_refused_before_it_begins() {
     says(&ended, &["element.damper.u = -9 V and 1 other case: t = 0 s", "2 of 4 cases done, 2 failed"]);
     assert_eq!(ended.stderr.matches("error: ").count(), 1, "{}", ended.stderr);
 }
+
+/// The arm with its temperature-like input and its motion from files of loggers.
+#[test]
+fn csv_files_of_loggers() {
+    let place = Place::new();
+    let rows = |write: &dyn Fn(f64) -> String| (0..=40).map(|k| write(f64::from(k) * 0.01)).collect::<String>();
+    let q = |t: f64| 0.3 * (4.0 * t).sin();
+    let x = |t: f64| 0.05 - 0.05 * (6.0 * t).cos();
+    place.write("plain.csv", format!("t,q1,x,u\n{}", rows(&|t| format!("{t},{},{},{}\n", q(t), x(t), 1.0 + t))));
+    let comma = |x: f64| format!("{x}").replace('.', ",");
+    let logged = rows(&|t| {
+        format!("{};{};{};{}\n", comma(1000.0 * t), comma(q(t).to_degrees()), comma(1000.0 * x(t)), comma(1.0 + t))
+    });
+    place.write("logged.csv", format!("# logger 7\n# units below\nTime [ms];q1;x;u\n{logged}"));
+    let run = |out: &str, motion: &str, input: &str| {
+        let joints = "joints = { q1 = \"0.3*sin(4*t)\", x = \"0.05 - 0.05*cos(6*t)\" }";
+        let text = place.read("arm.toml").replace(joints, motion).replace("{ u = \"1 + 0.5*sin(20*t)\" }", input);
+        place.write("logged.toml", text);
+        let ended = place.springpot(&["run", "logged.toml", "--quiet", "--out", out]);
+        (ended.code, ended.stderr)
+    };
+    let plain = run("plain", "csv = \"plain.csv\"", "{ u = { csv = \"plain.csv\", column = \"u\" } }");
+    assert_eq!(plain, (Some(0), String::new()));
+    let dialect = "time = \"Time [ms]\", time_unit = \"ms\", separator = \";\"";
+    let lines = dialect.replace("\", ", "\"\n").replace(", separator", "\nseparator");
+    let motion = format!(
+        "csv = \"logged.csv\"\n{}\nunit = {{ q1 = \"deg\", x = \"mm\" }}",
+        lines.replace(", time_unit", "\ntime_unit")
+    );
+    let input = format!("{{ u = {{ csv = \"logged.csv\", column = \"u\", {dialect} }} }}");
+    assert_eq!(run("logged", &motion, &input), (Some(0), String::new()));
+    let (one, other) = (place.table("plain/results.csv"), place.table("logged/results.csv"));
+    for column in ["q.q1", "q.x", "damper.force", "damper.u", "tau.q1"] {
+        let largest = one.numbers(column).iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let worst =
+            one.numbers(column).iter().zip(other.numbers(column)).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(worst < 1e-9 * largest, "{column}: {worst:e}");
+    }
+    // What is wrong is said with what would be right.
+    for (motion, words) in [
+        ("csv = \"logged.csv\"", "write separator = ';'"),
+        ("csv = \"logged.csv\"\nseparator = \";\"", "write time = \"Time [ms]\""),
+        ("csv = \"plain.csv\"\ntime_unit = \"m\"", "is \"m\", which is no unit of time"),
+        ("csv = \"plain.csv\"\nseparator = \":\"", "which is no separator"),
+        ("csv = \"plain.csv\"\nunit = \"deg\"", "another dimension than m"),
+        ("csv = \"plain.csv\"\noutside = \"keep\"", "which is no rule"),
+    ] {
+        let (code, said) = run("wrong", motion, "{ u = 1 }");
+        assert!(code == Some(2) && said.contains(words), "{motion}: {said}");
+    }
+}
+
+#[test]
+fn files_that_end_early_hold_and_files_in_other_units_warn() {
+    let place = Place::new();
+    let rows = |scale: f64| {
+        (0..=10).map(|k| format!("{},{}\n", f64::from(k) * scale, 1.0 + 0.1 * f64::from(k))).collect::<String>()
+    };
+    place.write("short.csv", format!("t,u\n{}", rows(0.01)));
+    place.write("ms.csv", format!("t,u\n{}", rows(50.0)));
+    let input = |file: &str, more: &str| format!("element.damper.u={{ csv = \"{file}\", column = \"u\"{more} }}");
+    let ended = place.springpot(&["run", "arm.toml", "--quiet", "--set", &input("short.csv", "")]);
+    refused(&ended, &["covers t from 0 s to 0.1 s, but the run needs 0 s to 0.35 s", "outside = \"hold\""]);
+    place.done(&["run", "arm.toml", "--quiet", "--out", "held", "--set", &input("short.csv", ", outside = \"hold\"")]);
+    assert_eq!(place.table("held/results.csv").numbers("damper.u"), [1.0, 2.0, 2.0, 2.0, 2.0]);
+    for command in ["check", "run"] {
+        let ended = place.done(&[command, "arm.toml", "--quiet", "--set", &input("ms.csv", "")]);
+        says(&ended, &["\"ms.csv\" covers 500 s, and the run ends at 0.35 s", "write time_unit = \"ms\""]);
+        let ended = place.done(&[command, "arm.toml", "--quiet", "--set", "motion.joints.q1=30*sin(4*t)"]);
+        says(&ended, &["joint \"q1\" turns by", "if its motion is in degrees, say so with unit = \"deg\""]);
+    }
+}

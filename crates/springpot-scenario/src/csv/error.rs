@@ -57,12 +57,14 @@ pub enum CsvProblem {
         second: usize,
     },
     /// Cells separated by something else than commas.
-    #[error("columns must be separated by commas, but the header has {separator:?} as character {at}")]
+    #[error("columns must be separated by {}, but the header has {separator:?} as character {at}", separated(*own))]
     OtherSeparator {
         /// The header's line.
         line: u64,
         /// What the header has.
         separator: char,
+        /// What was asked for.
+        own: char,
         /// Where it stands in the header, in characters from 1.
         at: usize,
     },
@@ -204,6 +206,10 @@ impl CsvProblem {
 
 fn place(problem: &CsvProblem) -> String {
     problem.line().map_or_else(String::new, |line| format!(":{line}"))
+}
+
+fn separated(own: char) -> String {
+    if own == ',' { "commas".to_owned() } else { format!("{own:?}") }
 }
 
 fn meant(suggestion: &Option<String>) -> String {

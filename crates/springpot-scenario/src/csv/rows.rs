@@ -5,7 +5,7 @@ use std::io::{self, Read};
 
 /// The header and then the rows of a CSV file, one at a time: nothing but the row at hand is kept.
 ///
-/// The first row names the columns, and every other has as many cells. A byte order mark, CRLF, blank lines, blanks around
+/// The first row names the columns, and every other has as many cells. A byte order mark, CRLF, blank lines, comments (`#`), blanks around
 /// cells and quoted cells are fine.
 ///
 /// ```
@@ -26,6 +26,7 @@ pub struct CsvRows<R> {
     header_line: u64,
     /// Of the row that was read last.
     line: u64,
+    separator: char,
     record: ::csv::ByteRecord,
 }
 
@@ -35,6 +36,7 @@ pub struct CsvRow<'a> {
     line: u64,
     headers: &'a [String],
     record: &'a ::csv::ByteRecord,
+    decimal_comma: bool,
 }
 
 impl<R: Read> CsvRows<R> {
@@ -44,18 +46,28 @@ impl<R: Read> CsvRows<R> {
     /// `Unreadable`, `Empty`, `LongLine`, and what can be wrong with a header: `NotUtf8`, `NoName`, `DuplicateName`, `NoHeader`,
     /// `OtherSeparator`.
     pub fn new(reader: R) -> Result<Self, CsvProblem> {
+        Self::separated(reader, ',')
+    }
+
+    /// Reads the header of a file whose cells are separated by another character of one byte. Where that is `;` a comma is the decimal point.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn separated(reader: R, separator: char) -> Result<Self, CsvProblem> {
         // Lines end with a line feed only (a carriage return before it is trimmed), the last one too: so the line that a record
         // ends on is known, which the crate's own record position does not tell behind blank lines and CRLF.
         let reader = ::csv::ReaderBuilder::new()
             .has_headers(false)
+            .delimiter(u8::try_from(separator).unwrap_or(b','))
+            .comment(Some(b'#'))
             .flexible(true)
             .trim(::csv::Trim::All)
             .terminator(::csv::Terminator::Any(b'\n'))
             .from_reader(Lines { reader, line: 1, length: 0 }.chain(&b"\n"[..]));
         let record = ::csv::ByteRecord::new();
-        let mut rows = Self { reader, headers: Vec::new(), header_line: 1, line: 1, record };
+        let mut rows = Self { reader, headers: Vec::new(), header_line: 1, line: 1, separator, record };
         rows.header_line = rows.advance()?.ok_or(CsvProblem::Empty)?;
-        rows.headers = read_headers(&rows.record, rows.header_line)?;
+        rows.headers = read_headers(&rows.record, rows.header_line, separator)?;
         Ok(rows)
     }
 
@@ -89,11 +101,11 @@ impl<R: Read> CsvRows<R> {
     /// `Unreadable`, `LongLine`, `Ragged`.
     pub fn next_row(&mut self) -> Result<Option<CsvRow<'_>>, CsvProblem> {
         let Some(line) = self.advance()? else { return Ok(None) };
-        let Self { headers, record, .. } = self;
+        let Self { headers, record, separator, .. } = self;
         if record.len() != headers.len() {
             return Err(CsvProblem::Ragged { line, given: record.len(), wanted: headers.len() });
         }
-        Ok(Some(CsvRow { line, headers, record }))
+        Ok(Some(CsvRow { line, headers, record, decimal_comma: *separator == ';' }))
     }
 
     /// Reads the next record that is not blank; the line it ends on.
@@ -128,20 +140,28 @@ impl CsvRow<'_> {
         text.map_err(|_| CsvProblem::NotUtf8 { line: self.line, column: index + 1 })
     }
 
+    /// The number that a cell's text is.
+    pub(super) fn parse(&self, text: &str) -> Option<f64> {
+        match self.decimal_comma && text.contains(',') {
+            true => text.replacen(',', ".", 1).parse().ok(),
+            false => text.parse().ok(),
+        }
+    }
+
     /// A cell as a finite number.
     ///
     /// # Errors
     /// `NotUtf8`, `NotANumber`, `NotFinite`.
     pub fn number(&self, index: usize) -> Result<f64, CsvProblem> {
         let text = self.text(index)?;
-        match text.parse() {
-            Ok(number) if f64::is_finite(number) => Ok(number),
+        match self.parse(text) {
+            Some(number) if f64::is_finite(number) => Ok(number),
             _ => Err(super::not_a_number(text, self.line, index, &self.headers[index])),
         }
     }
 }
 
-fn read_headers(record: &::csv::ByteRecord, line: u64) -> Result<Vec<String>, CsvProblem> {
+fn read_headers(record: &::csv::ByteRecord, line: u64, own: char) -> Result<Vec<String>, CsvProblem> {
     let mut names: Vec<String> = Vec::with_capacity(record.len());
     for (index, cell) in record.iter().enumerate() {
         let column = index + 1;
@@ -159,9 +179,10 @@ fn read_headers(record: &::csv::ByteRecord, line: u64) -> Result<Vec<String>, Cs
         return Err(CsvProblem::NoHeader { line, first: super::shorten(&names[0]) });
     }
     if let [only] = &names[..]
-        && let Some((before, separator)) = only.chars().enumerate().find(|(_, c)| matches!(c, ';' | '\t' | '|'))
+        && let Some((before, separator)) =
+            only.chars().enumerate().find(|(_, c)| *c != own && matches!(c, ',' | ';' | '\t' | '|'))
     {
-        return Err(CsvProblem::OtherSeparator { line, separator, at: before + 1 });
+        return Err(CsvProblem::OtherSeparator { line, separator, own, at: before + 1 });
     }
     Ok(names)
 }

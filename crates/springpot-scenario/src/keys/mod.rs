@@ -15,7 +15,9 @@ mod tests;
 
 pub(crate) use constants::SCALAR;
 pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES, START as AT_START};
-pub(crate) use motion::{FORCES, POSE, SIGNAL, START, START_POSE, START_VELOCITIES};
+pub(crate) use motion::{
+    FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,
+};
 pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, keys_of};
 pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME};
@@ -106,6 +108,8 @@ pub(crate) enum Shape {
     ByName,
     /// A table of numbers in any units, under names of its own.
     Scalars,
+    /// A unit, or a table of units under names that other keys give.
+    UnitOrByName,
     /// A law of the catalog.
     Law,
     /// A named scheme, or the exact memory.

@@ -15,8 +15,28 @@ pub(crate) static SIGNAL: Keys = Keys {
         ),
         key("column", Shape::Text, Need::Optional, "Column of the CSV file."),
         key("unit", Shape::Text, Need::Said("SI"), "Unit of the values."),
+        TIME_COLUMN,
+        TIME_UNIT,
+        SEPARATOR,
+        OUTSIDE,
     ],
 };
+
+/// How a CSV file is written, beside `csv`.
+pub(crate) const TIME_COLUMN: Key = key("time", Shape::Text, Need::Word("t"), "Column of the times.");
+pub(crate) const TIME_UNIT: Key = key("time_unit", Shape::Text, Need::Word("s"), "Unit of the times.");
+pub(crate) const SEPARATOR: Key = key(
+    "separator",
+    Shape::Words(|| vec![",", ";", "\t", "|"]),
+    Need::Word(","),
+    "What stands between cells; with \";\" a comma is the decimal point.",
+);
+pub(crate) const OUTSIDE: Key = key(
+    "outside",
+    Shape::Words(|| vec!["refuse", "hold"]),
+    Need::Word("refuse"),
+    "Before the first row and behind the last: refused, or the nearest value holds.",
+);
 
 const OF_FRAME: &str = "Coordinate of the joint's frame.";
 const NO_TURN: &str = "Roll, pitch, yaw.";

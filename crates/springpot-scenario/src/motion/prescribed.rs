@@ -26,7 +26,7 @@ pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<M
             refuse_missing(&given, &missing.collect::<Vec<_>>(), "joints", &field)?;
             all(joints.iter().map(|joint| path_of_joint(&given.get(joint.name).ok_or(Refused)?, joint, end)))?
         }
-        (None, Some(csv)) => from_csv(table, &csv, &joints, end)?,
+        (None, Some(csv)) => from_csv(table, &csv, (robot, &joints), end)?,
         (Some(_), Some(csv)) => {
             let help = "write one of them".to_owned();
             return Err(csv.refuse(RefusalKind::Rule, "stands beside `joints`", Some(help)));
@@ -63,26 +63,46 @@ fn all_names(names: &[&str]) -> String {
 fn from_csv(
     table: &Table<'_>,
     csv: &Field<'_>,
-    joints: &[OwnJoint<'_>],
+    (robot, joints): (&Robot, &[OwnJoint<'_>]),
     end: Option<f64>,
 ) -> Read<Vec<(JointPath, Value)>> {
-    let samples = signals::csv_table(csv, end)?;
+    let samples = signals::csv_table(table, csv, end)?;
     let columns: Vec<Vec<String>> = joints.iter().map(columns_of).collect();
-    let headers: HashSet<&str> = samples.headers().iter().map(String::as_str).collect();
+    let headers: HashSet<&str> = samples.table.headers().iter().map(String::as_str).collect();
     let missing = columns.iter().flatten().map(String::as_str).filter(|column| !headers.contains(column));
     refuse_missing(table, &missing.collect::<Vec<_>>(), "columns", csv)?;
-    let column = |name: &String| -> Read<SignalPlan> {
+    let unit_field = table.get("unit");
+    let by_joint = unit_field
+        .as_ref()
+        .filter(|field| field.node.entries().is_some())
+        .map(|field| open_joints(field, robot))
+        .transpose()?;
+    let unit_of = |joint: &OwnJoint<'_>| match &by_joint {
+        Some(table) => table.fields().find(|field| field.key == joint.name),
+        None => table.get("unit"),
+    };
+    let column = |name: &String, joint: &OwnJoint<'_>| -> Read<SignalPlan> {
         let signal = signals::samples_signal(csv, &samples, name, true)?;
+        let signal = match (unit_of(joint), joint.kind == JointKind::Floating) {
+            (Some(unit), false) => signals::in_unit(&unit, signal, joint.unit())?,
+            (Some(unit), true) => {
+                let message = "stands for a floating joint, whose columns are in m and rad";
+                let help = "write unit = { NAME = \"…\" } for the other joints".to_owned();
+                return Err(unit.refuse(RefusalKind::Rule, message, Some(help)));
+            }
+            (None, _) => signal,
+        };
         let written = format!("{{ csv = {}, column = {name:?} }}", csv.node.written());
         Ok(SignalPlan { signal, constant: None, written, place: csv.node.place.clone() })
     };
-    all(columns.iter().map(|names| match &names[..] {
+    all(columns.iter().zip(joints).map(|(names, joint)| match &names[..] {
         [x, y, z, roll, pitch, yaw] => {
+            let column = |name| column(name, joint);
             let position = [column(x)?, column(y)?, column(z)?];
             let rpy = [column(roll)?, column(pitch)?, column(yaw)?];
             Ok(posed(position, rpy))
         }
-        names => column(&names[0]).map(coordinate),
+        names => column(&names[0], joint).map(coordinate),
     }))
 }
 

@@ -111,6 +111,9 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         Shape::Scalars => {
             json!({ "type": "object", "additionalProperties": { "$ref": "#/definitions/quantity" }, "description": words })
         }
+        Shape::UnitOrByName => {
+            json!({ "type": ["string", "object"], "additionalProperties": text(), "description": words })
+        }
         Shape::TextsByName => json!({ "type": "object", "additionalProperties": text(), "description": words }),
         Shape::ByName => json!({ "type": "object", "description": words }),
         Shape::Law => {

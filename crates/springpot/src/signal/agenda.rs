@@ -106,7 +106,10 @@ impl Agenda {
         for (index, watched) in signals.iter().enumerate() {
             match &watched.signal.kind {
                 Kind::Constant(_) => {}
-                Kind::Samples(samples) => agenda.breaks.extend_from_slice(samples.break_points()),
+                Kind::Samples(samples) => {
+                    agenda.breaks.extend_from_slice(samples.break_points());
+                    agenda.kinks.extend(samples.kinks());
+                }
                 Kind::Expression(expression) => {
                     let mut scan = Scan::new(expression, watched, end, tolerance, stop);
                     scan.run().map_err(|error| match error {

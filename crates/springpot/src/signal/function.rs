@@ -51,6 +51,15 @@ impl Signal {
         Ok(Self::new(Kind::Samples(Arc::new(Samples::spline(times, values)?))))
     }
 
+    /// A sampled signal whose first value holds before its samples and whose last one behind them; others as they are.
+    #[must_use]
+    pub fn held(self) -> Self {
+        match &self.kind {
+            Kind::Samples(samples) => Self { kind: Kind::Samples(Arc::new(samples.held())), ..self },
+            Kind::Constant(_) | Kind::Expression(_) => self,
+        }
+    }
+
     /// scale·signal + offset.
     pub fn scaled(signal: Self, scale: f64, offset: f64) -> Self {
         match signal.kind {
@@ -109,10 +118,10 @@ impl Signal {
         }
     }
 
-    /// First and last time of sampled data; `None`: defined everywhere.
+    /// First and last time of sampled data that is not held; `None`: defined everywhere.
     pub fn domain(&self) -> Option<(f64, f64)> {
         match &self.kind {
-            Kind::Samples(samples) => Some(samples.domain()),
+            Kind::Samples(samples) => samples.domain(),
             Kind::Constant(_) | Kind::Expression(_) => None,
         }
     }

@@ -43,26 +43,44 @@ pub enum SampleError {
 }
 
 /// Piecewise polynomials through samples.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Samples {
     times: Vec<f64>,
     values: Vec<f64>,
     /// Second derivatives at the samples; empty for straight lines.
     bends: Vec<f64>,
+    /// Whether the first value holds before and the last behind.
+    held: bool,
 }
 
 impl Samples {
     pub(super) fn linear(times: &[f64], values: &[f64]) -> Result<Self, SampleError> {
         check(times, values)?;
-        Ok(Self { times: times.to_vec(), values: values.to_vec(), bends: Vec::new() })
+        Ok(Self { times: times.to_vec(), values: values.to_vec(), bends: Vec::new(), held: false })
     }
 
     pub(super) fn spline(times: &[f64], values: &[f64]) -> Result<Self, SampleError> {
         check(times, values)?;
-        Ok(Self { times: times.to_vec(), values: values.to_vec(), bends: not_a_knot(times, values) })
+        Ok(Self { times: times.to_vec(), values: values.to_vec(), bends: not_a_knot(times, values), held: false })
     }
 
-    pub(super) fn domain(&self) -> (f64, f64) {
+    /// The same, held at its ends.
+    pub(super) fn held(&self) -> Self {
+        Self { held: true, ..self.clone() }
+    }
+
+    /// First and last time; `None` where it is held beyond them.
+    pub(super) fn domain(&self) -> Option<(f64, f64)> {
+        (!self.held).then(|| self.ends())
+    }
+
+    /// Where it begins and ends to be held, the first times of what follows.
+    pub(super) fn kinks(&self) -> Vec<f64> {
+        let (first, last) = self.ends();
+        if self.held { vec![first, last] } else { Vec::new() }
+    }
+
+    fn ends(&self) -> (f64, f64) {
         (self.times[0], self.times[self.times.len() - 1])
     }
 
@@ -75,6 +93,12 @@ impl Samples {
 
     pub(super) fn at(&self, t: f64) -> Jet {
         let last = self.times.len() - 2;
+        if self.held {
+            let (first, end) = self.ends();
+            if t < first || t >= end {
+                return Jet::constant(if t < first { self.values[0] } else { self.values[last + 1] });
+            }
+        }
         // A sample belongs to the piece on its right.
         let i = self.times.partition_point(|&knot| knot <= t).saturating_sub(1).min(last);
         let (t0, t1) = (self.times[i], self.times[i + 1]);
