@@ -13,8 +13,9 @@ const LARGE_STROKE: f64 = 0.2;
 const LOOKED_AT: usize = 1_000;
 const PATHS_FOLLOWED: usize = 50;
 
-/// A revolute joint that turns faster on average, rad/s, may have been given in degrees; and at how many times it is looked at.
+/// A revolute joint that turns faster on average, rad/s, and farther, rad, may have been given in degrees; and at how many times it is looked at.
 const FAST_TURN: f64 = 10.0;
+const FAR_TURN: f64 = 12.0;
 const TURNS_LOOKED_AT: u32 = 257;
 
 /// How closely cases are looked at.
@@ -197,18 +198,26 @@ fn fast_turns(plan: &Plan, system: &System) -> Vec<String> {
     if plan.motion.is_forward() || plan.motion.has_path() {
         return Vec::new();
     }
-    let mut speeds = vec![0.0; system.model.nv()];
+    let nv = system.model.nv();
+    let (mut speeds, mut lowest, mut highest) = (vec![0.0; nv], vec![f64::INFINITY; nv], vec![f64::NEG_INFINITY; nv]);
     for k in 0..TURNS_LOOKED_AT {
-        let Ok(state) = system.state(plan.settings.end * f64::from(k) / f64::from(TURNS_LOOKED_AT)) else {
-            return Vec::new();
-        };
-        speeds.iter_mut().zip(state.v).for_each(|(sum, v)| *sum += v.abs() / f64::from(TURNS_LOOKED_AT));
+        let t = plan.settings.end * f64::from(k) / f64::from(TURNS_LOOKED_AT);
+        let Ok(state) = system.state(t) else { return Vec::new() };
+        for j in system.model.own_joints().filter(|j| system.model.joint_kind(*j) == JointKind::Revolute) {
+            let (q, v) = (state.q[system.model.q_range(j).start], system.model.v_range(j).start);
+            speeds[v] += state.v[v].abs() / f64::from(TURNS_LOOKED_AT);
+            (lowest[v], highest[v]) = (lowest[v].min(q), highest[v].max(q));
+        }
     }
-    let turning = |j: &usize| system.model.joint_kind(*j) == JointKind::Revolute;
-    let fast = system.model.own_joints().filter(turning).filter_map(|j| {
-        let speed = speeds[system.model.v_range(j).start];
+    let fast = system.model.own_joints().filter_map(|j| {
+        let v = system.model.v_range(j).start;
         let name = &system.model.joint_names()[j];
-        (speed > FAST_TURN).then(|| format!("joint \"{name}\" turns by {speed:.0} rad/s on average: if its motion is in degrees, say so with unit = \"deg\""))
+        (speeds[v] > FAST_TURN && highest[v] - lowest[v] > FAR_TURN).then(|| {
+            format!(
+                "joint \"{name}\" turns by {:.0} rad/s on average: if its motion is in degrees, say so with unit = \"deg\"",
+                speeds[v]
+            )
+        })
     });
     fast.collect()
 }

@@ -41,7 +41,9 @@ pub(super) fn read(table: &Table<'_>, bodies: &Field<'_>, gravity: Read<[f64; 3]
             None => None,
         };
         let refusal = place.unwrap_or(&table.node.place).refuse(RefusalKind::Rule, error.to_string());
-        table.ctx.refuse(refusal.label("not physical"))
+        let is_of_inertia = error.subject().is_some_and(|subject| subject.field.key() == "inertia");
+        let help = "inertia is about the centre of mass, in kg*m^2: look at the point it was given for, its axes and its units";
+        table.ctx.refuse(refusal.label("not physical").help_if(is_of_inertia.then(|| help.to_owned())))
     })?;
     Ok(Parts { bodies, places, model: Arc::new(model), urdf: None })
 }

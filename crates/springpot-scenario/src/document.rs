@@ -1,5 +1,6 @@
 //! The TOML text as a tree in which every key and value knows where it stands.
 
+use super::names;
 use super::refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 use std::ops::Range;
 use std::sync::Arc;
@@ -172,7 +173,25 @@ fn place(source: &Arc<Source>, span: Range<usize>) -> Place {
 
 fn syntax(source: &Arc<Source>, error: &toml::de::Error) -> Refusal {
     let span = error.span().unwrap_or(0..0);
-    place(source, span).refuse(RefusalKind::Syntax, format!("not TOML: {}", error.message()))
+    let help = syntax_help(&source.text, &span, error.message());
+    place(source, span).refuse(RefusalKind::Syntax, format!("not TOML: {}", error.message())).help_if(help)
+}
+
+/// What is likely meant where a text is not TOML.
+fn syntax_help(text: &str, span: &Range<usize>, message: &str) -> Option<String> {
+    if message.contains("duplicate key") {
+        let line_start = text.get(..span.start)?.rfind('\n').map_or(0, |at| at + 1);
+        let line = text[line_start..].lines().next()?.trim();
+        let key = line.split('=').next()?.trim();
+        let is_same = |earlier: &str| match line.starts_with('[') {
+            true => earlier.trim() == line,
+            false => earlier.split_once('=').is_some_and(|(start, _)| start.trim() == key),
+        };
+        let first = text[..line_start].lines().position(is_same)?;
+        return Some(format!("{key} stands on line {} already: write it once", first + 1));
+    }
+    let letter = text.get(span.start..)?.chars().next()?;
+    names::greek(letter).map(|name| format!("write {name} for {letter}"))
 }
 
 /// Runs `read` on a thread whose stack holds the deepest tree the parser lets through.

@@ -12,6 +12,67 @@ pub(crate) fn is_file_name(name: &str) -> bool {
         && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.'))
 }
 
+/// Longest name that is suggested, in bytes.
+const LONGEST_SUGGESTED: usize = 40;
+
+/// The name that a text most likely stands for, if it makes one: without accents, and with `_` for blanks and points.
+pub(crate) fn as_name(text: &str) -> Option<String> {
+    let plain = |c: char| -> Option<&'static str> {
+        Some(match c {
+            'ä' => "ae",
+            'ö' => "oe",
+            'ü' => "ue",
+            'Ä' => "Ae",
+            'Ö' => "Oe",
+            'Ü' => "Ue",
+            'ß' => "ss",
+            'à' | 'á' | 'â' | 'ã' | 'å' => "a",
+            'ç' | 'č' | 'ć' => "c",
+            'è' | 'é' | 'ê' | 'ë' => "e",
+            'ì' | 'í' | 'î' | 'ï' => "i",
+            'ñ' => "n",
+            'ò' | 'ó' | 'ô' | 'õ' | 'ø' => "o",
+            'ù' | 'ú' | 'û' => "u",
+            'š' => "s",
+            'ž' => "z",
+            'đ' => "d",
+            ' ' | '.' | '/' => "_",
+            _ => return greek(c),
+        })
+    };
+    let mut name = String::new();
+    for c in text.trim().chars() {
+        match plain(c) {
+            Some(letters) => name.push_str(letters),
+            None => name.push(c),
+        }
+    }
+    let name = if name.starts_with(|c: char| c.is_ascii_digit()) { format!("_{name}") } else { name };
+    (is_name(&name) && name.len() <= LONGEST_SUGGESTED).then_some(name)
+}
+
+/// The English name of a Greek letter, as parameters of laws are called.
+pub(crate) fn greek(letter: char) -> Option<&'static str> {
+    Some(match letter {
+        'α' => "alpha",
+        'β' => "beta",
+        'γ' => "gamma",
+        'δ' => "delta",
+        'ε' => "epsilon",
+        'η' => "eta",
+        'λ' => "lambda",
+        'μ' | 'µ' => "mu",
+        'ν' => "nu",
+        'ξ' => "xi",
+        'ρ' => "rho",
+        'σ' => "sigma",
+        'τ' => "tau",
+        'φ' | 'ϕ' => "phi",
+        'ω' => "omega",
+        _ => return None,
+    })
+}
+
 /// `a, b and c`, shortened after twelve.
 pub fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 12;
@@ -39,6 +100,7 @@ pub(crate) fn either<S: Borrow<str>>(choices: impl IntoIterator<Item = S>) -> St
 pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match nearest(name, candidates.clone()) {
         Some(right) => format!("did you mean `{right}`?"),
+        None if candidates.clone().into_iter().next().is_none() => "nothing can stand here: leave it out".to_owned(),
         None => format!("there is {}", list(candidates)),
     }
 }

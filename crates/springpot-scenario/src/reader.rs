@@ -173,7 +173,14 @@ impl<'a> Table<'a> {
         let what: Arc<str> = what.into();
         let Some(entries) = node.entries() else {
             let message = format!("{what} must be a table, not {} {}", node.kind(), node.written());
-            return Err(ctx.refuse(node.place.refuse(RefusalKind::WrongType, message).label("not a table")));
+            let refusal = node.place.refuse(RefusalKind::WrongType, message).label("not a table");
+            let right = format!("write {{ {} = … }}", known.first().copied().unwrap_or("NAME"));
+            let help = if known.len() > 1 {
+                format!("{right}; its keys are {}", names::list(known.iter().copied()))
+            } else {
+                right
+            };
+            return Err(ctx.refuse(refusal.help(help)));
         };
         let mut suspected = Vec::new();
         for entry in entries.iter().filter(|entry| !known.contains(&entry.key.as_str())) {

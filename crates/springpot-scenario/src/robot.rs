@@ -161,7 +161,11 @@ pub(crate) fn checked_name<'a>(field: &Field<'a>) -> Read<&'a str> {
         return Ok(name);
     }
     let message = format!("is {}, which is not a name", field.node.written());
-    let help = "a name starts with a letter or _, then letters, digits, _ and - follow".to_owned();
+    let rule = "a name starts with a letter or _, then letters, digits, _ and - follow; letters are those from a to z and A to Z";
+    let help = match names::as_name(name) {
+        Some(right) => format!("{rule}; write {right:?}"),
+        None => rule.to_owned(),
+    };
     Err(field.refuse(RefusalKind::BadName, message, Some(help)))
 }
 

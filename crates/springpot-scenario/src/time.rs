@@ -38,6 +38,9 @@ pub(crate) fn read(root: &Table<'_>) -> Read<Duration> {
                 let rows = if rows < 1e15 { format!("{rows:.0}") } else { format!("{rows:.1e}") };
                 let message = format!("makes {rows} rows; at most {MAX_ROWS:.0} are written");
                 let help = "write a larger output_step or a smaller end".to_owned();
+                // What the command line says is looked at first.
+                let is_set = |field: &Field<'_>| field.node.place.source.name.starts_with("--");
+                let step = table.get("end").filter(|end| is_set(end) && !is_set(&step)).unwrap_or(step);
                 return Err(step.refuse(RefusalKind::TooLarge, message, Some(help)));
             }
             Ok(Duration { end, rows: RowTimes::Step { step: step_size, end } })

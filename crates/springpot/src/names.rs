@@ -57,7 +57,7 @@ mod tests {
         assert_eq!(nearest("Law", keys), Some("law"));
         assert_eq!(nearest("zzz", keys), None);
         assert_eq!(nearest("rn", ["check", "run"]), Some("run"));
-        assert_eq!(nearest("q1", ["q2", "q"]), None);
+        assert_eq!(nearest("q1", ["q2", "x1"]), None);
         assert_eq!(nearest("joint2", ["panda_joint1", "panda_joint2", "joint3x"]), Some("panda_joint2"));
         assert_eq!(nearest("joint2", ["left_joint2", "right_joint2"]), Some("right_joint2"));
     }

@@ -1,6 +1,6 @@
 //! Mistakes of the first week: each is told with its place, its value and what would be right.
 
-use crate::support::{Ended, Place};
+use crate::support::{ARM, Ended, Place};
 
 /// A refusal that says all of `words`.
 #[track_caller]
@@ -212,4 +212,47 @@ fn files_that_end_early_hold_and_files_in_other_units_warn() {
         let ended = place.done(&[command, "arm.toml", "--quiet", "--set", "motion.joints.q1=30*sin(4*t)"]);
         says(&ended, &["joint \"q1\" turns by", "if its motion is in degrees, say so with unit = \"deg\""]);
     }
+}
+
+#[test]
+fn mistakes_of_writing_say_what_to_write() {
+    let inertia = "inertia = { xx = 0.01, yy = 0.05, zz = 0.05 }";
+    let law = "law = \"magnetorheological\"\nparameters = { E_c = \"20 N/m\", mu_0 = 10, mu = 4, alpha = 0.5 }";
+    for (from, to, words) in [
+        (
+            inertia,
+            "inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
+            &["write { xx = … }; its keys are xx, yy, zz, xy, xz and yz"][..],
+        ),
+        (
+            inertia,
+            "inertia = { xx = 0.005, yy = 0.02, zz = 0.006 }",
+            &["inertia is about the centre of mass, in kg*m^2"],
+        ),
+        ("alpha = 0.5", "α = 0.5", &["arm.toml:26:", "write alpha for α"]),
+        (law, "law = \"spring\"\nparameters = { k = 1 }", &["unknown key `u`", "nothing can stand here: leave it out"]),
+        (
+            "kind = \"prescribed\"\njoints = { q1 = \"0.3*sin(4*t)\", x = \"0.05 - 0.05*cos(6*t)\" }",
+            "kind = \"forward\"\n",
+            &["arm.toml:28:10", "leave the scheme out"],
+        ),
+        ("[time]", "[motion]\nkind = \"forward\"\n[time]", &["duplicate key", "[motion] stands on line 29 already"]),
+        ("mass = 2\n", "mass = 2\nmass = 3\n", &["duplicate key", "mass stands on line 10 already"]),
+        (
+            "name = \"damper\"",
+            "name = \"Feder-Dämpfer\"",
+            &["which is not a name", "from a to z", "write \"Feder-Daempfer\""],
+        ),
+    ] {
+        let text = ARM.replace(from, to);
+        let text = if to.contains("forward") && from.starts_with("kind") {
+            text.replace("\n[motion]", "scheme = \"l1\"\n\n[motion]")
+        } else {
+            text
+        };
+        assert_ne!(text, ARM);
+        refused(&Place::with(&text).springpot(&["check", "arm.toml"]), words);
+    }
+    let ended = Place::new().springpot(&["check", "arm.toml", "--set", "time.end=1e8"]);
+    refused(&ended, &["--set:1:10: `end` of [time] makes 1000000000 rows"]);
 }
