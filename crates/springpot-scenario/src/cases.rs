@@ -44,6 +44,8 @@ pub struct Cases {
     figures: Arc<[FigurePlan]>,
     columns: Option<Arc<[ColumnGlob]>>,
     parameters: Vec<String>,
+    /// Units of the swept parameters; empty where they are no numbers, or pure ones.
+    units: Vec<String>,
     /// Whether the results have the column of the energy lost in joints.
     tell_joint_losses: bool,
 }
@@ -82,6 +84,7 @@ impl Cases {
             figures: Arc::new([]),
             columns: None,
             parameters: Vec::new(),
+            units: Vec::new(),
             tell_joint_losses: false,
         };
         cases.read_sweeps(scenario)?;
@@ -121,6 +124,11 @@ impl Cases {
     /// Paths of all swept parameters, in the order of [`Cases::values`].
     pub fn parameters(&self) -> &[String] {
         &self.parameters
+    }
+
+    /// SI units of [`Cases::values`], in their order; empty for pure numbers and what is none.
+    pub fn units(&self) -> &[String] {
+        &self.units
     }
 
     /// Index of the value that each sweep has in case `i`.
@@ -284,6 +292,7 @@ impl Cases {
         let columns = columns_of(&first);
         let losses = Cell::new(has_joint_losses(&first));
         let mut numbers = Vec::with_capacity(self.axes.len());
+        let mut units = vec![String::new(); self.parameters.len()];
         for (axis, values) in self.axes.iter().enumerate() {
             let count = values.len();
             let mut position = vec![0; self.axes.len()];
@@ -307,11 +316,18 @@ impl Cases {
                 if k < TRIED {
                     known.push(self.noted(&ctx, axis));
                 }
+                if k == 0 {
+                    let first = self.first_tag(axis);
+                    for (tag, unit) in units.iter_mut().enumerate().skip(first).take(values.targets.len()) {
+                        *unit = ctx.swept_unit(tag).unwrap_or_default();
+                    }
+                }
                 ctx.finish(read)?;
             }
             numbers.push(known);
         }
         self.numbers = numbers;
+        self.units = units;
         self.tell_joint_losses = losses.get();
         Ok(())
     }

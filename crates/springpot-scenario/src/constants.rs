@@ -30,7 +30,7 @@ pub(crate) fn read(root: &Table<'_>) -> Read<()> {
         let read = value(&constant);
         // What is refused is known all the same, so that nothing else is refused for want of it.
         let value = read.unwrap_or(1.0);
-        constant.ctx.note_swept(constant.node, value);
+        constant.ctx.note_swept(constant.node, value, "");
         constant.ctx.know(constant.key, value);
         read.map(|_| ())
     });

@@ -32,8 +32,8 @@ pub(crate) struct Context<'a> {
     pub(crate) tables: &'a CsvCache,
     pub(crate) robots: &'a UrdfCache,
     refusals: RefCell<Vec<Refusal>>,
-    /// SI value of every swept number, by tag.
-    swept: RefCell<Vec<Option<f64>>>,
+    /// SI value of every swept number and its unit, by tag.
+    swept: RefCell<Vec<Option<(f64, String)>>>,
     /// The constants read so far.
     constants: RefCell<Vec<Constant>>,
     /// What deserves a warning.
@@ -92,20 +92,25 @@ impl<'a> Context<'a> {
         self.constants.borrow()
     }
 
-    /// Remembers the SI value of a swept number.
-    pub(crate) fn note_swept(&self, node: &Node, value: f64) {
+    /// Remembers the SI value of a swept number and its unit.
+    pub(crate) fn note_swept(&self, node: &Node, value: f64, unit: &str) {
         if let Some(tag) = node.tag {
             let mut swept = self.swept.borrow_mut();
             if swept.len() <= tag {
                 swept.resize(tag + 1, None);
             }
-            swept[tag] = Some(value);
+            swept[tag] = Some((value, unit.to_owned()));
         }
     }
 
     /// SI value of the swept parameter `tag`, where it was read as a number.
     pub(crate) fn swept(&self, tag: usize) -> Option<f64> {
-        self.swept.borrow().get(tag).copied().flatten()
+        self.swept.borrow().get(tag)?.as_ref().map(|(value, _)| *value)
+    }
+
+    /// SI unit of the swept parameter `tag`, where it was read as a number.
+    pub(crate) fn swept_unit(&self, tag: usize) -> Option<String> {
+        self.swept.borrow().get(tag)?.as_ref().map(|(_, unit)| unit.clone())
     }
 }
 
@@ -419,7 +424,7 @@ impl<'a> Field<'a> {
         };
         match value {
             Value::Number { integer: Some(integer), .. } if (low..=high).contains(&integer) => {
-                self.ctx.note_swept(self.node, integer as f64);
+                self.ctx.note_swept(self.node, integer as f64, "");
                 Ok(integer)
             }
             Value::Number { value, integer } if integer.is_some() || value.fract() == 0.0 => {
@@ -457,7 +462,7 @@ impl<'a> Field<'a> {
             let message = format!("is {}, not a finite number", self.node.label());
             return Err(self.refuse(RefusalKind::OutOfRange, message, Some(unit_help(unit))));
         }
-        self.ctx.note_swept(self.node, value);
+        self.ctx.note_swept(self.node, value, unit);
         Ok(value)
     }
 

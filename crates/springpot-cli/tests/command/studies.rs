@@ -211,3 +211,20 @@ fn what_the_file_says_under_a_sweep_is_judged() {
     let sweep = "\n[[sweep]]\nparameter = \"element.damper.alpha\"\nvalues = [0.2, 0.4]\n";
     Place::with(&(ARM.replace(", alpha = 0.5", "") + sweep)).done(&["check", "arm.toml"]);
 }
+
+#[test]
+fn swept_columns_have_their_units() {
+    let place = with_constants();
+    let sweeps = [
+        "--sweep",
+        "time.end=1 s,2 s",
+        "--sweep",
+        "element.damper.mu_0=10,20",
+        "--sweep",
+        "element.damper.alpha=0.3,0.5",
+    ];
+    place.done(&[&["run", "arm.toml", "--quiet", "--no-figures", "--out", "units"][..], &sweeps].concat());
+    let record = place.record("units");
+    let units: Vec<&str> = (0..3).map(|k| record["columns"][k]["unit"].as_str().unwrap()).collect();
+    assert_eq!(units, ["s", "N*s^alpha/m", ""]);
+}

@@ -40,7 +40,8 @@ impl Layout {
                 selected
             }
         };
-        let parameters = cases.parameters().iter().map(|name| Column::new(name.as_str(), "", "swept parameter"));
+        let named = cases.parameters().iter().zip(cases.units());
+        let parameters = named.map(|(name, unit)| Column::new(name.as_str(), unit.as_str(), "swept parameter"));
         let written = parameters.chain(selected.iter().map(|&k| wanted.columns()[k].clone())).collect();
         let figures =
             cases.figures().iter().map(|figure| figures::data(cases, figure, &mut wanted)).collect::<Result<_, _>>()?;
