@@ -99,21 +99,27 @@ series with a damper g_k tau_k. The error is verified after building. Numbers wi
 Abaqus and Ansys need a long-term modulus above 0. Without --equilibrium a spring takes the place of what relaxes after the \
 window; the bound includes it, and a comment says so.")]
     Prony(PronyOptions),
-    /// Show the laws of elements, or find the parameters of one from a data sheet.
+    /// Show the laws of elements, or find the parameters of one from a data sheet or a measurement.
     #[command(after_help = "\
 Examples:
   springpot laws
   springpot laws thermoviscoelastic
   springpot laws --from 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m'
   springpot laws kelvin-voigt --from 'stiffness = 2 kN/m, damping = 40 N*s/m'
+  springpot laws --from dma.csv --area '4 cm^2' --length '10 mm'
 
 --from reads NAME = VALUE [at FREQUENCY], ..., where NAME is tan_delta (or loss_factor), \
 stiffness (dynamic, |k*|), storage, loss or \
-damping, and FREQUENCY is in Hz or rad/s, or 0 for a static value. \
+damping, and FREQUENCY is in Hz or rad/s, or 0 for a static value; a number is in Hz. \
 Where a frequency is left out, it is the only other one that is \
-given, else 0. Without NAME the law is the one that the data determine.
+given, else 0. Without NAME the law is the one that the data determine. \
+tan_delta = 30 deg is the angle. Moduli (E', E'', ... in Pa) take the sample: area = 4 cm^2, length = 10 mm.
 
-Exit codes: 0 done, 2 no such law, or the data determine none.")]
+From a CSV file with the columns frequency, storage, and loss or tan_delta \
+(units behind the names, E' [MPa]; else Hz and N/m) a law is fitted, k + c*(i*omega)^alpha unless NAME says which, \
+and drawn into FILE-fit.svg.
+
+Exit codes: 0 done, 1 the figure cannot be written, 2 no such law, or the data determine none.")]
     Laws(LawsOptions),
     /// Draw columns of a finished run.
     #[command(after_help = "\
@@ -163,9 +169,18 @@ pub(crate) struct LawsOptions {
     /// Law to describe, or to find parameters of [default: all]
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
-    /// Values of a data sheet, such as 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m'
+    /// Values of a data sheet, such as 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m', or a CSV file
     #[arg(long, value_name = "DATA")]
     pub(crate) from: Option<String>,
+    /// Area of the sample that moduli were measured on, such as '4 cm^2'
+    #[arg(long, value_name = "AREA", requires = "from", allow_hyphen_values = true)]
+    pub(crate) area: Option<String>,
+    /// Its length, such as '10 mm'
+    #[arg(long, value_name = "LENGTH", requires = "from", allow_hyphen_values = true)]
+    pub(crate) length: Option<String>,
+    /// Figure of a CSV file and its law, .svg or .png [default: FILE-fit.svg]
+    #[arg(long, value_name = "FILE", requires = "from")]
+    pub(crate) out: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,

@@ -29,6 +29,7 @@ mod diagnostic;
 mod dynamics;
 mod excerpt;
 mod failures;
+mod frequency;
 mod grid;
 mod info;
 mod init;

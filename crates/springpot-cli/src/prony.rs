@@ -4,10 +4,11 @@ use crate::arguments::{BulkModulus, PronyFormat, PronyOptions};
 use crate::grid::{Grid, Set};
 use crate::numbers::{count, rough, short};
 use crate::robot::Refused;
-use crate::{Ending, diagnostic, output, printed, terminal};
+use crate::{Ending, diagnostic, frequency, output, printed, terminal};
 use springpot::fractional::prony::{Bulk, PronyError, PronySeries, Slowest, Springpot, Term, Window};
-use springpot_scenario::units::{UnitError, parse_quantity};
+use springpot_scenario::units::parse_quantity;
 use std::f64::consts::TAU;
+use std::fmt::Display;
 
 pub(crate) fn prony(options: &PronyOptions) -> Ending {
     match text(options) {
@@ -62,7 +63,7 @@ impl Asked {
         let ends = [("--from", &options.from), ("--to", &options.to)];
         let [from, to] = match options.band {
             false => ends.map(|(name, text)| time(name, text)),
-            true => ends.map(|(name, text)| frequency(name, text)),
+            true => ends.map(|(name, text)| angular(name, text)),
         };
         let (from, to) = (from?, to?);
         if from >= to {
@@ -109,13 +110,11 @@ fn time(name: &str, text: &str) -> Result<f64, Refused> {
 }
 
 /// The angular frequency, rad/s.
-fn frequency(name: &str, text: &str) -> Result<f64, Refused> {
-    let read = parse_quantity(text, "Hz", &|_| None);
-    let value = positive(name, text, read, "write a frequency such as 10, \"0.5 kHz\" or \"3 rad/s\"")?;
-    Ok(if text.contains("rad") { value } else { TAU * value })
+fn angular(name: &str, text: &str) -> Result<f64, Refused> {
+    positive(name, text, frequency::angular(text), "write a frequency such as 10, \"0.5 kHz\" or \"3 rad/s\"")
 }
 
-fn positive(name: &str, text: &str, read: Result<f64, UnitError>, help: &str) -> Result<f64, Refused> {
+fn positive(name: &str, text: &str, read: Result<f64, impl Display>, help: &str) -> Result<f64, Refused> {
     match read {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         Ok(_) => refused(format!("{name} {text}: not a positive number"), help),

@@ -1,6 +1,7 @@
 //! One law: equation, parameters, inputs, source, and an element to start from.
 
 use crate::grid::{Grid, Set};
+use crate::numbers::short;
 use crate::terminal;
 use serde_json::{Value, json};
 use springpot::law::{Entry, Input, Param, Range};
@@ -65,8 +66,17 @@ fn example(law: &Entry) -> String {
 /// Tables that make a longer line are written with a line for each value.
 const LONGEST_LINE: usize = 80;
 
+/// An element of the law with parameters that were found: name, unit, value.
+pub(super) fn found(law: &str, params: &[(&str, &str, f64)]) -> String {
+    let written = |(name, unit, value): &(&str, &str, f64)| match *unit {
+        "" => format!("{name} = {}", short(*value)),
+        unit => format!("{name} = \"{} {unit}\"", short(*value)),
+    };
+    element(law, &params.iter().map(written).collect::<Vec<_>>(), &[])
+}
+
 /// An `[[element]]` between the world and a body; parameters and inputs are written as `name = value`.
-pub(super) fn element(law: &str, params: &[String], inputs: &[String]) -> String {
+fn element(law: &str, params: &[String], inputs: &[String]) -> String {
     let mut text = format!(
         "[[element]]\n\
          name = \"strut\"\n\

@@ -1,45 +1,19 @@
 //! A law from the values of a data sheet.
 
-use super::page;
-use crate::diagnostic;
+use super::names::{self, SUGGESTED};
+use super::sample::{ANGLES, Missized, Sample, is_angle, tangent};
+use super::{Refused, page};
 use crate::numbers::{rough, short};
+use crate::{diagnostic, frequency};
 use serde_json::{Map, Value, json};
 use springpot::law::datasheet::{DatasheetError, Datum, Identified, Model, Quantity, identify};
 use springpot::law::{Catalog, Entry};
+use springpot_scenario::suggest;
 use springpot_scenario::units::{UnitError, parse_quantity, split_quantity};
-use springpot_scenario::{Place, RefusalKind, Source, suggest};
-use std::f64::consts::TAU;
 use std::ops::Range;
-use std::sync::Arc;
 
 /// A deviation below this is that of the digits shown.
 const SHOWN: f64 = 1e-5;
-
-/// Why data are refused, and where they stand.
-pub(super) struct Refused {
-    message: String,
-    help: Option<String>,
-    at: Option<Range<usize>>,
-}
-
-impl Refused {
-    fn at(at: Range<usize>, message: String, help: impl Into<Option<String>>) -> Self {
-        Self { message, help: help.into(), at: Some(at) }
-    }
-
-    /// Prints it on stderr, with the place in `data`.
-    pub(super) fn show(self, data: &str) {
-        match (self.at, self.help) {
-            (Some(span), help) => {
-                let source = Source { name: "--from".to_owned(), text: data.into() };
-                let refusal = Place { source: Arc::new(source), span }.refuse(RefusalKind::BadQuantity, self.message);
-                diagnostic::refused(&refusal.help_if(help).into());
-            }
-            (None, Some(help)) => diagnostic::error_with_help(self.message, help),
-            (None, None) => diagnostic::error(self.message),
-        }
-    }
-}
 
 /// One value and how it was written.
 struct Item {
@@ -47,22 +21,39 @@ struct Item {
     /// `stiffness at 10 Hz`.
     written: String,
     value: String,
+    reading: Reading,
+    /// Where the value stands.
+    at: Range<usize>,
+}
+
+/// How a value is read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Reading {
+    AsWritten,
+    /// The angle δ for tan δ.
+    Angle,
+    /// In Pa, of the sample.
+    Modulus,
+    /// The number of a modulus without unit, in N/m.
+    Bare,
 }
 
 /// The law, its parameters, an element, and how well it meets the data.
-pub(super) fn text(catalog: &Catalog, data: &str, law: Option<&Entry>, as_json: bool) -> Result<String, Refused> {
-    let items = items(data)?;
+pub(super) fn text(
+    catalog: &Catalog,
+    data: &str,
+    law: Option<&Entry>,
+    sample: Sample,
+    as_json: bool,
+) -> Result<String, Refused> {
+    let items = items(data, sample)?;
     let values: Vec<Datum> = items.iter().map(|item| item.datum).collect();
-    let names = || {
-        let known = catalog.entries().iter().filter(|law| Model::of(law).is_some());
-        known.map(|law| &*law.name).collect::<Vec<_>>().join(", ")
-    };
+    let names = || super::determined(catalog);
     let law = match law {
         Some(law) => law,
-        None => Model::for_data(&values).law(catalog).ok_or_else(|| Refused {
-            message: "no law of the catalog is of the form that such data determine".to_owned(),
-            help: Some(format!("choose one of {}", names())),
-            at: None,
+        None => Model::for_data(&values).law(catalog).ok_or_else(|| {
+            let message = "no law of the catalog is of the form that such data determine";
+            Refused::new(message, format!("choose one of {}", names()))
         })?,
     };
     let found = identify(law, &values).map_err(|error| refused(&error, law, &values, &names))?;
@@ -89,7 +80,7 @@ fn refused(error: &DatasheetError, law: &Entry, data: &[Datum], names: &dyn Fn()
         DatasheetError::Unreachable { .. } => Some("look at units and frequencies, or name another law".to_owned()),
         DatasheetError::NotPositive { .. } | DatasheetError::Twice { .. } => None,
     };
-    Refused { message: error.to_string(), help, at: None }
+    Refused::new(error.to_string(), help)
 }
 
 /// What would be enough for a law, of three parameters or of fewer.
@@ -105,21 +96,22 @@ fn missing(is_whole: bool, data: &[Datum]) -> String {
 }
 
 /// Reads `NAME = VALUE [at FREQUENCY], …`.
-fn items(data: &str) -> Result<Vec<Item>, Refused> {
+fn items(data: &str, mut sample: Sample) -> Result<Vec<Item>, Refused> {
     let mut read = Vec::new();
     let mut start = 0;
     for part in data.split([',', ';']) {
         let at = start + (part.len() - part.trim_start().len());
         start += part.len() + 1;
         let part = part.trim();
-        if !part.is_empty() {
+        if !(part.is_empty() || size(data, part, &mut sample)?) {
             read.push(item(data, at, part)?);
         }
     }
     if read.is_empty() {
         let help = "write --from 'tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m'".to_owned();
-        return Err(Refused { message: "--from holds no data".to_owned(), help: Some(help), at: None });
+        return Err(Refused::new("--from holds no data", help));
     }
+    of_sample(&mut read, &sample)?;
     // What has no frequency of its own has the only one there is.
     let mut told: Vec<(f64, String)> = read.iter().filter_map(|(_, frequency)| frequency.clone()).collect();
     told.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -136,10 +128,59 @@ fn items(data: &str) -> Result<Vec<Item>, Refused> {
                     .collect());
             };
             let message = format!("{} has no frequency, and the data have several", item.written);
-            return Err(Refused { message, help: Some(format!("write {} = … at 10 Hz", item.written)), at: None });
+            return Err(Refused::new(message, format!("write {} = … at 10 Hz", item.written)));
         }
     };
     Ok(read.into_iter().map(|(item, frequency)| item.with(frequency.unwrap_or_else(|| only.clone()))).collect())
+}
+
+/// Takes `area = 4 cm^2` or `length = 10 mm` for the sample; whether `part` is one of them.
+fn size(data: &str, part: &str, sample: &mut Sample) -> Result<bool, Refused> {
+    let Some((name, value)) = part.split_once(['=', ':']) else { return Ok(false) };
+    let (name, value) = (name.trim(), value.trim());
+    let Some((_, unit, example)) = Sample::SIZES.into_iter().find(|size| size.0 == name) else { return Ok(false) };
+    let right = format!("write a positive number in {unit}, or with a unit: {name} = {example}");
+    match sample.set(name, value) {
+        Ok(()) => Ok(true),
+        Err(Missized::Twice) => Err(Refused::at(place(data, name), format!("{name} is given twice"), None)),
+        Err(Missized::NotPositive) => {
+            Err(Refused::at(place(data, value), format!("{name} is {value}, but must be positive"), right))
+        }
+        Err(Missized::Unit(error)) => Err(misread(place(data, value), &error, right)),
+    }
+}
+
+/// Makes stiffnesses of moduli.
+fn of_sample(read: &mut [(Item, Frequency)], sample: &Sample) -> Result<(), Refused> {
+    let mut moduli = 0;
+    for (item, _) in read {
+        if item.reading == Reading::Bare {
+            let help = format!("a modulus has a unit: {} = {} MPa", item.written, item.value);
+            diagnostic::warning(
+                format!("{} = {} has no unit and is read in N/m", item.written, item.value),
+                Some(help),
+            );
+        }
+        if item.reading == Reading::Modulus {
+            let Some(factor) = sample.stiffness_of_one() else {
+                let message =
+                    format!("{} is a modulus: the stiffness E·A/L takes area and length of the sample", item.written);
+                return Err(Refused::at(item.at.clone(), message, Sample::CURE.to_owned()));
+            };
+            item.datum.value *= factor;
+            moduli += 1;
+        }
+    }
+    match sample.is_given() && moduli == 0 {
+        true => Err(Refused::new(super::NO_MODULUS, super::MODULI.to_owned())),
+        false => Ok(()),
+    }
+}
+
+/// Where a part of `data` stands in it.
+fn place(data: &str, text: &str) -> Range<usize> {
+    let at = text.as_ptr() as usize - data.as_ptr() as usize;
+    at..at + text.len()
 }
 
 impl Item {
@@ -154,39 +195,45 @@ type Frequency = Option<(f64, String)>;
 
 /// `stiffness = 5 kN/m at 10 Hz`, which stands at byte `start` of `data`.
 fn item(data: &str, start: usize, part: &str) -> Result<(Item, Frequency), Refused> {
-    let place = |text: &str| {
-        let at = text.as_ptr() as usize - data.as_ptr() as usize;
-        at..at + text.len()
-    };
+    let place = |text: &str| place(data, text);
     debug_assert_eq!(place(part).start, start);
     let Some((name, rest)) = part.split_once(['=', ':']) else {
         let help = "write NAME = VALUE, as in tan_delta = 0.3".to_owned();
         return Err(Refused::at(place(part), format!("{part:?} has no `=`"), help));
     };
     let (name, rest) = (name.trim(), rest.trim());
-    let names = Quantity::ALL.map(Quantity::name);
-    let wanted = if name == "loss_factor" { Quantity::LossFactor.name() } else { name };
-    let Some(quantity) = Quantity::ALL.into_iter().find(|quantity| quantity.name() == wanted) else {
-        let help = suggest(name, names.into_iter().chain(["loss_factor"]));
-        return Err(Refused::at(place(name), format!("there is no quantity {name:?}"), help));
+    let Some((quantity, is_modulus)) = names::quantity(name) else {
+        return Err(Refused::at(place(name), format!("there is no quantity {name:?}"), suggest(name, SUGGESTED)));
     };
     let (value, frequency) = match rest.rsplit_once(" at ") {
         Some((value, frequency)) => (value.trim(), Some(frequency.trim())),
         None => (rest, None),
     };
-    let read = parse_quantity(value, quantity.unit(), &|_| None).map_err(|error| {
-        let right = match quantity.unit() {
-            "" => "write a number".to_owned(),
-            unit => format!("write a number in {unit}, or with a unit: 5 k{unit}"),
-        };
-        misread(place(value), &error, right)
-    })?;
+    let unit = split_quantity(value).map_or("", |(_, unit)| unit);
+    let in_pascal = || parse_quantity(value, "Pa", &|_| None);
+    let (read, reading) = match parse_quantity(value, quantity.unit(), &|_| None) {
+        Ok(delta) if quantity == Quantity::LossFactor && is_angle(unit) => match tangent(delta) {
+            Some(tangent) => (tangent, Reading::Angle),
+            None => return Err(Refused::at(place(value), format!("{value} is no loss angle"), ANGLES.to_owned())),
+        },
+        Ok(read) => (read, if is_modulus && unit.is_empty() { Reading::Bare } else { Reading::AsWritten }),
+        Err(_) if quantity.unit() == "N/m" && in_pascal().is_ok() => {
+            (in_pascal().unwrap_or(f64::NAN), Reading::Modulus)
+        }
+        Err(error) => {
+            let right = match quantity.unit() {
+                "" => "write a number".to_owned(),
+                unit => format!("write a number in {unit}, or with a unit: 5 k{unit}"),
+            };
+            return Err(misread(place(value), &error, right));
+        }
+    };
     if read <= 0.0 {
         return Err(Refused::at(place(value), format!("{name} is {value}, but must be positive"), None));
     }
     let frequency = frequency.map(|text| omega(text, place(text)).map(|omega| (omega, text.to_owned()))).transpose()?;
     let datum = Datum { quantity, value: read, omega: 0.0 };
-    Ok((Item { datum, written: name.to_owned(), value: value.to_owned() }, frequency))
+    Ok((Item { datum, written: name.to_owned(), value: value.to_owned(), reading, at: place(value) }, frequency))
 }
 
 fn misread(at: Range<usize>, error: &UnitError, help: String) -> Refused {
@@ -200,13 +247,12 @@ fn omega(text: &str, at: Range<usize>) -> Result<f64, Refused> {
     if text == "rest" {
         return Ok(0.0);
     }
-    let value = parse_quantity(text, "1/s", &|_| None).map_err(|error| misread(at.clone(), &error, help()))?;
-    let unit = split_quantity(text).map_or("", |(_, unit)| unit);
-    // Hertz and radians per second are one dimension; only their author knows which of them a bare number is in.
-    if value < 0.0 || (unit.is_empty() && value != 0.0) {
-        return Err(Refused::at(at, format!("{text:?} is no frequency"), help()));
+    match frequency::angular(text) {
+        Ok(value) if value >= 0.0 => Ok(value),
+        Ok(_) => Err(Refused::at(at, format!("{text:?} is no frequency"), help())),
+        Err(frequency::Misread::Unit(error)) => Err(misread(at, &error, help())),
+        Err(error) => Err(Refused::at(at, error.to_string(), help())),
     }
-    Ok(if unit.ends_with("Hz") { TAU * value } else { value })
 }
 
 /// The parameters as they are shown, and the law that has them.
@@ -231,7 +277,12 @@ fn page(row: &Entry, found: &Identified, items: &[Item]) -> String {
     }
     text.push('\n');
     let widest = items.iter().map(|item| item.written.chars().count()).max().unwrap_or(0);
-    for Item { datum, written, value } in items {
+    for Item { datum, written, value, reading, .. } in items {
+        let value = match reading {
+            Reading::AsWritten | Reading::Bare => value.clone(),
+            Reading::Angle => format!("{value} (angle: tan δ = {})", short(datum.value)),
+            Reading::Modulus => format!("{value} ({} N/m)", short(datum.value)),
+        };
         let reached = format!("{} {}", short(shown.predict(datum)), datum.quantity.unit());
         text.push_str(&format!("  {written:<widest$}  {value} wanted, {} reached\n", reached.trim_end()));
     }
@@ -240,12 +291,8 @@ fn page(row: &Entry, found: &Identified, items: &[Item]) -> String {
     if deviation > SHOWN {
         text.push_str(&format!("  largest deviation {} %\n", rough(100.0 * deviation)));
     }
-    let written = |(name, unit, value): &(&str, &str, f64)| match *unit {
-        "" => format!("{name} = {}", short(*value)),
-        unit => format!("{name} = \"{} {unit}\"", short(*value)),
-    };
     text.push('\n');
-    text.push_str(&page::element(&row.name, &params.iter().map(written).collect::<Vec<_>>(), &[]));
+    text.push_str(&page::found(&row.name, &params));
     text
 }
 
@@ -271,7 +318,7 @@ mod tests {
     use super::*;
 
     /// Words of the grammar and what may be written in their place.
-    const WORDS: [&str; 20] = [
+    const WORDS: [&str; 24] = [
         "tan_delta = 0.3",
         "stiffness = 3 kN/m",
         "storage=",
@@ -292,6 +339,10 @@ mod tests {
         "µ",
         "\u{0}",
         "(",
+        "tan_delta = 30 deg",
+        "E″ = 2 MPa",
+        "area = 4 cm^2",
+        "length: 10 mm",
     ];
 
     #[test]
@@ -305,7 +356,7 @@ mod tests {
                 data.push_str(WORDS[(state >> 33) as usize % WORDS.len()]);
             }
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            match text(&catalog, &data, None, false) {
+            match text(&catalog, &data, None, Sample::default(), false) {
                 Ok(page) => {
                     read += 1;
                     assert!(page.contains("[[element]]") && !page.contains("NaN"), "{data}: {page}");

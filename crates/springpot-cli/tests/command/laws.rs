@@ -91,6 +91,9 @@ fn a_data_sheet_gives_parameters() {
     let same = from(None, &format!("loss_factor: 0.3; stiffness = 50 N/cm at {} rad/s", 10.0 * TAU)).1;
     assert!((same["parameters"]["c"].as_f64().unwrap() / c - 1.0).abs() < 1e-12);
 
+    let same = from(None, "tan_delta = 0.3 at 10, stiffness = 5 kN/m").1;
+    assert_eq!(same["parameters"]["c"].as_f64(), Some(c));
+
     let (_, answer) = from(Some("kelvin-voigt"), "tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m at 10 Hz");
     let delta = 0.3_f64.atan();
     let wanted = [5000.0 * delta.cos(), 5000.0 * delta.sin() / (10.0 * TAU)];
@@ -129,7 +132,10 @@ fn what_is_wrong_is_said() {
         ("tan_delta = 0.3 at 10 Hz", &["no stiffness is given"]),
         ("stiffness = 5 kN at 3 Hz", &["--from:1:15", "does not fit", "N/m"]),
         ("stiffness = 5 kN/m at 3 m", &["--from:1:25", "10 Hz or 63 rad/s"]),
-        ("tan_delta = 0.3 at 10, stiffness = 5", &["\"10\" is no frequency"]),
+        (
+            "tan_delta = 0.3 at 10 1/s, stiffness = 5",
+            &["does not say whether turns (Hz) or radians", "10 Hz or 63 rad/s"],
+        ),
         ("tan_delta = 0.3 at -10 Hz, stiffness = 5", &["is no frequency"]),
         ("tan_delta = -0.3 at 1 Hz, stiffness = 5", &["must be positive"]),
         ("tan_delta = nan at 1 Hz, stiffness = 5", &["--from:1:13"]),

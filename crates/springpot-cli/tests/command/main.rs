@@ -18,6 +18,7 @@ mod init;
 mod interrupted;
 mod laws;
 mod manual;
+mod measured;
 mod messages;
 #[cfg(unix)]
 mod pipes;

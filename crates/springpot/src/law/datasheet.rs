@@ -14,7 +14,8 @@
 //! A springpot has tan δ = tan(alpha·π/2) at every frequency, so that one loss factor and one stiffness are enough for
 //! it. Where two data make K known at one frequency, springpot and Kelvin–Voigt element follow in closed form, and with
 //! the static stiffness the fractional Kelvin–Voigt element too. Everything else is solved for the smallest sum of
-//! squares of relative deviations, which is 0 where the data determine the law exactly.
+//! squares of relative deviations, which is 0 where the data determine the law exactly. [`fit()`] takes a whole measurement of storage and
+//! loss over frequency, and tells the spread of the parameters too.
 //!
 //! Source: R. L. Bagley, P. J. Torvik, *Fractional calculus — a different approach to the analysis of viscoelastically
 //! damped structures*, AIAA J. 21 (1983) 741–748.
@@ -37,6 +38,9 @@
 
 mod closed;
 mod fit;
+mod nearest;
+
+pub use fit::{FitError, Fitted, Measured, fit};
 
 use super::catalog::{Catalog, Entry, Param};
 use super::network::Network;
@@ -358,10 +362,10 @@ pub fn identify(law: &Entry, data: &[Datum]) -> Result<Identified, DatasheetErro
     let closed = if given == needed { closed::form(model, data) } else { None };
     let found = match closed {
         Some(found) => found,
-        None => fit::nearest(model, data).ok_or_else(|| DatasheetError::Undetermined { law: name() })?,
+        None => nearest::nearest(model, data).ok_or_else(|| DatasheetError::Undetermined { law: name() })?,
     };
     let deviation = found.deviation(data);
-    if given == needed && deviation.is_nan() | (deviation > fit::EXACT) {
+    if given == needed && deviation.is_nan() | (deviation > nearest::EXACT) {
         return Err(DatasheetError::Unreachable { law: name(), percent: 100.0 * deviation });
     }
     Ok(found)

@@ -97,7 +97,7 @@ pub(crate) fn are_independent(columns: impl IntoIterator<Item = Vec<f64>>) -> bo
 }
 
 /// x with A x = b, A positive definite, by Cholesky; `None` where A is singular.
-fn cholesky_solve<const N: usize>(a: [[f64; N]; N], b: [f64; N]) -> Option<[f64; N]> {
+pub(crate) fn cholesky_solve<const N: usize>(a: [[f64; N]; N], b: [f64; N]) -> Option<[f64; N]> {
     let mut l = [[0.0; N]; N];
     for i in 0..N {
         for j in 0..=i {

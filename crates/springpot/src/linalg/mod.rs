@@ -10,7 +10,7 @@ mod svd;
 pub(crate) use eigen::symmetric_eigenvalues;
 pub(crate) use gauss::{gauss_rule, gauss_rules};
 pub(crate) use least_norm::LeastNorm;
-pub(crate) use least_squares::{Unknown, are_independent, levenberg_marquardt};
+pub(crate) use least_squares::{Unknown, are_independent, cholesky_solve, levenberg_marquardt};
 pub(crate) use lu::Lu;
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
