@@ -39,7 +39,7 @@ pub(crate) fn plot(options: &PlotOptions) -> Ending {
             return Ending::Refused;
         }
     };
-    let Rendered { svg, png } = match figure.plot.render() {
+    let Rendered { svg, png, .. } = match figure.plot.render() {
         Ok(rendered) => rendered,
         Err(error) => {
             diagnostic::error(format!("the figure is not drawn: {error}"));

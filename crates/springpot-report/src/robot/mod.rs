@@ -95,7 +95,7 @@ impl RobotDrawing {
     pub fn render(&self) -> Result<Rendered, ReportError> {
         self.check()?;
         let font = draw::Font::load()?;
-        draw::render(sketch::scene(self, &font), &font)
+        draw::render(&sketch::scene(self, &font), &font)
     }
 
     fn check(&self) -> Result<(), ReportError> {

@@ -45,7 +45,7 @@ pub fn draw(
             FigureKind::Robot => robot::draw(&source),
         };
         match rendered {
-            Ok(Rendered { svg, png }) => {
+            Ok(Rendered { svg, png, .. }) => {
                 folder.write_figure(&format!("{}.svg", figure.name), svg.as_bytes())?;
                 folder.write_figure(&format!("{}.png", figure.name), &png)?;
             }

@@ -60,7 +60,7 @@ impl Curves<'_> {
                 let named: Vec<String> =
                     free.iter().skip(1).map(|axis| self.swept(*axis, position[*axis], true)).collect();
                 let title = (!named.is_empty()).then(|| named.join(", "));
-                panels.push((key, Panel { title, curves: Vec::new() }));
+                panels.push((key, Panel { title, ..Panel::default() }));
                 panels.len() - 1
             });
             // Beside a column's name the value alone would not say what it is of.
@@ -69,7 +69,7 @@ impl Curves<'_> {
                 let own = several.then(|| if alike { labels::quantity(&column.column.name) } else { column.axis() });
                 let label = own.into_iter().chain(swept.clone()).collect::<Vec<_>>().join(", ");
                 let (x, y) = points.iter().map(|[at, value]| (x.number(*at), column.number(*value))).unzip();
-                panels[at].1.curves.push(Curve { label, x, y });
+                panels[at].1.curves.push(Curve { label, x, y, ..Curve::default() });
             }
         }
         let mut panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
@@ -85,7 +85,8 @@ impl Curves<'_> {
             several => common_unit(several).map_or(String::new(), labels::written_unit),
         };
         let legend_title = free.first().filter(|_| y.len() == 1).map(|axis| (self.sweep)(*axis));
-        Plot { title: self.title.map(str::to_owned), x_label: x.axis(), y_label, legend_title, panels }
+        let (x, y) = (x.axis().into(), y_label.into());
+        Plot { title: self.title.map(str::to_owned), x, y, legend_title, panels, ..Plot::default() }
     }
 
     /// The swept value as written; with the name of what is swept where nothing else says it.
