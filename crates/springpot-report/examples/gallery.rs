@@ -194,7 +194,7 @@ fn joint(name: &str, position: [f64; 3], axis: [f64; 3], kind: JointKind) -> Joi
 }
 
 fn element(name: &str, from: [f64; 3], to: [f64; 3]) -> ElementMark {
-    ElementMark { name: name.into(), from, to }
+    ElementMark { name: name.into(), from, to, ..ElementMark::default() }
 }
 
 fn robots() -> Vec<(&'static str, RobotDrawing)> {
@@ -216,6 +216,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         elements: vec![element("strut", [0.14, -0.1, 0.08], [0.44, 0.1, 0.68])],
         gripper: Some([0.9, 0.0, 0.6]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     column.bracket("column", [0.14, -0.1, 0.08]);
     column.bracket("forearm", [0.44, 0.1, 0.68]);
@@ -242,6 +243,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         ],
         gripper: Some([0.95, 0.0, 0.35]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     for (body, anchor) in [("base", [0.0, 0.12, 0.3]), ("boom", [0.35, 0.1, 0.8]), ("base", [0.0, -0.12, 0.3])] {
         bent.bracket(body, anchor);
@@ -264,6 +266,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         elements: vec![element("damper", [0.0, 0.0, 0.1], [0.6, 0.0, 0.533])],
         gripper: Some([0.7, 0.0, 0.45]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
 
     // A seven-joint arm of human size, standing bent.
@@ -293,6 +296,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         ],
         gripper: Some(chain[7]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     arm.bracket("link1", [0.0, -0.08, 0.2]);
     arm.bracket("link2", [0.08, -0.05, 0.55]);
@@ -306,6 +310,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         elements: vec![element("band", [0.02, 0.0, -0.001], [0.0045, 0.0, -0.015])],
         gripper: None,
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     hanging.bracket(WORLD, [0.02, 0.0, -0.001]);
     vec![

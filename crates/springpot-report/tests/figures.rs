@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use springpot_report::{
-    Curve, ElementMark, JointKind, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing, Scale, WORLD,
+    Curve, ElementMark, ElementSign, JointKind, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing,
+    Scale, WORLD,
 };
 
 fn curve(label: &str, x: &[f64], y: &[f64]) -> Curve {
@@ -332,6 +333,10 @@ fn refusals_name_the_cause() {
     check(&many.render().unwrap());
 }
 
+fn element(name: &str, from: [f64; 3], to: [f64; 3]) -> ElementMark {
+    ElementMark { name: name.into(), from, to, ..ElementMark::default() }
+}
+
 fn arm() -> RobotDrawing {
     let joint = |name: &str, position, axis, kind| JointMark { name: name.into(), position, axis, kind };
     let mut robot = RobotDrawing {
@@ -344,9 +349,10 @@ fn arm() -> RobotDrawing {
             joint("q1", [0.0; 3], [0.0, 0.0, 1.0], JointKind::Revolute),
             joint("slide", [0.0, 0.0, 0.6], [0.0, 2.0, 0.0], JointKind::Prismatic),
         ],
-        elements: vec![ElementMark { name: "strut".into(), from: [0.14, -0.1, 0.08], to: [0.44, 0.1, 0.68] }],
+        elements: vec![element("strut", [0.14, -0.1, 0.08], [0.44, 0.1, 0.68])],
         gripper: Some([0.9, 0.0, 0.5]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     robot.bracket("column", [0.14, -0.1, 0.08]);
     robot.bracket("arm", [0.44, 0.1, 0.68]);
@@ -387,10 +393,47 @@ fn a_robot_that_floats_has_no_base() {
 #[test]
 fn robots_of_many_joints_get_more_room() {
     let mut robot = arm();
-    let narrow = svg_size(&robot.render().unwrap().svg, "width");
+    let room = |robot: &RobotDrawing| {
+        let svg = robot.render().unwrap().svg;
+        assert!((svg_size(&svg, "width") - 566.93).abs() < 0.01);
+        svg.split("viewBox=\"0 0 ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap()
+    };
+    let narrow = room(&robot);
     robot.joints.extend(std::iter::repeat_n(JointMark { name: String::new(), ..robot.joints[0].clone() }, 38));
-    let wide = svg_size(&robot.render().unwrap().svg, "width");
-    assert!(wide > 1.7 * narrow && wide < 2.1 * narrow, "{narrow} {wide}");
+    let wide = room(&robot);
+    assert!(narrow == 566.93 && wide > 1.5 * narrow && wide < 2.1 * narrow, "{narrow} {wide}");
+}
+
+#[test]
+fn robots_are_turned_sized_and_left_without_names() {
+    let mut robot = arm();
+    robot.size = Some([90.0, 70.0]);
+    let figure = robot.render().unwrap();
+    let said = ["width", "height"].map(|name| svg_size(&figure.svg, name) * 25.4 / 96.0);
+    assert!((said[0] - 90.0).abs() < 0.01 && (said[1] - 70.0).abs() < 0.01, "{said:?}");
+    robot.view = Some([0.0, 0.0]);
+    let front = robot.render().unwrap();
+    assert_ne!(front.svg, figure.svg);
+    // Seen along y, that axis is a cross in a circle: no arrow of the sign of the axes leads to its name.
+    assert!(front.svg.contains(">y</text>"));
+    robot.hides_names = true;
+    let bare = robot.render().unwrap().svg;
+    assert!(!bare.contains(">q₁</text>") && !bare.contains(">strut</text>") && bare.contains(">x</text>"));
+}
+
+#[test]
+fn elements_have_the_sign_of_their_law() {
+    let mut robot = arm();
+    let mut seen = Vec::new();
+    let maxwell = ElementSign::Series(vec![ElementSign::Spring, ElementSign::Dashpot]);
+    let both = ElementSign::Parallel(vec![ElementSign::Spring, ElementSign::Springpot, ElementSign::Source]);
+    for sign in [ElementSign::Spring, ElementSign::Dashpot, ElementSign::Springpot, ElementSign::Source, maxwell, both]
+    {
+        robot.elements[0].sign = sign;
+        let figure = robot.render().unwrap();
+        assert!(!seen.contains(&figure.svg));
+        seen.push(figure.svg);
+    }
 }
 
 #[test]
@@ -400,7 +443,7 @@ fn degenerate_robots_still_make_a_figure() {
     robot.joints[0].axis = [0.0; 3];
     robot.links.push(Link::default());
     robot.links.push(Link { name: "dot".into(), points: vec![[0.1; 3]] });
-    robot.elements.push(ElementMark { name: "<none>".into(), from: [0.2; 3], to: [0.2; 3] });
+    robot.elements.push(element("<none>", [0.2; 3], [0.2; 3]));
     check(&robot.render().unwrap());
     for scale in [1e-9, 1e9, 1e90] {
         let mut robot = arm();
@@ -441,9 +484,10 @@ proptest! {
             title: None,
             links: points.windows(2).map(|pair| Link { name: "body".into(), points: pair.to_vec() }).collect(),
             joints: points.iter().enumerate().map(joint).collect(),
-            elements: vec![ElementMark { name: "strut".into(), from: points[0], to: points[points.len() - 1] }],
+            elements: vec![element("strut", points[0], points[points.len() - 1])],
             gripper: Some(points[1]),
             ground: Some(points[0]),
+            ..RobotDrawing::default()
         };
         let figure = robot.render().unwrap();
         check(&figure);

@@ -45,6 +45,7 @@ pub(super) struct Line<'a> {
     pub(super) runs: &'a Runs,
     pub(super) stroke: Stroke,
     pub(super) is_right: bool,
+    pub(super) is_marked: bool,
 }
 
 /// Everything a panel shows, with the ranges and ticks settled.
@@ -94,7 +95,7 @@ pub(super) fn x_ticks(font: &Font, range: Range, width: f64) -> Ticks {
 
 /// Ticks for an axis of `height` pixels.
 pub(super) fn y_ticks(range: Range, height: f64) -> Ticks {
-    ticks(range, ((height / 30.0) as usize).clamp(4, 8))
+    ticks(range, ((height / 30.0) as usize).clamp(5, 8))
 }
 
 fn ticks(range: Range, most: usize) -> Ticks {
@@ -121,6 +122,9 @@ impl Axes<'_> {
             let pixels = line.runs.iter().map(|run| run.iter().map(at).collect::<Vec<_>>());
             let (dots, mut lines): (Vec<_>, Vec<_>) = pixels.partition(|run| run.len() == 1);
             let mut dots: Vec<Point> = dots.into_iter().flatten().collect();
+            if line.is_marked {
+                dots.extend(lines.iter().flatten());
+            }
             if self.clips {
                 lines = lines.iter().flat_map(|run| clip(run, area)).collect();
                 dots.retain(|[x, y]| {
@@ -153,7 +157,7 @@ impl Axes<'_> {
                 scene.lines(lines, stroke);
             }
             for dot in dots {
-                scene.dot(dot, 1.3 * stroke.width, stroke.color);
+                scene.dot(dot, 1.5 * stroke.width, stroke.color);
             }
         }
         if self.curves.iter().all(|line| line.runs.is_empty()) {

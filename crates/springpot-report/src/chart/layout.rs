@@ -25,7 +25,7 @@ const LEGEND_ROW: f64 = 10.0;
 const COLUMN_GAP: f64 = 20.0;
 const ROW_GAP: f64 = 14.0;
 /// The legend stands beside the panels where it takes no more of the page, and leaves the panels no less than this.
-const LEGEND_SHARE: f64 = 0.36;
+const LEGEND_SHARE: f64 = 0.27;
 const WIDE: f64 = 140.0;
 /// The smallest data area, and the highest of a page without a height.
 const LEAST: [f64; 2] = [50.0, 36.0];
@@ -197,7 +197,7 @@ impl<'a> Layout<'a> {
         let height = self.page_height.map_or(HIGHEST, |height| height - self.title_height() - 60.0);
         let most = LEGEND_SHARE * self.page_width;
         let rows = self.panels.len().div_ceil(self.columns);
-        let beside = Legend::beside(self.font, groups, height * if rows > 1 { 1.5 } else { 1.0 }, most);
+        let beside = Legend::beside(self.font, groups, height * if rows > 1 { 1.5 } else { 1.0 });
         self.legend = match beside {
             None => None,
             Some(legend) => {
@@ -445,7 +445,12 @@ impl<'a> Layout<'a> {
                 has_labels: self.has_right_labels(panel),
             }),
             curves: curves
-                .map(|(curve, runs)| Line { runs, stroke: look(curve), is_right: has_right && curve.is_right })
+                .map(|(curve, runs)| Line {
+                    runs,
+                    stroke: look(curve),
+                    is_right: has_right && curve.is_right,
+                    is_marked: curve.is_marked,
+                })
                 .collect(),
             clips: [&self.plot.x, self.axes[self.group[panel]]]
                 .into_iter()
@@ -479,8 +484,9 @@ impl<'a> Layout<'a> {
             }
         }
         if self.has_right_labels(panel) {
-            for (aside, line) in settled.right_label.iter().rev().enumerate() {
-                let at = [settled.right - 3.0 - aside as f64 * LABEL_LINE, upright];
+            let last = settled.right_label.len().saturating_sub(1);
+            for (aside, line) in settled.right_label.iter().enumerate() {
+                let at = [settled.right - 3.0 - (last - aside) as f64 * LABEL_LINE, upright];
                 scene.text(Text::new(line, at, LABEL_SIZE, Align::Middle).upwards());
             }
         }

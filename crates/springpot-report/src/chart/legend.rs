@@ -41,15 +41,15 @@ struct Item {
 
 impl Legend {
     /// Groups below one another, their entries in columns where one is higher than `height`. `None` when there is nothing to say.
-    pub(super) fn beside(font: &Font, groups: &[Group<'_>], height: f64, widest: f64) -> Option<Self> {
+    pub(super) fn beside(font: &Font, groups: &[Group<'_>], height: f64) -> Option<Self> {
         let count: usize = groups.iter().map(|group| group.entries.len()).sum();
         let mut legend = Self::empty();
         for group in groups.iter().filter(|group| !group.entries.is_empty()) {
             let budget = height * group.entries.len() as f64 / count as f64;
-            let title = group.title.map(|title| wrap(font, title, SIZE, WIDEST.min(widest), 2)).unwrap_or_default();
+            let title = group.title.map(|title| wrap(font, title, SIZE, WIDEST, 2)).unwrap_or_default();
             let top = legend.below_last() + legend.title(font, title);
             let (mut x, mut y, mut column) = (0.0, top, 0.0f64);
-            for (stroke, lines) in entries(font, group, widest) {
+            for (stroke, lines) in entries(font, group, SAMPLE + BLANK + WIDEST) {
                 let (tall, wide) = (entry_height(&lines), entry_width(font, &lines));
                 if y > top && y + tall > top + budget.max(tall) {
                     (x, y, column) = (x + column + COLUMN_GAP, top, 0.0);

@@ -87,6 +87,8 @@ pub struct Curve {
     pub kind: String,
     /// Its ordinates belong to [`Plot::right`].
     pub is_right: bool,
+    /// Its points are marked.
+    pub is_marked: bool,
     /// Abscissae, in any order: loops are fine.
     pub x: Vec<f64>,
     /// Ordinates, as many as x. A point of which a coordinate is NaN, infinite or beyond 1e300 is a gap in the line.
