@@ -122,7 +122,7 @@ Examples:
   springpot plot results/arm 'strut.Q.*' --where element.strut.alpha=0.4
   springpot plot results/arm strut.force --x strut.stroke --out loop.svg
   springpot plot results/arm strut.force --unit strut.force=kN --y-range 0,2
-  springpot plot results/arm results/other strut.force --size 90mm,60mm --out both.pdf
+  springpot plot results/arm results/other strut.force --out both.pdf
 
 The cases of a first sweep make curves, those of others panels. \
 Columns may be globs: * stands for any text, ? for one character. \

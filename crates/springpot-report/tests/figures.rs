@@ -41,6 +41,13 @@ fn svg_size(svg: &str, name: &str) -> f64 {
     svg[start..].split('"').next().unwrap().parse().unwrap()
 }
 
+/// Width and height of what is drawn.
+fn view_box(svg: &str) -> [f64; 2] {
+    let numbers = svg.split("viewBox=\"0 0 ").nth(1).unwrap().split('"').next().unwrap();
+    let numbers: Vec<f64> = numbers.split(' ').map(|number| number.parse().unwrap()).collect();
+    [numbers[0], numbers[1]]
+}
+
 /// The page that a PDF file says, points of 1/72 inch.
 fn media_box(pdf: &[u8]) -> Vec<f64> {
     assert!(pdf.starts_with(b"%PDF-1.") && pdf.ends_with(b"%%EOF"));
@@ -61,11 +68,13 @@ fn curve_points(svg: &str) -> Vec<[f64; 2]> {
 /// All formats are there, agree in size, and the SVG is well formed as far as tags go.
 fn check(figure: &Rendered) {
     let (width, height) = png_size(&figure.png);
-    let size = ["width", "height"].map(|name| svg_size(&figure.svg, name));
-    for (pixels, points, side) in [(width, 2, size[0]), (height, 3, size[1])] {
-        assert!((f64::from(pixels) - 2.5 * side).abs() < 1.1, "{pixels} {side}");
-        let said = media_box(&figure.pdf)[points];
-        assert!((said - 0.75 * side).abs() < 0.02, "{said} {side}");
+    // What is shrunk to its page keeps its pixels.
+    let drawn = view_box(&figure.svg);
+    let page = ["width", "height"].map(|name| svg_size(&figure.svg, name));
+    for (axis, pixels) in [(0, width), (1, height)] {
+        assert!((f64::from(pixels) - 2.5 * drawn[axis]).abs() < 1.1, "{pixels} {drawn:?}");
+        let said = media_box(&figure.pdf)[2 + axis];
+        assert!((said - 0.75 * page[axis]).abs() < 0.02, "{said} {page:?}");
     }
     assert!(figure.svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && figure.svg.ends_with("</svg>\n"));
     assert!(!figure.svg.contains("NaN") && !figure.svg.contains("inf"));
@@ -396,7 +405,7 @@ fn robots_of_many_joints_get_more_room() {
     let room = |robot: &RobotDrawing| {
         let svg = robot.render().unwrap().svg;
         assert!((svg_size(&svg, "width") - 566.93).abs() < 0.01);
-        svg.split("viewBox=\"0 0 ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap()
+        view_box(&svg)[0]
     };
     let narrow = room(&robot);
     robot.joints.extend(std::iter::repeat_n(JointMark { name: String::new(), ..robot.joints[0].clone() }, 38));

@@ -1,11 +1,13 @@
-//! The page: where panels, labels, titles and legend stand.
+//! The page: where panels, labels, titles and legend stand. Its parts: `size` (what follows from how large the panels are), `page` (drawing).
 
-use super::axes::{self, Area, Axes, Line, PAD, Ruler, TICK, TICK_ROW};
+mod page;
+mod size;
+
 use super::data::{self, Range, Reach, Runs};
 use super::legend::{Group, Legend};
 use super::ticks::Ticks;
-use super::{Axis, Panel, Plot, Scale, decimate, style};
-use crate::draw::{Align, Font, Scene, Stroke, Text, wrap};
+use super::{Axis, Panel, Plot, style};
+use crate::draw::{Font, Scene, Stroke, wrap};
 use crate::{PIXELS_PER_MM, ReportError, WIDTH};
 
 const TITLE_SIZE: f64 = 15.0;
@@ -14,26 +16,18 @@ const LABEL_SIZE: f64 = 13.0;
 const LABEL_LINE: f64 = 17.0;
 const PANEL_TITLE_SIZE: f64 = 12.5;
 const PANEL_TITLE_LINE: f64 = 17.0;
-/// Row above a panel for the power of ten of its y axis.
-const FACTOR_ROW: f64 = 17.0;
 /// Blank around the figure.
 const BORDER: f64 = 10.0;
 /// Blank between panels and legend, and below the panels.
 const LEGEND_GAP: f64 = 18.0;
 const LEGEND_ROW: f64 = 10.0;
-/// Blank between columns and between rows of panels.
+/// Blank between columns of panels.
 const COLUMN_GAP: f64 = 20.0;
-const ROW_GAP: f64 = 14.0;
 /// The legend stands beside the panels where it takes no more of the page, and leaves the panels no less than this.
 const LEGEND_SHARE: f64 = 0.27;
 const WIDE: f64 = 140.0;
-/// The smallest data area, and the highest of a page without a height.
-const LEAST: [f64; 2] = [50.0, 36.0];
+/// The highest data area of a page without a height.
 const HIGHEST: f64 = 290.0;
-/// Points of all curves together: some megabytes of SVG at most.
-const MOST_POINTS: usize = 100_000;
-/// Sizes, ticks and labels follow from one another; so often they are found anew.
-const ROUNDS: usize = 4;
 
 /// Columns of the grid of so many panels.
 fn columns(panels: usize) -> usize {
@@ -212,290 +206,5 @@ impl<'a> Layout<'a> {
                 }
             }
         };
-    }
-
-    fn title_height(&self) -> f64 {
-        if self.title.is_empty() { 0.0 } else { self.title.len() as f64 * TITLE_LINE + 6.0 }
-    }
-
-    /// What the legend takes in width and in height.
-    fn legend_takes(&self) -> [f64; 2] {
-        match &self.legend {
-            Some((legend, Place::Beside)) => [LEGEND_GAP + legend.width, 0.0],
-            Some((legend, Place::Below)) => [0.0, LEGEND_ROW + legend.height],
-            None => [0.0, 0.0],
-        }
-    }
-
-    /// Finds sizes and all that follows from them.
-    fn settle(&self) -> Result<Settled, ReportError> {
-        let [legend_width, legend_height] = self.legend_takes();
-        let mut size = [300.0, 200.0];
-        let mut settled = self.settled(size);
-        for _ in 0..ROUNDS {
-            // What is no data area stays as it is while these grow.
-            let beside = settled.right - self.columns as f64 * settled.width;
-            let width = (self.page_width - BORDER - 8.0 - legend_width - beside) / self.columns as f64;
-            let (rows, bottom) = self.rows(&settled, 0.0);
-            let above = bottom - rows.len() as f64 * settled.height;
-            let height = match self.page_height {
-                Some(page) => {
-                    let free = page - 2.0 * BORDER - self.title_height() - legend_height - above;
-                    free / rows.len() as f64
-                }
-                None => self.natural_height(width, rows.len()),
-            };
-            if width < LEAST[0] || height < LEAST[1] {
-                let page = [self.page_width, self.page_height.unwrap_or(0.0)].map(|side| side / PIXELS_PER_MM);
-                return Err(ReportError::TooSmall { width: page[0], height: page[1] });
-            }
-            size = [width, height];
-            settled = self.settled(size);
-        }
-        Ok(settled)
-    }
-
-    /// Height of a data area of this width on a page without a height.
-    fn natural_height(&self, width: f64, rows: usize) -> f64 {
-        if self.plot.is_equal {
-            let x = self.needed.x.hi - self.needed.x.lo;
-            let y = self.needed.y.iter().flatten().map(|range| range.hi - range.lo).fold(0.0, f64::max);
-            return (width * y / x).clamp(0.3 * width, 1.2 * width);
-        }
-        let share = match (self.columns, rows) {
-            (1, 1) => 0.66,
-            (1, _) => 0.42,
-            _ => 0.76,
-        };
-        (share * width).clamp(LEAST[1] + 30.0, HIGHEST)
-    }
-
-    fn settled(&self, [width, height]: [f64; 2]) -> Settled {
-        let font = self.font;
-        let (ranges, [width, height]) = self.equal([width, height]);
-        let y_ticks = |range: &Option<Range>| range.map_or_else(Ticks::none, |range| axes::y_ticks(range, height));
-        let title = |panel: &Panel| panel.title.as_ref().map(|t| wrap(font, t, PANEL_TITLE_SIZE, width, 2));
-        let label = |axis: &Axis, room: f64| {
-            if axis.label.is_empty() { Vec::new() } else { wrap(font, &axis.label, LABEL_SIZE, room, 3) }
-        };
-        let has_data = ranges.y.iter().any(Option::is_some) || ranges.right.is_some();
-        let mut settled = Settled {
-            x_ticks: if has_data { axes::x_ticks(font, ranges.x, width) } else { Ticks::none() },
-            y_ticks: ranges.y.iter().map(y_ticks).collect(),
-            right_ticks: self.plot.right.as_ref().map(|_| y_ticks(&ranges.right)),
-            titles: self.panels.iter().map(|panel| title(panel).unwrap_or_default()).collect(),
-            x_label: label(&self.plot.x, width + if self.columns == 1 { 40.0 } else { 0.0 }),
-            y_labels: self.group.iter().map(|group| label(self.axes[*group], height)).collect(),
-            right_label: self.plot.right.as_ref().map(|axis| label(axis, height)).unwrap_or_default(),
-            lefts: Vec::new(),
-            right: 0.0,
-            ranges,
-            width,
-            height,
-        };
-        (settled.lefts, settled.right) = self.lefts(&settled);
-        settled
-    }
-
-    /// The ranges on data areas of this size, and the part of these that is used.
-    fn equal(&self, [width, height]: [f64; 2]) -> (Ranges, [f64; 2]) {
-        let mut ranges = self.needed.clone();
-        let tallest = ranges.y.iter().flatten().map(|range| range.hi - range.lo).fold(0.0, f64::max);
-        if !self.plot.is_equal || tallest == 0.0 {
-            return (ranges, [width, height]);
-        }
-        let per_pixel = [(ranges.x.hi - ranges.x.lo) / width, tallest / height];
-        let scale = per_pixel[0].max(per_pixel[1]);
-        let mut size = [width, height];
-        if self.plot.x.range.is_some() {
-            size[0] *= per_pixel[0] / scale;
-        } else {
-            ranges.x = ranges.x.stretched(scale / per_pixel[0]);
-        }
-        if self.axes.iter().any(|axis| axis.range.is_some()) {
-            size[1] *= per_pixel[1] / scale;
-        } else {
-            for range in ranges.y.iter_mut().flatten() {
-                *range = range.stretched(scale * height / (range.hi - range.lo));
-            }
-        }
-        (ranges, size)
-    }
-
-    /// Nothing stands below the panel.
-    fn has_x_labels(&self, panel: usize) -> bool {
-        panel + self.columns >= self.panels.len()
-    }
-
-    /// The panel is the first of its row, or another one than the panel before it.
-    fn has_y_labels(&self, panel: usize) -> bool {
-        panel.is_multiple_of(self.columns)
-            || self.group[panel] != self.group[panel - 1]
-            || !self.shared[self.group[panel]]
-    }
-
-    /// The panel is the last of its row.
-    fn has_right_labels(&self, panel: usize) -> bool {
-        self.plot.right.is_some() && ((panel + 1).is_multiple_of(self.columns) || panel + 1 == self.panels.len())
-    }
-
-    /// Where x labels start, below the data area; one row further down where the power of ten needs the place.
-    fn x_label_top(&self, settled: &Settled) -> f64 {
-        let width = |text: &str, size: f64| self.font.width(text, size);
-        let label = settled.x_label.iter().map(|line| width(line, LABEL_SIZE)).fold(0.0, f64::max);
-        let factor = settled.x_ticks.factor.as_ref().map_or(0.0, |factor| width(factor, axes::TICK_SIZE) + 12.0);
-        TICK_ROW + if factor > 0.0 && 0.5 * label + factor > 0.5 * settled.width { 20.0 } else { 5.0 }
-    }
-
-    /// Left edges of the columns' data areas, and the right edge of what belongs to the panels.
-    fn lefts(&self, settled: &Settled) -> (Vec<f64>, f64) {
-        let label_lines = settled.y_labels.iter().map(Vec::len).max().unwrap_or(0);
-        let mut x = BORDER + label_lines as f64 * LABEL_LINE + if label_lines > 0 { 4.0 } else { 0.0 };
-        let mut lefts = Vec::new();
-        for column in 0..self.columns {
-            let labelled = (column..self.panels.len()).step_by(self.columns).filter(|p| self.has_y_labels(*p));
-            let wide = labelled.map(|p| axes::label_width(self.font, &settled.y_ticks[p])).fold(0.0, f64::max);
-            x += TICK + if wide > 0.0 { PAD + wide } else { 0.0 };
-            lefts.push(x);
-            x += settled.width + COLUMN_GAP;
-        }
-        let ticks = settled.right_ticks.as_ref().map_or(0.0, |ticks| {
-            TICK + PAD + axes::label_width(self.font, ticks) + 6.0 + settled.right_label.len() as f64 * LABEL_LINE
-        });
-        (lefts, x - COLUMN_GAP + ticks)
-    }
-
-    /// The rows of panels below `top`, and the lower edge of the last.
-    fn rows(&self, settled: &Settled, top: f64) -> (Vec<Row>, f64) {
-        let mut y = top;
-        let mut rows = Vec::new();
-        let right_factor = settled.right_ticks.as_ref().is_some_and(|ticks| ticks.factor.is_some());
-        for start in (0..self.panels.len()).step_by(self.columns) {
-            let members = || start..(start + self.columns).min(self.panels.len());
-            let titles = members().map(|p| settled.titles[p].len()).max().unwrap_or(0);
-            let factored = members().any(|p| self.has_y_labels(p) && settled.y_ticks[p].factor.is_some());
-            y += if titles > 0 { titles as f64 * PANEL_TITLE_LINE + 4.0 } else { 0.0 };
-            let title_bottom = y - 4.0;
-            y += if factored || right_factor { FACTOR_ROW } else { 0.0 };
-            rows.push(Row { top: y, title_bottom });
-            let labels = self.x_label_top(settled) + settled.x_label.len() as f64 * LABEL_LINE;
-            y += settled.height + ROW_GAP + if members().any(|p| self.has_x_labels(p)) { labels } else { TICK };
-        }
-        (rows, y - ROW_GAP)
-    }
-
-    fn draw(&self, settled: &Settled, look: &dyn Fn(&super::Curve) -> Stroke) -> Scene {
-        let (rows, bottom) = self.rows(settled, BORDER + self.title_height());
-        let title = self.plot.title.clone().unwrap_or_default();
-        let mut scene = Scene { title, width: self.page_width, ..Scene::default() };
-        for (row, line) in self.title.iter().enumerate() {
-            let at = [0.5 * self.page_width, BORDER + row as f64 * TITLE_LINE + TITLE_SIZE - 2.0];
-            scene.text(Text::new(line, at, TITLE_SIZE, Align::Middle));
-        }
-
-        let area = |panel: usize| Area {
-            left: settled.lefts[panel % self.columns],
-            top: rows[panel / self.columns].top,
-            width: settled.width,
-            height: settled.height,
-        };
-        let axes: Vec<Axes<'_>> = (0..self.panels.len()).map(|panel| self.axes_of(settled, panel, look)).collect();
-        let mut curves: Vec<_> = axes.iter().enumerate().map(|(panel, axes)| axes.pixels(area(panel))).collect();
-        let counts: Vec<usize> = curves.iter().flatten().map(axes::Drawn::count).collect();
-        let most = decimate::share(&counts, MOST_POINTS);
-        curves.iter_mut().flatten().for_each(|curve| curve.limit(most));
-        for (panel, (axes, curves)) in axes.iter().zip(curves).enumerate() {
-            axes.draw(&mut scene, area(panel), curves);
-            self.label(&mut scene, settled, panel, area(panel), &rows[panel / self.columns]);
-        }
-
-        let mut height = bottom + BORDER;
-        match &self.legend {
-            Some((legend, Place::Beside)) => {
-                let top = rows[0].top;
-                legend.draw(&mut scene, [settled.right + LEGEND_GAP, top]);
-                height = height.max(top + legend.height + BORDER);
-            }
-            Some((legend, Place::Below)) => {
-                let top = bottom + LEGEND_ROW;
-                legend.draw(&mut scene, [(0.5 * (self.page_width - legend.width)).max(BORDER), top]);
-                height = top + legend.height + BORDER;
-            }
-            None => {}
-        }
-        scene.height = self.page_height.unwrap_or(height);
-        scene
-    }
-
-    fn axes_of<'s>(&'s self, settled: &'s Settled, panel: usize, look: &dyn Fn(&super::Curve) -> Stroke) -> Axes<'s> {
-        let nothing = Range { lo: 0.0, hi: 1.0, scale: Scale::Linear };
-        let has_right = self.plot.right.is_some();
-        let ranges = &settled.ranges;
-        let curves = self.panels[panel].curves.iter().zip(&self.runs[panel]);
-        Axes {
-            x: Ruler { range: ranges.x, ticks: &settled.x_ticks, has_labels: self.has_x_labels(panel) },
-            y: Ruler {
-                range: ranges.y[panel].unwrap_or(nothing),
-                ticks: &settled.y_ticks[panel],
-                has_labels: self.has_y_labels(panel),
-            },
-            right: settled.right_ticks.as_ref().map(|ticks| Ruler {
-                range: ranges.right.unwrap_or(nothing),
-                ticks,
-                has_labels: self.has_right_labels(panel),
-            }),
-            curves: curves
-                .map(|(curve, runs)| Line {
-                    runs,
-                    stroke: look(curve),
-                    is_right: has_right && curve.is_right,
-                    is_marked: curve.is_marked,
-                })
-                .collect(),
-            clips: [&self.plot.x, self.axes[self.group[panel]]]
-                .into_iter()
-                .chain(&self.plot.right)
-                .any(|axis| axis.range.is_some()),
-        }
-    }
-
-    /// Title and axis labels of one panel.
-    fn label(&self, scene: &mut Scene, settled: &Settled, panel: usize, area: Area, row: &Row) {
-        let middle = area.left + 0.5 * area.width;
-        let upright = area.top + 0.5 * area.height;
-        for (above, line) in settled.titles[panel].iter().rev().enumerate() {
-            let at = [middle, row.title_bottom - 4.0 - above as f64 * PANEL_TITLE_LINE];
-            scene.text(Text::new(line, at, PANEL_TITLE_SIZE, Align::Middle));
-        }
-        if self.has_x_labels(panel) {
-            let top = area.top + area.height + self.x_label_top(settled);
-            for (below, line) in settled.x_label.iter().enumerate() {
-                let at = [middle, top + below as f64 * LABEL_LINE + LABEL_SIZE];
-                scene.text(Text::new(line, at, LABEL_SIZE, Align::Middle));
-            }
-        }
-        if panel.is_multiple_of(self.columns) {
-            let label = &settled.y_labels[panel];
-            // The last line stands beside the numbers.
-            let start = settled.lefts[0] - self.number_room(settled) - label.len() as f64 * LABEL_LINE - 4.0;
-            for (aside, line) in label.iter().enumerate() {
-                let at = [start + aside as f64 * LABEL_LINE + LABEL_SIZE - 1.0, upright];
-                scene.text(Text::new(line, at, LABEL_SIZE, Align::Middle).upwards());
-            }
-        }
-        if self.has_right_labels(panel) {
-            let last = settled.right_label.len().saturating_sub(1);
-            for (aside, line) in settled.right_label.iter().enumerate() {
-                let at = [settled.right - 3.0 - (last - aside) as f64 * LABEL_LINE, upright];
-                scene.text(Text::new(line, at, LABEL_SIZE, Align::Middle).upwards());
-            }
-        }
-    }
-
-    /// Room of the numbers at the leftmost axes.
-    fn number_room(&self, settled: &Settled) -> f64 {
-        let first = (0..self.panels.len()).step_by(self.columns);
-        let wide = first.map(|p| axes::label_width(self.font, &settled.y_ticks[p])).fold(0.0, f64::max);
-        TICK + if wide > 0.0 { PAD + wide } else { 0.0 }
     }
 }

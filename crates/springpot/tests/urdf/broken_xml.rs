@@ -37,10 +37,7 @@ fn a_file_is_named_with_line_and_column() {
 fn broken_xml() {
     refused("", "line 1, column 1: not XML: there is no element in it");
     refused("<!-- nothing -->\n", "line 1, column 17: not XML: there is no element in it");
-    refused(
-        "<!-- <a> -->\n <robot>\n<link/>",
-        "line 2, column 2: not XML: the outermost element is never closed; the text ends on line 3",
-    );
+    refused("<!-- <a> -->\n <robot>\n<link/>", "line 2, column 2: not XML: the outermost element is never closed; the text ends on line 3");
     refused("hello", "line 1, column 1: not XML: unknown token");
     refused("<robot>\n<link name='a\n", "line 2, column 14: not XML: the text ends too early");
     refused("<robot>\n</link>", "line 2, column 1: not XML: expected 'robot' tag, not 'link'");
