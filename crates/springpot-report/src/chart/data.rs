@@ -83,12 +83,13 @@ pub(super) struct Reach<'a> {
 }
 
 /// The range of x for the curves of all panels.
-pub(super) fn x_range<'a>(runs: impl Iterator<Item = &'a Runs> + Clone, axis: &super::Axis) -> Range {
+pub(super) fn x_range<'a>(runs: impl Iterator<Item = &'a Runs> + Clone, axis: &super::Axis, has_marks: bool) -> Range {
     if let Some([lo, hi]) = axis.range {
         return Range { lo, hi, scale: axis.scale };
     }
     let forward = runs.clone().flatten().all(|run| run.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
-    let margin = if forward { 0.0 } else { 0.6 * MARGIN };
+    // Marks and curves that turn keep clear of the edges.
+    let margin = if forward && !has_marks { 0.0 } else { 0.6 * MARGIN };
     let extent = extent(runs.flatten().flatten().map(|point| point[0]));
     Range::around(extent.unwrap_or((1.0, 2.0)), axis.scale, margin)
 }
@@ -171,7 +172,7 @@ mod tests {
     fn ranges_of_panels() {
         let run = |values: &[f64]| vec![values.iter().enumerate().map(|(i, y)| [i as f64, *y]).collect()];
         let of = |all: &[Runs], axis: Axis| {
-            let x = x_range(all.iter(), &Axis::default());
+            let x = x_range(all.iter(), &Axis::default(), false);
             let panels: Vec<Reach<'_>> = all.iter().map(|runs| Reach { runs: vec![runs], group: 0 }).collect();
             let (y, shared) = y_ranges(&panels, &[&axis], x);
             let ends = |range: Range| (range.lo, range.hi);

@@ -150,7 +150,8 @@ impl<'a> Layout<'a> {
             .zip(&group)
             .map(|(panel, group)| panel.curves.iter().map(|c| data::runs(c, scales(c.is_right, *group))).collect())
             .collect();
-        let x = data::x_range(runs.iter().flatten(), &plot.x);
+        let has_marks = panels.iter().flat_map(|panel| &panel.curves).any(|curve| curve.is_marked);
+        let x = data::x_range(runs.iter().flatten(), &plot.x, has_marks);
         let reaches = |is_right: bool, group: &[usize]| -> Vec<Reach<'_>> {
             let of = panels.iter().zip(&runs).zip(group);
             let reach = of.map(|((panel, runs), group)| {

@@ -114,7 +114,7 @@ impl Plot {
     /// - The legend lists labels in the order in which they first appear, then kinds; it stands to the right where that leaves room for
     ///   the curves, else below. Three labels or more that differ only in one number, rising or falling, are coloured from dark to
     ///   light (plasma), with dashes where they are more than six; others get distinct colours and dashes.
-    /// - x ends at the data (with a margin where a curve runs back); y has a margin of 5 %. All panels share x; panels with the same y
+    /// - x ends at the data (with a margin where a curve runs back or is marked); y has a margin of 5 %. All panels share x; panels with the same y
     ///   axis share y too, unless one of them would come out flatter than a twentieth of the range. A constant curve gets ±10 %.
     /// - Ticks are multiples of 1, 2 or 5; a common power of ten or offset stands once at the end of the axis.
     /// - Long curves are drawn with fewer points, no farther than 0.1 pixels from all of them; only where all curves together would

@@ -66,7 +66,7 @@ impl Layout<'_> {
         if self.plot.is_equal {
             let x = self.needed.x.hi - self.needed.x.lo;
             let y = self.needed.y.iter().flatten().map(|range| range.hi - range.lo).fold(0.0, f64::max);
-            return (width * y / x).clamp(0.3 * width, 1.2 * width);
+            return (width * y / x).clamp(0.3 * width, 0.9 * width);
         }
         let share = match (self.columns, rows) {
             (1, 1) => 0.66,
