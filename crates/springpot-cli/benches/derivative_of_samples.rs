@@ -303,10 +303,10 @@ fn main() {
         let curves = curves.chain(rivals.iter().map(|m| curve(&m.label, &m.points))).collect();
         let plot = Plot {
             title: Some("D^½ of 0.7 sin 8t + 0.1 t from 10³ to 10⁶ samples".into()),
-            x_label: "log₁₀ of the time, ms".into(),
-            y_label: "log₁₀ of the largest error, relative".into(),
-            legend_title: None,
-            panels: vec![Panel { title: None, curves }],
+            x: "log₁₀ of the time, ms".into(),
+            y: "log₁₀ of the largest error, relative".into(),
+            panels: vec![Panel { curves, ..Panel::default() }],
+            ..Plot::default()
         };
         save(&plot, file);
     }

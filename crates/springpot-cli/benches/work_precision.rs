@@ -238,14 +238,14 @@ fn main() {
         if let Some(last) = sums.iter().rev().find(|p| p.error >= own.last().map_or(0.0, |p| p.error)) {
             ratio("full history", &sums, last.error);
         }
-        panels.push(Panel { title: Some(format!("α = {alpha}")), curves });
+        panels.push(Panel { title: Some(format!("α = {alpha}")), curves, ..Panel::default() });
     }
     let plot = Plot {
         title: Some("Two seconds of the falling arm".into()),
-        x_label: "log₁₀ of the time, ms".into(),
-        y_label: "log₁₀ of the error of q and v".into(),
-        legend_title: None,
+        x: "log₁₀ of the time, ms".into(),
+        y: "log₁₀ of the error of q and v".into(),
         panels,
+        ..Plot::default()
     };
     if let Some(file) = figure {
         save(&plot, file);

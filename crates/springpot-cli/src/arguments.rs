@@ -1,5 +1,6 @@
 //! What the command line takes.
 
+use crate::plot::LookOptions;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use springpot::fractional::{Definition, Method};
 use std::path::PathBuf;
@@ -127,13 +128,15 @@ Examples:
   springpot plot results/arm strut.force
   springpot plot results/arm 'strut.Q.*' --where element.strut.alpha=0.4
   springpot plot results/arm strut.force --x strut.stroke --out loop.svg
-  springpot plot results/arm strut.force --unit strut.force=kN
+  springpot plot results/arm strut.force --unit strut.force=kN --y-range 0,2
+  springpot plot results/arm results/other strut.force --out both.pdf
 
 The cases of a first sweep make curves, those of others panels. \
-Columns may be globs: * stands for any text, ? for one character.
+Columns may be globs: * stands for any text, ? for one character. \
+Several results are drawn in one figure, whose legend names their folders.
 
 Exit codes: 0 done, 1 the figure cannot be drawn or written, 2 the results, a column or a value is not there.")]
-    Plot(PlotOptions),
+    Plot(Box<PlotOptions>),
     /// Write a commented scenario to start from.
     #[command(after_help = "\
 Examples:
@@ -191,7 +194,7 @@ pub(crate) struct PlotOptions {
     /// Folder of the results of a run, or its results.csv
     #[arg(value_name = "RESULTS")]
     pub(crate) results: PathBuf,
-    /// Columns to draw
+    /// Columns to draw; before them further results to draw in the same figure
     #[arg(value_name = "COLUMN", required = true)]
     pub(crate) y: Vec<String>,
     /// Column of the abscissa
@@ -203,12 +206,14 @@ pub(crate) struct PlotOptions {
     /// Unit to draw a column in, such as strut.stroke=mm; may be given several times
     #[arg(long = "unit", value_name = "COLUMN=UNIT")]
     pub(crate) units: Vec<String>,
-    /// File to write, .svg or .png [default: both, in the figures/ of the results]
+    /// File to write, .svg, .png or .pdf [default: SVG and PNG in the figures/ of the results]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Title of the figure
     #[arg(long, value_name = "TEXT")]
     pub(crate) title: Option<String>,
+    #[command(flatten)]
+    pub(crate) look: LookOptions,
 }
 
 #[derive(Debug, Args)]

@@ -21,7 +21,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes NAME.svg and NAME.png and says how long drawing took: the best of five.
+/// Writes NAME.svg, NAME.png and NAME.pdf and says how long drawing took: the best of five.
 fn save(folder: &Path, name: &str, draw: impl Fn() -> Result<Rendered, ReportError>) -> Result<(), Failure> {
     let figure = draw()?;
     let mut time = f64::INFINITY;
@@ -30,16 +30,23 @@ fn save(folder: &Path, name: &str, draw: impl Fn() -> Result<Rendered, ReportErr
         draw()?;
         time = time.min(start.elapsed().as_secs_f64());
     }
-    println!("{name:24} {:6.1} ms  svg {:7} B  png {:7} B", 1e3 * time, figure.svg.len(), figure.png.len());
+    println!(
+        "{name:24} {:6.1} ms  svg {:7} B  png {:7} B  pdf {:7} B",
+        1e3 * time,
+        figure.svg.len(),
+        figure.png.len(),
+        figure.pdf.len()
+    );
     std::fs::write(folder.join(name).with_extension("svg"), figure.svg)?;
     std::fs::write(folder.join(name).with_extension("png"), figure.png)?;
+    std::fs::write(folder.join(name).with_extension("pdf"), figure.pdf)?;
     Ok(())
 }
 
 fn curve(label: &str, count: usize, point: impl Fn(f64) -> (f64, f64)) -> Curve {
     let points = (0..count).map(|i| point(i as f64 / (count - 1).max(1) as f64));
     let (x, y) = points.unzip();
-    Curve { label: label.into(), x, y }
+    Curve { label: label.into(), x, y, ..Curve::default() }
 }
 
 /// A force of a falling order: decays and swings.
@@ -50,10 +57,10 @@ fn force(t: f64, alpha: f64) -> f64 {
 fn single(title: &str, x_label: &str, y_label: &str, curves: Vec<Curve>) -> Plot {
     Plot {
         title: (!title.is_empty()).then(|| title.into()),
-        x_label: x_label.into(),
-        y_label: y_label.into(),
-        legend_title: None,
-        panels: vec![Panel { title: None, curves }],
+        x: x_label.into(),
+        y: y_label.into(),
+        panels: vec![Panel { curves, ..Panel::default() }],
+        ..Plot::default()
     }
 }
 
@@ -98,13 +105,15 @@ fn plots() -> Vec<(&'static str, Plot)> {
                 curve
             })
             .collect(),
+        ..Panel::default()
     };
     let grid = |title: &str, count: usize| Plot {
         title: Some(title.into()),
-        x_label: "t, s".into(),
-        y_label: "Q₂ of strut, N·m".into(),
+        x: "t, s".into(),
+        y: "Q₂ of strut, N·m".into(),
         legend_title: Some("order".into()),
         panels: (0..count).map(|i| panel(10.0 * i as f64)).collect(),
+        ..Plot::default()
     };
 
     let temperatures: Vec<Curve> = (0..13)
@@ -185,7 +194,7 @@ fn joint(name: &str, position: [f64; 3], axis: [f64; 3], kind: JointKind) -> Joi
 }
 
 fn element(name: &str, from: [f64; 3], to: [f64; 3]) -> ElementMark {
-    ElementMark { name: name.into(), from, to }
+    ElementMark { name: name.into(), from, to, ..ElementMark::default() }
 }
 
 fn robots() -> Vec<(&'static str, RobotDrawing)> {
@@ -207,6 +216,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         elements: vec![element("strut", [0.14, -0.1, 0.08], [0.44, 0.1, 0.68])],
         gripper: Some([0.9, 0.0, 0.6]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     column.bracket("column", [0.14, -0.1, 0.08]);
     column.bracket("forearm", [0.44, 0.1, 0.68]);
@@ -233,6 +243,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         ],
         gripper: Some([0.95, 0.0, 0.35]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     for (body, anchor) in [("base", [0.0, 0.12, 0.3]), ("boom", [0.35, 0.1, 0.8]), ("base", [0.0, -0.12, 0.3])] {
         bent.bracket(body, anchor);
@@ -255,6 +266,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         elements: vec![element("damper", [0.0, 0.0, 0.1], [0.6, 0.0, 0.533])],
         gripper: Some([0.7, 0.0, 0.45]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
 
     // A seven-joint arm of human size, standing bent.
@@ -284,6 +296,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         ],
         gripper: Some(chain[7]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     arm.bracket("link1", [0.0, -0.08, 0.2]);
     arm.bracket("link2", [0.08, -0.05, 0.55]);
@@ -297,6 +310,7 @@ fn robots() -> Vec<(&'static str, RobotDrawing)> {
         elements: vec![element("band", [0.02, 0.0, -0.001], [0.0045, 0.0, -0.015])],
         gripper: None,
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     hanging.bracket(WORLD, [0.02, 0.0, -0.001]);
     vec![

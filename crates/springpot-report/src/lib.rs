@@ -1,7 +1,7 @@
-//! Figures of Springpot results: curves ([`Plot`]) and robots with their elements ([`RobotDrawing`]), as SVG and PNG.
+//! Figures of Springpot results: curves ([`Plot`]) and robots with their elements ([`RobotDrawing`]), as SVG, PNG and PDF.
 //!
 //! The crate takes plain numbers and text and knows nothing of the engine. Every figure is laid out once, in pixels of 1/96 inch
-//! (y downwards), and written twice: as SVG with text kept as text, and as PNG at 2.5 pixels per unit (240 dpi). A subset of
+//! (y downwards), and written three times: as SVG and as PDF with text kept as text, and as PNG at 2.5 pixels per unit (240 dpi). A subset of
 //! DejaVu Sans travels with the crate and draws all text (Latin, Greek, Cyrillic, sub- and superscripts, operators), so that no
 //! font of the machine is read; the same input gives the same bytes. A character outside the subset is drawn as an empty box in
 //! the PNG and left to the viewer's fonts in the SVG.
@@ -14,13 +14,14 @@
 //!     label: format!("α = {alpha}"),
 //!     y: x.iter().map(|t| (-alpha * t).exp() * (8.0 * t).sin()).collect(),
 //!     x: x.clone(),
+//!     ..Curve::default()
 //! };
 //! let plot = Plot {
 //!     title: Some("Generalized force Q₂ at 25 °C".into()),
-//!     x_label: "t, s".into(),
-//!     y_label: "Q₂ of strut, N·m".into(),
-//!     legend_title: None,
-//!     panels: vec![Panel { title: None, curves: vec![curve(0.1), curve(0.5), curve(0.9)] }],
+//!     x: "t, s".into(),
+//!     y: "Q₂ of strut, N·m".into(),
+//!     panels: vec![Panel { curves: vec![curve(0.1), curve(0.5), curve(0.9)], ..Panel::default() }],
+//!     ..Plot::default()
 //! };
 //! let figure = plot.render()?;
 //! assert!(figure.svg.contains("α = 0.5"));
@@ -31,14 +32,22 @@ mod chart;
 mod draw;
 mod robot;
 
-pub use chart::{Curve, Panel, Plot};
-pub use robot::{ElementMark, JointKind, JointMark, Link, RobotDrawing, WORLD};
+pub use chart::{Axis, Curve, Panel, Plot, Scale};
+pub use robot::{ElementMark, ElementSign, JointKind, JointMark, Link, RobotDrawing, WORLD};
 
-/// One figure in both formats.
+/// Width of a figure without a size of its own, mm.
+pub const WIDTH: f64 = 150.0;
+
+/// Pixels of 1/96 inch in a millimetre.
+const PIXELS_PER_MM: f64 = 96.0 / 25.4;
+
+/// One figure in all formats.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rendered {
     /// The figure as an SVG 1.1 document; its size is in pixels of 1/96 inch.
     pub svg: String,
+    /// The same figure as a PDF file of one page, with its font inside.
+    pub pdf: Vec<u8>,
     /// The same figure as a PNG file with 2.5 pixels per SVG unit and its physical size recorded (240 dpi).
     pub png: Vec<u8>,
 }
@@ -72,6 +81,14 @@ pub enum ReportError {
         curves: usize,
         /// Curves allowed.
         limit: usize,
+    },
+    /// Nothing is left for the curves: give the figure more room, or fewer words.
+    #[error("a figure of {width:.0} by {height:.0} mm leaves no room for curves beside its labels and its legend")]
+    TooSmall {
+        /// Width, mm.
+        width: f64,
+        /// Height, mm.
+        height: f64,
     },
     /// A point of the robot is NaN or infinite.
     #[error("the position of `{what}` is not finite")]

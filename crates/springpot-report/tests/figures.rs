@@ -2,27 +2,29 @@
 
 use proptest::prelude::*;
 use springpot_report::{
-    Curve, ElementMark, JointKind, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing, WORLD,
+    Curve, ElementMark, ElementSign, JointKind, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing,
+    Scale, WORLD,
 };
 
 fn curve(label: &str, x: &[f64], y: &[f64]) -> Curve {
-    Curve { label: label.into(), x: x.into(), y: y.into() }
+    Curve { label: label.into(), x: x.into(), y: y.into(), ..Curve::default() }
 }
 
 fn plot(curves: Vec<Curve>) -> Plot {
     Plot {
         title: Some("Generalized force Q₂ at 25 °C".into()),
-        x_label: "t, s".into(),
-        y_label: "Q₂ of strut, N·m".into(),
+        x: "t, s".into(),
+        y: "Q₂ of strut, N·m".into(),
         legend_title: Some("order".into()),
-        panels: vec![Panel { title: Some("exact".into()), curves }],
+        panels: vec![Panel { title: Some("exact".into()), curves, ..Panel::default() }],
+        ..Plot::default()
     }
 }
 
 fn waves(count: usize, points: usize) -> Vec<Curve> {
     let x: Vec<f64> = (0..points).map(|i| 10.0 * i as f64 / points as f64).collect();
-    let wave = |i: usize| x.iter().map(|t| (8.0 * t).sin() * (1.0 + i as f64)).collect();
-    (0..count).map(|i| Curve { label: format!("α = 0.{}", i + 1), x: x.clone(), y: wave(i) }).collect()
+    let wave = |i: usize| -> Vec<f64> { x.iter().map(|t| (8.0 * t).sin() * (1.0 + i as f64)).collect() };
+    (0..count).map(|i| curve(&format!("α = 0.{}", i + 1), &x, &wave(i))).collect()
 }
 
 /// Width and height that the file's header names.
@@ -39,6 +41,21 @@ fn svg_size(svg: &str, name: &str) -> f64 {
     svg[start..].split('"').next().unwrap().parse().unwrap()
 }
 
+/// Width and height of what is drawn.
+fn view_box(svg: &str) -> [f64; 2] {
+    let numbers = svg.split("viewBox=\"0 0 ").nth(1).unwrap().split('"').next().unwrap();
+    let numbers: Vec<f64> = numbers.split(' ').map(|number| number.parse().unwrap()).collect();
+    [numbers[0], numbers[1]]
+}
+
+/// The page that a PDF file says, points of 1/72 inch.
+fn media_box(pdf: &[u8]) -> Vec<f64> {
+    assert!(pdf.starts_with(b"%PDF-1.") && pdf.ends_with(b"%%EOF"));
+    let text = String::from_utf8_lossy(pdf);
+    let (_, page) = text.split_once("/MediaBox [").unwrap();
+    page.split(']').next().unwrap().split_whitespace().map(|number| number.parse().unwrap()).collect()
+}
+
 /// Coordinates of all points of the thickest lines: the curves.
 fn curve_points(svg: &str) -> Vec<[f64; 2]> {
     let curves = svg.lines().filter(|line| line.starts_with("<path") && line.contains("stroke-width=\"1.7\""));
@@ -48,11 +65,17 @@ fn curve_points(svg: &str) -> Vec<[f64; 2]> {
     numbers.chunks(2).map(|p| [p[0], p[1]]).collect()
 }
 
-/// Both formats are there, agree in size, and the SVG is well formed as far as tags go.
+/// All formats are there, agree in size, and the SVG is well formed as far as tags go.
 fn check(figure: &Rendered) {
     let (width, height) = png_size(&figure.png);
-    assert_eq!(f64::from(width), 2.5 * svg_size(&figure.svg, "width"));
-    assert_eq!(f64::from(height), 2.5 * svg_size(&figure.svg, "height"));
+    // What is shrunk to its page keeps its pixels.
+    let drawn = view_box(&figure.svg);
+    let page = ["width", "height"].map(|name| svg_size(&figure.svg, name));
+    for (axis, pixels) in [(0, width), (1, height)] {
+        assert!((f64::from(pixels) - 2.5 * drawn[axis]).abs() < 1.1, "{pixels} {drawn:?}");
+        let said = media_box(&figure.pdf)[2 + axis];
+        assert!((said - 0.75 * page[axis]).abs() < 0.02, "{said} {page:?}");
+    }
     assert!(figure.svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && figure.svg.ends_with("</svg>\n"));
     assert!(!figure.svg.contains("NaN") && !figure.svg.contains("inf"));
     for line in figure.svg.lines().filter(|line| !line.is_empty()) {
@@ -153,7 +176,7 @@ fn degenerate_data_still_make_a_figure() {
     }
     check(&Plot::default().render().unwrap());
     let mut long = plot(waves(1, 10));
-    (long.title, long.y_label) = (Some("word ".repeat(2000)), "y".repeat(3000));
+    (long.title, long.y) = (Some("word ".repeat(2000)), "y".repeat(3000).into());
     check(&long.render().unwrap());
     check(&plot(waves(400, 5)).render().unwrap());
 }
@@ -165,7 +188,8 @@ fn gaps_break_lines() {
     let svg = plot(vec![curve("a", &x, &y)]).render().unwrap().svg;
     let line = svg.lines().find(|line| line.starts_with("<path") && line.contains("stroke-width=\"1.7\"")).unwrap();
     assert_eq!(line.matches('M').count(), 2);
-    assert_eq!(line.matches('L').count(), 97);
+    // Straight pieces need their ends alone.
+    assert_eq!(line.matches('L').count(), 2);
 }
 
 #[test]
@@ -176,20 +200,128 @@ fn long_curves_are_thinned_without_losing_extremes() {
     (y[12_345], y[77_777]) = (3.0, -2.5);
     let figure = plot(vec![curve("a", &x, &y)]).render().unwrap();
     let points = curve_points(&figure.svg);
-    assert!(points.len() < 6000, "{}", points.len());
-    // y runs from −2.5 to 3 over 290 pixels less 5 % on either side of the range.
+    assert!(points.len() > 20_000 && points.len() < 40_000, "{}", points.len());
+    // y runs from −2.5 to 3 over the panel less 5 % on either side of the range.
     let (low, high) = points.iter().fold((f64::MAX, f64::MIN), |(lo, hi), p| (lo.min(p[1]), hi.max(p[1])));
-    assert!((high - low - 290.0 / 1.1).abs() < 0.02, "{}", high - low);
+    let panel = panel_height(&figure.svg);
+    assert!((high - low - panel / 1.1).abs() < 0.12, "{} of {panel}", high - low);
     let at = |value: f64| points.iter().filter(|p| (p[1] - value).abs() < 0.005).count();
     assert_eq!((at(low), at(high)), (1, 1));
 
     for curves in [1, 6, 40] {
         let curves = (0..curves).map(|i| curve(&format!("noise {i}"), &x, &y)).collect();
-        assert!(plot(curves).render().unwrap().svg.len() < 500_000);
+        assert!(plot(curves).render().unwrap().svg.len() < 2_000_000);
     }
     // A scribble that runs to and fro.
     let wild: Vec<f64> = (0..count).map(|i| f64::from(i * 7919 % 9973)).collect();
-    assert!(plot(vec![curve("a", &wild, &y)]).render().unwrap().svg.len() < 500_000);
+    assert!(plot(vec![curve("a", &wild, &y)]).render().unwrap().svg.len() < 2_000_000);
+}
+
+/// Height of the first panel: its two axes are one line.
+fn panel_height(svg: &str) -> f64 {
+    let axes = svg.lines().find(|line| line.contains("stroke=\"#222222\" stroke-width=\"1\"")).unwrap();
+    let numbers: Vec<f64> = axes.split(['M', 'L', ' ', '"']).filter_map(|word| word.parse().ok()).collect();
+    numbers[3] - numbers[1]
+}
+
+#[test]
+fn sizes_are_kept() {
+    let mut small = plot(waves(6, 400));
+    for size in [[90.0, 60.0], [180.0, 120.0], [70.0, 70.0]] {
+        small.size = Some(size);
+        let figure = small.render().unwrap();
+        check(&figure);
+        let said = ["width", "height"].map(|name| svg_size(&figure.svg, name) * 25.4 / 96.0);
+        assert!((said[0] - size[0]).abs() < 0.01 && (said[1] - size[1]).abs() < 0.01, "{said:?}");
+    }
+    small.size = Some([30.0, 20.0]);
+    let error = small.render().unwrap_err();
+    assert!(matches!(error, ReportError::TooSmall { .. }) && error.to_string().contains("30 by 20 mm"), "{error}");
+    // All others are as wide as one another, whatever their legend says.
+    small.size = None;
+    small.panels[0].curves[0].label = "a label that is far longer than those of the others".into();
+    let many = Plot { panels: vec![small.panels[0].clone(); 7], ..small.clone() };
+    let widths = [&small, &many, &plot(waves(1, 5))].map(|plot| svg_size(&plot.render().unwrap().svg, "width"));
+    assert!(widths.iter().all(|width| (width - 566.93).abs() < 0.01), "{widths:?}");
+}
+
+#[test]
+fn ranges_cut_curves_and_scales_bend_them() {
+    let x: Vec<f64> = (1..=1000).map(f64::from).collect();
+    let y: Vec<f64> = x.iter().map(|x| 1e6 / (x * x)).collect();
+    let mut cut = plot(vec![curve("a", &x, &y)]);
+    cut.y.range = Some([0.0, 100.0]);
+    cut.x.range = Some([0.0, 500.0]);
+    let svg = cut.render().unwrap().svg;
+    let points = curve_points(&svg);
+    let high = points.iter().map(|p| p[1]).fold(f64::MAX, f64::min);
+    let panel = panel_height(&svg);
+    let low = points.iter().map(|p| p[1]).fold(f64::MIN, f64::max);
+    // From the upper edge, where y = 100, to y = 4 at x = 500.
+    assert!((low - high - 0.96 * panel).abs() < 0.1, "{low} {high} {panel}");
+
+    // A power is a straight line on two logarithmic axes.
+    let mut bent = plot(vec![curve("a", &x, &y)]);
+    (bent.x.scale, bent.y.scale) = (Scale::Log, Scale::Log);
+    let points = curve_points(&bent.render().unwrap().svg);
+    let (first, last) = (points[0], points[points.len() - 1]);
+    for point in &points {
+        let share = (point[0] - first[0]) / (last[0] - first[0]);
+        assert!((point[1] - first[1] - share * (last[1] - first[1])).abs() < 0.2, "{point:?}");
+    }
+    let svg = bent.render().unwrap().svg;
+    assert!(svg.contains(">100</text>") && svg.contains(">10⁶</text>"), "{svg}");
+}
+
+#[test]
+fn circles_are_round_where_lengths_are_equal() {
+    let angle: Vec<f64> = (0..=360).map(|degrees| f64::from(degrees).to_radians()).collect();
+    let (x, y): (Vec<f64>, Vec<f64>) = angle.iter().map(|a| (a.cos(), 3.0 + a.sin())).unzip();
+    for (size, range) in [(None, None), (Some([90.0, 90.0]), None), (Some([150.0, 60.0]), Some([2.0, 4.5]))] {
+        let mut round = plot(vec![curve("a", &x, &y)]);
+        (round.is_equal, round.size, round.y.range) = (true, size, range);
+        let points = curve_points(&round.render().unwrap().svg);
+        let wide = |axis: usize| {
+            let values = points.iter().map(|p| p[axis]);
+            values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
+        };
+        assert!((wide(0) - wide(1)).abs() < 0.15, "{size:?}: {} {}", wide(0), wide(1));
+    }
+}
+
+#[test]
+fn a_second_axis_and_kinds_of_curves() {
+    let mut both = plot(waves(3, 200));
+    let forces = both.panels[0].curves.clone();
+    both.panels[0].curves.extend(forces.into_iter().map(|curve| Curve {
+        kind: "stroke".into(),
+        is_right: true,
+        y: curve.y.iter().map(|y| 1e-3 * y).collect(),
+        ..curve
+    }));
+    both.panels[0].curves[..3].iter_mut().for_each(|curve| curve.kind = "force".into());
+    both.right = Some("stroke, m".into());
+    let svg = both.render().unwrap().svg;
+    for text in ["stroke, m", "Q₂ of strut, N·m", "force", "stroke", "α = 0.1", "α = 0.3", "×10⁻³"] {
+        assert_eq!(svg.matches(&format!(">{text}</text>")).count(), 1, "{text}");
+    }
+    // Three colours and two dashes.
+    let curves =
+        |words: &str| svg.lines().filter(|line| line.contains("stroke-width=\"1.7\"") && line.contains(words)).count();
+    assert_eq!((curves("stroke="), curves("stroke-dasharray"), curves("#0072b2")), (6, 3, 0));
+    both.hides_legend = true;
+    assert!(!both.render().unwrap().svg.contains(">α = 0.1</text>"));
+}
+
+#[test]
+fn indices_are_lowered() {
+    let mut lowered = plot(waves(2, 10));
+    lowered.legend_title = Some("E_{d}".into());
+    lowered.title = Some("at E_{d}, all of it".into());
+    let figure = lowered.render().unwrap();
+    check(&figure);
+    assert!(figure.svg.contains(">E<tspan dy=\"2.04\" font-size=\"8.64\">d</tspan></text>"), "{}", figure.svg);
+    assert!(figure.svg.contains("<title>at Ed, all of it</title>"));
 }
 
 #[test]
@@ -210,6 +342,10 @@ fn refusals_name_the_cause() {
     check(&many.render().unwrap());
 }
 
+fn element(name: &str, from: [f64; 3], to: [f64; 3]) -> ElementMark {
+    ElementMark { name: name.into(), from, to, ..ElementMark::default() }
+}
+
 fn arm() -> RobotDrawing {
     let joint = |name: &str, position, axis, kind| JointMark { name: name.into(), position, axis, kind };
     let mut robot = RobotDrawing {
@@ -222,9 +358,10 @@ fn arm() -> RobotDrawing {
             joint("q1", [0.0; 3], [0.0, 0.0, 1.0], JointKind::Revolute),
             joint("slide", [0.0, 0.0, 0.6], [0.0, 2.0, 0.0], JointKind::Prismatic),
         ],
-        elements: vec![ElementMark { name: "strut".into(), from: [0.14, -0.1, 0.08], to: [0.44, 0.1, 0.68] }],
+        elements: vec![element("strut", [0.14, -0.1, 0.08], [0.44, 0.1, 0.68])],
         gripper: Some([0.9, 0.0, 0.5]),
         ground: Some([0.0; 3]),
+        ..RobotDrawing::default()
     };
     robot.bracket("column", [0.14, -0.1, 0.08]);
     robot.bracket("arm", [0.44, 0.1, 0.68]);
@@ -265,10 +402,47 @@ fn a_robot_that_floats_has_no_base() {
 #[test]
 fn robots_of_many_joints_get_more_room() {
     let mut robot = arm();
-    let narrow = svg_size(&robot.render().unwrap().svg, "width");
+    let room = |robot: &RobotDrawing| {
+        let svg = robot.render().unwrap().svg;
+        assert!((svg_size(&svg, "width") - 566.93).abs() < 0.01);
+        view_box(&svg)[0]
+    };
+    let narrow = room(&robot);
     robot.joints.extend(std::iter::repeat_n(JointMark { name: String::new(), ..robot.joints[0].clone() }, 38));
-    let wide = svg_size(&robot.render().unwrap().svg, "width");
-    assert!(wide > 1.7 * narrow && wide < 2.1 * narrow, "{narrow} {wide}");
+    let wide = room(&robot);
+    assert!(narrow == 566.93 && wide > 1.5 * narrow && wide < 2.1 * narrow, "{narrow} {wide}");
+}
+
+#[test]
+fn robots_are_turned_sized_and_left_without_names() {
+    let mut robot = arm();
+    robot.size = Some([90.0, 70.0]);
+    let figure = robot.render().unwrap();
+    let said = ["width", "height"].map(|name| svg_size(&figure.svg, name) * 25.4 / 96.0);
+    assert!((said[0] - 90.0).abs() < 0.01 && (said[1] - 70.0).abs() < 0.01, "{said:?}");
+    robot.view = Some([0.0, 0.0]);
+    let front = robot.render().unwrap();
+    assert_ne!(front.svg, figure.svg);
+    // Seen along y, that axis is a cross in a circle: no arrow of the sign of the axes leads to its name.
+    assert!(front.svg.contains(">y</text>"));
+    robot.hides_names = true;
+    let bare = robot.render().unwrap().svg;
+    assert!(!bare.contains(">q₁</text>") && !bare.contains(">strut</text>") && bare.contains(">x</text>"));
+}
+
+#[test]
+fn elements_have_the_sign_of_their_law() {
+    let mut robot = arm();
+    let mut seen = Vec::new();
+    let maxwell = ElementSign::Series(vec![ElementSign::Spring, ElementSign::Dashpot]);
+    let both = ElementSign::Parallel(vec![ElementSign::Spring, ElementSign::Springpot, ElementSign::Source]);
+    for sign in [ElementSign::Spring, ElementSign::Dashpot, ElementSign::Springpot, ElementSign::Source, maxwell, both]
+    {
+        robot.elements[0].sign = sign;
+        let figure = robot.render().unwrap();
+        assert!(!seen.contains(&figure.svg));
+        seen.push(figure.svg);
+    }
 }
 
 #[test]
@@ -278,7 +452,7 @@ fn degenerate_robots_still_make_a_figure() {
     robot.joints[0].axis = [0.0; 3];
     robot.links.push(Link::default());
     robot.links.push(Link { name: "dot".into(), points: vec![[0.1; 3]] });
-    robot.elements.push(ElementMark { name: "<none>".into(), from: [0.2; 3], to: [0.2; 3] });
+    robot.elements.push(element("<none>", [0.2; 3], [0.2; 3]));
     check(&robot.render().unwrap());
     for scale in [1e-9, 1e9, 1e90] {
         let mut robot = arm();
@@ -301,8 +475,10 @@ proptest! {
         label in any::<String>(), title in any::<Option<String>>(), panels in 0usize..4,
     ) {
         let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-        let panel = Panel { title: title.clone(), curves: vec![Curve { label: label.clone(), x, y }] };
-        let plot = Plot { title, x_label: label.clone(), y_label: label, legend_title: None, panels: vec![panel; panels] };
+        let curves = vec![Curve { label: label.clone(), x, y, ..Curve::default() }];
+        let panel = Panel { title: title.clone(), curves, ..Panel::default() };
+        let (x, y) = (label.clone().into(), label.into());
+        let plot = Plot { title, x, y, panels: vec![panel; panels], ..Plot::default() };
         check(&plot.render().unwrap());
     }
 
@@ -317,9 +493,10 @@ proptest! {
             title: None,
             links: points.windows(2).map(|pair| Link { name: "body".into(), points: pair.to_vec() }).collect(),
             joints: points.iter().enumerate().map(joint).collect(),
-            elements: vec![ElementMark { name: "strut".into(), from: points[0], to: points[points.len() - 1] }],
+            elements: vec![element("strut", points[0], points[points.len() - 1])],
             gripper: Some(points[1]),
             ground: Some(points[0]),
+            ..RobotDrawing::default()
         };
         let figure = robot.render().unwrap();
         check(&figure);

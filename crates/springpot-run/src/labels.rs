@@ -1,7 +1,10 @@
 //! Column names as a reader of a figure wants them.
 
-use springpot::observe::Quantity;
-use springpot::observe::symbol::subscript;
+mod value;
+
+pub use value::values;
+
+use springpot::observe::{ElementQuantity, Quantity};
 use springpot::table::Column;
 
 /// What stands at an axis: symbol or words, then the unit.
@@ -16,23 +19,59 @@ pub fn quantity(name: &str) -> String {
     Quantity::read(name).map_or_else(|| name.into(), |quantity| quantity.symbol())
 }
 
-/// Last name of a path as a symbol: `alpha` becomes α, `mu_0` μ₀; other names stay.
+/// What several columns have in common: "force F", "coordinate q"; of different quantities what their unit measures.
+pub fn common(columns: &[&Column]) -> Option<String> {
+    let first = columns.first()?;
+    let kind = kind(&first.name);
+    if kind.is_some() && columns.iter().all(|column| self::kind(&column.name) == kind) {
+        return kind;
+    }
+    let measured = match first.unit.as_str() {
+        "N" => "force",
+        "N*m" => "torque",
+        "m" => "length",
+        "rad" => "angle",
+        "m/s" => "velocity",
+        "rad/s" => "angular velocity",
+        "m/s^2" => "acceleration",
+        "rad/s^2" => "angular acceleration",
+        "J" => "energy",
+        "K" => "temperature",
+        "V" => "voltage",
+        "s" => "time",
+        _ => return None,
+    };
+    columns.iter().all(|column| column.unit == first.unit).then(|| measured.into())
+}
+
+/// The quantity of a column without whose it is.
+fn kind(name: &str) -> Option<String> {
+    let quantity = Quantity::read(name)?;
+    Some(match quantity {
+        Quantity::Coordinate(_) => "coordinate q".into(),
+        Quantity::Velocity(_) => "velocity q\u{307}".into(),
+        Quantity::Acceleration(_) => "acceleration q\u{308}".into(),
+        Quantity::Torque(_) => "actuator τ".into(),
+        Quantity::Gripper(_) => "position of the gripper".into(),
+        Quantity::Energy(_) => "energy".into(),
+        Quantity::Element(_, ElementQuantity::GeneralizedForce(_)) => "generalized force Q".into(),
+        Quantity::Element(_, ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input) => {
+            "energy".into()
+        }
+        Quantity::Time | Quantity::GripperError | Quantity::Element(..) => {
+            let symbol = quantity.symbol();
+            symbol.split_once(" of ").map_or(symbol.clone(), |(kind, _)| kind.into())
+        }
+    })
+}
+
+/// Last name of a path as a symbol: `alpha` becomes α, `mu_0` μ₀, `E_d` E with an index; other names stay.
 pub fn parameter(path: &str) -> String {
     let last = match path.strip_suffix('"') {
         Some(quoted) => quoted.rsplit_once(".\"").map_or(quoted, |(_, last)| last),
         None => path.rsplit('.').next().unwrap_or(path),
     };
-    let (root, index) = last.split_once('_').map_or((last, None), |(root, index)| (root, Some(index)));
-    let root = match root {
-        "alpha" => "α",
-        "mu" => "μ",
-        other => other,
-    };
-    match index {
-        None => root.into(),
-        Some(digits) if digits.bytes().all(|b| b.is_ascii_digit()) => format!("{root}{}", subscript(digits)),
-        Some(index) => format!("{root}_{index}"),
-    }
+    value::symbol(last)
 }
 
 /// Text as a reader writes it: "25 degC" becomes "25 °C", "N*m" becomes "N·m".
@@ -49,6 +88,22 @@ fn raise(unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn quantities_in_common() {
+        let column = |name: &str, unit: &str| Column::new(name, unit, "");
+        let common = |list: &[(&str, &str)]| {
+            let columns: Vec<Column> = list.iter().map(|(name, unit)| column(name, unit)).collect();
+            super::common(&columns.iter().collect::<Vec<_>>())
+        };
+        assert_eq!(common(&[("q.mass", "m"), ("q.exact", "m")]).as_deref(), Some("coordinate q"));
+        assert_eq!(common(&[("strut.force", "N"), ("pad.force", "N")]).as_deref(), Some("force F"));
+        assert_eq!(common(&[("strut.Q.q1", "N*m"), ("pad.Q.q2", "N*m")]).as_deref(), Some("generalized force Q"));
+        assert_eq!(common(&[("strut.Q.q1", "N*m"), ("tau.q1", "N*m")]).as_deref(), Some("torque"));
+        assert_eq!(common(&[("strut.stored", "J"), ("energy.kinetic", "J")]).as_deref(), Some("energy"));
+        assert_eq!(common(&[("strut.rate", "m/s"), ("v.x", "m/s")]).as_deref(), Some("velocity"));
+        assert_eq!(common(&[("a", "bar"), ("b", "bar")]), None);
+    }
 
     #[test]
     fn axes() {
@@ -69,6 +124,6 @@ mod tests {
         assert_eq!(axis(&column("strut.Q.base.wz", "N*m"), None), "Q at base.wz of strut, N·m");
         assert_eq!(["motion.joints.\"left knee\"", "motion.joints.\"a.b\""].map(parameter), ["left knee", "a.b"]);
         let symbols = ["element.strut.alpha", "e.mu_0", "e.mu", "e.E_kv", "e.alpha_pz", "solver.rtol", "T"];
-        assert_eq!(symbols.map(parameter), ["α", "μ₀", "μ", "E_kv", "α_pz", "rtol", "T"]);
+        assert_eq!(symbols.map(parameter), ["α", "μ₀", "μ", "E_{kv}", "α_{pz}", "rtol", "T"]);
     }
 }

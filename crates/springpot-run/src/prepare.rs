@@ -1,5 +1,6 @@
 //! What must be right before anything is run, whether a run begins or goes on.
 
+use crate::figures;
 use crate::survey::{Depth, Survey};
 use crate::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
 use crate::table::Format;
@@ -7,7 +8,7 @@ use crate::table::disk::Disk;
 use crate::table::folder::{Folder, FolderError, Targets};
 use springpot::integrate::{Stop, System};
 use springpot::law::Catalog;
-use springpot_scenario::{Cases, Plan, Refusals, Scenario};
+use springpot_scenario::{Cases, FigurePlan, Plan, Refusals, Scenario};
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
@@ -180,8 +181,11 @@ impl Prepared {
 
 /// The names of the files that the figures are drawn into.
 fn figure_files(cases: &Cases, drawn: bool) -> Vec<String> {
-    let names = cases.figures().iter().filter(|_| drawn).map(|figure| &figure.name);
-    names.flat_map(|name| ["svg", "png"].map(|ending| format!("{name}.{ending}"))).collect()
+    let figures = cases.figures().iter().filter(|_| drawn);
+    let files = |figure: &FigurePlan| -> Vec<String> {
+        figure.look.formats.iter().map(|format| figures::file_name(&figure.name, *format)).collect()
+    };
+    figures.flat_map(files).collect()
 }
 
 /// The files that a scenario reads, itself included; found when they are first asked for.

@@ -121,6 +121,13 @@ impl Cases {
         self.axes[axis].label(k)
     }
 
+    /// Value `k` that a sweep gives to the parameter with this path, as written.
+    pub fn axis_label_of(&self, axis: usize, path: &str, k: usize) -> String {
+        let targets = &self.axes[axis].targets;
+        let at = targets.iter().position(|target| target.written == path).unwrap_or(0);
+        self.axes[axis].label_of(k, at)
+    }
+
     /// Paths of all swept parameters, in the order of [`Cases::values`].
     pub fn parameters(&self) -> &[String] {
         &self.parameters

@@ -65,11 +65,14 @@ mod urdf;
 
 pub use cases::{Cases, SweptValue};
 pub use cure::Cure;
-pub use figures::{ColumnGlob, FigureKind, FigurePlan, FigureUnit, Selection};
+pub use figures::{
+    AxisLook, AxisRange, ColumnGlob, FigureFormat, FigureKind, FigureLabel, FigurePlan, FigureUnit, Look, RangeEnd,
+    Selection, Statistic, Summarised, SweptAxis,
+};
 pub use keys::MAX_CASES;
 pub use motion::MotionPlan;
 pub use names::{list, suggest};
-pub use path::toml_key;
+pub use path::{equals_sign, toml_key};
 pub use plan::{BodyPlaces, ElementPlan, Gripper, Plan, RobotPlan, SignalPlan, UrdfPlan};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use schema::json_schema;

@@ -72,8 +72,8 @@ pub(crate) fn keys(path: &str) -> Option<Vec<String>> {
     }
 }
 
-/// Byte of the `=` after a path; quoted keys may hold one.
-pub(crate) fn equals_sign(assignment: &str) -> Option<usize> {
+/// Byte of the `=` after a path, as in `PATH=VALUE`; quoted keys and values may hold one too.
+pub fn equals_sign(assignment: &str) -> Option<usize> {
     let mut at = 0;
     while at < assignment.len() {
         let rest = &assignment[at..];

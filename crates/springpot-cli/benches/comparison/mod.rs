@@ -31,6 +31,7 @@ pub(crate) fn curve<P: Timed>(label: &str, points: &[P]) -> Curve {
         label: label.into(),
         x: points.iter().map(|p| (1e3 * p.seconds()).log10()).collect(),
         y: points.iter().map(|p| p.error().log10()).collect(),
+        ..Curve::default()
     }
 }
 

@@ -5,12 +5,12 @@ use super::table::Table;
 use crate::arguments::PlotOptions;
 use springpot::table::Column;
 use springpot_report::Plot;
-use springpot_run::figures::{Curves, FigureColumn};
+use springpot_run::figures::{Curves, DrawnCase, FigureColumn, Look};
 use springpot_run::labels;
-use springpot_run::sweep::{KeptCurve, MAX_CURVES, most_points};
+use springpot_run::sweep::{KeptCurve, MAX_CURVES, is_within, most_points};
 use springpot_run::table::matches;
-use springpot_scenario::suggest;
 use springpot_scenario::units::Unit;
+use springpot_scenario::{equals_sign, suggest};
 
 /// Values of a sweep that are listed.
 const LISTED: usize = 12;
@@ -19,16 +19,27 @@ const LISTED: usize = 12;
 pub(super) struct Wanted {
     x: FigureColumn,
     y: Vec<FigureColumn>,
-    /// Where these columns stand in the rows.
-    x_at: usize,
-    y_at: Vec<usize>,
+    look: Look,
+    /// Rows with t in between, s.
+    window: Option<[f64; 2]>,
+    /// By result.
+    places: Vec<Places>,
+}
+
+/// Where what is asked for stands in a result.
+struct Places {
+    x: usize,
+    y: Vec<usize>,
+    t: Option<usize>,
     /// For each sweep the value that is chosen.
     chosen: Vec<Option<String>>,
 }
 
 impl Wanted {
-    pub(super) fn new(table: &Table, options: &PlotOptions) -> Result<Self, Refused> {
+    pub(super) fn new(tables: &[Table], options: &PlotOptions, columns: &[String]) -> Result<Self, Refused> {
+        let table = &tables[0];
         let units = units(table, &options.units)?;
+        let labels = own_names(table, &options.look.labels)?;
         let drawn = |at: usize| {
             let column = table.columns[at].clone();
             let unit = units.iter().rev().find(|(glob, ..)| matches(glob, &column.name));
@@ -36,23 +47,52 @@ impl Wanted {
                 None => None,
                 Some((_, text, unit)) => Some(fitting(&column, text, unit)?),
             };
-            Ok(FigureColumn { column, unit })
+            let label = labels.iter().rev().find(|(glob, _)| matches(glob, &column.name)).map(|(_, text)| text.clone());
+            Ok(FigureColumn { column, unit, label })
         };
-        let x_at = match found(table, &options.x)?[..] {
+        let window = options.look.window()?;
+        let mut places =
+            tables.iter().map(|table| Places::of(table, &options.x, columns)).collect::<Result<Vec<_>, _>>()?;
+        let names = |table: &Table, places: &Places| -> Vec<String> {
+            places.y.iter().map(|&at| table.columns[at].name.clone()).collect()
+        };
+        let first = names(table, &places[0]);
+        for (other, places) in tables.iter().zip(&places).skip(1) {
+            if names(other, places) != first {
+                let message = format!("{} and {} have other columns of these names", table.name(), other.name());
+                return Err(Refused::new(message, "name columns that all results have".to_owned()));
+            }
+        }
+        for (places, chosen) in places.iter_mut().zip(chosen(tables, &options.selection)?) {
+            places.chosen = chosen;
+        }
+        if let Some((table, _)) = tables.iter().zip(&places).find(|(_, places)| window.is_some() && places.t.is_none())
+        {
+            return Err(Refused::new(format!("--window: {} has no column t", table.name()), None));
+        }
+        let x = drawn(places[0].x)?;
+        let y = places[0].y.iter().copied().map(drawn).collect::<Result<Vec<_>, _>>()?;
+        let look = options.look.look(&x, &y)?;
+        Ok(Self { x, y, look, window, places })
+    }
+}
+
+impl Places {
+    fn of(table: &Table, x: &str, columns: &[String]) -> Result<Self, Refused> {
+        let x = match found(table, x)?[..] {
             [only] => only,
-            _ => return Err(Refused::new(format!("--x {:?} matches several columns; it takes one", options.x), None)),
+            _ => return Err(Refused::new(format!("--x {x:?} matches several columns; it takes one"), None)),
         };
-        let x = drawn(x_at)?;
-        let mut ordinates = Vec::new();
-        for glob in &options.y {
+        let mut y = Vec::new();
+        for glob in columns {
             for at in found(table, glob)? {
-                if !ordinates.contains(&at) {
-                    ordinates.push(at);
+                if !y.contains(&at) {
+                    y.push(at);
                 }
             }
         }
-        let y = ordinates.iter().copied().map(drawn).collect::<Result<_, _>>()?;
-        Ok(Self { x, y, x_at, y_at: ordinates, chosen: chosen(table, &options.selection)? })
+        let t = table.columns.iter().position(|column| column.name == "t");
+        Ok(Self { x, y, t, chosen: Vec::new() })
     }
 }
 
@@ -61,7 +101,7 @@ fn found(table: &Table, glob: &str) -> Result<Vec<usize>, Refused> {
     let found: Vec<usize> = (0..table.columns.len()).filter(|&k| matches(glob, &table.columns[k].name)).collect();
     if found.is_empty() {
         let help = suggest(glob, table.columns.iter().map(|column| column.name.as_str()));
-        return Err(Refused::new(format!("{glob:?} matches no column"), help));
+        return Err(Refused::new(format!("{glob:?} matches no column of {}", table.name()), help));
     }
     Ok(found)
 }
@@ -83,6 +123,18 @@ fn units(table: &Table, assignments: &[String]) -> Result<Units, Refused> {
     read.collect()
 }
 
+/// Reads `COLUMN=TEXT`.
+fn own_names(table: &Table, assignments: &[String]) -> Result<Vec<(String, String)>, Refused> {
+    let read = assignments.iter().map(|assignment| {
+        let Some((glob, text)) = assignment.split_once('=') else {
+            return Err(Refused::new(format!("--label {assignment:?} has no `=`"), "write COLUMN=TEXT".to_owned()));
+        };
+        found(table, glob)?;
+        Ok((glob.to_owned(), text.to_owned()))
+    });
+    read.collect()
+}
+
 fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), Refused> {
     let own = Unit::parse(if column.unit.is_empty() { "1" } else { &column.unit }, &|_| None);
     match own {
@@ -94,33 +146,38 @@ fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), R
     }
 }
 
-/// The value of each sweep that `--where` chooses.
-fn chosen(table: &Table, selection: &[String]) -> Result<Vec<Option<String>>, Refused> {
-    let mut chosen = vec![None; table.sweeps.len()];
+/// By result, the value of each sweep that `--where` chooses; a path need not be swept in all of them.
+fn chosen(tables: &[Table], selection: &[String]) -> Result<Vec<Vec<Option<String>>>, Refused> {
+    let mut chosen: Vec<Vec<Option<String>>> = tables.iter().map(|table| vec![None; table.sweeps.len()]).collect();
     for assignment in selection {
-        let Some((path, value)) = assignment.rsplit_once('=') else {
+        let Some(equals) = equals_sign(assignment) else {
             return Err(Refused::new(format!("--where {assignment:?} has no `=`"), "write PATH=VALUE".to_owned()));
         };
-        let (path, value) = (path.trim(), value.trim().trim_matches('"'));
-        let names = || table.sweeps.iter().flat_map(|sweep| &sweep.parameters).map(String::as_str);
-        let sweep = table.sweeps.iter().position(|sweep| sweep.parameters.iter().any(|name| name == path));
-        let Some(at) = sweep else {
-            let help = if table.sweeps.is_empty() { "nothing is".to_owned() } else { suggest(path, names()) };
+        let (path, value) = (assignment[..equals].trim(), assignment[equals + 1..].trim().trim_matches('"'));
+        let mut is_swept = false;
+        for (table, chosen) in tables.iter().zip(&mut chosen) {
+            let sweep = table.sweeps.iter().position(|sweep| sweep.parameters.iter().any(|name| name == path));
+            let Some(at) = sweep else { continue };
+            is_swept = true;
+            let Some(label) = table.sweeps[at].find(value) else {
+                let labels = &table.sweeps[at].labels;
+                let mut help =
+                    format!("values: {}", labels.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", "));
+                if labels.len() > LISTED {
+                    help.push_str(", …");
+                }
+                return Err(Refused::new(format!("--where {assignment}: no case has this value"), help));
+            };
+            chosen[at] = Some(label.clone());
+        }
+        if !is_swept {
+            let names = || tables.iter().flat_map(|table| &table.sweeps).flat_map(|sweep| &sweep.parameters);
+            let help = match names().next() {
+                None => "nothing is".to_owned(),
+                Some(_) => suggest(path, names().map(String::as_str)),
+            };
             return Err(Refused::new(format!("--where {assignment}: {path} is not swept"), help));
-        };
-        let labels = &table.sweeps[at].labels;
-        let same = |label: &&String| {
-            let equal = |label: f64| value.parse::<f64>().is_ok_and(|value| value == label);
-            label.as_str() == value || label.parse().is_ok_and(equal)
-        };
-        let Some(label) = labels.iter().find(same) else {
-            let mut help = format!("values: {}", labels.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", "));
-            if labels.len() > LISTED {
-                help.push_str(", …");
-            }
-            return Err(Refused::new(format!("--where {assignment}: no case has this value"), help));
-        };
-        chosen[at] = Some(label.clone());
+        }
     }
     Ok(chosen)
 }
@@ -132,39 +189,52 @@ struct Case {
 }
 
 /// Reads the rows and makes the figure: the first sweep that is not fixed makes curves, the others panels.
-pub(super) fn plot(table: &Table, wanted: &Wanted, title: Option<String>) -> Result<Plot, Refused> {
-    let (cases, sweeps) = cases(table, wanted)?;
-    let free: Vec<usize> = (0..sweeps.len()).filter(|&k| wanted.chosen[k].is_none()).collect();
-    let what = Curves {
-        title: title.as_deref(),
-        x: &wanted.x,
-        y: &wanted.y,
-        free: &free,
-        sweep: &|axis| sweeps[axis].0.clone(),
-        value: &|axis, k| sweeps[axis].1[k].clone(),
+pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Result<Plot, Refused> {
+    let mut read = Vec::with_capacity(tables.len());
+    let mut count = 0;
+    for (table, places) in tables.iter().zip(&wanted.places) {
+        let (cases, sweeps) = cases(table, places, wanted, &mut count)?;
+        read.push((cases, sweeps));
+    }
+    let names: Vec<String> = tables.iter().map(Table::name).collect();
+    let source = |at: usize| {
+        let is_alone = names.iter().filter(|name| **name == names[at]).count() == 1;
+        let name = if is_alone { names[at].clone() } else { tables[at].folder.display().to_string() };
+        (tables.len() > 1).then_some(name)
     };
-    Ok(what.plot(cases.iter().map(|case| (case.position.clone(), case.curves.iter().map(KeptCurve::points).collect()))))
+    let drawn = read.iter().enumerate().flat_map(|(at, (cases, sweeps))| {
+        let chosen = &wanted.places[at].chosen;
+        let free: Vec<usize> = (0..sweeps.len()).filter(|&k| chosen[k].is_none()).collect();
+        let source = source(at);
+        cases.iter().map(move |case| {
+            let value = |&k: &usize| (sweeps[k].0.clone(), sweeps[k].1[case.position[k]].clone());
+            let points = case.curves.iter().map(KeptCurve::points).collect();
+            DrawnCase { source: source.clone(), values: free.iter().map(value).collect(), points }
+        })
+    });
+    let Wanted { x, y, look, .. } = wanted;
+    Ok(Curves { title, x, y, look, is_marked: false }.plot(drawn))
 }
 
 /// Title and labels of every sweep.
 type Sweeps = Vec<(String, Vec<String>)>;
 
-/// The points of every case that is drawn, in the order of the rows.
-fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused> {
+/// The points of every case that is drawn, in the order of the rows; `count` are the curves of all results so far.
+fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> Result<(Vec<Case>, Sweeps), Refused> {
     let mut cases: Vec<Case> = Vec::new();
     let mut last: Option<(Vec<usize>, Option<usize>)> = None;
     // As many curves as run.json says; a run draws them from as many points.
-    let values = wanted.chosen.iter().zip(&table.sweeps);
+    let values = places.chosen.iter().zip(&table.sweeps);
     let counts = values.map(|(chosen, sweep)| if chosen.is_some() { 1 } else { sweep.labels.len().max(1) });
-    let count = counts.fold(wanted.y.len(), usize::saturating_mul);
-    let most = most_points(count, count);
+    let share = counts.fold(wanted.y.len(), usize::saturating_mul);
+    let most = most_points(share, share);
     let names: Vec<Vec<String>> = table.sweeps.iter().map(|sweep| sweep.labels.clone()).collect();
     let sweeps = table.visit(&mut |record, line, position| {
         let case = match &last {
             Some((other, case)) if other == position => *case,
             _ => {
                 let drawn =
-                    wanted.chosen.iter().zip(position).zip(&names).all(|((chosen, &at), labels)| {
+                    places.chosen.iter().zip(position).zip(&names).all(|((chosen, &at), labels)| {
                         chosen.as_ref().is_none_or(|chosen| labels.get(at) == Some(chosen))
                     });
                 let case = drawn.then(|| {
@@ -177,7 +247,7 @@ fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused>
             }
         };
         let Some(case) = case else { return Ok(()) };
-        if cases.len() * wanted.y.len() > MAX_CURVES {
+        if *count + cases.len() * wanted.y.len() > MAX_CURVES {
             let message = format!("the figure would hold more than {MAX_CURVES} curves");
             let help = "choose fewer columns, or some of the cases with --where PATH=VALUE".to_owned();
             return Err(Refused::new(message, help));
@@ -188,8 +258,13 @@ fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused>
             let value = if text.is_empty() { Some(f64::NAN) } else { text.parse::<f64>().ok() };
             value.ok_or_else(|| table.no_number(at, line, field))
         };
-        let x = number(wanted.x_at)?;
-        for (&at, points) in wanted.y_at.iter().zip(&mut cases[case].curves) {
+        if let (Some(window), Some(t)) = (wanted.window, places.t)
+            && !is_within(window, number(t)?)
+        {
+            return Ok(());
+        }
+        let x = number(places.x)?;
+        for (&at, points) in places.y.iter().zip(&mut cases[case].curves) {
             points.push(x, number(at)?);
         }
         Ok(())
@@ -197,9 +272,13 @@ fn cases(table: &Table, wanted: &Wanted) -> Result<(Vec<Case>, Sweeps), Refused>
     if cases.is_empty() {
         return Err(Refused::new("there are no rows to draw", None));
     }
+    if wanted.window.is_some() && cases.iter().all(|case| case.curves.iter().all(|curve| curve.points().is_empty())) {
+        return Err(Refused::new("--window: no row lies in it", "choose times that the run has".to_owned()));
+    }
+    *count += cases.len() * wanted.y.len();
     let sweeps = sweeps.into_iter().map(|sweep| {
         let names: Vec<String> = sweep.parameters.iter().map(|path| labels::parameter(path)).collect();
-        (names.join(", "), sweep.labels)
+        (names.join(", "), labels::values(&sweep.labels))
     });
     Ok((cases, sweeps.collect()))
 }

@@ -1,13 +1,18 @@
 //! `springpot plot`: columns of a finished run as a figure.
 
 mod curves;
+mod look;
 mod table;
+
+pub(crate) use self::look::LookOptions;
 
 use self::curves::Wanted;
 use self::table::Table;
 use crate::arguments::PlotOptions;
 use crate::{Ending, diagnostic, output, printed, terminal};
-use springpot_report::{Plot, Rendered};
+use springpot_report::Plot;
+use springpot_run::figures::bytes;
+use springpot_scenario::FigureFormat;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -39,20 +44,16 @@ pub(crate) fn plot(options: &PlotOptions) -> Ending {
             return Ending::Refused;
         }
     };
-    let Rendered { svg, png } = match figure.plot.render() {
+    let rendered = match figure.plot.render() {
         Ok(rendered) => rendered,
         Err(error) => {
             diagnostic::error(format!("the figure is not drawn: {error}"));
             return Ending::Failed;
         }
     };
-    let files = figure.files.iter().map(|file| {
-        let bytes = if is_png(file) { &png[..] } else { svg.as_bytes() };
-        (file, bytes)
-    });
     let mut lines = String::new();
-    for (file, bytes) in files {
-        match output::written(file, write(file, bytes)) {
+    for (file, format) in &figure.files {
+        match output::written(file, write(file, bytes(&rendered, *format))) {
             Ending::Done => {}
             ending => return ending,
         }
@@ -70,50 +71,82 @@ fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
 
 struct Figure {
     plot: Plot,
-    files: Vec<PathBuf>,
+    files: Vec<(PathBuf, FigureFormat)>,
 }
 
 fn figure(options: &PlotOptions) -> Result<Figure, Refused> {
-    if let Some(out) = &options.out
-        && !is_png(out)
-        && !has_ending(out, "svg")
-    {
-        return Err(Refused::new(
-            format!("--out {} is neither .svg nor .png", out.display()),
-            "write a name that ends in .svg or .png".to_owned(),
-        ));
-    }
-    let table = Table::open(&options.results)?;
-    let wanted = Wanted::new(&table, options)?;
-    let plot = curves::plot(&table, &wanted, options.title.clone())?;
-    let files = match &options.out {
-        Some(out) => vec![out.clone()],
+    let out = options.out.as_ref().map(|out| Ok((out.clone(), format(out)?))).transpose()?;
+    let (folders, columns) = results_and_columns(options)?;
+    let tables = folders.iter().map(|folder| Table::open(folder)).collect::<Result<Vec<_>, _>>()?;
+    let wanted = Wanted::new(&tables, options, &columns)?;
+    let plot = curves::plot(&tables, &wanted, options.title.as_deref())?;
+    let files = match out {
+        Some(out) => vec![out],
         None => {
-            let name = name(&table, options);
-            ["svg", "png"].map(|ending| table.folder.join("figures").join(format!("{name}.{ending}"))).to_vec()
+            let name = name(&tables, options, &columns);
+            let folder = tables[0].folder.join("figures");
+            FigureFormat::DEFAULT.map(|format| (folder.join(format!("{name}.{}", format.name())), format)).to_vec()
         }
     };
     Ok(Figure { plot, files })
 }
 
-fn is_png(file: &Path) -> bool {
-    has_ending(file, "png")
+/// Of the words on the command line: the first and those after it that are there as folders or CSV files are results, the others columns.
+fn results_and_columns(options: &PlotOptions) -> Result<(Vec<PathBuf>, Vec<String>), Refused> {
+    let is_results = |word: &&String| {
+        let path = Path::new(word.as_str());
+        path.is_dir() || (has_ending(path, "csv") && path.is_file())
+    };
+    let further = options.y.iter().take_while(is_results).count();
+    let (folders, columns) = options.y.split_at(further);
+    if columns.is_empty() {
+        let message = "no column is named";
+        return Err(Refused::new(message, "name a column behind the results, such as strut.force".to_owned()));
+    }
+    let folders = std::iter::once(options.results.clone()).chain(folders.iter().map(PathBuf::from));
+    Ok((folders.collect(), columns.to_vec()))
+}
+
+/// The format that the name of a file says.
+fn format(out: &Path) -> Result<FigureFormat, Refused> {
+    FigureFormat::ALL.into_iter().find(|format| has_ending(out, format.name())).ok_or_else(|| {
+        Refused::new(
+            format!("--out {} is none of .svg, .png and .pdf", out.display()),
+            "write a name that ends in .svg, .png or .pdf".to_owned(),
+        )
+    })
 }
 
 fn has_ending(file: &Path, wanted: &str) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(wanted))
 }
 
+/// Characters of the name of a file.
+const LONGEST_NAME: usize = 80;
+
 /// What is drawn, as the name of a file; other than those of the figures that the run drew.
-fn name(table: &Table, options: &PlotOptions) -> String {
+fn name(tables: &[Table], options: &PlotOptions, columns: &[String]) -> String {
     let over = (options.x != "t").then(|| format!("over-{}", options.x));
-    let words: Vec<&str> = options.y.iter().map(String::as_str).chain(over.as_deref()).collect();
+    let chosen = options.selection.iter().map(|assignment| {
+        let (path, value) =
+            assignment.split_at(springpot_scenario::equals_sign(assignment).unwrap_or(assignment.len()));
+        let last = path.trim().trim_end_matches('"').rsplit('.').next().unwrap_or(path);
+        format!("{last}_{}", value.trim_start_matches('=').trim())
+    });
+    let others = tables.iter().skip(1).map(|table| format!("with-{}", table.name()));
+    let words: Vec<String> = columns.iter().cloned().chain(over).chain(chosen).chain(others).collect();
+    let full = words.join("-");
     let plain = |c: char| if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' };
-    let mut name: String = words.join("-").chars().map(plain).take(80).collect();
+    let mut name: String = full.chars().map(plain).take(LONGEST_NAME).collect();
+    // What is cut off or replaced may be all that tells two figures apart.
+    let is_plain = |c: char| plain(c) == c || "*?, ".contains(c);
+    if full.chars().count() > LONGEST_NAME || !full.chars().all(is_plain) {
+        name.push_str(&format!("-{:08x}", crc32fast::hash(full.as_bytes())));
+    }
     if name.starts_with('.') {
         name.insert(0, '_');
     }
-    if table.drawn.contains(&format!("figures/{name}.svg")) {
+    if tables[0].drawn.contains(&format!("figures/{name}.svg")) {
         name.push_str("-plot");
     }
     name

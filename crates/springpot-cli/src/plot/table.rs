@@ -6,6 +6,8 @@ use csv::{ByteRecord, Reader};
 use serde_json::Value;
 use springpot::table::Column;
 use springpot_run::table::push_number;
+use springpot_scenario::RangeEnd;
+use springpot_scenario::units::Unit;
 use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -72,6 +74,12 @@ impl Table {
         Ok(Self { file, folder, columns, sweeps: if belongs { sweeps } else { Vec::new() }, drawn: drawn.collect() })
     }
 
+    /// What the results are called.
+    pub(super) fn name(&self) -> String {
+        let folder = self.folder.file_name().or_else(|| self.file.file_stem()).unwrap_or_default();
+        folder.to_string_lossy().into_owned()
+    }
+
     /// Calls `visit` with every row; returns the sweeps with the values that run.json does not list.
     pub(super) fn visit(&self, visit: Visit<'_>) -> Result<Vec<Sweep>, Refused> {
         let mut sweeps = self.sweeps.clone();
@@ -117,6 +125,27 @@ impl Sweep {
             sweep.by_fields.entry(fields.join(&b'\n')).or_insert(k);
         }
         sweep
+    }
+
+    /// The label of the value that is meant by a text: one as written, or a number or quantity that has the value of the rows.
+    pub(super) fn find(&self, value: &str) -> Option<&String> {
+        if let Some(label) = self.labels.iter().find(|label| *label == value) {
+            return Some(label);
+        }
+        let wanted = RangeEnd::parse(value).ok()?;
+        let unit = wanted.unit.as_ref().map(|unit| Unit::parse(unit, &|_| None)).transpose().ok()?;
+        let same = |number: f64, other: f64| (number - other).abs() <= 1e-12 * other.abs();
+        if unit.is_none()
+            && let Some(label) =
+                self.labels.iter().find(|label| label.parse().is_ok_and(|label| same(label, wanted.number)))
+        {
+            return Some(label);
+        }
+        let si = unit.map_or(wanted.number, |unit| unit.to_si(wanted.number));
+        let mut rows = self.by_fields.iter().filter(|(field, _)| {
+            std::str::from_utf8(field).ok().and_then(|field| field.parse().ok()).is_some_and(|number| same(number, si))
+        });
+        rows.next().and_then(|(_, k)| self.labels.get(*k))
     }
 
     fn index(&mut self, fields: &[Vec<u8>]) -> usize {

@@ -92,13 +92,20 @@ impl Said {
         let width = terminal::stdout_width();
         let mut lines = terminal::hanging("", &work, width);
         lines.push_str(&terminal::hanging("energy   ", &self.balance(), width));
-        let figures = folder.files().iter().filter(|name| name.ends_with(".svg")).count();
+        let endings = ["svg", "png", "pdf"];
+        let drawn = |name: &String| {
+            name.rsplit_once('.').filter(|(_, ending)| endings.contains(ending)).map(|(figure, _)| figure.to_owned())
+        };
+        let figures = folder.files().iter().filter_map(drawn).collect::<std::collections::BTreeSet<_>>().len();
+        let has = |ending: &&str| folder.files().iter().any(|name| name.ends_with(&format!(".{ending}")));
+        let formats: Vec<String> =
+            endings.iter().filter(|ending| has(ending)).map(|ending| ending.to_uppercase()).collect();
         let rows =
             folder.files().iter().find(|name| name.starts_with("results.")).map_or("results.csv", String::as_str);
         let mut files = format!("{rows}, summary.csv, run.json");
         if figures > 0 {
             let figures = count(figures, "figure", "figures").replace(' ', terminal::NO_BREAK);
-            files.push_str(&format!(", {figures} (SVG and PNG)"));
+            files.push_str(&format!(", {figures} ({})", formats.join(" and ")));
         }
         let path = folder.path().display();
         let results = match (self.0.is_put, folder.has_earlier()) {

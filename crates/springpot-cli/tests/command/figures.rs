@@ -84,10 +84,9 @@ fn several_columns_of_one_case_are_told_apart() {
 fn curves_of_several_columns_and_cases_say_which_is_which() {
     let figure = "y = [\"damper.Q.*\", \"damper.stroke\"]\nwhere = { \"element.damper.u\" = \"2 V\" }";
     let words = words(&drawn(figure).1);
-    for alpha in ["0.2", "0.5", "1.0"] {
-        for curve in ["Q₁ of damper, N·m", "Q at x of damper, N", "stroke x of damper, m"] {
-            assert!(words.contains(&format!("{curve}, α = {alpha}")), "no {curve} at {alpha} in {words}");
-        }
+    // Three units are three panels, each with the name of its column; colours are the swept values.
+    for text in ["Q₁ of damper, N·m", "Q at x of damper, N", "stroke x of damper, m", "α 0.2 0.5 1.0"] {
+        assert!(words.contains(text), "{text}: {words}");
     }
 }
 
@@ -148,6 +147,6 @@ fn long_curves_are_thinned_alike_however_they_are_drawn() {
     for name in ["force.svg", "loop.svg"] {
         let svg = place.read(format!("1/figures/{name}"));
         assert!(svg == place.read(format!("2/figures/{name}")) && svg == place.read(name), "{name}");
-        assert!(svg.len() > 20_000 && svg.len() < 600_000, "{name}: {}", svg.len());
+        assert!(svg.len() > 3_000 && svg.len() < 600_000, "{name}: {}", svg.len());
     }
 }

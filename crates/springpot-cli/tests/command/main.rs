@@ -17,6 +17,7 @@ mod init;
 #[cfg(unix)]
 mod interrupted;
 mod laws;
+mod looks;
 mod manual;
 mod measured;
 mod messages;

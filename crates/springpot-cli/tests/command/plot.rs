@@ -73,6 +73,83 @@ fn names_of_files_are_plain_and_no_figure_of_the_run_is_lost() {
 }
 
 #[test]
+fn results_are_overlaid() {
+    let place = Place::new();
+    for (out, alpha) in [("slow", "0.3"), ("fast", "0.8")] {
+        let set = format!("element.damper.alpha={alpha}");
+        place.done(&["run", "arm.toml", "--out", out, "--set", &set, "--set", "time.output_step=0.01", "--quiet"]);
+    }
+    let ended = place.done(&["plot", "slow", "fast", "damper.force"]);
+    assert_eq!(ended.stdout, "slow/figures/damper.force-with-fast.svg\nslow/figures/damper.force-with-fast.png\n");
+    let svg = place.read("slow/figures/damper.force-with-fast.svg");
+    assert!(svg.contains(">slow</text>") && svg.contains(">fast</text>") && svg.contains("force F of damper, N"));
+    place.done(&["plot", "slow", "fast/results.csv", "damper.force", "damper.Q.x", "--out", "b.svg"]);
+    let svg = place.read("b.svg");
+    for text in ["slow", "fast", "force F of damper", "Q at x of damper", "force, N"] {
+        assert!(svg.contains(&format!(">{text}</text>")), "{text}");
+    }
+    let ended = place.springpot(&["plot", "slow", "fast", "damper.forse"]);
+    assert!(ended.code == Some(2) && ended.stderr.contains("did you mean `damper.force`?"), "{}", ended.stderr);
+}
+
+#[test]
+fn values_are_found_as_written_and_in_si_and_files_tell_them() {
+    let sweeps = "[[sweep]]\nparameter = \"motion.joints.x\"\nvalues = [{ expression = \"5*sin(2*pi*1*t)\", unit = \"mm\" }, \
+                  { expression = \"5*sin(2*pi*2*t)\", unit = \"mm\" }]\n\
+                  [[sweep]]\nparameter = \"element.damper.u\"\nvalues = [\"500 mV\", \"2 V\"]\n";
+    let place = Place::with(&format!("{ARM}{sweeps}"));
+    place.done(&["run", "arm.toml", "--out", "r", "--quiet"]);
+    let one = "motion.joints.x={ expression = \"5*sin(2*pi*1*t)\", unit = \"mm\" }";
+    place.done(&["plot", "r", "damper.force", "--where", one, "--out", "a.svg"]);
+    assert!(place.read("a.svg").contains(">500 mV</text>"));
+    let mut drawn = Vec::new();
+    for value in ["500 mV", "0.5", "0.5 V"] {
+        place.done(&["plot", "r", "damper.force", "--where", &format!("element.damper.u={value}"), "--out", "b.svg"]);
+        drawn.push(place.read("b.svg"));
+    }
+    assert!(drawn[0] == drawn[1] && drawn[1] == drawn[2] && drawn[0].contains("5·sin(2π·1·t) mm"), "{}", drawn[0]);
+    let before = place.files("r").len();
+    for value in ["500 mV", "2 V"] {
+        place.done(&["plot", "r", "damper.force", "--where", &format!("element.damper.u={value}")]);
+    }
+    place.done(&["plot", "r", "damper.force", "--where", one]);
+    place.done(&["plot", "r", "damper.force", "--where", &one.replace("pi*1", "pi*2")]);
+    let files = place.files("r");
+    assert_eq!(files.len(), before + 8, "{files:?}");
+    assert!(files.contains(&"figures/damper.force-u_500_mV.svg".to_owned()), "{files:?}");
+}
+
+#[test]
+fn looks_are_those_of_scenarios() {
+    let look = "y_range = [-5, 5]\nx_range = [0, 0.3]\ny_label = \"F, N\"\nsize = [\"90 mm\", \"60 mm\"]\nlegend = \"order\"\n\
+                labels = { \"damper.*\" = \"force\" }\nwindow = [0.1, 0.2]\n";
+    let sweep = "[[sweep]]\nparameter = \"element.damper.alpha\"\nvalues = [0.2, 0.5]\n";
+    let place = Place::with(&format!("{ARM}{sweep}[[figure]]\nname = \"f\"\ny = \"damper.force\"\n{look}"));
+    place.done(&["run", "arm.toml", "--out", "r", "--set", "time.output_step=0.01", "--quiet"]);
+    let options = [
+        "--y-range=-5,5",
+        "--x-range",
+        "0,300ms",
+        "--y-label",
+        "F, N",
+        "--size",
+        "90mm,60mm",
+        "--legend",
+        "order",
+        "--label",
+        "damper.*=force",
+        "--window",
+        "0.1,200ms",
+        "--out",
+        "f.svg",
+    ];
+    place.done(&[&["plot", "r", "damper.force"], &options[..]].concat());
+    assert_eq!(place.read("f.svg"), place.read("r/figures/f.svg"));
+    place.done(&["plot", "r", "gripper.x", "--x", "gripper.z", "--aspect", "equal", "--no-legend", "--out", "a.pdf"]);
+    assert!(fs::read(place.path("a.pdf")).unwrap().starts_with(b"%PDF-1."));
+}
+
+#[test]
 fn a_table_alone_is_drawn_without_units() {
     let place = Place::new();
     place.write("a.csv", "t,y\n0,1\n1,\n2,3\n");
@@ -102,7 +179,18 @@ fn what_is_not_there_is_said() {
         (&["r", "t", "--unit", "t"], &["has no `=`"]),
         (&["r", "t", "--unit", "t=mm"], &["t is in s, which does not convert to mm"]),
         (&["r", "t", "--unit", "t=parsec"], &["parsec"]),
-        (&["r", "t", "--out", "a.pdf"], &["neither .svg nor .png"]),
+        (&["r", "t", "--out", "a.gif"], &["none of .svg, .png and .pdf"]),
+        (&["r", "r"], &["no column is named", "strut.force"]),
+        (&["r", "t", "--x-range", "3"], &["is not two values", "A,B"]),
+        (&["r", "t", "--y-range=-1,-2"], &["--y-range -1,-2 runs from -1 to -2", "smaller end first"]),
+        (&["r", "damper.force", "--y-range", "1mm,2mm"], &["holds 1 mm, but force F of damper is in N"]),
+        (&["r", "t", "--y-scale", "log", "--y-range", "0,1"], &["logarithmic", "above zero"]),
+        (&["r", "t", "--size", "90,60"], &["90 is no side of a figure", "as in 90mm,60mm"]),
+        (&["r", "damper.force", "--aspect", "equal"], &["different units"]),
+        (&["r", "t", "--label", "t"], &["has no `=`"]),
+        (&["r", "t", "--label", "tt=time"], &["\"tt\" matches no column"]),
+        (&["r", "t", "--window", "2,1"], &["no stretch of time"]),
+        (&["r", "t", "--window", "2,3"], &["no row lies in it"]),
         (&["r", "*"], &["more than 64 curves", "--where"]),
         (&["nowhere", "t"], &["cannot be opened", "results/arm"]),
         (&["empty", "t"], &["holds no results.csv"]),

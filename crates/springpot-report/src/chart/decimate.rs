@@ -6,27 +6,48 @@ use std::f64::consts::{PI, TAU};
 /// Points that are left of a curve without any shape.
 const ROUGH: usize = 8000;
 
-/// Pixels by which a line may pass the points it leaves out, the finest that does first.
+/// Pixels by which a line may pass the points it leaves out, the finest that does first. Columns and lines each take half of it.
 const TOLERANCES: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
 
-/// Of every stretch of a curve, given as its unbroken runs, that stays within one column of `column` pixels keeps the first, lowest,
-/// highest and last point, in order, so that no extreme is lost and a steady curve costs at most four points a column. A curve that
-/// runs to and fro and has still more than `most` points loses those that lie within a fraction of a pixel, or a few, of a straight
-/// line through others; of a scribble that stays too long even so every run keeps the extremes of equal chunks.
-pub(super) fn decimate(runs: &[Vec<Point>], column: f64, most: usize) -> Vec<Vec<Point>> {
-    let count = |runs: &[Vec<Point>]| runs.iter().map(Vec::len).sum::<usize>();
-    let thin: Vec<Vec<Point>> = runs.iter().map(|run| columns(run, column)).collect();
-    let total = count(&thin);
-    if total <= most {
-        return thin;
-    }
-    let straightened =
-        TOLERANCES.into_iter().map(|tolerance| thin.iter().map(|run| straighten(run, tolerance)).collect::<Vec<_>>());
-    straightened.into_iter().find(|runs| count(runs) <= most).unwrap_or_else(|| {
+/// A curve, given as its unbroken runs in pixels, with fewer points. No point that is left out is farther than 0.1 pixels from what is
+/// drawn. A curve that has still more than `most` points gets coarser, and of a scribble that stays too long even so every run keeps the
+/// extremes of equal chunks.
+pub(super) fn decimate(runs: &[Vec<Point>], most: usize) -> Vec<Vec<Point>> {
+    let thinned = TOLERANCES.into_iter().map(|tolerance| thin(runs, tolerance));
+    thinned.into_iter().find(|runs| count(runs) <= most).unwrap_or_else(|| {
+        let thin: Vec<Vec<Point>> = runs.iter().map(|run| columns(run, TOLERANCES[0])).collect();
+        let total = count(&thin);
         let share = |run: &[Point]| (most.min(ROUGH) * run.len() / total).max(8);
         let rough = |run: &Vec<Point>| if run.len() <= share(run) { run.clone() } else { chunks(run, share(run)) };
         thin.iter().map(rough).collect()
     })
+}
+
+/// Points of all runs.
+pub(super) fn count(runs: &[Vec<Point>]) -> usize {
+    runs.iter().map(Vec::len).sum()
+}
+
+/// The most points that each of several curves may have so that together they have at most `all`: the shorter ones leave more to the
+/// longer.
+pub(super) fn share(counts: &[usize], all: usize) -> usize {
+    let mut counts = counts.to_vec();
+    counts.sort_unstable();
+    let mut left = all;
+    for (k, count) in counts.iter().enumerate() {
+        let equal = left / (counts.len() - k);
+        if *count > equal {
+            return equal;
+        }
+        left -= count;
+    }
+    usize::MAX
+}
+
+/// Of every stretch of a curve that stays within one narrow column its first, lowest, highest and last point, in order; of those, what
+/// straight lines through others do not pass.
+fn thin(runs: &[Vec<Point>], tolerance: f64) -> Vec<Vec<Point>> {
+    runs.iter().map(|run| straighten(&columns(run, 0.5 * tolerance), 0.5 * tolerance)).collect()
 }
 
 /// Leaves points out as long as one straight line from the last point kept passes all of them within `tolerance` and moves on.
@@ -119,8 +140,8 @@ mod tests {
     use super::*;
 
     /// A curve without gaps.
-    fn decimate(points: &[Point], column: f64, most: usize) -> Vec<Point> {
-        super::decimate(&[points.to_vec()], column, most).remove(0)
+    fn decimate(points: &[Point], most: usize) -> Vec<Point> {
+        super::decimate(&[points.to_vec()], most).remove(0)
     }
 
     fn extremes(points: &[Point]) -> (f64, f64) {
@@ -133,7 +154,7 @@ mod tests {
             (0..100_000).map(|i| [f64::from(i) * 4e-3, 100.0 + 50.0 * f64::from(i).sin()]).collect();
         points[31_415][1] = 900.0;
         points[70_001][1] = -900.0;
-        let thin = decimate(&points, 0.5, 4000);
+        let thin = columns(&points, 0.5);
         assert!(thin.len() <= 3204, "{}", thin.len());
         assert_eq!(extremes(&thin), (-900.0, 900.0));
         assert_eq!((thin[0], thin[thin.len() - 1]), (points[0], points[99_999]));
@@ -148,19 +169,19 @@ mod tests {
     #[test]
     fn short_curves_stay_as_they_are() {
         let points: Vec<Point> = (0..400).map(|i| [f64::from(i), f64::from(i * i % 17)]).collect();
-        assert_eq!(decimate(&points, 0.5, 4000), points);
-        assert_eq!(decimate(&[], 0.5, 10), Vec::<Point>::new());
-        assert_eq!(decimate(&[[1.0, 2.0]], 0.5, 10), [[1.0, 2.0]]);
+        assert_eq!(decimate(&points, 4000), points);
+        assert_eq!(decimate(&[], 10), Vec::<Point>::new());
+        assert_eq!(decimate(&[[1.0, 2.0]], 10), [[1.0, 2.0]]);
     }
 
     #[test]
     fn loops_keep_their_shape() {
-        // 600 turns of an ellipse with 150 points each, slowly turning.
-        let at = |i: u32| f64::from(i) * TAU / 150.3;
+        // 60 turns of an ellipse with 1500 points each, slowly turning.
+        let at = |i: u32| f64::from(i) * TAU / 1503.0;
         let points: Vec<Point> = (0..90_000).map(|i| [200.0 * at(i).cos(), 100.0 * (at(i) + 0.4).sin()]).collect();
-        let thin = decimate(&points, 0.4, 30_000);
-        assert!(thin.len() <= 30_000 && thin.len() > 10_000, "{}", thin.len());
-        assert!(farthest(&points, &thin) <= 0.81);
+        let thin = decimate(&points, 100_000);
+        assert!(thin.len() <= 12_000 && thin.len() > 4_000, "{}", thin.len());
+        assert!(farthest(&points, &thin) <= 0.1);
     }
 
     /// Largest distance of a point from the line through some of them, pixels.
@@ -187,13 +208,21 @@ mod tests {
         let points: Vec<Point> = (0..15_000).map(|i| [200.0 * at(i).cos(), 100.0 * (1.02 * at(i)).sin()]).collect();
         let (long, short) = points.split_at(9_000);
         let runs: Vec<Vec<Point>> = std::iter::once(long).chain(short.chunks(20)).map(<[Point]>::to_vec).collect();
-        let thin = super::decimate(&runs, 0.4, 6_000);
+        let thin = super::decimate(&runs, 6_000);
         assert_eq!(thin.len(), runs.len());
         assert!(thin.iter().map(Vec::len).sum::<usize>() <= 6_000);
         for (full, thin) in runs.iter().zip(&thin) {
             assert_eq!((full[0], full[full.len() - 1]), (thin[0], thin[thin.len() - 1]));
-            assert!(farthest(full, thin) <= 0.81);
+            assert!(farthest(full, thin) <= 0.8);
         }
+    }
+
+    #[test]
+    fn short_curves_leave_room_to_long_ones() {
+        assert_eq!(share(&[10, 10, 10], 100), usize::MAX);
+        assert_eq!(share(&[1000, 10, 500], 110), 50);
+        assert_eq!(share(&[1000, 10, 40], 110), 60);
+        assert_eq!(share(&[], 110), usize::MAX);
     }
 
     #[test]
@@ -210,7 +239,7 @@ mod tests {
     fn scribbles_stay_within_the_budget() {
         let points: Vec<Point> =
             (0..100_000u64).map(|i| [(i * 7919 % 400) as f64, (i * 104_729 % 9973) as f64]).collect();
-        let thin = decimate(&points, 0.5, 3000);
+        let thin = decimate(&points, 3000);
         assert!(thin.len() <= 3004, "{}", thin.len());
         assert_eq!(extremes(&thin), extremes(&points));
     }

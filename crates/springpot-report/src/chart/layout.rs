@@ -1,12 +1,14 @@
-//! The page: where panels, labels, titles and legend stand.
+//! The page: where panels, labels, titles and legend stand. Its parts: `size` (what follows from how large the panels are), `page` (drawing).
 
-use super::axes::{self, Area, Axes, PAD, TICK, TICK_ROW};
-use super::data::{self, Range, Ranges, Runs};
-use super::legend::Legend;
+mod page;
+mod size;
+
+use super::data::{self, Range, Reach, Runs};
+use super::legend::{Group, Legend};
 use super::ticks::Ticks;
-use super::{Panel, Plot, style};
-use crate::draw::{Align, Font, Scene, Stroke, Text, wrap};
-use std::collections::HashMap;
+use super::{Axis, Panel, Plot, style};
+use crate::draw::{Font, Scene, Stroke, wrap};
+use crate::{PIXELS_PER_MM, ReportError, WIDTH};
 
 const TITLE_SIZE: f64 = 15.0;
 const TITLE_LINE: f64 = 20.0;
@@ -14,45 +16,79 @@ const LABEL_SIZE: f64 = 13.0;
 const LABEL_LINE: f64 = 17.0;
 const PANEL_TITLE_SIZE: f64 = 12.5;
 const PANEL_TITLE_LINE: f64 = 17.0;
-/// Row above a panel for the power of ten of its y axis.
-const FACTOR_ROW: f64 = 17.0;
 /// Blank around the figure.
-const BORDER: f64 = 12.0;
-/// Blank between panels and legend.
-const LEGEND_GAP: f64 = 20.0;
-/// Blank between columns and between rows of panels.
-const COLUMN_GAP: f64 = 24.0;
-const ROW_GAP: f64 = 14.0;
-/// Points of all curves together: half a megabyte of SVG.
-const MOST_POINTS: usize = 30_000;
+const BORDER: f64 = 10.0;
+/// Blank between panels and legend, and below the panels.
+const LEGEND_GAP: f64 = 18.0;
+const LEGEND_ROW: f64 = 10.0;
+/// Blank between columns of panels.
+const COLUMN_GAP: f64 = 20.0;
+/// The legend stands beside the panels where it takes no more of the page, and leaves the panels no less than this.
+const LEGEND_SHARE: f64 = 0.27;
+const WIDE: f64 = 140.0;
+/// The highest data area of a page without a height.
+const HIGHEST: f64 = 290.0;
 
-/// Columns of the grid and the data area's size, by the number of panels.
-fn grid(panels: usize) -> (usize, f64, f64) {
+/// Columns of the grid of so many panels.
+fn columns(panels: usize) -> usize {
     match panels {
-        0 | 1 => (1, 440.0, 290.0),
-        2 => (2, 290.0, 220.0),
-        3 => (3, 240.0, 190.0),
-        4 => (2, 290.0, 200.0),
-        5..=9 => (3, 230.0, 165.0),
-        _ => (4, 190.0, 140.0),
+        0 | 1 => 1,
+        2 | 4 => 2,
+        3 | 5..=9 => 3,
+        _ => 4,
     }
 }
 
-/// A figure's parts with their sizes settled.
+/// A figure's parts.
 struct Layout<'a> {
     plot: &'a Plot,
+    font: &'a Font,
     panels: &'a [Panel],
-    /// Panel titles in lines; empty where there is none.
-    titles: Vec<Vec<String>>,
+    /// The different y axes, and that of each panel.
+    axes: Vec<&'a Axis>,
+    group: Vec<usize>,
     runs: Vec<Vec<Runs>>,
+    columns: usize,
+    page_width: f64,
+    page_height: Option<f64>,
+    title: Vec<String>,
+    legend: Option<(Legend, Place)>,
+    /// What the curves need.
+    needed: Ranges,
+    /// By axis: whether the panels of a group have one range.
+    shared: Vec<bool>,
+}
+
+/// Where the legend stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    Beside,
+    Below,
+}
+
+#[derive(Clone)]
+struct Ranges {
+    x: Range,
+    y: Vec<Option<Range>>,
+    right: Option<Range>,
+}
+
+/// What follows from the size of the panels.
+struct Settled {
+    width: f64,
+    height: f64,
     ranges: Ranges,
     x_ticks: Ticks,
     y_ticks: Vec<Ticks>,
+    right_ticks: Option<Ticks>,
+    /// Panel titles, the label of x, those of y by panel, that of the right axis, in lines.
+    titles: Vec<Vec<String>>,
     x_label: Vec<String>,
-    y_label: Vec<String>,
-    columns: usize,
-    width: f64,
-    height: f64,
+    y_labels: Vec<Vec<String>>,
+    right_label: Vec<String>,
+    lefts: Vec<f64>,
+    /// Right edge of all that belongs to the panels.
+    right: f64,
 }
 
 /// A row of panels.
@@ -64,156 +100,112 @@ struct Row {
 }
 
 /// Lays the figure out and draws it.
-pub(super) fn scene(plot: &Plot, font: &Font) -> Scene {
+pub(super) fn scene(plot: &Plot, font: &Font) -> Result<Scene, ReportError> {
     let empty = [Panel::default()];
     let panels: &[Panel] = if plot.panels.is_empty() { &empty } else { &plot.panels };
-    Layout::new(plot, panels, font).draw(font)
+    let labels = data::names(plot, |curve| &curve.label);
+    let kinds = data::names(plot, |curve| &curve.kind);
+    let strokes = style::strokes(&labels, kinds.len());
+    let mut layout = Layout::new(plot, panels, font);
+    let groups = legend_groups(plot, &labels, &kinds, &strokes);
+    layout.place_legend(&groups);
+    let settled = layout.settle()?;
+    let look = |curve: &super::Curve| {
+        let label = labels.iter().position(|label| *label == curve.label).unwrap_or(0);
+        let kind = kinds.iter().position(|kind| *kind == curve.kind).unwrap_or(0);
+        strokes[label][kind]
+    };
+    Ok(layout.draw(&settled, &look))
+}
+
+/// Labels in their colours, then kinds in their dashes.
+fn legend_groups<'a>(plot: &'a Plot, labels: &[&'a str], kinds: &[&'a str], strokes: &[Vec<Stroke>]) -> Vec<Group<'a>> {
+    if plot.hides_legend {
+        return Vec::new();
+    }
+    let named = |names: &[&'a str], stroke: &dyn Fn(usize) -> Stroke| -> Vec<(&'a str, Stroke)> {
+        names.iter().enumerate().filter(|(_, name)| !name.is_empty()).map(|(k, name)| (*name, stroke(k))).collect()
+    };
+    let values = Group { title: plot.legend_title.as_deref(), entries: named(labels, &|k| strokes[k][0]) };
+    let kinds = Group { title: None, entries: if kinds.len() > 1 { named(kinds, &style::dash) } else { Vec::new() } };
+    vec![values, kinds]
 }
 
 impl<'a> Layout<'a> {
-    fn new(plot: &'a Plot, panels: &'a [Panel], font: &Font) -> Self {
-        let runs: Vec<Vec<Runs>> = panels.iter().map(|p| p.curves.iter().map(data::runs).collect()).collect();
-        let ranges = Ranges::new(&runs);
-        let (columns, width, height) = grid(panels.len());
-        let y_ticks = |range: &Option<Range>| range.map_or_else(Ticks::none, |range| axes::y_ticks(range, height));
-        let title = |panel: &Panel| panel.title.as_ref().map(|t| wrap(font, t, PANEL_TITLE_SIZE, width, 2));
+    fn new(plot: &'a Plot, panels: &'a [Panel], font: &'a Font) -> Self {
+        let mut axes: Vec<&Axis> = Vec::new();
+        let mut group = Vec::new();
+        for panel in panels {
+            let axis = panel.y.as_ref().unwrap_or(&plot.y);
+            group.push(axes.iter().position(|known| *known == axis).unwrap_or_else(|| {
+                axes.push(axis);
+                axes.len() - 1
+            }));
+        }
+        let right_axis = plot.right.as_ref();
+        let scales =
+            |is_right: bool, group: usize| [plot.x.scale, right_axis.filter(|_| is_right).unwrap_or(axes[group]).scale];
+        let runs: Vec<Vec<Runs>> = panels
+            .iter()
+            .zip(&group)
+            .map(|(panel, group)| panel.curves.iter().map(|c| data::runs(c, scales(c.is_right, *group))).collect())
+            .collect();
+        let has_marks = panels.iter().flat_map(|panel| &panel.curves).any(|curve| curve.is_marked);
+        let x = data::x_range(runs.iter().flatten(), &plot.x, has_marks);
+        let reaches = |is_right: bool, group: &[usize]| -> Vec<Reach<'_>> {
+            let of = panels.iter().zip(&runs).zip(group);
+            let reach = of.map(|((panel, runs), group)| {
+                let own =
+                    panel.curves.iter().zip(runs).filter(|(c, _)| (c.is_right && right_axis.is_some()) == is_right);
+                Reach { runs: own.map(|(_, runs)| runs).collect(), group: *group }
+            });
+            reach.collect()
+        };
+        let (y, shared) = data::y_ranges(&reaches(false, &group), &axes, x);
+        let right = right_axis.and_then(|axis| {
+            let whole = reaches(true, &vec![0; panels.len()]).into_iter().flat_map(|reach| reach.runs).collect();
+            data::y_ranges(&[Reach { runs: whole, group: 0 }], &[axis], x).0.pop().flatten()
+        });
+        let columns = plot.columns.unwrap_or(columns(panels.len())).clamp(1, panels.len());
+        let [page_width, page_height] =
+            plot.size.map_or([Some(WIDTH), None], |size| size.map(Some)).map(|side| side.map(|mm| mm * PIXELS_PER_MM));
+        let page_width = page_width.unwrap_or(WIDTH * PIXELS_PER_MM);
+        let title = plot.title.as_deref().filter(|title| !title.is_empty());
         Self {
             plot,
+            font,
             panels,
-            titles: panels.iter().map(|panel| title(panel).unwrap_or_default()).collect(),
-            x_ticks: if ranges.y.iter().any(Option::is_some) {
-                axes::x_ticks(font, ranges.x, width)
-            } else {
-                Ticks::none()
-            },
-            y_ticks: ranges.y.iter().map(y_ticks).collect(),
-            x_label: wrap(font, &plot.x_label, LABEL_SIZE, width, 3),
-            y_label: wrap(font, &plot.y_label, LABEL_SIZE, height, 3),
+            axes,
+            group,
+            needed: Ranges { x, y, right },
+            shared,
             runs,
-            ranges,
             columns,
-            width,
-            height,
+            page_width,
+            page_height,
+            title: title.map(|title| wrap(font, title, TITLE_SIZE, page_width - 2.0 * BORDER, 3)).unwrap_or_default(),
+            legend: None,
         }
     }
 
-    /// Nothing stands below the panel.
-    fn has_x_labels(&self, panel: usize) -> bool {
-        panel + self.columns >= self.panels.len()
-    }
-
-    /// The panel is the first of its row or has a range of its own.
-    fn has_y_labels(&self, panel: usize) -> bool {
-        panel.is_multiple_of(self.columns) || !self.ranges.shared_y
-    }
-
-    /// Where x labels start, below the data area; one row further down where the power of ten needs the place.
-    fn x_label_top(&self, font: &Font) -> f64 {
-        let label = self.x_label.iter().map(|line| font.width(line, LABEL_SIZE)).fold(0.0, f64::max);
-        let factor = self.x_ticks.factor.as_ref().map_or(0.0, |factor| font.width(factor, axes::TICK_SIZE) + 12.0);
-        TICK_ROW + if factor > 0.0 && 0.5 * label + factor > 0.5 * self.width { 20.0 } else { 5.0 }
-    }
-
-    /// Left edges of the columns' data areas.
-    fn lefts(&self, font: &Font) -> Vec<f64> {
-        let mut x = BORDER + self.y_label.len() as f64 * LABEL_LINE + 4.0;
-        let mut lefts = Vec::new();
-        for column in 0..self.columns {
-            let labelled = (column..self.panels.len()).step_by(self.columns).filter(|p| self.has_y_labels(*p));
-            let wide = labelled.map(|p| axes::label_width(font, &self.y_ticks[p])).fold(0.0, f64::max);
-            x += TICK + if wide > 0.0 { PAD + wide } else { 0.0 };
-            lefts.push(x);
-            x += self.width + COLUMN_GAP;
-        }
-        lefts
-    }
-
-    /// The rows of panels below `top`, and the lower edge of the last.
-    fn rows(&self, font: &Font, top: f64) -> (Vec<Row>, f64) {
-        let mut y = top;
-        let mut rows = Vec::new();
-        for start in (0..self.panels.len()).step_by(self.columns) {
-            let members = || start..(start + self.columns).min(self.panels.len());
-            let titles = members().map(|p| self.titles[p].len()).max().unwrap_or(0);
-            let factored = members().any(|p| self.has_y_labels(p) && self.y_ticks[p].factor.is_some());
-            y += if titles > 0 { titles as f64 * PANEL_TITLE_LINE + 4.0 } else { 0.0 };
-            let title_bottom = y - 4.0;
-            y += if factored { FACTOR_ROW } else { 0.0 };
-            rows.push(Row { top: y, title_bottom });
-            let labels = self.x_label_top(font) + self.x_label.len() as f64 * LABEL_LINE;
-            y += self.height + ROW_GAP + if members().any(|p| self.has_x_labels(p)) { labels } else { TICK };
-        }
-        (rows, y - ROW_GAP)
-    }
-
-    fn draw(&self, font: &Font) -> Scene {
-        let lefts = self.lefts(font);
-        let right = lefts[self.columns - 1] + self.width;
-        let title = self.plot.title.as_deref().unwrap_or_default();
-        let title_lines = wrap(font, title, TITLE_SIZE, right - BORDER, 3);
-        let title_height = if title.is_empty() { 0.0 } else { title_lines.len() as f64 * TITLE_LINE + 8.0 };
-        let (rows, bottom) = self.rows(font, BORDER + title_height);
-
-        let mut scene = Scene { title: title.to_owned(), ..Scene::default() };
-        for (row, line) in title_lines.iter().enumerate() {
-            let at = [0.5 * (lefts[0] + right), BORDER + row as f64 * TITLE_LINE + TITLE_SIZE];
-            scene.text(Text::new(line, at, TITLE_SIZE, Align::Middle));
-        }
-
-        let labels = data::labels(self.plot);
-        let styles: HashMap<&str, Stroke> = labels.iter().map(String::as_str).zip(style::strokes(&labels)).collect();
-        let curves: usize = self.runs.iter().map(Vec::len).sum();
-        for (i, panel) in self.panels.iter().enumerate() {
-            let row = &rows[i / self.columns];
-            let area = Area { left: lefts[i % self.columns], top: row.top, width: self.width, height: self.height };
-            let strokes = panel.curves.iter().filter_map(|curve| styles.get(curve.label.as_str()).copied());
-            let axes = Axes {
-                x: self.ranges.x,
-                y: self.ranges.y[i].unwrap_or((0.0, 1.0)),
-                x_ticks: &self.x_ticks,
-                y_ticks: &self.y_ticks[i],
-                x_labels: self.has_x_labels(i),
-                y_labels: self.has_y_labels(i),
-                curves: self.runs[i].iter().zip(strokes).collect(),
-                points: MOST_POINTS / curves.max(1),
-            };
-            axes.draw(&mut scene, area);
-            self.label(&mut scene, font, i, area, row);
-        }
-
-        let entries: Vec<(&str, Stroke)> =
-            labels.iter().filter(|l| !l.is_empty()).map(|l| (l.as_str(), styles[l.as_str()])).collect();
-        let top = rows[0].top;
-        let panels_bottom = rows[rows.len() - 1].top + self.height;
-        (scene.width, scene.height) = (right + BORDER + 8.0, bottom + BORDER);
-        let legend = Legend::new(font, self.plot.legend_title.as_deref(), &entries, panels_bottom - top);
-        if let Some(legend) = legend {
-            legend.draw(&mut scene, [right + LEGEND_GAP, top]);
-            scene.width = right + LEGEND_GAP + legend.width + BORDER;
-            scene.height = scene.height.max(top + legend.height + BORDER);
-        }
-        scene
-    }
-
-    /// Title and axis labels of one panel.
-    fn label(&self, scene: &mut Scene, font: &Font, panel: usize, area: Area, row: &Row) {
-        let middle = area.left + 0.5 * area.width;
-        for (above, line) in self.titles[panel].iter().rev().enumerate() {
-            let at = [middle, row.title_bottom - 4.0 - above as f64 * PANEL_TITLE_LINE];
-            scene.text(Text::new(line, at, PANEL_TITLE_SIZE, Align::Middle));
-        }
-        if self.has_x_labels(panel) {
-            let top = area.top + area.height + self.x_label_top(font);
-            for (below, line) in self.x_label.iter().enumerate() {
-                let at = [middle, top + below as f64 * LABEL_LINE + LABEL_SIZE];
-                scene.text(Text::new(line, at, LABEL_SIZE, Align::Middle));
+    fn place_legend(&mut self, groups: &[Group<'_>]) {
+        let height = self.page_height.map_or(HIGHEST, |height| height - self.title_height() - 60.0);
+        let most = LEGEND_SHARE * self.page_width;
+        let rows = self.panels.len().div_ceil(self.columns);
+        let beside = Legend::beside(self.font, groups, height * if rows > 1 { 1.5 } else { 1.0 });
+        self.legend = match beside {
+            None => None,
+            Some(legend) => {
+                let left = self.page_width - legend.width - LEGEND_GAP - 60.0;
+                let each = left / self.columns as f64 - if self.columns > 1 { COLUMN_GAP } else { 0.0 };
+                let fits_height = self.page_height.is_none_or(|height| legend.height <= height - 2.0 * BORDER);
+                if legend.width <= most && each >= WIDE && fits_height {
+                    Some((legend, Place::Beside))
+                } else {
+                    let below = Legend::below(self.font, groups, self.page_width - 2.0 * BORDER);
+                    below.map(|legend| (legend, Place::Below))
+                }
             }
-        }
-        if panel.is_multiple_of(self.columns) {
-            for (aside, line) in self.y_label.iter().enumerate() {
-                let at = [BORDER + aside as f64 * LABEL_LINE + LABEL_SIZE - 1.0, area.top + 0.5 * area.height];
-                scene.text(Text::new(line, at, LABEL_SIZE, Align::Middle).upwards());
-            }
-        }
+        };
     }
 }

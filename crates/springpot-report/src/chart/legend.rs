@@ -1,98 +1,163 @@
-//! The legend, to the right of the panels.
+//! The legend, beside the panels or below them.
 
 use crate::draw::{Align, Font, INK, Point, Scene, Stroke, Text, wrap};
 
 /// Size of the legend's text, pixels.
 const SIZE: f64 = 12.0;
 const LINE: f64 = 15.0;
-/// Free height between two entries.
+/// Free height between two entries, and after a title.
 const GAP: f64 = 4.0;
+const TITLE_GAP: f64 = 6.0;
+/// Free height between two groups, and free width between two columns.
+const GROUP_GAP: f64 = 8.0;
+const COLUMN_GAP: f64 = 14.0;
 /// Length of the sample of each curve, and the blank after it.
-const SAMPLE: f64 = 26.0;
+const SAMPLE: f64 = 28.0;
 const BLANK: f64 = 8.0;
 /// Widest label; longer ones are wrapped.
 const WIDEST: f64 = 210.0;
 const MOST_ENTRIES: usize = 96;
 
+/// Entries that belong together.
+pub(super) struct Group<'a> {
+    pub(super) title: Option<&'a str>,
+    pub(super) entries: Vec<(&'a str, Stroke)>,
+}
+
 /// A legend that knows its size.
 pub(super) struct Legend {
-    title: Vec<String>,
-    columns: Vec<Column>,
+    items: Vec<Item>,
     pub(super) width: f64,
     pub(super) height: f64,
 }
 
-struct Column {
-    entries: Vec<(Option<Stroke>, Vec<String>)>,
-    width: f64,
+/// Some lines of text with the sample of a curve before them, or without.
+struct Item {
+    at: Point,
+    stroke: Option<Stroke>,
+    lines: Vec<String>,
+    indent: f64,
 }
 
 impl Legend {
-    /// Lays out entries in columns no higher than `height`, where one column does not hold them. `None` when there is nothing to say.
-    pub(super) fn new(font: &Font, title: Option<&str>, entries: &[(&str, Stroke)], height: f64) -> Option<Self> {
-        if entries.is_empty() {
-            return None;
-        }
-        let lines = |text: &str| wrap(font, text, SIZE, WIDEST, 2);
-        let mut shown: Vec<_> =
-            entries.iter().take(MOST_ENTRIES).map(|(label, stroke)| (Some(*stroke), lines(label))).collect();
-        if entries.len() > MOST_ENTRIES {
-            shown.push((None, vec![format!("… and {} more", entries.len() - MOST_ENTRIES)]));
-        }
-        let title = title.map(lines).unwrap_or_default();
-        let title_height = Self::title_height(&title);
-        let mut columns: Vec<Column> = Vec::new();
-        let (mut used, mut tallest) = (f64::INFINITY, 0.0f64);
-        for entry in shown {
-            let tall = entry_height(&entry.1);
-            if used + tall > height - title_height {
-                columns.push(Column { entries: Vec::new(), width: 0.0 });
-                used = 0.0;
-            }
-            used += tall;
-            tallest = tallest.max(used);
-            let wide = SAMPLE + BLANK + widest(font, &entry.1);
-            if let Some(column) = columns.last_mut() {
-                column.width = column.width.max(wide);
-                column.entries.push(entry);
+    /// Groups below one another, their entries in columns where one is higher than `height`. `None` when there is nothing to say.
+    pub(super) fn beside(font: &Font, groups: &[Group<'_>], height: f64) -> Option<Self> {
+        let count: usize = groups.iter().map(|group| group.entries.len()).sum();
+        let mut legend = Self::empty();
+        for group in groups.iter().filter(|group| !group.entries.is_empty()) {
+            let budget = height * group.entries.len() as f64 / count as f64;
+            let title = group.title.map(|title| wrap(font, title, SIZE, WIDEST, 2)).unwrap_or_default();
+            let top = legend.below_last() + legend.title(font, title);
+            let (mut x, mut y, mut column) = (0.0, top, 0.0f64);
+            for (stroke, lines) in entries(font, group, SAMPLE + BLANK + WIDEST) {
+                let (tall, wide) = (entry_height(&lines), entry_width(font, &lines));
+                if y > top && y + tall > top + budget.max(tall) {
+                    (x, y, column) = (x + column + COLUMN_GAP, top, 0.0);
+                }
+                legend.put([x, y], stroke, lines, wide, tall);
+                (y, column) = (y + tall, column.max(wide));
             }
         }
-        let gaps = 14.0 * columns.len().saturating_sub(1) as f64;
-        let width = columns.iter().map(|c| c.width).sum::<f64>() + gaps;
-        Some(Self { width: width.max(widest(font, &title)), height: title_height + tallest, title, columns })
+        legend.finish()
     }
 
-    fn title_height(title: &[String]) -> f64 {
-        if title.is_empty() { 0.0 } else { title.len() as f64 * LINE + GAP + 2.0 }
+    /// Groups below one another, their entries in rows no wider than `width`.
+    pub(super) fn below(font: &Font, groups: &[Group<'_>], width: f64) -> Option<Self> {
+        let mut legend = Self::empty();
+        for group in groups.iter().filter(|group| !group.entries.is_empty()) {
+            let title = group.title.unwrap_or_default();
+            let title_width = font.width(title, SIZE);
+            let is_short = title_width < 0.25 * width;
+            let lines = if title.is_empty() { Vec::new() } else { wrap(font, title, SIZE, width, 2) };
+            let mut y = legend.below_last();
+            let left = if is_short && !lines.is_empty() { title_width + COLUMN_GAP } else { 0.0 };
+            if left > 0.0 {
+                legend.put_text([0.0, y], lines, title_width);
+            } else {
+                y += legend.title(font, lines);
+            }
+            let entries = entries(font, group, width - left);
+            let widest = entries.iter().map(|(_, lines)| entry_width(font, lines)).fold(0.0, f64::max);
+            let columns =
+                (((width - left + COLUMN_GAP) / (widest + COLUMN_GAP)) as usize).clamp(1, entries.len().max(1));
+            for row in entries.chunks(columns) {
+                let tall = row.iter().map(|(_, lines)| entry_height(lines)).fold(0.0, f64::max);
+                for (column, (stroke, lines)) in row.iter().enumerate() {
+                    let at = [left + column as f64 * (widest + COLUMN_GAP), y];
+                    legend.put(at, *stroke, lines.clone(), entry_width(font, lines), tall);
+                }
+                y += tall;
+            }
+        }
+        legend.finish()
+    }
+
+    fn empty() -> Self {
+        Self { items: Vec::new(), width: 0.0, height: 0.0 }
+    }
+
+    fn finish(self) -> Option<Self> {
+        (!self.items.is_empty()).then_some(self)
+    }
+
+    /// Where the next group starts.
+    fn below_last(&self) -> f64 {
+        if self.items.is_empty() { 0.0 } else { self.height + GROUP_GAP }
+    }
+
+    /// Puts a title where the next group starts; returns its height.
+    fn title(&mut self, font: &Font, lines: Vec<String>) -> f64 {
+        if lines.is_empty() {
+            return 0.0;
+        }
+        let (wide, tall) = (widest(font, &lines), lines.len() as f64 * LINE);
+        let top = self.below_last();
+        self.put_text([0.0, top], lines, wide);
+        tall + TITLE_GAP
+    }
+
+    fn put_text(&mut self, at: Point, lines: Vec<String>, wide: f64) {
+        let tall = lines.len() as f64 * LINE;
+        self.items.push(Item { at, stroke: None, lines, indent: 0.0 });
+        (self.width, self.height) = (self.width.max(at[0] + wide), self.height.max(at[1] + tall));
+    }
+
+    fn put(&mut self, at: Point, stroke: Option<Stroke>, lines: Vec<String>, wide: f64, tall: f64) {
+        self.items.push(Item { at, stroke, lines, indent: SAMPLE + BLANK });
+        (self.width, self.height) = (self.width.max(at[0] + wide), self.height.max(at[1] + tall));
     }
 
     /// Draws the legend with its upper left corner at `at`.
     pub(super) fn draw(&self, scene: &mut Scene, at: Point) {
-        let middle = |row: usize| (row as f64 + 0.5) * LINE + Font::middle(SIZE);
-        for (row, line) in self.title.iter().enumerate() {
-            scene.text(Text::new(line, [at[0], at[1] + middle(row)], SIZE, Align::Start));
-        }
-        let mut left = at[0];
-        for column in &self.columns {
-            let mut top = at[1] + Self::title_height(&self.title);
-            for (stroke, lines) in &column.entries {
-                if let Some(stroke) = stroke {
-                    let y = top + 0.5 * LINE;
-                    scene.line(&[[left, y], [left + SAMPLE, y]], Stroke { width: stroke.width + 0.4, ..stroke.butt() });
-                }
-                for (row, line) in lines.iter().enumerate() {
-                    let at = [left + SAMPLE + BLANK, top + middle(row)];
-                    scene.text(Text::new(line, at, SIZE, Align::Start).color(INK));
-                }
-                top += entry_height(lines);
+        for item in &self.items {
+            let [left, top] = [at[0] + item.at[0], at[1] + item.at[1]];
+            if let Some(stroke) = item.stroke {
+                let y = top + 0.5 * LINE;
+                scene.line(&[[left, y], [left + SAMPLE, y]], Stroke { width: stroke.width + 0.4, ..stroke.butt() });
             }
-            left += column.width + 14.0;
+            for (row, line) in item.lines.iter().enumerate() {
+                let at = [left + item.indent, top + (row as f64 + 0.5) * LINE + Font::middle(SIZE)];
+                scene.text(Text::new(line, at, SIZE, Align::Start).color(INK));
+            }
         }
     }
 }
 
+/// The entries of a group, each in lines; of too many the first.
+fn entries(font: &Font, group: &Group<'_>, widest: f64) -> Vec<(Option<Stroke>, Vec<String>)> {
+    let width = (widest - SAMPLE - BLANK).clamp(40.0, WIDEST);
+    let lines = |text: &str| wrap(font, text, SIZE, width, 2);
+    let shown = group.entries.iter().take(MOST_ENTRIES).map(|(label, stroke)| (Some(*stroke), lines(label)));
+    let more = group.entries.len().checked_sub(MOST_ENTRIES + 1).map(|more| format!("… and {} more", more + 1));
+    shown.chain(more.map(|more| (None, vec![more]))).collect()
+}
+
 fn entry_height(lines: &[String]) -> f64 {
     lines.len() as f64 * LINE + GAP
+}
+
+fn entry_width(font: &Font, lines: &[String]) -> f64 {
+    SAMPLE + BLANK + widest(font, lines)
 }
 
 fn widest(font: &Font, lines: &[String]) -> f64 {

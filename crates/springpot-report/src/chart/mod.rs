@@ -1,6 +1,7 @@
 //! Curves in panels, with axes and a legend.
 
 mod axes;
+mod clip;
 mod data;
 mod decimate;
 mod layout;
@@ -15,22 +16,54 @@ const MOST_PANELS: usize = 64;
 /// Curves of one figure, over all panels.
 const MOST_CURVES: usize = 2000;
 
-/// A figure of curves: one or more panels with the same axes and one legend to their right.
+/// A figure of curves: one or more panels over the same x, and one legend.
 ///
-/// All text may hold any Unicode: Greek letters, sub- and superscripts are in the shipped font. Labels carry their units as text,
-/// such as `"Q₂ of strut, N·m"`.
+/// All text may hold any Unicode: Greek letters, sub- and superscripts are in the shipped font; `E_{d}` is drawn with an index. Labels
+/// carry their units as text, such as `"Q₂ of strut, N·m"`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
     /// Stands above the panels.
     pub title: Option<String>,
-    /// Quantity and unit along x, for all panels.
-    pub x_label: String,
-    /// Quantity and unit along y, for all panels.
-    pub y_label: String,
+    /// Along x, for all panels.
+    pub x: Axis,
+    /// Along y, for all panels that have none of their own.
+    pub y: Axis,
+    /// A second y axis, to the right, for the curves that ask for it.
+    pub right: Option<Axis>,
+    /// Lengths along x and y have one scale.
+    pub is_equal: bool,
+    /// Width and height of the page, mm; else [`crate::WIDTH`] and what it takes.
+    pub size: Option<[f64; 2]>,
     /// Stands above the legend.
     pub legend_title: Option<String>,
-    /// In reading order: one panel fills the figure, several make a grid of at most four columns. No panel gives an empty one.
+    /// There is no legend.
+    pub hides_legend: bool,
+    /// Panels beside one another; else one panel fills the figure, and several make a grid of at most four columns.
+    pub columns: Option<usize>,
+    /// In reading order. No panel gives an empty one.
     pub panels: Vec<Panel>,
+}
+
+/// One axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: String,
+    /// From where to where it runs, finite and rising (above zero where it is logarithmic); else what the curves need. What lies beyond is
+    /// not drawn.
+    pub range: Option<[f64; 2]>,
+    /// How numbers become lengths.
+    pub scale: Scale,
+}
+
+/// How numbers become lengths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal differences are equal lengths.
+    #[default]
+    Linear,
+    /// Equal ratios are equal lengths; what is not above zero is a gap.
+    Log,
 }
 
 /// One pair of axes and its curves.
@@ -38,34 +71,58 @@ pub struct Plot {
 pub struct Panel {
     /// Stands above the panel.
     pub title: Option<String>,
+    /// A y axis of its own.
+    pub y: Option<Axis>,
     /// From back to front. Without any finite point the panel says "no data".
     pub curves: Vec<Curve>,
 }
 
-/// One line. Curves of the same label, in any panel, look the same and share one legend entry.
+/// One line. Curves of the same label and kind, in any panel, look the same; each label and each kind has one legend entry.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
     /// Legend entry; an empty one makes no entry.
     pub label: String,
+    /// What else tells it apart, such as the column where the label is a swept value: where there are several kinds, labels are
+    /// colours and kinds are dashes.
+    pub kind: String,
+    /// Its ordinates belong to [`Plot::right`].
+    pub is_right: bool,
+    /// Its points are marked.
+    pub is_marked: bool,
     /// Abscissae, in any order: loops are fine.
     pub x: Vec<f64>,
     /// Ordinates, as many as x. A point of which a coordinate is NaN, infinite or beyond 1e300 is a gap in the line.
     pub y: Vec<f64>,
 }
 
+impl From<&str> for Axis {
+    /// An axis with this label.
+    fn from(label: &str) -> Self {
+        label.to_owned().into()
+    }
+}
+
+impl From<String> for Axis {
+    fn from(label: String) -> Self {
+        Self { label, ..Self::default() }
+    }
+}
+
 impl Plot {
     /// Draws the figure.
     ///
-    /// - The legend lists labels in the order in which they first appear. Three labels or more that differ only in one number,
-    ///   rising or falling, are coloured from dark to light (plasma); others get distinct colours and dashes.
-    /// - x ends at the data (with a margin where a curve runs back); y has a margin of 5 %. All panels share x; they share y too,
-    ///   unless one of them would come out flatter than a twentieth of the range. A constant curve gets ±10 % around it.
+    /// - The legend lists labels in the order in which they first appear, then kinds; it stands to the right where that leaves room for
+    ///   the curves, else below. Three labels or more that differ only in one number, rising or falling, are coloured from dark to
+    ///   light (plasma), with dashes where they are more than six; others get distinct colours and dashes.
+    /// - x ends at the data (with a margin where a curve runs back or is marked); y has a margin of 5 %. All panels share x; panels with the same y
+    ///   axis share y too, unless one of them would come out flatter than a twentieth of the range. A constant curve gets ±10 %.
     /// - Ticks are multiples of 1, 2 or 5; a common power of ten or offset stands once at the end of the axis.
-    /// - A curve with more points than pixels keeps the first, lowest, highest and last point of every column.
+    /// - Long curves are drawn with fewer points, no farther than 0.1 pixels from all of them; only where all curves together would
+    ///   still have more than 100 000 points, the longest keep the first, lowest, highest and last point of wider columns.
     ///
     /// # Errors
     /// [`ReportError::LengthMismatch`] for a curve with unequal numbers of x and y; [`ReportError::TooManyPanels`] above 64 panels
-    /// and [`ReportError::TooManyCurves`] above 2000 curves.
+    /// and [`ReportError::TooManyCurves`] above 2000 curves; [`ReportError::TooSmall`] where the size leaves no room.
     pub fn render(&self) -> Result<Rendered, ReportError> {
         let curves = || self.panels.iter().flat_map(|panel| &panel.curves);
         if self.panels.len() > MOST_PANELS {
@@ -74,10 +131,10 @@ impl Plot {
         if curves().count() > MOST_CURVES {
             return Err(ReportError::TooManyCurves { curves: curves().count(), limit: MOST_CURVES });
         }
-        if let Some(Curve { label, x, y }) = curves().find(|curve| curve.x.len() != curve.y.len()) {
+        if let Some(Curve { label, x, y, .. }) = curves().find(|curve| curve.x.len() != curve.y.len()) {
             return Err(ReportError::LengthMismatch { curve: label.clone(), x: x.len(), y: y.len() });
         }
         let font = draw::Font::load()?;
-        draw::render(layout::scene(self, &font), &font)
+        draw::render(&layout::scene(self, &font)?, &font)
     }
 }

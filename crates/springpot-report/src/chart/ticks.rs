@@ -7,9 +7,12 @@ pub(super) struct Ticks {
     pub(super) labels: Vec<String>,
     /// What the labels leave out, such as "×10⁻⁶" or "+ 1000.2"; stands once at the end of the axis.
     pub(super) factor: Option<String>,
+    /// Places without labels in between.
+    pub(super) minor: Vec<f64>,
 }
 
-/// Labels with more significant digits than this leave an offset out.
+/// Labels with more significant digits than this leave an offset out; those of larger numbers than 10 to this leave a power of ten
+/// out.
 const MOST_DIGITS: i32 = 5;
 
 impl Ticks {
@@ -25,12 +28,48 @@ impl Ticks {
         let units: Vec<i64> = (first..=last).map(|i| i * step.mantissa).collect();
         let values: Vec<f64> = units.iter().map(|u| *u as f64 * pow10(step.exponent)).collect();
         let (labels, factor) = label(&units, step.exponent);
-        Self { values, labels, factor }
+        Self { values, labels, factor, minor: Vec::new() }
+    }
+
+    /// Ticks of a logarithmic axis, 0 < lo < hi: powers of ten, of which at most some `most` have labels; below two decades 1, 2 and 5
+    /// times these, below a third of one as on a linear axis.
+    pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Self {
+        let decades = (hi / lo).log10();
+        if decades < 0.35 {
+            return Self::new(lo, hi, most);
+        }
+        let (first, last) = (lo.log10().floor() as i32, hi.log10().ceil() as i32);
+        let inside = |value: &f64| *value >= lo * (1.0 - 1e-9) && *value <= hi * (1.0 + 1e-9);
+        let multiples = |digits: &[f64]| -> Vec<f64> {
+            let all = (first..=last).flat_map(|exponent| digits.iter().map(move |digit| digit * pow10(exponent)));
+            all.filter(inside).collect()
+        };
+        let each: Vec<i32> = (first..=last).filter(|exponent| inside(&pow10(*exponent))).collect();
+        let every = each.len().div_ceil(most.max(2)).max(1);
+        let few = decades < 2.0;
+        let values = if few {
+            multiples(&[1.0, 2.0, 5.0])
+        } else {
+            each.iter().filter(|exponent| exponent.rem_euclid(every as i32) == 0).map(|k| pow10(*k)).collect()
+        };
+        let all_plain = first >= -3 && last <= 4;
+        let label = |value: &f64| {
+            if few || all_plain {
+                return plain(*value);
+            }
+            format!("10{}", superscript(value.log10().round() as i32))
+        };
+        let minor = match every {
+            1 if decades < 8.0 => multiples(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]),
+            1 => Vec::new(),
+            _ => each.iter().map(|exponent| pow10(*exponent)).collect(),
+        };
+        Self { labels: values.iter().map(label).collect(), values, factor: None, minor }
     }
 
     /// No ticks, for an axis without data.
     pub(super) fn none() -> Self {
-        Self { values: Vec::new(), labels: Vec::new(), factor: None }
+        Self { values: Vec::new(), labels: Vec::new(), factor: None, minor: Vec::new() }
     }
 }
 
@@ -92,7 +131,7 @@ fn label(units: &[i64], exponent: i32) -> (Vec<String>, Option<String>) {
     }
     // Exponent of the leading digit of the largest tick.
     let leading = exponent + digits - 1;
-    let power = if (-2..=3).contains(&leading) || largest == 0 { 0 } else { 3 * leading.div_euclid(3) };
+    let power = if (-2..=MOST_DIGITS).contains(&leading) || largest == 0 { 0 } else { 3 * leading.div_euclid(3) };
     let labels = units.iter().map(|u| decimal(*u, exponent - power)).collect();
     (labels, (power != 0).then(|| format!("×10{}", superscript(power))))
 }
@@ -134,6 +173,13 @@ fn plain_or_power(mut units: i64, mut exponent: i32) -> String {
     format!("{}×10{}", decimal(units, 1 - digits), superscript(leading))
 }
 
+/// A number of one digit and a power of ten.
+fn plain(value: f64) -> String {
+    let exponent = value.log10().floor() as i32;
+    let digit = (value / pow10(exponent)).round() as i64;
+    plain_or_power(digit, exponent)
+}
+
 fn superscript(number: i32) -> String {
     let digit = |c| match c {
         '-' => '⁻',
@@ -171,6 +217,18 @@ mod tests {
         assert_eq!(labels(0.0, 45e-4, 6), ("0 1 2 3 4".into(), Some("×10⁻³".into())));
         assert_eq!(labels(0.0, 45e12, 6), ("0 10 20 30 40".into(), Some("×10¹²".into())));
         assert_eq!(superscript(-1234567890), "⁻¹²³⁴⁵⁶⁷⁸⁹⁰");
+    }
+
+    #[test]
+    fn decades() {
+        let shown = |lo: f64, hi: f64| Ticks::logarithmic(lo, hi, 6).labels.join(" ");
+        assert_eq!(shown(0.1, 10.0), "0.1 1 10");
+        assert_eq!(shown(0.9, 30.0), "1 2 5 10 20");
+        assert_eq!(shown(1e-9, 1e3), "10⁻⁹ 10⁻⁶ 10⁻³ 10⁰ 10³");
+        assert_eq!(shown(1.0, 1.5), "1.0 1.1 1.2 1.3 1.4 1.5");
+        assert_eq!(shown(2e5, 8e6), "200000 500000 1000000 2000000 5000000");
+        assert_eq!(labels(0.0, 20000.0, 5).1, None);
+        assert_eq!(labels(0.0, 2e6, 5).1, Some("×10⁶".into()));
     }
 
     #[test]

@@ -1,9 +1,12 @@
 //! The shipped font: widths and outlines.
 
+use super::script::{DROP, LOWERED, pieces};
 use ttf_parser::{Face, FaceParsingError, GlyphId, OutlineBuilder};
 
 /// Height of capital letters and digits, in em.
 const CAP_HEIGHT: f64 = 0.729;
+
+const FILE: &[u8] = include_bytes!("../../fonts/DejaVuSans-subset.ttf");
 
 /// DejaVu Sans, cut to the characters figures need (`fonts/README.md`).
 pub(crate) struct Font {
@@ -11,16 +14,30 @@ pub(crate) struct Font {
     unit: f64,
 }
 
+/// One glyph of a text, in em of the text's size.
+#[derive(Clone, Copy)]
+pub(crate) struct Glyph {
+    pub(crate) id: GlyphId,
+    pub(crate) character: char,
+    /// Where it starts on the line.
+    pub(crate) pen: f64,
+    /// Its size, and how far below the line it stands.
+    pub(crate) scale: f64,
+    pub(crate) drop: f64,
+}
+
 impl Font {
     pub(crate) fn load() -> Result<Self, FaceParsingError> {
-        let face = Face::parse(include_bytes!("../../fonts/DejaVuSans-subset.ttf"), 0)?;
+        let face = Face::parse(FILE, 0)?;
         let unit = 1.0 / f64::from(face.units_per_em());
         Ok(Self { face, unit })
     }
 
     /// Width of a text set in `size` pixels.
     pub(crate) fn width(&self, text: &str, size: f64) -> f64 {
-        text.chars().map(|c| self.advance(self.glyph(c))).sum::<f64>() * size
+        let mut width = 0.0;
+        self.walk(text, |glyph| width += glyph.scale * self.advance(glyph.id));
+        width * size
     }
 
     /// Distance from the middle of the capitals down to the baseline.
@@ -28,12 +45,16 @@ impl Font {
         0.5 * CAP_HEIGHT * size
     }
 
-    /// Hands each glyph of a text with its pen position (em) to `place`.
-    pub(crate) fn walk(&self, text: &str, mut place: impl FnMut(GlyphId, f64)) {
+    /// Hands over each glyph of a text.
+    pub(crate) fn walk(&self, text: &str, mut place: impl FnMut(Glyph)) {
         let mut pen = 0.0;
-        for glyph in text.chars().map(|c| self.glyph(c)) {
-            place(glyph, pen);
-            pen += self.advance(glyph);
+        for piece in pieces(text) {
+            let (scale, drop) = if piece.lowered { (LOWERED, DROP) } else { (1.0, 0.0) };
+            for character in piece.text.chars() {
+                let id = self.glyph(character);
+                place(Glyph { id, character, pen, scale, drop });
+                pen += scale * self.advance(id);
+            }
         }
     }
 
@@ -47,11 +68,21 @@ impl Font {
         self.unit
     }
 
+    /// The file.
+    pub(crate) fn file(&self) -> &'static [u8] {
+        FILE
+    }
+
+    pub(crate) fn face(&self) -> &Face<'static> {
+        &self.face
+    }
+
     fn glyph(&self, c: char) -> GlyphId {
         self.face.glyph_index(c).unwrap_or(GlyphId(0))
     }
 
-    fn advance(&self, glyph: GlyphId) -> f64 {
+    /// How far the pen moves on, em.
+    pub(crate) fn advance(&self, glyph: GlyphId) -> f64 {
         f64::from(self.face.glyph_hor_advance(glyph).unwrap_or(0)) * self.unit
     }
 }

@@ -1,9 +1,11 @@
-//! Shapes in pixels, and the two ways of writing them: SVG and PNG.
+//! Shapes in pixels, and the three ways of writing them: SVG, PNG and PDF.
 
 mod color;
 mod font;
+mod pdf;
 mod raster;
 mod scene;
+mod script;
 mod svg;
 mod wrap;
 
@@ -14,9 +16,7 @@ pub(crate) use wrap::wrap;
 
 use crate::{Rendered, ReportError};
 
-/// Writes a scene in both formats, on a page of whole, even pixels so that the raster's scale is exact.
-pub(crate) fn render(mut scene: Scene, font: &Font) -> Result<Rendered, ReportError> {
-    let even = |size: f64| 2.0 * (0.5 * size).ceil();
-    (scene.width, scene.height) = (even(scene.width), even(scene.height));
-    Ok(Rendered { svg: svg::write(&scene), png: raster::write(&scene, font)? })
+/// Writes a scene in all formats.
+pub(crate) fn render(scene: &Scene, font: &Font) -> Result<Rendered, ReportError> {
+    Ok(Rendered { svg: svg::write(scene), png: raster::write(scene, font)?, pdf: pdf::write(scene, font) })
 }

@@ -8,15 +8,15 @@ use ttf_parser::OutlineBuilder;
 
 /// Pixels per unit of the scene: 240 dpi.
 const SCALE: f64 = 2.5;
-/// Pixels per metre that the file records: 240 per inch.
-const PIXELS_PER_METRE: u32 = 9449;
+/// Pixels per metre of paper: 240 per inch.
+const PIXELS_PER_METRE: f64 = 9449.0;
 /// Largest picture, pixels.
 const MOST_PIXELS: f64 = 120e6;
 /// Segments stroked at once.
 const PIECE: usize = 256;
 
 pub(super) fn write(scene: &Scene, font: &Font) -> Result<Vec<u8>, ReportError> {
-    let (width, height) = (scene.width * SCALE, scene.height * SCALE);
+    let (width, height) = ((scene.width * SCALE).ceil(), (scene.height * SCALE).ceil());
     let too_large = ReportError::Canvas { width: width as u32, height: height as u32 };
     if width * height > MOST_PIXELS {
         return Err(too_large);
@@ -29,7 +29,7 @@ pub(super) fn write(scene: &Scene, font: &Font) -> Result<Vec<u8>, ReportError> 
             Shape::Text(text) => canvas.text(text),
         }
     }
-    encode(&canvas.pixmap)
+    encode(&canvas.pixmap, (PIXELS_PER_METRE * scene.width / scene.page()[0]).round() as u32)
 }
 
 struct Canvas<'a> {
@@ -138,10 +138,10 @@ fn text_path(text: &Text, font: &Font) -> Option<Path> {
         Align::Middle => -0.5 * width,
         Align::End => -width,
     };
-    let mut glyphs = Glyphs { builder: PathBuilder::new(), text, unit: font.unit(), pen: start };
-    font.walk(&text.content, |glyph, pen| {
-        glyphs.pen = start + pen;
-        font.outline(glyph, &mut glyphs);
+    let mut glyphs = Glyphs { builder: PathBuilder::new(), text, unit: font.unit(), pen: start, drop: 0.0 };
+    font.walk(&text.content, |glyph| {
+        (glyphs.pen, glyphs.drop, glyphs.unit) = (start + glyph.pen, glyph.drop, glyph.scale * font.unit());
+        font.outline(glyph.id, &mut glyphs);
     });
     glyphs.builder.finish()
 }
@@ -152,12 +152,13 @@ struct Glyphs<'a> {
     text: &'a Text,
     unit: f64,
     pen: f64,
+    drop: f64,
 }
 
 impl Glyphs<'_> {
     fn place(&self, x: f32, y: f32) -> (f32, f32) {
         let along = (self.pen + f64::from(x) * self.unit) * self.text.size;
-        let above = f64::from(y) * self.unit * self.text.size;
+        let above = (f64::from(y) * self.unit - self.drop) * self.text.size;
         let [x, y] = self.text.at;
         let (x, y) = if self.text.upwards { (x - above, y - along) } else { (x + along, y - above) };
         (x as f32, y as f32)
@@ -190,7 +191,7 @@ impl OutlineBuilder for Glyphs<'_> {
     }
 }
 
-fn encode(pixmap: &Pixmap) -> Result<Vec<u8>, ReportError> {
+fn encode(pixmap: &Pixmap, per_metre: u32) -> Result<Vec<u8>, ReportError> {
     // The canvas is opaque, so that premultiplied and plain colours agree and alpha can go.
     let rgb: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
     let mut file = Vec::new();
@@ -198,11 +199,7 @@ fn encode(pixmap: &Pixmap) -> Result<Vec<u8>, ReportError> {
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
-    encoder.set_pixel_dims(Some(png::PixelDimensions {
-        xppu: PIXELS_PER_METRE,
-        yppu: PIXELS_PER_METRE,
-        unit: png::Unit::Meter,
-    }));
+    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&rgb)?;
     writer.finish()?;

@@ -74,12 +74,20 @@ pub(crate) enum Shape {
 pub(crate) struct Scene {
     pub(crate) width: f64,
     pub(crate) height: f64,
+    /// Width on paper, pixels of 1/96 inch, where it is not that of the shapes: the scene is shrunk to it.
+    pub(crate) paper_width: Option<f64>,
     /// What a screen reader says.
     pub(crate) title: String,
     pub(crate) shapes: Vec<Shape>,
 }
 
 impl Scene {
+    /// Its size on paper, pixels of 1/96 inch.
+    pub(crate) fn page(&self) -> [f64; 2] {
+        let width = self.paper_width.unwrap_or(self.width);
+        [width, self.height * width / self.width]
+    }
+
     pub(crate) fn line(&mut self, points: &[Point], stroke: Stroke) {
         self.lines(vec![points.to_vec()], stroke);
     }

@@ -1,6 +1,7 @@
 //! A scene as an SVG document.
 
 use super::scene::{Align, Outline, Point, Scene, Shape, Stroke, Text};
+use super::script::{DROP, LOWERED, pieces, plain};
 use super::{Color, PAPER};
 use std::fmt::Write;
 
@@ -10,12 +11,13 @@ const FAMILY: &str = "'DejaVu Sans', Verdana, Arial, sans-serif";
 pub(super) fn write(scene: &Scene) -> String {
     let mut svg = String::new();
     let (width, height) = (Number(scene.width), Number(scene.height));
+    let [page_width, page_height] = scene.page().map(Number);
     let _ = write!(
         svg,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{page_width}\" height=\"{page_height}\" viewBox=\"0 0 {width} {height}\" \
          font-family=\"{FAMILY}\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" role=\"img\">\n\
          <title>{}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"{PAPER}\"/>\n",
-        Escaped(&scene.title)
+        Escaped(&plain(&scene.title))
     );
     for shape in &scene.shapes {
         match shape {
@@ -87,7 +89,22 @@ fn text_element(svg: &mut String, text: &Text, paint: &str) {
     if text.upwards {
         let _ = write!(svg, " transform=\"rotate(-90 {x} {y})\"");
     }
-    let _ = writeln!(svg, ">{}</text>", Escaped(&text.content));
+    svg.push('>');
+    let mut lowered = false;
+    for piece in pieces(&text.content) {
+        let words = Escaped(piece.text);
+        // The line goes on where the last piece left it.
+        let _ = match (lowered, piece.lowered) {
+            (false, false) => write!(svg, "{words}"),
+            (true, false) => write!(svg, "<tspan dy=\"{}\">{words}</tspan>", Number(-DROP * text.size)),
+            (_, true) => {
+                let (down, size) = (Number(DROP * text.size), Number(LOWERED * text.size));
+                write!(svg, "<tspan dy=\"{down}\" font-size=\"{size}\">{words}</tspan>")
+            }
+        };
+        lowered = piece.lowered;
+    }
+    svg.push_str("</text>\n");
 }
 
 /// A coordinate with at most two decimals.

@@ -1,5 +1,6 @@
 //! A robot as a mechanism sketch: links, joints with their axes, elements, gripper.
 
+mod element;
 mod labels;
 mod sketch;
 mod symbols;
@@ -13,8 +14,8 @@ pub const WORLD: &str = "world";
 
 /// A robot in one pose, in world coordinates (metres, z upwards).
 ///
-/// The picture is an orthographic view from slightly above, turned so that links and elements hide one another least; a robot that
-/// lies in a coordinate plane is seen straight on. The scale bar is true along lines parallel to the paper.
+/// Without a view of its own the picture is seen from slightly above, turned so that links and elements hide one another least; a
+/// robot that lies in a coordinate plane is seen straight on. All views are orthographic. The scale bar is true along lines parallel to the paper.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RobotDrawing {
     /// Stands above the picture.
@@ -30,6 +31,12 @@ pub struct RobotDrawing {
     pub gripper: Option<[f64; 3]>,
     /// Where the robot stands; `None` for one that stands nowhere.
     pub ground: Option<[f64; 3]>,
+    /// From where it is seen, degrees: the turn about z (at 0, x points to the right and y away), and the height above the horizon.
+    pub view: Option<[f64; 2]>,
+    /// Nothing is named.
+    pub hides_names: bool,
+    /// Width and height of the page, mm; else [`crate::WIDTH`] and what it takes. A picture that is larger is shrunk.
+    pub size: Option<[f64; 2]>,
 }
 
 /// The centre line of a body, or a thin arm of it.
@@ -72,6 +79,26 @@ pub struct ElementMark {
     pub from: [f64; 3],
     /// Anchor on the second body.
     pub to: [f64; 3],
+    /// What its law holds.
+    pub sign: ElementSign,
+}
+
+/// What the law of an element holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum ElementSign {
+    /// A zigzag.
+    #[default]
+    Spring,
+    /// A cup with a piston.
+    Dashpot,
+    /// A diamond.
+    Springpot,
+    /// A force that follows an input: a circle with an arrow.
+    Source,
+    /// Parts side by side: forces add.
+    Parallel(Vec<ElementSign>),
+    /// Parts one behind the other: strokes add.
+    Series(Vec<ElementSign>),
 }
 
 impl RobotDrawing {
@@ -95,7 +122,7 @@ impl RobotDrawing {
     pub fn render(&self) -> Result<Rendered, ReportError> {
         self.check()?;
         let font = draw::Font::load()?;
-        draw::render(sketch::scene(self, &font), &font)
+        draw::render(&sketch::scene(self, &font), &font)
     }
 
     fn check(&self) -> Result<(), ReportError> {

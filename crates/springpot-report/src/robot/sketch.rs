@@ -6,10 +6,13 @@ use super::vector::{Vector, along, cross, distance, dot, unit};
 use super::view::View;
 use super::{ElementMark, JointKind, JointMark, RobotDrawing, WORLD};
 use crate::draw::{Align, Color, Font, INK, Point, Scene, Stroke, Text, wrap};
+use crate::{PIXELS_PER_MM, WIDTH};
 use std::collections::HashMap;
 
 /// The robot fills this box, pixels; one of more than [`FEW_JOINTS`] gets a larger one, so that their names find room.
 const BOX: [f64; 2] = [440.0, 340.0];
+/// Room for names and arrows on a page of a given size.
+const BESIDE: f64 = 110.0;
 const FEW_JOINTS: f64 = 10.0;
 const LARGEST: f64 = 3.0;
 const NAME_SIZE: f64 = 13.0;
@@ -52,7 +55,7 @@ impl Camera {
             high = [high[0].max(p[0]), high[1].max(p[1])];
         }
         let [width, height] =
-            BOX.map(|side| side * (robot.joints.len() as f64 / FEW_JOINTS).sqrt().clamp(1.0, LARGEST));
+            room(robot).map(|side| side * (robot.joints.len() as f64 / FEW_JOINTS).sqrt().clamp(1.0, LARGEST));
         let scale = (width / (high[0] - low[0])).min(height / (high[1] - low[1]));
         // A robot of one point, or none, has no size to fill the box with.
         Self { view, scale: if scale.is_finite() && scale > 0.0 { scale } else { height } }
@@ -72,6 +75,14 @@ impl Camera {
     }
 }
 
+/// What the robot fills, pixels, where it has few joints; names need some room beside it.
+fn room(robot: &RobotDrawing) -> [f64; 2] {
+    let Some(size) = robot.size else { return BOX };
+    let [width, height] = size.map(|side| side * PIXELS_PER_MM);
+    // On a small page the picture is laid out larger, and shrunk.
+    [(width - BESIDE).max(0.8 * width), (height - BESIDE).max(0.8 * height)]
+}
+
 pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
     let camera = Camera::of(robot);
     let mut sheet = Sheet::default();
@@ -85,7 +96,9 @@ pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
     if let Some(point) = robot.gripper {
         sheet.gripper(camera.at(point), gripper_direction(robot, &camera, point));
     }
-    names(robot, &camera, &tips, &mut sheet, font);
+    if !robot.hides_names {
+        names(robot, &camera, &tips, &mut sheet, font);
+    }
     triad_and_scale(&camera, &mut sheet, font);
     page(robot, sheet, font)
 }
@@ -124,7 +137,7 @@ fn bodies(robot: &RobotDrawing, camera: &Camera, sheet: &mut Sheet) {
     for (_, piece) in pieces {
         match piece {
             Piece::Body(points, tone, width) => sheet.body(&points, tone, width),
-            Piece::Element(element) => sheet.element(camera.at(element.from), camera.at(element.to)),
+            Piece::Element(element) => sheet.element(camera.at(element.from), camera.at(element.to), &element.sign),
         }
     }
 }
@@ -321,20 +334,26 @@ fn nice_length(most: f64) -> f64 {
     candidates.into_iter().find(|length| *length <= most).unwrap_or(candidates[2])
 }
 
-/// Moves everything onto a page with the title above.
+/// Moves everything onto a page with the title above; one that is too large is shrunk to it.
 fn page(robot: &RobotDrawing, sheet: Sheet, font: &Font) -> Scene {
     let Frame([left, top, right, bottom]) = sheet.obstacles.bounds();
+    let [paper_width, paper_height] =
+        robot.size.map_or([Some(WIDTH), None], |size| size.map(Some)).map(|side| side.map(|mm| mm * PIXELS_PER_MM));
+    let paper_width = paper_width.unwrap_or(WIDTH * PIXELS_PER_MM);
+    let width = (right - left + 2.0 * BORDER).max(paper_width);
     let title = robot.title.as_deref().unwrap_or_default();
-    let width = (right - left).max(300.0);
-    let lines = wrap(font, title, TITLE_SIZE, width, 3);
+    let lines = wrap(font, title, TITLE_SIZE, width - 2.0 * BORDER, 3);
     let title_height = if title.is_empty() { 0.0 } else { lines.len() as f64 * TITLE_LINE + 10.0 };
-    let shift = [BORDER + 0.5 * (width - (right - left)) - left, BORDER + title_height - top];
+    let height = bottom - top + title_height + 2.0 * BORDER;
+    let shrunk = (width / paper_width).max(paper_height.map_or(1.0, |paper| height / paper));
     let mut scene = sheet.scene;
-    scene.shift(shift);
+    (scene.width, scene.height) = (shrunk * paper_width, paper_height.map_or(height, |paper| shrunk * paper));
+    scene.paper_width = (shrunk > 1.0).then_some(paper_width);
+    let free = [scene.width - (right - left), scene.height - title_height - (bottom - top)].map(|free| 0.5 * free);
+    scene.shift([free[0] - left, free[1] + title_height - top]);
     scene.title = title.to_owned();
-    (scene.width, scene.height) = (width + 2.0 * BORDER, bottom - top + title_height + 2.0 * BORDER);
     for (row, line) in lines.iter().enumerate() {
-        let at = [BORDER + 0.5 * width, BORDER + row as f64 * TITLE_LINE + TITLE_SIZE];
+        let at = [0.5 * scene.width, BORDER + row as f64 * TITLE_LINE + TITLE_SIZE - 4.0];
         scene.text(Text::new(line, at, TITLE_SIZE, Align::Middle));
     }
     scene

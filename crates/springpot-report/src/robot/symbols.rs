@@ -1,5 +1,7 @@
 //! The signs of a mechanism sketch, in pixels.
 
+use super::ElementSign;
+use super::element::{self, Drawn};
 use super::labels::{Frame, Obstacles};
 use crate::draw::{Color, INK, Outline, PAPER, Point, Scene, Stroke};
 
@@ -11,11 +13,6 @@ pub(super) const BODY: f64 = 8.0;
 pub(super) const ARM: f64 = 4.0;
 /// Radius of a revolute joint.
 pub(super) const JOINT: f64 = 6.5;
-/// Half height of a spring's teeth.
-const TOOTH: f64 = 6.5;
-/// Distance of teeth on the same side, and the longest row of them.
-const PITCH: f64 = 10.0;
-const LONGEST_COIL: f64 = 160.0;
 const DASH_DOT: &[f64] = &[8.0, 2.5, 1.5, 2.5];
 
 /// A drawing with what later labels must keep clear of.
@@ -25,7 +22,7 @@ pub(super) struct Sheet {
     pub(super) obstacles: Obstacles,
 }
 
-fn offset(p: Point, s: f64, d: Point) -> Point {
+pub(super) fn offset(p: Point, s: f64, d: Point) -> Point {
     [p[0] + s * d[0], p[1] + s * d[1]]
 }
 
@@ -36,7 +33,7 @@ pub(super) fn direction(a: Point, b: Point) -> (Point, f64) {
     if length > 1e-9 { ([dx / length, dy / length], length) } else { ([1.0, 0.0], 0.0) }
 }
 
-fn normal([x, y]: Point) -> Point {
+pub(super) fn normal([x, y]: Point) -> Point {
     [-y, x]
 }
 
@@ -49,30 +46,20 @@ impl Sheet {
         self.obstacles.line(points, width);
     }
 
-    /// An element: a zigzag between two straight ends.
-    pub(super) fn element(&mut self, from: Point, to: Point) {
+    /// An element with the sign of its law between two straight ends.
+    pub(super) fn element(&mut self, from: Point, to: Point, sign: &ElementSign) {
         let (along, length) = direction(from, to);
-        let across = normal(along);
-        let mut points = vec![from];
-        let coil = (0.64 * length).min(length - 16.0).min(LONGEST_COIL);
-        if coil > 2.0 * PITCH {
-            let start = 0.5 * (length - coil);
-            let teeth = 2 * (coil / PITCH).round() as usize;
-            points.push(offset(from, start, along));
-            for tooth in 0..teeth {
-                let at = start + coil * (tooth as f64 + 0.5) / teeth as f64;
-                let side = if tooth % 2 == 0 { TOOTH } else { -TOOTH };
-                points.push(offset(offset(from, at, along), side, across));
-            }
-            points.push(offset(from, start + coil, along));
+        let Drawn { lines, closed, half } = element::draw(sign, from, along, length);
+        let width = if matches!(sign, ElementSign::Parallel(_)) { 1.5 } else { 1.9 };
+        self.scene.lines(lines.clone(), Stroke::new(PAPER, width + 3.1));
+        for shape in closed {
+            self.scene.draw(Outline::Polygon(shape), Some(PAPER), Some(Stroke::new(ELEMENT, width)));
         }
-        points.push(to);
-        self.scene.line(&points, Stroke::new(PAPER, 5.0));
-        self.scene.line(&points, Stroke::new(ELEMENT, 1.9));
+        self.scene.lines(lines, Stroke::new(ELEMENT, width));
         self.obstacles.line(&[from, to], 2.0);
-        let coil = if coil > 2.0 * PITCH { 0.5 * coil } else { 0.0 };
         let middle = offset(from, 0.5 * length, along);
-        self.obstacles.line(&[offset(middle, -coil, along), offset(middle, coil, along)], 2.0 * TOOTH);
+        let [long, high] = half.unwrap_or([0.0, 1.0]);
+        self.obstacles.line(&[offset(middle, -long, along), offset(middle, long, along)], 2.0 * high);
     }
 
     /// The pin that ends an element.

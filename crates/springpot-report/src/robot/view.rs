@@ -30,8 +30,11 @@ impl View {
         [dot(point, self.right), dot(point, self.up)]
     }
 
-    /// The best view of a robot.
+    /// The view that is asked for, or the best one of a robot.
     pub(super) fn of(robot: &RobotDrawing) -> Self {
+        if let Some([azimuth, elevation]) = robot.view {
+            return Self::turned(azimuth, elevation);
+        }
         let lines = lines(robot);
         let points = samples(robot, &lines);
         let span = |axis: usize| {

@@ -3,25 +3,43 @@
 //! A kind of figure is a file: what it wants of the rows, and how it is drawn.
 
 mod curves;
+mod look;
 mod panels;
 mod robot;
 mod source;
+mod summary;
 
-pub use panels::{Curves, FigureColumn};
+pub use look::{AskedAxis, AskedLook, Look, Misfit, Part};
+pub use panels::{Curves, DrawnCase, FigureColumn};
 
 use crate::sweep::{FigureData, Layout, Outcome, Wanted};
 use crate::table::folder::Folder;
 use source::Source;
 use springpot::integrate::System;
 use springpot_report::Rendered;
-use springpot_scenario::{Cases, FigureKind, FigurePlan, Plan, Refusals};
+use springpot_scenario::{Cases, FigureFormat, FigureKind, FigurePlan, Plan, Refusals};
 use std::io;
 
 /// What a figure wants of the rows.
 pub(crate) fn data(cases: &Cases, figure: &FigurePlan, wanted: &mut Wanted) -> Result<FigureData, Refusals> {
     match &figure.kind {
         FigureKind::Curves { x, y } => curves::data(cases, figure, wanted, x, y),
+        FigureKind::Summary { x, y } => summary::data(cases, figure, wanted, x, y),
         FigureKind::Robot => Ok(FigureData::default()),
+    }
+}
+
+/// What a figure is called in a format.
+pub(crate) fn file_name(figure: &str, format: FigureFormat) -> String {
+    format!("{figure}.{}", format.name())
+}
+
+/// What a file of a figure holds.
+pub fn bytes(rendered: &Rendered, format: FigureFormat) -> &[u8] {
+    match format {
+        FigureFormat::Svg => rendered.svg.as_bytes(),
+        FigureFormat::Png => &rendered.png,
+        FigureFormat::Pdf => &rendered.pdf,
     }
 }
 
@@ -42,12 +60,14 @@ pub fn draw(
         let source = Source { figure, cases, system, plan, data, outcome };
         let rendered = match figure.kind {
             FigureKind::Curves { .. } => curves::draw(&source),
+            FigureKind::Summary { .. } => summary::draw(&source),
             FigureKind::Robot => robot::draw(&source),
         };
         match rendered {
-            Ok(Rendered { svg, png }) => {
-                folder.write_figure(&format!("{}.svg", figure.name), svg.as_bytes())?;
-                folder.write_figure(&format!("{}.png", figure.name), &png)?;
+            Ok(rendered) => {
+                for &format in &figure.look.formats {
+                    folder.write_figure(&file_name(&figure.name, format), bytes(&rendered, format))?;
+                }
             }
             Err(why) => warnings.push(format!("figure \"{}\" is not drawn: {why}", figure.name)),
         }

@@ -1,8 +1,9 @@
 //! Curves of several cases as panels of one figure.
 
+use super::look::Look;
 use crate::labels;
 use springpot::table::Column;
-use springpot_report::{Curve, Panel, Plot};
+use springpot_report::{Axis, Curve, Panel, Plot, Scale};
 use springpot_scenario::units::Unit;
 
 /// A column of a figure.
@@ -12,12 +13,19 @@ pub struct FigureColumn {
     pub column: Column,
     /// The unit it is drawn in and how SI values become numbers of it; `None`: SI.
     pub unit: Option<(String, Unit)>,
+    /// What it is called, where its quantity does not say it.
+    pub label: Option<String>,
 }
 
 impl FigureColumn {
-    /// What stands at its axis: its quantity and its unit.
+    /// What stands at its axis: its name and its unit.
     pub fn axis(&self) -> String {
-        labels::axis(&self.column, self.unit.as_ref().map(|(text, _)| text.as_str()))
+        with_unit(&self.name(), self.unit_name())
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> String {
+        self.label.clone().unwrap_or_else(|| labels::quantity(&self.column.name))
     }
 
     /// An SI value in the unit that it is drawn in.
@@ -25,8 +33,15 @@ impl FigureColumn {
         self.unit.as_ref().map_or(value, |(_, unit)| unit.from_si(value))
     }
 
-    fn unit_name(&self) -> &str {
+    pub(crate) fn unit_name(&self) -> &str {
         self.unit.as_ref().map_or(&self.column.unit, |(text, _)| text)
+    }
+}
+
+fn with_unit(name: &str, unit: &str) -> String {
+    match labels::written_unit(unit) {
+        unit if unit.is_empty() => name.to_owned(),
+        unit => format!("{name}, {unit}"),
     }
 }
 
@@ -39,64 +54,139 @@ pub struct Curves<'a> {
     pub x: &'a FigureColumn,
     /// The ordinates.
     pub y: &'a [FigureColumn],
-    /// Sweeps that the figure does not fix: values of the first make curves, those of the others panels.
-    pub free: &'a [usize],
-    /// What a sweep is called.
-    pub sweep: &'a dyn Fn(usize) -> String,
-    /// Value `k` of a sweep as written: its sweep, then `k`.
-    pub value: &'a dyn Fn(usize, usize) -> String,
+    /// Ranges, scales, size, words.
+    pub look: &'a Look,
+    /// Points of curves are marked.
+    pub is_marked: bool,
+}
+
+/// A case of a figure of curves.
+pub struct DrawnCase<'p> {
+    /// Whose it is, where the figure holds several results.
+    pub source: Option<String>,
+    /// Sweeps that the figure does not fix, and their values: the first tells curves apart, the others make panels.
+    pub values: Vec<(String, String)>,
+    /// For each ordinate the points [x, y] of its curve, SI.
+    pub points: Vec<&'p [[f64; 2]]>,
+}
+
+/// Ordinates of one unit each: indices.
+pub(super) fn groups(y: &[FigureColumn]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (k, column) in y.iter().enumerate() {
+        match groups.iter_mut().find(|group| y[group[0]].unit_name() == column.unit_name()) {
+            Some(group) => group.push(k),
+            None => groups.push(vec![k]),
+        }
+    }
+    groups
+}
+
+/// The panels of one combination of values: their title, and the curves of each unit.
+struct Cell {
+    key: Vec<String>,
+    title: Option<String>,
+    curves: Vec<Vec<Curve>>,
 }
 
 impl Curves<'_> {
-    /// The figure of `cases`: which value each sweep has there, and for each ordinate the points [x, y] of its curve, SI.
-    pub fn plot<'p>(&self, cases: impl IntoIterator<Item = (Vec<usize>, Vec<&'p [[f64; 2]]>)>) -> Plot {
-        let Self { x, y, free, .. } = *self;
-        let several = y.len() > 1;
-        let alike = common_unit(y).is_some();
-        let mut panels: Vec<(Vec<usize>, Panel)> = Vec::new();
-        for (position, curves) in cases {
-            let key: Vec<usize> = free.iter().skip(1).map(|axis| position[*axis]).collect();
-            let at = panels.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
-                let named: Vec<String> =
-                    free.iter().skip(1).map(|axis| self.swept(*axis, position[*axis], true)).collect();
-                let title = (!named.is_empty()).then(|| named.join(", "));
-                panels.push((key, Panel { title, curves: Vec::new() }));
-                panels.len() - 1
+    /// The figure of these cases. Ordinates of two units have two axes, those of more units panels below one another.
+    pub fn plot<'p>(&self, cases: impl IntoIterator<Item = DrawnCase<'p>>) -> Plot {
+        let groups = groups(self.y);
+        let mut sweeps: Vec<String> = Vec::new();
+        let mut cells: Vec<Cell> = Vec::new();
+        for case in cases {
+            let key: Vec<String> =
+                case.values.iter().skip(1).map(|(name, value)| format!("{name} = {value}")).collect();
+            let at = cells.iter().position(|cell| cell.key == key).unwrap_or_else(|| {
+                let title = (!key.is_empty()).then(|| key.join(", "));
+                cells.push(Cell { key, title, curves: vec![Vec::new(); groups.len()] });
+                cells.len() - 1
             });
-            // Beside a column's name the value alone would not say what it is of.
-            let swept = free.first().map(|axis| self.swept(*axis, position[*axis], several));
-            for (column, points) in y.iter().zip(curves) {
-                let own = several.then(|| if alike { labels::quantity(&column.column.name) } else { column.axis() });
-                let label = own.into_iter().chain(swept.clone()).collect::<Vec<_>>().join(", ");
-                let (x, y) = points.iter().map(|[at, value]| (x.number(*at), column.number(*value))).unzip();
-                panels[at].1.curves.push(Curve { label, x, y });
+            if let Some((sweep, _)) = case.values.first()
+                && !sweeps.contains(sweep)
+            {
+                sweeps.push(sweep.clone());
+            }
+            for (group, members) in groups.iter().enumerate() {
+                cells[at].curves[group].extend(members.iter().map(|&k| self.curve(&case, k, groups.len(), group)));
             }
         }
-        let mut panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
+        let is_stacked = groups.len() > 2;
+        let axes: Vec<Axis> = groups.iter().enumerate().map(|(at, members)| self.y_axis(at, members)).collect();
+        let mut panels: Vec<Panel> = Vec::new();
+        let columns = is_stacked.then_some(cells.len());
+        if is_stacked {
+            for (group, axis) in axes.iter().enumerate() {
+                panels.extend(cells.iter_mut().map(|cell| Panel {
+                    title: cell.title.clone().filter(|_| group == 0),
+                    y: Some(axis.clone()),
+                    curves: std::mem::take(&mut cell.curves[group]),
+                }));
+            }
+        } else {
+            let panel = |cell: Cell| Panel { title: cell.title, curves: cell.curves.concat(), ..Panel::default() };
+            panels.extend(cells.into_iter().map(panel));
+        }
         if let [only] = &mut panels[..]
             && let [curve] = &mut only.curves[..]
         {
             // The ordinate's label says all about a single curve.
-            curve.label.clear();
+            (curve.label, curve.kind) = (String::new(), String::new());
         }
-        // One label for all ordinates: the column's own, or the unit that several have in common.
-        let y_label = match y {
-            [only] => only.axis(),
-            several => common_unit(several).map_or(String::new(), labels::written_unit),
-        };
-        let legend_title = free.first().filter(|_| y.len() == 1).map(|axis| (self.sweep)(*axis));
-        Plot { title: self.title.map(str::to_owned), x_label: x.axis(), y_label, legend_title, panels }
+        let asked = &self.look.asked;
+        let label = asked.x.label.clone().unwrap_or_else(|| self.x.axis());
+        let mut axes = axes.into_iter();
+        Plot {
+            title: self.title.map(str::to_owned),
+            x: Axis { label, range: self.look.x_range, scale: scale(asked.x.is_log) },
+            y: axes.next().unwrap_or_default(),
+            right: axes.next().filter(|_| groups.len() == 2),
+            is_equal: asked.is_equal,
+            size: self.look.size(),
+            legend_title: asked.legend.clone().or_else(|| (!sweeps.is_empty()).then(|| sweeps.join(", "))),
+            hides_legend: asked.hides_legend,
+            columns,
+            panels,
+        }
     }
 
-    /// The swept value as written; with the name of what is swept where nothing else says it.
-    fn swept(&self, axis: usize, k: usize, named: bool) -> String {
-        let value = labels::written_unit(&(self.value)(axis, k));
-        if named { format!("{} = {value}", (self.sweep)(axis)) } else { value }
+    /// The curve of ordinate `k` of a case. Swept values are labels, which have colours; what else tells curves apart are kinds, which
+    /// have dashes.
+    fn curve(&self, case: &DrawnCase<'_>, k: usize, groups: usize, group: usize) -> Curve {
+        let column = &self.y[k];
+        // Where units differ, the name alone would not say which axis is meant; alone in its panel, a column has the axis.
+        let is_alone = groups > 2 && self.y.iter().filter(|other| other.unit_name() == column.unit_name()).count() == 1;
+        let own = (self.y.len() > 1 && !is_alone).then(|| if groups > 1 { column.axis() } else { column.name() });
+        let mut names =
+            case.values.first().map(|(_, value)| value.clone()).into_iter().chain(case.source.clone()).chain(own);
+        let label = names.next().unwrap_or_default();
+        let kind = names.collect::<Vec<_>>().join(": ");
+        let (x, y) = case.points[k].iter().map(|[at, value]| (self.x.number(*at), column.number(*value))).unzip();
+        Curve { label, kind, is_right: groups == 2 && group == 1, is_marked: self.is_marked, x, y }
+    }
+
+    /// The axis of the ordinates of one unit.
+    fn y_axis(&self, group: usize, members: &[usize]) -> Axis {
+        let columns: Vec<&FigureColumn> = members.iter().map(|&k| &self.y[k]).collect();
+        let label = match (&columns[..], &self.look.asked.y.label) {
+            (_, Some(label)) if group == 0 => label.clone(),
+            ([only], _) => only.axis(),
+            (several, _) => {
+                let own: Vec<&Column> = several.iter().map(|column| &column.column).collect();
+                let names = || {
+                    let mut names: Vec<String> = several.iter().map(|column| column.name()).collect();
+                    names.dedup();
+                    names.join("; ")
+                };
+                with_unit(&labels::common(&own).unwrap_or_else(names), several[0].unit_name())
+            }
+        };
+        let range = self.look.y_range.filter(|(at, _)| *at == group).map(|(_, range)| range);
+        Axis { label, range, scale: scale(self.look.asked.y.is_log) }
     }
 }
 
-/// The unit that all columns are drawn in; `None` where they differ.
-fn common_unit(columns: &[FigureColumn]) -> Option<&str> {
-    let first = columns.first()?.unit_name();
-    columns.iter().all(|column| column.unit_name() == first).then_some(first)
+fn scale(is_log: bool) -> Scale {
+    if is_log { Scale::Log } else { Scale::Linear }
 }

@@ -1,9 +1,12 @@
 //! The robot at t = 0 as a mechanism sketch.
 
+use super::look::millimetres;
 use super::source::Source;
+use springpot::elements::Element;
 use springpot::integrate::{Pose, System};
+use springpot::law::{InputValue, Network, Point, Term};
 use springpot::model::{Anchor, Dimension, JointKind, Parent};
-use springpot_report::{ElementMark, JointMark, Link, Rendered, RobotDrawing, WORLD};
+use springpot_report::{ElementMark, ElementSign, JointMark, Link, Rendered, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan};
 
 /// Most links of a sketch.
@@ -20,7 +23,13 @@ pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
 fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDrawing, String> {
     let pose = system.pose(0.0).map_err(|error| error.to_string())?;
     let skeleton = Skeleton::of(plan, &pose)?;
-    let mut drawing = RobotDrawing { title: figure.title.clone(), ..RobotDrawing::default() };
+    let mut drawing = RobotDrawing {
+        title: figure.title.clone(),
+        view: figure.look.view,
+        hides_names: figure.look.hides_names,
+        size: figure.look.size.map(millimetres),
+        ..RobotDrawing::default()
+    };
     let near = ON_LINE * skeleton.size();
     for (bone, name) in skeleton.bones.iter().zip(&skeleton.names) {
         drawing.links.push(Link { name: (*name).to_owned(), points: bone.line(near) });
@@ -37,7 +46,8 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
     }
     for element in &plan.elements {
         let (from, to) = (pose.point(&element.from), pose.point(&element.to));
-        drawing.elements.push(ElementMark { name: element.element.name.clone(), from, to });
+        let (name, sign) = (element.element.name.clone(), sign_of(&element.element));
+        drawing.elements.push(ElementMark { name, from, to, sign });
         for (anchor, point) in [(&element.from, from), (&element.to, to)] {
             let link = match anchor.body {
                 Parent::World => WORLD,
@@ -49,6 +59,27 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
     drawing.gripper = plan.gripper.as_ref().map(|gripper| pose.point(&gripper.anchor));
     drawing.ground = ground(plan, &pose);
     Ok(drawing)
+}
+
+/// What an element's law holds, as it is at t = 0.
+fn sign_of(element: &Element) -> ElementSign {
+    let mut inputs = vec![InputValue { value: 0.0, rate: 0.0 }; element.inputs.len()];
+    element.inputs_at(0.0, &mut inputs);
+    sign(&element.law, &Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs })
+}
+
+fn sign(law: &Network, at: &Point<'_>) -> ElementSign {
+    let all = |parts: &[Network]| parts.iter().map(|part| sign(part, at)).collect();
+    match law {
+        Network::Leaf(leaf) => match leaf.linearised(at) {
+            Term { order: 0.0, coefficient: 0.0 } => ElementSign::Source,
+            Term { order: 0.0, .. } => ElementSign::Spring,
+            Term { order: 1.0, .. } => ElementSign::Dashpot,
+            Term { .. } => ElementSign::Springpot,
+        },
+        Network::Parallel(parts) => ElementSign::Parallel(all(parts)),
+        Network::Series(parts) => ElementSign::Series(all(parts)),
+    }
 }
 
 /// Where the robot stands; nowhere where its first body floats.

@@ -1,8 +1,8 @@
 //! What figures are drawn from.
 
-use super::panels::{Curves, FigureColumn};
+use super::panels::{Curves, DrawnCase, FigureColumn};
 use crate::labels;
-use crate::sweep::{FigureCurve, FigureData, KeptCurve, Outcome};
+use crate::sweep::{CaseCurves, CaseResult, FigureCurve, FigureData, KeptCurve, Outcome};
 use springpot::integrate::System;
 use springpot_report::Plot;
 use springpot_scenario::{Cases, FigurePlan, Plan};
@@ -19,34 +19,61 @@ pub(super) struct Source<'a> {
     pub(super) outcome: &'a Outcome,
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
     /// One curve per swept value and column; a second sweep makes one panel per value.
     pub(super) fn plot(&self) -> Result<Plot, String> {
-        let Self { figure, cases, data, outcome, .. } = *self;
-        if let Some(why) = &data.left_out {
-            return Err(why.to_string());
-        }
-        let x = &data.curves.first().ok_or("it has no curves")?.x;
-        // Sweeps that the figure does not fix: the first makes the curves, the others the panels.
-        let free: Vec<usize> =
-            (0..cases.axis_count()).filter(|axis| figure.selection.iter().all(|s| s.axis != *axis)).collect();
+        let Self { figure, data, .. } = *self;
+        let x = &self.drawn()?.curves.first().ok_or("it has no curves")?.x;
+        let sweeps = FreeSweeps::of(self, None);
         let drawn = data.cases.iter().filter_map(|&index| {
-            let found = outcome.cases.binary_search_by_key(&index, |case| case.index).ok()?;
-            let kept = outcome.cases[found].curves.as_ref();
+            let kept = self.case(index)?.curves.as_ref();
             let points = |curve: &FigureCurve| {
-                kept.and_then(|curves| curves.get(&curve.index)).map_or(&[][..], KeptCurve::points)
+                kept.and_then(|kept| kept.curves.get(&curve.index)).map_or(&[][..], KeptCurve::points)
             };
-            Some((cases.position(index), data.curves.iter().map(points).collect()))
+            let values = sweeps.values(self.cases, index);
+            Some(DrawnCase { source: None, values, points: data.curves.iter().map(points).collect() })
         });
         let y: Vec<FigureColumn> = data.curves.iter().map(|curve| curve.y.clone()).collect();
-        let what = Curves {
-            title: figure.title.as_deref(),
-            x,
-            y: &y,
-            free: &free,
-            sweep: &|axis| cases.axis_parameters(axis).map(labels::parameter).collect::<Vec<_>>().join(", "),
-            value: &|axis, k| cases.axis_label(axis, k),
+        let title = figure.title.as_deref();
+        Ok(Curves { title, x, y: &y, look: &data.look, is_marked: false }.plot(drawn))
+    }
+
+    /// What it draws, or why it is left out.
+    pub(super) fn drawn(&self) -> Result<&'a FigureData, String> {
+        self.data.left_out.as_ref().map_or(Ok(self.data), |why| Err(why.to_string()))
+    }
+
+    /// A case that was begun.
+    pub(super) fn case(&self, index: usize) -> Option<&'a CaseResult> {
+        let cases = &self.outcome.cases;
+        cases.binary_search_by_key(&index, |case| case.index).ok().map(|found| &cases[found])
+    }
+
+    /// What a case that came to its end has kept.
+    pub(super) fn ended(&self, index: usize) -> Option<&'a CaseCurves> {
+        self.case(index).filter(|case| case.error.is_none())?.curves.as_ref()
+    }
+}
+
+/// Sweeps that a figure does not fix, with names and values as legends show them.
+pub(super) struct FreeSweeps(Vec<(usize, String, Vec<String>)>);
+
+impl FreeSweeps {
+    /// Those of a figure, but for `other`.
+    pub(super) fn of(source: &Source<'_>, other: Option<usize>) -> Self {
+        let Source { figure, cases, .. } = source;
+        let is_free = |axis: &usize| Some(*axis) != other && figure.selection.iter().all(|s| s.axis != *axis);
+        let sweep = |axis: usize| {
+            let name = cases.axis_parameters(axis).map(labels::parameter).collect::<Vec<_>>().join(", ");
+            let written: Vec<String> = (0..cases.axis_len(axis)).map(|k| cases.axis_label(axis, k)).collect();
+            (axis, name, labels::values(&written))
         };
-        Ok(what.plot(drawn))
+        Self((0..cases.axis_count()).filter(is_free).map(sweep).collect())
+    }
+
+    /// Names and values of a case.
+    pub(super) fn values(&self, cases: &Cases, index: usize) -> Vec<(String, String)> {
+        let position = cases.position(index);
+        self.0.iter().map(|(axis, name, values)| (name.clone(), values[position[*axis]].clone())).collect()
     }
 }

@@ -2,14 +2,12 @@
 
 use super::Sweep;
 use super::checkpoint::CaseDone;
-use super::curve::KeptCurve;
-use super::kept::Kept;
+use super::kept::{CaseCurves, Kept};
 use super::output::{self, CaseRows, Output};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::trouble::Trouble;
 use springpot::integrate::{self, LimitWatch, PassedLimit, Report, RunError, System};
-use std::collections::BTreeMap;
 use std::io;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -31,8 +29,8 @@ pub struct CaseResult {
     pub no_ledger: Option<String>,
     /// The limits of joints that it passes.
     pub limits: Vec<PassedLimit>,
-    /// The curves that figures draw, by their index in [`super::FigureCurve`], where this case is drawn.
-    pub curves: Option<BTreeMap<usize, KeptCurve>>,
+    /// What figures draw of it, where they do.
+    pub curves: Option<CaseCurves>,
 }
 
 /// The rows and the statistics of one case, in the files that all cases share.

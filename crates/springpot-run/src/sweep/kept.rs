@@ -2,15 +2,28 @@
 
 use super::Layout;
 use super::curve::KeptCurve;
+use super::wanted::Window;
+use crate::table::Totals;
 use std::collections::BTreeMap;
 
-/// The curves of a case that figures draw.
+/// What figures draw of a case.
+#[derive(Debug, Default)]
+pub struct CaseCurves {
+    /// Curves, by their index in [`super::FigureCurve`].
+    pub curves: BTreeMap<usize, KeptCurve>,
+    /// Statistics, by their index in [`super::FigureTotal`].
+    pub totals: BTreeMap<usize, Totals>,
+}
+
+/// The curves and statistics of a case that figures draw.
 #[derive(Debug)]
 pub(super) struct Kept<'a> {
-    /// Indices in a row of the columns that curves need.
+    /// Indices in a row of the columns that they need.
     columns: &'a [usize],
     /// By index, each with the places of its x and y in `columns`.
-    curves: BTreeMap<usize, ([usize; 2], KeptCurve)>,
+    curves: BTreeMap<usize, ([usize; 2], Option<Window>, KeptCurve)>,
+    /// By index, each with the place of its column.
+    totals: BTreeMap<usize, (usize, Option<Window>, Totals)>,
     /// The values of the row at hand.
     values: Vec<f64>,
 }
@@ -20,8 +33,16 @@ impl<'a> Kept<'a> {
     pub(super) fn of(layout: &'a Layout, index: usize) -> Option<Self> {
         let columns = layout.kept(index)?;
         let most = layout.most_points();
-        let curves = layout.drawn(index).map(|(curve, places)| (curve, (places, KeptCurve::new(most)))).collect();
-        Some(Self { columns, curves, values: Vec::with_capacity(columns.len()) })
+        let curves =
+            layout.drawn(index).map(|(curve, wanted)| (curve, (wanted.places, wanted.window, KeptCurve::new(most))));
+        let totals =
+            layout.summed(index).map(|(total, wanted)| (total, (wanted.place, wanted.window, Totals::default())));
+        Some(Self {
+            columns,
+            curves: curves.collect(),
+            totals: totals.collect(),
+            values: Vec::with_capacity(columns.len()),
+        })
     }
 
     /// Takes a row; returns its values for figures.
@@ -40,8 +61,17 @@ impl<'a> Kept<'a> {
     }
 
     fn add(&mut self) {
-        for ([x, y], curve) in self.curves.values_mut() {
-            curve.push(self.values[*x], self.values[*y]);
+        let values = &self.values;
+        let is_in = |window: &Option<Window>| window.is_none_or(|window| window.holds(values[window.t]));
+        for ([x, y], window, curve) in self.curves.values_mut() {
+            if is_in(window) {
+                curve.push(values[*x], values[*y]);
+            }
+        }
+        for (column, window, totals) in self.totals.values_mut() {
+            if is_in(window) {
+                totals.add(values[*column]);
+            }
         }
     }
 
@@ -50,8 +80,9 @@ impl<'a> Kept<'a> {
         self.columns.len()
     }
 
-    /// The curves, by their index in [`super::FigureCurve`].
-    pub(super) fn into_curves(self) -> BTreeMap<usize, KeptCurve> {
-        self.curves.into_iter().map(|(index, (_, curve))| (index, curve)).collect()
+    /// What it has kept.
+    pub(super) fn into_curves(self) -> CaseCurves {
+        let curves = self.curves.into_iter().map(|(index, (.., curve))| (index, curve)).collect();
+        CaseCurves { curves, totals: self.totals.into_iter().map(|(index, (.., totals))| (index, totals)).collect() }
     }
 }

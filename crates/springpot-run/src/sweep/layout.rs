@@ -1,7 +1,7 @@
 //! Which columns are written, and which are kept in memory for the figures.
 
 use super::curve::most_points;
-use super::wanted::{FigureData, Wanted};
+use super::wanted::{FigureData, Wanted, WantedCurve, WantedTotal};
 use crate::figures;
 use springpot::integrate::System;
 use springpot::table::Column;
@@ -75,10 +75,19 @@ impl Layout {
         self.figures.iter().any(|figure| figure.cases.binary_search(&case).is_ok()).then_some(self.wanted.kept())
     }
 
-    /// The curves that figures draw of `case`: their indices, and where x and y stand among the kept columns.
-    pub(super) fn drawn(&self, case: usize) -> impl Iterator<Item = (usize, [usize; 2])> {
-        let figures = self.figures.iter().filter(move |figure| figure.cases.binary_search(&case).is_ok());
-        figures.flat_map(|figure| &figure.curves).map(|curve| (curve.index, self.wanted.places(curve.index)))
+    /// The curves that figures draw of `case`, with their indices.
+    pub(super) fn drawn(&self, case: usize) -> impl Iterator<Item = (usize, WantedCurve)> {
+        self.drawing(case).flat_map(|figure| &figure.curves).map(|curve| (curve.index, self.wanted.curve(curve.index)))
+    }
+
+    /// The statistics that figures draw of `case`, with their indices.
+    pub(super) fn summed(&self, case: usize) -> impl Iterator<Item = (usize, WantedTotal)> {
+        self.drawing(case).flat_map(|figure| &figure.totals).map(|total| (total.index, self.wanted.total(total.index)))
+    }
+
+    /// The figures that draw `case`.
+    fn drawing(&self, case: usize) -> impl Iterator<Item = &FigureData> {
+        self.figures.iter().filter(move |figure| figure.cases.binary_search(&case).is_ok())
     }
 
     /// Points that each curve keeps at most.

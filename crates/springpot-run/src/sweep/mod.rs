@@ -13,10 +13,11 @@ mod wanted;
 pub use case::CaseResult;
 pub use checkpoint::{CheckpointError, Checkpoints, Origin, Unfinished};
 pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
+pub use kept::CaseCurves;
 pub use layout::Layout;
 pub use limits::{CasesPassing, LimitTally};
 pub(crate) use wanted::Wanted;
-pub use wanted::{FigureCurve, FigureData, LeftOut, MAX_CURVES};
+pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, is_within};
 
 use crate::table::disk::DiskFile;
 use crate::table::folder::Folder;

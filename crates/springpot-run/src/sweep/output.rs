@@ -2,14 +2,12 @@
 
 use super::Sweep;
 use super::checkpoint::{CaseFiles, CaseState, Written};
-use super::curve::KeptCurve;
-use super::kept::Kept;
+use super::kept::{CaseCurves, Kept};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_number, push_text};
 use springpot::integrate::{Checkpoint, LimitWatch, Rows, System};
 use springpot_scenario::{Plan, SweptValue};
-use std::collections::BTreeMap;
 use std::io;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -121,10 +119,7 @@ impl<'a> Output<'a> {
     }
 
     /// Hands over the last rows, writes down how the case ended, and lets the next case write.
-    pub(super) fn close(
-        mut self,
-        end: impl FnOnce(&mut Self) -> io::Result<()>,
-    ) -> io::Result<Option<BTreeMap<usize, KeptCurve>>> {
+    pub(super) fn close(mut self, end: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<Option<CaseCurves>> {
         self.hand_over()?;
         end(&mut self)?;
         self.rows.finish()?;

@@ -1,14 +1,17 @@
 //! What figures want of the rows: their curves, and the columns that those are made of.
 
 use super::curve::MAX_CURVES_IN_ALL;
-use crate::figures::FigureColumn;
+use crate::figures::{FigureColumn, Look};
 use crate::table::matches;
 use springpot::table::Column;
 use springpot_scenario::units::Unit;
-use springpot_scenario::{Cases, ColumnGlob, FigurePlan, RefusalKind, Refusals};
+use springpot_scenario::{Cases, ColumnGlob, FigurePlan, RefusalKind, Refusals, Statistic};
 
 /// Most curves of one figure; a figure of more is left out with a word.
 pub const MAX_CURVES: usize = 64;
+
+/// Most cases that the figures of statistics draw.
+const MAX_SUMMED: usize = 100_000;
 
 /// Which data a figure draws.
 #[derive(Debug, Clone, Default)]
@@ -17,6 +20,12 @@ pub struct FigureData {
     pub cases: Vec<usize>,
     /// The curves of each of them.
     pub curves: Vec<FigureCurve>,
+    /// The statistics of each of them.
+    pub totals: Vec<FigureTotal>,
+    /// The abscissa of the statistics.
+    pub over: Option<Abscissa>,
+    /// How it looks.
+    pub look: Look,
     /// Why it is not drawn; it has no cases and no curves then.
     pub left_out: Option<LeftOut>,
 }
@@ -30,6 +39,64 @@ pub struct FigureCurve {
     pub x: FigureColumn,
     /// The ordinate.
     pub y: FigureColumn,
+}
+
+/// A statistic of every case that a figure draws.
+#[derive(Debug, Clone)]
+pub struct FigureTotal {
+    /// Its index in [`super::CaseResult`].
+    pub index: usize,
+    /// Which it is.
+    pub statistic: Statistic,
+    /// Its column.
+    pub y: FigureColumn,
+}
+
+/// A swept parameter as an abscissa.
+#[derive(Debug, Clone)]
+pub struct Abscissa {
+    /// Its sweep.
+    pub axis: usize,
+    /// What stands there.
+    pub column: FigureColumn,
+    /// Its values, as `column` takes them.
+    pub values: Vec<f64>,
+}
+
+/// Rows with t in between.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Window {
+    /// Where t stands among the kept columns.
+    pub(super) t: usize,
+    from: f64,
+    to: f64,
+}
+
+impl Window {
+    /// Whether a row belongs to it, the rounding of its time aside.
+    pub(super) fn holds(&self, t: f64) -> bool {
+        is_within([self.from, self.to], t)
+    }
+}
+
+/// Whether a time is in a window, its rounding aside.
+pub fn is_within([from, to]: [f64; 2], t: f64) -> bool {
+    let slack = 1e-9 * (to - from);
+    t >= from - slack && t <= to + slack
+}
+
+/// A curve of a case: places of x and y among the kept columns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct WantedCurve {
+    pub(super) places: [usize; 2],
+    pub(super) window: Option<Window>,
+}
+
+/// Statistics of a column, by its place among the kept ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct WantedTotal {
+    pub(super) place: usize,
+    pub(super) window: Option<Window>,
 }
 
 /// Why a figure is not drawn.
@@ -49,6 +116,12 @@ pub enum LeftOut {
         /// Curves that they would have.
         curves: usize,
     },
+    /// It takes statistics of too many cases.
+    #[error("it would draw {cases} cases; choose some with `where` (at most {MAX_SUMMED})")]
+    Cases {
+        /// Cases that it would draw.
+        cases: usize,
+    },
 }
 
 /// The columns of a run, and those of them that figures want.
@@ -58,8 +131,9 @@ pub(crate) struct Wanted {
     columns: Vec<Column>,
     /// Indices into `columns` of those that are kept.
     kept: Vec<usize>,
-    /// Curves of a case: indices into `kept` of x and y.
-    curves: Vec<[usize; 2]>,
+    /// Curves and statistics of a case.
+    curves: Vec<WantedCurve>,
+    totals: Vec<WantedTotal>,
     /// Curves of all cases and figures so far.
     count: usize,
 }
@@ -67,7 +141,7 @@ pub(crate) struct Wanted {
 impl Wanted {
     /// Of a run with these columns: nothing yet.
     pub(super) fn new(columns: Vec<Column>) -> Self {
-        Self { columns, kept: Vec::new(), curves: Vec::new(), count: 0 }
+        Self { columns, kept: Vec::new(), curves: Vec::new(), totals: Vec::new(), count: 0 }
     }
 
     /// All columns of a run.
@@ -80,9 +154,35 @@ impl Wanted {
         &self.kept
     }
 
-    /// Where x and y of a curve stand among the kept columns.
-    pub(super) fn places(&self, curve: usize) -> [usize; 2] {
-        self.curves[curve]
+    /// A curve.
+    pub(super) fn curve(&self, index: usize) -> WantedCurve {
+        self.curves[index]
+    }
+
+    /// Statistics of a column.
+    pub(super) fn total(&self, index: usize) -> WantedTotal {
+        self.totals[index]
+    }
+
+    /// The window of a figure; keeps the times for it.
+    fn window(&mut self, figure: &FigurePlan) -> Option<Window> {
+        let [from, to] = figure.look.window?;
+        let t = self.columns.iter().position(|column| column.name == "t")?;
+        Some(Window { t: place(&mut self.kept, t), from, to })
+    }
+
+    /// A column as a figure draws it.
+    ///
+    /// # Errors
+    /// Units of the figure that do not fit it.
+    pub(crate) fn drawn(&self, figure: &FigurePlan, column: usize) -> Result<FigureColumn, Refusals> {
+        figure_column(figure, &self.columns[column])
+    }
+
+    /// Refuses units and labels that match no column.
+    fn check_names(&self, figure: &FigurePlan) -> Result<(), Refusals> {
+        let labels = figure.look.labels.iter().map(|label| &label.column);
+        figure.units.iter().map(|unit| &unit.column).chain(labels).try_for_each(|glob| self.found(glob).map(drop))
     }
 
     /// Indices of the columns that a glob matches; at least one.
@@ -111,32 +211,82 @@ impl Wanted {
         figure: &FigurePlan,
         curves: &[[usize; 2]],
     ) -> Result<FigureData, Refusals> {
-        for unit in &figure.units {
-            self.found(&unit.column)?;
-        }
-        let column = |k: usize| figure_column(figure, &self.columns[k]);
+        self.check_names(figure)?;
+        let column = |k: usize| self.drawn(figure, k);
         let columns =
             curves.iter().map(|[x, y]| Ok((column(*x)?, column(*y)?))).collect::<Result<Vec<_>, Refusals>>()?;
+        let look = match columns.first() {
+            Some((x, _)) => {
+                let y: Vec<FigureColumn> = columns.iter().map(|(_, y)| y.clone()).collect();
+                Look::of(figure, x, &y)?
+            }
+            None => Look::default(),
+        };
         let fixed = |axis: usize| figure.selection.iter().find(|s| s.axis == axis).map(|s| s.value);
         let counts = (0..cases.axis_count()).map(|axis| if fixed(axis).is_some() { 1 } else { cases.axis_len(axis) });
         let count = counts.product::<usize>().saturating_mul(curves.len());
-        let in_all = self.count.saturating_add(count);
-        let left_out = match count {
-            curves if curves > MAX_CURVES => Some(LeftOut::Curves { curves }),
-            _ if in_all > MAX_CURVES_IN_ALL => Some(LeftOut::InAll { curves: in_all }),
-            _ => None,
-        };
-        if left_out.is_some() {
-            return Ok(FigureData { left_out, ..FigureData::default() });
+        if let Some(left_out) = self.count_in(count) {
+            return Ok(FigureData { left_out: Some(left_out), ..FigureData::default() });
         }
-        self.count = in_all;
+        let window = self.window(figure);
         let kept = curves.iter().map(|curve| curve.map(|k| place(&mut self.kept, k))).collect::<Vec<_>>();
-        let curves = kept.into_iter().zip(columns).map(|(kept, (x, y))| FigureCurve {
-            index: place(&mut self.curves, kept),
+        let curves = kept.into_iter().zip(columns).map(|(places, (x, y))| FigureCurve {
+            index: place(&mut self.curves, WantedCurve { places, window }),
             x,
             y,
         });
-        Ok(FigureData { curves: curves.collect(), cases: selected_cases(cases, &fixed), left_out })
+        let (curves, cases) = (curves.collect(), selected_cases(cases, &fixed));
+        Ok(FigureData { curves, cases, look, ..FigureData::default() })
+    }
+
+    /// Keeps, of every case that `figure` selects, these statistics of columns, over a swept parameter.
+    ///
+    /// # Errors
+    /// As [`Self::curves`].
+    pub(crate) fn totals(
+        &mut self,
+        cases: &Cases,
+        figure: &FigurePlan,
+        over: Abscissa,
+        totals: &[(Statistic, usize)],
+    ) -> Result<FigureData, Refusals> {
+        self.check_names(figure)?;
+        let column = |(statistic, k): &(Statistic, usize)| {
+            let column = self.drawn(figure, *k)?;
+            let name = column.name();
+            let label = column.label.clone().unwrap_or_else(|| format!("{} of {name}", statistic.name()));
+            Ok(FigureColumn { label: Some(label), ..column })
+        };
+        let columns = totals.iter().map(column).collect::<Result<Vec<_>, Refusals>>()?;
+        let look = Look::of(figure, &over.column, &columns)?;
+        let fixed = |axis: usize| figure.selection.iter().find(|s| s.axis == axis).map(|s| s.value);
+        let len = |axis: usize| if fixed(axis).is_some() { 1 } else { cases.axis_len(axis) };
+        let others = (0..cases.axis_count()).filter(|axis| *axis != over.axis).map(len).product::<usize>();
+        let summed = others.saturating_mul(len(over.axis));
+        let too_many = (summed > MAX_SUMMED).then_some(LeftOut::Cases { cases: summed });
+        if let Some(left_out) = too_many.or_else(|| self.count_in(others.saturating_mul(totals.len()))) {
+            return Ok(FigureData { left_out: Some(left_out), ..FigureData::default() });
+        }
+        let window = self.window(figure);
+        let totals = totals.iter().zip(columns).map(|((statistic, k), y)| {
+            let wanted = WantedTotal { place: place(&mut self.kept, *k), window };
+            FigureTotal { index: place(&mut self.totals, wanted), statistic: *statistic, y }
+        });
+        let (totals, cases) = (totals.collect(), selected_cases(cases, &fixed));
+        Ok(FigureData { totals, cases, look, over: Some(over), ..FigureData::default() })
+    }
+
+    /// Counts the curves of one more figure, or says why there are too many.
+    fn count_in(&mut self, count: usize) -> Option<LeftOut> {
+        let in_all = self.count.saturating_add(count);
+        if count > MAX_CURVES {
+            return Some(LeftOut::Curves { curves: count });
+        }
+        if in_all > MAX_CURVES_IN_ALL {
+            return Some(LeftOut::InAll { curves: in_all });
+        }
+        self.count = in_all;
+        None
     }
 }
 
@@ -159,7 +309,10 @@ fn figure_column(figure: &FigurePlan, column: &Column) -> Result<FigureColumn, R
         }
         unit = Some((wanted.unit.clone(), parsed));
     }
-    Ok(FigureColumn { column: column.clone(), unit })
+    let labels = figure.look.labels.iter().rev();
+    let label =
+        labels.into_iter().find(|label| matches(&label.column.text, &column.name)).map(|label| label.text.clone());
+    Ok(FigureColumn { column: column.clone(), unit, label })
 }
 
 /// Index of an item in a list, to which it is added where it is missing.

@@ -37,9 +37,39 @@ impl Statistics {
     }
 }
 
+/// Running statistics of the rows that a figure draws.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Totals {
+    /// Smallest, largest and root-mean-square value.
+    pub statistics: Statistics,
+    sum: f64,
+    last: Option<f64>,
+}
+
+impl Totals {
+    /// Takes one more value.
+    pub fn add(&mut self, value: f64) {
+        self.statistics.add(value);
+        self.last = Some(value);
+        if value.is_finite() {
+            self.sum += value;
+        }
+    }
+
+    /// Mean over the rows; NaN without any.
+    pub fn mean(&self) -> f64 {
+        self.sum / self.statistics.count as f64
+    }
+
+    /// Value of the last row; NaN without any, or where it is empty.
+    pub fn last(&self) -> f64 {
+        self.last.unwrap_or(f64::NAN)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Statistics;
+    use super::{Statistics, Totals};
 
     #[test]
     fn skips_empty_fields() {
@@ -48,5 +78,15 @@ mod tests {
         [3.0, f64::NAN, -4.0].into_iter().for_each(|value| statistics.add(value));
         assert_eq!((statistics.min, statistics.max), (-4.0, 3.0));
         assert_eq!(statistics.rms(), 12.5f64.sqrt());
+    }
+
+    #[test]
+    fn totals_tell_mean_and_last() {
+        let mut totals = Totals::default();
+        assert!(totals.mean().is_nan() && totals.last().is_nan());
+        [1.0, f64::NAN, 5.0].into_iter().for_each(|value| totals.add(value));
+        assert_eq!((totals.mean(), totals.last(), totals.statistics.max), (3.0, 5.0, 5.0));
+        totals.add(f64::NAN);
+        assert!(totals.last().is_nan());
     }
 }

@@ -1,26 +1,25 @@
 //! Curves: columns over a column.
 
 use super::super::keys::{Key, Need, Shape, key};
-use super::super::reader::{Field, Read, Table};
-use super::FigureKind;
+use super::super::reader::Read;
 use super::columns::{ColumnGlob, glob, globs};
+use super::{DRAWN, FigureKind, Reading};
 use serde_json::{Map, Value, json};
 
 /// Its word in `kind`.
 pub(super) const WORD: &str = "curves";
 
-pub(super) const X: Key = key("x", Shape::Column, Need::Word("t"), "Column of the abscissa.").only(&[WORD]);
-
 pub(super) const Y: Key = key(
     "y",
     Shape::Columns,
     Need::Required("y = [\"strut.Q.q2\"]: the columns to draw"),
-    "A column, a glob such as \"strut.Q.*\", or an array of them.",
+    "A column, a glob such as \"strut.Q.*\", or an array of them; of a summary statistics such as \"max(strut.force)\".",
 )
-.only(&[WORD]);
+.only(&DRAWN);
 
-/// Reads it; `item` is the whole figure.
-pub(super) fn read(table: &Table<'_>, item: &Field<'_>) -> Read<FigureKind> {
+/// Reads it.
+pub(super) fn read(reading: &Reading<'_>) -> Read<FigureKind> {
+    let Reading { table, item, .. } = reading;
     let x = match table.get("x") {
         Some(field) => glob(&field),
         None => Ok(ColumnGlob { text: "t".to_owned(), place: item.node.place.clone() }),

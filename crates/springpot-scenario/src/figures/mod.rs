@@ -5,17 +5,23 @@
 
 mod columns;
 mod curves;
+mod look;
 mod selection;
+mod summary;
 
 pub(crate) use columns::read_columns;
 pub use columns::{ColumnGlob, FigureUnit};
+pub use look::{AxisLook, AxisRange, FigureFormat, FigureLabel, Look, RangeEnd};
 pub use selection::Selection;
+pub use summary::{Statistic, Summarised, SweptAxis};
 
+use super::document::Value as DocumentValue;
 use super::keys::{Keys, Need, Shape, key};
 use super::names;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::{Place, RefusalKind};
 use super::sweep::Axis;
+use super::units;
 use selection::Finder;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
@@ -31,21 +37,45 @@ pub enum FigureKind {
         /// Columns of the ordinate.
         y: Vec<ColumnGlob>,
     },
+    /// A statistic of columns over a swept parameter.
+    Summary {
+        /// The sweep of the abscissa.
+        x: SweptAxis,
+        /// The statistics.
+        y: Vec<Summarised>,
+    },
     /// The robot and its elements at t = 0.
     Robot,
 }
+
+const CURVES: &str = curves::WORD;
+const ROBOT: &str = "robot";
+/// The kinds that have axes.
+const DRAWN: [&str; 2] = [CURVES, summary::WORD];
 
 /// A kind of figure.
 struct Kind {
     /// What stands under `kind`.
     word: &'static str,
-    /// Reads its own keys of a table; the field is the whole figure.
-    read: fn(&Table<'_>, &Field<'_>) -> Read<FigureKind>,
+    /// Reads its own keys.
+    read: fn(&Reading<'_>) -> Read<FigureKind>,
+}
+
+/// A figure that is being read.
+struct Reading<'a> {
+    root: &'a Table<'a>,
+    /// The whole figure, and its table.
+    item: &'a Field<'a>,
+    table: &'a Table<'a>,
+    axes: &'a [Axis],
 }
 
 /// In the order in which messages list them.
-static KINDS: [Kind; 2] =
-    [Kind { word: curves::WORD, read: curves::read }, Kind { word: "robot", read: |_, _| Ok(FigureKind::Robot) }];
+static KINDS: [Kind; 3] = [
+    Kind { word: CURVES, read: curves::read },
+    Kind { word: summary::WORD, read: summary::read },
+    Kind { word: ROBOT, read: |_| Ok(FigureKind::Robot) },
+];
 
 impl FigureKind {
     /// Its row, and what run.json says of its own keys.
@@ -53,28 +83,41 @@ impl FigureKind {
         // Constants, so that a kind without a row does not build.
         match self {
             Self::Curves { x, y } => (const { &KINDS[0] }, curves::record(x, y)),
-            Self::Robot => (const { &KINDS[1] }, Map::new()),
+            Self::Summary { x, y } => (const { &KINDS[1] }, summary::record(x, y)),
+            Self::Robot => (const { &KINDS[2] }, Map::new()),
         }
     }
 }
 
 /// The kinds of it that `only` knows are the kinds of figures.
 pub(crate) static FIGURE: Keys = Keys {
-    words: "A figure of curves, or of the robot.",
+    words: "A figure of curves, of statistics, or of the robot.",
     keys: &[
         key("name", Shape::FileName, Need::Said("figure-1, …"), "Name of its files without an ending."),
         key("title", Shape::Text, Need::Said("none"), "Title."),
-        curves::X,
+        summary::X.only(&DRAWN),
         curves::Y,
-        key("units", Shape::TextsByName, Need::Said("SI"), "Units to draw columns in, by column or glob.")
-            .only(&[curves::WORD]),
+        key("units", Shape::TextsByName, Need::Said("SI"), "Units to draw columns in, by column or glob.").only(&DRAWN),
         key("where", Shape::ByName, Need::Said("all cases"), "Only the cases with these values, by swept path."),
         key(
             "kind",
             Shape::Words(|| KINDS.iter().map(|kind| kind.word).collect()),
-            Need::Word(curves::WORD),
+            Need::Word(CURVES),
             "What is drawn.",
         ),
+        look::X_RANGE,
+        look::Y_RANGE,
+        look::X_SCALE,
+        look::Y_SCALE,
+        look::ASPECT,
+        look::SIZE,
+        look::X_LABEL,
+        look::Y_LABEL,
+        look::LABELS,
+        look::LEGEND,
+        look::WINDOW,
+        look::FORMATS,
+        look::VIEW,
     ],
 };
 
@@ -92,6 +135,8 @@ pub struct FigurePlan {
     pub kind: FigureKind,
     /// Units to draw columns in.
     pub units: Vec<FigureUnit>,
+    /// Ranges, scales, size, words.
+    pub look: Look,
     /// The cases that are drawn: those with these values of the sweeps.
     pub selection: Vec<Selection>,
     /// Where it stands in the scenario.
@@ -106,7 +151,9 @@ pub(crate) fn read(root: &Table<'_>, axes: &[Axis], find: &Finder<'_>) -> Read<A
         let message = format!("holds {} figures; at most {MAX_FIGURES} are drawn", items.len());
         return Err(field.refuse(RefusalKind::TooLarge, message, None));
     }
-    let figures = all(items.iter().enumerate().map(|(i, item)| figure(root, item, i, axes, find)))?;
+    let end = end(root, axes);
+    let whole = Whole { root, axes, find, end };
+    let figures = all(items.iter().enumerate().map(|(i, item)| figure(&whole, item, i)))?;
     let mut seen: HashMap<String, usize> = HashMap::new();
     for figure in &figures {
         let line = figure.place.position().0;
@@ -119,32 +166,67 @@ pub(crate) fn read(root: &Table<'_>, axes: &[Axis], find: &Finder<'_>) -> Read<A
     Ok(figures.into())
 }
 
-fn figure(root: &Table<'_>, item: &Field<'_>, i: usize, axes: &[Axis], find: &Finder<'_>) -> Read<FigurePlan> {
+/// What all figures are read with.
+struct Whole<'a> {
+    root: &'a Table<'a>,
+    axes: &'a [Axis],
+    find: &'a Finder<'a>,
+    /// End of the run, s, where it is one number.
+    end: Option<f64>,
+}
+
+/// The end of the run, s; `None` where it is swept or is no plain number.
+fn end(root: &Table<'_>, axes: &[Axis]) -> Option<f64> {
+    let mut swept = axes.iter().flat_map(|axis| &axis.targets);
+    if swept.any(|target| target.written == "time.end") {
+        return None;
+    }
+    match &root.node.get("time")?.get("end")?.value {
+        DocumentValue::Number { value, .. } => Some(*value),
+        DocumentValue::Text(text) => units::parse_quantity(text, "s", &|_| None).ok(),
+        _ => None,
+    }
+}
+
+fn figure(whole: &Whole<'_>, item: &Field<'_>, i: usize) -> Read<FigurePlan> {
+    let &Whole { root, axes, find, end } = whole;
     let default = format!("figure-{}", i + 1);
     let table = Table::of(item.ctx, item.node, format!("[[figure]] {}", i + 1), &FIGURE)?;
     let name = table.get("name").map_or(Ok(default), |field| file_name(&field));
     let title = table.get("title").map(|field| field.text().map(str::to_owned)).transpose();
-    let kind = kind(&table, item);
+    let kind = kind(&Reading { root, item, table: &table, axes });
     let units = table.get("units").map_or(Ok(Vec::new()), |field| columns::units(&field));
     let selection = table.get("where").map_or(Ok(Vec::new()), |field| selection::selection(root, &field, axes, find));
+    let kind = kind?;
+    let look = look::read(&table, kind == FigureKind::Robot, end);
+    let selection = selection?;
+    if let FigureKind::Summary { x, .. } = &kind
+        && selection.iter().any(|chosen| chosen.axis == x.axis)
+    {
+        let message = format!("[[figure]] {}: `where` chooses one value of {}, over which it is drawn", i + 1, x.path);
+        let refusal = item.node.place.refuse(RefusalKind::Rule, message);
+        return Err(item.ctx.refuse(refusal.help("leave it out of `where`")));
+    }
     Ok(FigurePlan {
         name: name?,
         title: title?,
-        kind: kind?,
+        kind,
         units: units?,
-        selection: selection?,
+        look: look?,
+        selection,
         place: item.node.place.clone(),
     })
 }
 
-fn kind(table: &Table<'_>, item: &Field<'_>) -> Read<FigureKind> {
+fn kind(reading: &Reading<'_>) -> Read<FigureKind> {
+    let table = reading.table;
     let word = table.word("kind", "kind of figure")?;
     if let Some(field) = FIGURE.not_of(word).find_map(|key| table.get(key.name)) {
         let message = format!("has no meaning where kind = {word:?}");
         return Err(field.refuse(RefusalKind::Rule, message, Some(format!("leave `{}` out", field.key))));
     }
     let kind = KINDS.iter().find(|kind| kind.word == word).ok_or(Refused)?;
-    (kind.read)(table, item)
+    (kind.read)(reading)
 }
 
 fn file_name(field: &Field<'_>) -> Read<String> {
@@ -166,6 +248,7 @@ impl FigurePlan {
         let mut record = json!({ "name": self.name, "title": self.title, "units": units, "kind": kind.word });
         if let Value::Object(record) = &mut record {
             record.extend(own);
+            record.extend(self.look.record());
         }
         record
     }

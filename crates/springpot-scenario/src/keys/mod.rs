@@ -74,6 +74,10 @@ pub(crate) enum Shape {
     Whole(i64, Option<i64>),
     /// Three numbers in a unit.
     Vector(&'static str),
+    /// Two numbers in a unit.
+    Pair(&'static str),
+    /// Two numbers or quantities of what is drawn.
+    Range,
     /// Any number of numbers in a unit, zero and above.
     Numbers(&'static str),
     /// An end of a span: a number in the unit of what is swept.
@@ -104,6 +108,12 @@ pub(crate) enum Shape {
     ByJoint(Each),
     /// A table of texts under names that other keys give.
     TextsByName,
+    /// A table of texts as above, or false.
+    TextsByNameOrFalse,
+    /// A text, or false.
+    TextOrFalse,
+    /// An array of these words.
+    WordList(fn() -> Vec<&'static str>),
     /// A table of anything under names that other keys give.
     ByName,
     /// A table of numbers in any units, under names of its own.
@@ -219,7 +229,7 @@ impl Key {
     /// The words that may stand there; none where it takes no words.
     pub(crate) fn choices(&self) -> Vec<&'static str> {
         match self.shape {
-            Shape::Words(words) => words(),
+            Shape::Words(words) | Shape::WordList(words) => words(),
             Shape::Kinds(kinds) => kinds().into_iter().map(|(name, _)| name).collect(),
             _ => Vec::new(),
         }

@@ -106,7 +106,11 @@ fn documented(text: &str, heading: &str) -> Vec<Vec<Row>> {
 /// A unit as the documents write it.
 fn unit_of(key: &Key) -> String {
     let unit = match key.shape {
-        Shape::Number(unit, _) | Shape::Vector(unit) | Shape::Numbers(unit) | Shape::Signal(unit) => unit,
+        Shape::Number(unit, _)
+        | Shape::Vector(unit)
+        | Shape::Pair(unit)
+        | Shape::Numbers(unit)
+        | Shape::Signal(unit) => unit,
         Shape::JointNumber([turning, _], _) | Shape::JointNumberOr([turning, _], ..) => turning,
         _ => "",
     };

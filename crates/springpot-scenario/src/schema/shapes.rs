@@ -62,7 +62,9 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             }
             schema
         }
-        Shape::Vector(unit) => vector(unit, &words),
+        Shape::Vector(unit) => several(3, unit, &words),
+        Shape::Pair(unit) => several(2, unit, &words),
+        Shape::Range => several(2, "the unit that is drawn", &words),
         Shape::Numbers(unit) => json!({
             "type": "array", "items": bounded(quantity(unit, "A number."), Bound::NotNegative), "minItems": 1,
             "description": words,
@@ -114,6 +116,13 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         Shape::UnitOrByName => {
             json!({ "type": ["string", "object"], "additionalProperties": text(), "description": words })
         }
+        Shape::WordList(_) => json!({
+            "type": "array", "items": one_of(&key.choices()), "minItems": 1, "description": words,
+        }),
+        Shape::TextOrFalse => json!({ "anyOf": [text(), { "const": false }], "description": words }),
+        Shape::TextsByNameOrFalse => json!({
+            "anyOf": [{ "type": "object", "additionalProperties": text() }, { "const": false }], "description": words,
+        }),
         Shape::TextsByName => json!({ "type": "object", "additionalProperties": text(), "description": words }),
         Shape::ByName => json!({ "type": "object", "description": words }),
         Shape::Law => {
@@ -190,11 +199,11 @@ fn joint_number([turning, sliding]: [&str; 2], bound: Bound, description: &str) 
     bounded(quantity(&format!("{turning} (prismatic: {sliding})"), description), bound)
 }
 
-/// Three numbers or quantities.
-fn vector(unit: &str, description: &str) -> Value {
+/// So many numbers or quantities.
+fn several(count: usize, unit: &str, description: &str) -> Value {
     let items = quantity(unit, "A component.");
     let description = if unit.is_empty() { description.to_owned() } else { format!("{description} In {unit}.") };
-    json!({ "type": "array", "items": items, "minItems": 3, "maxItems": 3, "description": description })
+    json!({ "type": "array", "items": items, "minItems": count, "maxItems": count, "description": description })
 }
 
 /// A function of time in `unit`.

@@ -1,0 +1,108 @@
+//! Statistics of columns over a swept parameter.
+
+use super::panels::{Curves, DrawnCase, FigureColumn};
+use super::source::{FreeSweeps, Source};
+use crate::labels;
+use crate::sweep::{Abscissa, FigureData, FigureTotal, Wanted};
+use crate::table::Totals;
+use springpot::table::Column;
+use springpot_report::Rendered;
+use springpot_scenario::units::Unit;
+use springpot_scenario::{Cases, FigurePlan, RangeEnd, RefusalKind, Refusals, Statistic, Summarised, SweptAxis};
+
+/// A curve for each statistic and each value of the other sweeps.
+pub(super) fn data(
+    cases: &Cases,
+    figure: &FigurePlan,
+    wanted: &mut Wanted,
+    x: &SweptAxis,
+    y: &[Summarised],
+) -> Result<FigureData, Refusals> {
+    let mut totals = Vec::new();
+    for summarised in y {
+        for column in wanted.found(&summarised.columns)? {
+            if !totals.contains(&(summarised.statistic, column)) {
+                totals.push((summarised.statistic, column));
+            }
+        }
+    }
+    wanted.totals(cases, figure, abscissa(cases, figure, x)?, &totals)
+}
+
+/// The swept values as numbers in the unit that the first is written in.
+fn abscissa(cases: &Cases, figure: &FigurePlan, x: &SweptAxis) -> Result<Abscissa, Refusals> {
+    let refuse =
+        |message: String, help: &str| -> Refusals { figure.place.refuse(RefusalKind::Rule, message).help(help).into() };
+    let mut unit: Option<Option<(String, Unit)>> = None;
+    let mut values = Vec::with_capacity(cases.axis_len(x.axis));
+    for k in 0..cases.axis_len(x.axis) {
+        let written = cases.axis_label_of(x.axis, &x.path, k);
+        let Ok(end) = RangeEnd::parse(&written) else {
+            let message = format!("a summary over {} needs numbers, and {written} is none", x.path);
+            return Err(refuse(message, "draw it over a parameter that is swept over numbers or quantities"));
+        };
+        let own = end.unit.as_ref().and_then(|text| Some((text.clone(), Unit::parse(text, &|_| None).ok()?)));
+        let first = unit.get_or_insert_with(|| own.clone());
+        let value = match (first, &own) {
+            (None, None) => end.number,
+            (Some((_, first)), Some((_, own))) if first.dimension() == own.dimension() => own.to_si(end.number),
+            _ => {
+                let message = format!("a summary over {} needs values in one unit, and {written} has another", x.path);
+                return Err(refuse(message, "write all values of the sweep with one unit, or all without"));
+            }
+        };
+        values.push(value);
+    }
+    let unit = unit.flatten();
+    let column = Column::new(x.path.as_str(), unit.as_ref().map_or("", |(text, _)| text), "swept parameter");
+    let column = FigureColumn { column, unit, label: Some(labels::parameter(&x.path)) };
+    Ok(Abscissa { axis: x.axis, column, values })
+}
+
+/// Cases that differ in the abscissa alone: values of the other sweeps, and of each statistic the points.
+struct Summed {
+    values: Vec<(String, String)>,
+    points: Vec<Vec<[f64; 2]>>,
+}
+
+pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
+    let data = source.drawn()?;
+    let over = data.over.as_ref().ok_or("it has no abscissa")?;
+    let sweeps = FreeSweeps::of(source, Some(over.axis));
+    let mut curves: Vec<Summed> = Vec::new();
+    for &index in &data.cases {
+        let values = sweeps.values(source.cases, index);
+        let at = curves.iter().position(|other| other.values == values).unwrap_or_else(|| {
+            curves.push(Summed { values, points: vec![Vec::new(); data.totals.len()] });
+            curves.len() - 1
+        });
+        let x = over.values[source.cases.position(index)[over.axis]];
+        let kept = source.ended(index);
+        for (total, points) in data.totals.iter().zip(&mut curves[at].points) {
+            let y = kept.and_then(|kept| kept.totals.get(&total.index)).map_or(f64::NAN, |totals| value(total, totals));
+            points.push([x, y]);
+        }
+    }
+    for points in curves.iter_mut().flat_map(|curve| &mut curve.points) {
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    }
+    let y: Vec<FigureColumn> = data.totals.iter().map(|total| total.y.clone()).collect();
+    let title = source.figure.title.as_deref();
+    let drawn = curves.iter().map(|Summed { values, points }| DrawnCase {
+        source: None,
+        values: values.clone(),
+        points: points.iter().map(Vec::as_slice).collect(),
+    });
+    let what = Curves { title, x: &over.column, y: &y, look: &data.look, is_marked: true };
+    what.plot(drawn).render().map_err(|error| error.to_string())
+}
+
+fn value(total: &FigureTotal, totals: &Totals) -> f64 {
+    match total.statistic {
+        Statistic::Min => totals.statistics.min,
+        Statistic::Max => totals.statistics.max,
+        Statistic::Rms => totals.statistics.rms(),
+        Statistic::Mean => totals.mean(),
+        Statistic::Final => totals.last(),
+    }
+}
