@@ -83,8 +83,11 @@ pub(crate) fn warning(message: impl Into<String>, help: Option<String>) {
 
 /// Prints what the robot's files hold that is not used, or lack and is assumed.
 pub(crate) fn robot_warnings(cases: &Cases) {
-    for message in cases.warnings() {
-        warning(message, None);
+    let messages = cases.warnings();
+    let last = messages.len().saturating_sub(1);
+    for (k, message) in messages.into_iter().enumerate() {
+        let help = || format!("once they are read: accept = {:?} in [robot]", cases.warning_kinds());
+        warning(message, (k == last).then(help));
     }
 }
 

@@ -190,6 +190,11 @@ impl Cases {
         self.robots.warnings()
     }
 
+    /// What `accept` of `[robot]` would say to have none of [`Cases::warnings`].
+    pub fn warning_kinds(&self) -> Vec<&'static str> {
+        self.robots.told_kinds()
+    }
+
     /// The figures.
     pub fn figures(&self) -> &[FigurePlan] {
         &self.figures

@@ -4,7 +4,7 @@ use super::plan::{BodyPlaces, UrdfPlan};
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::Parts;
-use springpot::model::urdf::{Urdf, UrdfError, UrdfOptions, UrdfProblem};
+use springpot::model::urdf::{Urdf, UrdfError, UrdfOptions, UrdfProblem, UrdfWarningKind};
 use springpot::model::{Label, Model};
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -17,7 +17,11 @@ const MAX_FOLDERS: usize = 1_000;
 
 /// URDF files that were read, in the order of their first use, so that the cases of a sweep share them.
 #[derive(Debug, Default)]
-pub(crate) struct UrdfCache(Mutex<Vec<Entry>>);
+pub(crate) struct UrdfCache {
+    entries: Mutex<Vec<Entry>>,
+    /// Kinds of warnings that scenarios accept.
+    accepted: Mutex<HashSet<UrdfWarningKind>>,
+}
 
 #[derive(Debug)]
 struct Entry {
@@ -28,7 +32,7 @@ struct Entry {
 
 impl UrdfCache {
     fn read(&self, file: PathBuf, options: UrdfOptions) -> Result<Arc<Urdf>, UrdfError> {
-        let mut entries = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(entry) = entries.iter().find(|entry| entry.file == file && entry.options == options) {
             return Ok(entry.robot.clone());
         }
@@ -37,12 +41,25 @@ impl UrdfCache {
         Ok(robot)
     }
 
+    /// Names of the kinds of the warnings that are told.
+    pub(crate) fn told_kinds(&self) -> Vec<&'static str> {
+        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        let accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
+        let kinds = entries.iter().flat_map(|entry| entry.robot.warnings.iter().map(|warning| warning.kind));
+        let mut kinds: Vec<UrdfWarningKind> = kinds.filter(|kind| !accepted.contains(kind)).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds.into_iter().map(UrdfWarningKind::name).collect()
+    }
+
     /// What the files hold and the robots do without, each once, as `file: what`.
     pub(crate) fn warnings(&self) -> Vec<String> {
-        let entries = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        let accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
         let mut seen = HashSet::new();
         let all = entries.iter().flat_map(|Entry { file, robot, .. }| {
-            robot.warnings.iter().map(move |warning| format!("{}: {warning}", file.display()))
+            let told = robot.warnings.iter().filter(|warning| !accepted.contains(&warning.kind));
+            told.map(move |warning| format!("{}: {warning}", file.display()))
         });
         all.filter(|warning| seen.insert(warning.clone())).collect()
     }
@@ -53,7 +70,9 @@ pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>
     let (floating_base, ignore_mimic) = (table.flag("floating_base"), table.flag("ignore_mimic"));
     let package_path = table.get("package_path").map_or(Ok(Vec::new()), |field| folders(&field));
     let written = field.text()?.to_owned();
+    let accepted = table.get("accept").map_or(Ok(Vec::new()), |field| accepted(&field));
     let (floating_base, ignore_mimic, package_path) = (floating_base?, ignore_mimic?, package_path?);
+    field.ctx.robots.accepted.lock().unwrap_or_else(PoisonError::into_inner).extend(accepted?);
 
     let options = UrdfOptions {
         floating_base,
@@ -82,6 +101,15 @@ pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>
         model: Arc::new(model),
         urdf: Some(UrdfPlan { written, ignore_mimic, package_path, robot }),
     })
+}
+
+/// Kinds of warnings by their names.
+fn accepted(field: &Field<'_>) -> Read<Vec<UrdfWarningKind>> {
+    let items = field.items("an array of kinds of warnings")?;
+    all(items.iter().map(|item| {
+        let word = item.word("kind of warning")?;
+        UrdfWarningKind::ALL.into_iter().find(|kind| kind.name() == word).ok_or(Refused)
+    }))
 }
 
 /// One folder, or an array of them.

@@ -256,3 +256,31 @@ fn mistakes_of_writing_say_what_to_write() {
     let ended = Place::new().springpot(&["check", "arm.toml", "--set", "time.end=1e8"]);
     refused(&ended, &["--set:1:10: `end` of [time] makes 1000000000 rows"]);
 }
+
+#[test]
+fn warnings_of_a_robot_are_accepted_and_limits_in_degrees_are_told() {
+    let place = Place::new();
+    let link = |name: &str| {
+        format!(
+            "<link name=\"{name}\"><inertial><mass value=\"1\"/>\
+             <inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>"
+        )
+    };
+    let joint = "<joint name=\"q\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 0 1\"/>\
+                 <limit lower=\"-360\" upper=\"360\" effort=\"1\" velocity=\"10\"/></joint>";
+    let robot = format!("<robot name=\"r\">{}{}{joint}<transmission name=\"t\"/></robot>", link("a"), link("b"));
+    place.write("r.urdf", robot);
+    let text = "[robot]\nurdf = \"r.urdf\"\n[motion]\nkind = \"prescribed\"\njoints = { q = \"0.1*sin(t)\" }\n[time]\nend = 0.1\noutput_step = 0.1\n";
+    place.write("r.toml", text);
+    let limits =
+        "<limit> of more than three turns: degrees? radians are used: joint \"q\" (line 1: lower -360 and upper 360)";
+    let checked = place.done(&["check", "r.toml", "--quiet"]);
+    says(&checked, &[limits, "not used: 1 <transmission>", "accept = [\"limit-in-degrees\", \"not-used\"] in [robot]"]);
+    says(&place.done(&["run", "r.toml", "--quiet"]), &[limits]);
+    place.write("r.toml", text.replace("\"r.urdf\"", "\"r.urdf\"\naccept = [\"limit-in-degrees\", \"not-used\"]"));
+    for command in ["check", "run"] {
+        assert_eq!(place.done(&[command, "r.toml", "--quiet"]).stderr, "");
+    }
+    let wrong = ["check", "r.toml", "--set", "robot.accept=[\"not-usd\"]"];
+    refused(&place.springpot(&wrong), &["which is no kind of warning", "did you mean `not-used`?"]);
+}

@@ -1,6 +1,7 @@
 //! `[robot]`.
 
 use super::{Bound, Key, Keys, Need, Shape, key};
+use springpot::model::urdf::UrdfWarningKind;
 use springpot::model::{FRICTION_SPEED, JointKind};
 
 /// What to write where a name is missing.
@@ -37,6 +38,13 @@ pub(crate) static ROBOT: Keys = Keys {
             Shape::Texts,
             Need::Said("[]"),
             "Folders that are packages or hold some, for package:// paths.",
+        )
+        .only(WITH_URDF),
+        key(
+            "accept",
+            Shape::WordList(|| UrdfWarningKind::ALL.map(UrdfWarningKind::name).to_vec()),
+            Need::Said("[]"),
+            "Kinds of warnings of the file that were read and need not be told again.",
         )
         .only(WITH_URDF),
     ],

@@ -8,6 +8,9 @@ use crate::model::spec::{JointKind, Limits, Space};
 /// Attributes of other programs and of later versions of the format.
 const UNUSED: [&str; 6] = ["acceleration", "deceleration", "jerk", "current", "command_effort", "gear_velocity"];
 
+/// A limit beyond this, rad, is one in degrees by the look of it.
+const MOST_TURN: f64 = 6.0 * std::f64::consts::PI;
+
 /// Reads the `<limit>` of a joint with an axis.
 ///
 /// The format asks for effort and velocity, and takes 0 for lower and upper that are left out; `inf` stands for no
@@ -69,6 +72,11 @@ pub(super) fn read<'a>(
         let what = format!("lower {lower} and upper {upper}");
         reader.warnings.add(UrdfWarningKind::SenselessLimit, owner, line, what);
     } else {
+        let farthest = [lower, upper].into_iter().filter(|x| x.is_finite()).fold(0.0, |most: f64, x| most.max(x.abs()));
+        if kind == JointKind::Revolute && farthest > MOST_TURN {
+            let what = format!("lower {lower} and upper {upper}");
+            reader.warnings.add(UrdfWarningKind::LimitInDegrees, owner, line, what);
+        }
         (limits.lower, limits.upper) = (lower, upper);
     }
     Ok(limits)

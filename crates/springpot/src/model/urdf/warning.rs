@@ -54,6 +54,8 @@ pub enum UrdfWarningKind {
     IncompleteLimit,
     /// A lower limit above the upper one, or a largest effort or velocity that is not above 0: taken as unlimited.
     SenselessLimit,
+    /// A limit of a revolute joint of more than three turns, which is one in degrees by the look of it; it is used as it is, in radians.
+    LimitInDegrees,
     /// A `<mimic>` that was not applied because the caller asked so; the joint has its own coordinate.
     MimicIgnored,
     /// A fixed joint has the name of the joint that lets the base float; it gets another one.
@@ -89,6 +91,58 @@ enum Style {
 }
 
 impl UrdfWarningKind {
+    /// Every kind.
+    pub const ALL: [Self; 21] = [
+        Self::NoInertial,
+        Self::ZeroMass,
+        Self::PointMass,
+        Self::TriangleInequality,
+        Self::NotPositive,
+        Self::NoAxis,
+        Self::AxisLength,
+        Self::NoLimit,
+        Self::IncompleteLimit,
+        Self::SenselessLimit,
+        Self::LimitInDegrees,
+        Self::MimicIgnored,
+        Self::Renamed,
+        Self::OfFloatingJoint,
+        Self::InSimulator,
+        Self::NoName,
+        Self::UnknownElement,
+        Self::UnknownAttribute,
+        Self::StrayText,
+        Self::MeshNotFound,
+        Self::NotUsed,
+    ];
+
+    /// Its name, by which scenarios accept it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NoInertial => "no-inertial",
+            Self::ZeroMass => "zero-mass",
+            Self::PointMass => "point-mass",
+            Self::TriangleInequality => "triangle-inequality",
+            Self::NotPositive => "not-positive",
+            Self::NoAxis => "no-axis",
+            Self::AxisLength => "axis-length",
+            Self::NoLimit => "no-limit",
+            Self::IncompleteLimit => "incomplete-limit",
+            Self::SenselessLimit => "senseless-limit",
+            Self::LimitInDegrees => "limit-in-degrees",
+            Self::MimicIgnored => "mimic-ignored",
+            Self::Renamed => "renamed",
+            Self::OfFloatingJoint => "of-floating-joint",
+            Self::InSimulator => "in-simulator",
+            Self::NoName => "no-name",
+            Self::UnknownElement => "unknown-element",
+            Self::UnknownAttribute => "unknown-attribute",
+            Self::StrayText => "stray-text",
+            Self::MeshNotFound => "mesh-not-found",
+            Self::NotUsed => "not-used",
+        }
+    }
+
     /// What it says before the places, and how they are shown.
     fn words(self) -> (&'static str, Style) {
         match self {
@@ -102,6 +156,7 @@ impl UrdfWarningKind {
             Self::NoLimit => ("no <limit>, taken as unlimited", Style::Owners),
             Self::IncompleteLimit => ("incomplete <limit>", Style::Owners),
             Self::SenselessLimit => ("senseless <limit>, taken as unlimited", Style::Owners),
+            Self::LimitInDegrees => ("<limit> of more than three turns: degrees? radians are used", Style::Owners),
             Self::MimicIgnored => ("<mimic> not applied, own coordinates instead", Style::Owners),
             Self::Renamed => ("names that are reserved", Style::Owners),
             Self::OfFloatingJoint => ("not used, the joint is floating", Style::Elements),
