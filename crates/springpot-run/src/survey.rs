@@ -23,7 +23,7 @@ const TURNS_LOOKED_AT: u32 = 257;
 pub enum Depth {
     /// Where they start.
     Starts,
-    /// Also whether gripper paths can be followed to their end.
+    /// Also the limits of joints there, and whether gripper paths can be followed to their end.
     Paths,
 }
 
@@ -34,7 +34,7 @@ pub struct Survey {
     pub looked_at: usize,
     /// By element.
     pub elements: Vec<ElementSurvey>,
-    /// Joints that start beyond their limits.
+    /// Joints that start beyond their limits; of [`Depth::Paths`].
     pub limits: LimitTally,
     /// Cases that cannot run, each with why.
     pub failures: Vec<(usize, Trouble)>,
@@ -116,12 +116,19 @@ impl Survey {
         self.looked_at += 1;
         match system.element_starts() {
             Ok(starts) => {
-                self.take(index, plan, system, &starts);
+                self.take(index, plan, &starts);
                 if index == 0 {
                     self.first = Some(starts);
                 }
             }
             Err(error) => return self.failures.push((index, Trouble::of(&error, plan))),
+        }
+        if depth == Depth::Paths
+            && let Ok(row) = system.first_row(&plan.settings)
+        {
+            let mut watch = LimitWatch::new(system);
+            watch.see(&row);
+            self.limits.take(index, &watch.passed());
         }
         let ends_early = || system.motion.has_path().then(|| system.pose(plan.settings.end).err()).flatten();
         let failure = match depth {
@@ -132,12 +139,7 @@ impl Survey {
     }
 
     /// Takes the start of one case.
-    fn take(&mut self, index: usize, plan: &Plan, system: &System, starts: &[ElementStart]) {
-        if let Ok(row) = system.first_row(&plan.settings) {
-            let mut watch = LimitWatch::new(system);
-            watch.see(&row);
-            self.limits.take(index, &watch.passed());
-        }
+    fn take(&mut self, index: usize, plan: &Plan, starts: &[ElementStart]) {
         for ((element, plan), start) in self.elements.iter_mut().zip(&plan.elements).zip(starts) {
             widen(&mut element.length, start.length);
             widen(&mut element.stroke, start.stroke);

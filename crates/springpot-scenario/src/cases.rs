@@ -346,7 +346,9 @@ impl Cases {
 
     #[allow(clippy::type_complexity)]
     fn read_figures(&self, ctx: &Context<'_>) -> Read<(Arc<[FigurePlan]>, Option<Arc<[ColumnGlob]>>)> {
-        let root = Table::of(ctx, &self.document, "the scenario", &SCENARIO)?;
+        // Constants that are swept have their first values.
+        let document = self.document_at(&vec![0; self.axes.len()]);
+        let root = root(ctx, &document)?;
         let unread = |axis: &Axis| axis.targets.iter().map(|_| OnceCell::new()).collect();
         let labels: Vec<Vec<OnceCell<HashMap<String, usize>>>> = self.axes.iter().map(unread).collect();
         let figures = figures::read(&root, &self.axes, &|axis, at, node| {

@@ -86,6 +86,24 @@ pub(crate) fn is_expression(node: &Node) -> bool {
 /// `{ expression = "3/f", unit = "s" }`: a number of constants alone, SI; `expected` is the unit of its place, with the `exponents` that it
 /// may name.
 pub(crate) fn expression(field: &Field<'_>, expected: Option<&str>, exponents: Exponents<'_>) -> Read<f64> {
+    let (value, unit_field) = written_expression(field)?;
+    let Some(unit_field) = unit_field else { return Ok(value) };
+    let unit_text = unit_field.text()?;
+    let unit = Unit::parse(unit_text, exponents).map_err(|error| misread(&unit_field, &error))?;
+    if let Some(expected) = expected {
+        let fits =
+            Unit::parse(expected, exponents).is_ok_and(|wanted| wanted.dimension().agrees_with(&unit.dimension()));
+        if !fits {
+            let message = format!("is {:?}, which has another dimension than {}", shorten(unit_text), named(expected));
+            let help = format!("write a unit of the dimension of {}", named(expected));
+            return Err(unit_field.refuse(RefusalKind::BadQuantity, message, Some(help)));
+        }
+    }
+    Ok(unit.to_si(value))
+}
+
+/// The number of such an expression in its own unit, and that unit.
+pub(crate) fn written_expression<'a>(field: &Field<'a>) -> Read<(f64, Option<Field<'a>>)> {
     let table = field.table(&SCALAR)?;
     let written = table.require("expression")?;
     let text = written.text()?;
@@ -103,19 +121,7 @@ pub(crate) fn expression(field: &Field<'_>, expected: Option<&str>, exponents: E
         let message = format!("is {value}, not a finite number");
         return Err(written.refuse(RefusalKind::OutOfRange, message, Some(of_constants(field.ctx))));
     }
-    let Some(unit_field) = table.get("unit") else { return Ok(value) };
-    let unit_text = unit_field.text()?;
-    let unit = Unit::parse(unit_text, exponents).map_err(|error| misread(&unit_field, &error))?;
-    if let Some(expected) = expected {
-        let fits =
-            Unit::parse(expected, exponents).is_ok_and(|wanted| wanted.dimension().agrees_with(&unit.dimension()));
-        if !fits {
-            let message = format!("is {:?}, which has another dimension than {}", shorten(unit_text), named(expected));
-            let help = format!("write a unit of the dimension of {}", named(expected));
-            return Err(unit_field.refuse(RefusalKind::BadQuantity, message, Some(help)));
-        }
-    }
-    Ok(unit.to_si(value))
+    Ok((value, table.get("unit")))
 }
 
 fn named(unit: &str) -> &str {

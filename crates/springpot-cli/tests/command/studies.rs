@@ -228,3 +228,18 @@ fn swept_columns_have_their_units() {
     let units: Vec<&str> = (0..3).map(|k| record["columns"][k]["unit"].as_str().unwrap()).collect();
     assert_eq!(units, ["s", "N*s^alpha/m", ""]);
 }
+
+#[test]
+fn figures_take_expressions_of_constants() {
+    let place = with_constants();
+    let figure = "\n[[figure]]\nname = \"f\"\ny = [\"damper.force\"]\nx_range = [0, { expression = \"2*period\" }]\n\
+                  y_range = [{ expression = \"-3*A\", unit = \"mN\" }, { expression = \"2*f\", unit = \"kN\" }]\n\
+                  size = [{ expression = \"18*A\", unit = \"m\" }, \"60 mm\"]\n";
+    place.write("arm.toml", &format!("{}{figure}", place.read("arm.toml")));
+    place.done(&["run", "arm.toml", "--sweep", "constants.f=1 Hz,4 Hz"]);
+    // The axis of forces reaches to 2 Hz times 1 kN of the first value.
+    let svg = place.read("results/arm/figures/f.svg");
+    assert!(svg.contains(">2000<"), "{svg}");
+    let refused = place.springpot(&["run", "arm.toml", "--set", "figure.f.x_range=[0, { expression = \"2*g\" }]"]);
+    assert!(refused.code == Some(2) && refused.stderr.contains("unknown name `g`"), "{}", refused.stderr);
+}

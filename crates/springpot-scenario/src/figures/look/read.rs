@@ -1,5 +1,6 @@
 //! Reads the look of a figure.
 
+use super::super::super::constants;
 use super::super::super::document::Value;
 use super::super::super::reader::{Field, Read, Table, all};
 use super::super::super::refusal::RefusalKind;
@@ -66,11 +67,18 @@ fn range_of(field: &Field<'_>) -> Read<AxisRange> {
 }
 
 fn range_end(field: &Field<'_>) -> Read<RangeEnd> {
+    let misread = |text: &str, why| {
+        let help = "write a number in the unit that is drawn, or a quantity such as \"5 N\"".to_owned();
+        field.refuse(RefusalKind::BadQuantity, format!("holds {text:?}: {why}"), Some(help))
+    };
     match &field.node.value {
-        Value::Text(text) => RangeEnd::parse(text).map_err(|why| {
-            let help = "write a number in the unit that is drawn, or a quantity such as \"5 N\"".to_owned();
-            field.refuse(RefusalKind::BadQuantity, format!("holds {:?}: {why}", text), Some(help))
-        }),
+        Value::Text(text) => RangeEnd::parse(text).map_err(|why| misread(text, why)),
+        Value::Table(_) if constants::is_expression(field.node) => {
+            let (number, unit) = constants::written_expression(field)?;
+            let Some(unit) = unit else { return Ok(RangeEnd { number, unit: None }) };
+            let text = format!("{number:?} {}", unit.text()?);
+            RangeEnd::parse(&text).map_err(|why| misread(&text, why))
+        }
         _ => field.number("").map(|number| RangeEnd { number, unit: None }),
     }
 }
