@@ -95,7 +95,8 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
     }
     for (e, plan_of) in plan.elements.iter().enumerate() {
         let element = &plan_of.element;
-        line("element", &format!("{}: {}, {}", element.name, element.entry.name, memory(element)));
+        let law = if plan_of.is_network { "network" } else { &*element.entry.name };
+        line("element", &format!("{}: {law}, {}", element.name, memory(element)));
         line("", &element.entry.equation);
         line("", &parameters(plan_of));
         let Some(start) = survey.first.as_ref().map(|starts| &starts[e]) else { continue };

@@ -122,6 +122,29 @@ impl CsvTable {
     }
 }
 
+/// The numbers of the columns of these names of a file with `most` rows at most, whatever else is in it.
+///
+/// # Errors
+/// What is wrong with the file, its header or one of those columns.
+pub fn columns(path: &Path, names: &[&str], most: usize) -> Result<Vec<Vec<f64>>, CsvError> {
+    let read = || -> Result<_, CsvProblem> {
+        let file = File::open(path).map_err(|source| CsvProblem::Unreadable { source })?;
+        let mut rows = CsvRows::new(BufReader::new(file))?;
+        let at = names.iter().map(|name| rows.find(name)).collect::<Result<Vec<_>, _>>()?;
+        let mut columns = vec![Vec::new(); names.len()];
+        while let Some(row) = rows.next_row()? {
+            if columns.first().is_some_and(|column| column.len() == most) {
+                return Err(CsvProblem::TooLarge { limit: most as u64, what: "rows" });
+            }
+            for (column, &at) in columns.iter_mut().zip(&at) {
+                column.push(row.number(at)?);
+            }
+        }
+        Ok(columns)
+    };
+    read().map_err(|problem| CsvError { file: path.to_owned(), problem })
+}
+
 /// Lines that are not empty; refuses what no table may have.
 fn count_lines(mut reader: impl BufRead) -> Result<u64, CsvProblem> {
     let (mut lines, mut length, mut line) = (0_u64, 0_u64, 1_u64);

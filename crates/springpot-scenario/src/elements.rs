@@ -2,20 +2,19 @@
 
 use super::document::shorten;
 use super::keys::{AT_START, ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
+use super::material::{self, Material};
 use super::names;
-use super::plan::{ElementPlan, SignalPlan};
+use super::plan::ElementPlan;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Robot, checked_name, unique};
-use super::signals::{self, Wanted, celsius, how_outside, interval};
 use super::time::Duration;
 use springpot::elements::{Element, Line};
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
 use springpot::integrate::RowTimes;
-use springpot::law::{Derivative, Entry, Param, RuleError};
+use springpot::law::{Derivative, RuleError};
 use springpot::model::Anchor;
 use std::collections::HashMap;
-use std::sync::Arc;
 
 /// Most elements of a robot.
 const MAX_ELEMENTS: usize = 10_000;
@@ -84,9 +83,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     }
     let derivative = table.get("derivative").map_or(Ok(Derivative::Caputo), |field| derivative(&field));
     let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
-    let law = table.require("law").and_then(|field| law(&field))?;
-    let parameters = parameters(table, law);
-    let inputs = inputs(table, law, time);
+    let Material { law, is_network, parameters, inputs } = material::read(table, time)?;
     let (parameters, derivative) = (parameters?, derivative?);
     let refuse = |error: RuleError| {
         let table_field = table.get("parameters");
@@ -102,7 +99,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     };
     let site = |anchor: &Anchor| robot.model().resolve(anchor).expect("an anchor that was read");
     let line = Line { from: site(&from), to: site(&to) };
-    let element = Element::new("", line, 0.0, law, &parameters, derivative).map_err(refuse);
+    let element = Element::new("", line, 0.0, &law, &parameters, derivative).map_err(refuse);
     let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
     let (inputs, mut element) = (inputs?, element?);
     element.inputs = inputs.iter().map(|input| input.signal.clone()).collect();
@@ -111,16 +108,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     if !rest_at_start {
         table.fill(ELEMENT_FIELDS, &mut element)?;
     }
-    Ok(ElementPlan { element, rest_at_start, from, to, parameters, inputs, place })
-}
-
-fn law<'a>(field: &Field<'a>) -> Read<&'a Arc<Entry>> {
-    let name = field.text()?;
-    field.ctx.catalog.get(name).ok_or_else(|| {
-        let laws = field.ctx.catalog.entries().iter().map(|entry| &*entry.name);
-        let message = format!("is {:?}, which is no law", shorten(name));
-        field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, laws)))
-    })
+    Ok(ElementPlan { element, rest_at_start, from, to, is_network, parameters, inputs, place })
 }
 
 fn derivative(field: &Field<'_>) -> Read<Derivative> {
@@ -158,102 +146,4 @@ fn misfit(scheme: Scheme, time: &Duration) -> Option<&'static str> {
         RowTimes::Step { step, end } => (end / step - (end / step).round()).abs() < 1e-9,
     };
     (scheme.needs_uniform_grid() && !uniform).then_some("which needs equal steps: an `output_step` that divides `end`")
-}
-
-/// Parameter values in the order of the catalog.
-fn parameters<'a>(table: &Table<'a>, law: &'a Entry) -> Read<Vec<f64>> {
-    let names: Vec<&str> = law.params.iter().map(|param| &*param.name).collect();
-    let field = table.get("parameters");
-    let open = field.as_ref().map(|field| {
-        let what = format!("`parameters` of {} (law {:?})", table.what, law.name);
-        Table::open(field.ctx, field.node, what, &names)
-    });
-    let given = open.transpose()?;
-    let get = |param: &'a Param| given.as_ref().and_then(|table| table.get(&param.name));
-
-    let lacking = |param: &&'a Param| param.default.is_none() && get(param).is_none();
-    let missing: Vec<&Param> = law.params.iter().filter(lacking).collect();
-    let untold = missing.iter().filter(|param| !given.as_ref().is_some_and(|table| table.suspects(&param.name)));
-    let untold: Vec<&str> = untold.map(|param| &*param.name).collect();
-    let missing_refused = if untold.is_empty() {
-        (!missing.is_empty()).then_some(Refused)
-    } else {
-        let right: Vec<String> =
-            missing.iter().map(|param| describe(&param.name, &param.unit, &param.meaning)).collect();
-        let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
-        let message = format!("{}: law {:?} needs the parameters {}", table.what, law.name, names::list(untold));
-        let refusal = place.refuse(RefusalKind::Missing, message).label("missing parameters");
-        Some(table.ctx.refuse(refusal.help(right.join("; "))))
-    };
-
-    // Exponents name pure numbers, so those are read first.
-    let pure = |param: &'a Param| match get(param) {
-        Some(field) if param.unit.is_empty() => Some(value(&field, param, &|_| None)),
-        _ => None,
-    };
-    let pure: Vec<Option<Read<f64>>> = law.params.iter().map(pure).collect();
-    let exponent = |name: &str| {
-        let at = names.iter().position(|param| *param == name)?;
-        match pure[at] {
-            Some(read) => read.ok(),
-            None => law.params[at].default.filter(|_| law.params[at].unit.is_empty()),
-        }
-    };
-    // A quantity whose exponent was refused or is missing would be refused for the wrong reason.
-    if pure.contains(&Some(Err(Refused))) || missing.iter().any(|param| param.unit.is_empty()) {
-        return Err(Refused);
-    }
-    let values = law.params.iter().zip(&pure).map(|(param, pure)| match (pure, get(param)) {
-        (Some(read), _) => *read,
-        (None, Some(field)) => value(&field, param, &exponent),
-        (None, None) => param.default.ok_or(Refused),
-    });
-    let values = all(values)?;
-    missing_refused.map_or(Ok(values), Err)
-}
-
-fn describe(name: &str, unit: &str, meaning: &str) -> String {
-    let unit = if unit.is_empty() { "a number" } else { unit };
-    format!("{name} [{unit}]: {meaning}")
-}
-
-fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f64>) -> Read<f64> {
-    let value = field.number_with(&param.unit, exponents)?;
-    if param.range.contains(value) {
-        return Ok(value);
-    }
-    let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
-    let message = format!("is {value}{unit}, {}", how_outside(param.range));
-    let of = if param.unit.is_empty() { "a number" } else { &*param.unit };
-    let right = || format!("{}: {} ({of}, {})", param.name, param.meaning, interval(param.range));
-    let help = celsius(&param.unit, param.range, value).unwrap_or_else(right);
-    Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)))
-}
-
-/// Inputs in the order of the catalog.
-fn inputs<'a>(table: &Table<'a>, law: &'a Entry, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
-    let names: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
-    let field = table.get("inputs");
-    let open = field.as_ref().map(|field| {
-        let what = format!("`inputs` of {} (law {:?})", table.what, law.name);
-        Table::open(field.ctx, field.node, what, &names)
-    });
-    let given = open.transpose()?;
-    let missing: Vec<_> =
-        law.inputs.iter().filter(|input| given.as_ref().is_none_or(|given| given.get(&input.name).is_none())).collect();
-    let untold = missing.iter().filter(|input| !given.as_ref().is_some_and(|given| given.suspects(&input.name)));
-    let untold: Vec<&str> = untold.map(|input| &*input.name).collect();
-    if !untold.is_empty() {
-        let right: Vec<String> =
-            missing.iter().map(|input| describe(&input.name, &input.unit, &input.meaning)).collect();
-        let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
-        let message = format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold));
-        let refusal = place.refuse(RefusalKind::Missing, message).label("missing inputs");
-        table.ctx.refuse(refusal.help(right.join("; ")));
-    }
-    all(law.inputs.iter().map(|input| {
-        let field = given.as_ref().and_then(|given| given.get(&input.name)).ok_or(Refused)?;
-        let end = time.map(|time| time.end);
-        signals::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })
-    }))
 }

@@ -44,6 +44,7 @@ mod elements;
 mod figures;
 mod inputs;
 mod keys;
+mod material;
 mod mistaken;
 mod motion;
 mod names;

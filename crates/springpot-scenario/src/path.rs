@@ -2,10 +2,10 @@
 
 use super::document::{Entry, Node, Value, shorten};
 use super::keys::ELEMENT;
+use super::material::law_of;
 use super::names;
 use super::reader::{Context, Read};
 use super::refusal::{Place, RefusalKind};
-use springpot::law;
 use std::sync::Arc;
 use toml::de::DeValue;
 
@@ -134,10 +134,14 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
                 } else if let [Step::Key(root), Step::Index(_)] = &steps[..]
                     && root == "element"
                     && let Some(names) = names_of_element(ctx, here)
-                    && !names.contains(&key.as_str())
+                    && !names.contains(key)
                 {
                     let message = format!("path {:?}: `{}` has no `{}`", shorten(path), walked(), shorten(key));
-                    return Err(refuse(RefusalKind::UnknownName, message, names::suggest(key, names.iter().copied())));
+                    return Err(refuse(
+                        RefusalKind::UnknownName,
+                        message,
+                        names::suggest(key, names.iter().map(String::as_str)),
+                    ));
                 } else {
                     node = entries.iter().find(|entry| entry.key == *key).map(|entry| &*entry.node);
                 }
@@ -216,7 +220,7 @@ fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static s
     if ELEMENT.get(key).is_some() {
         return None;
     }
-    let law: &law::Entry = ctx.catalog.get(element.get("law")?.text()?)?;
+    let law = law_of(ctx, element)?;
     if law.params.iter().any(|param| param.name == key) {
         Some("parameters")
     } else if law.inputs.iter().any(|input| input.name == key) {
@@ -227,11 +231,11 @@ fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static s
 }
 
 /// Everything that a path into an element can name; `None` where its law is not known.
-fn names_of_element<'a>(ctx: &Context<'a>, element: &Node) -> Option<Vec<&'a str>> {
-    let law: &law::Entry = ctx.catalog.get(element.get("law")?.text()?)?;
+fn names_of_element(ctx: &Context<'_>, element: &Node) -> Option<Vec<String>> {
+    let law = law_of(ctx, element)?;
     let parameters = law.params.iter().map(|param| &*param.name);
     let inputs = law.inputs.iter().map(|input| &*input.name);
-    Some(parameters.chain(inputs).chain(ELEMENT.names()).collect())
+    Some(parameters.chain(inputs).chain(ELEMENT.names()).map(str::to_owned).collect())
 }
 
 /// What stands where `target` leads.

@@ -134,6 +134,8 @@ pub struct ElementPlan {
     pub from: Anchor,
     /// Its second end.
     pub to: Anchor,
+    /// Whether its law is a network of the scenario's own.
+    pub is_network: bool,
     /// Parameters of its law in the order of the catalog, SI.
     pub parameters: Vec<f64>,
     /// Inputs of its law in the order of the catalog.

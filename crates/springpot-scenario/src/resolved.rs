@@ -88,17 +88,25 @@ impl Plan {
     }
 
     fn element(&self, plan: &ElementPlan) -> Value {
-        let ElementPlan { element, from, to, parameters, inputs, .. } = plan;
-        let parameters: Map<String, Value> =
-            element.entry.params.iter().zip(parameters).map(|(p, v)| (p.name.to_string(), json!(v))).collect();
+        let ElementPlan { element, from, to, is_network, parameters, inputs, .. } = plan;
+        let mut values = Map::new();
+        for (param, value) in element.entry.params.iter().zip(parameters) {
+            match param.name.rsplit_once('.') {
+                None => _ = values.insert(param.name.to_string(), json!(value)),
+                Some((list, _)) => {
+                    let list = values.entry(list).or_insert_with(|| json!([]));
+                    list.as_array_mut().expect("made as one").push(json!(value));
+                }
+            }
+        }
         let inputs: Map<String, Value> =
             element.entry.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_string(), s.record())).collect();
         let mut value = json!({
             "name": element.name,
             "from": self.anchor(from),
             "to": self.anchor(to),
-            "law": element.entry.name,
-            "parameters": parameters,
+            (if *is_network { "network" } else { "law" }): element.entry.name,
+            "parameters": values,
             "inputs": inputs,
             "derivative": element.derivative.name(),
             "scheme": element.scheme.map_or_else(|| "exact".into(), |scheme| scheme.to_string()),

@@ -13,7 +13,7 @@ pub(super) fn text(law: &Entry) -> String {
     text.push_str(&terminal::hanging("  ", &law.equation, width));
     text.push_str("\nparameters\n");
     let mut grid = Grid::new(["name", "unit", "range", "default", "meaning"].map(|title| (title, Set::Text)));
-    for Param { name, unit, meaning, range, default } in &law.params {
+    for Param { name, unit, meaning, range, default, .. } in &law.params {
         let default = default.map_or_else(|| "required".to_owned(), |value| format!("{value}"));
         grid.row([&**name, unit_or_one(unit), &interval(*range), &default, meaning].map(str::to_owned).to_vec());
     }
@@ -56,8 +56,11 @@ pub(super) fn json(law: &Entry) -> Value {
 
 /// An element of the law with parameters of a usual size.
 fn example(law: &Entry) -> String {
-    let params: Vec<String> =
-        law.params.iter().map(|param| format!("{} = {}", param.name, usual(&param.unit, param.range))).collect();
+    let value = |param: &Param| match (usual(&param.unit, param.range), param.is_list) {
+        (value, false) => value,
+        (value, true) => format!("[{value}, {value}]"),
+    };
+    let params: Vec<String> = law.params.iter().map(|param| format!("{} = {}", param.name, value(param))).collect();
     let inputs: Vec<String> =
         law.inputs.iter().map(|input| format!("{} = {}", input.name, usual(&input.unit, input.range))).collect();
     element(&law.name, &params, &inputs)

@@ -21,6 +21,7 @@ mod looks;
 mod manual;
 mod measured;
 mod messages;
+mod networks;
 #[cfg(unix)]
 mod pipes;
 mod plot;

@@ -235,7 +235,7 @@ fn figures_take_expressions_of_constants() {
     let figure = "\n[[figure]]\nname = \"f\"\ny = [\"damper.force\"]\nx_range = [0, { expression = \"2*period\" }]\n\
                   y_range = [{ expression = \"-3*A\", unit = \"mN\" }, { expression = \"2*f\", unit = \"kN\" }]\n\
                   size = [{ expression = \"18*A\", unit = \"m\" }, \"60 mm\"]\n";
-    place.write("arm.toml", &format!("{}{figure}", place.read("arm.toml")));
+    place.write("arm.toml", format!("{}{figure}", place.read("arm.toml")));
     place.done(&["run", "arm.toml", "--sweep", "constants.f=1 Hz,4 Hz"]);
     // The axis of forces reaches to 2 Hz times 1 kN of the first value.
     let svg = place.read("results/arm/figures/f.svg");

@@ -33,7 +33,13 @@ pub(crate) static ELEMENT: Keys = Keys {
             Need::Required("rest_length = \"70 cm\" or \"start\""),
             "Length at which the stroke is 0; \"start\": the length at t = 0, exactly.",
         ),
-        key("law", Shape::Law, Need::Required("law = \"…\""), "Name of the law: `springpot laws` lists them."),
+        key("law", Shape::Law, Need::OneOf, "Name of the law: `springpot laws` lists them."),
+        key(
+            "network",
+            Shape::Text,
+            Need::OneOf,
+            "In place of a law: leaves in series and in parallel, such as \"series(spring(k), dashpot(c))\".",
+        ),
         key("parameters", Shape::ByName, Need::Optional, "Parameters, as the law says."),
         key("inputs", Shape::ByName, Need::Optional, "Inputs, as the law says: functions of time."),
         key(

@@ -73,7 +73,8 @@ fn any_of(keys: &'static Keys) -> Value {
 
 /// The parameters and inputs that a law cannot do without.
 fn of_law(law: &Entry) -> Option<Value> {
-    let params: Vec<&str> = law.params.iter().filter(|p| p.default.is_none()).map(|param| &*param.name).collect();
+    let params: Vec<&str> =
+        law.params.iter().filter(|p| p.default.is_none() && !p.is_list).map(|param| &*param.name).collect();
     let inputs: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
     let tables = [("parameters", params), ("inputs", inputs)];
     let needed: Vec<_> = tables.into_iter().filter(|(_, names)| !names.is_empty()).collect();

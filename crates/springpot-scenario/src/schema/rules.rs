@@ -2,6 +2,7 @@
 
 use super::super::figures::FIGURE;
 use super::super::keys::{ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ROBOT, SIGNAL, TIME, keys_of};
+use super::super::material::TABLE;
 use super::super::motion::MOTION;
 use super::shapes::{quantity, signal};
 use serde_json::{Map, Value, json};
@@ -122,6 +123,7 @@ fn of_law(law: &Entry) -> Value {
         json!({ "type": "object", "description": description, "properties": properties, "additionalProperties": false })
     };
     let params = law.params.iter().map(|param| (param.name.to_string(), parameter(param)));
+    let params = params.chain(law.has_lists().then(|| (TABLE.to_owned(), columns(law))));
     let inputs = law.inputs.iter().map(|Input { name, unit, meaning, .. }| {
         let schema = signal(unit, &format!("{}.", capitalised(meaning)));
         (name.to_string(), schema)
@@ -135,7 +137,7 @@ fn of_law(law: &Entry) -> Value {
     })
 }
 
-fn parameter(Param { unit, meaning, range, default, .. }: &Param) -> Value {
+fn parameter(Param { unit, meaning, range, default, is_list, .. }: &Param) -> Value {
     let mut description = format!("{}.", capitalised(meaning));
     if let Some(default) = default {
         description.push_str(&format!(" Default: {default}{}{unit}.", if unit.is_empty() { "" } else { " " }));
@@ -148,7 +150,25 @@ fn parameter(Param { unit, meaning, range, default, .. }: &Param) -> Value {
     if high < f64::MAX {
         schema["maximum"] = high.into();
     }
+    if *is_list {
+        return json!({ "type": "array", "items": schema, "minItems": 1, "description": description });
+    }
     schema
+}
+
+/// The file that has the lists of a law as columns.
+fn columns(law: &Entry) -> Value {
+    let lists = law.params.iter().filter(|param| param.is_list);
+    let lists = lists.map(|param| (param.name.to_string(), format!("Name of the column of the {}.", param.meaning)));
+    let file = ("csv".to_owned(), "Name of the file, relative to the scenario.".to_owned());
+    let keys: Vec<(String, String)> = [file].into_iter().chain(lists).collect();
+    let text = |words: &String| json!({ "type": "string", "description": words });
+    let properties: Map<String, Value> = keys.iter().map(|(name, words)| (name.clone(), text(words))).collect();
+    let required: Vec<&String> = keys.iter().map(|(name, _)| name).collect();
+    json!({
+        "type": "object", "description": "A CSV file and the names of its columns, SI.", "properties": properties,
+        "required": required, "additionalProperties": false,
+    })
 }
 
 fn capitalised(text: &str) -> String {

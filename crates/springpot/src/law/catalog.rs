@@ -43,6 +43,8 @@ pub struct Param {
     pub range: Range,
     /// Value where the file says nothing; `None`: must be given.
     pub default: Option<f64>,
+    /// It is a list of such values; all lists of a law have one length.
+    pub is_list: bool,
 }
 
 impl Param {
@@ -53,12 +55,17 @@ impl Param {
         meaning: impl Into<Cow<'static, str>>,
         range: Range,
     ) -> Self {
-        Self { name: name.into(), unit: unit.into(), meaning: meaning.into(), range, default: None }
+        Self { name: name.into(), unit: unit.into(), meaning: meaning.into(), range, default: None, is_list: false }
     }
 
     /// As it is, with a value, SI, where the file says nothing.
     pub fn or(self, default: f64) -> Self {
         Self { default: Some(default), ..self }
+    }
+
+    /// A list of them.
+    pub fn list(self) -> Self {
+        Self { is_list: true, ..self }
     }
 }
 
@@ -149,7 +156,7 @@ pub struct Entry {
     pub name: Cow<'static, str>,
     /// The law in one line.
     pub equation: Cow<'static, str>,
-    /// Parameters, in the order `build` takes them.
+    /// Parameters, in the order `build` takes them; of a list all values, one after the other.
     pub params: Vec<Param>,
     /// Inputs, in the order the law takes them.
     pub inputs: Vec<Input>,
@@ -157,6 +164,24 @@ pub struct Entry {
     pub source: Cow<'static, str>,
     /// Builds the law.
     pub build: Build,
+}
+
+impl Entry {
+    /// The law where its lists have `length` values: in place of a list `k` it has the parameters `k.0`, `k.1`, …
+    pub fn with_lists(&self, length: usize) -> Self {
+        let unfold = |param: &Param| match param.is_list {
+            false => vec![param.clone()],
+            true => (0..length)
+                .map(|k| Param { name: format!("{}.{k}", param.name).into(), is_list: false, ..param.clone() })
+                .collect(),
+        };
+        Self { params: self.params.iter().flat_map(unfold).collect(), ..self.clone() }
+    }
+
+    /// Whether a parameter is a list.
+    pub fn has_lists(&self) -> bool {
+        self.params.iter().any(|param| param.is_list)
+    }
 }
 
 impl fmt::Debug for Entry {

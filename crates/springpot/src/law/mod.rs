@@ -32,15 +32,18 @@ pub mod step;
 
 mod kelvin_voigt;
 mod magnetorheological;
+mod named;
 mod piezo;
 mod rule;
 mod standard;
 mod thermoviscoelastic;
+mod written;
 
 pub use crate::fractional::Kind as Derivative;
 pub use catalog::{Build, Built, Catalog, Entry, Input, Param, Range};
-pub use leaf::Leaf;
-pub use network::Network;
+pub use leaf::{Leaf, LeafKind};
+pub use network::{Holds, LeafPart, Network};
 pub use rule::RuleError;
 pub use state::{State, StateMut, StateRef, StateSize};
 pub use step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Singular, Start, Step, Term};
+pub use written::{NetworkText, NetworkTextError};

@@ -40,17 +40,81 @@ const MOST_IN_SERIES: usize = 8;
 #[derive(Debug, Clone)]
 pub enum Network {
     /// What gives a force by itself.
-    Leaf(Arc<dyn Leaf>),
+    Leaf(LeafPart),
     /// One stroke, forces add.
     Parallel(Vec<Network>),
     /// One force, strokes add.
     Series(Vec<Network>),
 }
 
+/// A leaf in its place in a network.
+#[derive(Debug, Clone)]
+pub struct LeafPart {
+    name: Option<Arc<str>>,
+    leaf: Arc<dyn Leaf>,
+}
+
+impl std::ops::Deref for LeafPart {
+    type Target = dyn Leaf;
+
+    fn deref(&self) -> &Self::Target {
+        self.leaf.as_ref()
+    }
+}
+
+/// Whether a part of a network carries force: what stands behind it in a series is free where it does not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Holds {
+    /// It never gives any.
+    Never,
+    /// There are strokes at which it yields to every force.
+    AtTimes,
+    /// Wherever it is.
+    Always,
+}
+
 impl Network {
     /// A leaf.
     pub fn leaf(leaf: impl Leaf + 'static) -> Self {
-        Self::Leaf(Arc::new(leaf))
+        Self::Leaf(LeafPart { name: None, leaf: Arc::new(leaf) })
+    }
+
+    /// A leaf under this name; parts that are none stay as they are.
+    pub fn named(self, name: &Arc<str>) -> Self {
+        match self {
+            Self::Leaf(LeafPart { leaf, .. }) => Self::Leaf(LeafPart { name: Some(name.clone()), leaf }),
+            other => other,
+        }
+    }
+
+    /// Names of all leaves, in their order: given ones, else `spring1`, `spring2`, `dashpot1`, …
+    pub fn leaf_names(&self) -> Vec<String> {
+        let mut parts = Vec::new();
+        self.for_each_leaf(&mut |part| parts.push(part.clone()));
+        let unnamed = |part: &LeafPart| part.name.is_none().then(|| part.leaf.name());
+        let name = |(k, part): (usize, &LeafPart)| {
+            let number = |kind: &str| 1 + parts[..k].iter().filter(|other| unnamed(other) == Some(kind)).count();
+            part.name
+                .as_ref()
+                .map_or_else(|| format!("{}{}", part.leaf.name(), number(part.leaf.name())), ToString::to_string)
+        };
+        parts.iter().enumerate().map(name).collect()
+    }
+
+    fn for_each_leaf(&self, take: &mut dyn FnMut(&LeafPart)) {
+        match self {
+            Self::Leaf(part) => take(part),
+            Self::Parallel(parts) | Self::Series(parts) => parts.iter().for_each(|part| part.for_each_leaf(take)),
+        }
+    }
+
+    /// Whether it carries force wherever it is.
+    pub fn holds(&self) -> Holds {
+        match self {
+            Self::Leaf(leaf) => leaf.holds(),
+            Self::Parallel(parts) => parts.iter().map(Self::holds).max().unwrap_or(Holds::Never),
+            Self::Series(parts) => parts.iter().map(Self::holds).min().unwrap_or(Holds::Always),
+        }
     }
 
     /// F = k·x, k in N/m.
@@ -210,7 +274,7 @@ impl Network {
         match self {
             Self::Leaf(leaf) => {
                 let size = leaf.size();
-                Reported::leaf(leaf.as_ref(), at, leaf.at(step, theta, at, state.take(size)))
+                Reported::leaf(&**leaf, at, leaf.at(step, theta, at, state.take(size)))
             }
             Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.at_part(step, theta, at, state))),
             Self::Series(parts) => series::at(parts, step, theta, at, state),
@@ -225,7 +289,7 @@ impl Network {
 
     fn now_part(&self, at: &Point, state: &mut StateRef) -> Reported {
         match self {
-            Self::Leaf(leaf) => Reported::leaf(leaf.as_ref(), at, leaf.now(at, state.take(leaf.size()))),
+            Self::Leaf(leaf) => Reported::leaf(&**leaf, at, leaf.now(at, state.take(leaf.size()))),
             Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.now_part(at, state))),
             Self::Series(parts) => series::now(parts, at, state),
         }
@@ -316,7 +380,7 @@ impl Network {
 
     fn report(&self, at: &Point) -> (u8, f64) {
         match self {
-            Self::Leaf(leaf) => report(leaf.as_ref(), at),
+            Self::Leaf(leaf) => report(&**leaf, at),
             Self::Parallel(parts) | Self::Series(parts) => {
                 let reports = parts.iter().map(|part| part.report(at));
                 reports.fold((0, 0.0), |first, next| if next.0 > first.0 { next } else { first })

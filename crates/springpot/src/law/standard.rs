@@ -1,7 +1,7 @@
 //! The laws that come with Springpot.
 
 use super::catalog::Catalog;
-use super::{kelvin_voigt, magnetorheological, piezo, thermoviscoelastic};
+use super::{kelvin_voigt, magnetorheological, named, piezo, thermoviscoelastic};
 use std::sync::Arc;
 
 impl Catalog {
@@ -17,6 +17,6 @@ impl Catalog {
             piezo::piezo_kelvin_voigt(),
             magnetorheological::magnetorheological(),
         ];
-        Self { entries: entries.into_iter().map(Arc::new).collect() }
+        Self { entries: entries.into_iter().chain(named::entries()).map(Arc::new).collect() }
     }
 }

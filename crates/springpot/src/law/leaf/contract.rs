@@ -1,6 +1,7 @@
 //! What every leaf answers.
 
 use crate::fractional::KernelError;
+use crate::law::network::Holds;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
@@ -12,6 +13,11 @@ use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Respo
 /// variables (a slip, a temperature) are collocated by the leaf at the same nodes ([`crate::collocation::Nodes::inverse`]) and eliminated there,
 /// so that to the outside it is a map from strokes and rates to forces. What is provided is that of a leaf that keeps nothing.
 pub trait Leaf: Send + Sync + std::fmt::Debug {
+    /// What it is called, with a number behind it, where nobody names it.
+    fn name(&self) -> &'static str {
+        "leaf"
+    }
+
     /// What it keeps between steps.
     fn size(&self) -> StateSize {
         StateSize::default()
@@ -51,6 +57,12 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
 
     /// What it is like under small and fast strokes about `at`.
     fn linearised(&self, at: &Point) -> Term;
+
+    /// Whether it gives a force that grows with its stroke, or the rate of it, wherever it is: what may stand in a series by itself.
+    fn holds(&self) -> Holds {
+        let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
+        if self.is_linear() && self.linearised(&at).coefficient == 0.0 { Holds::Never } else { Holds::Always }
+    }
 
     /// F is an affine function of strokes and rates of a step.
     fn is_linear(&self) -> bool {

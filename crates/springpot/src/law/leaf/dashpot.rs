@@ -1,6 +1,9 @@
 //! The linear dashpot.
 
 use super::contract::Leaf;
+use super::kind::LeafKind;
+use crate::law::catalog::{Param, Range};
+use crate::law::network::Network;
 use crate::law::state::StateRef;
 use crate::law::step::{LocalError, Observation, Point, Powers, Response, Step, Term};
 
@@ -12,6 +15,10 @@ pub struct Dashpot {
 }
 
 impl Leaf for Dashpot {
+    fn name(&self) -> &'static str {
+        "dashpot"
+    }
+
     fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
         for i in 0..step.nodes.count() {
             response.force[i] += self.viscosity * step.rate[i + 1];
@@ -39,5 +46,15 @@ impl Leaf for Dashpot {
 
     fn is_linear(&self) -> bool {
         true
+    }
+}
+
+/// What networks know of it.
+pub(super) fn kind() -> LeafKind {
+    LeafKind {
+        name: "dashpot",
+        equation: "F = c·x'",
+        params: vec![Param::new("c", "N*s/m", "viscosity", Range::NOT_NEGATIVE)],
+        build: |values, _| Ok(Network::dashpot(values[0])),
     }
 }

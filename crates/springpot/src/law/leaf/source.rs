@@ -22,6 +22,10 @@ impl Source {
 }
 
 impl Leaf for Source {
+    fn name(&self) -> &'static str {
+        "source"
+    }
+
     fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
         for i in 0..step.nodes.count() {
             response.force[i] += self.force(&step.point(i + 1));

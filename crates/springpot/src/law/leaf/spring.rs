@@ -1,6 +1,9 @@
 //! The linear spring.
 
 use super::contract::Leaf;
+use super::kind::LeafKind;
+use crate::law::catalog::{Param, Range};
+use crate::law::network::Network;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Response, Step, Term};
 
@@ -12,6 +15,10 @@ pub struct Spring {
 }
 
 impl Leaf for Spring {
+    fn name(&self) -> &'static str {
+        "spring"
+    }
+
     fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
         for i in 0..step.nodes.count() {
             response.force[i] += self.stiffness * step.stroke[i + 1];
@@ -35,5 +42,15 @@ impl Leaf for Spring {
 
     fn is_linear(&self) -> bool {
         true
+    }
+}
+
+/// What networks know of it.
+pub(super) fn kind() -> LeafKind {
+    LeafKind {
+        name: "spring",
+        equation: "F = k·x",
+        params: vec![Param::new("k", "N/m", "stiffness", Range::NOT_NEGATIVE)],
+        build: |values, _| Ok(Network::spring(values[0])),
     }
 }

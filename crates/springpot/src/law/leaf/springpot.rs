@@ -1,10 +1,13 @@
 //! The springpot: a fractional derivative of the stroke.
 
 use super::contract::Leaf;
+use super::kind::LeafKind;
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{Form, KernelError, Memory, RatePolynomial};
+use crate::law::catalog::{Param, Range, alpha};
+use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::Singular;
@@ -78,6 +81,10 @@ impl Springpot {
 }
 
 impl Leaf for Springpot {
+    fn name(&self) -> &'static str {
+        "springpot"
+    }
+
     fn size(&self) -> StateSize {
         StateSize { memories: 1, variables: 0 }
     }
@@ -179,6 +186,11 @@ impl Leaf for Springpot {
         Term { coefficient: self.coefficient.at(at.inputs).value, order: self.alpha }
     }
 
+    fn holds(&self) -> Holds {
+        let Coefficient { constant, slope, .. } = self.coefficient;
+        if constant == 0.0 && slope == 0.0 { Holds::Never } else { Holds::Always }
+    }
+
     fn is_linear(&self) -> bool {
         true
     }
@@ -196,5 +208,18 @@ impl Leaf for Springpot {
         }
         let rule = format!("{} is broken: the coefficient of D^alpha x is {c}", self.coefficient.rule);
         Err(RuleError { rule, parameter: self.coefficient.parameter.clone() })
+    }
+}
+
+/// What networks know of it.
+pub(super) fn kind() -> LeafKind {
+    LeafKind {
+        name: "springpot",
+        equation: "F = c·D^alpha x",
+        params: vec![
+            Param::new("c", "N*s^alpha/m", "coefficient of the fractional derivative", Range::NOT_NEGATIVE),
+            alpha(),
+        ],
+        build: |values, derivative| Ok(Network::springpot(values[0], values[1], derivative)),
     }
 }

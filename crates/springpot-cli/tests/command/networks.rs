@@ -1,0 +1,117 @@
+//! Laws of a scenario's own: networks as text, laws with lists.
+
+use crate::support::{ARM, Place};
+
+const LAW: &str = "law = \"magnetorheological\"\n\
+                   parameters = { E_c = \"20 N/m\", mu_0 = 10, mu = 4, alpha = 0.5 }\n\
+                   inputs = { u = \"1 + 0.5*sin(20*t)\" }\n";
+
+/// The arm with another law in its damper.
+fn with(law: &str) -> Place {
+    assert!(ARM.contains(LAW));
+    Place::with(&ARM.replace(LAW, law))
+}
+
+fn forces(place: &Place) -> Vec<f64> {
+    place.done(&["run", "arm.toml"]);
+    place.table("results/arm/results.csv").numbers("damper.force")
+}
+
+#[test]
+fn a_network_is_the_law_of_its_name() {
+    let parameters = "parameters = { k_e = \"200 N/m\", k_m = \"3 kN/m\", c = \"80 N*s^alpha/m\", alpha = 0.4 }\n";
+    let named = forces(&with(&format!("law = \"fractional-zener\"\n{parameters}")));
+    for network in [
+        "parallel(spring(k_e), series(spring(k_m), springpot(c, alpha)))",
+        " parallel ( series(slow: springpot(c,alpha), spring(k_m) ),spring(k_e) ) ",
+    ] {
+        let written = forces(&with(&format!("network = \"{network}\"\n{parameters}")));
+        let size = named.iter().fold(0.0f64, |most, force| most.max(force.abs()));
+        assert!(
+            size > 1.0 && named.iter().zip(&written).all(|(a, b)| (a - b).abs() < 1e-9 * size),
+            "{named:?} {written:?}"
+        );
+    }
+}
+
+#[test]
+fn check_and_the_record_say_what_was_written() {
+    let network = "series(spring(k), springpot(c, a))";
+    let law = format!("network = \"{network}\"\nparameters = {{ k = \"3 kN/m\", c = \"80 N*s^a/m\", a = 0.4 }}\n");
+    let place = with(&law);
+    let checked = place.done(&["check", "arm.toml"]);
+    for words in ["damper: network, caputo", network, "k = 3000 N/m, c = 80 N*s^a/m, a = 0.4"] {
+        assert!(checked.stdout.contains(words), "{words}: {}", checked.stdout);
+    }
+    place.done(&["run", "arm.toml", "--set", "element.damper.c=40"]);
+    let element = &place.record("results/arm")["plan"]["elements"][0];
+    assert_eq!(element["network"], network);
+    assert_eq!(element["parameters"]["c"], 40.0);
+    assert!(element.get("law").is_none());
+}
+
+#[test]
+fn lists_are_arrays_or_columns() {
+    let place = with("law = \"prony\"\nparameters = { k_e = 100, k = [\"3 kN/m\", 500], tau = [0.1, \"10 ms\"] }\n");
+    place.write("terms.csv", "i,k in N/m,tau\n0,3000,0.1\n1,500,0.01\n");
+    let written = forces(&place);
+    let element = &place.record("results/arm")["plan"]["elements"][0];
+    assert_eq!(element["parameters"]["k"], serde_json::json!([3000.0, 500.0]));
+    let read = forces(&{
+        let table = "table = { csv = \"terms.csv\", k = \"k in N/m\", tau = \"tau\" }";
+        let other = with(&format!("law = \"prony\"\nparameters = {{ k_e = 100, {table} }}\n"));
+        other.write("terms.csv", place.read("terms.csv"));
+        other
+    });
+    assert_eq!(written, read);
+    // A path counts from 0, and a sweep of a value has its unit.
+    let swept = place.done(&["run", "arm.toml", "--sweep", "element.damper.tau.1=10 ms,20 ms"]);
+    assert_eq!(swept.code, Some(0));
+    let rows = place.table("results/arm/results.csv");
+    assert_eq!(rows.header[0], "element.damper.tau.1");
+    assert_eq!(rows.numbers("element.damper.tau.1").last(), Some(&0.02));
+}
+
+#[test]
+fn what_is_wrong_with_a_network_is_said_where_it_is() {
+    let place = with("network = \"series(spring(k), dashpot(c))\"\nparameters = { k = 100, c = 5 }\n");
+    for (set, words) in [
+        ("network=\"series(sprng(k), dashpot(c))\"", &["there is no leaf `sprng`", "did you mean `spring`?"][..]),
+        ("network=\"series(spring(k), dashpot(c)\"", &["--set:1:31:", "this parenthesis is never closed"]),
+        ("network=\"series(spring(k), dashpot(c)))\"", &["nothing may follow the network, not `)`"]),
+        ("network=\"series(spring(100), dashpot(c))\"", &["not `100`", "their values in `parameters`"]),
+        ("network=\"series(spring(k), springpot(c))\"", &["`springpot` takes 2 names, not 1", "springpot(c, alpha)"]),
+        ("network=\"series(spring(k), dashpot(k))\"", &["`k` is in N*s/m here, but N/m before"]),
+        ("network=\"a: series(spring(k), dashpot(c))\"", &["only leaves have names"]),
+        ("network=\"series(a: spring(k), a: dashpot(c))\"", &["there are two leaves `a`"]),
+        ("network=\"series(force: spring(k), dashpot(c))\"", &["`force` is a column of every element"]),
+        ("network=\"\"", &["a part is wanted, not the end"]),
+        ("parameters={ k = 100, c = 0 }", &["every part of a series to carry its force, but `dashpot(c)` gives none"]),
+        ("parameters={ k = 100 }", &["needs the parameters c"]),
+        ("parameters={ k = -1, c = 5 }", &["`k`", "is -1"]),
+        ("law=spring", &["`network` of element \"damper\" stands beside a `law`"]),
+        ("kc=3", &["has no `kc`"]),
+    ] {
+        let refused = place.springpot(&["check", "arm.toml", "--set", &format!("element.damper.{set}")]);
+        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(refused.code, Some(2), "{set}: {}", refused.stderr);
+        words.iter().for_each(|words| assert!(said.contains(words), "{set}: {words:?} is not in {}", refused.stderr));
+    }
+    let place = with("law = \"prony\"\nparameters = { k_e = 1, k = [1, 2], tau = [1, 2] }\n");
+    for (set, words) in [
+        ("k=[1, 2, 3]", &["`tau`", "has 2 values, but `k` has 3"][..]),
+        ("k=3", &["must be an array of values, not the number 3"]),
+        ("tau.1=0", &["`tau`", "is 0 s"]),
+        ("parameters={ k_e = 1 }", &["needs the parameters k and tau"]),
+        ("parameters={ k_e = 1, table = { csv = \"no.csv\", k = \"k\", tau = \"t\" } }", &["no.csv", "cannot be read"]),
+        (
+            "parameters={ k_e = 1, k = [1], table = { csv = \"no.csv\", k = \"k\", tau = \"t\" } }",
+            &["stands beside `k`"],
+        ),
+    ] {
+        let refused = place.springpot(&["check", "arm.toml", "--set", &format!("element.damper.{set}")]);
+        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(refused.code, Some(2), "{set}: {}", refused.stderr);
+        words.iter().for_each(|words| assert!(said.contains(words), "{set}: {words:?} is not in {}", refused.stderr));
+    }
+}

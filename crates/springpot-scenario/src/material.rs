@@ -1,0 +1,260 @@
+//! The law of an element: by name or as a network, with its parameters and inputs.
+
+use super::csv;
+use super::document::{Node, shorten};
+use super::names;
+use super::plan::SignalPlan;
+use super::reader::{Context, Field, Read, Refused, Table, all};
+use super::refusal::RefusalKind;
+use super::signals::{self, Wanted, celsius, how_outside, interval};
+use super::time::Duration;
+use springpot::law::{Entry, NetworkText, NetworkTextError, Param};
+use std::sync::Arc;
+
+/// Most values of a list of parameters.
+const MAX_LIST: usize = 1_000;
+
+/// Where the columns of lists are, in `parameters`.
+pub(crate) const TABLE: &str = "table";
+
+/// The law of an element, its parameters (SI, in the order of the law), and its inputs.
+pub(crate) struct Material {
+    pub(crate) law: Arc<Entry>,
+    /// It is written as a network.
+    pub(crate) is_network: bool,
+    pub(crate) parameters: Read<Vec<f64>>,
+    pub(crate) inputs: Read<Vec<SignalPlan>>,
+}
+
+/// Reads `law` or `network`, `parameters` and `inputs`.
+pub(crate) fn read(table: &Table<'_>, time: Option<&Duration>) -> Read<Material> {
+    let law = match (table.get("law"), table.get("network")) {
+        (Some(law), None) => by_name(&law)?,
+        (None, Some(network)) => of_text(&network)?,
+        (Some(_), Some(network)) => {
+            let message = "stands beside a `law`";
+            return Err(network.refuse(RefusalKind::Rule, message, Some("leave one of them out".to_owned())));
+        }
+        (None, None) => return Err(table.missing("law", "law = \"…\" or network = \"…\"")),
+    };
+    let lists = Lists::read(table, &law)?;
+    let law = if law.has_lists() { Arc::new(law.with_lists(lists.length)) } else { law };
+    let (parameters, inputs) = (parameters(table, &law, &lists), inputs(table, &law, time));
+    Ok(Material { law, is_network: table.get("network").is_some(), parameters, inputs })
+}
+
+/// The law of an element that says one; nothing where it is none.
+pub(crate) fn law_of(ctx: &Context<'_>, element: &Node) -> Option<Arc<Entry>> {
+    match (element.get("law"), element.get("network")) {
+        (Some(law), None) => ctx.catalog.get(law.text()?).cloned(),
+        (None, Some(network)) => Some(Arc::new(NetworkText::parse(network.text()?).ok()?.entry())),
+        _ => None,
+    }
+}
+
+fn by_name(field: &Field<'_>) -> Read<Arc<Entry>> {
+    let name = field.text()?;
+    field.ctx.catalog.get(name).cloned().ok_or_else(|| {
+        let laws = field.ctx.catalog.entries().iter().map(|entry| &*entry.name);
+        let message = format!("is {:?}, which is no law", shorten(name));
+        field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, laws)))
+    })
+}
+
+fn of_text(field: &Field<'_>) -> Read<Arc<Entry>> {
+    let text = field.text()?;
+    let network = NetworkText::parse(text).map_err(|NetworkTextError { message, span, help, unknown }| {
+        let refusal = field.node.place_in_text(Some(span)).refuse(RefusalKind::BadName, format!("{field}: {message}"));
+        let help = unknown.map_or(help, |(name, known)| names::suggest(&name, known));
+        field.ctx.refuse(refusal.help(help))
+    })?;
+    Ok(Arc::new(network.entry()))
+}
+
+/// The parameters of a law that are lists.
+#[derive(Default)]
+struct Lists {
+    /// Their common length.
+    length: usize,
+    /// Where they are columns of a file: their values, by name.
+    columns: Vec<(String, Vec<f64>)>,
+}
+
+impl Lists {
+    fn read(table: &Table<'_>, law: &Entry) -> Read<Self> {
+        let wanted: Vec<&str> = law.params.iter().filter(|param| param.is_list).map(|param| &*param.name).collect();
+        let Some(given) = table.get("parameters").filter(|_| !wanted.is_empty()) else { return Ok(Self::default()) };
+        let at = |name: &str| given.node.get(name).map(|node| Field { node, key: "parameters", ..given.clone() });
+        if let Some(field) = at(TABLE) {
+            if let Some(name) = wanted.iter().find(|name| at(name).is_some()) {
+                let message = format!("`table` in {given} stands beside `{name}`");
+                let refusal = field.node.place.refuse(RefusalKind::Rule, message);
+                return Err(field.ctx.refuse(refusal.help("leave one of them out")));
+            }
+            return Self::of_file(&field, &wanted);
+        }
+        let mut first: Option<(&str, usize)> = None;
+        for name in wanted {
+            let Some(field) = at(name) else { continue };
+            let length = field.node.items().map_or(0, <[_]>::len);
+            let refuse = |message: String, help: String| {
+                let message = format!("`{name}` in {given} {message}");
+                Err(field.ctx.refuse(field.node.place.refuse(RefusalKind::WrongType, message).help(help)))
+            };
+            if !(1..=MAX_LIST).contains(&length) {
+                let help = format!("write {name} = [first, second, …], with {MAX_LIST} values at most");
+                return refuse(
+                    format!("must be an array of values, not {} {}", field.node.kind(), field.node.written()),
+                    help,
+                );
+            }
+            let (other, wanted) = *first.get_or_insert((name, length));
+            if length != wanted {
+                return refuse(format!("has {length} values, but `{other}` has {wanted}"), "write as many".to_owned());
+            }
+        }
+        Ok(Self { length: first.map_or(1, |(_, length)| length), columns: Vec::new() })
+    }
+
+    /// The columns that `table = { csv = …, k = … }` names.
+    fn of_file(field: &Field<'_>, wanted: &[&str]) -> Read<Self> {
+        let known: Vec<&str> = ["csv"].into_iter().chain(wanted.iter().copied()).collect();
+        let table = Table::open(field.ctx, field.node, format!("`table` in {field}"), &known)?;
+        let file = table.require_with("csv", "csv = \"FILE\", and the names of its columns")?;
+        let path = field.ctx.folder.join(file.text()?);
+        let names = wanted.iter().map(|name| {
+            let column = table.require_with(name, &format!("{name} = \"COLUMN\""))?;
+            column.text()
+        });
+        let names = all(names)?;
+        let columns = csv::columns(&path, &names, MAX_LIST)
+            .map_err(|error| file.refuse(RefusalKind::File, format!("cannot be used: {error}"), None))?;
+        let length = columns.first().map_or(0, Vec::len);
+        let columns = wanted.iter().map(|name| (*name).to_owned()).zip(columns).collect();
+        Ok(Self { length, columns })
+    }
+
+    /// The value of the parameter `k.2` in a file.
+    fn value(&self, name: &str) -> Option<f64> {
+        let (list, k) = name.rsplit_once('.')?;
+        let (_, values) = self.columns.iter().find(|(name, _)| name == list)?;
+        values.get(k.parse::<usize>().ok()?).copied()
+    }
+}
+
+/// The list that a parameter is a value of; else itself.
+fn list_of(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(list, _)| list)
+}
+
+/// What stands for a parameter, which may be a value of a list.
+fn given<'a>(table: &Table<'a>, name: &'a str) -> Option<Field<'a>> {
+    let Some((list, k)) = name.rsplit_once('.') else { return table.get(name) };
+    let field = table.get(list)?;
+    let item = field.node.items()?.get(k.parse::<usize>().ok()?)?;
+    Some(field.item(item))
+}
+
+/// Parameter values in the order of the catalog.
+fn parameters<'a>(table: &Table<'a>, law: &'a Entry, lists: &Lists) -> Read<Vec<f64>> {
+    let names: Vec<&str> = law.params.iter().map(|param| &*param.name).collect();
+    let mut known: Vec<&str> = names.iter().map(|name| list_of(name)).collect();
+    known.dedup();
+    if known.len() < names.len() || !lists.columns.is_empty() {
+        known.push(TABLE);
+    }
+    let field = table.get("parameters");
+    let open = field.as_ref().map(|field| {
+        let what = format!("`parameters` of {} (law {:?})", table.what, law.name);
+        Table::open(field.ctx, field.node, what, &known)
+    });
+    let given = open.transpose()?;
+    let get = |param: &'a Param| given.as_ref().and_then(|table| self::given(table, &param.name));
+
+    let in_file = |param: &Param| lists.value(&param.name);
+    let lacking = |param: &&'a Param| param.default.is_none() && get(param).is_none() && in_file(param).is_none();
+    let missing: Vec<&Param> = law.params.iter().filter(lacking).collect();
+    let untold = missing.iter().filter(|param| !given.as_ref().is_some_and(|table| table.suspects(&param.name)));
+    let untold: Vec<&str> = untold.map(|param| list_of(&param.name)).collect();
+    let missing_refused = if untold.is_empty() {
+        (!missing.is_empty()).then_some(Refused)
+    } else {
+        let right: Vec<String> =
+            missing.iter().map(|param| describe(list_of(&param.name), &param.unit, &param.meaning)).collect();
+        let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
+        let message = format!("{}: law {:?} needs the parameters {}", table.what, law.name, names::list(untold));
+        let refusal = place.refuse(RefusalKind::Missing, message).label("missing parameters");
+        Some(table.ctx.refuse(refusal.help(right.join("; "))))
+    };
+
+    // Exponents name pure numbers, so those are read first.
+    let pure = |param: &'a Param| match get(param) {
+        Some(field) if param.unit.is_empty() => Some(value(&field, param, &|_| None)),
+        _ => None,
+    };
+    let pure: Vec<Option<Read<f64>>> = law.params.iter().map(pure).collect();
+    let exponent = |name: &str| {
+        let at = names.iter().position(|param| *param == name)?;
+        match pure[at] {
+            Some(read) => read.ok(),
+            None => law.params[at].default.filter(|_| law.params[at].unit.is_empty()),
+        }
+    };
+    // A quantity whose exponent was refused or is missing would be refused for the wrong reason.
+    if pure.contains(&Some(Err(Refused))) || missing.iter().any(|param| param.unit.is_empty()) {
+        return Err(Refused);
+    }
+    let values = law.params.iter().zip(&pure).map(|(param, pure)| match (pure, get(param)) {
+        (Some(read), _) => *read,
+        (None, Some(field)) => value(&field, param, &exponent),
+        (None, None) => in_file(param).or(param.default).ok_or(Refused),
+    });
+    let values = all(values)?;
+    missing_refused.map_or(Ok(values), Err)
+}
+
+fn describe(name: &str, unit: &str, meaning: &str) -> String {
+    let unit = if unit.is_empty() { "a number" } else { unit };
+    format!("{name} [{unit}]: {meaning}")
+}
+
+fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f64>) -> Read<f64> {
+    let value = field.number_with(&param.unit, exponents)?;
+    if param.range.contains(value) {
+        return Ok(value);
+    }
+    let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
+    let message = format!("is {value}{unit}, {}", how_outside(param.range));
+    let of = if param.unit.is_empty() { "a number" } else { &*param.unit };
+    let right = || format!("{}: {} ({of}, {})", param.name, param.meaning, interval(param.range));
+    let help = celsius(&param.unit, param.range, value).unwrap_or_else(right);
+    Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)))
+}
+
+/// Inputs in the order of the catalog.
+fn inputs<'a>(table: &Table<'a>, law: &'a Entry, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
+    let names: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
+    let field = table.get("inputs");
+    let open = field.as_ref().map(|field| {
+        let what = format!("`inputs` of {} (law {:?})", table.what, law.name);
+        Table::open(field.ctx, field.node, what, &names)
+    });
+    let given = open.transpose()?;
+    let missing: Vec<_> =
+        law.inputs.iter().filter(|input| given.as_ref().is_none_or(|given| given.get(&input.name).is_none())).collect();
+    let untold = missing.iter().filter(|input| !given.as_ref().is_some_and(|given| given.suspects(&input.name)));
+    let untold: Vec<&str> = untold.map(|input| &*input.name).collect();
+    if !untold.is_empty() {
+        let right: Vec<String> =
+            missing.iter().map(|input| describe(&input.name, &input.unit, &input.meaning)).collect();
+        let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
+        let message = format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold));
+        let refusal = place.refuse(RefusalKind::Missing, message).label("missing inputs");
+        table.ctx.refuse(refusal.help(right.join("; ")));
+    }
+    all(law.inputs.iter().map(|input| {
+        let field = given.as_ref().and_then(|given| given.get(&input.name)).ok_or(Refused)?;
+        let end = time.map(|time| time.end);
+        signals::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })
+    }))
+}
