@@ -12,7 +12,7 @@ mod wrap;
 pub(crate) use color::{Color, INK, PAPER};
 pub(crate) use font::Font;
 pub(crate) use scene::{Align, Outline, Point, Scene, Stroke, Text};
-pub(crate) use wrap::wrap;
+pub(crate) use wrap::{wrap, wrap_evenly};
 
 use crate::{Rendered, ReportError};
 
