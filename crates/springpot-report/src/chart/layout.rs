@@ -120,7 +120,9 @@ pub(super) fn scene(plot: &Plot, font: &Font) -> Result<Scene, ReportError> {
         let kind = kinds.iter().position(|kind| *kind == curve.kind).unwrap_or(0);
         strokes[label][kind]
     };
-    Ok(layout.draw(&settled, &look))
+    let mut scene = layout.draw(&settled, &look);
+    scene.remarks = data::not_positive(plot);
+    Ok(scene)
 }
 
 /// Labels in their colours, then kinds in their dashes.

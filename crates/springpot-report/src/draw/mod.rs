@@ -18,5 +18,10 @@ use crate::{Rendered, ReportError};
 
 /// Writes a scene in all formats.
 pub(crate) fn render(scene: &Scene, font: &Font) -> Result<Rendered, ReportError> {
-    Ok(Rendered { svg: svg::write(scene), png: raster::write(scene, font)?, pdf: pdf::write(scene, font) })
+    Ok(Rendered {
+        svg: svg::write(scene),
+        png: raster::write(scene, font)?,
+        pdf: pdf::write(scene, font),
+        remarks: scene.remarks.clone(),
+    })
 }
