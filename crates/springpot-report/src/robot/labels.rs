@@ -10,6 +10,8 @@ const TOUCHES: f64 = 50.0;
 /// Steps away from what it names that are always tried for a label, and at most.
 const NEAR: i32 = 5;
 const FARTHEST: i32 = 12;
+/// Lines and frames among which it is worth while to search that far.
+const FEW: usize = 600;
 
 /// An axis-parallel box: left, top, right, bottom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +83,8 @@ impl Obstacles {
         let half = [0.5 * width, Font::middle(request.size) + 1.0];
         let mut best: Option<(f64, Point, (Point, f64))> = None;
         // Far from what it names only where there is no place nearer.
-        for ring in 0..FARTHEST {
+        let farthest = if self.lines.len() + self.frames.len() > FEW { NEAR } else { FARTHEST };
+        for ring in 0..farthest {
             if ring >= NEAR && best.is_some_and(|(cost, ..)| cost < TOUCHES) {
                 break;
             }

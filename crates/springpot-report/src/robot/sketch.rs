@@ -32,6 +32,8 @@ const SENSE: f64 = 9.0;
 /// Length of the arms of the x-y-z sign.
 const TRIAD: f64 = 30.0;
 const AXES: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// Names without room that are told one by one.
+const MOST_LISTED: usize = 8;
 /// Longest scale bar.
 const SCALE_BAR: f64 = 90.0;
 
@@ -101,7 +103,7 @@ pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
     triad_and_scale(robot.size, &camera, &mut sheet, font);
     let mut scene = page(robot, sheet, font);
     if !unnamed.is_empty() {
-        scene.remarks.push(format!("no room for the names {}", unnamed.join(", ")));
+        scene.remarks.push(format!("no room for the names {}", listed(&unnamed)));
     }
     scene
 }
@@ -249,6 +251,15 @@ fn names(robot: &RobotDrawing, camera: &Camera, tips: &[Point], sheet: &mut Shee
     requests.retain(|request| !request.text.is_empty());
     requests.retain(|request| !sheet.obstacles.place(&mut sheet.scene, font, request));
     requests.into_iter().map(|request| request.text).collect()
+}
+
+/// Some names; of many the first.
+fn listed(names: &[String]) -> String {
+    let first = names[..names.len().min(MOST_LISTED)].join(", ");
+    match names.len().saturating_sub(MOST_LISTED) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
 }
 
 /// Length of what all of several names begin with, up to a `_` before a letter.
