@@ -269,7 +269,7 @@ fn shared_beginning(names: &[&str]) -> usize {
         others.iter().all(|name| name.starts_with(&first[..*end]))
             && names.iter().all(|name| name[*end..].starts_with(char::is_alphabetic))
     };
-    first.match_indices('_').map(|(at, _)| at + 1).filter(is_shared).last().unwrap_or(0)
+    first.rmatch_indices('_').map(|(at, _)| at + 1).find(is_shared).unwrap_or(0)
 }
 
 /// Half length and half height of an element's sign.
