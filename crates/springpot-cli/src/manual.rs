@@ -43,7 +43,8 @@ fn write_all(folder: &Path) -> io::Result<()> {
 
 fn page(command: clap::Command) -> io::Result<String> {
     let mut page = Vec::new();
-    Man::new(command).render(&mut page)?;
+    // There is no page of `help`, so that none is named.
+    Man::new(command.disable_help_subcommand(true)).render(&mut page)?;
     Ok(with_examples(&String::from_utf8_lossy(&page)))
 }
 

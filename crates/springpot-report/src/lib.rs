@@ -50,6 +50,8 @@ pub struct Rendered {
     pub pdf: Vec<u8>,
     /// The same figure as a PNG file with 2.5 pixels per SVG unit and its physical size recorded (240 dpi).
     pub png: Vec<u8>,
+    /// What it does not show: values that a logarithmic axis has no place for, names that found no room; a clause each.
+    pub remarks: Vec<String>,
 }
 
 /// Why a figure could not be drawn.

@@ -246,6 +246,47 @@ fn sizes_are_kept() {
 }
 
 #[test]
+fn narrow_pages_have_smaller_letters_and_room_for_curves() {
+    let mut narrow = plot(waves(4, 400));
+    let legend = ["exact", "expansion-2004(7)", "expansion-2004(30)", "expansion-2004(100)"];
+    for (curve, label) in narrow.panels[0].curves.iter_mut().zip(legend) {
+        curve.label = label.into();
+    }
+    narrow.legend_title = Some("scheme".into());
+    narrow.title = Some("Derivative of order ½ of the stroke, exact and expanded".into());
+    let height = |size: [f64; 2]| {
+        let svg = Plot { size: Some(size), ..narrow.clone() }.render().unwrap().svg;
+        // On paper.
+        (panel_height(&svg) / (view_box(&svg)[0] / svg_size(&svg, "width")), view_box(&svg)[0])
+    };
+    let (panel, laid_out) = height([90.0, 60.0]);
+    assert!(panel > 0.28 * 60.0 * 96.0 / 25.4, "{panel}");
+    assert!((laid_out * 25.4 / 96.0 - 110.0).abs() < 0.01, "{laid_out}");
+    assert!((height([110.0, 80.0]).1 * 25.4 / 96.0 - 110.0).abs() < 0.01);
+}
+
+#[test]
+fn what_is_not_shown_is_said() {
+    let mut plot = plot(vec![curve("a", &[0.0, 1.0, 2.0], &[0.0, 1.0, 10.0])]);
+    assert!(plot.render().unwrap().remarks.is_empty());
+    plot.y.scale = Scale::Log;
+    let remarks = plot.render().unwrap().remarks;
+    assert_eq!(remarks, ["1 of 3 points is not above zero: not drawn on the logarithmic y axis"]);
+
+    let mut robot = arm();
+    assert!(robot.render().unwrap().remarks.is_empty());
+    // More bodies in one place than names find room about it.
+    let body = |k: usize| Link { name: format!("body_number_{k}"), points: vec![[0.0; 3], [0.0, 0.0, 0.01]] };
+    robot.links.extend((0..200).map(body));
+    let figure = robot.render().unwrap();
+    let [remark] = &figure.remarks[..] else { panic!("{:?}", figure.remarks) };
+    let named = (0..200).filter(|k| figure.svg.contains(&format!(">body_number_{k}<"))).count();
+    let others = format!(" and {} more", 200 - named - 8);
+    assert!(named > 0 && remark.starts_with("no room for the names body_number_"), "{named}: {remark}");
+    assert!(remark.ends_with(&others), "{named}: {remark}");
+}
+
+#[test]
 fn ranges_cut_curves_and_scales_bend_them() {
     let x: Vec<f64> = (1..=1000).map(f64::from).collect();
     let y: Vec<f64> = x.iter().map(|x| 1e6 / (x * x)).collect();

@@ -21,7 +21,8 @@ pub(super) fn write(file: &Path, law: &Entry, found: &Fitted, rows: &[Measured])
         }
     };
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    let Rendered { svg, png, pdf } = &rendered;
+    let Rendered { svg, png, pdf, remarks } = &rendered;
+    remarks.iter().for_each(|remark| diagnostic::warning(format!("figure: {remark}"), None));
     let bytes = match &*ending {
         "png" => &png[..],
         "pdf" => &pdf[..],

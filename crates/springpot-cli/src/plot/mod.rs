@@ -51,6 +51,7 @@ pub(crate) fn plot(options: &PlotOptions) -> Ending {
             return Ending::Failed;
         }
     };
+    rendered.remarks.iter().for_each(|remark| diagnostic::warning(format!("figure: {remark}"), None));
     let mut lines = String::new();
     for (file, format) in &figure.files {
         match output::written(file, write(file, bytes(&rendered, *format))) {

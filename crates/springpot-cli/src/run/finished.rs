@@ -43,9 +43,14 @@ impl Said {
         failures::tell_all(&failed, outcome.done + outcome.failed, cases);
         match outcome.status {
             Status::Done => {}
-            Status::Failed => terminal::print_error(&format!("failed{}\n", self.how_far())),
-            Status::Interrupted => terminal::print_error(&format!("interrupted{}\n", self.how_far())),
+            Status::Failed => self.tell_how_far("failed"),
+            Status::Interrupted => self.tell_how_far("interrupted"),
         }
+    }
+
+    fn tell_how_far(&self, what: &str) {
+        let line = format!("{what}{}", self.how_far());
+        terminal::print_error(&terminal::hanging("", &line, terminal::stderr_width()));
     }
 
     /// How far a run came that did not come to its end; goes on after "failed" or "interrupted".

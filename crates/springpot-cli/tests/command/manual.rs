@@ -21,6 +21,7 @@ fn pages_are_printed_or_written() {
     let place = Place::new();
     let page = place.done(&["man"]).stdout;
     assert!(page.contains(".TH springpot 1") && COMMANDS.iter().all(|command| page.contains(command)), "{page}");
+    assert!(!page.contains("\\-help(1)"), "{page}");
     assert_eq!(place.done(&["man", "--out", "man"]).stdout, "");
     let files = place.files("man");
     assert!(COMMANDS.iter().all(|command| files.contains(&format!("springpot-{command}.1"))), "{files:?}");

@@ -300,7 +300,11 @@ fn robots_too_large_for_a_sketch_are_not_drawn() {
     let bodies: String = std::iter::once(first).chain((1..1000).map(body)).collect();
     place.write("big.toml", format!("{rest}{figure}{bodies}"));
     let ended = place.done(&["run", "big.toml"]);
-    assert_eq!(ended.stderr, "");
+    let said = &ended.stderr;
+    assert!(
+        said.starts_with("warning: figure \"big\": no room for the names b") && said.ends_with(" more\n"),
+        "{said}"
+    );
     let links: String = (0..1001).map(|k| link(&format!("l{k}"))).collect();
     let joint = |k: usize| {
         let ends = format!("<parent link=\"l0\"/><child link=\"l{k}\"/><axis xyz=\"0 0 1\"/>");

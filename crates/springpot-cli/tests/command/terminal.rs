@@ -51,6 +51,7 @@ fn a_long_run_shows_how_far_it_is() {
     // Short runs, quiet ones and pipes show none.
     let quiet = shown(&place, "timeout --foreground -s INT 1", &[&endless[..], &["--quiet"]].concat()).unwrap();
     assert!(!quiet.contains('%') && quiet.contains("interrupted after"), "{quiet}");
+    assert!(quiet.lines().all(|line| line.trim_end().chars().count() <= 60), "{quiet}");
     let short = shown(&place, "", &["run", "arm.toml"]).unwrap();
     assert!(!short.contains('%') && short.contains("5 rows, "), "{short}");
 }

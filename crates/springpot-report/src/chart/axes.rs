@@ -88,7 +88,7 @@ pub(super) fn x_ticks(font: &Font, range: Range, width: f64) -> Ticks {
             .into_iter()
             .all(|(v, l)| width * (range.share(v[1]) - range.share(v[0])) >= half(&l[0]) + half(&l[1]) + TICK_SIZE)
     };
-    let most = ((width / 36.0) as usize).clamp(3, 9);
+    let most = ((width / 36.0) as usize).clamp(5, 9);
     let choices = (3..=most).rev().map(|most| ticks(range, most));
     choices.into_iter().find(fits).unwrap_or_else(|| ticks(range, 2))
 }

@@ -37,6 +37,31 @@ pub(super) fn runs(curve: &Curve, scales: [Scale; 2]) -> Runs {
     runs
 }
 
+/// How many points of a figure a logarithmic axis has no place for; none where a range says what is drawn.
+pub(super) fn not_positive(plot: &Plot) -> Vec<String> {
+    let points = || {
+        plot.panels.iter().flat_map(|panel| {
+            let left = panel.y.as_ref().unwrap_or(&plot.y);
+            panel.curves.iter().flat_map(move |curve| {
+                let y = plot.right.as_ref().filter(|_| curve.is_right).unwrap_or(left);
+                curve.x.iter().zip(&curve.y).map(move |(at, value)| [(&plot.x, *at), (y, *value)])
+            })
+        })
+    };
+    let is_drawn = |(_, value): &(&super::Axis, f64)| value.abs() <= LARGEST;
+    let is_missing =
+        |(axis, value): (&super::Axis, f64)| axis.scale == Scale::Log && axis.range.is_none() && value < SMALLEST;
+    let all = || points().filter(|point| point.iter().all(is_drawn));
+    let remark = |(name, axis): (&str, usize)| {
+        let missing = all().filter(|point| is_missing(point[axis])).count();
+        let is = if missing == 1 { "is" } else { "are" };
+        let all = all().count();
+        (missing > 0)
+            .then(|| format!("{missing} of {all} points {is} not above zero: not drawn on the logarithmic {name} axis"))
+    };
+    [("x", 0), ("y", 1)].into_iter().filter_map(remark).collect()
+}
+
 /// Lowest and highest value shown on an axis, and how what lies between becomes a length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
@@ -166,6 +191,22 @@ mod tests {
         assert_eq!(runs(&curve, linear), [vec![[1.0, 1.0], [2.0, 2.0]], vec![[5.0, 3.0]], vec![[7.0, -1.0]]]);
         let log = [Scale::Linear, Scale::Log];
         assert_eq!(runs(&curve, log), [vec![[1.0, 1.0], [2.0, 2.0]], vec![[5.0, 3.0]]]);
+    }
+
+    #[test]
+    fn what_is_not_positive_is_told() {
+        let curve = Curve { x: vec![0.0, 1.0, 2.0, 3.0], y: vec![1.0, 0.0, -1.0, f64::NAN], ..Curve::default() };
+        let panels = vec![super::super::Panel { curves: vec![curve], ..Default::default() }];
+        let log = Axis { scale: Scale::Log, ..Axis::default() };
+        let told = |x: &Axis, y: &Axis| {
+            not_positive(&Plot { x: x.clone(), y: y.clone(), panels: panels.clone(), ..Plot::default() })
+        };
+        let linear = Axis::default();
+        let y = "2 of 3 points are not above zero: not drawn on the logarithmic y axis";
+        assert_eq!(told(&linear, &log), [y]);
+        assert_eq!(told(&log, &log), ["1 of 3 points is not above zero: not drawn on the logarithmic x axis", y]);
+        let ranged = Axis { range: Some([0.1, 1.0]), ..log };
+        assert!(told(&ranged, &ranged).is_empty() && told(&linear, &linear).is_empty());
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::data::{self, Range, Reach, Runs};
 use super::legend::{Group, Legend};
 use super::ticks::Ticks;
 use super::{Axis, Panel, Plot, style};
-use crate::draw::{Font, Scene, Stroke, wrap};
+use crate::draw::{Font, Scene, Stroke, wrap_evenly};
 use crate::{PIXELS_PER_MM, ReportError, WIDTH};
 
 const TITLE_SIZE: f64 = 15.0;
@@ -26,6 +26,9 @@ const COLUMN_GAP: f64 = 20.0;
 /// The legend stands beside the panels where it takes no more of the page, and leaves the panels no less than this.
 const LEGEND_SHARE: f64 = 0.27;
 const WIDE: f64 = 140.0;
+/// Narrower pages than this, mm, have smaller letters, of no less than this part of the size.
+const FULL_SIZE: f64 = 110.0;
+const SMALLEST: f64 = 0.8;
 /// The highest data area of a page without a height.
 const HIGHEST: f64 = 290.0;
 
@@ -49,8 +52,10 @@ struct Layout<'a> {
     group: Vec<usize>,
     runs: Vec<Vec<Runs>>,
     columns: usize,
+    /// Of the page as laid out, which is `shrunk` times as large as the paper.
     page_width: f64,
     page_height: Option<f64>,
+    shrunk: f64,
     title: Vec<String>,
     legend: Option<(Legend, Place)>,
     /// What the curves need.
@@ -115,7 +120,9 @@ pub(super) fn scene(plot: &Plot, font: &Font) -> Result<Scene, ReportError> {
         let kind = kinds.iter().position(|kind| *kind == curve.kind).unwrap_or(0);
         strokes[label][kind]
     };
-    Ok(layout.draw(&settled, &look))
+    let mut scene = layout.draw(&settled, &look);
+    scene.remarks = data::not_positive(plot);
+    Ok(scene)
 }
 
 /// Labels in their colours, then kinds in their dashes.
@@ -167,9 +174,10 @@ impl<'a> Layout<'a> {
             data::y_ranges(&[Reach { runs: whole, group: 0 }], &[axis], x).0.pop().flatten()
         });
         let columns = plot.columns.unwrap_or(columns(panels.len())).clamp(1, panels.len());
-        let [page_width, page_height] =
-            plot.size.map_or([Some(WIDTH), None], |size| size.map(Some)).map(|side| side.map(|mm| mm * PIXELS_PER_MM));
-        let page_width = page_width.unwrap_or(WIDTH * PIXELS_PER_MM);
+        let width = plot.size.map_or(WIDTH, |[width, _]| width);
+        let shrunk = 1.0 / (width / FULL_SIZE).clamp(SMALLEST, 1.0);
+        let page_width = width * PIXELS_PER_MM * shrunk;
+        let page_height = plot.size.map(|[_, height]| height * PIXELS_PER_MM * shrunk);
         let title = plot.title.as_deref().filter(|title| !title.is_empty());
         Self {
             plot,
@@ -183,7 +191,10 @@ impl<'a> Layout<'a> {
             columns,
             page_width,
             page_height,
-            title: title.map(|title| wrap(font, title, TITLE_SIZE, page_width - 2.0 * BORDER, 3)).unwrap_or_default(),
+            shrunk,
+            title: title
+                .map(|title| wrap_evenly(font, title, TITLE_SIZE, page_width - 2.0 * BORDER, 3))
+                .unwrap_or_default(),
             legend: None,
         }
     }

@@ -67,19 +67,26 @@ impl Legend {
         for group in groups.iter().filter(|group| !group.entries.is_empty()) {
             let title = group.title.unwrap_or_default();
             let title_width = font.width(title, SIZE);
-            let is_short = title_width < 0.25 * width;
+            let fitting = |left: f64| {
+                let entries = entries(font, group, width - left);
+                let widest = entries.iter().map(|(_, lines)| entry_width(font, lines)).fold(0.0, f64::max);
+                let columns = ((width - left + COLUMN_GAP) / (widest + COLUMN_GAP)) as usize;
+                // Rows are as even as their number allows.
+                let rows = entries.len().div_ceil(columns.clamp(1, entries.len()));
+                (entries.len().div_ceil(rows), rows, widest, entries)
+            };
+            // Above the entries, a title takes a row of its own.
+            let beside = title_width + COLUMN_GAP;
+            let is_short = title_width < 0.25 * width && fitting(beside).1 <= fitting(0.0).1 + 1;
             let lines = if title.is_empty() { Vec::new() } else { wrap(font, title, SIZE, width, 2) };
             let mut y = legend.below_last();
-            let left = if is_short && !lines.is_empty() { title_width + COLUMN_GAP } else { 0.0 };
+            let left = if is_short && !lines.is_empty() { beside } else { 0.0 };
             if left > 0.0 {
                 legend.put_text([0.0, y], lines, title_width);
             } else {
                 y += legend.title(font, lines);
             }
-            let entries = entries(font, group, width - left);
-            let widest = entries.iter().map(|(_, lines)| entry_width(font, lines)).fold(0.0, f64::max);
-            let columns =
-                (((width - left + COLUMN_GAP) / (widest + COLUMN_GAP)) as usize).clamp(1, entries.len().max(1));
+            let (columns, _, widest, entries) = fitting(left);
             for row in entries.chunks(columns) {
                 let tall = row.iter().map(|(_, lines)| entry_height(lines)).fold(0.0, f64::max);
                 for (column, (stroke, lines)) in row.iter().enumerate() {

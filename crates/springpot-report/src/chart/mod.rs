@@ -116,6 +116,7 @@ impl Plot {
     ///   light (plasma), with dashes where they are more than six; others get distinct colours and dashes.
     /// - x ends at the data (with a margin where a curve runs back or is marked); y has a margin of 5 %. All panels share x; panels with the same y
     ///   axis share y too, unless one of them would come out flatter than a twentieth of the range. A constant curve gets ±10 %.
+    /// - Pages narrower than 110 mm have smaller letters, down to four fifths.
     /// - Ticks are multiples of 1, 2 or 5; a common power of ten or offset stands once at the end of the axis.
     /// - Long curves are drawn with fewer points, no farther than 0.1 pixels from all of them; only where all curves together would
     ///   still have more than 100 000 points, the longest keep the first, lowest, highest and last point of wider columns.

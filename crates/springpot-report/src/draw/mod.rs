@@ -12,11 +12,16 @@ mod wrap;
 pub(crate) use color::{Color, INK, PAPER};
 pub(crate) use font::Font;
 pub(crate) use scene::{Align, Outline, Point, Scene, Stroke, Text};
-pub(crate) use wrap::wrap;
+pub(crate) use wrap::{wrap, wrap_evenly};
 
 use crate::{Rendered, ReportError};
 
 /// Writes a scene in all formats.
 pub(crate) fn render(scene: &Scene, font: &Font) -> Result<Rendered, ReportError> {
-    Ok(Rendered { svg: svg::write(scene), png: raster::write(scene, font)?, pdf: pdf::write(scene, font) })
+    Ok(Rendered {
+        svg: svg::write(scene),
+        png: raster::write(scene, font)?,
+        pdf: pdf::write(scene, font),
+        remarks: scene.remarks.clone(),
+    })
 }

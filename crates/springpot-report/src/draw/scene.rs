@@ -78,6 +78,8 @@ pub(crate) struct Scene {
     pub(crate) paper_width: Option<f64>,
     /// What a screen reader says.
     pub(crate) title: String,
+    /// What it does not show.
+    pub(crate) remarks: Vec<String>,
     pub(crate) shapes: Vec<Shape>,
 }
 

@@ -3,12 +3,13 @@
 use super::Font;
 
 /// Splits a text at blanks into lines no wider than `width` pixels; a word that is too long is split anywhere, and what does not
-/// fit into `most` lines ends in "…". Line breaks and other control characters count as blanks. Never empty.
+/// fit into `most` lines ends in "…". Equations stay whole, and what follows the last comma, a unit, does not stand alone, where there is
+/// room. Line breaks and other control characters count as blanks. Never empty.
 pub(crate) fn wrap(font: &Font, text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     let fits = |line: &str| font.width(line, size) <= width;
-    let words = text.split(|c: char| c.is_whitespace() || c.is_control()).filter(|word| !word.is_empty());
-    'words: for word in words {
+    let words = words(text, fits);
+    'words: for word in words.iter().map(String::as_str) {
         let last = lines.len() - 1;
         let joined = if lines[last].is_empty() { word.to_owned() } else { format!("{} {word}", lines[last]) };
         if fits(&joined) {
@@ -43,6 +44,36 @@ pub(crate) fn wrap(font: &Font, text: &str, size: f64, width: f64, most: usize) 
     lines
 }
 
+/// As [`wrap`], in lines of about one length.
+pub(crate) fn wrap_evenly(font: &Font, text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
+    let whole = wrap(font, text, size, width, most);
+    let narrower = (1..).map(|step| wrap(font, text, size, width - 4.0 * f64::from(step), most));
+    // Lines that hold other text have split a word or ended early.
+    let is_as_good = |lines: &Vec<String>| lines.len() == whole.len() && lines.join(" ") == whole.join(" ");
+    if whole.len() < 2 { whole } else { narrower.take_while(is_as_good).last().unwrap_or(whole.clone()) }
+}
+
+/// What lines are broken between.
+fn words(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    let mut single =
+        text.split(|c: char| c.is_whitespace() || c.is_control()).filter(|word| !word.is_empty()).peekable();
+    while let Some(word) = single.next() {
+        let is_last = single.peek().is_none();
+        match words.last_mut() {
+            Some(before)
+                if (word == "=" || before.ends_with(" =") || (is_last && before.ends_with(',')))
+                    && fits(&format!("{before} {word}")) =>
+            {
+                before.push(' ');
+                before.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
 /// Length in bytes of the longest beginning that fits; at least one character.
 fn head(word: &str, fits: impl Fn(&str) -> bool) -> usize {
     let ends = word.char_indices().map(|(start, c)| start + c.len_utf8());
@@ -72,6 +103,22 @@ mod tests {
         assert!(lines.len() > 2);
         assert!(lines.iter().all(|line| font.width(line, 10.0) <= 120.0));
         assert_eq!(lines.join(" "), text);
+    }
+
+    #[test]
+    fn equations_and_units_stay_whole() {
+        let font = Font::load().unwrap();
+        let width = |text: &str| font.width(text, 10.0) + 0.1;
+        let lines = |text: &str, longest: &str| wrap(&font, text, 10.0, width(longest), 3);
+        assert_eq!(lines("the damper, α = 0.5", "the damper, α ="), ["the damper,", "α = 0.5"]);
+        assert_eq!(lines("stroke x of gauge, pm", "stroke x of gauge,"), ["stroke x of", "gauge, pm"]);
+        assert_eq!(lines("U = 60·sin(t)", "60·sin(t)"), ["U =", "60·sin(t)"]);
+        let evenly = |text: &str, longest: &str| wrap_evenly(&font, text, 10.0, width(longest), 3);
+        assert_eq!(
+            evenly("forces of the strut and the strap", "forces of the strut and the"),
+            ["forces of the strut", "and the strap"]
+        );
+        assert_eq!(evenly("forces of the strut", "forces of the strut"), ["forces of the strut"]);
     }
 
     #[test]

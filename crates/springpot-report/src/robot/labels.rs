@@ -7,6 +7,11 @@ const GREY: Color = Color(0x90, 0x90, 0x90);
 const PAD: f64 = 2.5;
 /// Cost of a label that touches something; below, a label is clear.
 const TOUCHES: f64 = 50.0;
+/// Steps away from what it names that are always tried for a label, and at most.
+const NEAR: i32 = 5;
+const FARTHEST: i32 = 12;
+/// Lines and frames among which it is worth while to search that far.
+const FEW: usize = 600;
 
 /// An axis-parallel box: left, top, right, bottom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,8 +22,8 @@ pub(super) struct Request {
     pub(super) text: String,
     pub(super) size: f64,
     pub(super) color: Color,
-    /// Points it may stand beside, the best first.
-    pub(super) beside: Vec<Point>,
+    /// Points it may stand beside, the best first, and how far what it names reaches from each.
+    pub(super) beside: Vec<(Point, f64)>,
     /// Free distance from those points.
     pub(super) clear: f64,
     /// Is left out rather than drawn over something.
@@ -71,41 +76,51 @@ impl Obstacles {
         TOUCHES * others.filter(|frame| frame.length_inside(from, to) > 0.0).count() as f64
     }
 
-    /// Finds the best place, draws the name, with a thin line to what it names where that is far, and keeps the place.
-    pub(super) fn place(&mut self, scene: &mut Scene, font: &Font, request: &Request) {
+    /// Finds the best place, draws the name, with a thin line to what it names where that is far, and keeps the place. Whether there
+    /// was one.
+    pub(super) fn place(&mut self, scene: &mut Scene, font: &Font, request: &Request) -> bool {
         let width = font.width(&request.text, request.size);
         let half = [0.5 * width, Font::middle(request.size) + 1.0];
-        let mut best: Option<(f64, Point, Point)> = None;
-        for (rank, beside) in request.beside.iter().enumerate() {
-            for ring in 0..5 {
+        let mut best: Option<(f64, Point, (Point, f64))> = None;
+        // Far from what it names only where there is no place nearer.
+        let farthest = if self.lines.len() + self.frames.len() > FEW { NEAR } else { FARTHEST };
+        for ring in 0..farthest {
+            if ring >= NEAR && best.is_some_and(|(cost, ..)| cost < TOUCHES) {
+                break;
+            }
+            for (rank, (beside, reach)) in request.beside.iter().enumerate() {
                 for direction in 0..16 {
                     let (sin, cos) = (f64::from(direction) * std::f64::consts::TAU / 16.0).sin_cos();
                     let clear = request.clear + 9.0 * f64::from(ring);
                     // The frame, not its middle, keeps the distance.
-                    let reach = (half[0] / cos.abs().max(1e-9)).min(half[1] / sin.abs().max(1e-9));
-                    let middle = [beside[0] + cos * (clear + reach), beside[1] - sin * (clear + reach)];
+                    let edge = (half[0] / cos.abs().max(1e-9)).min(half[1] / sin.abs().max(1e-9));
+                    let middle = [beside[0] + cos * (clear + edge), beside[1] - sin * (clear + edge)];
                     let order = 0.05 * f64::from((direction + 14) % 16);
                     let frame = Frame::sized(middle, half);
-                    let leader = leader(frame, *beside, request.clear).map_or(0.0, |from| self.crossed(from, *beside));
+                    let leader = leader(frame, *beside, request.clear + reach);
+                    let leader = leader.map_or(0.0, |from| self.crossed(from, *beside));
                     let cost = self.cost(frame) + leader + 3.0 * f64::from(ring) + rank as f64 + order;
                     if best.is_none_or(|(least, ..)| cost < least) {
-                        best = Some((cost, middle, *beside));
+                        best = Some((cost, middle, (*beside, *reach)));
                     }
                 }
             }
         }
-        let Some((cost, middle, beside)) = best else { return };
+        let Some((cost, middle, (beside, reach))) = best else { return false };
         if request.optional && cost >= TOUCHES {
-            return;
+            return false;
         }
         let frame = Frame::sized(middle, half);
-        if let Some(near) = leader(frame, beside, request.clear) {
-            scene.line(&[near, beside], Stroke::new(GREY, 0.7).butt());
-            self.line(&[near, beside], 0.7);
+        if let Some(near) = leader(frame, beside, request.clear + reach) {
+            let far = (near[0] - beside[0]).hypot(near[1] - beside[1]);
+            let end = [0, 1].map(|k| beside[k] + reach / far * (near[k] - beside[k]));
+            scene.line(&[near, end], Stroke::new(GREY, 0.7).butt());
+            self.line(&[near, end], 0.7);
         }
         let at = [middle[0], middle[1] + Font::middle(request.size)];
         scene.text(Text::new(&request.text, at, request.size, Align::Middle).color(request.color).halo());
         self.frame(frame);
+        true
     }
 }
 
@@ -205,12 +220,12 @@ mod tests {
                 text: name.into(),
                 size: 12.0,
                 color: GREY,
-                beside: vec![[0.0, 0.0]],
+                beside: vec![([0.0, 0.0], 0.0)],
                 clear: 8.0,
                 optional: false,
             };
             let before = obstacles.frames.len();
-            obstacles.place(&mut scene, &font, &request);
+            assert!(obstacles.place(&mut scene, &font, &request));
             let placed = obstacles.frames.remove(before);
             assert_eq!(obstacles.cost(placed), 0.0, "{name}");
             obstacles.frame(placed);

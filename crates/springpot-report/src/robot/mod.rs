@@ -33,7 +33,7 @@ pub struct RobotDrawing {
     pub ground: Option<[f64; 3]>,
     /// From where it is seen, degrees: the turn about z (at 0, x points to the right and y away), and the height above the horizon.
     pub view: Option<[f64; 2]>,
-    /// Nothing is named.
+    /// Nothing is named; else what all names of bodies and joints begin with, up to a `_`, is left out.
     pub hides_names: bool,
     /// Width and height of the page, mm; else [`crate::WIDTH`] and what it takes. A picture that is larger is shrunk.
     pub size: Option<[f64; 2]>,

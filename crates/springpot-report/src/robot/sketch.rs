@@ -1,11 +1,12 @@
 //! The sketch: what is drawn where.
 
+use super::element;
 use super::labels::{Frame, Request};
 use super::symbols::{ARM, BODY, ELEMENT, JOINT, Sheet, direction};
 use super::vector::{Vector, along, cross, distance, dot, unit};
 use super::view::View;
-use super::{ElementMark, JointKind, JointMark, RobotDrawing, WORLD};
-use crate::draw::{Align, Color, Font, INK, Point, Scene, Stroke, Text, wrap};
+use super::{ElementMark, ElementSign, JointKind, JointMark, RobotDrawing, WORLD};
+use crate::draw::{Align, Color, Font, INK, Point, Scene, Stroke, Text, wrap_evenly};
 use crate::{PIXELS_PER_MM, WIDTH};
 use std::collections::HashMap;
 
@@ -31,6 +32,8 @@ const SENSE: f64 = 9.0;
 /// Length of the arms of the x-y-z sign.
 const TRIAD: f64 = 30.0;
 const AXES: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// Names without room that are told one by one.
+const MOST_LISTED: usize = 8;
 /// Longest scale bar.
 const SCALE_BAR: f64 = 90.0;
 
@@ -96,11 +99,13 @@ pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
     if let Some(point) = robot.gripper {
         sheet.gripper(camera.at(point), gripper_direction(robot, &camera, point));
     }
-    if !robot.hides_names {
-        names(robot, &camera, &tips, &mut sheet, font);
+    let unnamed = if robot.hides_names { Vec::new() } else { names(robot, &camera, &tips, &mut sheet, font) };
+    triad_and_scale(robot.size, &camera, &mut sheet, font);
+    let mut scene = page(robot, sheet, font);
+    if !unnamed.is_empty() {
+        scene.remarks.push(format!("no room for the names {}", listed(&unnamed)));
     }
-    triad_and_scale(&camera, &mut sheet, font);
-    page(robot, sheet, font)
+    scene
 }
 
 fn ground(robot: &RobotDrawing, camera: &Camera, sheet: &mut Sheet) {
@@ -211,34 +216,70 @@ fn gripper_direction(robot: &RobotDrawing, camera: &Camera, gripper: Vector) -> 
     direction(camera.at(from), camera.at(gripper)).0
 }
 
-/// Names, the important ones first.
-fn names(robot: &RobotDrawing, camera: &Camera, tips: &[Point], sheet: &mut Sheet, font: &Font) {
+/// Names, the important ones first; answers those that find no room. What all names of bodies and joints begin with is left out.
+fn names(robot: &RobotDrawing, camera: &Camera, tips: &[Point], sheet: &mut Sheet, font: &Font) -> Vec<String> {
     let mut requests = Vec::new();
+    let links = || robot.links.iter().filter(|link| link.name != WORLD && !link.points.is_empty());
+    let all: Vec<&str> = links().map(|link| &*link.name).chain(robot.joints.iter().map(|joint| &*joint.name)).collect();
+    let shared = shared_beginning(&all);
     for (joint, tip) in robot.joints.iter().zip(tips) {
-        let beside = vec![*tip, camera.at(joint.position)];
-        let text = subscripted(&joint.name);
+        let beside = vec![(*tip, 0.0), (camera.at(joint.position), JOINT)];
+        let text = subscripted(joint.name.get(shared..).unwrap_or_default());
         requests.push(Request { text, size: NAME_SIZE, color: INK, beside, clear: 9.0, optional: false });
     }
     if let Some(gripper) = robot.gripper {
-        let beside = vec![camera.at(gripper)];
+        let beside = vec![(camera.at(gripper), 0.0)];
         requests.push(Request { text: "H".into(), size: NAME_SIZE, color: INK, beside, clear: 10.0, optional: false });
     }
     for element in &robot.elements {
-        let beside = middles(&[camera.at(element.from), camera.at(element.to)]);
+        let ends = [camera.at(element.from), camera.at(element.to)];
+        let half = element_half(ends, &element.sign);
+        // The sign, not the line through it, is what the name stands beside.
+        let is_sign = |at: &Point| direction(middle(ends), *at).1 <= half[0];
+        let beside = middles(&ends).into_iter().map(|at| (at, if is_sign(&at) { half[1] } else { 0.0 })).collect();
         let text = element.name.clone();
         requests.push(Request { text, size: NAME_SIZE, color: ELEMENT, beside, clear: 9.0, optional: false });
     }
     let mut seen = std::collections::HashSet::new();
-    for link in &robot.links {
-        if link.name != WORLD && !link.points.is_empty() && seen.insert(link.name.as_str()) {
-            let beside = middles(&camera.all(longest(&link.points)));
-            let text = link.name.clone();
+    for link in links() {
+        if seen.insert(link.name.as_str()) {
+            let beside = middles(&camera.all(longest(&link.points))).into_iter().map(|at| (at, 0.0)).collect();
+            let text = link.name.get(shared..).unwrap_or_default().to_owned();
             requests.push(Request { text, size: LINK_SIZE, color: LINK_NAME, beside, clear: 7.5, optional: true });
         }
     }
-    for request in requests.iter().filter(|request| !request.text.is_empty()) {
-        sheet.obstacles.place(&mut sheet.scene, font, request);
+    requests.retain(|request| !request.text.is_empty());
+    requests.retain(|request| !sheet.obstacles.place(&mut sheet.scene, font, request));
+    requests.into_iter().map(|request| request.text).collect()
+}
+
+/// Some names; of many the first.
+fn listed(names: &[String]) -> String {
+    let first = names[..names.len().min(MOST_LISTED)].join(", ");
+    match names.len().saturating_sub(MOST_LISTED) {
+        0 => first,
+        more => format!("{first} and {more} more"),
     }
+}
+
+/// Length of what all of several names begin with, up to a `_` before a letter.
+fn shared_beginning(names: &[&str]) -> usize {
+    let Some((first, others)) = names.split_first().filter(|(_, others)| !others.is_empty()) else { return 0 };
+    let is_shared = |end: &usize| {
+        others.iter().all(|name| name.starts_with(&first[..*end]))
+            && names.iter().all(|name| name[*end..].starts_with(char::is_alphabetic))
+    };
+    first.rmatch_indices('_').map(|(at, _)| at + 1).find(is_shared).unwrap_or(0)
+}
+
+/// Half length and half height of an element's sign.
+fn element_half([from, to]: [Point; 2], sign: &ElementSign) -> [f64; 2] {
+    let (along, length) = direction(from, to);
+    element::draw(sign, from, along, length).half.unwrap_or_default()
+}
+
+fn middle([a, b]: [Point; 2]) -> Point {
+    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
 }
 
 /// Places to name a line: its middle first.
@@ -271,8 +312,8 @@ fn subscripted(name: &str) -> String {
     }
 }
 
-/// The sign of the axes and the scale bar, in a free corner or below the robot.
-fn triad_and_scale(camera: &Camera, sheet: &mut Sheet, font: &Font) {
+/// The sign of the axes and the scale bar, in a free corner, else below the robot, or beside it where the page has more room there.
+fn triad_and_scale(page: Option<[f64; 2]>, camera: &Camera, sheet: &mut Sheet, font: &Font) {
     let arms = AXES.map(|axis| {
         let [x, y] = camera.view.project(axis);
         [TRIAD * x, -TRIAD * y]
@@ -297,7 +338,12 @@ fn triad_and_scale(camera: &Camera, sheet: &mut Sheet, font: &Font) {
     ];
     let free = |middle: &&Point| sheet.obstacles.cost(Frame::sized(**middle, [half[0] + 8.0, half[1] + 8.0])) == 0.0;
     let below = [left + half[0], bottom + 16.0 + half[1]];
-    let middle = corners.iter().find(free).copied().unwrap_or(below);
+    let beside = [right + 16.0 + half[0], bottom - half[1]];
+    let shrinks =
+        |by: Point, [wide, high]: [f64; 2]| ((right - left + by[0]) / wide).max((bottom - top + by[1]) / high);
+    let is_wide = page.is_some_and(|page| shrinks([width + 16.0, 0.0], page) < shrinks([0.0, height + 16.0], page));
+    let outside = if is_wide { beside } else { below };
+    let middle = corners.iter().find(free).copied().unwrap_or(outside);
     sheet.obstacles.frame(Frame::sized(middle, half));
 
     let origin = [middle[0] - half[0] - low(0), middle[1] - half[1] - low(1)];
@@ -342,7 +388,7 @@ fn page(robot: &RobotDrawing, sheet: Sheet, font: &Font) -> Scene {
     let paper_width = paper_width.unwrap_or(WIDTH * PIXELS_PER_MM);
     let width = (right - left + 2.0 * BORDER).max(paper_width);
     let title = robot.title.as_deref().unwrap_or_default();
-    let lines = wrap(font, title, TITLE_SIZE, width - 2.0 * BORDER, 3);
+    let lines = wrap_evenly(font, title, TITLE_SIZE, width - 2.0 * BORDER, 3);
     let title_height = if title.is_empty() { 0.0 } else { lines.len() as f64 * TITLE_LINE + 10.0 };
     let height = bottom - top + title_height + 2.0 * BORDER;
     let shrunk = (width / paper_width).max(paper_height.map_or(1.0, |paper| height / paper));
@@ -372,6 +418,17 @@ mod tests {
         }
         for name in ["", "qx", "1", "q1234", "joint_2", "q漢"] {
             assert_eq!(subscripted(name), name);
+        }
+    }
+
+    #[test]
+    fn what_all_names_begin_with_is_left_out() {
+        let shown =
+            |names: &[&str]| names.iter().map(|name| name[shared_beginning(names)..].to_owned()).collect::<Vec<_>>();
+        assert_eq!(shown(&["panda_link0", "panda_finger_joint1"]), ["link0", "finger_joint1"]);
+        assert_eq!(shown(&["a_b_c", "a_b_d"]), ["c", "d"]);
+        for names in [&["joint_1", "joint_2"][..], &["panda_link0"], &["panda_link0", "tool"], &["a_", "a_b"], &[]] {
+            assert_eq!(shown(names), names);
         }
     }
 

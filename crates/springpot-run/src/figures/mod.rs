@@ -43,7 +43,7 @@ pub fn bytes(rendered: &Rendered, format: FigureFormat) -> &[u8] {
     }
 }
 
-/// Draws every figure into the folder; returns what could not be drawn and why. `system` and `plan` are those of the first case.
+/// Draws every figure into the folder; returns what could not be drawn, or shown in one of them, and why. `system` and `plan` are those of the first case.
 ///
 /// # Errors
 /// The file system's.
@@ -65,6 +65,7 @@ pub fn draw(
         };
         match rendered {
             Ok(rendered) => {
+                warnings.extend(rendered.remarks.iter().map(|remark| format!("figure \"{}\": {remark}", figure.name)));
                 for &format in &figure.look.formats {
                     folder.write_figure(&file_name(&figure.name, format), bytes(&rendered, format))?;
                 }

@@ -129,7 +129,7 @@ fn formula(text: &str, digits: usize) -> String {
         };
         rest = &rest[length..];
     }
-    super::raise(&shown)
+    super::raise(&shown).replace(" - ", " − ")
 }
 
 /// A name as a symbol, with its index lowered: `pi` becomes π, `mu_0` μ₀, `E_d` E with a d.
@@ -230,6 +230,7 @@ mod tests {
         assert_eq!(shown(&["{ expression = '1 + 2 * cos(omega_0*t)', unit = 'N*m' }"]), ["(1 + 2·cos(ω₀·t)) N·m"]);
         assert_eq!(shown(&["{ csv = \"a.csv\", column = \"T\" }", "{csv='b.csv'}"]), ["T of a.csv", "b.csv"]);
         assert_eq!(shown(&["60*sin(2*pi*8*t)", "0.1 + pi", "-t**2"]), ["60·sin(2π·8·t)", "0.1 + π", "-t²"]);
+        assert_eq!(shown(&["3*step(t - 1)"]), ["3·step(t − 1)"]);
         assert_eq!(
             shown(&["25 degC", "90 deg", "5 deg/s", "exact", "expansion-2004(7)", "riemann-liouville"]),
             ["25 °C", "90 °", "5 °/s", "exact", "expansion-2004(7)", "riemann-liouville"]

@@ -53,6 +53,7 @@ impl Layout<'_> {
             None => {}
         }
         scene.height = self.page_height.unwrap_or(height);
+        scene.paper_width = (self.shrunk > 1.0).then_some(self.page_width / self.shrunk);
         scene
     }
 

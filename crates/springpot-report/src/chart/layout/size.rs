@@ -8,7 +8,7 @@ use crate::chart::axes::{self, PAD, TICK, TICK_ROW};
 use crate::chart::data::Range;
 use crate::chart::ticks::Ticks;
 use crate::chart::{Axis, Panel};
-use crate::draw::wrap;
+use crate::draw::{wrap, wrap_evenly};
 use crate::{PIXELS_PER_MM, ReportError};
 
 /// Row above a panel for the power of ten of its y axis.
@@ -52,7 +52,8 @@ impl Layout<'_> {
                 None => self.natural_height(width, rows.len()),
             };
             if width < LEAST[0] || height < LEAST[1] {
-                let page = [self.page_width, self.page_height.unwrap_or(0.0)].map(|side| side / PIXELS_PER_MM);
+                let page = [self.page_width, self.page_height.unwrap_or(0.0)];
+                let page = page.map(|side| side / (PIXELS_PER_MM * self.shrunk));
                 return Err(ReportError::TooSmall { width: page[0], height: page[1] });
             }
             size = [width, height];
@@ -82,7 +83,10 @@ impl Layout<'_> {
         let y_ticks = |range: &Option<Range>| range.map_or_else(Ticks::none, |range| axes::y_ticks(range, height));
         let title = |panel: &Panel| panel.title.as_ref().map(|t| wrap(font, t, PANEL_TITLE_SIZE, width, 2));
         let label = |axis: &Axis, room: f64| {
-            if axis.label.is_empty() { Vec::new() } else { wrap(font, &axis.label, LABEL_SIZE, room, 3) }
+            // A long word may reach beyond the data area; it is not split.
+            let words = axis.label.split(' ').map(|word| font.width(word, LABEL_SIZE));
+            let room = words.fold(room, f64::max).min(1.5 * room);
+            if axis.label.is_empty() { Vec::new() } else { wrap_evenly(font, &axis.label, LABEL_SIZE, room, 3) }
         };
         let has_data = ranges.y.iter().any(Option::is_some) || ranges.right.is_some();
         let mut settled = Settled {
