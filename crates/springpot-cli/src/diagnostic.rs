@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// Length of excerpts where there is no terminal.
 const EXCERPT: usize = 200;
 
+const ACCEPT_INERTIA: &str =
+    "correct it, or take it as it is: --accept-inertia, in a scenario accept_inertia = true in [robot]";
+
 /// Reads the scenario, applies the overrides and checks everything.
 pub(crate) fn open(file: &Path, overrides: &[String], catalog: &Catalog) -> Result<Cases, Refusals> {
     scenario(file, overrides)?.cases(catalog)
@@ -41,17 +44,17 @@ pub(crate) fn refused(refusals: &Refusals) {
 
 /// Prints what is wrong with a URDF file on stderr, with the tag that it is about.
 pub(crate) fn urdf_refused(urdf_error: &UrdfError) {
-    let UrdfError { file: Some(file), place: Some((line, column)), problem } = urdf_error else {
-        return error(urdf_error.to_string());
-    };
+    let help = urdf_error.problem.is_of_no_mass().then(|| ACCEPT_INERTIA.to_owned());
+    let alone = || show(&Shown::plain(Severity::Error, urdf_error.to_string(), help.clone()));
+    let UrdfError { file: Some(file), place: Some((line, column)), problem } = urdf_error else { return alone() };
     // The reader keeps no text; where the file has changed since, the message stands alone.
     let text = std::fs::read(file).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
-    let Some(start) = byte_at(&text, *line, *column) else { return error(urdf_error.to_string()) };
+    let Some(start) = byte_at(&text, *line, *column) else { return alone() };
     let rest = text[start..].lines().next().unwrap_or_default();
     let end = start + rest.find('>').map_or(rest.len(), |at| at + 1);
     let source = Source { name: file.display().to_string(), text: text.into() };
     let place = Place { source: Arc::new(source), span: start..end };
-    refused(&place.refuse(RefusalKind::Rule, problem.to_string()).into());
+    refused(&place.refuse(RefusalKind::Rule, problem.to_string()).help_if(help).into());
 }
 
 /// The byte at a line and a column, both from 1, the column in characters.
