@@ -6,6 +6,7 @@ use miette::ThemeStyles;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Severity, SourceCode, ThemeCharacters};
 use springpot::law::Catalog;
 use springpot::model::urdf::UrdfError;
+use springpot_run::Warning;
 use springpot_scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Scenario, Source};
 use std::fmt::{self, Display};
 use std::path::Path;
@@ -86,12 +87,12 @@ pub(crate) fn warning(message: impl Into<String>, help: Option<String>) {
 
 /// Prints what the robot's files hold that is not used, or lack and is assumed.
 pub(crate) fn robot_warnings(cases: &Cases) {
-    let messages = cases.warnings();
-    let last = messages.len().saturating_sub(1);
-    for (k, message) in messages.into_iter().enumerate() {
-        let help = || format!("once they are read: accept = {:?} in [robot]", cases.warning_kinds());
-        warning(message, (k == last).then(help));
-    }
+    springpot_run::robot_warnings(cases).into_iter().for_each(warn);
+}
+
+/// Prints a warning of a run on stderr.
+pub(crate) fn warn(Warning { message, help }: Warning) {
+    warning(message, help);
 }
 
 /// A file that cannot be read has no line to point at.

@@ -41,12 +41,11 @@ impl UrdfCache {
         Ok(robot)
     }
 
-    /// Names of the kinds of the warnings that are told.
-    pub(crate) fn told_kinds(&self) -> Vec<&'static str> {
+    /// Names of the kinds of all warnings, those included that are accepted already.
+    pub(crate) fn kinds(&self) -> Vec<&'static str> {
         let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        let accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
         let kinds = entries.iter().flat_map(|entry| entry.robot.warnings.iter().map(|warning| warning.kind));
-        let mut kinds: Vec<UrdfWarningKind> = kinds.filter(|kind| !accepted.contains(kind)).collect();
+        let mut kinds: Vec<UrdfWarningKind> = kinds.collect();
         kinds.sort_unstable();
         kinds.dedup();
         kinds.into_iter().map(UrdfWarningKind::name).collect()
