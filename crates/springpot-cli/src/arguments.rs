@@ -224,6 +224,9 @@ pub(crate) struct InitOptions {
     /// Let its root link float on a joint called floating_base
     #[arg(long, requires = "robot")]
     pub(crate) floating_base: bool,
+    /// Take inertias that no distribution of mass has as they are
+    #[arg(long, requires = "robot")]
+    pub(crate) accept_inertia: bool,
     /// Link that the element begins at
     #[arg(long, value_name = "LINK", requires = "robot")]
     pub(crate) from: Option<String>,
@@ -314,6 +317,9 @@ pub(crate) struct RobotOptions {
     /// Give joints that mimic another one coordinates of their own
     #[arg(long)]
     pub(crate) ignore_mimic: bool,
+    /// Take inertias of a URDF file that no distribution of mass has as they are
+    #[arg(long)]
+    pub(crate) accept_inertia: bool,
     /// Folder that is a package, or holds some, for package:// paths; may be given several times
     #[arg(long, value_name = "DIR")]
     pub(crate) package_path: Vec<PathBuf>,

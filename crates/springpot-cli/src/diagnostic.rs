@@ -6,6 +6,7 @@ use miette::ThemeStyles;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Severity, SourceCode, ThemeCharacters};
 use springpot::law::Catalog;
 use springpot::model::urdf::UrdfError;
+use springpot_run::Warning;
 use springpot_scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Scenario, Source};
 use std::fmt::{self, Display};
 use std::path::Path;
@@ -13,6 +14,9 @@ use std::sync::Arc;
 
 /// Length of excerpts where there is no terminal.
 const EXCERPT: usize = 200;
+
+const ACCEPT_INERTIA: &str =
+    "correct it, or take it as it is: --accept-inertia, in a scenario accept_inertia = true in [robot]";
 
 /// Reads the scenario, applies the overrides and checks everything.
 pub(crate) fn open(file: &Path, overrides: &[String], catalog: &Catalog) -> Result<Cases, Refusals> {
@@ -41,17 +45,17 @@ pub(crate) fn refused(refusals: &Refusals) {
 
 /// Prints what is wrong with a URDF file on stderr, with the tag that it is about.
 pub(crate) fn urdf_refused(urdf_error: &UrdfError) {
-    let UrdfError { file: Some(file), place: Some((line, column)), problem } = urdf_error else {
-        return error(urdf_error.to_string());
-    };
+    let help = urdf_error.problem.is_of_no_mass().then(|| ACCEPT_INERTIA.to_owned());
+    let alone = || show(&Shown::plain(Severity::Error, urdf_error.to_string(), help.clone()));
+    let UrdfError { file: Some(file), place: Some((line, column)), problem } = urdf_error else { return alone() };
     // The reader keeps no text; where the file has changed since, the message stands alone.
     let text = std::fs::read(file).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
-    let Some(start) = byte_at(&text, *line, *column) else { return error(urdf_error.to_string()) };
+    let Some(start) = byte_at(&text, *line, *column) else { return alone() };
     let rest = text[start..].lines().next().unwrap_or_default();
     let end = start + rest.find('>').map_or(rest.len(), |at| at + 1);
     let source = Source { name: file.display().to_string(), text: text.into() };
     let place = Place { source: Arc::new(source), span: start..end };
-    refused(&place.refuse(RefusalKind::Rule, problem.to_string()).into());
+    refused(&place.refuse(RefusalKind::Rule, problem.to_string()).help_if(help).into());
 }
 
 /// The byte at a line and a column, both from 1, the column in characters.
@@ -83,12 +87,12 @@ pub(crate) fn warning(message: impl Into<String>, help: Option<String>) {
 
 /// Prints what the robot's files hold that is not used, or lack and is assumed.
 pub(crate) fn robot_warnings(cases: &Cases) {
-    let messages = cases.warnings();
-    let last = messages.len().saturating_sub(1);
-    for (k, message) in messages.into_iter().enumerate() {
-        let help = || format!("once they are read: accept = {:?} in [robot]", cases.warning_kinds());
-        warning(message, (k == last).then(help));
-    }
+    springpot_run::robot_warnings(cases).into_iter().for_each(warn);
+}
+
+/// Prints a warning of a run on stderr.
+pub(crate) fn warn(Warning { message, help }: Warning) {
+    warning(message, help);
 }
 
 /// A file that cannot be read has no line to point at.

@@ -52,6 +52,7 @@ fn from_urdf(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refu
     let how = UrdfOptions {
         floating_base: options.floating_base,
         ignore_mimic: options.ignore_mimic,
+        accept_inertia: options.accept_inertia,
         package_path: options.package_path.clone(),
     };
     let read = Urdf::read(&options.file, &how).and_then(|urdf| {
@@ -78,6 +79,7 @@ pub(crate) fn refuse_urdf_flags(options: &RobotOptions) -> Result<(), Refused> {
     let given = [
         ("--floating-base", options.floating_base, "floating_base = true"),
         ("--ignore-mimic", options.ignore_mimic, "ignore_mimic = true"),
+        ("--accept-inertia", options.accept_inertia, "accept_inertia = true"),
         ("--package-path", !options.package_path.is_empty(), "package_path = [\"DIR\"]"),
     ];
     let Some((flag, _, key)) = given.into_iter().find(|(_, given, _)| *given) else { return Ok(()) };

@@ -128,7 +128,7 @@ fn execute(options: &RunOptions, mut prepared: Prepared) -> Result<Finished, Sto
     let (wanted, end) = (prepared.rows_wanted(), prepared.plan.settings.end);
     let outcome =
         progress::show_while(wanted, end, &done, options.quiet, || prepared.sweep(jobs, signals::stop(), &done))?;
-    Ok(prepared.finish(outcome, &done, &mut |warning| diagnostic::warning(warning, None))?)
+    Ok(prepared.finish(outcome, &done, &mut diagnostic::warn)?)
 }
 
 /// `message` with the swept values of its case in front, where anything is swept.

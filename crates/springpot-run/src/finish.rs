@@ -1,10 +1,11 @@
 //! From what was prepared to results that are in place.
 
 use crate::figures;
-use crate::prepare::{Prepared, Warn};
+use crate::prepare::Prepared;
 use crate::sweep::{self, Options, Outcome, Progress, Status, SweepError};
 use crate::table::Format;
 use crate::table::folder::{Folder, FolderError};
+use crate::warning::{Warn, Warning};
 use springpot::integrate::Stop;
 use springpot_scenario::Cases;
 use std::sync::atomic::Ordering;
@@ -66,7 +67,10 @@ impl Prepared {
             return Ok(Finished { cases, outcome, folder, rows, end, is_put });
         }
         if figures && outcome.status != Status::Interrupted {
-            figures::draw(&cases, &system, &plan, &layout, &outcome, &mut folder)?.into_iter().for_each(warn);
+            figures::draw(&cases, &system, &plan, &layout, &outcome, &mut folder)?
+                .into_iter()
+                .map(Warning::from)
+                .for_each(warn);
         }
         // What is gone on with goes on as text.
         let written = if goes_on { Format::Csv } else { format };

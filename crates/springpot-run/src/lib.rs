@@ -16,11 +16,11 @@
 //! use springpot::integrate::Stop;
 //! use springpot_run::sweep::{Progress, Status};
 //! use springpot_run::table::disk::Disk;
-//! use springpot_run::{NewRun, Prepared, Surroundings};
+//! use springpot_run::{NewRun, Prepared, Surroundings, Warning};
 //!
 //! let (catalog, disk, stop, progress) = (Catalog::standard(), Disk::default(), Stop::new(false), Progress::default());
 //! let surroundings = Surroundings { catalog: &catalog, disk: &disk, stop: &stop, holder: "an example" };
-//! let mut warn = |warning: String| eprintln!("{warning}");
+//! let mut warn = |warning: Warning| eprintln!("{warning}");
 //! let mut run = Prepared::begin(NewRun::of("scenarios/piezo_order.toml"), surroundings, &mut warn)?;
 //! let outcome = run.sweep(4, &stop, &progress)?;
 //! let finished = run.finish(outcome, &progress, &mut warn)?;
@@ -36,8 +36,10 @@ mod survey;
 pub mod sweep;
 pub mod table;
 mod trouble;
+mod warning;
 
 pub use finish::Finished;
-pub use prepare::{BeginError, NewRun, Prepared, Surroundings, Warn};
+pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
 pub use survey::{Depth, ElementSurvey, Found, Survey};
 pub use trouble::Trouble;
+pub use warning::{Warn, Warning, robot_warnings};

@@ -6,14 +6,12 @@ use crate::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
 use crate::table::Format;
 use crate::table::disk::Disk;
 use crate::table::folder::{Folder, FolderError, Targets};
+use crate::warning::{Warn, robot_warnings};
 use springpot::integrate::{Stop, System};
 use springpot::law::Catalog;
 use springpot_scenario::{Cases, FigurePlan, Plan, Refusals, Scenario};
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
-
-/// Takes warnings as they come: things that a run goes on in spite of.
-pub type Warn<'a> = &'a mut dyn FnMut(String);
 
 /// What is asked of a new run.
 #[derive(Debug, Clone)]
@@ -115,7 +113,7 @@ fn read(scenario: &Scenario, with: Surroundings<'_>, warn: Warn<'_>) -> Result<R
     let cases = scenario.cases(with.catalog)?;
     let plan = cases.plan(0)?;
     let system = plan.system_unless(with.stop);
-    cases.warnings().into_iter().for_each(warn);
+    robot_warnings(&cases).into_iter().for_each(warn);
     let layout = Layout::new(&cases, &system)?;
     Ok(Read { cases, plan, system, layout })
 }
@@ -211,7 +209,7 @@ impl<'a> Inputs<'a> {
 
 fn warn_of_no_lock(folder: &Folder, warn: Warn<'_>) {
     if !folder.is_locked() {
-        warn(format!("{} cannot be locked: no second run must write to it", folder.path().display()));
+        warn(format!("{} cannot be locked: no second run must write to it", folder.path().display()).into());
     }
 }
 

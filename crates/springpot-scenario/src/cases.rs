@@ -190,9 +190,9 @@ impl Cases {
         self.robots.warnings()
     }
 
-    /// What `accept` of `[robot]` would say to have none of [`Cases::warnings`].
+    /// What `accept` of `[robot]` would say, whole, to have none of [`Cases::warnings`].
     pub fn warning_kinds(&self) -> Vec<&'static str> {
-        self.robots.told_kinds()
+        self.robots.kinds()
     }
 
     /// The figures.

@@ -125,6 +125,7 @@ fn urdf(plan: &UrdfPlan) -> Value {
         "root": plan.robot.root.name,
         "floating_base": plan.robot.floating_base,
         "ignore_mimic": plan.ignore_mimic,
+        "accept_inertia": plan.robot.accept_inertia,
         "package_path": plan.package_path,
     })
 }

@@ -58,6 +58,7 @@ pub(crate) fn read(root: &Table<'_>) -> Read<Robot> {
     let urdf_only = |key: &str| {
         let help = match key {
             "floating_base" => "; give the first [[robot.body]] a joint of kind = \"floating\" instead",
+            "accept_inertia" => "; correct the inertia of the [[robot.body]] instead",
             _ => "",
         };
         let message = || format!("`{key}` of [robot] belongs to `urdf`, and this robot has none{help}");

@@ -41,12 +41,11 @@ impl UrdfCache {
         Ok(robot)
     }
 
-    /// Names of the kinds of the warnings that are told.
-    pub(crate) fn told_kinds(&self) -> Vec<&'static str> {
+    /// Names of the kinds of all warnings, those included that are accepted already.
+    pub(crate) fn kinds(&self) -> Vec<&'static str> {
         let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        let accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
         let kinds = entries.iter().flat_map(|entry| entry.robot.warnings.iter().map(|warning| warning.kind));
-        let mut kinds: Vec<UrdfWarningKind> = kinds.filter(|kind| !accepted.contains(kind)).collect();
+        let mut kinds: Vec<UrdfWarningKind> = kinds.collect();
         kinds.sort_unstable();
         kinds.dedup();
         kinds.into_iter().map(UrdfWarningKind::name).collect()
@@ -68,15 +67,18 @@ impl UrdfCache {
 /// Reads the file that `field`, the `urdf` of `table`, names.
 pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>) -> Read<Parts> {
     let (floating_base, ignore_mimic) = (table.flag("floating_base"), table.flag("ignore_mimic"));
+    let accept_inertia = table.flag("accept_inertia");
     let package_path = table.get("package_path").map_or(Ok(Vec::new()), |field| folders(&field));
     let written = field.text()?.to_owned();
     let accepted = table.get("accept").map_or(Ok(Vec::new()), |field| accepted(&field));
     let (floating_base, ignore_mimic, package_path) = (floating_base?, ignore_mimic?, package_path?);
+    let accept_inertia = accept_inertia?;
     field.ctx.robots.accepted.lock().unwrap_or_else(PoisonError::into_inner).extend(accepted?);
 
     let options = UrdfOptions {
         floating_base,
         ignore_mimic,
+        accept_inertia,
         package_path: package_path.iter().map(|folder| field.ctx.folder.join(folder)).collect(),
     };
     let robot = field.ctx.robots.read(field.ctx.folder.join(&written), options);
@@ -130,6 +132,9 @@ fn refuse(field: &Field<'_>, error: &UrdfError) -> Refused {
     let help = match &*error.problem {
         UrdfProblem::Unreadable { .. } | UrdfProblem::NotAFile => {
             Some("write the path of a URDF file, relative to the scenario".to_owned())
+        }
+        problem if problem.is_of_no_mass() => {
+            Some("correct it, or write accept_inertia = true in [robot] to take it as it is".to_owned())
         }
         _ => None,
     };

@@ -4,7 +4,8 @@ use super::order::Order;
 use super::states::State;
 use springpot::dynamics::{
     AbaDerivatives, Kinematics, RneaDerivatives, Workspace, aba_derivatives_into, christoffel_into, com, coriolis_into,
-    crba_into, frame_jacobian_into, gravity_into, kinetic_energy, potential_energy, rnea_derivatives_into, rnea_into,
+    crba_into, frame_jacobian_into, gravity_into, indefinite_joint_into, kinetic_energy, potential_energy,
+    rnea_derivatives_into, rnea_into,
 };
 use springpot::model::{Frame, Model};
 use std::fmt::Write;
@@ -95,6 +96,17 @@ impl<'a> Answers<'a> {
         }
         object.text.push('}');
         object.infinite
+    }
+
+    /// Name of the joint at which the mass matrix of the state that was written last is not positive definite, where inertias were
+    /// accepted that let it be so.
+    pub(super) fn indefinite_joint(&mut self) -> Option<&str> {
+        if !self.model.may_be_indefinite() {
+            return None;
+        }
+        let Self { model, kinematics, workspace, mass, .. } = self;
+        let joint = indefinite_joint_into(model, kinematics, workspace, mass)?;
+        Some(&self.model.joint_names()[joint])
     }
 
     fn compute(&mut self, State { q, v, a, tau }: &State) {

@@ -54,8 +54,8 @@ fn in_states(options: &DynamicsOptions, catalog: &Catalog, file: &Path) -> Resul
     }
     let stdout = io::stdout().lock();
     match print(stdout, &robot, &states, options.christoffel, frame) {
-        Ok(infinite) if !infinite.is_empty() => {
-            complain(&infinite);
+        Ok(wrong) if !wrong.is_empty() => {
+            complain(&wrong);
             Ok(Ending::Failed)
         }
         ended => Ok(printed(ended.map(drop))),
@@ -125,42 +125,51 @@ fn joint_losses(robot: &Robot) -> Option<String> {
     (!groups.is_empty()).then(|| groups.join("; "))
 }
 
-/// Writes the answer state by state; returns the states with terms that are not finite.
+/// Writes the answer state by state; returns what is wrong with the terms of some.
 fn print(
     out: impl Write,
     robot: &Robot,
     States { order, states, .. }: &States,
     christoffel: bool,
     frame: Option<Frame>,
-) -> io::Result<Vec<(usize, Vec<&'static str>)>> {
+) -> io::Result<Vec<(usize, String)>> {
     let mut out = io::BufWriter::new(out);
     let mut answers = Answers::new(&robot.model, order, christoffel, frame);
     let joints = serde_json::to_string(&order.joints)?;
     write!(out, "{{\"joints\": {},\n\"states\": [", plain::json(&joints))?;
-    let mut infinite = Vec::new();
+    let mut wrong = Vec::new();
     let mut text = String::new();
     for (k, state) in states.iter().enumerate() {
         text.clear();
         text.push_str(if k == 0 { "\n" } else { ",\n" });
         let not_finite = answers.write(state, &mut text);
         if !not_finite.is_empty() {
-            infinite.push((k, not_finite));
+            let (are, list) = (if not_finite.len() == 1 { "is" } else { "are" }, not_finite.join(", "));
+            wrong.push((
+                k,
+                format!("{list} {are} not finite and written as null: the mass matrix is singular there, or numbers overflow"),
+            ));
+        } else if let Some(joint) = answers.indefinite_joint() {
+            wrong.push((
+                k,
+                format!(
+                    "the mass matrix is not positive definite at joint {joint:?}: an accepted inertia is negative there, and aba \
+                     and its derivatives mean nothing"
+                ),
+            ));
         }
         out.write_all(text.as_bytes())?;
     }
     out.write_all(b"\n]}\n")?;
     out.flush()?;
-    Ok(infinite)
+    Ok(wrong)
 }
 
-fn complain(infinite: &[(usize, Vec<&'static str>)]) {
-    for (k, names) in infinite.iter().take(NAMED) {
-        let (are, list) = (if names.len() == 1 { "is" } else { "are" }, names.join(", "));
-        diagnostic::error(format!(
-            "states[{k}]: {list} {are} not finite and written as null: the mass matrix is singular there, or numbers overflow"
-        ));
+fn complain(wrong: &[(usize, String)]) {
+    for (k, what) in wrong.iter().take(NAMED) {
+        diagnostic::error(format!("states[{k}]: {what}"));
     }
-    if infinite.len() > NAMED {
-        diagnostic::error(format!("so it is in {}", count(infinite.len() - NAMED, "other state", "other states")));
+    if wrong.len() > NAMED {
+        diagnostic::error(format!("so it is in {}", count(wrong.len() - NAMED, "other state", "other states")));
     }
 }

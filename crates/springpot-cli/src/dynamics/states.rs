@@ -256,8 +256,13 @@ mod tests {
 
     fn floating_pendulum() -> Robot {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../testdata/multibody/double_pendulum.urdf");
-        let options =
-            RobotOptions { file: file.into(), floating_base: true, ignore_mimic: false, package_path: Vec::new() };
+        let options = RobotOptions {
+            file: file.into(),
+            floating_base: true,
+            ignore_mimic: false,
+            accept_inertia: false,
+            package_path: Vec::new(),
+        };
         robot::read(&options, &[], &Catalog::standard()).unwrap()
     }
 

@@ -25,7 +25,9 @@ const SLIDE: f64 = 0.02;
 /// The starter for `robot`, to be written to `out`; what is wrong with the robot goes to stderr.
 pub(super) fn scenario(robot: &Path, out: &Path, options: &InitOptions, catalog: &Catalog) -> Result<String, Ending> {
     let floats = options.floating_base;
-    let read = Urdf::read(robot, &UrdfOptions { floating_base: floats, ..UrdfOptions::default() }).and_then(|urdf| {
+    let accept_inertia = options.accept_inertia;
+    let how = UrdfOptions { floating_base: floats, accept_inertia, ..UrdfOptions::default() };
+    let read = Urdf::read(robot, &how).and_then(|urdf| {
         let model = urdf.model(GRAVITY)?;
         Ok((urdf, model))
     });
@@ -207,7 +209,7 @@ impl Starter<'_> {
              # The root link is the world; with floating_base = true it floats. `springpot info` shows links, joints and limits.\n\
              [robot]\n\
              urdf = {urdf}\n\
-             {floating_base}\
+             {floating_base}{accept_inertia}\
              \n\
              # A material between two points, each in the frame of its link.\n\
              # `springpot laws` lists the laws, `springpot laws --from DATA` reads a data sheet.\n\
@@ -250,6 +252,7 @@ impl Starter<'_> {
             from = anchor(strut.from),
             to = anchor(strut.to),
             floating_base = if self.floats { "floating_base = true\n" } else { "" },
+            accept_inertia = if self.urdf.accept_inertia { "accept_inertia = true\n" } else { "" },
             joints = self.joints(&strut.joints),
         )
     }

@@ -41,7 +41,7 @@ pub(super) fn prepare(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> R
     // Before anything takes time.
     let stop = signals::stop();
     let every = options.checkpoint_every.as_deref().map(spacing).transpose()?;
-    let (figures, mut warn) = (!options.no_figures, |warning| diagnostic::warning(warning, None));
+    let (figures, mut warn) = (!options.no_figures, diagnostic::warn);
     match (&options.resume, &options.file) {
         (Some(folder), _) => {
             let holder = format!("springpot run --resume {}", folder.display());

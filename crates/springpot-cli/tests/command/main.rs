@@ -12,6 +12,7 @@ mod first_week;
 mod formats;
 mod friction;
 mod help;
+mod inertias;
 mod info;
 mod init;
 #[cfg(unix)]

@@ -34,6 +34,13 @@ pub(crate) static ROBOT: Keys = Keys {
         key("ignore_mimic", Shape::Flag, Need::Flag(false), "Whether mimic joints have coordinates of their own.")
             .only(WITH_URDF),
         key(
+            "accept_inertia",
+            Shape::Flag,
+            Need::Flag(false),
+            "Whether inertias that no distribution of mass has are taken as they are.",
+        )
+        .only(WITH_URDF),
+        key(
             "package_path",
             Shape::Texts,
             Need::Said("[]"),

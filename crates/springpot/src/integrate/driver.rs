@@ -1,6 +1,7 @@
 //! The one loop: which step is tried next, what becomes of it, and what is crossed between two of them.
 
 use super::context::Context;
+use super::definite::Definite;
 use super::driver_state::{DriverState, fingerprint};
 use super::error::RunError;
 use super::recorder::Recorder;
@@ -9,6 +10,8 @@ use super::row_times::RowTimes;
 use super::settings::{Settings, Stop};
 use super::solver::Solver;
 use super::stepper::{Behind, Target, Trial};
+use super::system::Motion;
+use crate::collocation::{MAX_NODES, RADAU_NODES};
 use crate::observe::Snapshot;
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
@@ -31,6 +34,8 @@ pub(super) struct RowsAhead {
 pub(super) struct Driver {
     solver: Solver,
     pub(super) recorder: Recorder,
+    /// What looks at the mass matrix of robots where it may be indefinite.
+    definite: Option<Definite>,
     /// What the signals do.
     agenda: Agenda,
     longest_step: f64,
@@ -61,6 +66,7 @@ impl Driver {
         let mut driver = Self::unstarted(cx, settings, stop)?;
         looked_ahead(&driver);
         let first = driver.solver.stepper_mut().start(cx, &mut driver.recorder, &driver.agenda)?;
+        cx.system.check_definite(&driver.recorder.evaluations[0].q)?;
         driver.recorder.open(cx, first)?;
         driver.h = driver.aligned(first);
         Ok(driver)
@@ -96,6 +102,7 @@ impl Driver {
         Ok(Self {
             solver,
             recorder,
+            definite: Definite::of(&cx.system.model),
             agenda,
             longest_step,
             t: 0.0,
@@ -206,6 +213,7 @@ impl Driver {
             let target = self.target(until, rows);
             match self.solver.stepper_mut().try_step(cx, &mut self.recorder, target)? {
                 Trial::Accepted { step, next } => {
+                    self.check_definite(cx, &step)?;
                     self.steps += 1;
                     if let Some(size) = self.solver.stepper().fixed_step() {
                         self.tick += usize::from(step.to >= self.tick_time(size) * (1.0 - TICK));
@@ -226,6 +234,21 @@ impl Driver {
                 }
             }
         }
+    }
+
+    /// Refuses to go on where the mass matrix is not positive definite on the way through a step whose motion follows from forces.
+    fn check_definite(&mut self, cx: Context, step: &Target) -> Result<(), RunError> {
+        let (Some(definite), Motion::Forward(_)) = (&mut self.definite, &cx.system.motion) else { return Ok(()) };
+        // Steps of one size are known at their ends alone.
+        let is_fixed = self.solver.stepper().fixed_step().is_some();
+        let mut before = (step.from, 0);
+        for node in if is_fixed { MAX_NODES } else { 1 }..=MAX_NODES {
+            let to = if node == MAX_NODES { step.to } else { step.from + RADAU_NODES[node - 1] * step.size };
+            let q = [before.1, node].map(|node| self.recorder.evaluations[node].q.as_slice());
+            definite.check_way(&cx.system.model, [before.0, to], q)?;
+            before = (to, node);
+        }
+        Ok(())
     }
 
     /// A size that times can be added to without rounding, so that steps of one size are so to the bit and share their tables of lags.
@@ -287,7 +310,7 @@ impl Driver {
         let theta = if at == to { 1.0 } else { (at - from) / (to - from) };
         if at == to && behind != Behind::Break {
             self.solver.stepper_mut().complete(cx, &mut self.recorder, 1)?;
-            snapshot.evaluation.clone_from(&self.recorder.evaluations[crate::collocation::MAX_NODES]);
+            snapshot.evaluation.clone_from(&self.recorder.evaluations[MAX_NODES]);
         } else {
             self.solver.stepper_mut().interpolate(cx, &mut self.recorder, at, theta, &mut snapshot.evaluation)?;
         }

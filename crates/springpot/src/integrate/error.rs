@@ -125,6 +125,17 @@ pub enum RunError {
         /// A joint that finds no friction.
         joint: String,
     },
+    /// An accepted inertia is negative where the motion comes.
+    #[error(
+        "t = {t} s: the mass matrix is not positive definite at joint \"{joint}\": what it moves has a negative inertia here, \
+         which was accepted; correct the inertia of these bodies"
+    )]
+    IndefiniteMassMatrix {
+        /// Time, s.
+        t: f64,
+        /// The joint.
+        joint: String,
+    },
     /// More steps than allowed.
     #[error("t = {t} s: {limit} steps are used up (solver.max_steps)")]
     TooManySteps {

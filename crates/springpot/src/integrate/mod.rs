@@ -7,6 +7,7 @@
 
 mod context;
 mod coulomb;
+mod definite;
 mod driver;
 mod driver_state;
 mod equation;

@@ -47,6 +47,7 @@ impl System {
     pub fn element_starts(&self) -> Result<Vec<ElementStart>, RunError> {
         let mut evaluation = Evaluation::new(self);
         let State { q, v, a } = self.state(0.0)?;
+        self.check_definite(&q)?;
         (evaluation.q, evaluation.v, evaluation.a) = (q, v, a);
         self.context().fill(0.0, 0.0, None, &mut Scratch::new(&self.model), &mut evaluation)?;
         let starts = self.elements.iter().zip(evaluation.elements).map(|(element, state)| {

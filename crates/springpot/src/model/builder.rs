@@ -20,6 +20,7 @@ use crate::spatial::{Inertia, Placement, Rotation, Symmetric3, Vec3};
 pub struct ModelBuilder {
     model: Model,
     rules: Rules,
+    takes_any_inertia: bool,
     /// Body of each joint name, fixed joints included.
     joint_lookup: HashMap<String, usize>,
     /// What each moving joint follows.
@@ -39,12 +40,25 @@ impl ModelBuilder {
     }
 
     fn with_rules(gravity: [f64; 3], rules: Rules) -> Self {
-        Self { model: Model::empty(gravity), rules, joint_lookup: HashMap::new(), mimics: Vec::new() }
+        Self {
+            model: Model::empty(gravity),
+            rules,
+            takes_any_inertia: false,
+            joint_lookup: HashMap::new(),
+            mimics: Vec::new(),
+        }
     }
 
     /// Gives the world another name besides "world": that of the root link of a robot on a fixed base.
     pub fn name_world(&mut self, name: impl Into<String>) {
         self.model.world_names.push(name.into());
+    }
+
+    /// Takes inertias that no distribution of mass has as they are, as other programs do: principal moments below 0, or above the
+    /// sum of the others. What must be positive definite all the same is the mass matrix: where a link has a negative moment,
+    /// [`ModelBuilder::finish`] looks at one generic configuration, and what integrates the motion at those that it meets.
+    pub fn accept_inertia(&mut self) {
+        self.takes_any_inertia = true;
     }
 
     /// Adds a body and returns its index.
@@ -55,7 +69,7 @@ impl ModelBuilder {
     /// largest, or the largest above the sum of the others by more than 1e-9 of itself. The builder is then as it was.
     pub fn push(&mut self, spec: BodySpec) -> Result<usize, ModelError> {
         let body = self.model.body_names.len();
-        validate::body(body, &spec, self.rules)?;
+        validate::body(body, &spec, self.rules, self.takes_any_inertia)?;
         if let Some(&first) = self.model.body_lookup.get(&spec.name) {
             return Err(ModelError::DuplicateName { body, field: Field::Name, name: spec.name, first });
         }
@@ -128,8 +142,8 @@ impl ModelBuilder {
     /// # Errors
     /// No bodies; gravity not finite; a joint that follows one that does not exist, follows itself in a circle, or has (or
     /// follows a joint that has) more or less than one degree of freedom; of a URDF, a moving link that, with all that is
-    /// fixed to it, has an inertia that no mass distribution has; a mass matrix that is singular in every configuration (a
-    /// joint that can move without moving mass is named); overflow of the combined inertias.
+    /// fixed to it, has an inertia that no mass distribution has and that was not accepted; a mass matrix that is singular in every configuration (a
+    /// joint that can move without moving mass is named) or, with accepted inertias, not positive in a generic one; overflow of the combined inertias.
     pub fn finish(self) -> Result<Model, ModelError> {
         let mut model = self.model;
         if model.body_names.is_empty() {
@@ -139,8 +153,8 @@ impl ModelBuilder {
             return Err(ModelError::GravityNotFinite { component, value: model.gravity[component] });
         }
         numbering::number(&mut model, &self.mimics)?;
-        if self.rules == Rules::UrdfLink {
-            mass_check::links(&model)?;
+        if self.rules == Rules::UrdfLink || self.takes_any_inertia {
+            model.may_be_indefinite = mass_check::links(&model, self.takes_any_inertia)?;
         }
         mass_check::positive_definite(&model)?;
         model.collect_subtree_masses();

@@ -179,6 +179,20 @@ pub enum ModelError {
         joint: String,
     },
 
+    /// The mass matrix has a negative pivot: an inertia that was accepted is negative there.
+    #[error(
+        "the mass matrix is not positive definite at joint \"{joint}\": body \"{name}\" and what hangs on it resist it with \
+         a negative inertia; correct the inertia of these bodies"
+    )]
+    IndefiniteMassMatrix {
+        /// Index of the body that the joint carries.
+        body: usize,
+        /// Its name.
+        name: String,
+        /// Name of the joint.
+        joint: String,
+    },
+
     /// A joint follows a joint that does not exist or does not move by one degree of freedom.
     #[error("joint \"{joint}\" follows joint \"{followed}\", which {}", if *.exists { "has not exactly one degree of freedom" } else { "does not exist" })]
     MimicTarget {
@@ -304,6 +318,12 @@ pub struct Subject {
 }
 
 impl ModelError {
+    /// Whether it is an inertia that no distribution of mass has, which
+    /// [`ModelBuilder::accept_inertia`](super::ModelBuilder::accept_inertia) takes.
+    pub fn is_of_no_mass(&self) -> bool {
+        matches!(self, Self::InertiaNotPositive { .. } | Self::TriangleInequality { .. })
+    }
+
     /// The body and field to blame; `None` for errors that concern no body of the description (no bodies, gravity, anchors).
     pub fn subject(&self) -> Option<Subject> {
         let (body, field) = match *self {
@@ -324,7 +344,9 @@ impl ModelError {
             Self::AsymmetricInertia { body, .. }
             | Self::InertiaNotPositive { body, .. }
             | Self::TriangleInequality { body, .. } => (body, Field::Inertia),
-            Self::Overflow { body, .. } | Self::SingularMassMatrix { body, .. } => (body, Field::Mass),
+            Self::Overflow { body, .. }
+            | Self::SingularMassMatrix { body, .. }
+            | Self::IndefiniteMassMatrix { body, .. } => (body, Field::Mass),
         };
         Some(Subject { body, field })
     }

@@ -14,11 +14,12 @@ const ROUNDING: f64 = 1e-14;
 type Vec6 = [f64; 6];
 type Matrix6 = [Vec6; 6];
 
-/// Refuses a robot whose mass matrix is singular in every configuration.
+/// Refuses a robot whose mass matrix is singular in every configuration, or not positive in a generic one.
 ///
 /// The pivots of M = Lᵀ D L are the inertias D_j that joint j feels when all joints beyond it are free (Featherstone, Rigid
 /// Body Dynamics Algorithms, 2008, §7.3). det M is analytic in q: if it vanishes at one generic q, it does so everywhere. A
-/// singularity of single configurations (point masses on massless rods) is not seen here.
+/// singularity of single configurations (point masses on massless rods) is not seen here, nor is, where inertias are negative, what
+/// other configurations do.
 pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
     let n = model.joint_count();
     let length = length_scale(model);
@@ -51,8 +52,13 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
             if !pivot.is_finite() {
                 return Err(ModelError::Overflow { body, name: name() });
             }
-            if pivot <= PIVOT_TOLERANCE * before {
-                return Err(ModelError::SingularMassMatrix { body, name: name(), joint: model.joint_names[j].clone() });
+            // Of an inertia that was accepted, what it is measured by may be negative too.
+            if pivot <= PIVOT_TOLERANCE * before.max(0.0) {
+                let joint = model.joint_names[j].clone();
+                return Err(match pivot < -PIVOT_TOLERANCE * before.abs() {
+                    true => ModelError::IndefiniteMassMatrix { body, name: name(), joint },
+                    false => ModelError::SingularMassMatrix { body, name: name(), joint },
+                });
             }
             for r in 0..6 {
                 for c in 0..6 {
@@ -83,8 +89,10 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Refuses a link whose inertia, with all that is fixed to it, no mass distribution has.
-pub(super) fn links(model: &Model) -> Result<(), ModelError> {
+/// Refuses a link whose inertia, with all that is fixed to it, no mass distribution has, unless all are taken; tells whether one has a
+/// negative principal moment.
+pub(super) fn links(model: &Model, takes_any: bool) -> Result<bool, ModelError> {
+    let mut any_negative = false;
     for (inertia, &body) in model.inertias.iter().zip(&model.bodies_of_joints) {
         let central = inertia.about_com().to_matrix();
         let name = &model.body_names[body];
@@ -93,9 +101,14 @@ pub(super) fn links(model: &Model) -> Result<(), ModelError> {
         }
         // The tensor about the centre of mass is a difference, known to the rounding of what it is taken from.
         let about_origin = inertia.rotational.to_matrix().iter().flatten().fold(0.0, |s: f64, x| s.max(x.abs()));
-        validate::inertia(body, name, central, ROUNDING * about_origin, true)?;
+        match validate::inertia(body, name, central, ROUNDING * about_origin, true) {
+            Err(error) if takes_any && error.is_of_no_mass() => {
+                any_negative |= matches!(error, ModelError::InertiaNotPositive { .. });
+            }
+            judged => judged?,
+        }
     }
-    Ok(())
+    Ok(any_negative)
 }
 
 /// A length of the robot's own size, m.

@@ -32,6 +32,7 @@ pub struct Model {
     pub(super) placements: Vec<Placement>,
     pub(super) inertias: Vec<Inertia>,
     pub(super) subtree_masses: Vec<f64>,
+    pub(super) may_be_indefinite: bool,
     pub(super) bodies_of_joints: Vec<usize>,
     pub(super) joint_names: Vec<String>,
     pub(super) damping: Vec<f64>,
@@ -70,6 +71,7 @@ impl Model {
             placements: Vec::new(),
             inertias: Vec::new(),
             subtree_masses: Vec::new(),
+            may_be_indefinite: false,
             bodies_of_joints: Vec::new(),
             joint_names: Vec::new(),
             damping: Vec::new(),
@@ -251,6 +253,13 @@ impl Model {
     #[inline]
     pub fn subtree_mass(&self, joint: usize) -> f64 {
         self.subtree_masses[joint]
+    }
+
+    /// Whether a link has a negative principal moment, as [`ModelBuilder::accept_inertia`](super::ModelBuilder::accept_inertia)
+    /// lets it have, so that the mass matrix may not be positive definite everywhere.
+    #[inline]
+    pub fn may_be_indefinite(&self) -> bool {
+        self.may_be_indefinite
     }
 
     /// The link frame of `joint` in the frame of its parent link where the joint stands at 0 (a floating one: at the origin,

@@ -22,7 +22,7 @@ pub(super) enum Rules {
 }
 
 /// Checks all that concerns the body numbered `body` alone (names against other bodies are the builder's business).
-pub(super) fn body(body: usize, spec: &BodySpec, rules: Rules) -> Result<(), ModelError> {
+pub(super) fn body(body: usize, spec: &BodySpec, rules: Rules, takes_any_inertia: bool) -> Result<(), ModelError> {
     if rules == Rules::Body {
         names(body, spec)?;
     }
@@ -39,7 +39,10 @@ pub(super) fn body(body: usize, spec: &BodySpec, rules: Rules) -> Result<(), Mod
     if rules == Rules::UrdfLink && spec.joint.kind == JointKind::Fixed {
         return Ok(());
     }
-    inertia(body, &spec.name, spec.inertia, 0.0, rules == Rules::Body)
+    match inertia(body, &spec.name, spec.inertia, 0.0, rules == Rules::Body) {
+        Err(error) if takes_any_inertia && error.is_of_no_mass() => Ok(()),
+        judged => judged,
+    }
 }
 
 fn names(body: usize, spec: &BodySpec) -> Result<(), ModelError> {

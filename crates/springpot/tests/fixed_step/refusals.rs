@@ -1,9 +1,13 @@
 //! Bad input: typed errors that leave the loop usable, and refusals of scenario files.
 
 use crate::loops::*;
-use springpot::integrate::RunError;
+use springpot::actuation::{Drive, Forward};
 use springpot::integrate::fixed::{Loop, LoopError, Method};
+use springpot::integrate::{RowTimes, RunError, Settings, System};
 use springpot::law::Catalog;
+use springpot::model::{BodySpec, JointSpec, ModelBuilder, Parent};
+use springpot::signal::Signal;
+use springpot::{Simulation, dynamics};
 use springpot_scenario::Scenario;
 
 #[test]
@@ -94,4 +98,64 @@ fn scenario_files_are_refused_with_what_would_be_right() {
     }
     let fine = arm(&format!("{}[solver]\nmethod = \"radau\"\nmax_step = 0.1\n", free("")));
     assert!(Scenario::parse(&fine, "arm.toml", "").unwrap().cases(&Catalog::standard()).is_ok());
+}
+
+/// A cross that rolls about x and carries a blade that turns about z, whose moment about its own x axis is negative.
+fn mixer(spin: f64) -> System {
+    let body = |name: &str, parent, axis, [xx, yy, zz]: [f64; 3]| BodySpec {
+        name: name.into(),
+        parent,
+        joint: JointSpec::revolute(format!("{name}_joint"), axis, [0.0; 3]),
+        mass: 1.0,
+        com: [0.0; 3],
+        inertia: [[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0, 0.0, zz]],
+    };
+    let mut builder = ModelBuilder::new([0.0; 3]);
+    builder.accept_inertia();
+    builder.push(body("cross", Parent::World, [1.0, 0.0, 0.0], [5e-3; 3])).unwrap();
+    builder.push(body("blade", Parent::Body(0), [0.0, 0.0, 1.0], [-0.01, 1.0, 1.0])).unwrap();
+    let drives = [(); 2].map(|()| Drive::Force(vec![Signal::constant(0.0)])).into();
+    System::new(builder.finish().unwrap(), Vec::new(), Forward { q: vec![0.0, spin], v: vec![0.0, -1.0], drives })
+}
+
+#[test]
+fn a_mass_matrix_that_is_no_longer_positive_definite_is_met() {
+    // 5e-3 - 0.01 cos² + sin² vanishes at this spin.
+    let limit = (5e-3f64 / 1.01).sqrt().asin();
+    let system = mixer(1.0);
+    assert!(system.model.may_be_indefinite());
+    for (spin, joint) in [(limit + 1e-9, None), (limit - 1e-9, Some(0))] {
+        let kinematics = dynamics::Kinematics::at_position(&system.model, &[0.3, spin]);
+        assert_eq!(dynamics::indefinite_joint(&system.model, &kinematics), joint);
+    }
+    let is_of = |error: &RunError, at: f64| match error {
+        RunError::IndefiniteMassMatrix { t, joint } => joint == "cross_joint" && (t - at).abs() < 2e-3,
+        _ => false,
+    };
+    let settings = Settings { max_step: Some(1e-3), ..Settings::new(2.0, RowTimes::Step { step: 0.1, end: 2.0 }) };
+    let mut stepping = Simulation::new(system.clone(), settings.clone()).unwrap();
+    let error = stepping.step_to(2.0).unwrap_err();
+    assert!(is_of(&error, 1.0 - limit), "{error}");
+    // However long the steps: it is met in the first turn.
+    let long_steps = Settings::new(2000.0, RowTimes::Step { step: 100.0, end: 2000.0 });
+    let error = Simulation::new(system.clone(), long_steps).unwrap().step_to(2000.0).unwrap_err();
+    assert!(matches!(error, RunError::IndefiniteMassMatrix { t, .. } if t < 1.0), "{error}");
+    for method in METHODS {
+        let mut robot = Loop::new(&system, method, 1e-3, MEMORY).unwrap();
+        let error = (0..2000).find_map(|_| robot.advance(&[0.0; 2]).err()).unwrap();
+        assert!(is_of(&error, 1.0 - limit), "{error}");
+        // The robot stays where it was.
+        assert!(robot.q()[1] > limit);
+    }
+    // No start there, and none is found fit for one.
+    let system = mixer(0.0);
+    let errors = [
+        Simulation::new(system.clone(), settings).map(drop).unwrap_err(),
+        system.element_starts().unwrap_err(),
+        match Loop::new(&system, Method::Midpoint, 1e-3, MEMORY).map(drop).unwrap_err() {
+            LoopError::Run(error) => error,
+            error => panic!("{error}"),
+        },
+    ];
+    assert!(errors.iter().all(|error| is_of(error, 0.0)), "{errors:?}");
 }

@@ -1,6 +1,6 @@
 //! What is assumed, and what is odd about numbers: warnings that name the link or joint.
 
-use crate::support::{ARM, FLOATING, arm_and, arm_with, parse, warned, warned_with};
+use crate::support::{ARM, FLOATING, arm_and, arm_with, parse, parse_with, warned, warned_with};
 use springpot::model::urdf::UrdfWarningKind::{
     AxisLength, IncompleteLimit, MimicIgnored, NoAxis, NoInertial, NoLimit, NoName, NotPositive, NotUsed,
     OfFloatingJoint, PointMass, Renamed, SenselessLimit, TriangleInequality, ZeroMass,
@@ -62,6 +62,34 @@ fn negative_moments_on_fixed_joints() {
     assert_eq!(urdf.bodies[2].inertia[0][0], -0.01);
     assert!(urdf.model([0.0; 3]).is_ok());
     warned(&fixed_link("lower", "-0.01"), &[(NotPositive, &format!("{lead} (line 31: -0.01 kg*m^2)"))]);
+}
+
+#[test]
+fn inertias_that_are_accepted() {
+    let accepting = UrdfOptions { accept_inertia: true, ..UrdfOptions::default() };
+    // Without being accepted it is listed too, and no robot can be made of it.
+    let text = arm_with(INERTIA, &INERTIA.replace("0.5", "0.8"));
+    let error = parse(&text).model([0.0; 3]).unwrap_err();
+    assert!(error.problem.is_of_no_mass() && error.line() == Some(3), "{error}");
+    let message = "<inertia> that no distribution of mass has: \
+                   link \"upper\" (line 4: moment 0.8 above the sum 0.7 of the other two)";
+    let model = warned_with(&text, &accepting, &[(TriangleInequality, message)]).model([0.0; 3]).unwrap();
+    assert!(!model.may_be_indefinite());
+    let largest = model.link_inertia(0).about_com().to_matrix().into_iter().flatten().fold(0.0, f64::max);
+    assert!((largest - 0.8).abs() < 1e-12, "{largest}");
+    // Beside the axis of the shoulder nothing turns with it.
+    let text = arm_with(INERTIA, &INERTIA.replace("0.3", "-0.01"));
+    let negative = "<inertia> with a negative principal moment: link \"upper\" (line 4: -0.01 kg*m^2, used as it is)";
+    let model = warned_with(&text, &accepting, &[(NotPositive, negative)]).model([0.0; 3]).unwrap();
+    assert!(model.may_be_indefinite());
+    // About the axis of the shoulder there is too little.
+    let text = arm_with(INERTIA, &INERTIA.replace("iyy=\"0.4\"", "iyy=\"-4\""));
+    let error = parse_with(&text, &accepting).unwrap().model([0.0; 3]).unwrap_err();
+    assert!(!error.problem.is_of_no_mass() && error.line() == Some(3), "{error}");
+    assert!(error.to_string().contains("the mass matrix is not positive definite at joint \"shoulder\""), "{error}");
+    // What is judged with what carries it is as before where that is a body.
+    let text = fixed_link("lower", "-0.01");
+    assert!(!parse_with(&text, &accepting).unwrap().model([0.0; 3]).unwrap().may_be_indefinite());
 }
 
 #[test]

@@ -160,11 +160,11 @@ fn fuzz(cases: u32, seed: u8) {
     let config = Config { cases, failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]));
     let count = std::cell::Cell::new([0; 3]);
-    let strategy = (0..ROBOTS.len(), edits(), any::<bool>(), any::<bool>());
-    let result = runner.run(&strategy, |(robot, edits, floating_base, ignore_mimic)| {
+    let strategy = (0..ROBOTS.len(), edits(), any::<[bool; 2]>(), any::<bool>());
+    let result = runner.run(&strategy, |(robot, edits, [floating_base, accept_inertia], ignore_mimic)| {
         let mut bytes = texts[robot].clone();
         edits.iter().for_each(|edit| apply(&mut bytes, edit));
-        let options = UrdfOptions { floating_base, ignore_mimic, ..UrdfOptions::default() };
+        let options = UrdfOptions { floating_base, ignore_mimic, accept_inertia, ..UrdfOptions::default() };
         let (read, built) = read_and_build(&String::from_utf8_lossy(&bytes), &options)?;
         let [all, reads, builds] = count.get();
         count.set([all + 1, reads + u32::from(read), builds + u32::from(built)]);

@@ -5,6 +5,7 @@ use crate::dynamics::{kinetic_energy, potential_energy};
 use crate::elements::{ElementBank, MemoryRange};
 use crate::fractional::Form;
 use crate::integrate::context::{Context, Held};
+use crate::integrate::definite::Definite;
 use crate::integrate::error::RunError;
 use crate::integrate::fixed_step::Method;
 use crate::integrate::system::{Motion, System};
@@ -83,6 +84,7 @@ pub struct Loop<'a> {
     held: Held,
     stage: OneStage,
     bank: ElementBank,
+    definite: Option<Definite>,
     step: f64,
     steps: u64,
 }
@@ -101,6 +103,7 @@ impl<'a> Loop<'a> {
         held.torques_mut(system.model.nv());
         let cx = Context { system, held: &held };
         let mut stage = OneStage::new(cx, forward, method)?;
+        system.check_definite(&stage.origin.q)?;
         let laws = system.elements.iter().map(|element| element.law.clone()).collect();
         let mut bank = ElementBank::new(laws, method.nodes(), Form::Strokes);
         bank.set_singular(Singular::Moments);
@@ -119,15 +122,15 @@ impl<'a> Loop<'a> {
         }
         // Here and not in the first step, so that none allocates.
         stage.begin_elements(cx, &mut bank, step, stage.stage_time(time(1, step), step))?;
-        Ok(Self { system, held, stage, bank, step, steps: 0 })
+        Ok(Self { system, held, stage, bank, definite: Definite::of(&system.model), step, steps: 0 })
     }
 
     /// Goes one step on. `torque` holds an actuator force for each velocity (nv), N·m or N, held over the step; those of prescribed and
     /// locked joints count for nothing.
     ///
     /// # Errors
-    /// [`RunError`] where a torque or signal is not finite, an input breaks a rule of its law, an element has no direction, or the step
-    /// is too long for a finite motion. The robot then stays where it was and may be advanced with another torque. Panics where
+    /// [`RunError`] where a torque or signal is not finite, an input breaks a rule of its law, an element has no direction, an
+    /// accepted inertia leaves the mass matrix indefinite, or the step is too long for a finite motion. The robot then stays where it was and may be advanced with another torque. Panics where
     /// `torque` is too short.
     pub fn advance(&mut self, torque: &[f64]) -> Result<(), RunError> {
         let to = time(self.steps + 1, self.step);
@@ -135,6 +138,10 @@ impl<'a> Loop<'a> {
         self.held.torques_mut(nv).copy_from_slice(&torque[..nv]);
         let cx = Context { system: self.system, held: &self.held };
         self.stage.attempt(cx, &mut self.bank, to, self.step)?;
+        if let Some(definite) = &mut self.definite {
+            let (origin, end) = (&self.stage.origin, &self.stage.end);
+            definite.check_way(&self.system.model, [origin.t, to], [&origin.q, &end.q])?;
+        }
         self.bank.commit();
         self.stage.accept();
         self.steps += 1;

@@ -61,6 +61,8 @@ pub struct UrdfOptions {
     pub floating_base: bool,
     /// Whether mimic joints have a coordinate of their own; a warning lists them.
     pub ignore_mimic: bool,
+    /// Whether inertias that no distribution of mass has are taken as they are; warnings list them.
+    pub accept_inertia: bool,
     /// Folders that are packages or hold some, for `package://` after the ancestors of the file; relative ones count
     /// from the current folder. The environment (`ROS_PACKAGE_PATH`) is not read, so that the same files give the same
     /// answer everywhere.
@@ -98,6 +100,8 @@ pub struct Urdf {
     pub root: RootLink,
     /// Whether the base floats, as asked for.
     pub floating_base: bool,
+    /// Whether inertias that no distribution of mass has are taken, as asked for.
+    pub accept_inertia: bool,
     /// The links but the root, on their joints: parents first, depth first, siblings in the order of the file. On a
     /// floating base the root comes before them, on the joint [`FLOATING_BASE`].
     ///
@@ -121,7 +125,7 @@ impl Urdf {
     /// A file that cannot be read or is no UTF-8, no XML or no URDF; names that are missing, empty, not unique or
     /// reserved; links that are not one tree; types of joints besides fixed, revolute, continuous, prismatic and
     /// floating; numbers that are missing, too few, too many or not finite (limits may be `inf`); negative mass, damping
-    /// or friction; on a moving joint, a principal moment below −1e-12 of the largest; the axis 0 0 0; mimic joints that
+    /// or friction; on a moving joint, a principal moment below −1e-12 of the largest that is not accepted; the axis 0 0 0; mimic joints that
     /// follow no joint of one degree, or one another; xacro. Each names the link or joint and has its line.
     pub fn read(path: &Path, options: &UrdfOptions) -> Result<Self, UrdfError> {
         robot::read(&source::read(path)?, Some(path), options)
@@ -142,7 +146,8 @@ impl Urdf {
     ///
     /// # Errors
     /// [`UrdfProblem::NothingMoves`], and [`UrdfProblem::Model`]: a link that moves which is not physical together with
-    /// what is fixed to it; a mass matrix that is singular in every configuration; gravity not finite; overflow.
+    /// what is fixed to it and not accepted; a mass matrix that is singular in every configuration or, where a negative moment
+    /// was accepted, not positive in a generic one; gravity not finite; overflow.
     pub fn model(&self, gravity: [f64; 3]) -> Result<Model, UrdfError> {
         if self.bodies.is_empty() {
             let problem = UrdfProblem::NothingMoves { link: self.root.name.clone() };
@@ -151,6 +156,9 @@ impl Urdf {
         let mut builder = ModelBuilder::of_urdf(gravity);
         if !self.floating_base {
             builder.name_world(self.root.name.clone());
+        }
+        if self.accept_inertia {
+            builder.accept_inertia();
         }
         let mut moves: Vec<bool> = Vec::with_capacity(self.bodies.len());
         for body in &self.bodies {

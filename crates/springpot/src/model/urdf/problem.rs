@@ -288,6 +288,18 @@ pub enum UrdfProblem {
     },
 }
 
+impl UrdfProblem {
+    /// Whether it is an inertia that no distribution of mass has, which
+    /// [`UrdfOptions::accept_inertia`](super::UrdfOptions::accept_inertia) takes as it is.
+    pub fn is_of_no_mass(&self) -> bool {
+        match self {
+            Self::InertiaNotPositive { .. } => true,
+            Self::Model { source } => source.is_of_no_mass(),
+            _ => false,
+        }
+    }
+}
+
 /// ` of link "a"`; nothing for the robot.
 fn of(owner: &Owner) -> String {
     if *owner == Owner::Robot { String::new() } else { format!(" of {owner}") }

@@ -170,17 +170,17 @@ fn assemble<'a>(
         let name = floating_name(&mut reader, &links, tree.root);
         bodies.push(BodySpec { name, ..body(root, Parent::World, joint) });
         body_lines.push(BodyLines { link: lines[tree.root], joint: lines[tree.root] });
-        note_inertia(&mut reader, root, true, true)?;
+        note_inertia(&mut reader, root, [true, true], options)?;
         done[tree.root] = (Parent::Body(0), true);
     } else {
-        note_inertia(&mut reader, root, false, false)?;
+        note_inertia(&mut reader, root, [false, false], options)?;
     }
     for branch in &tree.order {
         let (link, joint) = (&links[branch.child], &mut joints[branch.joint]);
         let (parent, parent_moves) = done[branch.parent];
         let is_carried = joint.spec.kind != JointKind::Fixed;
         let moves = parent_moves || is_carried;
-        note_inertia(&mut reader, link, is_carried, moves)?;
+        note_inertia(&mut reader, link, [is_carried, moves], options)?;
         done[branch.child] = (Parent::Body(bodies.len()), moves);
         body_lines.push(BodyLines { link: lines[branch.child], joint: reader.line(joint.node) });
         let spec = std::mem::replace(&mut joint.spec, JointSpec::fixed("", [0.0; 3]));
@@ -193,7 +193,16 @@ fn assemble<'a>(
     };
     let file = reader.source.file.map(Path::to_path_buf);
     let warnings = reader.warnings.finish();
-    Ok(Urdf { name, file, root, floating_base: floats, bodies, lines: body_lines, warnings })
+    Ok(Urdf {
+        name,
+        file,
+        root,
+        floating_base: floats,
+        accept_inertia: options.accept_inertia,
+        bodies,
+        lines: body_lines,
+        warnings,
+    })
 }
 
 fn body(link: &LinkEntry<'_>, parent: Parent, joint: JointSpec) -> BodySpec {
@@ -207,12 +216,12 @@ fn body(link: &LinkEntry<'_>, parent: Parent, joint: JointSpec) -> BodySpec {
 /// is worth a line.
 ///
 /// # Errors
-/// A negative principal moment on a moving joint.
+/// A negative principal moment on a moving joint that is not accepted.
 fn note_inertia<'a>(
     reader: &mut Reader<'a>,
     link: &LinkEntry<'a>,
-    is_carried: bool,
-    moves: bool,
+    [is_carried, moves]: [bool; 2],
+    options: &UrdfOptions,
 ) -> Result<(), UrdfError> {
     let owner = Owner::Link(link.name.to_owned());
     let Some(inertial) = &link.inertial else {
@@ -226,12 +235,17 @@ fn note_inertia<'a>(
         reader.warnings.add(UrdfWarningKind::ZeroMass, &owner, line, "");
     }
     match inertial.physical {
-        Physical::NotPositive { smallest } if is_carried => {
+        Physical::NotPositive { smallest } if is_carried && !options.accept_inertia => {
             let problem = UrdfProblem::InertiaNotPositive { link: link.name.to_owned(), smallest };
             return Err(reader.fail(inertial.node, problem));
         }
         Physical::NotPositive { smallest } => {
-            let what = format!("{} kg*m^2{}", brief(smallest), if moves { "" } else { ", fixed to the world" });
+            let with = match (is_carried, moves) {
+                (true, _) => ", used as it is",
+                (false, true) => "",
+                (false, false) => ", fixed to the world",
+            };
+            let what = format!("{} kg*m^2{with}", brief(smallest));
             reader.warnings.add(UrdfWarningKind::NotPositive, &owner, line, what);
         }
         Physical::BrokenTriangle { largest, others } if moves => {

@@ -41,8 +41,9 @@ pub enum UrdfWarningKind {
     /// The largest principal moment of a link that moves is above the sum of the others by more than 1e-9 of itself.
     /// The tensor is used as it is.
     TriangleInequality,
-    /// A link on a fixed joint, or the root on a fixed base, has a principal moment below −1e-12 of its largest. What is
-    /// fixed to the world has no part in the dynamics; of what moves, [`Urdf::model`](super::Urdf::model) decides.
+    /// A link on a fixed joint, or the root on a fixed base, has a principal moment below −1e-12 of its largest; with
+    /// [`UrdfOptions::accept_inertia`](super::UrdfOptions::accept_inertia) a link on any joint. What is fixed to the world has
+    /// no part in the dynamics; of what moves, [`Urdf::model`](super::Urdf::model) decides.
     NotPositive,
     /// A moving joint has no `<axis>`; 1 0 0 is assumed, as the format says.
     NoAxis,

@@ -48,7 +48,7 @@ pub(crate) fn arm_and(more: &str) -> String {
 }
 
 pub(crate) const FLOATING: UrdfOptions =
-    UrdfOptions { floating_base: true, ignore_mimic: false, package_path: Vec::new() };
+    UrdfOptions { floating_base: true, ignore_mimic: false, accept_inertia: false, package_path: Vec::new() };
 
 pub(crate) fn parse_with(text: &str, options: &UrdfOptions) -> Result<Urdf, UrdfError> {
     Urdf::parse(text, None, options)
