@@ -2,6 +2,7 @@
 
 use super::document::Node;
 use super::figures::{self, ColumnGlob, FigurePlan};
+use super::keys::OUTPUT;
 use super::path;
 use super::plan::Plan;
 use super::reader::{Context, Read, Table};
@@ -421,6 +422,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         let help = "leave the scheme out: named schemes need a motion that is given in advance";
         return Err(ctx.refuse(refusal.help(help)));
     }
+    let tells_leaves = root.get("output").map_or(Ok(false), |field| field.table(&OUTPUT)?.flag("leaves"));
     let mut plan = Plan {
         title: title?,
         gravity: robot.gravity,
@@ -432,6 +434,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         elements: elements?,
         motion: motion?,
         tells_joint_losses: false,
+        tells_leaves: tells_leaves?,
         warnings: ctx.warnings(),
         settings: time.and(settings)?,
         figures: Arc::new([]),

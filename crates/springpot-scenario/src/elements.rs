@@ -104,6 +104,13 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     let (inputs, mut element) = (inputs?, element?);
     element.inputs = inputs.iter().map(|input| input.signal.clone()).collect();
     element.scheme = scheme?;
+    if let (Some(_), Some(field)) = (&element.scheme, table.get("scheme"))
+        && element.law.has_inner_variables()
+    {
+        let message = format!("{} has a law with strokes of its own inside, which no named scheme knows", table.what);
+        let refusal = field.node.place.refuse(RefusalKind::Rule, message);
+        return Err(table.ctx.refuse(refusal.help("leave the scheme out: the exact memory takes every law")));
+    }
     let rest_at_start = table.get("rest_length").is_some_and(|field| field.node.text() == Some(AT_START));
     if !rest_at_start {
         table.fill(ELEMENT_FIELDS, &mut element)?;

@@ -34,6 +34,8 @@ pub struct Plan {
     /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
     /// lost there.
     pub tells_joint_losses: bool,
+    /// Whether the results tell the leaves of the elements' laws.
+    pub tells_leaves: bool,
     /// What deserves a warning in its files.
     pub warnings: Vec<String>,
     /// Duration, rows, accuracy and steps.

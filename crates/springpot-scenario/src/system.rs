@@ -27,6 +27,7 @@ impl Plan {
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: self.model.clone(),
             tells_joint_losses: self.tells_joint_losses,
+            tells_leaves: self.tells_leaves,
         }
     }
 
@@ -50,6 +51,7 @@ impl Plan {
     /// What can be observed of the system, but for the energy lost in joints.
     pub(crate) fn observables(&self) -> Observables {
         let observables = Observables::new(&self.model, self.elements.iter().map(|plan| &plan.element));
+        let observables = if self.tells_leaves { observables.with_leaves() } else { observables };
         match self.gripper {
             Some(_) => observables.with_gripper(self.motion.has_path()),
             None => observables,

@@ -115,3 +115,43 @@ fn what_is_wrong_with_a_network_is_said_where_it_is() {
         words.iter().for_each(|words| assert!(said.contains(words), "{set}: {words:?} is not in {}", refused.stderr));
     }
 }
+
+#[test]
+fn leaves_have_columns_of_their_own() {
+    let parameters = "parameters = { k_e = \"200 N/m\", k_m = \"3 kN/m\", c = \"80 N*s^a/m\", a = 0.4, eta = 2 }\n";
+    let network = "parallel(spring(k_e), series(glass: spring(k_m), springpot(c, a), dashpot(eta)))";
+    let place = with(&format!("network = \"{network}\"\n{parameters}"));
+    place.done(&["run", "arm.toml", "--set", "output.leaves=true"]);
+    let rows = place.table("results/arm/results.csv");
+    let of = |leaf: &str, what: &str| rows.numbers(&format!("damper.{leaf}.{what}"));
+    let near = |a: f64, b: f64, size: f64| assert!((a - b).abs() < 1e-9 * size, "{a} {b}");
+    let (stroke, force) = (rows.numbers("damper.stroke"), rows.numbers("damper.force"));
+    let size = force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
+    for k in 0..stroke.len() {
+        // One stroke in parallel, one force in series; each leaf by its own law.
+        near(of("spring1", "stroke")[k], stroke[k], 1.0);
+        near(of("glass", "stroke")[k] + of("springpot1", "stroke")[k] + of("dashpot1", "stroke")[k], stroke[k], 1.0);
+        near(of("spring1", "force")[k] + of("glass", "force")[k], force[k], size);
+        near(of("springpot1", "force")[k], of("glass", "force")[k], 1e3 * size);
+        near(of("springpot1", "force")[k], 80.0 * of("springpot1", "derivative")[k], size);
+        near(of("dashpot1", "force")[k], 2.0 * of("dashpot1", "rate")[k], size);
+        near(of("springpot1", "derivative")[k], rows.numbers("damper.derivative")[k], 1.0);
+    }
+    assert_eq!(rows.header.iter().filter(|name| name.starts_with("damper.spring1.")).count(), 4);
+}
+
+#[test]
+fn there_is_a_derivative_where_one_springpot_is() {
+    for (network, parameters, is_there) in [
+        ("series(spring(k), springpot(c, a))", "k = 100, c = 5, a = 0.5", true),
+        ("parallel(springpot(c, a), springpot(d, b))", "c = 5, a = 0.5, d = 3, b = 0.2", false),
+        ("series(spring(k), dashpot(d))", "k = 100, d = 3", false),
+    ] {
+        let place = with(&format!("network = \"{network}\"\nparameters = {{ {parameters} }}\n"));
+        place.done(&["run", "arm.toml"]);
+        let header = place.table("results/arm/results.csv").header;
+        assert_eq!(header.contains(&"damper.derivative".to_owned()), is_there, "{network}");
+        let scheme = place.springpot(&["check", "arm.toml", "--set", "element.damper.scheme=l1"]);
+        assert_eq!(scheme.code, Some(if network.starts_with("series") { 2 } else { 0 }), "{}", scheme.stderr);
+    }
+}

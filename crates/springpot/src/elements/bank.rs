@@ -4,7 +4,8 @@ use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::{Form, KernelError};
 use crate::law::{
-    InputValue, LocalError, Network, Observation, Point, Power, Powers, Response, Singular, Start, State, Step, Term,
+    InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Singular, Start, State,
+    Step, Term,
 };
 use serde::{Deserialize, Serialize};
 
@@ -354,6 +355,16 @@ impl ElementBank {
     pub(crate) fn now(&self, e: usize, at: &Point) -> Option<Observation> {
         let Banked { law, kept, .. } = &self.elements[e];
         kept.as_ref().map(|kept| law.now(at, &kept.state))
+    }
+
+    /// The leaves of element `e`: at θ of the step that was begun, or between two steps; none where it takes no part.
+    pub(crate) fn leaves(&self, e: usize, theta: Option<f64>, at: &Point, leaves: &mut Vec<LeafState>) {
+        leaves.clear();
+        let Banked { law, kept: Some(kept), told, .. } = &self.elements[e] else { return };
+        match theta {
+            Some(theta) => law.leaves_at(&told.step(self.step), theta, at, &kept.state, leaves),
+            None => law.leaves_now(at, &kept.state, leaves),
+        }
     }
 
     /// Energies of element `e` dissipated and supplied by inputs since t = 0, J; unknown where it takes no part.

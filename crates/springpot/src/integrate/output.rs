@@ -7,7 +7,7 @@ use super::report::Report;
 use super::rows::Rows;
 use super::settings::Settings;
 use super::written::Written;
-use crate::observe::Snapshot;
+use crate::observe::{Quantity, Snapshot};
 
 /// How much more than the tolerance the balance may be off, in units of the energy turned over, and what it may in any case.
 const IMBALANCE: f64 = 1e3;
@@ -18,12 +18,14 @@ pub(super) struct Output<'a> {
     pub(super) rows: &'a mut dyn Rows,
     pub(super) written: Written,
     snapshot: Snapshot,
+    quantities: Vec<Quantity>,
     row: Vec<f64>,
 }
 
 impl<'a> Output<'a> {
     pub(super) fn new(cx: Context, rows: &'a mut dyn Rows, written: Written) -> Self {
-        Self { rows, written, snapshot: Snapshot::new(cx.system), row: Vec::new() }
+        let quantities = cx.system.observables().quantities();
+        Self { rows, written, snapshot: Snapshot::new(cx.system), quantities, row: Vec::new() }
     }
 
     /// The time of the next row.
@@ -50,9 +52,8 @@ impl<'a> Output<'a> {
     fn write(&mut self, cx: Context, driver: &Driver) -> Result<(), RunError> {
         self.take_residual(driver);
         self.row.clear();
-        let inputs = cx.system.elements.iter().map(|element| element.entry.inputs.len());
         // No field says -0.
-        cx.system.shape().each(inputs, &mut |quantity| self.row.push(self.snapshot.value(quantity) + 0.0));
+        self.row.extend(self.quantities.iter().map(|quantity| self.snapshot.value(*quantity) + 0.0));
         let t = self.snapshot.t();
         if let Some(k) = self.row.iter().position(|value| value.is_infinite()) {
             let what = cx.system.columns().swap_remove(k).name;

@@ -4,7 +4,7 @@ use crate::actuation::Forward;
 use crate::elements::Element;
 use crate::model::{Model, Site};
 use crate::motion::Trajectory;
-use crate::observe::{Observables, Shape, Table};
+use crate::observe::{Observables, Table};
 use crate::table::Column;
 use std::sync::Arc;
 
@@ -21,6 +21,8 @@ pub struct System {
     pub gripper: Option<Site>,
     /// Whether the rows tell the energy lost in damping and friction of joints. It is part of the balance in any case.
     pub tells_joint_losses: bool,
+    /// Whether the rows tell the leaves of the elements' laws.
+    pub tells_leaves: bool,
 }
 
 /// Whether motion or forces are given.
@@ -55,7 +57,7 @@ impl System {
     /// A system without a gripper, whose rows tell nothing of losses in joints.
     pub fn new(model: impl Into<Arc<Model>>, elements: Vec<Element>, motion: impl Into<Motion>) -> Self {
         let (model, motion) = (model.into(), motion.into());
-        Self { model, elements, motion, gripper: None, tells_joint_losses: false }
+        Self { model, elements, motion, gripper: None, tells_joint_losses: false, tells_leaves: false }
     }
 
     /// What can be observed of it, in the order of a run's rows.
@@ -64,7 +66,10 @@ impl System {
         if self.gripper.is_some() {
             observables = observables.with_gripper(self.motion.has_path());
         }
-        if self.tells_joint_losses { observables.with_joint_losses() } else { observables }
+        if self.tells_joint_losses {
+            observables = observables.with_joint_losses();
+        }
+        if self.tells_leaves { observables.with_leaves() } else { observables }
     }
 
     /// The columns of a run's rows, in order.
@@ -75,16 +80,5 @@ impl System {
     /// A table for the rows of its runs.
     pub fn table(&self) -> Table {
         Table::new(&self.observables())
-    }
-
-    /// How many numbers its rows have.
-    pub(super) fn shape(&self) -> Shape {
-        Shape {
-            nq: self.model.nq(),
-            nv: self.model.nv(),
-            gripper: self.gripper.is_some(),
-            wanted: self.motion.has_path(),
-            joint_losses: self.tells_joint_losses,
-        }
     }
 }

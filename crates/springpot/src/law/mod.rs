@@ -45,5 +45,7 @@ pub use leaf::{Leaf, LeafKind};
 pub use network::{Holds, LeafPart, Network};
 pub use rule::RuleError;
 pub use state::{State, StateMut, StateRef, StateSize};
-pub use step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Singular, Start, Step, Term};
+pub use step::{
+    InputValue, LeafState, LocalError, Observation, Point, Power, Powers, Response, Singular, Start, Step, Term,
+};
 pub use written::{NetworkText, NetworkTextError};

@@ -5,7 +5,7 @@ mod series;
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
 use super::rule::RuleError;
 use super::state::{State, StateMut, StateRef, StateSize};
-use super::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::fractional::KernelError;
 use crate::fractional::Kind as Derivative;
 use std::sync::Arc;
@@ -99,6 +99,16 @@ impl Network {
                 .map_or_else(|| format!("{}{}", part.leaf.name(), number(part.leaf.name())), ToString::to_string)
         };
         parts.iter().enumerate().map(name).collect()
+    }
+
+    /// By leaf: the order of the derivative that it tells, 0 or 1; any (`None`) where it is a springpot.
+    pub fn leaf_orders(&self, at: &Point) -> Vec<Option<f64>> {
+        let mut orders = Vec::new();
+        self.for_each_leaf(&mut |leaf| {
+            let order = || if leaf.linearised(at).order == 1.0 { 1.0 } else { 0.0 };
+            orders.push((leaf.size().memories == 0).then(order));
+        });
+        orders
     }
 
     fn for_each_leaf(&self, take: &mut dyn FnMut(&LeafPart)) {
@@ -267,31 +277,43 @@ impl Network {
 
     /// The law at t_n + theta·h, 0 < theta ≤ 1, where its exact kinematics are those of `at`. Pure.
     pub fn at(&self, step: &Step, theta: f64, at: &Point, state: &State) -> Observation {
-        self.at_part(step, theta, at, &mut state.view()).observation
+        self.at_part(step, theta, at, &mut state.view(), &mut |_| ()).observation
     }
 
-    fn at_part(&self, step: &Step, theta: f64, at: &Point, state: &mut StateRef) -> Reported {
+    /// Appends every leaf, in their order, as [`Self::at`] has it. Pure.
+    pub fn leaves_at(&self, step: &Step, theta: f64, at: &Point, state: &State, leaves: &mut Vec<LeafState>) {
+        self.at_part(step, theta, at, &mut state.view(), &mut |leaf| leaves.push(leaf));
+    }
+
+    fn at_part(&self, step: &Step, theta: f64, at: &Point, state: &mut StateRef, take: Take) -> Reported {
         match self {
             Self::Leaf(leaf) => {
                 let size = leaf.size();
-                Reported::leaf(&**leaf, at, leaf.at(step, theta, at, state.take(size)))
+                Reported::leaf(&**leaf, at, leaf.at(step, theta, at, state.take(size)), take)
             }
-            Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.at_part(step, theta, at, state))),
-            Self::Series(parts) => series::at(parts, step, theta, at, state),
+            Self::Parallel(parts) => {
+                Reported::sum(at, parts.iter().map(|part| part.at_part(step, theta, at, state, take)))
+            }
+            Self::Series(parts) => series::at(parts, step, theta, at, state, take),
         }
     }
 
     /// The law between two steps, under the kinematics and inputs of `at`, which may have jumped since the last one: memories and inner
     /// variables do not jump. Pure.
     pub fn now(&self, at: &Point, state: &State) -> Observation {
-        self.now_part(at, &mut state.view()).observation
+        self.now_part(at, &mut state.view(), &mut |_| ()).observation
     }
 
-    fn now_part(&self, at: &Point, state: &mut StateRef) -> Reported {
+    /// Appends every leaf, in their order, as [`Self::now`] has it. Pure.
+    pub fn leaves_now(&self, at: &Point, state: &State, leaves: &mut Vec<LeafState>) {
+        self.now_part(at, &mut state.view(), &mut |leaf| leaves.push(leaf));
+    }
+
+    fn now_part(&self, at: &Point, state: &mut StateRef, take: Take) -> Reported {
         match self {
-            Self::Leaf(leaf) => Reported::leaf(&**leaf, at, leaf.now(at, state.take(leaf.size()))),
-            Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.now_part(at, state))),
-            Self::Series(parts) => series::now(parts, at, state),
+            Self::Leaf(leaf) => Reported::leaf(&**leaf, at, leaf.now(at, state.take(leaf.size())), take),
+            Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.now_part(at, state, take))),
+            Self::Series(parts) => series::now(parts, at, state, take),
         }
     }
 
@@ -388,6 +410,22 @@ impl Network {
         }
     }
 
+    /// Whether there is one derivative that an [`Observation`] tells: that of its only springpot; without one and without series the rate of
+    /// a dashpot, else the stroke.
+    pub fn tells_derivative(&self) -> bool {
+        let mut springpots = 0;
+        self.for_each_leaf(&mut |leaf| springpots += usize::from(leaf.size().memories > 0));
+        springpots == 1 || (springpots == 0 && self.is_linear() && !self.has_series())
+    }
+
+    fn has_series(&self) -> bool {
+        match self {
+            Self::Leaf(_) => false,
+            Self::Parallel(parts) => parts.iter().any(Self::has_series),
+            Self::Series(_) => true,
+        }
+    }
+
     /// Whether it keeps inner strokes or inner variables, whose errors no stroke shows.
     pub fn has_inner_variables(&self) -> bool {
         self.size().variables > 0
@@ -435,6 +473,9 @@ enum Onset {
     Long,
 }
 
+/// Takes the leaves of a network, one after the other.
+type Take<'a> = &'a mut dyn FnMut(LeafState);
+
 /// An observation, and whose derivative it tells: that of the first springpot, else that of the first dashpot.
 #[derive(Debug, Clone, Copy)]
 struct Reported {
@@ -443,7 +484,9 @@ struct Reported {
 }
 
 impl Reported {
-    fn leaf(leaf: &dyn Leaf, at: &Point, observation: Observation) -> Self {
+    fn leaf(leaf: &dyn Leaf, at: &Point, observation: Observation, take: Take) -> Self {
+        let Point { stroke, rate, .. } = *at;
+        take(LeafState { stroke, rate, force: observation.force(), derivative: observation.derivative });
         Self { observation, rank: report(leaf, at).0 }
     }
 

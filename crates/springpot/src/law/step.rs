@@ -108,6 +108,19 @@ pub struct Observation {
     pub stored: Option<f64>,
 }
 
+/// A leaf of a law at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeafState {
+    /// Its own stroke, m: in a series that of the part alone.
+    pub stroke: f64,
+    /// Its rate, m/s.
+    pub rate: f64,
+    /// Its force, N; NaN where it is infinite.
+    pub force: f64,
+    /// D^alpha of its stroke where it is a springpot, the rate of a dashpot, else the stroke.
+    pub derivative: f64,
+}
+
 /// c·D^order x: what a law is like under small and fast strokes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {

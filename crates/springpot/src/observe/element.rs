@@ -3,6 +3,7 @@
 use super::evaluation::{ElementEvaluation, ElementRow};
 use super::subscript::at_joint;
 use super::units::ObservedElement;
+use crate::law::LeafState;
 use crate::model::Label;
 use std::fmt;
 
@@ -30,6 +31,55 @@ pub enum ElementQuantity<Id = usize> {
     Input,
     /// Value of an input, in the order of its law.
     InputValue(Id),
+    /// Something of a leaf of its law.
+    Leaf(Id, LeafQuantity),
+}
+
+/// A number of a leaf.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LeafQuantity {
+    /// Its own stroke, m.
+    Stroke,
+    /// Its rate, m/s.
+    Rate,
+    /// Its force, N.
+    Force,
+    /// D^alpha of its stroke, m/s^alpha; the rate of a dashpot, else the stroke.
+    Derivative,
+}
+
+impl LeafQuantity {
+    /// All of them, in the order of the columns.
+    pub const ALL: [Self; 4] = [Self::Stroke, Self::Rate, Self::Force, Self::Derivative];
+
+    /// What follows the leaf's name in the column.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Stroke => "stroke",
+            Self::Rate => "rate",
+            Self::Force => "force",
+            Self::Derivative => "derivative",
+        }
+    }
+
+    /// What it is, in a few words.
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Stroke => "stroke",
+            Self::Rate => "rate of the stroke",
+            Self::Force => "force",
+            Self::Derivative => "derivative of the stroke",
+        }
+    }
+
+    fn value(self, leaf: &LeafState) -> f64 {
+        match self {
+            Self::Stroke => leaf.stroke,
+            Self::Rate => leaf.rate,
+            Self::Force => leaf.force,
+            Self::Derivative => leaf.derivative,
+        }
+    }
 }
 
 impl<Id> ElementQuantity<Id> {
@@ -42,7 +92,7 @@ impl<Id> ElementQuantity<Id> {
 impl ElementQuantity {
     /// Its value in a row, NaN where unknown.
     pub(super) fn value(self, row: &ElementRow, state: &ElementEvaluation) -> f64 {
-        let ElementRow { observation, dissipated, input } = row;
+        let ElementRow { observation, leaves, dissipated, input } = row;
         match self {
             Self::Length => state.reading.coordinate,
             Self::Stroke => state.stroke,
@@ -54,6 +104,7 @@ impl ElementQuantity {
             Self::Dissipated => observation.stored.map_or(f64::NAN, |_| *dissipated),
             Self::Input => *input,
             Self::InputValue(i) => state.inputs.get(i).map_or(f64::NAN, |input| input.value),
+            Self::Leaf(i, quantity) => leaves.get(i).map_or(f64::NAN, |leaf| quantity.value(leaf)),
         }
     }
 
@@ -64,10 +115,11 @@ impl ElementQuantity {
             false => translation,
         };
         match self {
-            Self::Length | Self::Stroke => of_element(["rad", "m"]),
-            Self::Rate => of_element(["rad/s", "m/s"]),
+            Self::Length | Self::Stroke | Self::Leaf(_, LeafQuantity::Stroke) => of_element(["rad", "m"]),
+            Self::Rate | Self::Leaf(_, LeafQuantity::Rate) => of_element(["rad/s", "m/s"]),
+            Self::Leaf(i, LeafQuantity::Derivative) => element.leaves[i].1,
             Self::Derivative => element.derivative_unit,
-            Self::Force => of_element(["N*m", "N"]),
+            Self::Force | Self::Leaf(_, LeafQuantity::Force) => of_element(["N*m", "N"]),
             Self::GeneralizedForce(k) => velocities[k].dimension.units().force,
             Self::Stored | Self::Dissipated | Self::Input => "J",
             Self::InputValue(i) => &element.entry.inputs[i].unit,
@@ -87,6 +139,7 @@ impl ElementQuantity {
             Self::Dissipated => ElementQuantity::Dissipated,
             Self::Input => ElementQuantity::Input,
             Self::InputValue(i) => ElementQuantity::InputValue(&element.entry.inputs[i].name),
+            Self::Leaf(i, quantity) => ElementQuantity::Leaf(&element.leaves[i].0, quantity),
         }
     }
 }
@@ -96,7 +149,10 @@ impl<'a> ElementQuantity<&'a str> {
     pub(super) fn read(key: &'a str) -> Option<Self> {
         match key.split_once('.') {
             Some(("Q", velocity)) => Some(Self::GeneralizedForce(velocity)),
-            Some(_) => None,
+            Some((leaf, key)) => LeafQuantity::ALL
+                .into_iter()
+                .find(|quantity| quantity.key() == key)
+                .map(|quantity| Self::Leaf(leaf, quantity)),
             None => {
                 let mut known = Self::BEFORE_FORCES.into_iter().chain(Self::BEFORE_INPUTS);
                 Some(known.find(|quantity| quantity.to_string() == key).unwrap_or(Self::InputValue(key)))
@@ -117,6 +173,7 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Dissipated => format!("energy dissipated in {element} since t = 0"),
             Self::Input => format!("energy supplied by the inputs of {element} since t = 0"),
             Self::InputValue(input) => format!("{input} of {element}"),
+            Self::Leaf(leaf, quantity) => format!("{} of {leaf} in {element}", quantity.words()),
         }
     }
 
@@ -143,6 +200,10 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Dissipated => format!("energy dissipated in {element}"),
             Self::Input => format!("energy supplied to {element}"),
             Self::InputValue(input) => format!("{input} of {element}"),
+            Self::Leaf(leaf, LeafQuantity::Stroke) => format!("stroke x of {leaf} in {element}"),
+            Self::Leaf(leaf, LeafQuantity::Rate) => format!("stroke rate of {leaf} in {element}"),
+            Self::Leaf(leaf, LeafQuantity::Force) => format!("force F of {leaf} in {element}"),
+            Self::Leaf(leaf, LeafQuantity::Derivative) => format!("Dᵅ x of {leaf} in {element}"),
         }
     }
 }
@@ -161,6 +222,7 @@ impl fmt::Display for ElementQuantity<&str> {
             Self::Dissipated => "dissipated",
             Self::Input => "input",
             Self::InputValue(input) => input,
+            Self::Leaf(leaf, quantity) => return write!(f, "{leaf}.{}", quantity.key()),
         })
     }
 }

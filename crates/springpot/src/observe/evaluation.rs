@@ -1,7 +1,7 @@
 //! Robot and elements evaluated at one time.
 
 use crate::elements::Reading;
-use crate::law::{InputValue, Observation};
+use crate::law::{InputValue, LeafState, Observation};
 use serde::{Deserialize, Serialize};
 
 /// State of one element at one time, before its law is asked.
@@ -37,9 +37,11 @@ pub(crate) struct Evaluation {
 }
 
 /// What the law and the ledger say of one element in one row.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct ElementRow {
     pub(crate) observation: Observation,
+    /// Its leaves, where rows tell them.
+    pub(crate) leaves: Vec<LeafState>,
     /// Dissipated and supplied since t = 0, J; NaN where unknown.
     pub(crate) dissipated: f64,
     pub(crate) input: f64,

@@ -13,9 +13,8 @@ pub mod symbol;
 mod table;
 mod units;
 
-pub use element::ElementQuantity;
+pub use element::{ElementQuantity, LeafQuantity};
 pub use observables::Observables;
-pub(crate) use observables::Shape;
 pub use quantity::{Axis, EnergyQuantity, Quantity};
 pub use snapshot::Snapshot;
 pub use table::Table;

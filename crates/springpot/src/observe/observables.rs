@@ -1,6 +1,6 @@
 //! What can be observed of a system, in the order of its rows.
 
-use super::element::ElementQuantity;
+use super::element::{ElementQuantity, LeafQuantity};
 use super::quantity::{Axis, EnergyQuantity, Quantity};
 use super::units::ObservedElement;
 use crate::elements::Element;
@@ -10,31 +10,46 @@ use crate::table::Column;
 
 /// How many numbers a system has, and which of those that not all systems have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Shape {
-    pub(crate) nq: usize,
-    pub(crate) nv: usize,
+struct Shape {
+    nq: usize,
+    nv: usize,
     /// Whether there is a gripper.
     pub(crate) gripper: bool,
     /// Whether its wanted point is known.
     pub(crate) wanted: bool,
     /// Whether rows tell what is lost in joints.
     pub(crate) joint_losses: bool,
+    /// Whether rows tell the leaves of elements.
+    pub(crate) leaves: bool,
+}
+
+/// How many numbers an element has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct ElementShape {
+    pub(crate) inputs: usize,
+    pub(crate) leaves: usize,
+    /// Whether its law has one derivative to tell.
+    pub(crate) derivative: bool,
 }
 
 impl Shape {
-    /// Calls `visit` with every quantity in the order of the rows; `inputs` says how many each element has.
-    pub(crate) fn each(self, inputs: impl IntoIterator<Item = usize>, visit: &mut impl FnMut(Quantity)) {
-        let Self { nq, nv, gripper, wanted, joint_losses } = self;
+    /// Calls `visit` with every quantity in the order of the rows.
+    pub(crate) fn each(self, elements: impl IntoIterator<Item = ElementShape>, visit: &mut impl FnMut(Quantity)) {
+        let Self { nq, nv, gripper, wanted, joint_losses, leaves: tells_leaves } = self;
         visit(Quantity::Time);
         (0..nq).map(Quantity::Coordinate).for_each(&mut *visit);
         (0..nv).map(Quantity::Velocity).for_each(&mut *visit);
         (0..nv).map(Quantity::Acceleration).for_each(&mut *visit);
         (0..nv).map(Quantity::Torque).for_each(&mut *visit);
-        for (e, inputs) in inputs.into_iter().enumerate() {
-            let before = ElementQuantity::BEFORE_FORCES.into_iter();
+        for (e, ElementShape { inputs, leaves, derivative }) in elements.into_iter().enumerate() {
+            let told = |quantity: &ElementQuantity| *quantity != ElementQuantity::Derivative || derivative;
+            let before = ElementQuantity::BEFORE_FORCES.into_iter().filter(told);
             let forces = (0..nv).map(ElementQuantity::GeneralizedForce);
             let inputs = (0..inputs).map(ElementQuantity::InputValue);
-            let all = before.chain(forces).chain(ElementQuantity::BEFORE_INPUTS).chain(inputs);
+            let leaves = 0..if tells_leaves { leaves } else { 0 };
+            let leaves =
+                leaves.flat_map(|leaf| LeafQuantity::ALL.map(|quantity| ElementQuantity::Leaf(leaf, quantity)));
+            let all = before.chain(forces).chain(ElementQuantity::BEFORE_INPUTS).chain(inputs).chain(leaves);
             all.map(|quantity| Quantity::Element(e, quantity)).for_each(&mut *visit);
         }
         if gripper {
@@ -65,11 +80,13 @@ impl Observables {
             on_joint: element.measure.is_on_joint(),
             is_rotation: element.measure.is_rotation(),
             derivative_unit: derivative_unit(element),
+            tells_derivative: element.law.tells_derivative(),
+            leaves: element.law.leaf_names().into_iter().zip(leaf_units(element)).collect(),
             entry: element.entry.clone(),
         };
         let (nq, nv) = (model.nq(), model.nv());
         Self {
-            shape: Shape { nq, nv, gripper: false, wanted: false, joint_losses: false },
+            shape: Shape { nq, nv, gripper: false, wanted: false, joint_losses: false, leaves: false },
             coordinates: model.q_labels(),
             velocities: model.v_labels(),
             elements: elements.into_iter().map(element).collect(),
@@ -88,25 +105,37 @@ impl Observables {
         Self { shape: Shape { joint_losses: true, ..self.shape }, ..self }
     }
 
+    /// With the leaves of the elements' laws.
+    #[must_use]
+    pub fn with_leaves(self) -> Self {
+        Self { shape: Shape { leaves: true, ..self.shape }, ..self }
+    }
+
     /// All quantities, in the order of the rows.
     pub fn quantities(&self) -> Vec<Quantity> {
         let mut quantities = Vec::new();
-        let inputs = self.elements.iter().map(|element| element.entry.inputs.len());
-        self.shape.each(inputs, &mut |quantity| quantities.push(quantity));
+        self.shape.each(self.element_shapes(), &mut |quantity| quantities.push(quantity));
         quantities
     }
 
     /// Where a quantity stands in a row; `None` where the system has no such quantity.
     pub fn position(&self, quantity: Quantity) -> Option<usize> {
         let (mut position, mut count) = (None, 0);
-        let inputs = self.elements.iter().map(|element| element.entry.inputs.len());
-        self.shape.each(inputs, &mut |other| {
+        self.shape.each(self.element_shapes(), &mut |other| {
             if other == quantity {
                 position = Some(count);
             }
             count += 1;
         });
         position
+    }
+
+    fn element_shapes(&self) -> impl Iterator<Item = ElementShape> + '_ {
+        self.elements.iter().map(|element| ElementShape {
+            inputs: element.entry.inputs.len(),
+            leaves: element.leaves.len(),
+            derivative: element.tells_derivative,
+        })
     }
 
     /// The columns of the rows, in order.
@@ -174,15 +203,27 @@ impl Observables {
     }
 }
 
+/// Units of the derivatives of leaves, in their order.
+fn leaf_units(element: &Element) -> Vec<&'static str> {
+    let inputs = vec![InputValue::default(); element.inputs.len()];
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
+    let [any, zero, one] = units_of_derivative(element.measure.is_rotation());
+    let orders = element.law.leaf_orders(&at).into_iter();
+    orders.map(|order| order.map_or(any, |order| if order == 0.0 { zero } else { one })).collect()
+}
+
+/// Units of D^alpha x, of x and of x'.
+fn units_of_derivative(is_rotation: bool) -> [&'static str; 3] {
+    if is_rotation { ["rad/s^alpha", "rad", "rad/s"] } else { ["m/s^alpha", "m", "m/s"] }
+}
+
 /// Unit of D^alpha x, the same for every alpha that a sweep may go through.
 fn derivative_unit(element: &Element) -> &'static str {
     let inputs = vec![InputValue::default(); element.inputs.len()];
-    let [any, zero, one] = match element.measure.is_rotation() {
-        true => ["rad/s^alpha", "rad", "rad/s"],
-        false => ["m/s^alpha", "m", "m/s"],
-    };
-    match element.law.reported_order(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs }) {
-        _ if element.entry.params.iter().any(|param| param.name == "alpha") => any,
+    let [any, zero, one] = units_of_derivative(element.measure.is_rotation());
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
+    match element.law.reported_order(&at) {
+        _ if element.law.leaf_orders(&at).contains(&None) => any,
         0.0 => zero,
         _ => one,
     }

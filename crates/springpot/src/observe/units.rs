@@ -11,5 +11,9 @@ pub(super) struct ObservedElement {
     pub(super) on_joint: bool,
     pub(super) is_rotation: bool,
     pub(super) derivative_unit: &'static str,
+    /// Whether its law has one derivative to tell.
+    pub(super) tells_derivative: bool,
+    /// Names of its leaves, and units of their derivatives.
+    pub(super) leaves: Vec<(String, &'static str)>,
     pub(super) entry: Arc<Entry>,
 }

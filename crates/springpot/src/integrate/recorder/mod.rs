@@ -195,7 +195,11 @@ impl Recorder {
                 Some(observation) => observation,
                 None => self.on_grid(cx, e, &point, row)?,
             };
-            elements.push(ElementRow { observation, dissipated, input });
+            let mut leaves = Vec::new();
+            if cx.system.tells_leaves {
+                self.bank.leaves(e, theta, &point, &mut leaves);
+            }
+            elements.push(ElementRow { observation, leaves, dissipated, input });
         }
         let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
         let balance = self.balance(snapshot, actuators, joints);

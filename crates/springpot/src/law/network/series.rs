@@ -5,7 +5,7 @@
 //! (Σ C_m)⁻¹. For linear parts one such step is exact; others iterate. The force at the start of a step never enters, so that
 //! starts need not be consistent.
 
-use super::{MOST_IN_SERIES, Network, Onset, Reported};
+use super::{MOST_IN_SERIES, Network, Onset, Reported, Take};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
@@ -162,7 +162,7 @@ pub(super) fn powers(parts: &[Network], step: &Step, state: &mut StateRef, power
 }
 
 /// Inside a step: as a shorter one that ends there, so that rows are as good as ends of steps.
-pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: &mut StateRef) -> Reported {
+pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: &mut StateRef, take: Take) -> Reported {
     let shorter = Shorter::new(step, theta, at);
     let step = &shorter.step(step, theta);
     let strokes = state.take(own(parts)).variables;
@@ -172,7 +172,7 @@ pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: 
         at,
         parts.iter().zip(&inner).map(|(part, inner)| {
             let inside = Point { stroke: inner.stroke[last], rate: inner.rate[last], ..*at };
-            part.at_part(&inner.step(step), 1.0, &inside, state)
+            part.at_part(&inner.step(step), 1.0, &inside, state, take)
         }),
     );
     (sum.observation.regular, sum.observation.singular) = (force[last - 1], 0.0);
@@ -228,10 +228,10 @@ impl Shorter {
 
 /// Between two steps strokes do not jump: the force is that of the parts whose force follows from them alone; where every part has a
 /// dashpot beside it, that of the rates that add up.
-pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef) -> Reported {
+pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef, take: Take) -> Reported {
     let strokes = state.take(own(parts)).variables;
     let force = |part: &Network, stroke: f64, rate: f64, state: &StateRef| {
-        part.now_part(&Point { stroke, rate, ..*at }, &mut state.clone()).observation.regular
+        part.now_part(&Point { stroke, rate, ..*at }, &mut state.clone(), &mut |_| ()).observation.regular
     };
     // F = a_m + b_m v_m, v = Σ v_m.
     let (mut follows, mut yielding, mut owed) = (None, 0.0, 0.0);
@@ -253,7 +253,7 @@ pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef) -> Report
             let rest = force(part, stroke, 0.0, state);
             let slope = force(part, stroke, 1.0, state) - rest;
             let rate = if slope == 0.0 { 0.0 } else { (whole - rest) / slope };
-            part.now_part(&Point { stroke, rate, ..*at }, state)
+            part.now_part(&Point { stroke, rate, ..*at }, state, take)
         }),
     );
     (sum.observation.regular, sum.observation.singular) = (whole, 0.0);
