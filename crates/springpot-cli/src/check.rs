@@ -96,7 +96,8 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
     for (e, plan_of) in plan.elements.iter().enumerate() {
         let element = &plan_of.element;
         let law = if plan_of.is_network { "network" } else { &*element.entry.name };
-        line("element", &format!("{}: {law}, {}", element.name, memory(element)));
+        let past = plan_of.past.words().unwrap_or_else(|| memory(element));
+        line("element", &format!("{}: {law}, {past}", element.name));
         line("", &element.entry.equation);
         line("", &parameters(plan_of));
         let Some(start) = survey.first.as_ref().map(|starts| &starts[e]) else { continue };

@@ -12,7 +12,7 @@ use super::root::SCENARIO;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
 use super::urdf::UrdfCache;
-use super::{Scenario, constants, elements, motion, overrides, robot, time};
+use super::{Scenario, constants, elements, motion, overrides, past, robot, time};
 use springpot::law::Catalog;
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
@@ -441,5 +441,6 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         columns: None,
     };
     plan.rest_at_start();
+    past::settle(ctx, &mut plan)?;
     Ok(plan)
 }

@@ -4,6 +4,7 @@ use super::document::shorten;
 use super::keys::{AT_START, ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
 use super::material::{self, Material};
 use super::names;
+use super::past::{self, PastPlan};
 use super::plan::ElementPlan;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
@@ -12,7 +13,7 @@ use super::time::Duration;
 use springpot::elements::{Element, Line};
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
 use springpot::integrate::RowTimes;
-use springpot::law::{Derivative, RuleError};
+use springpot::law::{Past, RuleError};
 use springpot::model::Anchor;
 use std::collections::HashMap;
 
@@ -81,10 +82,10 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
         let message = format!("{} {why}: its length cannot change", table.what);
         table.ctx.refuse(place.refuse(RefusalKind::Rule, message).help("join two bodies that move against each other"));
     }
-    let derivative = table.get("derivative").map_or(Ok(Derivative::Caputo), |field| derivative(&field));
+    let past = past::read(table);
     let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
     let Material { law, is_network, parameters, inputs } = material::read(table, time)?;
-    let (parameters, derivative) = (parameters?, derivative?);
+    let (parameters, (derivative, past)) = (parameters?, past?);
     let refuse = |error: RuleError| {
         let table_field = table.get("parameters");
         let node = table_field.as_ref().map_or(table.node, |field| field.node);
@@ -104,6 +105,16 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     let (inputs, mut element) = (inputs?, element?);
     element.inputs = inputs.iter().map(|input| input.signal.clone()).collect();
     element.scheme = scheme?;
+    if let PastPlan::Held(age) = past {
+        element.past = Past::Held(age);
+    }
+    if let (Some(_), Some(field)) = (&element.scheme, table.get("past"))
+        && !matches!(past, PastPlan::OfDerivative)
+    {
+        let message = format!("{} has a named scheme, which knows nothing before t = 0", table.what);
+        let refusal = field.node.place.refuse(RefusalKind::Rule, message);
+        return Err(table.ctx.refuse(refusal.help("leave the scheme out, or write past = \"held\" or \"unloaded\"")));
+    }
     if let (Some(_), Some(field)) = (&element.scheme, table.get("scheme"))
         && element.law.has_inner_variables()
     {
@@ -115,12 +126,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     if !rest_at_start {
         table.fill(ELEMENT_FIELDS, &mut element)?;
     }
-    Ok(ElementPlan { element, rest_at_start, from, to, is_network, parameters, inputs, place })
-}
-
-fn derivative(field: &Field<'_>) -> Read<Derivative> {
-    let word = field.word("kind of derivative")?;
-    [Derivative::Caputo, Derivative::RiemannLiouville].into_iter().find(|kind| kind.name() == word).ok_or(Refused)
+    Ok(ElementPlan { element, past, rest_at_start, from, to, is_network, parameters, inputs, place })
 }
 
 fn scheme(field: &Field<'_>, time: Option<&Duration>) -> Read<Option<Scheme>> {

@@ -49,6 +49,7 @@ mod mistaken;
 mod motion;
 mod names;
 mod overrides;
+mod past;
 mod path;
 mod plan;
 mod reader;
@@ -73,6 +74,7 @@ pub use figures::{
 pub use keys::MAX_CASES;
 pub use motion::MotionPlan;
 pub use names::{list, suggest};
+pub use past::PastPlan;
 pub use path::{equals_sign, toml_key};
 pub use plan::{BodyPlaces, ElementPlan, Gripper, Plan, RobotPlan, SignalPlan, UrdfPlan};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};

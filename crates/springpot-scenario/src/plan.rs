@@ -2,6 +2,7 @@
 
 use super::figures::{ColumnGlob, FigurePlan};
 use super::motion::MotionPlan;
+use super::past::PastPlan;
 use super::refusal::Place;
 use springpot::elements::Element;
 use springpot::integrate::Settings;
@@ -130,6 +131,8 @@ pub struct SignalPlan {
 pub struct ElementPlan {
     /// The element.
     pub element: Element,
+    /// What happened to it before t = 0.
+    pub past: PastPlan,
     /// Whether its rest length is its length at t = 0 of this case.
     pub rest_at_start: bool,
     /// Its first end.

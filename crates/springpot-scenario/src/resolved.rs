@@ -113,6 +113,7 @@ impl Plan {
         });
         if let Value::Object(value) = &mut value {
             value.extend(record(ELEMENT_FIELDS, element));
+            value.extend(plan.past.record().map(|past| ("past".to_owned(), past)));
         }
         value
     }

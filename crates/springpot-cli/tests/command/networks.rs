@@ -155,3 +155,47 @@ fn there_is_a_derivative_where_one_springpot_is() {
         assert_eq!(scheme.code, Some(if network.starts_with("series") { 2 } else { 0 }), "{}", scheme.stderr);
     }
 }
+
+#[test]
+fn pasts_are_said_and_judged() {
+    let law = "law = \"fractional-zener\"\nparameters = { k_e = 100, k_m = 300, c = 80, alpha = 0.4 }\n";
+    let place = with(law);
+    let run = |past: &str| {
+        let set = |key: &str| format!("element.damper.{key}");
+        let sets: Vec<String> = past.split(';').map(set).collect();
+        let arguments: Vec<&str> =
+            ["run", "arm.toml"].into_iter().chain(sets.iter().flat_map(|set| ["--set", set])).collect();
+        place.springpot(&arguments)
+    };
+    let force = || place.table("results/arm/results.csv").numbers("damper.force");
+    for (past, derivative) in [("held", "caputo"), ("unloaded", "riemann-liouville")] {
+        assert_eq!(run(&format!("rest_length=0.4;past={past}")).code, Some(0));
+        let said = force();
+        assert_eq!(run(&format!("rest_length=0.4;derivative={derivative}")).code, Some(0));
+        assert_eq!(said, force(), "{past}");
+    }
+    // Between them.
+    assert_eq!(run("rest_length=0.4;past={ held = \"10 s\" }").code, Some(0));
+    let (first, element) = (force()[0], place.record("results/arm")["plan"]["elements"][0].clone());
+    assert!(10.0 < first && first < 40.0, "{first}");
+    assert_eq!(element["past"], serde_json::json!({ "held": 10.0 }));
+    let checked = place.done(&["check", "arm.toml", "--set", "element.damper.past={ held = \"10 s\" }"]);
+    assert!(checked.stdout.contains("held at x(0) for 10 s before t = 0"), "{}", checked.stdout);
+    for (past, words) in [
+        ("past=steady", &["has no `period`"][..]),
+        ("past=\"steady\";period=0.3", &["the stroke is not periodic with 0.3 s", "{ held ="]),
+        ("past=held;period=1", &["has no meaning without past = \"steady\""]),
+        ("past=held;derivative=caputo", &["`derivative`", "stands beside a `past`"]),
+        ("past=hold", &["is no past", "did you mean `held`?"]),
+        ("past={ held = 0 }", &["`held`", "must be positive"]),
+        (
+            "law=springpot;parameters={ c = 1, alpha = 0.5 };scheme=l1;past={ held = 1 }",
+            &["knows nothing before t = 0"],
+        ),
+    ] {
+        let refused = run(past);
+        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(refused.code, Some(2), "{past}: {}", refused.stderr);
+        words.iter().for_each(|words| assert!(said.contains(words), "{past}: {words:?} is not in {}", refused.stderr));
+    }
+}

@@ -11,6 +11,15 @@ pub(crate) const RESERVED_NAMES: [&str; 7] = ["t", "q", "v", "a", "tau", "energy
 /// The rest length that is the length at t = 0.
 pub(crate) const START: &str = "start";
 
+/// Pasts by name.
+pub(crate) const PASTS: [&str; 3] = ["held", "unloaded", "steady"];
+
+/// A past that began at some time.
+pub(crate) static HELD: Keys = Keys {
+    words: "Stretched at once to x(0), so long before t = 0, and held there.",
+    keys: &[key("held", Shape::Number("s", Bound::Positive), Need::Required("held = \"30 s\""), "For how long.")],
+};
+
 pub(crate) static ELEMENT: Keys = Keys {
     words: "A material between two points of two bodies.",
     keys: &[
@@ -47,6 +56,18 @@ pub(crate) static ELEMENT: Keys = Keys {
             Shape::Words(|| [Derivative::Caputo, Derivative::RiemannLiouville].map(|kind| kind.name()).to_vec()),
             Need::Word("caputo"),
             "What happened before t = 0: held at x(0), or unloaded.",
+        ),
+        key(
+            "past",
+            Shape::WordsOr(|| PASTS.to_vec(), &HELD),
+            Need::Optional,
+            "What happened before t = 0, in place of `derivative`: held since ever, unloaded, steady, or held for a while.",
+        ),
+        key(
+            "period",
+            Shape::Number("s", Bound::Positive),
+            Need::Optional,
+            "With past = \"steady\": the period of the stroke, which was always what it is from t = 0 on.",
         ),
         key(
             "scheme",

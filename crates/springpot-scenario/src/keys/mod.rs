@@ -14,7 +14,7 @@ mod sweep;
 mod tests;
 
 pub(crate) use constants::SCALAR;
-pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES, START as AT_START};
+pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, HELD, PASTS, RESERVED_NAMES, START as AT_START};
 pub(crate) use motion::{
     FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,
 };
@@ -102,6 +102,8 @@ pub(crate) enum Shape {
     Tables(&'static Keys, Option<usize>),
     /// A number that belongs to a joint as above, or a table.
     JointNumberOr([&'static str; 2], Bound, &'static Keys),
+    /// One of these words, or a table.
+    WordsOr(fn() -> Vec<&'static str>, &'static Keys),
     /// Values, or a table that says them.
     ValuesOr(&'static Keys),
     /// A table with a value for each joint.
@@ -229,7 +231,7 @@ impl Key {
     /// The words that may stand there; none where it takes no words.
     pub(crate) fn choices(&self) -> Vec<&'static str> {
         match self.shape {
-            Shape::Words(words) | Shape::WordList(words) => words(),
+            Shape::Words(words) | Shape::WordsOr(words, _) | Shape::WordList(words) => words(),
             Shape::Kinds(kinds) => kinds().into_iter().map(|(name, _)| name).collect(),
             _ => Vec::new(),
         }

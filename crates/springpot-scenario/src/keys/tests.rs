@@ -9,9 +9,11 @@ use std::fs;
 /// What a key may hold in a table of its own, if anything.
 fn inner(key: &Key) -> Option<&'static Keys> {
     match key.shape {
-        Shape::Table(keys) | Shape::Tables(keys, _) | Shape::ValuesOr(keys) | Shape::JointNumberOr(_, _, keys) => {
-            Some(keys)
-        }
+        Shape::Table(keys)
+        | Shape::Tables(keys, _)
+        | Shape::ValuesOr(keys)
+        | Shape::WordsOr(_, keys)
+        | Shape::JointNumberOr(_, _, keys) => Some(keys),
         Shape::ByJoint(Each::NumberOr(keys)) => Some(keys),
         _ => None,
     }
@@ -140,6 +142,7 @@ fn the_document_has_the_same_keys() {
         ("## [robot]", vec![all(&ROBOT)]),
         ("### Bodies", vec![all(&BODY), all(&JOINT), all(&FRICTION)]),
         ("## [[element]]", vec![all(&ELEMENT)]),
+        ("### Past", vec![all(&HELD)]),
         ("## [motion]", with_tables.map(|kind| of_motion(kind.name())).collect()),
         ("## [time]", vec![all(&TIME)]),
         ("## [solver]", vec![all(&SOLVER)]),

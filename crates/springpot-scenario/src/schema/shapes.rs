@@ -42,6 +42,9 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             "type": "string", "pattern": "^[A-Za-z0-9_][A-Za-z0-9_.-]*$", "maxLength": 100, "description": words,
         }),
         Shape::Words(_) | Shape::Kinds(_) => described(one_of(&key.choices()), &words),
+        Shape::WordsOr(_, keys) => {
+            json!({ "description": words, "anyOf": [one_of(&key.choices()), object(keys.words, keys, catalog)] })
+        }
         Shape::Flag => json!({ "type": "boolean", "description": words }),
         Shape::Number(unit, bound) => bounded(quantity(unit, &words), bound),
         Shape::NumberOrWord(unit, bound, word) => {

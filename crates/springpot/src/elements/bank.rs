@@ -183,14 +183,19 @@ impl ElementBank {
 
     /// Takes element `e` to t = 0, its memories without kernels.
     pub(crate) fn begin_element(&mut self, e: usize, start: &Start) -> Result<(), KernelError> {
+        let state = self.elements[e].law.begin(start)?;
+        self.begin_from(e, start, state);
+        Ok(())
+    }
+
+    /// Takes element `e` to t = 0 in a state of its law.
+    pub(crate) fn begin_from(&mut self, e: usize, start: &Start, state: State) {
         let element = &mut self.elements[e];
-        let state = element.law.begin(start)?;
         element.kept = Some(Kept { state, dissipated: 0.0, supplied: 0.0, scales: Vec::new() });
         let Told { stroke, rate, inputs, .. } = &mut element.told;
         (*stroke, *rate) = ([start.stroke; MAX_NODES + 1], [0.0; MAX_NODES + 1]);
         *inputs = start.inputs.repeat(MAX_NODES + 1);
         element.response = Response::default();
-        Ok(())
     }
 
     /// Builds the kernels of an element that has begun.

@@ -3,9 +3,12 @@
 use super::measure::Measure;
 use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
-use crate::law::{Derivative, Entry, InputValue, Network, RuleError, Start, State};
+use crate::law::{Derivative, Entry, InputValue, Network, Past, RuleError, Start, State};
 use crate::signal::Signal;
 use std::sync::Arc;
+
+/// Relative error of kernels where nobody says one.
+const KERNEL: f64 = 1e-12;
 
 /// A massless one-dimensional material: a measure y of the configuration and a law.
 ///
@@ -28,6 +31,8 @@ pub struct Element {
     pub inputs: Vec<Signal>,
     /// Which fractional derivative the law takes.
     pub derivative: Derivative,
+    /// What happened before t = 0.
+    pub past: Past,
     /// A named offline scheme in place of the exact memory.
     pub scheme: Option<Scheme>,
 }
@@ -53,8 +58,26 @@ impl Element {
             entry: Arc::clone(entry),
             inputs: Vec::new(),
             derivative,
+            past: Past::OfDerivative,
             scheme: None,
         })
+    }
+
+    /// With another past. One that was held has the Riemann–Liouville derivative, a periodic one Caputo's.
+    ///
+    /// # Errors
+    /// [`RuleError`] where the law does not take a periodic stroke: it is not linear, or an input changes what is in a series.
+    pub fn with_past(self, past: Past) -> Result<Self, RuleError> {
+        if let Past::Periodic(_) = past {
+            let refuse = |rule: &str| Err(RuleError { rule: rule.to_owned(), parameter: "past".into() });
+            if !self.law.is_linear() {
+                return refuse("to be linear where its past is steady");
+            }
+            if self.law.has_inner_variables() && !self.entry.inputs.is_empty() {
+                return refuse("to have no inputs where its past is steady and parts stand in series");
+            }
+        }
+        Ok(Self { past, ..self })
     }
 
     /// Values and rates of the inputs at t.
@@ -76,7 +99,21 @@ impl Element {
     /// # Errors
     /// [`KernelError`] where a memory cannot be.
     pub fn begin(&self, coordinate: f64, inputs: &[InputValue]) -> Result<State, KernelError> {
-        self.law.begin(&self.start(coordinate, inputs))
+        self.begin_within(coordinate, inputs, KERNEL, 0.0)
+    }
+
+    /// As [`Self::begin`]; the kernels of another past than that of the derivative have this relative error, for lags up to `horizon`, s.
+    ///
+    /// # Errors
+    /// As [`Self::begin`].
+    pub fn begin_within(
+        &self,
+        coordinate: f64,
+        inputs: &[InputValue],
+        tolerance: f64,
+        horizon: f64,
+    ) -> Result<State, KernelError> {
+        self.past.state(&self.law, &self.start(coordinate, inputs), tolerance, horizon)
     }
 
     /// x = y − y0, m or rad.
@@ -85,10 +122,10 @@ impl Element {
         coordinate - self.rest
     }
 
-    /// x(0) as a Riemann–Liouville start counts it: 0 where it is no more than the rounding of the coordinates.
+    /// x(0) as a Riemann–Liouville start counts it: 0 where it is no more than the rounding of the coordinates, or has another past.
     pub fn jump(&self, coordinate: f64) -> f64 {
         let stroke = self.stroke(coordinate);
-        if stroke.abs() <= self.resolution(coordinate) { 0.0 } else { stroke }
+        if !self.past.is_of_derivative() || stroke.abs() <= self.resolution(coordinate) { 0.0 } else { stroke }
     }
 
     /// Rounding of a stroke, m or rad.

@@ -240,6 +240,23 @@ impl History {
         before
     }
 
+    /// Puts another past in the place of what was seen: z as a function of λ, and the last piece.
+    pub(super) fn recall(&mut self, mode: &dyn Fn(f64) -> f64, width: f64, y: &[f64]) {
+        let z: Vec<f64> = self.kernel.lambda.iter().map(|lambda| mode(*lambda)).collect();
+        self.take_modes(&z);
+        self.last = (width, y.to_vec());
+    }
+
+    /// Adds an impulse of y of this size, `age` ago.
+    pub(super) fn add_jump(&mut self, jump: f64, age: f64) {
+        let z: Vec<f64> =
+            self.kernel.lambda.iter().zip(self.modes()).map(|(lambda, z)| z + jump * (-lambda * age).exp()).collect();
+        self.take_modes(&z);
+        if self.is_empty() {
+            self.last = (age, vec![0.0; CUBIC]);
+        }
+    }
+
     /// Puts the faster modes in front that lags down to `lag` need.
     pub(super) fn extend(&mut self, lag: f64) {
         let modes = self.kernel.modes();

@@ -166,12 +166,12 @@ impl Memory {
         })
     }
 
-    /// Builds the kernel, whose arguments are those of [`Self::new`].
+    /// Builds the kernel where there is none, whose arguments are those of [`Self::new`].
     ///
     /// # Errors
     /// [`KernelError`] where no kernel can be built.
     pub fn open(&mut self, tolerance: f64, delta: f64, horizon: f64) -> Result<(), KernelError> {
-        if self.is_fractional() {
+        if self.is_fractional() && self.past.is_none() {
             self.past = Some(History::new(Kernel::new(self.alpha, tolerance, delta.min(0.5 * horizon), horizon)?));
         }
         Ok(())
@@ -439,6 +439,28 @@ impl Memory {
             paid.u[0] += (owed.abs() / step.h).min(bearable).copysign(owed);
         }
         self.take(&paid, step);
+    }
+
+    /// Puts a past before the first step: the modes as a function of their λ, x' just before t = 0, D^alpha x at t = 0, and the mean of
+    /// x, which counts as unloaded at alpha = 0.
+    pub(crate) fn recall(&mut self, mode: &dyn Fn(f64) -> f64, last: &RatePolynomial, derivative: f64, mean: f64) {
+        if self.alpha == 0.0 {
+            (self.kind, self.origin) = (Kind::Caputo, mean);
+        }
+        if let Some(past) = &mut self.past {
+            past.recall(mode, last.h, &last.u);
+            self.now = derivative;
+        }
+    }
+
+    /// Moves t = 0 on to `age` after a singular start, s: what jumped there is a past like any other.
+    pub(crate) fn age(&mut self, age: f64) {
+        self.now += self.singular_part(age);
+        let jump = std::mem::take(&mut self.jump);
+        self.is_accounted = true;
+        if let Some(past) = &mut self.past {
+            past.add_jump(jump, age);
+        }
     }
 
     /// Appends all numbers of the memory to `numbers`.

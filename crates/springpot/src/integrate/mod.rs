@@ -34,6 +34,7 @@ mod signals;
 mod simulation;
 mod solver;
 mod state;
+mod steady;
 mod stepper;
 mod system;
 mod written;
@@ -51,6 +52,7 @@ pub use run::{resume, run};
 pub use settings::{Settings, Stop};
 pub use simulation::Simulation;
 pub use state::{Checkpoint, SimulationState};
+pub use steady::SteadyError;
 pub use system::{Motion, System};
 
 pub use crate::model::FRICTION_SPEED;

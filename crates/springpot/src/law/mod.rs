@@ -27,6 +27,7 @@ pub mod catalog;
 pub mod datasheet;
 pub mod leaf;
 pub mod network;
+pub mod past;
 pub mod state;
 pub mod step;
 
@@ -43,6 +44,7 @@ pub use crate::fractional::Kind as Derivative;
 pub use catalog::{Build, Built, Catalog, Entry, Input, Param, Range};
 pub use leaf::{Leaf, LeafKind};
 pub use network::{Holds, LeafPart, Network};
+pub use past::{Past, Periodic};
 pub use rule::RuleError;
 pub use state::{State, StateMut, StateRef, StateSize};
 pub use step::{

@@ -3,11 +3,14 @@
 mod series;
 
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
+use super::past::Harmonics;
 use super::rule::RuleError;
 use super::state::{State, StateMut, StateRef, StateSize};
 use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-use crate::fractional::KernelError;
+use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
+use crate::fractional::{KernelError, Memory, RatePolynomial};
+use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Most parts side by side in one series; more of them are nested.
@@ -431,7 +434,35 @@ impl Network {
         self.size().variables > 0
     }
 
-    fn is_linear(&self) -> bool {
+    /// Puts a periodic stroke since ever into the state of a law that is linear, its memories opened.
+    pub(super) fn recall(&self, harmonics: &Harmonics, at: &Point, state: &mut State) {
+        self.recall_part(harmonics, at, &mut state.view_mut());
+    }
+
+    fn recall_part(&self, harmonics: &Harmonics, at: &Point, state: &mut StateMut) {
+        match self {
+            Self::Leaf(leaf) => {
+                state.take(leaf.size()).memories.iter_mut().for_each(|memory| recall(memory, harmonics))
+            }
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.recall_part(harmonics, at, state)),
+            Self::Series(parts) => series::recall(parts, harmonics, at, state),
+        }
+    }
+
+    /// F/x under e^{st} of a linear law, N/m: k + c·s + Σ c·s^alpha of parallel parts.
+    pub fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
+        match self {
+            Self::Leaf(leaf) => {
+                let Term { coefficient, order } = leaf.linearised(at);
+                coefficient * if order == 0.0 { Complex64::ONE } else { s.powf(order) }
+            }
+            Self::Parallel(parts) => parts.iter().map(|part| part.modulus(at, s)).sum(),
+            Self::Series(parts) => parts.iter().map(|part| part.modulus(at, s).inv()).sum::<Complex64>().inv(),
+        }
+    }
+
+    /// Whether F is an affine function of strokes and rates.
+    pub fn is_linear(&self) -> bool {
         match self {
             Self::Leaf(leaf) => leaf.is_linear(),
             Self::Parallel(parts) | Self::Series(parts) => parts.iter().all(Self::is_linear),
@@ -455,6 +486,18 @@ impl Network {
         let coefficient = if adds { same.sum() } else { same.map(f64::recip).sum::<f64>().recip() };
         Term { coefficient, order }
     }
+}
+
+/// Puts a periodic stroke since ever into a memory.
+fn recall(memory: &mut Memory, harmonics: &Harmonics) {
+    let (alpha, width) = (memory.alpha(), harmonics.last());
+    let rate = |t: f64| harmonics.sum(|s| s * (s * t).exp());
+    let mode = |lambda: f64| harmonics.sum(|s| s / (lambda + s));
+    let nodes = Nodes::Radau;
+    let rates: Vec<f64> = [0.0].iter().chain(nodes.positions()).map(|theta| rate((theta - 1.0) * width)).collect();
+    let last = RatePolynomial::through_rates(width, nodes, &rates);
+    let derivative = harmonics.sum(|s| if alpha == 0.0 { Complex64::ONE } else { s.powf(alpha) });
+    memory.recall(&mode, &last, derivative, harmonics.mean());
 }
 
 /// How much the derivative that a leaf tells is worth, and its order.

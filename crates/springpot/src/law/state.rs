@@ -48,7 +48,7 @@ impl State {
         self.variables.push(value);
     }
 
-    /// Builds the kernels of all memories: `tolerance` bounds their relative error between the lag `delta`, the shortest that the first
+    /// Builds the kernels of all memories that have none: `tolerance` bounds their relative error between the lag `delta`, the shortest that the first
     /// step asks for, and `horizon`, the longest of the run, s.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 mod bouc_wen;
 mod orders;
+mod pasts;
 mod series;
 #[path = "../support/mod.rs"]
 mod support;

@@ -115,9 +115,11 @@ impl<'a> Loop<'a> {
             let mut inputs = vec![Default::default(); element.inputs.len()];
             cx.inputs_at(e, 0.0, &mut inputs);
             element.check_inputs(0.0, &inputs)?;
-            let begun = bank
-                .begin_element(e, &element.start(at.ends[0].coordinate, &inputs))
-                .and_then(|()| bank.open_element(e, range));
+            let coordinate = at.ends[0].coordinate;
+            let begun = element.begin_within(coordinate, &inputs, memory.tolerance, memory.horizon).and_then(|state| {
+                bank.begin_from(e, &element.start(coordinate, &inputs), state);
+                bank.open_element(e, range)
+            });
             begun.map_err(RunError::of_kernel(&element.name))?;
         }
         // Here and not in the first step, so that none allocates.

@@ -124,7 +124,7 @@ impl Prescribed {
             for (e, state) in evaluation.elements.iter().enumerate() {
                 widen(&mut strokes[e], state.stroke);
                 let element = &cx.system.elements[e];
-                if let Ok(law) = element.begin(element.rest, &state.inputs) {
+                if let Ok(law) = element.law.begin(&element.start(element.rest, &state.inputs)) {
                     forces[e] = forces[e].max(element.law.estimate(&state.point(t), &law, 1.0 / end).abs());
                 }
             }

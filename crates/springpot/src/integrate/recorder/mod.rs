@@ -93,8 +93,10 @@ impl Recorder {
     pub(super) fn begin(&mut self, cx: Context) -> Result<(), RunError> {
         for (e, element) in cx.system.elements.iter().enumerate().filter(|(e, _)| self.grid[*e].is_none()) {
             let at = &self.evaluations[0].elements[e];
-            let begun = self.bank.begin_element(e, &element.start(at.reading.coordinate, &at.inputs));
-            begun.map_err(RunError::of_kernel(&element.name))?;
+            let Settings { memory_rtol: tolerance, end: horizon, .. } = self.settings;
+            let begun = element.begin_within(at.reading.coordinate, &at.inputs, tolerance, horizon);
+            let state = begun.map_err(RunError::of_kernel(&element.name))?;
+            self.bank.begin_from(e, &element.start(at.reading.coordinate, &at.inputs), state);
         }
         Ok(())
     }

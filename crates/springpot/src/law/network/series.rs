@@ -10,8 +10,11 @@ use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{Form, KernelError, RatePolynomial};
+use crate::law::past::Harmonics;
 use crate::law::state::{State, StateMut, StateRef};
 use crate::law::step::{LocalError, Point, Powers, Response, Start, Step};
+
+use num_complex::Complex64;
 
 type Matrix = [[f64; MAX_NODES]; MAX_NODES];
 type Values = [f64; MAX_NODES + 1];
@@ -65,7 +68,22 @@ pub(super) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Resu
         Derivative::RiemannLiouville => Onset::Short,
     };
     let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
-    let terms: Vec<_> = parts.iter().map(|part| part.asymptote(&at, onset)).collect();
+    let shares = shares(parts, &at, onset);
+    shares.iter().for_each(|share| state.push_variable(share * start.stroke));
+    let first = state.memories().len();
+    for (part, share) in parts.iter().zip(&shares) {
+        let (stroke, jump) = (share * start.stroke, share * start.jump);
+        part.begin_part(&Start { stroke, jump, ..*start }, state)?;
+    }
+    if onset == Onset::Short && start.jump != 0.0 {
+        state.memories_mut()[first..].iter_mut().for_each(crate::fractional::Memory::lose_account);
+    }
+    Ok(())
+}
+
+/// What share of a stroke each part takes at once, or at last.
+fn shares(parts: &[Network], at: &Point, onset: Onset) -> Vec<f64> {
+    let terms: Vec<_> = parts.iter().map(|part| part.asymptote(at, onset)).collect();
     let softer = |a: f64, b: f64| if onset == Onset::Short { a < b } else { a > b };
     let order = terms.iter().map(|term| term.order).reduce(|a, b| if softer(b, a) { b } else { a }).unwrap_or(0.0);
     let compliance = |k: usize| if terms[k].order == order { terms[k].coefficient.recip() } else { 0.0 };
@@ -73,16 +91,7 @@ pub(super) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Resu
     // Where a part gives no force at all, the first of them takes everything.
     let limp = (0..parts.len()).find(|&k| compliance(k).is_infinite());
     let share = |k: usize| limp.map_or(compliance(k) / whole, |limp| f64::from(u8::from(k == limp)));
-    (0..parts.len()).for_each(|k| state.push_variable(share(k) * start.stroke));
-    let first = state.memories().len();
-    for (k, part) in parts.iter().enumerate() {
-        let (stroke, jump) = (share(k) * start.stroke, share(k) * start.jump);
-        part.begin_part(&Start { stroke, jump, ..*start }, state)?;
-    }
-    if onset == Onset::Short && start.jump != 0.0 {
-        state.memories_mut()[first..].iter_mut().for_each(crate::fractional::Memory::lose_account);
-    }
-    Ok(())
+    (0..parts.len()).map(share).collect()
 }
 
 /// The derivative that the first springpot takes.
@@ -97,6 +106,26 @@ pub(super) fn prepare(parts: &[Network], step: &Step, state: &mut StateMut) {
     for (part, stroke) in parts.iter().zip(strokes) {
         let inner = Inner { stroke: [*stroke; MAX_NODES + 1], ..Inner::default() };
         part.prepare_part(&inner.step(step), state);
+    }
+}
+
+/// The strokes of the parts under a periodic stroke since ever: all have one force at each frequency.
+pub(super) fn recall(parts: &[Network], harmonics: &Harmonics, at: &Point, state: &mut StateMut) {
+    let mut inner: Vec<Vec<Complex64>> = vec![Vec::with_capacity(harmonics.spectrum.len()); parts.len()];
+    let rest = shares(parts, at, Onset::Long);
+    for (n, stroke) in harmonics.spectrum.iter().enumerate() {
+        let s = Complex64::new(0.0, n as f64 * harmonics.omega);
+        let compliances: Vec<Complex64> = parts.iter().map(|part| part.modulus(at, s).inv()).collect();
+        let whole: Complex64 = compliances.iter().sum();
+        for (k, inner) in inner.iter_mut().enumerate() {
+            inner.push(if n == 0 { rest[k] * stroke } else { compliances[k] / whole * stroke });
+        }
+    }
+    let strokes = state.take(own(parts)).variables;
+    for ((part, spectrum), stroke) in parts.iter().zip(inner).zip(strokes) {
+        let harmonics = Harmonics { spectrum, ..*harmonics };
+        *stroke = harmonics.now();
+        part.recall_part(&harmonics, at, state);
     }
 }
 
