@@ -100,6 +100,17 @@ series with a damper g_k tau_k. The error is verified after building. Numbers wi
 Abaqus and Ansys need a long-term modulus above 0. Without --equilibrium a spring takes the place of what relaxes after the \
 window; the bound includes it, and a comment says so.")]
     Prony(PronyOptions),
+    /// Stiffness and loss of an element under steady sines, over the frequency.
+    #[command(after_help = "\
+Examples:
+  springpot modulus scenarios/thermoviscoelastic_order.toml strut
+  springpot modulus pad.toml pad --from '0.1 Hz' --to '1 kHz' --out pad.csv
+  springpot modulus pad.toml pad --amplitude '2 mm' --out pad.svg
+
+K* = K' + i K'' is the force over the stroke of a sine that has lasted for ever; a cycle of the amplitude X loses \
+pi K'' X^2. Inputs have their values at t = 0, sweeps their first ones. The law must be linear. \
+Frequencies without a unit are in Hz.")]
+    Modulus(ModulusOptions),
     /// Show the laws of elements, or find the parameters of one from a data sheet or a measurement.
     #[command(after_help = "\
 Examples:
@@ -304,6 +315,37 @@ pub(crate) struct CheckOptions {
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ModulusOptions {
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) file: PathBuf,
+    /// Name of the element
+    #[arg(value_name = "ELEMENT")]
+    pub(crate) element: String,
+    /// Lowest frequency
+    #[arg(long, value_name = "FREQUENCY", default_value = "0.01 Hz", allow_hyphen_values = true)]
+    pub(crate) from: String,
+    /// Highest frequency
+    #[arg(long, value_name = "FREQUENCY", default_value = "100 Hz", allow_hyphen_values = true)]
+    pub(crate) to: String,
+    /// Number of frequencies, evenly on a logarithmic scale
+    #[arg(long, value_name = "N", default_value_t = 121, allow_hyphen_values = true)]
+    pub(crate) points: usize,
+    /// Amplitude of the stroke, for the loss of a cycle
+    #[arg(long, value_name = "STROKE", default_value = "1 mm", allow_hyphen_values = true)]
+    pub(crate) amplitude: String,
+    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Print all of it as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write FILE.csv, .json, .svg, .png or .pdf instead of printing
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -26,6 +26,7 @@ mod arguments;
 mod check;
 mod derivative;
 mod diagnostic;
+mod drawing;
 mod dynamics;
 mod excerpt;
 mod failures;
@@ -36,6 +37,7 @@ mod init;
 mod laws;
 mod manual;
 mod mistakes;
+mod modulus;
 mod numbers;
 mod output;
 mod plain;
@@ -137,6 +139,7 @@ pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),
         Command::Prony(options) => prony::prony(&options),
+        Command::Modulus(options) => modulus::modulus(&options, catalog),
     };
     ending.into()
 }

@@ -1,9 +1,9 @@
 //! The figure of a measurement and the law fitted to it.
 
-use crate::{Ending, diagnostic, output};
+use crate::{Ending, drawing};
 use springpot::law::Entry;
 use springpot::law::datasheet::{Fitted, Measured};
-use springpot_report::{Axis, Curve, Panel, Plot, Rendered, Scale};
+use springpot_report::{Axis, Curve, Panel, Plot, Scale};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -13,22 +13,7 @@ const MOST: usize = 150;
 const POINTS: usize = 200;
 /// Draws storage and loss over the frequency, and writes them as the ending of `file` says.
 pub(super) fn write(file: &Path, law: &Entry, found: &Fitted, rows: &[Measured]) -> Ending {
-    let rendered = match plot(law, found, rows).render() {
-        Ok(rendered) => rendered,
-        Err(error) => {
-            diagnostic::error(format!("the figure is not drawn: {error}"));
-            return Ending::Failed;
-        }
-    };
-    let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    let Rendered { svg, png, pdf, remarks } = &rendered;
-    remarks.iter().for_each(|remark| diagnostic::warning(format!("figure: {remark}"), None));
-    let bytes = match &*ending {
-        "png" => &png[..],
-        "pdf" => &pdf[..],
-        _ => svg.as_bytes(),
-    };
-    output::written(file, output::write(file, bytes))
+    drawing::write(file, &plot(law, found, rows))
 }
 
 /// Two panels, the rows as marks.

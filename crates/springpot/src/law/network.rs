@@ -461,6 +461,12 @@ impl Network {
         }
     }
 
+    /// K' and K'' of K* = [`Self::modulus`] under e^{iωt}, N/m: what is stored, and what is lost.
+    pub fn complex_modulus(&self, at: &Point, omega: f64) -> [f64; 2] {
+        let modulus = self.modulus(at, Complex64::new(0.0, omega));
+        [modulus.re, modulus.im]
+    }
+
     /// Whether F is an affine function of strokes and rates.
     pub fn is_linear(&self) -> bool {
         match self {

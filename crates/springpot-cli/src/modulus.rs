@@ -1,0 +1,194 @@
+//! `springpot modulus`: an element under a steady sine of its stroke, over the frequency.
+
+use crate::arguments::ModulusOptions;
+use crate::grid::{Grid, Set};
+use crate::numbers::{rough, short};
+use crate::{Ending, diagnostic, drawing, frequency, output, printed, terminal};
+use serde_json::json;
+use springpot::law::{Catalog, InputValue, Point};
+use springpot_report::{Axis, Curve, Panel, Plot, Scale};
+use springpot_scenario::units::parse_quantity;
+use springpot_scenario::{ElementPlan, suggest};
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+/// Most frequencies.
+const MOST: usize = 100_000;
+/// Rows that are printed, where nothing asks for all.
+const PRINTED: usize = 13;
+
+/// K*(ω) at one frequency.
+struct Row {
+    hertz: f64,
+    storage: f64,
+    loss: f64,
+    /// Energy lost in a cycle of the amplitude, J.
+    cycle: f64,
+}
+
+/// What is wrong, and what would be right.
+type Problem = (String, String);
+
+pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
+    let scenario = diagnostic::scenario(&options.file, &options.overrides);
+    let plan = scenario.and_then(|scenario| scenario.cases(catalog)).and_then(|cases| cases.plan(0));
+    let plan = match plan {
+        Ok(plan) => plan,
+        Err(refused) => {
+            diagnostic::refused(&refused);
+            return Ending::Refused;
+        }
+    };
+    let Some(element) = plan.elements.iter().find(|element| element.element.name == options.element) else {
+        let names = plan.elements.iter().map(|element| &*element.element.name);
+        let help = suggest(&options.element, names);
+        diagnostic::error_with_help(format!("there is no element {:?}", options.element), help);
+        return Ending::Refused;
+    };
+    match asked(options).and_then(|(band, amplitude)| Ok((rows(element, band, options.points, amplitude)?, amplitude)))
+    {
+        Ok((rows, amplitude)) => tell(options, element, &rows, amplitude),
+        Err((message, help)) => {
+            diagnostic::error_with_help(message, help);
+            Ending::Refused
+        }
+    }
+}
+
+/// The frequencies from and to, Hz, and the amplitude of the stroke, m or rad.
+fn asked(options: &ModulusOptions) -> Result<([f64; 2], f64), Problem> {
+    let read = |name: &str, text: &str| match frequency::angular(text) {
+        Ok(omega) if omega > 0.0 && omega.is_finite() => Ok(omega / TAU),
+        Ok(_) => {
+            Err((format!("--{name} {text}: not a frequency above 0"), "write 10, '10 Hz' or '60 rad/s'".to_owned()))
+        }
+        Err(error) => Err((format!("--{name} {text}: {error}"), "write 10, '10 Hz' or '60 rad/s'".to_owned())),
+    };
+    let (from, to) = (read("from", &options.from)?, read("to", &options.to)?);
+    if from >= to {
+        return Err((format!("--from {} is not below --to {}", options.from, options.to), "swap them".to_owned()));
+    }
+    if !(2..=MOST).contains(&options.points) {
+        return Err((format!("--points {}: out of range", options.points), format!("write 2 to {MOST}")));
+    }
+    let text = &options.amplitude;
+    let amplitude = ["m", "rad"].into_iter().find_map(|unit| parse_quantity(text, unit, &|_| None).ok());
+    match amplitude.filter(|amplitude| *amplitude > 0.0 && amplitude.is_finite()) {
+        Some(amplitude) => Ok(([from, to], amplitude)),
+        None => Err((format!("--amplitude {text}: not a stroke above 0"), "write '1 mm' or '1 deg'".to_owned())),
+    }
+}
+
+fn rows(element: &ElementPlan, [from, to]: [f64; 2], points: usize, amplitude: f64) -> Result<Vec<Row>, Problem> {
+    let element = &element.element;
+    if !element.law.is_linear() {
+        let message = format!("the law of element {:?} is not linear: its modulus depends on the stroke", element.name);
+        return Err((message, "run it under the sine that is meant, and look at the loop".to_owned()));
+    }
+    let mut inputs = vec![InputValue::default(); element.inputs.len()];
+    element.inputs_at(0.0, &mut inputs);
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
+    let row = |k: usize| {
+        let hertz = from * (to / from).powf(k as f64 / (points - 1) as f64);
+        let [storage, loss] = element.law.complex_modulus(&at, TAU * hertz);
+        Row { hertz, storage, loss, cycle: PI * loss * amplitude * amplitude }
+    };
+    Ok((0..points).map(row).collect())
+}
+
+/// Prints the rows, or writes them as the ending of the file says.
+fn tell(options: &ModulusOptions, element: &ElementPlan, rows: &[Row], amplitude: f64) -> Ending {
+    let Some(out) = &options.out else {
+        let text = match options.json {
+            true => format!("{:#}\n", json(element, rows, amplitude)),
+            false => table(element, rows, amplitude),
+        };
+        return printed(terminal::try_print(&text));
+    };
+    match &*drawing::ending(out) {
+        "csv" => write(out, &csv(element, rows)),
+        "json" => write(out, &format!("{:#}\n", json(element, rows, amplitude))),
+        ending if drawing::ENDINGS.contains(&ending) => drawing::write(out, &plot(element, rows)),
+        _ => {
+            let help = "write a name that ends in .csv, .json, .svg, .png or .pdf".to_owned();
+            diagnostic::error_with_help(format!("--out {}: no kind of file", out.display()), help);
+            Ending::Refused
+        }
+    }
+}
+
+fn write(out: &Path, text: &str) -> Ending {
+    output::written(out, output::write(out, text.as_bytes()))
+}
+
+/// The unit of K*: N/m, or N·m/rad where the element acts on an angle.
+fn unit(element: &ElementPlan) -> &'static str {
+    if element.element.measure.is_rotation() { "N*m/rad" } else { "N/m" }
+}
+
+fn table(element: &ElementPlan, rows: &[Row], amplitude: f64) -> String {
+    let stroke = if element.element.measure.is_rotation() { "rad" } else { "m" };
+    let unit = unit(element);
+    let mut grid = Grid::new([
+        ("f, Hz".to_owned(), Set::Number),
+        (format!("K', {unit}"), Set::Number),
+        (format!("K'', {unit}"), Set::Number),
+        ("tan delta".to_owned(), Set::Number),
+        ("loss a cycle, J".to_owned(), Set::Number),
+    ]);
+    let last = rows.len() - 1;
+    let printed = rows.len().min(PRINTED);
+    for k in (0..printed).map(|k| k * last / (printed - 1)) {
+        let Row { hertz, storage, loss, cycle } = &rows[k];
+        grid.row([*hertz, *storage, *loss, loss / storage, *cycle].iter().map(|value| rough(*value)).collect());
+    }
+    let mut text = format!(
+        "element {} under x = {} {stroke} sin(2 pi f t), steady: K* = K' + i K''\n\n",
+        element.element.name,
+        short(amplitude)
+    );
+    text.push_str(&grid.text(terminal::stdout_width()));
+    if printed < rows.len() {
+        text.push_str(&format!("\n{printed} of {} frequencies; all of them: --json or --out FILE.csv\n", rows.len()));
+    }
+    text
+}
+
+fn csv(element: &ElementPlan, rows: &[Row]) -> String {
+    let unit = unit(element);
+    let mut text = format!("frequency [Hz],storage [{unit}],loss [{unit}],tan_delta,cycle [J]\n");
+    for Row { hertz, storage, loss, cycle } in rows {
+        text.push_str(&format!("{hertz},{storage},{loss},{},{cycle}\n", loss / storage));
+    }
+    text
+}
+
+fn json(element: &ElementPlan, rows: &[Row], amplitude: f64) -> serde_json::Value {
+    let column = |of: fn(&Row) -> f64| rows.iter().map(of).collect::<Vec<_>>();
+    json!({
+        "element": element.element.name, "unit": unit(element), "amplitude": amplitude,
+        "frequency": column(|row| row.hertz), "storage": column(|row| row.storage), "loss": column(|row| row.loss),
+        "tan_delta": column(|row| row.loss / row.storage), "cycle": column(|row| row.cycle),
+    })
+}
+
+/// Storage and loss in one panel, tan δ in another.
+fn plot(element: &ElementPlan, rows: &[Row]) -> Plot {
+    let curve = |label: &str, of: &dyn Fn(&Row) -> f64| Curve {
+        label: label.to_owned(),
+        x: rows.iter().map(|row| row.hertz).collect(),
+        y: rows.iter().map(of).collect(),
+        ..Curve::default()
+    };
+    let axis = |label: String| Axis { label, scale: Scale::Log, ..Axis::default() };
+    Plot {
+        title: Some(format!("Complex modulus of {}", element.element.name)),
+        x: axis("frequency, Hz".to_owned()),
+        y: axis(format!("modulus, {}", unit(element).replace('*', "·"))),
+        panels: vec![Panel {
+            curves: vec![curve("storage K′", &|row| row.storage), curve("loss K″", &|row| row.loss)],
+            ..Panel::default()
+        }],
+        ..Plot::default()
+    }
+}
