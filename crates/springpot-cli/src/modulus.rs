@@ -2,7 +2,7 @@
 
 use crate::arguments::ModulusOptions;
 use crate::grid::{Grid, Set};
-use crate::numbers::{rough, short};
+use crate::numbers::short;
 use crate::{Ending, diagnostic, drawing, frequency, output, printed, terminal};
 use serde_json::json;
 use springpot::law::{Catalog, InputValue, Point};
@@ -140,7 +140,7 @@ fn table(element: &ElementPlan, rows: &[Row], amplitude: f64) -> String {
     let printed = rows.len().min(PRINTED);
     for k in (0..printed).map(|k| k * last / (printed - 1)) {
         let Row { hertz, storage, loss, cycle } = &rows[k];
-        grid.row([*hertz, *storage, *loss, loss / storage, *cycle].iter().map(|value| rough(*value)).collect());
+        grid.row([*hertz, *storage, *loss, loss / storage, *cycle].iter().map(|value| four(*value)).collect());
     }
     let mut text = format!(
         "element {} under x = {} {stroke} sin(2 pi f t), steady: K* = K' + i K''\n\n",
@@ -152,6 +152,11 @@ fn table(element: &ElementPlan, rows: &[Row], amplitude: f64) -> String {
         text.push_str(&format!("\n{printed} of {} frequencies; all of them: --json or --out FILE.csv\n", rows.len()));
     }
     text
+}
+
+/// A number with four digits.
+fn four(value: f64) -> String {
+    short(format!("{value:.3e}").parse().unwrap_or(value))
 }
 
 fn csv(element: &ElementPlan, rows: &[Row]) -> String {
@@ -172,7 +177,7 @@ fn json(element: &ElementPlan, rows: &[Row], amplitude: f64) -> serde_json::Valu
     })
 }
 
-/// Storage and loss in one panel, tan δ in another.
+/// Storage and loss over the frequency.
 fn plot(element: &ElementPlan, rows: &[Row]) -> Plot {
     let curve = |label: &str, of: &dyn Fn(&Row) -> f64| Curve {
         label: label.to_owned(),
@@ -182,9 +187,9 @@ fn plot(element: &ElementPlan, rows: &[Row]) -> Plot {
     };
     let axis = |label: String| Axis { label, scale: Scale::Log, ..Axis::default() };
     Plot {
-        title: Some(format!("Complex modulus of {}", element.element.name)),
+        title: Some(format!("Storage and loss of {}", element.element.name)),
         x: axis("frequency, Hz".to_owned()),
-        y: axis(format!("modulus, {}", unit(element).replace('*', "·"))),
+        y: axis(format!("dynamic stiffness, {}", unit(element).replace('*', "·"))),
         panels: vec![Panel {
             curves: vec![curve("storage K′", &|row| row.storage), curve("loss K″", &|row| row.loss)],
             ..Panel::default()
