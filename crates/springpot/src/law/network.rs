@@ -79,6 +79,11 @@ impl Network {
         Self::Leaf(LeafPart { name: None, leaf: Arc::new(leaf) })
     }
 
+    /// A leaf that others hold too.
+    pub fn shared<L: Leaf + 'static>(leaf: Arc<L>) -> Self {
+        Self::Leaf(LeafPart { name: None, leaf })
+    }
+
     /// A leaf under this name; parts that are none stay as they are.
     pub fn named(self, name: &Arc<str>) -> Self {
         match self {
