@@ -83,7 +83,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     }
     let derivative = table.get("derivative").map_or(Ok(Derivative::Caputo), |field| derivative(&field));
     let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
-    let Material { law, is_network, parameters, inputs } = material::read(table, time)?;
+    let Material { law, is_network, files, parameters, inputs } = material::read(table, time)?;
     let (parameters, derivative) = (parameters?, derivative?);
     let refuse = |error: RuleError| {
         let table_field = table.get("parameters");
@@ -108,7 +108,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     if !rest_at_start {
         table.fill(ELEMENT_FIELDS, &mut element)?;
     }
-    Ok(ElementPlan { element, rest_at_start, from, to, is_network, parameters, inputs, place })
+    Ok(ElementPlan { element, rest_at_start, from, to, is_network, files, parameters, inputs, place })
 }
 
 fn derivative(field: &Field<'_>) -> Read<Derivative> {

@@ -42,7 +42,7 @@ mod written;
 pub use crate::fractional::Kind as Derivative;
 pub use catalog::{Build, Built, Catalog, Entry, Input, Param, Range};
 pub use leaf::{Elastic, Leaf, LeafBuild, LeafKind, Table, TableError};
-pub use network::{Holds, LeafPart, Network};
+pub use network::{Guard, Holds, LeafPart, Network};
 pub use rule::RuleError;
 pub use state::{State, StateMut, StateRef, StateSize};
 pub use step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Singular, Start, Step, Term};

@@ -385,7 +385,11 @@ impl Reader<'_> {
     /// Where a file stands among those of the law.
     fn file(&mut self, name: String, span: Range<usize>) -> Result<usize, NetworkTextError> {
         if self.params.iter().any(|param| param.name == name) {
-            return Err(self.error(span, format!("`{name}` is a file here, but a number before"), "write another name"));
+            return Err(self.error(
+                span,
+                format!("`{name}` is a file here, but a number before"),
+                "write another name",
+            ));
         }
         Ok(self.files.iter().position(|known| *known == name).unwrap_or_else(|| {
             self.files.push(name);

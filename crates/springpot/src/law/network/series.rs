@@ -5,7 +5,7 @@
 //! (Σ C_m)⁻¹. For linear parts one such step is exact; others iterate, and where they find no force that all parts have, forces are NaN. The force at the start of a step never enters, so that
 //! starts need not be consistent.
 
-use super::{MOST_IN_SERIES, Network, Onset, Reported};
+use super::{Guard, MOST_IN_SERIES, Network, Onset, Reported};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
@@ -209,6 +209,18 @@ pub(super) fn powers(parts: &[Network], step: &Step, state: &mut StateRef, power
     }
 }
 
+pub(super) fn guards(parts: &[Network], step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
+    let strokes = state.take(own(parts)).variables;
+    if !parts.iter().any(|part| part.has_guards(&step.point(0))) {
+        *state = advance(parts, *state);
+        return;
+    }
+    let Solved { inner, .. } = solve(parts, step, strokes, &mut state.clone());
+    for (part, inner) in parts.iter().zip(&inner) {
+        part.guards_part(&inner.step(step), state, guards);
+    }
+}
+
 /// Inside a step: as a shorter one that ends there, so that rows are as good as ends of steps.
 pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: &mut StateRef) -> Reported {
     let shorter = Shorter::new(step, theta, at);
@@ -347,7 +359,7 @@ fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -
     let (mut force, mut tangent) = ([0.0; MAX_NODES], [[0.0; MAX_NODES]; MAX_NODES]);
     let mut shares = [0.0; MOST_IN_SERIES];
     let mut is_found = is_linear;
-    for _ in 0..MOST_ITERATIONS * MOST_HALVINGS {
+    while search.ways <= MOST_ITERATIONS {
         let mut compliances = [[[0.0; MAX_NODES]; MAX_NODES]; MOST_IN_SERIES];
         let mut forces = [[0.0; MAX_NODES]; MOST_IN_SERIES];
         let mut each = *state;
@@ -369,7 +381,7 @@ fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -
             for inner in inner.iter_mut().take(parts.len()) {
                 inner.take_rates(nodes, step.h);
             }
-            if search.is_over() {
+            if search.halvings > MOST_HALVINGS {
                 is_found = search.change <= NEARLY;
                 break;
             }
@@ -415,7 +427,7 @@ fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -
             break;
         }
         search.change = change / size;
-        if search.change <= ENOUGH {
+        if search.change <= search.enough() {
             is_found = true;
             break;
         }
@@ -438,6 +450,7 @@ struct Search {
     apart: Option<f64>,
     halvings: usize,
     ways: usize,
+    is_rounding: bool,
     /// Change of the strokes on the last whole way, in units of the largest.
     change: f64,
 }
@@ -452,9 +465,10 @@ impl Search {
             apart += forces.iter().map(|force| (force[i] - mean).powi(2)).sum::<f64>();
             size += forces.iter().map(|force| force[i].powi(2)).sum::<f64>();
         }
+        self.is_rounding = self.ways > 1 && apart <= ROUNDED * size;
         let is_nearer = match self.apart {
             _ if self.ways < 2 => apart.is_finite(),
-            Some(before) => apart < before || apart <= ROUNDED * size,
+            Some(before) => apart < before || self.is_rounding,
             None => true,
         };
         if is_nearer {
@@ -471,8 +485,9 @@ impl Search {
         false
     }
 
-    fn is_over(&self) -> bool {
-        self.halvings > MOST_HALVINGS || self.ways > MOST_ITERATIONS
+    /// Change at which the search ends: forces that are one but for rounding come no nearer.
+    fn enough(&self) -> f64 {
+        if self.is_rounding { NEARLY } else { ENOUGH }
     }
 }
 
