@@ -20,13 +20,15 @@ const MAX_TABLE: usize = 100_000;
 /// Where the columns of lists are, in `parameters`.
 pub(crate) const TABLE: &str = "table";
 
+/// Parameters that are names of files, and these.
+type Files = Vec<(String, String)>;
+
 /// The law of an element, its parameters (SI, in the order of the law), and its inputs.
 pub(crate) struct Material {
     pub(crate) law: Arc<Entry>,
     /// It is written as a network.
     pub(crate) is_network: bool,
-    /// Parameters that are names of files, and these.
-    pub(crate) files: Vec<(String, String)>,
+    pub(crate) files: Files,
     pub(crate) parameters: Read<Vec<f64>>,
     pub(crate) inputs: Read<Vec<SignalPlan>>,
 }
@@ -74,7 +76,7 @@ fn by_name(field: &Field<'_>) -> Read<Arc<Entry>> {
 }
 
 /// A network with the tables of its files, and these by the names of their parameters.
-fn of_text(field: &Field<'_>, parameters: Option<&Field<'_>>) -> Read<(Arc<Entry>, Vec<(String, String)>)> {
+fn of_text(field: &Field<'_>, parameters: Option<&Field<'_>>) -> Read<(Arc<Entry>, Files)> {
     let text = field.text()?;
     let mut network = NetworkText::parse(text).map_err(|NetworkTextError { message, span, help, unknown }| {
         let refusal = field.node.place_in_text(Some(span)).refuse(RefusalKind::BadName, format!("{field}: {message}"));
