@@ -27,13 +27,11 @@ pub(super) fn magnetorheological() -> Entry {
     }
 }
 
-/// F = E_c·x + (mu_0 + u·mu)·D^alpha x + alpha_h·z: with hysteresis beside it, whose size does not follow u.
+/// F = E_c·x + (mu_0 + u·mu)·D^alpha x + alpha_h·z: with the z of `bouc-wen` beside it, which does not follow u.
 pub(super) fn magnetorheological_bouc_wen() -> Entry {
     Entry {
         name: "magnetorheological-bouc-wen".into(),
-        equation: "F = E_c·x + (mu_0 + u·mu)·D^alpha x + alpha_h·z, \
-                   z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n"
-            .into(),
+        equation: "F = E_c·x + (mu_0 + u·mu)·D^alpha x + alpha_h·z(A, beta, gamma, n)".into(),
         params: params().into_iter().chain(bouc_wen::params()).collect(),
         inputs: inputs(),
         source: "that of `magnetorheological`; Bouc 1967, Wen 1976".into(),

@@ -30,8 +30,9 @@ impl RadauStep {
                 let stiffness = cx.system.elements[e].law.stiffness(&bank.point(e, 0), 0.0);
                 stiffness * self.elements[e].gradient[k].powi(2)
             });
-            let rate = if mass > 0.0 { (stops.sum::<f64>() / mass).sqrt() } else { 0.0 };
-            let travel = sizes.travel(k).min(speed / rate).max(h * speed);
+            let square = stops.sum::<f64>() / mass;
+            let taken_up = if square > 0.0 { speed / square.sqrt() } else { f64::INFINITY };
+            let travel = sizes.travel(k).min(taken_up).max(h * speed);
             // Strokes are differences of lengths: what they lose to rounding pushes the joints.
             let push: f64 = self.elements.iter().zip(&self.rounded).map(|(e, s)| e.gradient[k].abs() * s).sum();
             let noise = if mass > 0.0 { h * push / mass } else { 0.0 };
