@@ -192,7 +192,8 @@ fn parameters(element: &ElementPlan) -> String {
         None => format!("{} = {}", input.name, signal.written),
     };
     let parameters = params.iter().zip(&element.parameters).map(parameter);
-    parameters.chain(inputs.iter().zip(&element.inputs).map(input)).collect::<Vec<_>>().join(", ")
+    let files = element.files.iter().map(|(name, file)| format!("{name} = {file}"));
+    parameters.chain(files).chain(inputs.iter().zip(&element.inputs).map(input)).collect::<Vec<_>>().join(", ")
 }
 
 /// A length, and the range it has over the cases where that is wider.

@@ -84,7 +84,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     }
     let past = past::read(table);
     let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
-    let Material { law, is_network, parameters, inputs } = material::read(table, time)?;
+    let Material { law, is_network, files, parameters, inputs } = material::read(table, time)?;
     let (parameters, (derivative, past)) = (parameters?, past?);
     let refuse = |error: RuleError| {
         let table_field = table.get("parameters");
@@ -126,7 +126,7 @@ fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<El
     if !rest_at_start {
         table.fill(ELEMENT_FIELDS, &mut element)?;
     }
-    Ok(ElementPlan { element, past, rest_at_start, from, to, is_network, parameters, inputs, place })
+    Ok(ElementPlan { element, past, rest_at_start, from, to, is_network, files, parameters, inputs, place })
 }
 
 fn scheme(field: &Field<'_>, time: Option<&Duration>) -> Read<Option<Scheme>> {

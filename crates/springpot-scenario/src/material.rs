@@ -8,29 +8,36 @@ use super::reader::{Context, Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::signals::{self, Wanted, celsius, how_outside, interval};
 use super::time::Duration;
-use springpot::law::{Entry, NetworkText, NetworkTextError, Param};
+use springpot::law::{Entry, NetworkText, NetworkTextError, Param, Table as LawTable};
 use std::sync::Arc;
 
 /// Most values of a list of parameters.
 const MAX_LIST: usize = 1_000;
 
+/// Most rows of the table of a leaf.
+const MAX_TABLE: usize = 100_000;
+
 /// Where the columns of lists are, in `parameters`.
 pub(crate) const TABLE: &str = "table";
+
+/// Parameters that are names of files, and these.
+type Files = Vec<(String, String)>;
 
 /// The law of an element, its parameters (SI, in the order of the law), and its inputs.
 pub(crate) struct Material {
     pub(crate) law: Arc<Entry>,
     /// It is written as a network.
     pub(crate) is_network: bool,
+    pub(crate) files: Files,
     pub(crate) parameters: Read<Vec<f64>>,
     pub(crate) inputs: Read<Vec<SignalPlan>>,
 }
 
 /// Reads `law` or `network`, `parameters` and `inputs`.
 pub(crate) fn read(table: &Table<'_>, time: Option<&Duration>) -> Read<Material> {
-    let law = match (table.get("law"), table.get("network")) {
-        (Some(law), None) => by_name(&law)?,
-        (None, Some(network)) => of_text(&network)?,
+    let (law, files) = match (table.get("law"), table.get("network")) {
+        (Some(law), None) => (by_name(&law)?, Vec::new()),
+        (None, Some(network)) => of_text(&network, table.get("parameters").as_ref())?,
         (Some(_), Some(network)) => {
             let message = "stands beside a `law`";
             return Err(network.refuse(RefusalKind::Rule, message, Some("leave one of them out".to_owned())));
@@ -39,8 +46,15 @@ pub(crate) fn read(table: &Table<'_>, time: Option<&Duration>) -> Read<Material>
     };
     let lists = Lists::read(table, &law)?;
     let law = if law.has_lists() { Arc::new(law.with_lists(lists.length)) } else { law };
-    let (parameters, inputs) = (parameters(table, &law, &lists), inputs(table, &law, time));
-    Ok(Material { law, is_network: table.get("network").is_some(), parameters, inputs })
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let (parameters, inputs) = (parameters(table, &law, &lists, &names), inputs(table, &law, time));
+    Ok(Material { law, is_network: table.get("network").is_some(), files, parameters, inputs })
+}
+
+/// The parameters of a network that are names of files; of other laws none.
+pub(crate) fn files_of(element: &Node) -> Vec<String> {
+    let network = element.get("network").and_then(|network| NetworkText::parse(network.text()?).ok());
+    network.map_or(Vec::new(), |network| network.files().map(str::to_owned).collect())
 }
 
 /// The law of an element that says one; nothing where it is none.
@@ -61,14 +75,47 @@ fn by_name(field: &Field<'_>) -> Read<Arc<Entry>> {
     })
 }
 
-fn of_text(field: &Field<'_>) -> Read<Arc<Entry>> {
+/// A network with the tables of its files, and these by the names of their parameters.
+fn of_text(field: &Field<'_>, parameters: Option<&Field<'_>>) -> Read<(Arc<Entry>, Files)> {
     let text = field.text()?;
-    let network = NetworkText::parse(text).map_err(|NetworkTextError { message, span, help, unknown }| {
+    let mut network = NetworkText::parse(text).map_err(|NetworkTextError { message, span, help, unknown }| {
         let refusal = field.node.place_in_text(Some(span)).refuse(RefusalKind::BadName, format!("{field}: {message}"));
         let help = unknown.map_or(help, |(name, known)| names::suggest(&name, known));
         field.ctx.refuse(refusal.help(help))
     })?;
-    Ok(Arc::new(network.entry()))
+    let names: Vec<String> = network.files().map(str::to_owned).collect();
+    let files = all(names.into_iter().map(|name| {
+        let Some(node) = parameters.and_then(|parameters| parameters.node.get(&name)) else {
+            let place = parameters.map_or(&field.node.place, |parameters| &parameters.node.place);
+            let message = format!("{field} needs the parameter {name}");
+            let refusal = place.refuse(RefusalKind::Missing, message).label("missing parameter");
+            return Err(field
+                .ctx
+                .refuse(refusal.help(format!("{name} = \"FILE\": a CSV file with the columns x and F"))));
+        };
+        let what = format!("`{name}` of {field}");
+        let given = Field { node, key: "parameters", ..field.clone() };
+        let Some(file) = node.text() else {
+            let message = format!("{what} must be the name of a file, not {} {}", node.kind(), node.written());
+            let refusal = node.place.refuse(RefusalKind::WrongType, message);
+            return Err(given
+                .ctx
+                .refuse(refusal.help("write the name of a CSV file with the columns x and F, m and N")));
+        };
+        let unusable = |why: String| {
+            let refusal = node.place.refuse(RefusalKind::File, format!("{what} cannot be used: {why}"));
+            given.ctx.refuse(refusal)
+        };
+        let columns = csv::columns(&given.ctx.folder.join(file), &["x", "F"], MAX_TABLE);
+        let columns = columns.map_err(|error| unusable(error.to_string()))?;
+        let points = columns[0].iter().copied().zip(columns[1].iter().copied());
+        let table = LawTable::new(points).map_err(|error| unusable(format!("{file}: {error}")))?;
+        Ok((name, file.to_owned(), table))
+    }))?;
+    for (name, _, table) in &files {
+        network = network.with_table(name, table.clone());
+    }
+    Ok((Arc::new(network.entry()), files.into_iter().map(|(name, file, _)| (name, file)).collect()))
 }
 
 /// The parameters of a law that are lists.
@@ -156,13 +203,14 @@ fn given<'a>(table: &Table<'a>, name: &'a str) -> Option<Field<'a>> {
 }
 
 /// Parameter values in the order of the catalog.
-fn parameters<'a>(table: &Table<'a>, law: &'a Entry, lists: &Lists) -> Read<Vec<f64>> {
+fn parameters<'a>(table: &Table<'a>, law: &'a Entry, lists: &Lists, files: &[&str]) -> Read<Vec<f64>> {
     let names: Vec<&str> = law.params.iter().map(|param| &*param.name).collect();
     let mut known: Vec<&str> = names.iter().map(|name| list_of(name)).collect();
     known.dedup();
     if known.len() < names.len() || !lists.columns.is_empty() {
         known.push(TABLE);
     }
+    known.extend(files);
     let field = table.get("parameters");
     let open = field.as_ref().map(|field| {
         let what = format!("`parameters` of {} (law {:?})", table.what, law.name);

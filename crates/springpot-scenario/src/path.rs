@@ -2,7 +2,7 @@
 
 use super::document::{Entry, Node, Value, shorten};
 use super::keys::ELEMENT;
-use super::material::law_of;
+use super::material::{files_of, law_of};
 use super::names;
 use super::reader::{Context, Read};
 use super::refusal::{Place, RefusalKind};
@@ -221,7 +221,7 @@ fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static s
         return None;
     }
     let law = law_of(ctx, element)?;
-    if law.params.iter().any(|param| param.name == key) {
+    if law.params.iter().any(|param| param.name == key) || files_of(element).iter().any(|file| file == key) {
         Some("parameters")
     } else if law.inputs.iter().any(|input| input.name == key) {
         Some("inputs")
@@ -235,7 +235,8 @@ fn names_of_element(ctx: &Context<'_>, element: &Node) -> Option<Vec<String>> {
     let law = law_of(ctx, element)?;
     let parameters = law.params.iter().map(|param| &*param.name);
     let inputs = law.inputs.iter().map(|input| &*input.name);
-    Some(parameters.chain(inputs).chain(ELEMENT.names()).map(str::to_owned).collect())
+    let names = parameters.chain(inputs).chain(ELEMENT.names()).map(str::to_owned);
+    Some(names.chain(files_of(element)).collect())
 }
 
 /// What stands where `target` leads.

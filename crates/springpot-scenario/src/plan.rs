@@ -141,6 +141,8 @@ pub struct ElementPlan {
     pub to: Anchor,
     /// Whether its law is a network of the scenario's own.
     pub is_network: bool,
+    /// Parameters of it that are names of files, and these as they are written.
+    pub files: Vec<(String, String)>,
     /// Parameters of its law in the order of the catalog, SI.
     pub parameters: Vec<f64>,
     /// Inputs of its law in the order of the catalog.

@@ -88,7 +88,7 @@ impl Plan {
     }
 
     fn element(&self, plan: &ElementPlan) -> Value {
-        let ElementPlan { element, from, to, is_network, parameters, inputs, .. } = plan;
+        let ElementPlan { element, from, to, is_network, files, parameters, inputs, .. } = plan;
         let mut values = Map::new();
         for (param, value) in element.entry.params.iter().zip(parameters) {
             match param.name.rsplit_once('.') {
@@ -99,6 +99,7 @@ impl Plan {
                 }
             }
         }
+        values.extend(files.iter().map(|(name, file)| (name.clone(), json!(file))));
         let inputs: Map<String, Value> =
             element.entry.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_string(), s.record())).collect();
         let mut value = json!({

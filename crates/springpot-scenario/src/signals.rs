@@ -299,6 +299,7 @@ pub(crate) fn celsius(unit: &str, range: Range, value: f64) -> Option<String> {
 pub(crate) fn interval(range: Range) -> String {
     match (range.low > f64::MIN, range.high < f64::MAX) {
         (true, true) => format!("{} … {}", range.low, range.high),
+        (true, false) if range.low == f64::MIN_POSITIVE => "above 0".to_owned(),
         (true, false) => format!("{} and above", range.low),
         (false, true) => format!("{} and below", range.high),
         (false, false) => "the finite numbers".to_owned(),
@@ -308,6 +309,7 @@ pub(crate) fn interval(range: Range) -> String {
 /// Says that a value is not in `range`.
 pub(crate) fn how_outside(range: Range) -> String {
     match (range.low > f64::MIN, range.high < f64::MAX) {
+        (true, false) if range.low == f64::MIN_POSITIVE => "not above 0".to_owned(),
         (true, false) => format!("less than {}", range.low),
         (false, true) => format!("more than {}", range.high),
         _ => format!("outside {}", interval(range)),

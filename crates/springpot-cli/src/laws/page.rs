@@ -125,6 +125,7 @@ fn unit_or_one(unit: &str) -> &str {
 fn interval(range: Range) -> String {
     match (range.low > f64::MIN, range.high < f64::MAX) {
         (true, true) => format!("{} … {}", range.low, range.high),
+        (true, false) if range.low == f64::MIN_POSITIVE => "> 0".to_owned(),
         (true, false) => format!("≥ {}", range.low),
         (false, true) => format!("≤ {}", range.high),
         (false, false) => "any".to_owned(),

@@ -73,6 +73,110 @@ fn lists_are_arrays_or_columns() {
 }
 
 #[test]
+fn leaves_that_are_not_linear() {
+    // A table of a line is a spring, and so are the two halves of one, and a stop without room.
+    let (rate, spring) = ("200 N/m", forces(&with("law = \"spring\"\nparameters = { k = \"200 N/m\" }\n")));
+    for (network, parameters) in [
+        ("pad: table(file)", "file = \"pad.csv\"".to_owned()),
+        ("parallel(tension(k), compression(k))", format!("k = \"{rate}\"")),
+        ("stop(k, none, none)", format!("k = \"{rate}\", none = \"0 mm\"")),
+        ("polynomial(k, none, nil)", format!("k = \"{rate}\", none = 0, nil = \"0 N/m^3\"")),
+        ("parallel(spring(k), friction(f, v0), preload(p))", format!("k = \"{rate}\", f = 0, p = 0, v0 = \"1 mm/s\"")),
+    ] {
+        let place = with(&format!("network = \"{network}\"\nparameters = {{ {parameters} }}\n"));
+        place.write("pad.csv", "F,x,note\n-200,-1,a\n0,0,b\n300,1.5,c\n");
+        let written = forces(&place);
+        let off = spring.iter().zip(&written).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-6, "{network}: {off:e}");
+    }
+    let hysteresis = "alpha_h = \"3 kN/m\", A = 1, beta = \"2000 1/m^2\", gamma = \"3000 1/m^2\", n = 2";
+    let named = forces(&with(&format!("law = \"bouc-wen\"\nparameters = {{ {hysteresis} }}\n")));
+    let written = forces(&with(&format!(
+        "network = \"bouc-wen(alpha_h, A, beta, gamma, n)\"\nparameters = {{ {hysteresis} }}\n"
+    )));
+    assert_eq!(named, written);
+    let mixed = forces(&with(&format!(
+        "law = \"magnetorheological-bouc-wen\"\ninputs = {{ u = 1 }}\n\
+         parameters = {{ E_c = 0, mu_0 = 0, mu = 0, alpha = 0.5, {hysteresis} }}\n"
+    )));
+    assert!(named.iter().zip(&mixed).all(|(a, b)| (a - b).abs() < 1e-6), "{named:?} {mixed:?}");
+}
+
+#[test]
+fn the_file_of_a_table_is_named_and_refused() {
+    let place = with("network = \"parallel(spring(k), table(pad))\"\nparameters = { k = 100, pad = \"pad.csv\" }\n");
+    place.write("pad.csv", "x,F\n-1,-5\n0,0\n1,20\n");
+    place.write("soft.csv", "x,F\n-1,-1\n0,0\n1,1\n");
+    let checked = place.done(&["check", "arm.toml"]);
+    assert!(checked.stdout.contains("pad = pad.csv"), "{}", checked.stdout);
+    let hard = forces(&place);
+    let element = &place.record("results/arm")["plan"]["elements"][0];
+    assert_eq!(element["parameters"], serde_json::json!({ "k": 100.0, "pad": "pad.csv" }));
+    place.done(&["run", "arm.toml", "--set", "element.damper.pad=\"soft.csv\""]);
+    assert_ne!(place.table("results/arm/results.csv").numbers("damper.force"), hard);
+    for (name, text) in [
+        ("one", "x,F\n0,0\n"),
+        ("back", "x,F\n0,0\n1,1\n1,2\n"),
+        ("word", "x,F\n0,0\n1,soft\n"),
+        ("other", "x,force\n0,0\n1,1\n"),
+    ] {
+        place.write(&format!("{name}.csv"), text);
+    }
+    for (set, words) in [
+        ("pad=\"one.csv\"", &["`pad`", "one.csv", "two rows"][..]),
+        ("pad=\"back.csv\"", &["it is no function: x must increase, but in row 3 it is 1 after 1"]),
+        ("pad=\"word.csv\"", &["soft"]),
+        ("pad=\"other.csv\"", &["`F`"]),
+        ("pad=\"none.csv\"", &["none.csv", "cannot be read"]),
+        ("pad=3", &["must be the name of a file, not the number 3"]),
+        ("parameters={ k = 100 }", &["needs the parameter pad", "columns x and F"]),
+        ("network=\"parallel(spring(pad), table(pad))\"", &["`pad` is a file here, but a number before"]),
+        ("network=\"parallel(table(pad), spring(pad))\"", &["`pad` is a number here, but a file before"]),
+        ("network=\"series(spring(k), table(pad, k))\"", &["`table` takes 1 names, not 2", "table(file)"]),
+    ] {
+        refused(&place, set, words);
+    }
+}
+
+#[test]
+fn leaves_that_yield_stand_beside_others() {
+    let parameters =
+        "parameters = { k = 100, f = 5, v0 = 0.01, lower = -0.1, upper = 0.1, h = 1, A = 1, b = 1, g = 2, n = 2 }\n";
+    let place = with(&format!(
+        "network = \"series(spring(k), parallel(spring(k), friction(f, v0), stop(k, lower, upper), bouc-wen(h, A, b, g, n)))\"\n{parameters}"
+    ));
+    place.done(&["run", "arm.toml"]);
+    let yields = "does not hold at times: what stands behind it would be free";
+    for (leaf, given, words) in [
+        ("tension(k)", "k = 100", yields),
+        ("compression(k)", "k = 100", yields),
+        ("stop(k, a, b)", "k = 100, a = -1, b = 1", yields),
+        ("friction(f, v0)", "k = 100, f = 1, v0 = 1", yields),
+        ("preload(f)", "k = 100, f = 1", yields),
+        ("polynomial(k, l, m)", "k = 100, l = 1, m = 0", yields),
+        ("bouc-wen(k, A, b, g, n)", "k = 100, A = 1, b = 1, g = 1, n = 1", yields),
+        ("stop(k, a, b)", "k = 100, a = 1, b = -1", "lower ≤ upper in `stop(k, a, b)`"),
+        ("friction(f, v0)", "k = 100, f = -1, v0 = 1", "is -1 N"),
+        ("friction(f, v0)", "k = 100, f = 1, v0 = 0", "is 0 m/s"),
+        ("bouc-wen(k, A, b, g, n)", "k = 100, A = 0, b = 1, g = 1, n = 1", "`A`"),
+        ("bouc-wen(k, A, b, g, n)", "k = 100, A = 1, b = 1, g = 1, n = 0.5", "`n`"),
+        ("bouc-wen(k, A, b, g, n)", "k = 100, A = 1, b = 3, g = 1, n = 1", "gamma ≥ |beta|"),
+        ("bouc-wen(k, A, b, g, n)", "k = 100, A = 1, b = -1, g = 1, n = 1", "gamma + beta > 0"),
+        ("preload(f)", "k = 100, f = 0", "`preload(f)` gives none"),
+    ] {
+        let law = format!("network = \"series(spring(k), {leaf})\"\nparameters = {{ {given} }}\n");
+        refused(&with(&law), "name=\"damper\"", &[words]);
+    }
+}
+
+fn refused(place: &Place, set: &str, words: &[&str]) {
+    let refused = place.springpot(&["check", "arm.toml", "--set", &format!("element.damper.{set}")]);
+    let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(refused.code, Some(2), "{set}: {}", refused.stderr);
+    words.iter().for_each(|words| assert!(said.contains(words), "{set}: {words:?} is not in {}", refused.stderr));
+}
+
+#[test]
 fn what_is_wrong_with_a_network_is_said_where_it_is() {
     let place = with("network = \"series(spring(k), dashpot(c))\"\nparameters = { k = 100, c = 5 }\n");
     for (set, words) in [
@@ -92,10 +196,7 @@ fn what_is_wrong_with_a_network_is_said_where_it_is() {
         ("law=spring", &["`network` of element \"damper\" stands beside a `law`"]),
         ("kc=3", &["has no `kc`"]),
     ] {
-        let refused = place.springpot(&["check", "arm.toml", "--set", &format!("element.damper.{set}")]);
-        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(refused.code, Some(2), "{set}: {}", refused.stderr);
-        words.iter().for_each(|words| assert!(said.contains(words), "{set}: {words:?} is not in {}", refused.stderr));
+        refused(&place, set, words);
     }
     let place = with("law = \"prony\"\nparameters = { k_e = 1, k = [1, 2], tau = [1, 2] }\n");
     for (set, words) in [
@@ -109,10 +210,7 @@ fn what_is_wrong_with_a_network_is_said_where_it_is() {
             &["stands beside `k`"],
         ),
     ] {
-        let refused = place.springpot(&["check", "arm.toml", "--set", &format!("element.damper.{set}")]);
-        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(refused.code, Some(2), "{set}: {}", refused.stderr);
-        words.iter().for_each(|words| assert!(said.contains(words), "{set}: {words:?} is not in {}", refused.stderr));
+        refused(&place, set, words);
     }
 }
 

@@ -72,7 +72,8 @@ fn sign(law: &Network, at: &Point<'_>) -> ElementSign {
     let all = |parts: &[Network]| parts.iter().map(|part| sign(part, at)).collect();
     match law {
         Network::Leaf(leaf) => match leaf.linearised(at) {
-            Term { order: 0.0, coefficient: 0.0 } => ElementSign::Source,
+            // A stop that is free at the moment is a spring all the same.
+            Term { order: 0.0, coefficient: 0.0 } if leaf.is_linear() => ElementSign::Source,
             Term { order: 0.0, .. } => ElementSign::Spring,
             Term { order: 1.0, .. } => ElementSign::Dashpot,
             Term { .. } => ElementSign::Springpot,

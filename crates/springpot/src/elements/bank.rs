@@ -4,8 +4,8 @@ use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::{Form, KernelError};
 use crate::law::{
-    InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Singular, Start, State,
-    Step, Term,
+    Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Singular, Start,
+    State, Step, Term,
 };
 use serde::{Deserialize, Serialize};
 
@@ -321,6 +321,14 @@ impl ElementBank {
         energies.errors.clear();
         law.local_errors(&step, state, &mut energies.errors);
         true
+    }
+
+    /// Appends functions whose zeros are kinks of the force of element `e`.
+    pub(crate) fn guards(&self, e: usize, guards: &mut Vec<Guard>) {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            law.guards(&told.step(self.step), state, guards);
+        }
     }
 
     /// Energy flows at the start and at the nodes of the step, as accounted.

@@ -16,6 +16,7 @@ mod evaluate;
 pub mod fixed;
 mod fixed_step;
 mod jump;
+mod kinks;
 mod ledger;
 mod limits;
 mod on_grid;

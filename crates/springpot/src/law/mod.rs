@@ -42,8 +42,8 @@ mod written;
 
 pub use crate::fractional::Kind as Derivative;
 pub use catalog::{Build, Built, Catalog, Entry, Input, Param, Range};
-pub use leaf::{Leaf, LeafKind};
-pub use network::{Holds, LeafPart, Network};
+pub use leaf::{Elastic, Leaf, LeafBuild, LeafKind, Table, TableError};
+pub use network::{Guard, Holds, LeafPart, Network};
 pub use past::{Past, Periodic};
 pub use rule::RuleError;
 pub use state::{State, StateMut, StateRef, StateSize};

@@ -32,7 +32,7 @@ const TWO: &[(&str, &str)] = &[
     ("alpha_2", "order of the second derivative (0: spring, 1: dashpot)"),
 ];
 
-const ROWS: [Row; 8] = [
+const ROWS: [Row; 9] = [
     Row {
         name: "maxwell",
         network: "series(spring(k), dashpot(c))",
@@ -96,6 +96,14 @@ const ROWS: [Row; 8] = [
         words: TWO,
         defaults: &[],
         source: "Jeffreys 1929",
+    },
+    Row {
+        name: "bouc-wen",
+        network: "bouc-wen(alpha_h, A, beta, gamma, n)",
+        equation: "F = alpha_h·z, z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n",
+        words: &[],
+        defaults: &[],
+        source: "Bouc 1967; Wen 1976",
     },
 ];
 

@@ -7,7 +7,7 @@ use super::past::Harmonics;
 use super::rule::RuleError;
 use super::state::{State, StateMut, StateRef, StateSize};
 use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-use crate::collocation::Nodes;
+use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{KernelError, Memory, RatePolynomial};
 use num_complex::Complex64;
@@ -65,6 +65,9 @@ impl std::ops::Deref for LeafPart {
     }
 }
 
+/// A function whose zeros are kinks of a force, at the start and at the nodes of a step.
+pub type Guard = [f64; MAX_NODES + 1];
+
 /// Whether a part of a network carries force: what stands behind it in a series is free where it does not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Holds {
@@ -80,6 +83,11 @@ impl Network {
     /// A leaf.
     pub fn leaf(leaf: impl Leaf + 'static) -> Self {
         Self::Leaf(LeafPart { name: None, leaf: Arc::new(leaf) })
+    }
+
+    /// A leaf that others hold too.
+    pub fn shared<L: Leaf + 'static>(leaf: Arc<L>) -> Self {
+        Self::Leaf(LeafPart { name: None, leaf })
     }
 
     /// A leaf under this name; parts that are none stay as they are.
@@ -276,6 +284,34 @@ impl Network {
             Self::Parallel(parts) => parts.iter().for_each(|part| part.powers_part(step, state, powers)),
             Self::Series(parts) => series::powers(parts, step, state, powers),
         }
+    }
+
+    /// Appends functions whose zeros are kinks of a force, by their values at the start and at the nodes of the step. Pure.
+    pub fn guards(&self, step: &Step, state: &State, guards: &mut Vec<Guard>) {
+        self.guards_part(step, &mut state.view(), guards);
+    }
+
+    fn guards_part(&self, step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
+        match self {
+            Self::Leaf(leaf) => {
+                state.take(leaf.size());
+                let first = guards.len();
+                leaf.guards(&step.point(0), &mut |value| guards.push([value; MAX_NODES + 1]));
+                for k in 1..=step.nodes.count() {
+                    let mut own = guards[first..].iter_mut();
+                    leaf.guards(&step.point(k), &mut |value| own.next().into_iter().for_each(|guard| guard[k] = value));
+                }
+            }
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.guards_part(step, state, guards)),
+            Self::Series(parts) => series::guards(parts, step, state, guards),
+        }
+    }
+
+    /// Whether its force may have kinks that steps are to end on.
+    pub fn has_guards(&self, at: &Point) -> bool {
+        let mut found = false;
+        self.for_each_leaf(&mut |leaf| leaf.guards(at, &mut |_| found = true));
+        found
     }
 
     /// The law at t_n + theta·h, 0 < theta ≤ 1, where its exact kinematics are those of `at`. Pure.

@@ -11,3 +11,10 @@ pub struct RuleError {
     /// The parameter to change.
     pub parameter: Cow<'static, str>,
 }
+
+impl RuleError {
+    /// The error where a rule does not hold.
+    pub(super) fn unless(holds: bool, rule: &'static str, parameter: &'static str) -> Result<(), Self> {
+        if holds { Ok(()) } else { Err(Self { rule: rule.into(), parameter: parameter.into() }) }
+    }
+}

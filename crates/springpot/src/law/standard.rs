@@ -16,6 +16,7 @@ impl Catalog {
             thermoviscoelastic::thermoviscoelastic(),
             piezo::piezo_kelvin_voigt(),
             magnetorheological::magnetorheological(),
+            magnetorheological::magnetorheological_bouc_wen(),
         ];
         Self { entries: entries.into_iter().chain(named::entries()).map(Arc::new).collect() }
     }

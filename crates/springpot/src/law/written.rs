@@ -1,7 +1,7 @@
 //! Networks as text: `series(spring(k0), parallel(springpot(c, alpha), slow: dashpot(eta)))`.
 
 use super::catalog::{Entry, Param};
-use super::leaf::LeafKind;
+use super::leaf::{LeafBuild, LeafKind, Table};
 use super::network::{Holds, Network};
 use super::rule::RuleError;
 use crate::fractional::Kind as Derivative;
@@ -37,6 +37,14 @@ pub struct NetworkText {
     text: String,
     root: Part,
     params: Vec<Param>,
+    files: Vec<TableFile>,
+}
+
+/// A parameter that is the name of a file.
+#[derive(Debug, Clone)]
+struct TableFile {
+    name: Cow<'static, str>,
+    table: Option<Arc<Table>>,
 }
 
 /// Why a text is no network.
@@ -67,6 +75,12 @@ enum PartKind {
         kind: Arc<LeafKind>,
         params: Vec<usize>,
     },
+    /// A leaf from the table of a file, and which.
+    Table {
+        name: Arc<str>,
+        build: fn(&Arc<Table>) -> Network,
+        file: usize,
+    },
     Parallel(Vec<Part>),
     Series(Vec<Part>),
 }
@@ -78,7 +92,7 @@ impl NetworkText {
     /// [`NetworkTextError`] says what is wrong, and where.
     pub fn parse(text: &str) -> Result<Self, NetworkTextError> {
         let kinds = LeafKind::all().into_iter().map(Arc::new).collect();
-        let mut reader = Reader { text, at: 0, kinds, params: Vec::new(), leaves: Vec::new() };
+        let mut reader = Reader { text, at: 0, kinds, params: Vec::new(), files: Vec::new(), leaves: Vec::new() };
         let root = reader.part(0)?;
         if let Some(rest) = reader.peek() {
             return Err(reader.error(
@@ -87,8 +101,22 @@ impl NetworkText {
                 GRAMMAR,
             ));
         }
-        let (root, params) = reader.named(root)?;
-        Ok(Self { text: text.trim().to_owned(), root, params })
+        let root = reader.named(root)?;
+        let files = reader.files.into_iter().map(|name| TableFile { name: name.into(), table: None }).collect();
+        Ok(Self { text: text.trim().to_owned(), root, params: reader.params, files })
+    }
+
+    /// Parameters that are names of files, each of which has a table; they are none of the law's own.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.files.iter().map(|file| &*file.name)
+    }
+
+    /// Takes the table of one of its files; others are passed over. Without it the law cannot be built.
+    pub fn with_table(mut self, file: &str, table: Table) -> Self {
+        if let Some(own) = self.files.iter_mut().find(|own| own.name == file) {
+            own.table = Some(Arc::new(table));
+        }
+        self
     }
 
     /// A law with the parameters that the network names, in the order it names them.
@@ -107,10 +135,10 @@ impl NetworkText {
     fn build(&self, values: &[f64], derivative: Derivative) -> Result<Network, RuleError> {
         let network = self.part(&self.root, values, derivative)?;
         if network.holds() == Holds::Never {
-            let names = self.params.iter().map(|param| &*param.name).collect::<Vec<_>>().join(", ");
-            let parameter = self.params.first().map_or(Cow::Borrowed(""), |param| param.name.clone());
+            let names: Vec<&str> = self.params.iter().map(|param| &*param.name).chain(self.files()).collect();
+            let parameter = names.first().map_or(Cow::Borrowed(""), |name| (*name).to_owned().into());
             return Err(RuleError {
-                rule: format!("a part that gives a force: one of {names} to be positive"),
+                rule: format!("a part that gives a force: one of {} to be positive", names.join(", ")),
                 parameter,
             });
         }
@@ -121,12 +149,21 @@ impl NetworkText {
         match &part.kind {
             PartKind::Leaf { name, kind, params } => {
                 let own: Vec<f64> = params.iter().map(|at| values[*at]).collect();
-                let leaf = (kind.build)(&own, derivative).map_err(|error| {
+                let LeafBuild::Values(build) = kind.build else { unreachable!("a leaf from values") };
+                let leaf = build(&own, derivative).map_err(|error| {
                     let at = kind.params.iter().position(|param| param.name == error.parameter);
                     let parameter = at.map_or(error.parameter, |at| self.params[params[at]].name.clone());
                     RuleError { parameter, rule: format!("{} in `{}`", error.rule, self.words(part)) }
                 })?;
                 Ok(leaf.named(name))
+            }
+            PartKind::Table { name, build, file } => {
+                let TableFile { name: parameter, table } = &self.files[*file];
+                let Some(table) = table else {
+                    let rule = format!("the table that `{parameter}` stands for");
+                    return Err(RuleError { rule, parameter: parameter.clone() });
+                };
+                Ok(build(table).named(name))
             }
             PartKind::Parallel(parts) => {
                 let parts = parts.iter().map(|part| self.part(part, values, derivative));
@@ -137,7 +174,7 @@ impl NetworkText {
                     let network = self.part(part, values, derivative)?;
                     let what = match network.holds() {
                         Holds::Always => return Ok(network),
-                        Holds::AtTimes => "gives no force at times, where what stands behind it would be free",
+                        Holds::AtTimes => "does not hold at times: what stands behind it would be free",
                         Holds::Never => "gives none",
                     };
                     let rule = format!("every part of a series to carry its force, but `{}` {what}", self.words(part));
@@ -155,6 +192,7 @@ impl NetworkText {
     fn first_parameter(&self, part: &Part) -> Cow<'static, str> {
         match &part.kind {
             PartKind::Leaf { params, .. } => params.first().map_or("".into(), |at| self.params[*at].name.clone()),
+            PartKind::Table { file, .. } => self.files[*file].name.clone(),
             PartKind::Parallel(parts) | PartKind::Series(parts) => {
                 parts.first().map_or("".into(), |part| self.first_parameter(part))
             }
@@ -166,6 +204,7 @@ impl NetworkText {
 struct LeafText {
     name: Option<(String, Range<usize>)>,
     kind: Arc<LeafKind>,
+    /// Where its parameters stand among those of the law; of a table where its file stands among the files.
     params: Vec<usize>,
 }
 
@@ -174,6 +213,7 @@ struct Reader<'a> {
     at: usize,
     kinds: Vec<Arc<LeafKind>>,
     params: Vec<Param>,
+    files: Vec<String>,
     leaves: Vec<LeafText>,
 }
 
@@ -329,6 +369,10 @@ impl Reader<'_> {
                 format!("write {written}({wanted}): {}", kind.equation),
             ));
         }
+        if let LeafBuild::Table(_) = kind.build {
+            let file = arguments.into_iter().map(|(name, span)| self.file(name, span)).collect::<Result<_, _>>()?;
+            return Ok(LeafText { name, kind, params: file });
+        }
         let params = kind.params.iter().zip(&arguments).map(|(param, argument)| {
             let unit = in_arguments(&param.unit, &kind.params, &arguments);
             let own = Param { name: argument.0.clone().into(), unit: unit.into(), ..param.clone() };
@@ -338,8 +382,27 @@ impl Reader<'_> {
         Ok(LeafText { name, kind, params })
     }
 
+    /// Where a file stands among those of the law.
+    fn file(&mut self, name: String, span: Range<usize>) -> Result<usize, NetworkTextError> {
+        if self.params.iter().any(|param| param.name == name) {
+            return Err(self.error(
+                span,
+                format!("`{name}` is a file here, but a number before"),
+                "write another name",
+            ));
+        }
+        Ok(self.files.iter().position(|known| *known == name).unwrap_or_else(|| {
+            self.files.push(name);
+            self.files.len() - 1
+        }))
+    }
+
     /// Where a parameter stands among those of the law; one that is named twice must be the same both times.
     fn param(&mut self, param: Param, span: Range<usize>) -> Result<usize, NetworkTextError> {
+        if self.files.iter().any(|file| *file == param.name) {
+            let message = format!("`{}` is a number here, but a file before", param.name);
+            return Err(self.error(span, message, "write another name"));
+        }
         let Some(at) = self.params.iter().position(|known| known.name == param.name) else {
             self.params.push(param);
             return Ok(self.params.len() - 1);
@@ -357,7 +420,7 @@ impl Reader<'_> {
     }
 
     /// The network, every leaf under its name.
-    fn named(self, root: Unnamed) -> Result<(Part, Vec<Param>), NetworkTextError> {
+    fn named(&self, root: Unnamed) -> Result<Part, NetworkTextError> {
         let mut names: Vec<Arc<str>> = Vec::with_capacity(self.leaves.len());
         for (k, leaf) in self.leaves.iter().enumerate() {
             let before =
@@ -378,7 +441,7 @@ impl Reader<'_> {
                 return Err(self.error(span.clone(), format!("`{name}` is a column of every element"), help));
             }
         }
-        Ok((self.finish(&names, root), self.params))
+        Ok(self.finish(&names, root))
     }
 
     fn finish(&self, names: &[Arc<str>], part: Unnamed) -> Part {
@@ -388,7 +451,11 @@ impl Reader<'_> {
             UnnamedKind::Series(parts) => PartKind::Series(all(parts)),
             UnnamedKind::Leaf(k) => {
                 let LeafText { kind, params, .. } = &self.leaves[k];
-                PartKind::Leaf { name: names[k].clone(), kind: kind.clone(), params: params.clone() }
+                let name = names[k].clone();
+                match kind.build {
+                    LeafBuild::Values(_) => PartKind::Leaf { name, kind: kind.clone(), params: params.clone() },
+                    LeafBuild::Table(build) => PartKind::Table { name, build, file: params[0] },
+                }
             }
         };
         Part { span: part.span, kind }

@@ -1,7 +1,7 @@
 //! Kinematics given in advance: every step is evaluated where the motion is.
 //!
-//! Inner steps are chosen for the memories and for the energy ledger. Steps end on break points and kinks of the signals, and where joints
-//! turn round against friction that sticks.
+//! Inner steps are chosen for the memories and for the energy ledger. Steps end on break points and kinks of the signals, where joints
+//! turn round against friction that sticks, and where forces of elements have kinks.
 
 mod reversal;
 
@@ -9,6 +9,7 @@ use super::context::Context;
 use super::error::RunError;
 use super::evaluate::Evaluation;
 use super::jump::refuse_jumps;
+use super::kinks::{FROM_BEHIND, Kinks, Seen};
 use super::on_grid;
 use super::recorder::{Recorder, StepPowers};
 use super::settings::Settings;
@@ -34,6 +35,9 @@ const NEAR: f64 = 1e-3;
 /// A step that is shorter by 0.7 leaves less than this share where the motion is smooth.
 const SHRINKS: f64 = 0.5;
 
+/// Tries to end a step on a kink of a force.
+const MOST_TRIES: usize = 40;
+
 /// Exponent of the energy estimate, whose order is that of the third difference.
 const ENERGY_EXPONENT: f64 = 0.25;
 
@@ -45,6 +49,8 @@ pub(super) struct Prescribed {
     energy_floor: f64,
     /// Velocities at which friction sticks: their power has a kink where they turn round.
     rubbing: Vec<usize>,
+    /// Kinks of the elements' forces.
+    kinks: Kinks,
     /// The first evaluation behind the step that was worked out.
     behind: Option<Evaluation>,
     /// Where the last step that was refused starts, and how far each stroke was then from the integral of its rates, m.
@@ -87,7 +93,8 @@ impl StepError {
 impl Prescribed {
     pub(super) fn new(cx: Context, trajectory: &Arc<Trajectory>) -> Self {
         let rubbing = reversal::rubbing(&cx.system.model);
-        Self { trajectory: trajectory.clone(), energy_floor: 0.0, rubbing, behind: None, refused: None }
+        let kinks = Kinks::of(cx.system);
+        Self { trajectory: trajectory.clone(), energy_floor: 0.0, rubbing, kinks, behind: None, refused: None }
     }
 
     /// What the next step takes over from those before.
@@ -160,6 +167,10 @@ impl Prescribed {
                 continue;
             }
             recorder.add_actuator_power(e);
+            if !recorder.bank.response(e).force.iter().all(|force| force.is_finite()) {
+                // A law that finds no force asks for a shorter step.
+                return Ok(StepError { memory: 1e3, alpha: 0.0, element: Some(e), energy: 0.0 });
+            }
             let (share, alpha) = recorder.memory_error(e);
             if share > error.memory {
                 error = StepError { memory: share, alpha, element: Some(e), ..error };
@@ -167,6 +178,41 @@ impl Prescribed {
         }
         error.energy = recorder.energy_error(h, self.energy_floor);
         Ok(error)
+    }
+
+    /// The step that was evaluated with `error`, or the part of it up to the first kink of a force.
+    fn end_on_kink(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        whole: Target,
+        error: StepError,
+    ) -> Result<(Target, StepError), RunError> {
+        let (mut step, mut error, t) = (whole, error, whole.from);
+        let (mut low, mut high, mut wanted, mut from_behind) = (t, f64::INFINITY, None, 0);
+        for _ in 0..MOST_TRIES {
+            let next = match (self.kinks.look(&recorder.bank), wanted) {
+                (Seen::AtEnd, _) | (Seen::Nothing, None) => break,
+                (Seen::Nothing, Some(kink)) => {
+                    (low, from_behind) = (step.to, 0);
+                    let [at_end, before] = [1.0, 0.999].map(|theta| self.kinks.value(&recorder.bank, kink, theta));
+                    step.to + 0.001 * step.size * at_end / (before - at_end)
+                }
+                (Seen::Within(theta, kink), _) => {
+                    (high, wanted, from_behind) = (step.to, Some(kink), from_behind + 1);
+                    // Where the time is too short to tell, a few bits on.
+                    (t + theta * step.size).max(t + 4.0 * f64::EPSILON * t)
+                }
+            };
+            if high - low <= 4.0 * f64::EPSILON * high {
+                break;
+            }
+            // Behind a kink a guard may hardly move, and tells little of where it is.
+            let to = if from_behind < FROM_BEHIND && low < next && next < high { next } else { 0.5 * (low + high) };
+            step = Target { to, size: to - t, behind: Behind::Step, ..step };
+            error = self.evaluate(cx, recorder, &step)?;
+        }
+        Ok((step, error))
     }
 
     /// Noise of stroke `e`, m: what does not shrink with the step, within what the path is solved to. Near singular configurations its
@@ -267,6 +313,7 @@ impl Stepper for Prescribed {
             step = Target { to, size: to - step.from, behind: Behind::Step, ..step };
             error = self.evaluate(cx, recorder, &step)?;
         }
+        (step, error) = self.end_on_kink(cx, recorder, step, error)?;
         let next = step.size * error.factor();
         if !error.accepted() {
             self.refused = Some((step.from, (0..cx.system.elements.len()).map(|e| gap(recorder, e)).collect()));

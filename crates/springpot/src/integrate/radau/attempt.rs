@@ -5,6 +5,7 @@ use super::newton::Outcome;
 use crate::collocation::MAX_NODES;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
+use crate::integrate::kinks::Seen;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::Target;
 
@@ -62,7 +63,14 @@ impl Radau {
         }
         let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
         if error > 1.0 || error.is_nan() {
-            let smaller = h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
+            let mut smaller =
+                h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
+            // Where a kink makes the error, a step up to it has none of that.
+            if error.is_finite()
+                && let Seen::Within(theta, _) = self.kinks.look(&recorder.bank)
+            {
+                smaller = smaller.max((1.01 * theta).min(0.9) * h);
+            }
             if smaller < SHORTEST_STEP * recorder.settings.end {
                 return Err(self.step_too_small(cx, t, h, error, worst));
             }

@@ -1,8 +1,9 @@
-//! What may happen to a joint within a step, and what becomes of the step.
+//! What may happen to a joint or to an element within a step, and what becomes of the step.
 
+use crate::integrate::kinks::Kink;
 use crate::integrate::stepper::Target;
 
-/// What may happen to a joint.
+/// What may happen within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Change {
     /// Velocity `k`, which has the sign `direction`, comes to rest.
@@ -11,6 +12,8 @@ pub(super) enum Change {
     BreakAway { k: usize, direction: f64 },
     /// A joint that signals move turns round.
     Reversal,
+    /// The force of an element has a kink.
+    Kink(Kink),
 }
 
 /// What is seen of a step.

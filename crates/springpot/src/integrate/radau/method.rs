@@ -10,6 +10,7 @@ use crate::actuation::{Drive, Forward};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::evaluate::Evaluation;
+use crate::integrate::kinks::Kinks;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::settings::Settings;
 use crate::integrate::stepper::{Behind, Stepper, Target, Trial};
@@ -37,6 +38,9 @@ pub(in crate::integrate) struct Radau {
     /// Whether a law has inner variables, of which the motion may show nothing.
     pub(super) has_inner_variables: bool,
     pub(super) newton_iterations: u64,
+    /// Kinks of forces, and whether the step ends on one.
+    pub(super) kinks: Kinks,
+    pub(super) is_at_kink: bool,
     pub(super) scratch: Scratch,
 }
 
@@ -60,6 +64,8 @@ impl Radau {
             last: None,
             has_inner_variables: cx.system.elements.iter().any(|element| element.law.has_inner_variables()),
             newton_iterations: 0,
+            kinks: Kinks::of(cx.system),
+            is_at_kink: false,
             scratch: Scratch::default(),
         }
     }
@@ -169,6 +175,10 @@ impl Stepper for Radau {
 
     fn accept(&mut self, _: Context, recorder: &Recorder, step: &Target) -> Result<(), RunError> {
         self.step.accept(&recorder.bank, step.size, step.to);
+        if self.is_at_kink {
+            // What follows is another function: neither the cubic nor the errors before tell anything of it.
+            (self.last, self.step.last, self.is_at_kink) = (None, None, false);
+        }
         if self.step.stick.changes() {
             self.stop_sliding(recorder.settings.end)?;
         }

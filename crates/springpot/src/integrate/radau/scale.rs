@@ -25,7 +25,14 @@ impl RadauStep {
             // A joint that no force moved yet is measured by what this very step does.
             let own = || self.stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
             let speed = if speed > 0.0 { speed } else { own() };
-            let travel = sizes.travel(k).max(h * speed);
+            // What a stop takes up is little beside the flights between: there an error of the place is one of the energy.
+            let stops = self.stops.iter().map(|&e| {
+                let stiffness = cx.system.elements[e].law.stiffness(&bank.point(e, 0), 0.0);
+                stiffness * self.elements[e].gradient[k].powi(2)
+            });
+            let square = stops.sum::<f64>() / mass;
+            let taken_up = if square > 0.0 { speed / square.sqrt() } else { f64::INFINITY };
+            let travel = sizes.travel(k).min(taken_up).max(h * speed);
             // Strokes are differences of lengths: what they lose to rounding pushes the joints.
             let push: f64 = self.elements.iter().zip(&self.rounded).map(|(e, s)| e.gradient[k].abs() * s).sum();
             let noise = if mass > 0.0 { h * push / mass } else { 0.0 };

@@ -1,10 +1,11 @@
-//! Steps that end where friction starts or ceases to hold a joint.
+//! Steps that end where friction starts or ceases to hold a joint, and where the force of an element has a kink.
 
 use super::events::{Change, Look, Settled};
 use super::method::Radau;
 use super::stick::CHATTER;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
+use crate::integrate::kinks::FROM_BEHIND;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::{Behind, Target};
 
@@ -12,18 +13,18 @@ use crate::integrate::stepper::{Behind, Target};
 const MOST_TRIES: usize = 40;
 
 impl Radau {
-    /// Ends the step that was just solved at the first change between holding and sliding in it, if there is one.
+    /// Ends the step that was just solved at the first change between holding and sliding or kink in it, if there is one.
     ///
     /// The step is solved anew to where its own interpolation sees the change, until the change is at its end to a thousandth
     /// of the tolerance.
     pub(super) fn settle(&mut self, cx: Context, recorder: &mut Recorder, solved: Target) -> Result<Settled, RunError> {
-        if self.step.stick.is_idle() {
+        if self.step.stick.is_idle() && self.kinks.is_idle() {
             return Ok(Settled::At(solved));
         }
         let mut step = solved;
         let t = step.from;
         let (mut low, mut high) = (t, f64::INFINITY);
-        let mut wanted = None;
+        let (mut wanted, mut from_behind) = (None, 0);
         for _ in 0..MOST_TRIES {
             let Target { to: end, size, .. } = step;
             let next = match (self.look(cx, recorder, &step)?, wanted) {
@@ -32,7 +33,7 @@ impl Radau {
                     return Ok(Settled::At(step));
                 }
                 (Look::Nothing, Some(change)) => {
-                    low = end;
+                    (low, from_behind) = (end, 0);
                     let [at_end, before] = [1.0, 0.999].map(|theta| self.value(cx, recorder, change, size, theta));
                     end + 0.001 * size * at_end / (before - at_end)
                 }
@@ -42,6 +43,7 @@ impl Radau {
                 }
                 (Look::Within(theta, change), _) => {
                     (high, wanted) = (end, Some(change));
+                    from_behind += u32::from(matches!(change, Change::Kink(_)));
                     // Where the time is too short to tell, a few bits on.
                     (t + theta * size).max(t + 4.0 * f64::EPSILON * t)
                 }
@@ -51,7 +53,8 @@ impl Radau {
                 self.note(change);
                 return Ok(Settled::At(step));
             }
-            let to = if low < next && next < high { next } else { 0.5 * (low + high) };
+            // Behind a kink a guard may hardly move, and tells little of where it is.
+            let to = if from_behind < FROM_BEHIND && low < next && next < high { next } else { 0.5 * (low + high) };
             step = Target { to, size: to - t, behind: Behind::Step, ..step };
             if let Err(smaller) = self.attempt(cx, recorder, &step)? {
                 return Ok(Settled::Shorter(smaller));
@@ -70,6 +73,7 @@ impl Radau {
             }
             Change::BreakAway { .. } => stick.breaks_away = true,
             Change::Reversal => {}
+            Change::Kink(_) => self.is_at_kink = true,
         }
     }
 

@@ -8,6 +8,7 @@ use crate::collocation::{MAX_NODES, lagrange_row};
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{Element, ElementBank, Forces, Reading};
 use crate::integrate::context::Context;
+use crate::integrate::kinks::Kinks;
 use crate::integrate::system::System;
 use crate::law::{InputValue, Point};
 use crate::linalg::Lu;
@@ -94,6 +95,8 @@ pub(super) struct RadauStep {
     pub(super) rtol: f64,
     /// Whether a springpot can be unstable where it is stiff.
     pub(super) may_yield: bool,
+    /// Elements whose forces have kinks.
+    pub(super) stops: Vec<usize>,
     /// Friction that sticks.
     pub(super) stick: Stick,
     /// Velocities that no signal prescribes and no friction holds.
@@ -176,6 +179,7 @@ impl RadauStep {
             tolerance,
             rtol,
             may_yield: system.elements.iter().any(may_yield),
+            stops: Kinks::of(system).elements().to_vec(),
             stick: Stick::new(model, forward),
             free: forward.free_velocities(model),
             coordinates: coordinates(model),

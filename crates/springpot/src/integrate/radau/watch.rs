@@ -1,4 +1,4 @@
-//! When joints stop, break away and turn round within a step that was just solved.
+//! When joints stop, break away and turn round, and where forces have kinks, within a step that was just solved.
 
 use super::events::{Change, Look};
 use super::method::Radau;
@@ -7,6 +7,7 @@ use crate::collocation::{MAX_NODES, lagrange_row};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::evaluate::{ElementEvaluation, Evaluation};
+use crate::integrate::kinks::Seen;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::Target;
 use crate::integrate::zero::{SAMPLES, first_zero};
@@ -40,6 +41,7 @@ impl Radau {
     pub(super) fn look(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<Look, RunError> {
         let h = step.size;
         self.step.stick.forget_changes();
+        self.is_at_kink = false;
         let mut first: Option<(f64, Change)> = None;
         let mut note = |theta: f64, change: Change| {
             if first.is_none_or(|(earliest, _)| theta < earliest) {
@@ -85,9 +87,14 @@ impl Radau {
         if let Some(theta) = self.first_reversal(h) {
             note(theta, Change::Reversal);
         }
+        match self.kinks.look(&recorder.bank) {
+            Seen::Nothing => {}
+            Seen::Within(theta, kink) => note(theta, Change::Kink(kink)),
+            Seen::AtEnd => self.is_at_kink = true,
+        }
         Ok(match first {
             Some((theta, change)) => Look::Within(theta, change),
-            None if self.step.stick.changes() => Look::AtEnd,
+            None if self.step.stick.changes() || self.is_at_kink => Look::AtEnd,
             None => Look::Nothing,
         })
     }
@@ -98,6 +105,7 @@ impl Radau {
             Change::Stop { k, direction } => direction * self.dense(cx, recorder, h).velocity(k, theta),
             Change::BreakAway { k, direction } => self.holding(recorder, k).margin(direction, theta),
             Change::Reversal => 0.0,
+            Change::Kink(kink) => self.kinks.value(&recorder.bank, kink, theta),
         }
     }
 

@@ -64,6 +64,10 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         if self.is_linear() && self.linearised(&at).coefficient == 0.0 { Holds::Never } else { Holds::Always }
     }
 
+    /// Hands over functions whose zeros are kinks of its force, such as how far a stop is away, always as many in one order: steps
+    /// end on them.
+    fn guards(&self, _at: &Point, _take: &mut dyn FnMut(f64)) {}
+
     /// F is an affine function of strokes and rates of a step.
     fn is_linear(&self) -> bool {
         false

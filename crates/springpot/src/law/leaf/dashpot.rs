@@ -1,7 +1,7 @@
 //! The linear dashpot.
 
 use super::contract::Leaf;
-use super::kind::LeafKind;
+use super::kind::{LeafBuild, LeafKind};
 use crate::law::catalog::{Param, Range};
 use crate::law::network::Network;
 use crate::law::state::StateRef;
@@ -55,6 +55,6 @@ pub(super) fn kind() -> LeafKind {
         name: "dashpot",
         equation: "F = c·x'",
         params: vec![Param::new("c", "N*s/m", "viscosity", Range::NOT_NEGATIVE)],
-        build: |values, _| Ok(Network::dashpot(values[0])),
+        build: LeafBuild::Values(|values, _| Ok(Network::dashpot(values[0]))),
     }
 }

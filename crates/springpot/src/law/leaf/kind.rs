@@ -1,9 +1,12 @@
 //! The kinds of leaves that networks may name.
 
+use super::table::Table;
+use super::{bouc_wen, dashpot, friction, polynomial, preload, spring, springpot, stop, table};
 use crate::fractional::Kind as Derivative;
 use crate::law::catalog::Param;
 use crate::law::network::Network;
 use crate::law::rule::RuleError;
+use std::sync::Arc;
 
 /// A kind of leaf: what networks that are written as text know about it.
 #[derive(Debug, Clone)]
@@ -14,13 +17,34 @@ pub struct LeafKind {
     pub equation: &'static str,
     /// Parameters, in the order of its arguments.
     pub params: Vec<Param>,
-    /// Builds the leaf: from values (SI, in the order of the parameters, each within its range), and the derivative that springpots take.
-    pub build: fn(&[f64], Derivative) -> Result<Network, RuleError>,
+    /// Builds the leaf.
+    pub build: LeafBuild,
+}
+
+/// What a leaf is built from.
+#[derive(Debug, Clone, Copy)]
+pub enum LeafBuild {
+    /// Values (SI, in the order of the parameters, each within its range), and the derivative that springpots take.
+    Values(fn(&[f64], Derivative) -> Result<Network, RuleError>),
+    /// The table in the file that its argument stands for.
+    Table(fn(&Arc<Table>) -> Network),
 }
 
 impl LeafKind {
     /// All of them.
     pub fn all() -> Vec<Self> {
-        vec![super::spring::kind(), super::dashpot::kind(), super::springpot::kind()]
+        vec![
+            spring::kind(),
+            dashpot::kind(),
+            springpot::kind(),
+            polynomial::kind(),
+            table::kind(),
+            stop::tension(),
+            stop::compression(),
+            stop::kind(),
+            friction::kind(),
+            preload::kind(),
+            bouc_wen::kind(),
+        ]
     }
 }

@@ -1,15 +1,29 @@
 //! The leaves of every law: what gives a force by itself.
 
+pub(super) mod bouc_wen;
 mod contract;
 mod dashpot;
+mod elastic;
+mod friction;
 mod kind;
+mod polynomial;
+mod preload;
 mod source;
 mod spring;
 mod springpot;
+mod stop;
+mod table;
 
+pub use bouc_wen::BoucWen;
 pub use contract::Leaf;
 pub use dashpot::Dashpot;
-pub use kind::LeafKind;
+pub use elastic::Elastic;
+pub use friction::Friction;
+pub use kind::{LeafBuild, LeafKind};
+pub use polynomial::Polynomial;
+pub use preload::Preload;
 pub use source::Source;
 pub use spring::Spring;
 pub use springpot::{Coefficient, Springpot};
+pub use stop::Stop;
+pub use table::{Table, TableError};

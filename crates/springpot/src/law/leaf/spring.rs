@@ -1,7 +1,7 @@
 //! The linear spring.
 
 use super::contract::Leaf;
-use super::kind::LeafKind;
+use super::kind::{LeafBuild, LeafKind};
 use crate::law::catalog::{Param, Range};
 use crate::law::network::Network;
 use crate::law::state::StateRef;
@@ -51,6 +51,6 @@ pub(super) fn kind() -> LeafKind {
         name: "spring",
         equation: "F = k·x",
         params: vec![Param::new("k", "N/m", "stiffness", Range::NOT_NEGATIVE)],
-        build: |values, _| Ok(Network::spring(values[0])),
+        build: LeafBuild::Values(|values, _| Ok(Network::spring(values[0]))),
     }
 }

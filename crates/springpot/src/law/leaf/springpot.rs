@@ -1,7 +1,7 @@
 //! The springpot: a fractional derivative of the stroke.
 
 use super::contract::Leaf;
-use super::kind::LeafKind;
+use super::kind::{LeafBuild, LeafKind};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
@@ -220,6 +220,6 @@ pub(super) fn kind() -> LeafKind {
             Param::new("c", "N*s^alpha/m", "coefficient of the fractional derivative", Range::NOT_NEGATIVE),
             alpha(),
         ],
-        build: |values, derivative| Ok(Network::springpot(values[0], values[1], derivative)),
+        build: LeafBuild::Values(|values, derivative| Ok(Network::springpot(values[0], values[1], derivative))),
     }
 }

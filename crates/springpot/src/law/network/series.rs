@@ -2,10 +2,10 @@
 //!
 //! Everything is composed in strokes: carried inner rates would grow without bound. With F = F_m + G_m δ_m of part m about
 //! inner strokes x_m that need not fit yet, r = x − Σ x_m and C_m = G_m⁻¹: F = (Σ C_m)⁻¹ (r + Σ C_m F_m), δ_m = C_m (F − F_m), and ∂F/∂x =
-//! (Σ C_m)⁻¹. For linear parts one such step is exact; others iterate. The force at the start of a step never enters, so that
+//! (Σ C_m)⁻¹. For linear parts one such step is exact; others iterate, and where they find no force that all parts have, forces are NaN. The force at the start of a step never enters, so that
 //! starts need not be consistent.
 
-use super::{MOST_IN_SERIES, Network, Onset, Reported, Take};
+use super::{Guard, MOST_IN_SERIES, Network, Onset, Reported, Take};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
@@ -19,11 +19,21 @@ use num_complex::Complex64;
 type Matrix = [[f64; MAX_NODES]; MAX_NODES];
 type Values = [f64; MAX_NODES + 1];
 
-/// Iterations of nonlinear parts.
-const MOST_ITERATIONS: usize = 30;
+/// Iterations of nonlinear parts, and how often one of them is halved.
+const MOST_ITERATIONS: usize = 60;
+const MOST_HALVINGS: usize = 30;
 
 /// Change of the strokes, in units of the largest, at which they end.
 const ENOUGH: f64 = 1e-14;
+
+/// The same where rounding lets them come no nearer.
+const NEARLY: f64 = 1e-9;
+
+/// Square of what counts as rounding of forces.
+const ROUNDED: f64 = 1e-28;
+
+/// Iterations for the rates of nonlinear parts between two steps.
+const MOST_SECANTS: usize = 200;
 
 /// A part that is softer than this share of the stiffest counts as that soft.
 const SOFTEST: f64 = 1e-30;
@@ -68,12 +78,16 @@ pub(super) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Resu
         Derivative::RiemannLiouville => Onset::Short,
     };
     let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
-    let shares = shares(parts, &at, onset);
-    shares.iter().for_each(|share| state.push_variable(share * start.stroke));
+    let Shares { of_parts, order, is_limp } = shares(parts, &at, onset);
+    let mut strokes: Vec<f64> = of_parts.iter().map(|share| share * start.stroke).collect();
+    if order == 0.0 && !is_limp {
+        let holding: Vec<usize> = (0..parts.len()).filter(|&k| of_parts[k] != 0.0).collect();
+        balance(parts, &holding, start, &mut strokes)?;
+    }
+    strokes.iter().for_each(|stroke| state.push_variable(*stroke));
     let first = state.memories().len();
-    for (part, share) in parts.iter().zip(&shares) {
-        let (stroke, jump) = (share * start.stroke, share * start.jump);
-        part.begin_part(&Start { stroke, jump, ..*start }, state)?;
+    for (k, part) in parts.iter().enumerate() {
+        part.begin_part(&Start { stroke: strokes[k], jump: of_parts[k] * start.jump, ..*start }, state)?;
     }
     if onset == Onset::Short && start.jump != 0.0 {
         state.memories_mut()[first..].iter_mut().for_each(crate::fractional::Memory::lose_account);
@@ -81,8 +95,17 @@ pub(super) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Resu
     Ok(())
 }
 
+/// How the parts share a stroke.
+struct Shares {
+    of_parts: Vec<f64>,
+    /// The order of the parts that take some.
+    order: f64,
+    /// Whether a part gives no force at all.
+    is_limp: bool,
+}
+
 /// What share of a stroke each part takes at once, or at last.
-fn shares(parts: &[Network], at: &Point, onset: Onset) -> Vec<f64> {
+fn shares(parts: &[Network], at: &Point, onset: Onset) -> Shares {
     let terms: Vec<_> = parts.iter().map(|part| part.asymptote(at, onset)).collect();
     let softer = |a: f64, b: f64| if onset == Onset::Short { a < b } else { a > b };
     let order = terms.iter().map(|term| term.order).reduce(|a, b| if softer(b, a) { b } else { a }).unwrap_or(0.0);
@@ -91,7 +114,41 @@ fn shares(parts: &[Network], at: &Point, onset: Onset) -> Vec<f64> {
     // Where a part gives no force at all, the first of them takes everything.
     let limp = (0..parts.len()).find(|&k| compliance(k).is_infinite());
     let share = |k: usize| limp.map_or(compliance(k) / whole, |limp| f64::from(u8::from(k == limp)));
-    (0..parts.len()).map(share).collect()
+    Shares { of_parts: (0..parts.len()).map(share).collect(), order, is_limp: limp.is_some() }
+}
+
+/// Moves the strokes of the parts that hold at rest to where all have one force: what is not linear, or gives a force at x = 0, shares
+/// differently.
+fn balance(parts: &[Network], holding: &[usize], start: &Start, strokes: &mut [f64]) -> Result<(), KernelError> {
+    let rest = |part: &Network, stroke: f64| -> Result<[f64; 2], KernelError> {
+        let mut state = State::default();
+        part.begin_part(&Start { stroke, jump: 0.0, ..*start }, &mut state)?;
+        let at = Point { t: 0.0, stroke, rate: 0.0, inputs: start.inputs };
+        let force = part.now_part(&at, &mut state.view(), &mut |_| ()).observation.regular;
+        Ok([force, part.asymptote(&at, Onset::Long).coefficient])
+    };
+    let (mut from, mut apart_before, mut halvings) = (strokes.to_vec(), f64::INFINITY, 0);
+    for _ in 0..MOST_ITERATIONS {
+        let known = holding.iter().map(|&k| rest(&parts[k], strokes[k])).collect::<Result<Vec<_>, _>>()?;
+        let (low, high) =
+            known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), [f, _]| (low.min(*f), high.max(*f)));
+        if high - low <= ENOUGH * low.abs().max(high.abs()) {
+            return Ok(());
+        }
+        if high - low >= apart_before && halvings < MOST_HALVINGS {
+            halvings += 1;
+            strokes.iter_mut().zip(&from).for_each(|(stroke, from)| *stroke = 0.5 * (*stroke + from));
+            continue;
+        }
+        (apart_before, halvings) = (high - low, 0);
+        from.copy_from_slice(strokes);
+        let compliance: f64 = known.iter().map(|[_, slope]| slope.recip()).sum();
+        let whole = known.iter().map(|[force, slope]| force / slope).sum::<f64>() / compliance;
+        for (&k, [force, slope]) in holding.iter().zip(&known) {
+            strokes[k] += (whole - force) / slope;
+        }
+    }
+    Ok(())
 }
 
 /// The derivative that the first springpot takes.
@@ -112,7 +169,7 @@ pub(super) fn prepare(parts: &[Network], step: &Step, state: &mut StateMut) {
 /// The strokes of the parts under a periodic stroke since ever: all have one force at each frequency.
 pub(super) fn recall(parts: &[Network], harmonics: &Harmonics, at: &Point, state: &mut StateMut) {
     let mut inner: Vec<Vec<Complex64>> = vec![Vec::with_capacity(harmonics.spectrum.len()); parts.len()];
-    let rest = shares(parts, at, Onset::Long);
+    let rest = shares(parts, at, Onset::Long).of_parts;
     for (n, stroke) in harmonics.spectrum.iter().enumerate() {
         let s = Complex64::new(0.0, n as f64 * harmonics.omega);
         let compliances: Vec<Complex64> = parts.iter().map(|part| part.modulus(at, s).inv()).collect();
@@ -190,6 +247,18 @@ pub(super) fn powers(parts: &[Network], step: &Step, state: &mut StateRef, power
     }
 }
 
+pub(super) fn guards(parts: &[Network], step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
+    let strokes = state.take(own(parts)).variables;
+    if !parts.iter().any(|part| part.has_guards(&step.point(0))) {
+        *state = advance(parts, *state);
+        return;
+    }
+    let Solved { inner, .. } = solve(parts, step, strokes, &mut state.clone());
+    for (part, inner) in parts.iter().zip(&inner) {
+        part.guards_part(&inner.step(step), state, guards);
+    }
+}
+
 /// Inside a step: as a shorter one that ends there, so that rows are as good as ends of steps.
 pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: &mut StateRef, take: Take) -> Reported {
     let shorter = Shorter::new(step, theta, at);
@@ -262,28 +331,43 @@ pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef, take: Tak
     let force = |part: &Network, stroke: f64, rate: f64, state: &StateRef| {
         part.now_part(&Point { stroke, rate, ..*at }, &mut state.clone(), &mut |_| ()).observation.regular
     };
-    // F = a_m + b_m v_m, v = Σ v_m.
-    let (mut follows, mut yielding, mut owed) = (None, 0.0, 0.0);
-    let mut ahead = *state;
-    for (part, &stroke) in parts.iter().zip(strokes) {
-        let rest = force(part, stroke, 0.0, &ahead);
-        let slope = force(part, stroke, 1.0, &ahead) - rest;
-        if slope == 0.0 {
-            follows.get_or_insert(rest);
-        } else {
-            (yielding, owed) = (yielding + slope.recip(), owed + rest / slope);
+    // F = a_m + b_m v_m, v = Σ v_m; of parts that are not linear b_m is that of the secant to v_m.
+    let (mut rates, mut whole) = ([1.0; MOST_IN_SERIES], f64::NAN);
+    let iterations = if parts.iter().all(Network::is_linear) { 1 } else { MOST_SECANTS };
+    for _ in 0..iterations {
+        let (mut follows, mut yielding, mut owed) = (None, 0.0, 0.0);
+        let (mut ahead, before) = (*state, whole);
+        let mut lines = [[0.0; 2]; MOST_IN_SERIES];
+        for (k, (part, &stroke)) in parts.iter().zip(strokes).enumerate() {
+            let rest = force(part, stroke, 0.0, &ahead);
+            let slope = (force(part, stroke, rates[k], &ahead) - rest) / rates[k];
+            if slope == 0.0 {
+                follows.get_or_insert(rest);
+            } else {
+                (yielding, owed) = (yielding + slope.recip(), owed + rest / slope);
+            }
+            lines[k] = [rest, slope];
+            ahead.take(part.size());
         }
-        ahead.take(part.size());
+        whole = follows.unwrap_or((at.rate + owed) / yielding);
+        for (rate, [rest, slope]) in rates.iter_mut().zip(lines) {
+            *rate = if slope == 0.0 { 0.0 } else { (whole - rest) / slope };
+        }
+        if (whole - before).abs() <= ENOUGH * whole.abs() {
+            break;
+        }
+        // A rate of 0 has no secant.
+        if iterations > 1 {
+            rates.iter_mut().filter(|rate| **rate == 0.0).for_each(|rate| *rate = f64::MIN_POSITIVE.sqrt());
+        }
     }
-    let whole = follows.unwrap_or((at.rate + owed) / yielding);
     let mut sum = Reported::sum(
         at,
-        parts.iter().zip(strokes).map(|(part, &stroke)| {
-            let rest = force(part, stroke, 0.0, state);
-            let slope = force(part, stroke, 1.0, state) - rest;
-            let rate = if slope == 0.0 { 0.0 } else { (whole - rest) / slope };
-            part.now_part(&Point { stroke, rate, ..*at }, state, take)
-        }),
+        parts
+            .iter()
+            .zip(strokes)
+            .zip(rates)
+            .map(|((part, &stroke), rate)| part.now_part(&Point { stroke, rate, ..*at }, state, take)),
     );
     (sum.observation.regular, sum.observation.singular) = (whole, 0.0);
     sum
@@ -298,19 +382,22 @@ fn own(parts: &[Network]) -> crate::law::state::StateSize {
 fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -> Solved {
     let nodes = step.nodes;
     let (count, inverse) = (nodes.count(), nodes.inverse());
+    let is_linear = parts.iter().all(Network::is_linear);
+    let mut search = Search::default();
     let mut inner = [Inner::default(); MOST_IN_SERIES];
     let missing = step.stroke[0] - starts.iter().sum::<f64>();
     for (inner, start) in inner.iter_mut().zip(starts) {
         for k in 0..=count {
             let moved = step.stroke[k] - step.stroke[0] + missing;
-            inner.stroke[k] = start + if k == 0 { 0.0 } else { moved / parts.len() as f64 };
+            // A nonlinear part would begin far from where it is: the stiffness where it was shares the way out.
+            inner.stroke[k] = start + if k == 0 || !is_linear { 0.0 } else { moved / parts.len() as f64 };
         }
         inner.take_rates(nodes, step.h);
     }
-    let is_linear = parts.iter().all(Network::is_linear);
     let (mut force, mut tangent) = ([0.0; MAX_NODES], [[0.0; MAX_NODES]; MAX_NODES]);
     let mut shares = [0.0; MOST_IN_SERIES];
-    for _ in 0..MOST_ITERATIONS {
+    let mut is_found = is_linear;
+    while search.ways <= MOST_ITERATIONS {
         let mut compliances = [[[0.0; MAX_NODES]; MAX_NODES]; MOST_IN_SERIES];
         let mut forces = [[0.0; MAX_NODES]; MOST_IN_SERIES];
         let mut each = *state;
@@ -327,6 +414,16 @@ fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -
                     stiffest = stiffest.max(stiffness[i][j].abs());
                 }
             }
+        }
+        if !is_linear && !search.goes_on(&forces[..parts.len()], count, &mut inner) {
+            for inner in inner.iter_mut().take(parts.len()) {
+                inner.take_rates(nodes, step.h);
+            }
+            if search.halvings > MOST_HALVINGS {
+                is_found = search.change <= NEARLY;
+                break;
+            }
+            continue;
         }
         let floor = (SOFTEST * stiffest).max(f64::MIN_POSITIVE);
         compliances.iter_mut().take(parts.len()).for_each(|matrix| invert(matrix, count, floor));
@@ -352,22 +449,84 @@ fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -
             *share = (0..count).map(|j| tangent[count - 1][j] * matrix[j][count - 1]).sum::<f64>().abs();
         }
         let (mut change, mut size) = (0.0f64, step.resolution);
+        search.from = inner;
         for (k, matrix) in compliances.iter().enumerate().take(parts.len()) {
             let lacking: [f64; MAX_NODES] = std::array::from_fn(|i| force[i] - forces[k][i]);
             for i in 0..count {
                 let delta = product(matrix, &lacking, i);
                 inner[k].stroke[i + 1] += delta;
-                change = change.max(delta.abs());
+                // Not `max`, which would pass over what is no number.
+                change = if delta.abs() > change || delta.is_nan() { delta.abs() } else { change };
                 size = size.max(inner[k].stroke[i + 1].abs());
             }
             inner[k].take_rates(nodes, step.h);
         }
-        if is_linear || change <= ENOUGH * size {
+        if is_linear {
+            break;
+        }
+        search.change = change / size;
+        if search.change <= search.enough() {
+            is_found = true;
             break;
         }
     }
+    if !is_found {
+        force = [f64::NAN; MAX_NODES];
+        inner.iter_mut().for_each(|inner| inner.stroke[1..].fill(f64::NAN));
+    }
     *state = advance(parts, *state);
     Solved { inner, force, tangent, shares }
+}
+
+/// A search for the strokes at which nonlinear parts have one force: along Newton's way, in halves where the whole does not bring
+/// their forces together.
+#[derive(Default)]
+struct Search {
+    /// Where the way begins.
+    from: [Inner; MOST_IN_SERIES],
+    /// How far the forces were apart there, N²; none before the first way, on which the strokes begin to add up.
+    apart: Option<f64>,
+    halvings: usize,
+    ways: usize,
+    is_rounding: bool,
+    /// Change of the strokes on the last whole way, in units of the largest.
+    change: f64,
+}
+
+impl Search {
+    /// Whether forces are nearer each other than where the way began; else `inner` is half as far on it. Far from rounding only: there
+    /// nothing brings them nearer.
+    fn goes_on(&mut self, forces: &[[f64; MAX_NODES]], count: usize, inner: &mut [Inner; MOST_IN_SERIES]) -> bool {
+        let (mut apart, mut size) = (0.0, 0.0);
+        for i in 0..count {
+            let mean = forces.iter().map(|force| force[i]).sum::<f64>() / forces.len() as f64;
+            apart += forces.iter().map(|force| (force[i] - mean).powi(2)).sum::<f64>();
+            size += forces.iter().map(|force| force[i].powi(2)).sum::<f64>();
+        }
+        self.is_rounding = self.ways > 1 && apart <= ROUNDED * size;
+        let is_nearer = match self.apart {
+            _ if self.ways < 2 => apart.is_finite(),
+            Some(before) => apart < before || self.is_rounding,
+            None => true,
+        };
+        if is_nearer {
+            (self.apart, self.halvings) = (Some(apart), 0);
+            self.ways += 1;
+            return true;
+        }
+        self.halvings += 1;
+        for (inner, from) in inner.iter_mut().zip(&self.from) {
+            for (stroke, from) in inner.stroke.iter_mut().zip(from.stroke) {
+                *stroke = 0.5 * (*stroke + from);
+            }
+        }
+        false
+    }
+
+    /// Change at which the search ends: forces that are one but for rounding come no nearer.
+    fn enough(&self) -> f64 {
+        if self.is_rounding { NEARLY } else { ENOUGH }
+    }
 }
 
 /// The state behind these parts.

@@ -1,0 +1,115 @@
+//! Kinks of the elements' forces within a step, such as the engagement of a stop: steps end on them.
+
+use super::system::System;
+use super::zero::first_zero;
+use crate::collocation::{MAX_NODES, lagrange_row};
+use crate::elements::{Element, ElementBank};
+use crate::law::{Guard, InputValue, Point};
+
+/// Where a step is first looked at whose start is on a kink.
+const EARLY: f64 = 1.0 / 64.0;
+
+/// How far behind its kink a step may end, in units of what the guard goes over in it.
+const SHARE: f64 = 1e-8;
+
+/// The same where it is rounding, in units of that of the stroke.
+const ROUNDINGS: f64 = 16.0;
+
+/// Tries to reach a kink from behind it in a row; then the way is halved.
+pub(super) const FROM_BEHIND: u32 = 2;
+
+/// A kink that a step comes upon.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Kink {
+    element: usize,
+    guard: usize,
+    /// Sign of the guard before it.
+    sign: f64,
+}
+
+/// What is seen of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Seen {
+    Nothing,
+    /// The first kink is at θ.
+    Within(f64, Kink),
+    /// It is at the end, or so little before it that nothing is to be gained.
+    AtEnd,
+}
+
+/// Elements whose forces have kinks.
+#[derive(Debug, Default)]
+pub(super) struct Kinks {
+    elements: Vec<usize>,
+    guards: Vec<Guard>,
+}
+
+impl Kinks {
+    pub(super) fn of(system: &System) -> Self {
+        let has_guards = |element: &Element| {
+            let inputs = vec![InputValue::default(); element.inputs.len()];
+            element.law.has_guards(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs })
+        };
+        let elements = system.elements.iter().enumerate().filter(|(_, element)| has_guards(element));
+        Self { elements: elements.map(|(e, _)| e).collect(), guards: Vec::new() }
+    }
+
+    /// Their numbers.
+    pub(super) fn elements(&self) -> &[usize] {
+        &self.elements
+    }
+
+    /// Whether there are none.
+    pub(super) fn is_idle(&self) -> bool {
+        self.elements.is_empty()
+    }
+
+    /// The first kink of the step that the bank was told.
+    pub(super) fn look(&mut self, bank: &ElementBank) -> Seen {
+        let mut first: Option<(f64, Kink)> = None;
+        let mut is_at_end = false;
+        for &element in &self.elements {
+            let noise = ROUNDINGS * bank.resolution(element);
+            self.guards.clear();
+            bank.guards(element, &mut self.guards);
+            for (guard, values) in self.guards.iter().enumerate() {
+                let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+                if !values.iter().all(|value| value.is_finite()) || largest <= noise {
+                    continue;
+                }
+                let on_it = values[0].abs() <= noise;
+                let sign = if on_it { at(values, EARLY) } else { values[0] }.signum();
+                let found = first_zero(|theta| sign * at(values, if on_it { theta.max(EARLY) } else { theta }));
+                let Some(theta) = found.filter(|theta| *theta > 0.0) else { continue };
+                let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
+                let behind = -sign * values[MAX_NODES];
+                if (0.0..=(SHARE * moved).max(noise)).contains(&behind) && theta > 0.9 {
+                    is_at_end = true;
+                } else if first.is_none_or(|(earliest, _)| theta < earliest) {
+                    first = Some((theta, Kink { element, guard, sign }));
+                }
+            }
+        }
+        match first {
+            Some((theta, kink)) => Seen::Within(theta, kink),
+            None if is_at_end => Seen::AtEnd,
+            None => Seen::Nothing,
+        }
+    }
+
+    /// How far a kink is away at θ; negative behind it.
+    pub(super) fn value(&mut self, bank: &ElementBank, kink: Kink, theta: f64) -> f64 {
+        self.guards.clear();
+        bank.guards(kink.element, &mut self.guards);
+        kink.sign * at(&self.guards[kink.guard], theta)
+    }
+}
+
+/// The cubic through the values at θ.
+fn at(values: &Guard, theta: f64) -> f64 {
+    if theta == 1.0 {
+        return values[MAX_NODES];
+    }
+    let rows: [[f64; 4]; MAX_NODES + 1] = std::array::from_fn(lagrange_row);
+    (0..4).rev().fold(0.0, |sum, p| sum * theta + (0..=MAX_NODES).map(|k| rows[k][p] * values[k]).sum::<f64>())
+}

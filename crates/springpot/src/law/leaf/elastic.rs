@@ -1,0 +1,88 @@
+//! What gives a force that follows from the stroke alone.
+
+use super::contract::Leaf;
+use crate::law::network::Holds;
+use crate::law::state::StateRef;
+use crate::law::step::{Observation, Point, Response, Step, Term};
+
+/// F(x), linear or not: a leaf that keeps nothing and loses nothing.
+///
+/// ```
+/// use springpot::law::{Elastic, Holds, Network, Point, Start};
+///
+/// /// F = f·sinh(x/d).
+/// #[derive(Debug)]
+/// struct Stiffening { f: f64, d: f64 }
+///
+/// impl Elastic for Stiffening {
+///     fn name(&self) -> &'static str { "stiffening" }
+///     fn force(&self, x: f64) -> f64 { self.f * (x / self.d).sinh() }
+///     fn slope(&self, x: f64) -> f64 { self.f / self.d * (x / self.d).cosh() }
+///     fn energy(&self, x: f64) -> f64 { self.f * self.d * ((x / self.d).cosh() - 1.0) }
+///     fn holds(&self) -> Holds { Holds::Always }
+/// }
+///
+/// let law = Network::leaf(Stiffening { f: 2.0, d: 0.1 });
+/// let state = law.begin(&Start { stroke: 0.1, jump: 0.0, inputs: &[] })?;
+/// let now = law.now(&Point { t: 0.0, stroke: 0.1, rate: 0.0, inputs: &[] }, &state);
+/// assert_eq!(now.force(), 2.0 * 1.0f64.sinh());
+/// # Ok::<(), springpot::fractional::KernelError>(())
+/// ```
+pub trait Elastic: Send + Sync + std::fmt::Debug {
+    /// What it is called ([`Leaf::name`]).
+    fn name(&self) -> &'static str;
+
+    /// F at the stroke `x`, N; continuous.
+    fn force(&self, x: f64) -> f64;
+
+    /// dF/dx, N/m; at a kink that of either side.
+    fn slope(&self, x: f64) -> f64;
+
+    /// ∫₀ˣ F dx, J.
+    fn energy(&self, x: f64) -> f64;
+
+    /// What may stand in a series by itself ([`Leaf::holds`]).
+    fn holds(&self) -> Holds;
+
+    /// Whether F is an affine function of x.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
+    /// Hands over functions of x that pass zero where F has a kink ([`Leaf::guards`]).
+    fn guards(&self, _x: f64, _take: &mut dyn FnMut(f64)) {}
+}
+
+impl<T: Elastic> Leaf for T {
+    fn name(&self) -> &'static str {
+        Elastic::name(self)
+    }
+
+    fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
+        for i in 0..step.nodes.count() {
+            response.force[i] += self.force(step.stroke[i + 1]);
+            response.d_stroke[i][i] += self.slope(step.stroke[i + 1]);
+        }
+    }
+
+    fn now(&self, at: &Point, _: StateRef) -> Observation {
+        let x = at.stroke;
+        Observation { derivative: x, regular: self.force(x), singular: 0.0, stored: Some(self.energy(x)) }
+    }
+
+    fn linearised(&self, at: &Point) -> Term {
+        Term { coefficient: self.slope(at.stroke).abs(), order: 0.0 }
+    }
+
+    fn holds(&self) -> Holds {
+        Elastic::holds(self)
+    }
+
+    fn is_linear(&self) -> bool {
+        Elastic::is_linear(self)
+    }
+
+    fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
+        Elastic::guards(self, at.stroke, take);
+    }
+}

@@ -1,0 +1,84 @@
+//! Smooth friction.
+
+use super::contract::Leaf;
+use super::kind::{LeafBuild, LeafKind};
+use crate::law::catalog::{Param, Range};
+use crate::law::network::{Holds, Network};
+use crate::law::rule::RuleError;
+use crate::law::state::StateRef;
+use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
+
+/// F = f·tanh(x'/v0). Dissipates F·x'; creeps where it should stick, at rates of the order of v0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Force at speed f ≥ 0, N.
+    pub force: f64,
+    /// Rate v0 > 0 about which it turns over, m/s.
+    pub rate: f64,
+}
+
+impl Friction {
+    /// Friction whose parameters keep its rules.
+    ///
+    /// # Errors
+    /// [`RuleError`]: f ≥ 0, v0 > 0.
+    pub fn new(force: f64, rate: f64) -> Result<Self, RuleError> {
+        RuleError::unless(force >= 0.0, "f ≥ 0", "f")?;
+        RuleError::unless(rate > 0.0, "v0 > 0", "v0")?;
+        Ok(Self { force, rate })
+    }
+
+    fn at_rate(&self, rate: f64) -> f64 {
+        self.force * (rate / self.rate).tanh()
+    }
+
+    fn slope(&self, rate: f64) -> f64 {
+        self.force / self.rate * (rate / self.rate).cosh().powi(-2)
+    }
+}
+
+impl Leaf for Friction {
+    fn name(&self) -> &'static str {
+        "friction"
+    }
+
+    fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
+        for i in 0..step.nodes.count() {
+            response.force[i] += self.at_rate(step.rate[i + 1]);
+            response.d_rate[i][i] += self.slope(step.rate[i + 1]);
+        }
+    }
+
+    fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
+        for (power, rate) in powers.iter_mut().zip(step.rate) {
+            power.dissipation += self.at_rate(*rate) * rate;
+        }
+    }
+
+    fn now(&self, at: &Point, _: StateRef) -> Observation {
+        Observation { derivative: at.rate, regular: self.at_rate(at.rate), singular: 0.0, stored: Some(0.0) }
+    }
+
+    fn linearised(&self, at: &Point) -> Term {
+        Term { coefficient: self.slope(at.rate), order: 1.0 }
+    }
+
+    fn holds(&self) -> Holds {
+        // Above some 20·v0 its force is f to the last bit, whatever the rate.
+        if self.force == 0.0 { Holds::Never } else { Holds::AtTimes }
+    }
+}
+
+/// What networks know of it.
+pub(super) fn kind() -> LeafKind {
+    let positive = Range { low: f64::MIN_POSITIVE, high: f64::MAX };
+    LeafKind {
+        name: "friction",
+        equation: "F = f·tanh(x'/v0)",
+        params: vec![
+            Param::new("f", "N", "friction force", Range::NOT_NEGATIVE),
+            Param::new("v0", "m/s", "rate about which it turns over", positive),
+        ],
+        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Friction::new(values[0], values[1])?))),
+    }
+}

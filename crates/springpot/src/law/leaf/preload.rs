@@ -1,0 +1,49 @@
+//! A constant force.
+
+use super::elastic::Elastic;
+use super::kind::{LeafBuild, LeafKind};
+use crate::law::catalog::{Param, Range};
+use crate::law::network::{Holds, Network};
+
+/// F = f. Stores f·x, so that the energy closes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Preload {
+    /// Force f of any sign, N.
+    pub force: f64,
+}
+
+impl Elastic for Preload {
+    fn name(&self) -> &'static str {
+        "preload"
+    }
+
+    fn force(&self, _: f64) -> f64 {
+        self.force
+    }
+
+    fn slope(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn energy(&self, x: f64) -> f64 {
+        self.force * x
+    }
+
+    fn holds(&self) -> Holds {
+        if self.force == 0.0 { Holds::Never } else { Holds::AtTimes }
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+}
+
+/// What networks know of it.
+pub(super) fn kind() -> LeafKind {
+    LeafKind {
+        name: "preload",
+        equation: "F = f",
+        params: vec![Param::new("f", "N", "constant force", Range::ANY)],
+        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Preload { force: values[0] }))),
+    }
+}
