@@ -1,7 +1,10 @@
 //! The forces of all elements in one state, as the rigid-body algorithms take them.
 
-use super::Measure;
-use crate::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, rnea, rnea_at_into, rnea_derivatives_into};
+use super::{Bushing, Cable, Measure};
+use crate::dynamics::{
+    Kinematics, PairForce, RneaDerivatives, Workspace, add_force, add_stiffness, rnea, rnea_at_into,
+    rnea_derivatives_into,
+};
 use crate::model::Model;
 
 /// The force of an element, and how it answers to its coordinate.
@@ -24,12 +27,20 @@ pub(super) struct JointForce {
     pub(super) pull: Pull,
 }
 
-/// The forces of all elements in one state: along lines as pairs, on joints as what they add to τ.
+/// What a force acts along whose pull on several bodies is told by ∂y/∂q alone.
+#[derive(Debug, Clone)]
+pub(super) enum Along {
+    Cable(Cable),
+    Bushing(Bushing),
+}
+
+/// The forces of all elements in one state: along lines as pairs, all others as what they add to τ.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Forces {
     values: Vec<f64>,
     pub(super) pairs: Vec<PairForce>,
     pub(super) joints: Vec<JointForce>,
+    pub(super) along: Vec<(Along, Pull)>,
 }
 
 impl Pull {
@@ -53,6 +64,7 @@ impl Forces {
         self.values.clear();
         self.pairs.clear();
         self.joints.clear();
+        self.along.clear();
     }
 
     /// Adds the force of the next element.
@@ -78,13 +90,13 @@ impl Forces {
         tau: &mut [f64],
     ) {
         rnea_at_into(model, kinematics, q, a, &self.pairs, workspace, tau);
-        self.add_to(tau);
+        self.add_to(model, kinematics, tau);
     }
 
     /// [`Self::inverse_dynamics_into`], allocating.
     pub(crate) fn inverse_dynamics(&self, model: &Model, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
         let mut tau = rnea(model, q, v, a, &self.pairs);
-        self.add_to(&mut tau);
+        self.add_to(model, &Kinematics::at_position(model, q), &mut tau);
         tau
     }
 
@@ -104,13 +116,26 @@ impl Forces {
             slopes.d_q[at] += slope * slope * d_coordinate;
             slopes.d_v[at] += slope * slope * d_rate;
         }
+        for (along, Pull { force, d_coordinate, d_rate }) in &self.along {
+            let (tangent, into) = ([*force, *d_coordinate, *d_rate], [&mut slopes.d_q[..], &mut slopes.d_v[..]]);
+            match along {
+                Along::Cable(cable) => add_stiffness(model, kinematics, &cable.coordinate(), tangent, workspace, into),
+                Along::Bushing(part) => add_stiffness(model, kinematics, part.coordinate(), tangent, workspace, into),
+            }
+        }
     }
 
-    /// Adds F ∂y/∂q_b of the forces on joints.
+    /// Adds F ∂y/∂q_b of the forces that are no pairs.
     #[inline]
-    fn add_to(&self, tau: &mut [f64]) {
+    fn add_to(&self, model: &Model, kinematics: &Kinematics, tau: &mut [f64]) {
         for JointForce { velocity, slope, pull } in &self.joints {
             tau[*velocity] += pull.force * slope;
+        }
+        for (along, Pull { force, .. }) in &self.along {
+            match along {
+                Along::Cable(cable) => add_force(model, kinematics, &cable.coordinate(), *force, tau),
+                Along::Bushing(bushing) => add_force(model, kinematics, bushing.coordinate(), *force, tau),
+            }
         }
     }
 }
