@@ -7,6 +7,9 @@ use crate::model::{Model, Site};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// Points of one link that are no farther apart than this share of their coordinates are one.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// y = Σ_s |r_{s+1} − r_s|, m, through points of any bodies, which the cable passes without friction: one tension F, N, in all
 /// segments.
 ///
@@ -54,7 +57,12 @@ impl Cable {
         if points.len() < 2 {
             return Err(CableError::TooFew { count: points.len() });
         }
-        if let Some(k) = points.windows(2).position(|two| two[0] == two[1]) {
+        // Fixed joints between bodies leave rounding in their points.
+        let coincide = |two: &[Site]| {
+            let [a, b] = [two[0].point(), two[1].point()];
+            two[0].link() == two[1].link() && (b - a).norm() <= ROUNDING * (a.norm() + b.norm())
+        };
+        if let Some(k) = points.windows(2).position(coincide) {
             return Err(CableError::Coincident { segment: k + 1 });
         }
         if points.iter().all(|point| point.link() == points[0].link()) {
