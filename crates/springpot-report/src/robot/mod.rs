@@ -93,8 +93,10 @@ pub enum ElementShape {
     Line,
     /// A cable over these points, world coordinates, metres: rollers.
     Cable(Vec<[f64; 3]>),
-    /// The coordinate of a joint, where both anchors are: a spiral without the sign of the law.
-    Joint,
+    /// The angle of a joint, where both anchors are: a spiral without the sign of the law.
+    Turn,
+    /// The shift of a joint, where both anchors are, along this axis (world coordinates, of any length): the sign of the law beside it.
+    Slide([f64; 3]),
     /// The relative place of two frames at the anchors: a hatched ring without the sign of a law.
     Bushing,
 }

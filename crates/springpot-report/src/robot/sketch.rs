@@ -2,7 +2,7 @@
 
 use super::element;
 use super::labels::{Frame, Request};
-use super::symbols::{ARM, BODY, ELEMENT, JOINT, RING, SPIRAL, Sheet, direction};
+use super::symbols::{ARM, BODY, ELEMENT, JOINT, RING, SLIDE, SPIRAL, Sheet, direction};
 use super::vector::{Vector, along, cross, distance, dot, unit};
 use super::view::View;
 use super::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, RobotDrawing, WORLD};
@@ -95,7 +95,10 @@ pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
     for element in &robot.elements {
         let [from, to] = [element.from, element.to].map(|end| camera.at(end));
         match &element.shape {
-            ElementShape::Joint => sheet.spiral(from),
+            ElementShape::Turn => sheet.spiral(from),
+            ElementShape::Slide(axis) => {
+                sheet.slide(from, direction(from, camera.at(along(element.from, 1.0, *axis))).0, &element.sign);
+            }
             ElementShape::Bushing => sheet.bushing(from, to),
             ElementShape::Line | ElementShape::Cable(_) => {
                 sheet.pin(from);
@@ -250,7 +253,8 @@ fn names(robot: &RobotDrawing, camera: &Camera, tips: &[Point], sheet: &mut Shee
     for element in &robot.elements {
         let (_, ends) = signed_piece(&camera.all(&element.points()));
         let half = match element.shape {
-            ElementShape::Joint => [SPIRAL; 2],
+            ElementShape::Turn => [SPIRAL; 2],
+            ElementShape::Slide(_) => [SLIDE; 2],
             ElementShape::Bushing => [RING; 2],
             ElementShape::Line | ElementShape::Cable(_) => element_half(ends, &element.sign),
         };

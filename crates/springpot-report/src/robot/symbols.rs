@@ -16,6 +16,8 @@ pub(super) const ARM: f64 = 4.0;
 pub(super) const JOINT: f64 = 6.5;
 /// Radius of the spiral on a joint and of the ring of a bushing.
 pub(super) const SPIRAL: f64 = 17.0;
+/// Half length of an element beside a joint that slides.
+pub(super) const SLIDE: f64 = 32.0;
 pub(super) const RING: f64 = 11.0;
 const DASH_DOT: &[f64] = &[8.0, 2.5, 1.5, 2.5];
 
@@ -97,6 +99,16 @@ impl Sheet {
         self.obstacles.frame(Frame::sized(at, [SPIRAL; 2]));
     }
 
+    /// An element beside a joint that slides.
+    pub(super) fn slide(&mut self, at: Point, along: Point, sign: &ElementSign) {
+        let across = normal(along);
+        let corner = |a: f64, b: f64| offset(offset(at, a, along), b, across);
+        for end in [-SLIDE, SLIDE] {
+            self.cable(&[corner(end, 0.0), corner(end, -18.0)]);
+        }
+        self.element(corner(-SLIDE, -18.0), corner(SLIDE, -18.0), sign);
+    }
+
     /// A ring of rubber between two frames.
     pub(super) fn bushing(&mut self, from: Point, to: Point) {
         self.cable(&[from, to]);
@@ -107,7 +119,7 @@ impl Sheet {
         let strokes = [-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75].map(|share| {
             let half = (1.0f64 - share * share).sqrt();
             let corner = |side: f64| [share + side * half, share - side * half].map(|x| x * RING / SQRT_2);
-            [1.0, -1.0].map(|side| corner(side)).map(|[x, y]| [at[0] + x, at[1] + y]).to_vec()
+            [1.0, -1.0].map(corner).map(|[x, y]| [at[0] + x, at[1] + y]).to_vec()
         });
         self.scene.lines(strokes.to_vec(), Stroke::new(ELEMENT, 0.9));
         self.scene.draw(circle(4.0), Some(PAPER), Some(Stroke::new(ELEMENT, 1.6)));

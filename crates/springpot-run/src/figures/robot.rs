@@ -63,8 +63,12 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
             }
             ShapePlan::Joint(joint) => {
                 let Some(body) = plan.bodies.iter().position(|body| body.joint.name == *joint) else { continue };
-                let at = pose.origin(Parent::Body(body));
-                drawing.elements.push(ElementMark { name, from: at, to: at, sign, shape: ElementShape::Joint });
+                let (at, axis) = (pose.origin(Parent::Body(body)), plan.bodies[body].joint.axis);
+                let shape = match element.element.measure.is_rotation() {
+                    true => ElementShape::Turn,
+                    false => ElementShape::Slide(pose.direction(Parent::Body(body), axis)),
+                };
+                drawing.elements.push(ElementMark { name, from: at, to: at, sign, shape });
             }
             ShapePlan::Bushing { from, to, component } => {
                 // One ring for all components.

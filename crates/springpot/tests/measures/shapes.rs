@@ -280,7 +280,7 @@ fn small_turns_add_up() {
     let mut builder = ModelBuilder::new([0.0; 3]);
     let mut parent = Parent::World;
     for (k, axis) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
-        let joint = JointSpec::revolute(&format!("q{k}"), axis, [0.0; 3]);
+        let joint = JointSpec::revolute(format!("q{k}"), axis, [0.0; 3]);
         parent = Parent::Body(builder.push(body(&format!("b{k}"), parent, joint)).unwrap());
     }
     let model = builder.finish().unwrap();

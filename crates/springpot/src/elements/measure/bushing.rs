@@ -1,6 +1,6 @@
 //! One of the six coordinates of a frame in another one.
 
-use super::forces::{Along, Forces, Pull};
+use super::forces::{Forces, Pull};
 use super::{Direction, Measure, NoDirection, Reading};
 use crate::dynamics::{Kinematics, RelativeCoordinate, gradient_into};
 use crate::model::{Frame, Model};
@@ -106,7 +106,7 @@ impl Bushing {
 
     #[inline]
     pub(super) fn push(&self, pull: Pull, forces: &mut Forces) {
-        forces.along.push((Along::Bushing(*self), pull));
+        forces.bushings.push((*self, pull));
     }
 }
 

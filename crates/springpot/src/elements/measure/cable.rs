@@ -1,6 +1,6 @@
 //! The length of a cable through points of any bodies.
 
-use super::forces::{Along, Forces, Pull};
+use super::forces::{Forces, Pull};
 use super::{Direction, Measure, NoDirection, Reading};
 use crate::dynamics::{CableLength, Kinematics, Pair};
 use crate::model::{Model, Site};
@@ -104,7 +104,7 @@ impl Cable {
 
     #[inline]
     pub(super) fn push(&self, pull: Pull, forces: &mut Forces) {
-        forces.along.push((Along::Cable(self.clone()), pull));
+        forces.cables.push((self.clone(), pull));
     }
 }
 

@@ -27,20 +27,14 @@ pub(super) struct JointForce {
     pub(super) pull: Pull,
 }
 
-/// What a force acts along whose pull on several bodies is told by ∂y/∂q alone.
-#[derive(Debug, Clone)]
-pub(super) enum Along {
-    Cable(Cable),
-    Bushing(Bushing),
-}
-
 /// The forces of all elements in one state: along lines as pairs, all others as what they add to τ.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Forces {
     values: Vec<f64>,
     pub(super) pairs: Vec<PairForce>,
     pub(super) joints: Vec<JointForce>,
-    pub(super) along: Vec<(Along, Pull)>,
+    pub(super) cables: Vec<(Cable, Pull)>,
+    pub(super) bushings: Vec<(Bushing, Pull)>,
 }
 
 impl Pull {
@@ -48,6 +42,12 @@ impl Pull {
     #[inline]
     pub(crate) const fn constant(force: f64) -> Self {
         Self { force, d_coordinate: 0.0, d_rate: 0.0 }
+    }
+
+    /// F, ∂F/∂y, ∂F/∂y'.
+    #[inline]
+    fn tangent(self) -> [f64; 3] {
+        [self.force, self.d_coordinate, self.d_rate]
     }
 }
 
@@ -64,7 +64,8 @@ impl Forces {
         self.values.clear();
         self.pairs.clear();
         self.joints.clear();
-        self.along.clear();
+        self.cables.clear();
+        self.bushings.clear();
     }
 
     /// Adds the force of the next element.
@@ -116,12 +117,12 @@ impl Forces {
             slopes.d_q[at] += slope * slope * d_coordinate;
             slopes.d_v[at] += slope * slope * d_rate;
         }
-        for (along, Pull { force, d_coordinate, d_rate }) in &self.along {
-            let (tangent, into) = ([*force, *d_coordinate, *d_rate], [&mut slopes.d_q[..], &mut slopes.d_v[..]]);
-            match along {
-                Along::Cable(cable) => add_stiffness(model, kinematics, &cable.coordinate(), tangent, workspace, into),
-                Along::Bushing(part) => add_stiffness(model, kinematics, part.coordinate(), tangent, workspace, into),
-            }
+        let RneaDerivatives { d_q, d_v, .. } = slopes;
+        for (cable, pull) in &self.cables {
+            add_stiffness(model, kinematics, &cable.coordinate(), pull.tangent(), workspace, [d_q, d_v]);
+        }
+        for (bushing, pull) in &self.bushings {
+            add_stiffness(model, kinematics, bushing.coordinate(), pull.tangent(), workspace, [d_q, d_v]);
         }
     }
 
@@ -131,11 +132,11 @@ impl Forces {
         for JointForce { velocity, slope, pull } in &self.joints {
             tau[*velocity] += pull.force * slope;
         }
-        for (along, Pull { force, .. }) in &self.along {
-            match along {
-                Along::Cable(cable) => add_force(model, kinematics, &cable.coordinate(), *force, tau),
-                Along::Bushing(bushing) => add_force(model, kinematics, bushing.coordinate(), *force, tau),
-            }
+        for (cable, pull) in &self.cables {
+            add_force(model, kinematics, &cable.coordinate(), pull.force, tau);
+        }
+        for (bushing, pull) in &self.bushings {
+            add_force(model, kinematics, bushing.coordinate(), pull.force, tau);
         }
     }
 }
