@@ -18,6 +18,8 @@ pub(super) const JOINT: f64 = 6.5;
 pub(super) const SPIRAL: f64 = 17.0;
 /// Half length of an element beside a joint that slides.
 pub(super) const SLIDE: f64 = 32.0;
+/// And its distance from the joint's axis.
+const BESIDE: f64 = 28.0;
 pub(super) const RING: f64 = 11.0;
 const DASH_DOT: &[f64] = &[8.0, 2.5, 1.5, 2.5];
 
@@ -103,10 +105,13 @@ impl Sheet {
     pub(super) fn slide(&mut self, at: Point, along: Point, sign: &ElementSign) {
         let across = normal(along);
         let corner = |a: f64, b: f64| offset(offset(at, a, along), b, across);
+        self.element(corner(-SLIDE, -BESIDE), corner(SLIDE, -BESIDE), sign);
         for end in [-SLIDE, SLIDE] {
-            self.cable(&[corner(end, 0.0), corner(end, -18.0)]);
+            // Without a white edge, which would cut the element's ends.
+            let bracket = [corner(end, 0.0), corner(end, -BESIDE)];
+            self.scene.line(&bracket, Stroke::new(ELEMENT, 1.9));
+            self.obstacles.line(&bracket, 2.0);
         }
-        self.element(corner(-SLIDE, -18.0), corner(SLIDE, -18.0), sign);
     }
 
     /// A ring of rubber between two frames.

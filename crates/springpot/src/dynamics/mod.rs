@@ -8,7 +8,8 @@
 //! [`Workspace`] is scratch, one per thread, with nothing worth reading. `foo_into` writes into the caller's slice and does
 //! not allocate; `foo` allocates its result and its scratch. Slices of a wrong length panic.
 //!
-//! Every algorithm is generic over one [`Scalar`](crate::spatial::Scalar) and never branches on its values.
+//! Every algorithm is generic over one [`Scalar`](crate::spatial::Scalar) and never branches on its values, but the coordinates of one
+//! frame in another: the rotation vector of a turn has branches.
 
 mod aba;
 mod aba_derivatives;
