@@ -8,7 +8,7 @@ use springpot::integrate::{ElementStart, RowTimes, Stop};
 use springpot::law::{Catalog, Entry};
 use springpot_run::sweep::Layout;
 use springpot_run::{Depth, Survey, Trouble};
-use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, SignalPlan, json_schema};
+use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, ShapePlan, SignalPlan, json_schema};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -96,16 +96,25 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
     for (e, plan_of) in plan.elements.iter().enumerate() {
         let element = &plan_of.element;
         let law = if plan_of.is_network { "network" } else { &*element.entry.name };
+        let along = match &plan_of.shape {
+            ShapePlan::Points(points) if points.len() > 2 => {
+                format!(", cable over {}", count(points.len() - 2, "point", "points"))
+            }
+            ShapePlan::Points(_) | ShapePlan::Bushing { .. } => String::new(),
+            ShapePlan::Joint(joint) => format!(", on joint {joint}"),
+        };
         let past = plan_of.past.words().unwrap_or_else(|| memory(element));
-        line("element", &format!("{}: {law}, {past}", element.name));
+        line("element", &format!("{}: {law}{along}, {past}", element.name));
         line("", &element.entry.equation);
         line("", &parameters(plan_of));
         let Some(start) = survey.first.as_ref().map(|starts| &starts[e]) else { continue };
-        let (length, stroke) =
-            (range(start.length, survey.elements[e].lengths()), range(start.stroke, survey.elements[e].strokes()));
-        line("", &format!("l(0) = {length}, l0 = {} m", short(element.rest)));
+        let (length, stroke) = (survey.elements[e].lengths(), survey.elements[e].strokes());
+        let unit = survey.elements[e].unit;
+        let (length, stroke) = (range(start.length, length, unit), range(start.stroke, stroke, unit));
+        let y = if matches!(plan_of.shape, ShapePlan::Points(_)) { "l" } else { "y" };
+        line("", &format!("{y}(0) = {length}, {y}0 = {} {unit}", short(element.rest)));
         line("", &format!("x(0) = {stroke}"));
-        line("", &format!("dl/dq = {}", gradient(plan, start)));
+        line("", &format!("d{y}/dq = {}", gradient(plan, start)));
     }
     text
 }
@@ -196,8 +205,12 @@ fn parameters(element: &ElementPlan) -> String {
     parameters.chain(files).chain(inputs.iter().zip(&element.inputs).map(input)).collect::<Vec<_>>().join(", ")
 }
 
-/// A length, and the range it has over the cases where that is wider.
-fn range(first: f64, all: RangeInclusive<f64>) -> String {
+/// A coordinate, and the range it has over the cases where that is wider.
+fn range(first: f64, all: RangeInclusive<f64>, unit: &str) -> String {
     let (first, low, high) = (short(first), short(*all.start()), short(*all.end()));
-    if low == high { format!("{first} m") } else { format!("{first} m ({low} to {high} m over the cases)") }
+    if low == high {
+        format!("{first} {unit}")
+    } else {
+        format!("{first} {unit} ({low} to {high} {unit} over the cases)")
+    }
 }

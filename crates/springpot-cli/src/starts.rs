@@ -11,7 +11,7 @@ use springpot_scenario::Cases;
 pub(crate) fn warn(survey: &Survey, cases: &Cases) {
     survey.warnings.iter().for_each(|warning| diagnostic::warning(warning.clone(), None));
     let placed = |found: &Found, message: &str| in_cases(cases, survey.looked_at, found.index, found.cases, message);
-    for ElementSurvey { name, large, singular, .. } in &survey.elements {
+    for ElementSurvey { name, unit, rest_key, large, singular, .. } in &survey.elements {
         if let Some(found) = large {
             let Found { start, rest_length, .. } = found;
             let message = format!(
@@ -25,13 +25,15 @@ pub(crate) fn warn(survey: &Survey, cases: &Cases) {
         }
         if let Some(found) = singular {
             let message = format!(
-                "element \"{name}\" starts with x(0) = {} m and the Riemann-Liouville derivative: its force \
+                "element \"{name}\" starts with x(0) = {} {unit} and the Riemann-Liouville derivative: its force \
                  is infinite at t = 0 and its energy is not known",
                 short(found.start.stroke)
             );
-            let help = "this says that it jumped there from x = 0; derivative = \"caputo\" says that it was held \
-                        there before, rest_length = \"start\" that x(0) = 0";
-            diagnostic::warning(placed(found, &message), Some(help.into()));
+            let help = format!(
+                "this says that it jumped there from x = 0; derivative = \"caputo\" says that it was held \
+                 there before, {rest_key} = \"start\" that x(0) = 0"
+            );
+            diagnostic::warning(placed(found, &message), Some(help));
         }
     }
     if let Some([end, step]) = survey.short {

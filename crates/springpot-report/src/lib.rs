@@ -33,7 +33,7 @@ mod draw;
 mod robot;
 
 pub use chart::{Axis, Curve, Panel, Plot, Scale};
-pub use robot::{ElementMark, ElementSign, JointKind, JointMark, Link, RobotDrawing, WORLD};
+pub use robot::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, Link, RobotDrawing, WORLD};
 
 /// Width of a figure without a size of its own, mm.
 pub const WIDTH: f64 = 150.0;

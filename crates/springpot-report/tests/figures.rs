@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use springpot_report::{
-    Curve, ElementMark, ElementSign, JointKind, JointMark, Link, Panel, Plot, Rendered, ReportError, RobotDrawing,
-    Scale, WORLD,
+    Curve, ElementMark, ElementShape, ElementSign, JointKind, JointMark, Link, Panel, Plot, Rendered, ReportError,
+    RobotDrawing, Scale, WORLD,
 };
 
 fn curve(label: &str, x: &[f64], y: &[f64]) -> Curve {
@@ -430,6 +430,29 @@ fn robots_show_names_and_scale() {
     }
     assert!(figure.svg.contains(" m</text>"));
     assert_eq!(figure, arm().render().unwrap());
+}
+
+#[test]
+fn elements_of_every_shape_are_drawn() {
+    let over = vec![[0.3, 0.2, 0.3], [0.6, 0.2, 0.9]];
+    let at = |name: &str, point, shape| ElementMark { shape, ..element(name, point, point) };
+    let shapes = vec![
+        ElementMark { shape: ElementShape::Cable(over), ..element("rope", [0.1, 0.0, 0.1], [0.9, 0.0, 0.5]) },
+        at("torsion", [0.0; 3], ElementShape::Turn),
+        at("buffer", [0.0, 0.0, 0.6], ElementShape::Slide([0.0, 2.0, 0.0])),
+        at("mount", [0.5, 0.0, 0.6], ElementShape::Bushing),
+    ];
+    let bare = RobotDrawing { elements: Vec::new(), ..arm() }.render().unwrap();
+    for one in &shapes {
+        let figure = RobotDrawing { elements: vec![one.clone()], ..arm() }.render().unwrap();
+        check(&figure);
+        assert!(figure.svg.contains(&format!(">{}</text>", one.name)), "{}", one.name);
+        assert!(figure.svg.matches("#c0391b").count() > bare.svg.matches("#c0391b").count() + 1, "{}", one.name);
+    }
+    check(&RobotDrawing { elements: shapes.clone(), ..arm() }.render().unwrap());
+    let nowhere = ElementMark { shape: ElementShape::Cable(vec![[f64::NAN, 0.0, 0.0]]), ..shapes[0].clone() };
+    let refused = RobotDrawing { elements: vec![nowhere], ..arm() }.render().unwrap_err();
+    assert_eq!(refused.to_string(), "the position of `rope` is not finite");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::sweep::LimitTally;
 use crate::trouble::Trouble;
 use springpot::integrate::{ElementStart, LimitWatch, RowTimes, Stop, System};
 use springpot::model::JointKind;
-use springpot_scenario::{Cases, Plan, Refusals};
+use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, ShapePlan};
 use std::ops::RangeInclusive;
 
 /// A stroke at t = 0 beyond this share of the rest length is worth a warning.
@@ -51,6 +51,10 @@ pub struct Survey {
 pub struct ElementSurvey {
     /// The element.
     pub name: String,
+    /// Unit of its coordinate and stroke.
+    pub unit: &'static str,
+    /// The key of the scenario that says where it rests.
+    pub rest_key: &'static str,
     length: [f64; 2],
     stroke: [f64; 2],
     /// It starts far from its rest length.
@@ -79,8 +83,10 @@ impl Survey {
     /// Of [`Depth::Paths`]: the refusals of a combination of values.
     pub fn of(cases: &Cases, plan: &Plan, system: &System, depth: Depth, stop: &Stop) -> Result<Self, Refusals> {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
-        let element = |name: &String| ElementSurvey {
-            name: name.clone(),
+        let element = |plan: &ElementPlan| ElementSurvey {
+            name: plan.element.name.clone(),
+            unit: if plan.element.measure.is_rotation() { "rad" } else { "m" },
+            rest_key: if matches!(plan.shape, ShapePlan::Points(_)) { "rest_length" } else { "rest" },
             length: none,
             stroke: none,
             large: None,
@@ -88,7 +94,7 @@ impl Survey {
         };
         let mut survey = Self {
             looked_at: 0,
-            elements: plan.elements.iter().map(|plan| element(&plan.element.name)).collect(),
+            elements: plan.elements.iter().map(element).collect(),
             limits: LimitTally::default(),
             failures: Vec::new(),
             short: short_run(plan),
@@ -147,7 +153,8 @@ impl Survey {
                 let new = || Found { index, cases: 0, start: start.clone(), rest_length: plan.element.rest };
                 found.get_or_insert_with(new).cases += 1;
             };
-            if start.stroke.abs() > LARGE_STROKE * plan.element.rest {
+            let is_length = matches!(plan.shape, ShapePlan::Points(_));
+            if is_length && start.stroke.abs() > LARGE_STROKE * plan.element.rest {
                 found(&mut element.large);
             }
             if start.singular {

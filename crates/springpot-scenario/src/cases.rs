@@ -413,11 +413,10 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     let motion = motion::read(&root, &robot, time.as_ref().ok().map(|time| time.end));
     if let (Ok(elements), Ok(motion)) = (&elements, &motion)
         && motion.is_forward()
-        && let Some((e, element)) = elements.iter().enumerate().find(|(_, plan)| plan.element.scheme.is_some())
+        && let Some(element) = elements.iter().find(|plan| plan.element.scheme.is_some())
     {
         let message = format!("element {:?} has a `scheme`, but the robot moves by itself", element.element.name);
-        let written = root.get("element").and_then(|field| field.node.items()?.get(e)?.get("scheme").cloned());
-        let place = written.map_or_else(|| element.place.clone(), |node| node.place.clone());
+        let place = element.scheme_place.as_ref().unwrap_or(&element.place);
         let refusal = place.refuse(RefusalKind::Rule, message);
         let help = "leave the scheme out: named schemes need a motion that is given in advance";
         return Err(ctx.refuse(refusal.help(help)));

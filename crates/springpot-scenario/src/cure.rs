@@ -38,6 +38,15 @@ impl Plan {
                 let help = "a force along a line needs a length: move `from` or `to`, or the motion, so that the points stay apart";
                 (place_of(element(name)), Some(help.to_owned()))
             }
+            RunError::SegmentLength { element: name, .. } => {
+                let help = "the tension needs a direction: move the points of `via`, or the motion, so that neighbours stay apart";
+                (place_of(element(name)), Some(help.to_owned()))
+            }
+            RunError::HalfTurn { element: name, .. } => {
+                let help = "rx, ry and rz are for turns below pi: turn the frames by `rpy` so that they face one another, or put the element on a \
+                            joint, where turns are counted";
+                (place_of(element(name)), Some(help.to_owned()))
+            }
             RunError::Kernel { element: name, .. } => (place_of(element(name)), None),
             RunError::Jump { joint, .. } => {
                 let help = "velocities may jump, coordinates may not: ramp it, as in 0.1*min(max((t - 1)/0.01, 0), 1)";

@@ -1,20 +1,24 @@
-//! `[[element]]`: anchors, law, parameters, inputs.
+//! `[[element]]`: what it acts along, law, parameters, inputs.
 
-use super::document::shorten;
-use super::keys::{AT_START, ELEMENT, ELEMENT_FIELDS, RESERVED_NAMES};
+mod shape;
+
+use super::document::{Node, shorten};
+use super::keys::{
+    AT_START, BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, ON_JOINT, RESERVED_NAMES,
+};
 use super::material::{self, Material};
 use super::names;
 use super::past::{self, PastPlan};
-use super::plan::ElementPlan;
+use super::plan::{ElementPlan, ShapePlan};
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Robot, checked_name, unique};
 use super::time::Duration;
-use springpot::elements::{Element, Line};
+use shape::Shape;
+use springpot::elements::{Component, Element};
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
 use springpot::integrate::RowTimes;
-use springpot::law::{Past, RuleError};
-use springpot::model::Anchor;
+use springpot::law::{Derivative, Past, RuleError};
 use std::collections::HashMap;
 
 /// Most elements of a robot.
@@ -22,32 +26,82 @@ const MAX_ELEMENTS: usize = 10_000;
 /// Most numbers ∂l/∂q_b of all elements.
 const MAX_GRADIENTS: usize = 10_000_000;
 
-/// Reads every `[[element]]`.
+/// Reads every `[[element]]`; each component of a bushing is an element of its own.
 pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<Vec<ElementPlan>> {
     let Some(field) = root.get("element") else { return Ok(Vec::new()) };
     let items = field.items("an array of tables: [[element]]")?;
-    if items.len() > MAX_ELEMENTS {
-        let message = format!("holds {} elements; at most {MAX_ELEMENTS} are taken", items.len());
+    let count: usize = items.iter().map(|item| bushing(item.node).map_or(1, <[_]>::len)).sum();
+    if count > MAX_ELEMENTS {
+        let message = format!("holds {count} elements; at most {MAX_ELEMENTS} are taken");
         return Err(field.refuse(RefusalKind::TooLarge, message, None));
     }
     let nv = robot.model().nv();
-    if items.len() * nv > MAX_GRADIENTS {
-        let message = format!("holds {} elements on a robot of {nv} velocities", items.len());
+    if count * nv > MAX_GRADIENTS {
+        let message = format!("holds {count} elements on a robot of {nv} velocities");
         let help = format!("elements times velocities may be {MAX_GRADIENTS} at most: each pair makes a column");
         return Err(field.refuse(RefusalKind::TooLarge, message, Some(help)));
     }
     let mut seen = HashMap::new();
-    all(items.iter().enumerate().map(|(i, item)| {
+    let elements = all(items.iter().enumerate().map(|(i, item)| {
         if item.ctx.full() {
             return Err(Refused);
         }
         let name = item.node.get("name").and_then(|node| node.text());
         let what = name.map_or_else(|| format!("element {}", i + 1), |name| format!("element {:?}", shorten(name)));
-        let table = Table::of(item.ctx, item.node, what, &ELEMENT)?;
+        let kind = kind_of(item.node);
+        let misplaced = |key: &str| Some((RefusalKind::Rule, format!("{what} {}", why_not(key, kind)?)));
+        let table = Table::of_kind(item.ctx, item.node, what.clone(), (&ELEMENT, kind), misplaced)?;
         let name = table.require("name").and_then(|field| element_name(&field, &mut seen));
-        let element = element(&table, robot, time)?;
-        Ok(ElementPlan { element: Element { name: name?.to_owned(), ..element.element }, ..element })
-    }))
+        let elements = match kind {
+            BUSHING => bushing_elements(&table, robot, time)?,
+            ON_JOINT => vec![element(&table, shape::on_joint(&table, robot)?, time)?],
+            _ => {
+                let shape = shape::between_points(&table, robot);
+                // What the law refuses is told beside what is wrong with the ends.
+                let material = Materials::read(&table, false, time)?;
+                vec![material.element(&table, shape?)?]
+            }
+        };
+        let name = name?;
+        Ok(elements.into_iter().map(|plan| named(plan, name)).collect::<Vec<_>>())
+    }))?;
+    Ok(elements.into_iter().flatten().collect())
+}
+
+/// What the element is by its keys.
+pub(crate) fn kind_of(element: &Node) -> &'static str {
+    match (element.get("joint"), element.get("bushing")) {
+        (Some(_), _) => ON_JOINT,
+        (None, Some(_)) => BUSHING,
+        (None, None) => BETWEEN,
+    }
+}
+
+/// Why a key of another kind of element cannot stand in this one.
+fn why_not(key: &str, kind: &str) -> Option<String> {
+    if !ELEMENT.is_of_a_kind(key) {
+        return None;
+    }
+    Some(match (kind, key) {
+        (ON_JOINT, "rest_length") => "acts on a joint and has no `rest_length`: write `rest`".to_owned(),
+        (ON_JOINT, _) => format!("has both `joint` and `{key}`: leave one of them out"),
+        (BUSHING, _) => format!("is a bushing and has no `{key}`: write it in a component, as in bushing.x.{key}"),
+        (_, "rest") => "is between points and has no `rest`: write `rest_length`".to_owned(),
+        _ => format!("has no `{key}`: it is {kind}"),
+    })
+}
+
+/// The components that an element's table holds.
+fn bushing(element: &Node) -> Option<&[super::document::Entry]> {
+    element.get("bushing").and_then(|bushing| bushing.entries())
+}
+
+fn named(plan: ElementPlan, name: &str) -> ElementPlan {
+    let name = match &plan.shape {
+        ShapePlan::Bushing { component, .. } => format!("{name}.{}", component.name()),
+        _ => name.to_owned(),
+    };
+    ElementPlan { element: Element { name, ..plan.element }, ..plan }
 }
 
 fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, super::Place>) -> Read<&'a str> {
@@ -61,72 +115,119 @@ fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, super::Place>)
     Ok(name)
 }
 
-/// Everything but the name.
-fn element(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<ElementPlan> {
-    let from = table.require("from").and_then(|field| robot.anchor(&field));
-    let to = table.require("to").and_then(|field| robot.anchor(&field));
-    if let (Ok((first, from)), Ok((second, to))) = (&from, &to)
-        && robot.carrier(from.body) == robot.carrier(to.body)
-    {
-        let why = if first == second {
-            format!("has both ends on {first:?}")
-        } else if from.body == to.body {
-            format!(
-                "has both ends on the world, which is also called {:?}",
-                if first == "world" { second } else { first }
-            )
-        } else {
-            format!("joins {first:?} and {second:?}, which fixed joints hold together")
-        };
-        let place = table.get("to").map_or(&table.node.place, |field| &field.node.place);
-        let message = format!("{} {why}: its length cannot change", table.what);
-        table.ctx.refuse(place.refuse(RefusalKind::Rule, message).help("join two bodies that move against each other"));
+/// The components of a bushing, in the order x, y, z, rx, ry, rz.
+fn bushing_elements(table: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<Vec<ElementPlan>> {
+    let frames = shape::frames(table, robot);
+    let field = table.require("bushing")?;
+    let parts = Table::of(field.ctx, field.node, format!("`bushing` of {}", table.what), &COMPONENTS)?;
+    let given = Component::ALL.into_iter().filter_map(|component| Some((component, parts.get(component.name())?)));
+    let elements = all(given.map(|(component, part)| {
+        let what = format!("`{}` in {field}", component.name());
+        let part = Table::of(part.ctx, part.node, what, &COMPONENT)?;
+        // What a law refuses is told beside what is wrong with the frames.
+        let materials = Materials::read(&part, component.is_rotation(), time)?;
+        let frames = frames.as_ref().map_err(|refused| *refused)?;
+        materials.element(&part, frames.shape(robot, component))
+    }))?;
+    frames?;
+    if elements.is_empty() {
+        let names = names::list(Component::ALL.map(Component::name));
+        let message = "has no component, so that it carries nothing";
+        return Err(field.refuse(RefusalKind::Missing, message, Some(format!("write some of {names}"))));
     }
-    let past = past::read(table);
-    let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
-    let Material { law, is_network, files, parameters, inputs } = material::read(table, time)?;
-    let (parameters, (derivative, past)) = (parameters?, past?);
-    let refuse = |error: RuleError| {
-        let table_field = table.get("parameters");
-        let node = table_field.as_ref().map_or(table.node, |field| field.node);
-        let place = node.get(&error.parameter).map_or(&node.place, |parameter| &parameter.place);
-        let message = format!("{}: law {:?} needs {}", table.what, law.name, error.rule);
-        table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{}`", error.parameter)))
+    Ok(elements)
+}
+
+/// An element on what it acts along.
+fn element(table: &Table<'_>, shape: Shape, time: Option<&Duration>) -> Read<ElementPlan> {
+    Materials::read(table, shape.measure.is_rotation(), time)?.element(table, shape)
+}
+
+/// All of an element but what it acts along.
+struct Materials {
+    material: Material,
+    past: Read<(Derivative, PastPlan)>,
+    scheme: Read<Option<Scheme>>,
+}
+
+impl Materials {
+    fn read(table: &Table<'_>, is_rotation: bool, time: Option<&Duration>) -> Read<Self> {
+        let past = past::read(table);
+        let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
+        let material = material::read(table, is_rotation, time)?;
+        let materials = Self { material, past, scheme };
+        materials.check(table);
+        Ok(materials)
+    }
+
+    /// Notes what the law refuses.
+    fn check(&self, table: &Table<'_>) {
+        let Material { law, parameters: Ok(parameters), .. } = &self.material else { return };
+        let Ok((derivative, _)) = &self.past else { return };
+        if let Err(RuleError { parameter, rule }) = (law.build)(parameters, *derivative) {
+            let table_field = table.get("parameters");
+            let node = table_field.as_ref().map_or(table.node, |field| field.node);
+            let place = node.get(&parameter).map_or(&node.place, |parameter| &parameter.place);
+            let message = format!("{}: law {:?} needs {rule}", table.what, law.name);
+            table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{parameter}`")));
+        }
+    }
+
+    fn element(self, table: &Table<'_>, Shape { measure, plan }: Shape) -> Read<ElementPlan> {
+        let Material { law, is_network, files, parameters, inputs } = self.material;
+        let (is_length, is_rotation) = (matches!(plan, ShapePlan::Points(_)), measure.is_rotation());
+        let (parameters, (derivative, past)) = (parameters?, self.past?);
+        let element = Element::new("", measure, 0.0, &law, &parameters, derivative).map_err(|_| Refused);
+        let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
+        let scheme_place = table.get("scheme").map(|field| field.node.place.clone());
+        let (inputs, mut element) = (inputs?, element?);
+        element.inputs = inputs.iter().map(|input| input.signal.clone()).collect();
+        element.scheme = self.scheme?;
+        if let PastPlan::Held(age) = past {
+            element.past = Past::Held(age);
+        }
+        refuse_scheme(table, &element, &past)?;
+        let rest = if is_length { "rest_length" } else { "rest" };
+        let rest_at_start = table.get(rest).is_some_and(|field| field.node.text() == Some(AT_START));
+        match (rest_at_start, is_length) {
+            (true, _) => {}
+            (false, true) => table.fill(ELEMENT_FIELDS, &mut element)?,
+            (false, false) => element.rest = table.joint_number(rest, !is_rotation)?,
+        }
+        let shape = plan;
+        Ok(ElementPlan {
+            element,
+            past,
+            rest_at_start,
+            shape,
+            is_network,
+            files,
+            parameters,
+            inputs,
+            place,
+            scheme_place,
+        })
+    }
+}
+
+/// Refuses a named scheme where it cannot know what the law does.
+fn refuse_scheme(table: &Table<'_>, element: &Element, past: &PastPlan) -> Read<()> {
+    if element.scheme.is_none() {
+        return Ok(());
+    }
+    let refuse = |key: &'static str, why: &str, help: &str| {
+        let place = table.get(key).map_or(&table.node.place, |field| &field.node.place);
+        Err(table.ctx.refuse(place.refuse(RefusalKind::Rule, format!("{} has {why}", table.what)).help(help)))
     };
-    // What the law refuses is told beside what is wrong with the ends.
-    let Ok(((_, from), (_, to))) = from.and_then(|from| Ok((from, to?))) else {
-        _ = (law.build)(&parameters, derivative).map_err(refuse);
-        return Err(Refused);
-    };
-    let site = |anchor: &Anchor| robot.model().resolve(anchor).expect("an anchor that was read");
-    let line = Line { from: site(&from), to: site(&to) };
-    let element = Element::new("", line, 0.0, &law, &parameters, derivative).map_err(refuse);
-    let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
-    let (inputs, mut element) = (inputs?, element?);
-    element.inputs = inputs.iter().map(|input| input.signal.clone()).collect();
-    element.scheme = scheme?;
-    if let PastPlan::Held(age) = past {
-        element.past = Past::Held(age);
+    if !matches!(past, PastPlan::OfDerivative) {
+        let help = "leave the scheme out, or write past = \"held\" or \"unloaded\"";
+        return refuse("past", "a named scheme, which knows nothing before t = 0", help);
     }
-    if let (Some(_), Some(field)) = (&element.scheme, table.get("past"))
-        && !matches!(past, PastPlan::OfDerivative)
-    {
-        let message = format!("{} has a named scheme, which knows nothing before t = 0", table.what);
-        let refusal = field.node.place.refuse(RefusalKind::Rule, message);
-        return Err(table.ctx.refuse(refusal.help("leave the scheme out, or write past = \"held\" or \"unloaded\"")));
+    if element.law.has_inner_variables() {
+        let why = "a law with strokes of its own inside, which no named scheme knows";
+        return refuse("scheme", why, "leave the scheme out: the exact memory takes every law");
     }
-    if let (Some(_), Some(field)) = (&element.scheme, table.get("scheme"))
-        && element.law.has_inner_variables()
-    {
-        let message = format!("{} has a law with strokes of its own inside, which no named scheme knows", table.what);
-        let refusal = field.node.place.refuse(RefusalKind::Rule, message);
-        return Err(table.ctx.refuse(refusal.help("leave the scheme out: the exact memory takes every law")));
-    }
-    let rest_at_start = table.get("rest_length").is_some_and(|field| field.node.text() == Some(AT_START));
-    if !rest_at_start {
-        table.fill(ELEMENT_FIELDS, &mut element)?;
-    }
-    Ok(ElementPlan { element, past, rest_at_start, from, to, is_network, files, parameters, inputs, place })
+    Ok(())
 }
 
 fn scheme(field: &Field<'_>, time: Option<&Duration>) -> Read<Option<Scheme>> {

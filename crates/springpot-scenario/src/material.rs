@@ -33,8 +33,8 @@ pub(crate) struct Material {
     pub(crate) inputs: Read<Vec<SignalPlan>>,
 }
 
-/// Reads `law` or `network`, `parameters` and `inputs`.
-pub(crate) fn read(table: &Table<'_>, time: Option<&Duration>) -> Read<Material> {
+/// Reads `law` or `network`, `parameters` and `inputs`, in the units of a rotation where it is one.
+pub(crate) fn read(table: &Table<'_>, is_rotation: bool, time: Option<&Duration>) -> Read<Material> {
     let (law, files) = match (table.get("law"), table.get("network")) {
         (Some(law), None) => (by_name(&law)?, Vec::new()),
         (None, Some(network)) => of_text(&network, table.get("parameters").as_ref())?,
@@ -44,6 +44,7 @@ pub(crate) fn read(table: &Table<'_>, time: Option<&Duration>) -> Read<Material>
         }
         (None, None) => return Err(table.missing("law", "law = \"…\" or network = \"…\"")),
     };
+    let law = if is_rotation { Arc::new(on_rotation(&law)) } else { law };
     let lists = Lists::read(table, &law)?;
     let law = if law.has_lists() { Arc::new(law.with_lists(lists.length)) } else { law };
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
@@ -55,6 +56,38 @@ pub(crate) fn read(table: &Table<'_>, time: Option<&Duration>) -> Read<Material>
 pub(crate) fn files_of(element: &Node) -> Vec<String> {
     let network = element.get("network").and_then(|network| NetworkText::parse(network.text()?).ok());
     network.map_or(Vec::new(), |network| network.files().map(str::to_owned).collect())
+}
+
+/// The law where it acts on an angle: N reads N·m and m reads rad.
+fn on_rotation(law: &Entry) -> Entry {
+    let mut law = law.clone();
+    let units = law.params.iter_mut().map(|param| &mut param.unit);
+    for unit in units.chain(law.inputs.iter_mut().map(|input| &mut input.unit)) {
+        *unit = unit_on_rotation(unit).into();
+    }
+    law
+}
+
+fn unit_on_rotation(unit: &str) -> String {
+    let mut turned = String::new();
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut rest = unit;
+    while let Some(first) = rest.chars().next() {
+        let length = rest.find(|c| is_part(c) != is_part(first)).unwrap_or(rest.len());
+        let (token, after) = rest.split_at(length);
+        // An exponent may have the name of a unit.
+        let is_exponent = turned.ends_with('^');
+        // N^2 is (N·m)^2.
+        turned.push_str(match token {
+            "N" if !is_exponent && after.starts_with('^') => "(N*m)",
+            "N" if !is_exponent && turned.ends_with('/') => "(N*m)",
+            "N" if !is_exponent => "N*m",
+            "m" if !is_exponent => "rad",
+            other => other,
+        });
+        rest = after;
+    }
+    turned
 }
 
 /// The law of an element that says one; nothing where it is none.
@@ -305,4 +338,27 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, time: Option<&Duration>) -> Rea
         let end = time.map(|time| time.end);
         signals::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unit_on_rotation;
+
+    #[test]
+    fn units_turn() {
+        for (unit, turned) in [
+            ("N/m", "N*m/rad"),
+            ("N*s^alpha/m", "N*m*s^alpha/rad"),
+            ("N*s^alpha/(m*V)", "N*m*s^alpha/(rad*V)"),
+            ("m/K", "rad/K"),
+            ("N/m^3", "N*m/rad^3"),
+            ("N", "N*m"),
+            ("1/N", "1/(N*m)"),
+            ("N^2*s^m", "(N*m)^2*s^m"),
+            ("mm", "mm"),
+            ("", ""),
+        ] {
+            assert_eq!(unit_on_rotation(unit), turned);
+        }
+    }
 }

@@ -1,13 +1,17 @@
 //! Dotted paths into a scenario: `element.strut.alpha`, `solver.rtol`, `robot.body.forearm.mass`.
 
 use super::document::{Entry, Node, Value, shorten};
-use super::keys::ELEMENT;
+use super::elements::kind_of;
+use super::keys::{COMPONENT, COMPONENTS, ELEMENT, Keys};
 use super::material::{files_of, law_of};
 use super::names;
 use super::reader::{Context, Read};
 use super::refusal::{Place, RefusalKind};
 use std::sync::Arc;
 use toml::de::DeValue;
+
+/// The key that holds the components of a bushing.
+const BUSHING: &str = "bushing";
 
 /// Longest path, in keys.
 const MAX_KEYS: usize = 16;
@@ -125,15 +129,14 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
         };
         match &here.value {
             Value::Table(entries) => {
-                if let [Step::Key(root), Step::Index(_)] = &steps[..]
-                    && root == "element"
-                    && let Some(section) = section_of(ctx, here, key)
+                let owner = owner_of_a_law(&steps);
+                if let Some(keys) = owner
+                    && let Some(section) = section_of(ctx, here, keys, key)
                 {
                     steps.push(Step::Key(section.to_owned()));
                     node = here.get(section).map(|node| &**node).and_then(|node| node.get(key)).map(|node| &**node);
-                } else if let [Step::Key(root), Step::Index(_)] = &steps[..]
-                    && root == "element"
-                    && let Some(names) = names_of_element(ctx, here)
+                } else if let Some(keys) = owner
+                    && let Some(names) = names_of_element(ctx, here, keys)
                     && !names.contains(key)
                 {
                     let message = format!("path {:?}: `{}` has no `{}`", shorten(path), walked(), shorten(key));
@@ -210,14 +213,30 @@ pub fn toml_key(key: &str) -> String {
     text + "\""
 }
 
+/// The keys of the table that `steps` lead to, where it is an element or a component of a bushing.
+fn owner_of_a_law(steps: &[Step]) -> Option<&'static Keys> {
+    match steps {
+        [Step::Key(root), Step::Index(_)] if root == "element" => Some(&ELEMENT),
+        [Step::Key(root), Step::Index(_), Step::Key(bushing), Step::Key(_)]
+            if root == "element" && bushing == BUSHING =>
+        {
+            Some(&COMPONENT)
+        }
+        _ => None,
+    }
+}
+
 /// The table of an element in which `key` is looked up: parameters, then inputs, then (`None`) the element's own keys.
-fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static str> {
+fn section_of(ctx: &Context<'_>, element: &Node, keys: &Keys, key: &str) -> Option<&'static str> {
+    if element.get(BUSHING).is_some() {
+        return COMPONENTS.get(key).map(|_| BUSHING);
+    }
     for section in ["parameters", "inputs"] {
         if element.get(section).is_some_and(|table| table.get(key).is_some()) {
             return Some(section);
         }
     }
-    if ELEMENT.get(key).is_some() {
+    if keys.get(key).is_some() {
         return None;
     }
     let law = law_of(ctx, element)?;
@@ -231,11 +250,15 @@ fn section_of(ctx: &Context<'_>, element: &Node, key: &str) -> Option<&'static s
 }
 
 /// Everything that a path into an element can name; `None` where its law is not known.
-fn names_of_element(ctx: &Context<'_>, element: &Node) -> Option<Vec<String>> {
+fn names_of_element(ctx: &Context<'_>, element: &Node, keys: &Keys) -> Option<Vec<String>> {
+    if element.get(BUSHING).is_some() {
+        let own = keys.names_for(kind_of(element)).into_iter();
+        return Some(own.chain(COMPONENTS.names()).map(str::to_owned).collect());
+    }
     let law = law_of(ctx, element)?;
     let parameters = law.params.iter().map(|param| &*param.name);
     let inputs = law.inputs.iter().map(|input| &*input.name);
-    let names = parameters.chain(inputs).chain(ELEMENT.names()).map(str::to_owned);
+    let names = parameters.chain(inputs).chain(keys.names()).map(str::to_owned);
     Some(names.chain(files_of(element)).collect())
 }
 

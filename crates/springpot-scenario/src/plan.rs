@@ -4,7 +4,7 @@ use super::figures::{ColumnGlob, FigurePlan};
 use super::motion::MotionPlan;
 use super::past::PastPlan;
 use super::refusal::Place;
-use springpot::elements::Element;
+use springpot::elements::{Component, Element};
 use springpot::integrate::Settings;
 use springpot::model::urdf::Urdf;
 use springpot::model::{Anchor, BodySpec, Model};
@@ -135,10 +135,8 @@ pub struct ElementPlan {
     pub past: PastPlan,
     /// Whether its rest length is its length at t = 0 of this case.
     pub rest_at_start: bool,
-    /// Its first end.
-    pub from: Anchor,
-    /// Its second end.
-    pub to: Anchor,
+    /// What it acts along.
+    pub shape: ShapePlan,
     /// Whether its law is a network of the scenario's own.
     pub is_network: bool,
     /// Parameters of it that are names of files, and these as they are written.
@@ -149,4 +147,33 @@ pub struct ElementPlan {
     pub inputs: Vec<SignalPlan>,
     /// Where its parameters stand in the scenario (the element itself where it has none).
     pub place: Place,
+    /// Where its scheme stands, if it says one.
+    pub scheme_place: Option<Place>,
+}
+
+/// What an element acts along.
+#[derive(Debug, Clone)]
+pub enum ShapePlan {
+    /// Straight from point to point: two of a line, more of a cable.
+    Points(Vec<Anchor>),
+    /// The coordinate of the joint of this name.
+    Joint(String),
+    /// A coordinate of one frame in another, of a bushing.
+    Bushing {
+        /// The frame whose axes count.
+        from: FramePlan,
+        /// The other frame.
+        to: FramePlan,
+        /// Which of the six.
+        component: Component,
+    },
+}
+
+/// A frame on a body.
+#[derive(Debug, Clone, Copy)]
+pub struct FramePlan {
+    /// Its origin.
+    pub anchor: Anchor,
+    /// Roll, pitch and yaw against the frame of the body's joint, rad.
+    pub rpy: [f64; 3],
 }

@@ -475,9 +475,11 @@ impl<'a> Field<'a> {
     pub(crate) fn joint_quantity(&self, slides: bool) -> Read<f64> {
         let (unit, bound) = match self.row.map(|row| row.shape) {
             Some(Shape::Number(unit, bound) | Shape::NumberOrWord(unit, bound, _)) => (unit, bound),
-            Some(Shape::JointNumber(units, bound) | Shape::JointNumberOr(units, bound, _)) => {
-                (units[usize::from(slides)], bound)
-            }
+            Some(
+                Shape::JointNumber(units, bound)
+                | Shape::JointNumberOr(units, bound, _)
+                | Shape::JointNumberOrWord(units, bound, _),
+            ) => (units[usize::from(slides)], bound),
             _ => ("", Bound::Any),
         };
         match bound {

@@ -3,7 +3,7 @@
 use super::figures::FigurePlan;
 use super::keys::solver::ADAPTIVE;
 use super::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
-use super::plan::{ElementPlan, Plan, SignalPlan, UrdfPlan};
+use super::plan::{ElementPlan, FramePlan, Plan, ShapePlan, SignalPlan, UrdfPlan};
 use serde_json::{Map, Value, json};
 use springpot::integrate::RowTimes;
 use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
@@ -88,7 +88,7 @@ impl Plan {
     }
 
     fn element(&self, plan: &ElementPlan) -> Value {
-        let ElementPlan { element, from, to, is_network, files, parameters, inputs, .. } = plan;
+        let ElementPlan { element, shape, is_network, files, parameters, inputs, .. } = plan;
         let mut values = Map::new();
         for (param, value) in element.entry.params.iter().zip(parameters) {
             match param.name.rsplit_once('.') {
@@ -102,18 +102,39 @@ impl Plan {
         values.extend(files.iter().map(|(name, file)| (name.clone(), json!(file))));
         let inputs: Map<String, Value> =
             element.entry.inputs.iter().zip(inputs).map(|(i, s)| (i.name.to_string(), s.record())).collect();
-        let mut value = json!({
+        let mut value = match shape {
+            ShapePlan::Points(points) => {
+                let [from, via @ .., to] = &points[..] else { unreachable!("two ends") };
+                let mut ends = json!({ "from": self.anchor(from), "to": self.anchor(to) });
+                if !via.is_empty() {
+                    ends["via"] = via.iter().map(|point| self.anchor(point)).collect();
+                }
+                if let Value::Object(ends) = &mut ends {
+                    ends.extend(record(ELEMENT_FIELDS, element));
+                }
+                ends
+            }
+            ShapePlan::Joint(joint) => json!({ "joint": joint, "rest": element.rest }),
+            ShapePlan::Bushing { from, to, component } => {
+                let frame = |frame: &FramePlan| {
+                    let mut value = self.anchor(&frame.anchor);
+                    value["rpy"] = json!(frame.rpy);
+                    value
+                };
+                let (from, to) = (frame(from), frame(to));
+                json!({ "bushing": component.name(), "from": from, "to": to, "rest": element.rest })
+            }
+        };
+        let others = json!({
             "name": element.name,
-            "from": self.anchor(from),
-            "to": self.anchor(to),
             (if *is_network { "network" } else { "law" }): element.entry.name,
             "parameters": values,
             "inputs": inputs,
             "derivative": element.derivative.name(),
             "scheme": element.scheme.map_or_else(|| "exact".into(), |scheme| scheme.to_string()),
         });
-        if let Value::Object(value) = &mut value {
-            value.extend(record(ELEMENT_FIELDS, element));
+        if let (Value::Object(value), Value::Object(others)) = (&mut value, others) {
+            value.extend(others);
             value.extend(plan.past.record().map(|past| ("past".to_owned(), past)));
         }
         value

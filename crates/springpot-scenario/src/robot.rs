@@ -88,9 +88,8 @@ impl Robot {
         &self.parts.model
     }
 
-    /// Reads `{ body = …, point = … }`, where the body may be the world.
-    pub(crate) fn anchor(&self, field: &Field<'_>) -> Read<(String, Anchor)> {
-        let table = field.table(&ANCHOR)?;
+    /// Reads `body` and `point`, where the body may be the world.
+    pub(crate) fn anchor(&self, table: &Table<'_>) -> Read<(String, Anchor)> {
         let body = table.require("body").and_then(|body| {
             let name = body.text()?;
             match self.model().find_body(name) {
@@ -185,7 +184,7 @@ pub(crate) fn unique(seen: &mut HashMap<String, Place>, field: &Field<'_>, name:
 }
 
 fn gripper(field: &Field<'_>, robot: &Robot) -> Read<Gripper> {
-    let (body, anchor) = robot.anchor(field)?;
+    let (body, anchor) = robot.anchor(&field.table(&ANCHOR)?)?;
     if robot.carrier(anchor.body) == Parent::World {
         let message = match anchor.body {
             Parent::World if body == "world" => "is on the world, which does not move".to_owned(),

@@ -4,6 +4,7 @@ use crate::grid::{Grid, Set, width_of};
 use crate::numbers::{brief, rough, short};
 use crate::plain;
 use crate::terminal;
+use springpot::elements::{Element, Measure};
 use springpot::integrate::{ElementTerm, Equation, System};
 
 /// Most velocities for which a_ab, and Γ_ab,c, are printed.
@@ -162,7 +163,9 @@ fn christoffel(gamma: &[f64], labels: &[String], page: &Page) -> String {
 fn elements(system: &System, equation: &Equation, page: &Page) -> String {
     let mut text = String::new();
     let names: Vec<String> = equation.elements.iter().map(|element| element.name.clone()).collect();
-    let columns = ["l", "x = l - l0", "x'", "D^α x", "F"].map(str::to_owned);
+    let is_length = |element: &Element| matches!(element.measure, Measure::Line(_) | Measure::Cable(_));
+    let [y, stroke] = if system.elements.iter().all(is_length) { ["l", "x = l - l0"] } else { ["y", "x = y - y0"] };
+    let columns = [y, stroke, "x'", "D^α x", "F"].map(str::to_owned);
     let numbers = |element: &ElementTerm| {
         let ElementTerm { length, stroke, rate, derivative, force, .. } = element;
         [length, stroke, rate, derivative, force].map(|x| shown(*x, 0.0)).to_vec()

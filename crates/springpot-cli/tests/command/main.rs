@@ -32,6 +32,7 @@ mod results;
 #[cfg(unix)]
 mod resume;
 mod robots;
+mod shapes;
 mod studies;
 mod support;
 #[cfg(target_os = "linux")]

@@ -70,7 +70,7 @@ pub enum JointKind {
     Prismatic,
 }
 
-/// An element between two anchors.
+/// An element between two anchors, on a joint, or a bushing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ElementMark {
     /// The element's name.
@@ -81,6 +81,32 @@ pub struct ElementMark {
     pub to: [f64; 3],
     /// What its law holds.
     pub sign: ElementSign,
+    /// What it acts along.
+    pub shape: ElementShape,
+}
+
+/// What an element acts along.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum ElementShape {
+    /// The straight line from anchor to anchor.
+    #[default]
+    Line,
+    /// A cable over these points, world coordinates, metres: rollers.
+    Cable(Vec<[f64; 3]>),
+    /// The angle of a joint, where both anchors are: a spiral without the sign of the law.
+    Turn,
+    /// The shift of a joint, where both anchors are, along this axis (world coordinates, of any length): the sign of the law beside it.
+    Slide([f64; 3]),
+    /// The relative place of two frames at the anchors: a hatched ring without the sign of a law.
+    Bushing,
+}
+
+impl ElementMark {
+    /// The points it runs through.
+    fn points(&self) -> Vec<[f64; 3]> {
+        let via = if let ElementShape::Cable(via) = &self.shape { via } else { &Vec::new() };
+        [self.from].into_iter().chain(via.iter().copied()).chain([self.to]).collect()
+    }
 }
 
 /// What the law of an element holds.
@@ -128,7 +154,12 @@ impl RobotDrawing {
     fn check(&self) -> Result<(), ReportError> {
         let links = self.links.iter().flat_map(|link| link.points.iter().map(|p| (link.name.as_str(), p)));
         let joints = self.joints.iter().flat_map(|j| [(j.name.as_str(), &j.position), (j.name.as_str(), &j.axis)]);
-        let elements = self.elements.iter().flat_map(|e| [(e.name.as_str(), &e.from), (e.name.as_str(), &e.to)]);
+        let ends = self.elements.iter().flat_map(|e| [(e.name.as_str(), &e.from), (e.name.as_str(), &e.to)]);
+        let via = self.elements.iter().filter_map(|e| match &e.shape {
+            ElementShape::Cable(via) => Some(via.iter().map(|point| (e.name.as_str(), point))),
+            _ => None,
+        });
+        let elements = ends.chain(via.flatten());
         let others = self.gripper.iter().map(|p| ("gripper", p)).chain(self.ground.iter().map(|p| ("ground", p)));
         let mut all = links.chain(joints).chain(elements).chain(others);
         // Squares of larger numbers would overflow.

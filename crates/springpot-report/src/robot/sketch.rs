@@ -2,10 +2,10 @@
 
 use super::element;
 use super::labels::{Frame, Request};
-use super::symbols::{ARM, BODY, ELEMENT, JOINT, Sheet, direction};
+use super::symbols::{ARM, BODY, ELEMENT, JOINT, RING, SLIDE, SPIRAL, Sheet, direction};
 use super::vector::{Vector, along, cross, distance, dot, unit};
 use super::view::View;
-use super::{ElementMark, ElementSign, JointKind, JointMark, RobotDrawing, WORLD};
+use super::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, RobotDrawing, WORLD};
 use crate::draw::{Align, Color, Font, INK, Point, Scene, Stroke, Text, wrap_evenly};
 use crate::{PIXELS_PER_MM, WIDTH};
 use std::collections::HashMap;
@@ -48,7 +48,7 @@ impl Camera {
     fn of(robot: &RobotDrawing) -> Self {
         let view = View::of(robot);
         let links = robot.links.iter().flat_map(|link| link.points.iter().copied());
-        let elements = robot.elements.iter().flat_map(|element| [element.from, element.to]);
+        let elements = robot.elements.iter().flat_map(ElementMark::points);
         let joints = robot.joints.iter().map(|joint| joint.position);
         let points = links.chain(elements).chain(joints).chain(robot.gripper).chain(robot.ground);
         let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
@@ -93,8 +93,18 @@ pub(super) fn scene(robot: &RobotDrawing, font: &Font) -> Scene {
     ground(robot, &camera, &mut sheet);
     let tips: Vec<Point> = robot.joints.iter().map(|joint| draw_joint(joint, &camera, &mut sheet)).collect();
     for element in &robot.elements {
-        sheet.pin(camera.at(element.from));
-        sheet.pin(camera.at(element.to));
+        let [from, to] = [element.from, element.to].map(|end| camera.at(end));
+        match &element.shape {
+            ElementShape::Turn => sheet.spiral(from),
+            ElementShape::Slide(axis) => {
+                sheet.slide(from, direction(from, camera.at(along(element.from, 1.0, *axis))).0, &element.sign);
+            }
+            ElementShape::Bushing => sheet.bushing(from, to),
+            ElementShape::Line | ElementShape::Cable(_) => {
+                sheet.pin(from);
+                sheet.pin(to);
+            }
+        }
     }
     if let Some(point) = robot.gripper {
         sheet.gripper(camera.at(point), gripper_direction(robot, &camera, point));
@@ -136,13 +146,22 @@ fn bodies(robot: &RobotDrawing, camera: &Camera, sheet: &mut Sheet) {
         pieces.push((camera.depth(&link.points), Piece::Body(camera.all(&link.points), tone, width)));
     }
     for element in &robot.elements {
-        pieces.push((camera.depth(&[element.from, element.to]), Piece::Element(element)));
+        if matches!(element.shape, ElementShape::Line | ElementShape::Cable(_)) {
+            pieces.push((camera.depth(&element.points()), Piece::Element(element)));
+        }
     }
     pieces.sort_by(|a, b| b.0.total_cmp(&a.0));
     for (_, piece) in pieces {
         match piece {
             Piece::Body(points, tone, width) => sheet.body(&points, tone, width),
-            Piece::Element(element) => sheet.element(camera.at(element.from), camera.at(element.to), &element.sign),
+            Piece::Element(element) => {
+                let points = camera.all(&element.points());
+                let (at, [from, to]) = signed_piece(&points);
+                sheet.cable(&points[..=at]);
+                sheet.cable(&points[at + 1..]);
+                sheet.element(from, to, &element.sign);
+                points[1..points.len() - 1].iter().for_each(|point| sheet.roller(*point));
+            }
         }
     }
 }
@@ -232,8 +251,13 @@ fn names(robot: &RobotDrawing, camera: &Camera, tips: &[Point], sheet: &mut Shee
         requests.push(Request { text: "H".into(), size: NAME_SIZE, color: INK, beside, clear: 10.0, optional: false });
     }
     for element in &robot.elements {
-        let ends = [camera.at(element.from), camera.at(element.to)];
-        let half = element_half(ends, &element.sign);
+        let (_, ends) = signed_piece(&camera.all(&element.points()));
+        let half = match element.shape {
+            ElementShape::Turn => [SPIRAL; 2],
+            ElementShape::Slide(_) => [SLIDE; 2],
+            ElementShape::Bushing => [RING; 2],
+            ElementShape::Line | ElementShape::Cable(_) => element_half(ends, &element.sign),
+        };
         // The sign, not the line through it, is what the name stands beside.
         let is_sign = |at: &Point| direction(middle(ends), *at).1 <= half[0];
         let beside = middles(&ends).into_iter().map(|at| (at, if is_sign(&at) { half[1] } else { 0.0 })).collect();
@@ -270,6 +294,14 @@ fn shared_beginning(names: &[&str]) -> usize {
             && names.iter().all(|name| name[*end..].starts_with(char::is_alphabetic))
     };
     first.rmatch_indices('_').map(|(at, _)| at + 1).find(is_shared).unwrap_or(0)
+}
+
+/// The longest piece of an element's line, which has the sign of its law, and its place among them.
+fn signed_piece(points: &[Point]) -> (usize, [Point; 2]) {
+    let pieces = points.windows(2).map(|two| [two[0], two[1]]).enumerate();
+    let length = |[a, b]: [Point; 2]| direction(a, b).1;
+    let longer = |a: (usize, [Point; 2]), b: (usize, [Point; 2])| if length(b.1) > length(a.1) { b } else { a };
+    pieces.reduce(longer).expect("two ends")
 }
 
 /// Half length and half height of an element's sign.

@@ -4,6 +4,7 @@ use super::ElementSign;
 use super::element::{self, Drawn};
 use super::labels::{Frame, Obstacles};
 use crate::draw::{Color, INK, Outline, PAPER, Point, Scene, Stroke};
+use std::f64::consts::{SQRT_2, TAU};
 
 pub(super) const ELEMENT: Color = Color(0xc0, 0x39, 0x1b);
 const AXIS: Color = Color(0x55, 0x55, 0x55);
@@ -13,6 +14,13 @@ pub(super) const BODY: f64 = 8.0;
 pub(super) const ARM: f64 = 4.0;
 /// Radius of a revolute joint.
 pub(super) const JOINT: f64 = 6.5;
+/// Radius of the spiral on a joint and of the ring of a bushing.
+pub(super) const SPIRAL: f64 = 17.0;
+/// Half length of an element beside a joint that slides.
+pub(super) const SLIDE: f64 = 32.0;
+/// And its distance from the joint's axis.
+const BESIDE: f64 = 28.0;
+pub(super) const RING: f64 = 11.0;
 const DASH_DOT: &[f64] = &[8.0, 2.5, 1.5, 2.5];
 
 /// A drawing with what later labels must keep clear of.
@@ -60,6 +68,67 @@ impl Sheet {
         let middle = offset(from, 0.5 * length, along);
         let [long, high] = half.unwrap_or([0.0, 1.0]);
         self.obstacles.line(&[offset(middle, -long, along), offset(middle, long, along)], 2.0 * high);
+    }
+
+    /// Straight pieces of a cable.
+    pub(super) fn cable(&mut self, points: &[Point]) {
+        if points.len() > 1 {
+            self.scene.line(points, Stroke::new(PAPER, 5.0));
+            self.scene.line(points, Stroke::new(ELEMENT, 1.9));
+            self.obstacles.line(points, 2.0);
+        }
+    }
+
+    /// What a cable runs over.
+    pub(super) fn roller(&mut self, at: Point) {
+        let circle = |radius| Outline::Circle { center: at, radius };
+        self.scene.draw(circle(5.5), Some(PAPER), Some(Stroke::new(ELEMENT, 1.6)));
+        self.scene.draw(circle(1.4), Some(ELEMENT), None);
+        self.obstacles.frame(Frame::sized(at, [6.5; 2]));
+    }
+
+    /// A torsion spring about a joint.
+    pub(super) fn spiral(&mut self, at: Point) {
+        let point = |i: i32| {
+            let share = f64::from(i) / 90.0;
+            let (sine, cosine) = (share * 2.25 * TAU).sin_cos();
+            let radius = JOINT + 1.5 + share * (SPIRAL - JOINT - 1.5);
+            [at[0] + radius * cosine, at[1] - radius * sine]
+        };
+        let spiral: Vec<Point> = (0..=90).map(point).collect();
+        self.scene.line(&spiral, Stroke::new(PAPER, 3.6));
+        self.scene.line(&spiral, Stroke::new(ELEMENT, 1.7));
+        self.obstacles.frame(Frame::sized(at, [SPIRAL; 2]));
+    }
+
+    /// An element beside a joint that slides.
+    pub(super) fn slide(&mut self, at: Point, along: Point, sign: &ElementSign) {
+        let across = normal(along);
+        let corner = |a: f64, b: f64| offset(offset(at, a, along), b, across);
+        self.element(corner(-SLIDE, -BESIDE), corner(SLIDE, -BESIDE), sign);
+        for end in [-SLIDE, SLIDE] {
+            // Without a white edge, which would cut the element's ends.
+            let bracket = [corner(end, 0.0), corner(end, -BESIDE)];
+            self.scene.line(&bracket, Stroke::new(ELEMENT, 1.9));
+            self.obstacles.line(&bracket, 2.0);
+        }
+    }
+
+    /// A ring of rubber between two frames.
+    pub(super) fn bushing(&mut self, from: Point, to: Point) {
+        self.cable(&[from, to]);
+        let at = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+        let circle = |radius| Outline::Circle { center: at, radius };
+        self.scene.draw(circle(RING), Some(PAPER), Some(Stroke::new(ELEMENT, 1.8)));
+        // Strokes at 45° that end on the ring.
+        let strokes = [-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75].map(|share| {
+            let half = (1.0f64 - share * share).sqrt();
+            let corner = |side: f64| [share + side * half, share - side * half].map(|x| x * RING / SQRT_2);
+            [1.0, -1.0].map(corner).map(|[x, y]| [at[0] + x, at[1] + y]).to_vec()
+        });
+        self.scene.lines(strokes.to_vec(), Stroke::new(ELEMENT, 0.9));
+        self.scene.draw(circle(4.0), Some(PAPER), Some(Stroke::new(ELEMENT, 1.6)));
+        self.obstacles.frame(Frame::sized(at, [RING + 1.0; 2]));
     }
 
     /// The pin that ends an element.

@@ -94,7 +94,9 @@ impl View {
 fn lines(robot: &RobotDrawing) -> Vec<[Vector; 2]> {
     let links = robot.links.iter().filter(|link| link.name != WORLD);
     let links = links.flat_map(|link| link.points.windows(2).map(|pair| [pair[0], pair[1]]));
-    links.chain(robot.elements.iter().map(|element| [element.from, element.to])).collect()
+    let elements = robot.elements.iter().map(super::ElementMark::points);
+    let elements = elements.flat_map(|points| points.windows(2).map(|two| [two[0], two[1]]).collect::<Vec<_>>());
+    links.chain(elements).collect()
 }
 
 /// Points on all lines and marks, evenly thinned.

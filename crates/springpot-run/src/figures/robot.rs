@@ -6,8 +6,8 @@ use springpot::elements::Element;
 use springpot::integrate::{Pose, System};
 use springpot::law::{InputValue, Network, Point, Term};
 use springpot::model::{Anchor, Dimension, JointKind, Parent};
-use springpot_report::{ElementMark, ElementSign, JointMark, Link, Rendered, RobotDrawing, WORLD};
-use springpot_scenario::{FigurePlan, Plan};
+use springpot_report::{ElementMark, ElementShape, ElementSign, JointMark, Link, Rendered, RobotDrawing, WORLD};
+use springpot_scenario::{FigurePlan, Plan, ShapePlan};
 
 /// Most links of a sketch.
 const MOST_LINKS: usize = 1_000;
@@ -44,16 +44,44 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
         let (position, axis) = (pose.origin(body_index), pose.direction(body_index, body.joint.axis));
         drawing.joints.push(JointMark { name: body.joint.name.clone(), position, axis, kind });
     }
+    let bracket = |drawing: &mut RobotDrawing, anchor: &Anchor| {
+        let link = match anchor.body {
+            Parent::World => WORLD,
+            Parent::Body(index) => skeleton.bone_of[index].map_or(WORLD, |bone| skeleton.names[bone]),
+        };
+        drawing.bracket(link, pose.point(anchor));
+    };
     for element in &plan.elements {
-        let (from, to) = (pose.point(&element.from), pose.point(&element.to));
         let (name, sign) = (element.element.name.clone(), sign_of(&element.element));
-        drawing.elements.push(ElementMark { name, from, to, sign });
-        for (anchor, point) in [(&element.from, from), (&element.to, to)] {
-            let link = match anchor.body {
-                Parent::World => WORLD,
-                Parent::Body(index) => skeleton.bone_of[index].map_or(WORLD, |bone| skeleton.names[bone]),
-            };
-            drawing.bracket(link, point);
+        match &element.shape {
+            ShapePlan::Points(points) => {
+                let at: Vec<[f64; 3]> = points.iter().map(|point| pose.point(point)).collect();
+                let [from, via @ .., to] = &at[..] else { continue };
+                let shape = if via.is_empty() { ElementShape::Line } else { ElementShape::Cable(via.to_vec()) };
+                drawing.elements.push(ElementMark { name, from: *from, to: *to, sign, shape });
+                points.iter().for_each(|point| bracket(&mut drawing, point));
+            }
+            ShapePlan::Joint(joint) => {
+                let Some(body) = plan.bodies.iter().position(|body| body.joint.name == *joint) else { continue };
+                let (at, axis) = (pose.origin(Parent::Body(body)), plan.bodies[body].joint.axis);
+                let shape = match element.element.measure.is_rotation() {
+                    true => ElementShape::Turn,
+                    false => ElementShape::Slide(pose.direction(Parent::Body(body), axis)),
+                };
+                drawing.elements.push(ElementMark { name, from: at, to: at, sign, shape });
+            }
+            ShapePlan::Bushing { from, to, component } => {
+                // One ring for all components.
+                let name = name.strip_suffix(component.name()).and_then(|name| name.strip_suffix('.'));
+                let name = name.unwrap_or_default().to_owned();
+                if drawing.elements.iter().any(|drawn| drawn.name == name) {
+                    continue;
+                }
+                let [first, second] = [from, to].map(|frame| pose.point(&frame.anchor));
+                let shape = ElementShape::Bushing;
+                drawing.elements.push(ElementMark { name, from: first, to: second, sign, shape });
+                [from, to].iter().for_each(|frame| bracket(&mut drawing, &frame.anchor));
+            }
         }
     }
     drawing.gripper = plan.gripper.as_ref().map(|gripper| pose.point(&gripper.anchor));

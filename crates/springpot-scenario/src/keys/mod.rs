@@ -14,7 +14,10 @@ mod sweep;
 mod tests;
 
 pub(crate) use constants::SCALAR;
-pub(crate) use element::{ELEMENT, ELEMENT_FIELDS, HELD, PASTS, RESERVED_NAMES, START as AT_START};
+pub(crate) use element::{
+    BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, END, HELD, ON_JOINT, PASTS, RESERVED_NAMES,
+    START as AT_START,
+};
 pub(crate) use motion::{
     FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,
 };
@@ -70,6 +73,8 @@ pub(crate) enum Shape {
     NumberOrWord(&'static str, Bound, &'static str),
     /// A number that belongs to a joint: in the first unit where it turns, in the second where it slides.
     JointNumber([&'static str; 2], Bound),
+    /// A number of a joint as above, or this word.
+    JointNumberOrWord([&'static str; 2], Bound, &'static str),
     /// A whole number from the first on, to the second if there is one.
     Whole(i64, Option<i64>),
     /// Three numbers in a unit.

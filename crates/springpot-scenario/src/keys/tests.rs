@@ -113,7 +113,9 @@ fn unit_of(key: &Key) -> String {
         | Shape::Pair(unit)
         | Shape::Numbers(unit)
         | Shape::Signal(unit) => unit,
-        Shape::JointNumber([turning, _], _) | Shape::JointNumberOr([turning, _], ..) => turning,
+        Shape::JointNumber([turning, _], _)
+        | Shape::JointNumberOr([turning, _], ..)
+        | Shape::JointNumberOrWord([turning, _], ..) => turning,
         _ => "",
     };
     unit.replace('*', "·").replace("^2", "²")

@@ -3,7 +3,7 @@
 use super::super::keys::{ELEMENT, JOINT, Keys, Need, Shape};
 use super::super::motion::MOTION;
 use super::super::root::SCENARIO;
-use super::rules::{alternatives, joints, required_of, where_kind};
+use super::rules::{alternatives, joints, of_elements, required_of, where_kind};
 use serde_json::{Map, Value, json};
 use springpot::law::{Catalog, Entry};
 
@@ -48,6 +48,17 @@ fn of(keys: &'static Keys, catalog: &Catalog) -> Option<Value> {
             ref needed => Some(where_kind(&[kind], json!({ "required": needed }))),
         };
         schema.insert("allOf".to_owned(), kinds.into_iter().filter_map(of_kind).collect());
+    } else if std::ptr::eq(keys, &ELEMENT) {
+        let one = any_of(&ELEMENT);
+        let of_kind = |kind: &str| {
+            let mut rule = json!({ "required": required_of(&ELEMENT, kind) });
+            if ELEMENT.of(kind).any(|key| matches!(key.need, Need::OneOf)) {
+                rule["anyOf"] = one["anyOf"].clone();
+            }
+            rule
+        };
+        let laws = catalog.entries().iter().filter_map(|law| of_law(law));
+        schema.insert("allOf".to_owned(), laws.chain([of_elements(of_kind)]).collect());
     } else if let Value::Object(one) = any_of(keys) {
         schema.extend(one);
     }
@@ -56,9 +67,6 @@ fn of(keys: &'static Keys, catalog: &Catalog) -> Option<Value> {
         let needed = needed.filter(|(_, needed)| !needed.is_empty());
         let rules = needed.map(|(kinds, needed)| where_kind(&kinds, json!({ "required": needed })));
         schema.insert("allOf".to_owned(), rules.collect());
-    }
-    if std::ptr::eq(keys, &ELEMENT) {
-        schema.insert("allOf".to_owned(), catalog.entries().iter().filter_map(|law| of_law(law)).collect());
     }
     (!schema.is_empty()).then_some(Value::Object(schema))
 }

@@ -1,7 +1,9 @@
 //! What keys have to do with one another.
 
 use super::super::figures::FIGURE;
-use super::super::keys::{ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ROBOT, SIGNAL, TIME, keys_of};
+use super::super::keys::{
+    BETWEEN, BUSHING, COMPONENT, ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ON_JOINT, ROBOT, SIGNAL, TIME, keys_of,
+};
 use super::super::material::TABLE;
 use super::super::motion::MOTION;
 use super::shapes::{quantity, signal};
@@ -17,7 +19,10 @@ pub(super) fn add(schema: &mut Value, keys: &Keys, catalog: &Catalog) {
     } else if is(&JOINT) {
         of_joint()
     } else if is(&ELEMENT) {
-        json!({ "allOf": catalog.entries().iter().map(|law| of_law(law)).collect::<Vec<_>>() })
+        let kinds = of_elements(|kind| json!({ "propertyNames": { "enum": ELEMENT.names_for(kind) } }));
+        json!({ "allOf": laws(catalog).chain([kinds]).collect::<Vec<_>>() })
+    } else if is(&COMPONENT) {
+        json!({ "allOf": laws(catalog).collect::<Vec<_>>() })
     } else if is(&MOTION) {
         of_motion()
     } else if is(&TIME) {
@@ -35,6 +40,20 @@ pub(super) fn add(schema: &mut Value, keys: &Keys, catalog: &Catalog) {
     if let (Value::Object(schema), Value::Object(rules)) = (schema, rules) {
         schema.extend(rules);
     }
+}
+
+/// The parameters and inputs of every law.
+fn laws(catalog: &Catalog) -> impl Iterator<Item = Value> {
+    catalog.entries().iter().map(|law| of_law(law))
+}
+
+/// What holds for each kind of element.
+pub(super) fn of_elements(rule: impl Fn(&str) -> Value) -> Value {
+    json!({
+        "if": { "required": ["joint"] },
+        "then": rule(ON_JOINT),
+        "else": { "if": { "required": ["bushing"] }, "then": rule(BUSHING), "else": rule(BETWEEN) },
+    })
 }
 
 /// Keys of which one must be there.

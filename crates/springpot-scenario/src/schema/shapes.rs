@@ -1,6 +1,6 @@
 //! A key's shape as a schema.
 
-use super::super::keys::{Bound, Each, FORCES, Key, Keys, Need, POSE, SCALAR, SIGNAL, Shape};
+use super::super::keys::{Bound, COMPONENT, Each, FORCES, Key, Keys, Need, POSE, SCALAR, SIGNAL, Shape};
 use serde_json::{Map, Value, json};
 use springpot::fractional::scheme::Scheme;
 use springpot::law::Catalog;
@@ -52,6 +52,10 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             json!({ "description": words, "anyOf": [number, { "const": word }] })
         }
         Shape::JointNumber(units, bound) => joint_number(units, bound, &words),
+        Shape::JointNumberOrWord(units, bound, word) => {
+            let number = joint_number(units, bound, "A number.");
+            json!({ "description": words, "anyOf": [number, { "const": word }] })
+        }
         Shape::JointNumberOr(units, bound, keys) => {
             let force = keys.keys.first().map_or(words.as_str(), |key| key.words);
             let table = object(keys.words, keys, catalog);
@@ -88,6 +92,9 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             "type": ["string", "array"], "items": { "type": "string", "minLength": 1 }, "minItems": 1, "minLength": 1,
             "description": words,
         }),
+        Shape::Table(keys) if std::ptr::eq(keys, &COMPONENT) => {
+            json!({ "description": words, "allOf": [{ "$ref": "#/definitions/component" }] })
+        }
         Shape::Table(keys) => object(&words, keys, catalog),
         Shape::Tables(keys, most) => {
             let items = object(keys.words, keys, catalog);
@@ -148,6 +155,7 @@ pub(super) fn definitions(catalog: &Catalog) -> Value {
         "quantity": {
             "anyOf": [{ "type": "number" }, { "type": "string", "pattern": QUANTITY }, { "$ref": "#/definitions/scalar" }],
         },
+        "component": object(COMPONENT.words, &COMPONENT, catalog),
         "scalar": object(SCALAR.words, &SCALAR, catalog),
         "path": or_table(&POSE),
         "force": or_table(&FORCES),

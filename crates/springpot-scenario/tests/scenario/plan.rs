@@ -4,7 +4,7 @@ use crate::support::{EXAMPLE, cases, catalog, coordinates, edited, parameter, pa
 use springpot::integrate::RowTimes;
 use springpot::law::Derivative;
 use springpot::model::{Anchor, JointKind, Parent};
-use springpot_scenario::{FigureKind, SweptValue};
+use springpot_scenario::{FigureKind, ShapePlan, SweptValue};
 
 #[test]
 fn the_example_is_planned_whole() {
@@ -52,8 +52,9 @@ fn the_example_is_planned_whole() {
 
     let [strut] = &plan.elements[..] else { panic!("one element") };
     assert_eq!(strut.element.name, "strut");
-    assert_eq!(strut.from, Anchor { body: Parent::Body(0), point: [0.14, -0.1, 0.08] });
-    assert_eq!(strut.to, Anchor { body: Parent::Body(2), point: [-0.06, 0.1, 0.08] });
+    let ShapePlan::Points(points) = &strut.shape else { panic!("between points") };
+    let from = Anchor { body: Parent::Body(0), point: [0.14, -0.1, 0.08] };
+    assert_eq!(points[..], [from, Anchor { body: Parent::Body(2), point: [-0.06, 0.1, 0.08] }]);
     assert_eq!(strut.element.rest, 0.7);
     assert_eq!(strut.element.entry.name, "thermoviscoelastic");
     assert_eq!(strut.inputs[0].constant, Some(298.15));

@@ -4,7 +4,7 @@ use crate::support::{EXAMPLE, cases, catalog, edited, parameter, parse, single};
 use springpot::fractional::scheme::Scheme;
 use springpot::integrate::RowTimes;
 use springpot::law::Catalog;
-use springpot_scenario::{Cases, Plan, Refusals, Selection, SweptValue};
+use springpot_scenario::{Cases, Plan, Refusals, Selection, ShapePlan, SweptValue};
 
 /// The single run with these blocks behind it.
 fn with_blocks(blocks: &str) -> String {
@@ -94,7 +94,9 @@ fn what_the_file_leaves_out_can_be_swept() {
     let cases = grid("[[sweep]]\nparameter = \"robot.body.forearm.joint.damping\"\nvalues = [0, 1]");
     assert_eq!(cases.plan(1).unwrap().bodies[2].joint.damping, 1.0);
     let cases = grid("[[sweep]]\nparameter = \"element.strut.from.point\"\nvalues = [[0, 0, 0], [1, 0, 0]]");
-    assert_eq!(cases.plan(1).unwrap().elements[0].from.point, [1.0, 0.0, 0.0]);
+    let plan = cases.plan(1).unwrap();
+    let ShapePlan::Points(points) = &plan.elements[0].shape else { panic!("between points") };
+    assert_eq!(points[0].point, [1.0, 0.0, 0.0]);
     assert_eq!(cases.values(1), [SweptValue::Text("[1, 0, 0]".into())]);
     let cases = grid("[[sweep]]\nparameter = \"element.strut.T_ref\"\nvalues = [\"10 degC\"]");
     assert_eq!(parameter(&cases.plan(0).unwrap(), "T_ref"), 283.15);

@@ -4,7 +4,7 @@ use crate::support::{catalog, marked, pose};
 use springpot::model::{Anchor, JointKind, Parent};
 use springpot::signal::Signal;
 use springpot_scenario::RefusalKind::{self, *};
-use springpot_scenario::{Cases, Refusals, Scenario};
+use springpot_scenario::{Cases, Refusals, Scenario, ShapePlan};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -80,8 +80,9 @@ fn a_urdf_is_planned_whole() {
     assert_eq!(plan.model.friction(), [0.0, 0.1, 0.0]);
     assert!(plan.tells_joint_losses);
     // The root link is the world, whatever its name.
-    assert_eq!(plan.elements[0].from, Anchor { body: Parent::World, point: [0.0, 0.5, 3.0] });
-    assert_eq!(plan.elements[0].to.body, Parent::Body(1));
+    let ShapePlan::Points(points) = &plan.elements[0].shape else { panic!("between points") };
+    assert_eq!(points[0], Anchor { body: Parent::World, point: [0.0, 0.5, 3.0] });
+    assert_eq!(points[1].body, Parent::Body(1));
     let gripper = plan.gripper.as_ref().unwrap();
     assert_eq!((gripper.body.as_str(), gripper.anchor.body), ("tip", Parent::Body(2)));
     // Everything of the robot stands where the file is named.

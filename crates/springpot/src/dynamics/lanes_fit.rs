@@ -67,6 +67,15 @@ fn everything<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T]) -> Vec<T> {
     all.extend(coriolis(model, &kinematics));
     all.extend(com(model, &kinematics).0);
     all.extend(com_jacobian(model, &kinematics));
+    let cable = [base, from, to];
+    let (cable, mut workspace, n) = (CableLength(&cable), Workspace::new(model), model.nv());
+    let [mut slopes, mut tau] = [(); 2].map(|()| vec![T::ZERO; n]);
+    let [mut second, mut d_q, mut d_v] = [(); 3].map(|()| vec![T::ZERO; n * n]);
+    all.push(gradient_into(model, &kinematics, &cable, &mut slopes));
+    hessian_into(model, &kinematics, &cable, &mut workspace, &mut second);
+    add_force(model, &kinematics, &cable, here.length, &mut tau);
+    add_stiffness(model, &kinematics, &cable, [here.length; 3], &mut workspace, [&mut d_q, &mut d_v]);
+    all.extend([slopes, tau, second, d_q, d_v].concat());
     let soft = [PairForce { d_rate: here.rate, ..force(from, to) }, force(base, to)];
     let inverse_slopes = rnea_derivatives(model, q, v, a, &soft);
     all.extend([inverse_slopes.d_q, inverse_slopes.d_v, inverse_slopes.d_a].concat());

@@ -32,6 +32,18 @@ impl<'a, T: Scalar> Line<'a, T> {
         path(self.from).chain(path(self.to))
     }
 
+    /// Hands ∂l/∂q_b to `visit`, degree by degree.
+    #[inline]
+    pub(super) fn slopes(&self, model: &Model, kinematics: &Kinematics<T>, visit: &mut impl FnMut(usize, T)) {
+        for (site, towards) in [(self.to, self.direction), (self.from, -self.direction)] {
+            let point = kinematics.position(site);
+            for k in joint::path_to(model, site.link(), self.common) {
+                let degree = &model.degrees()[k];
+                visit(degree.index, towards.dot(joint::point_column(degree, kinematics.link(degree.link), point)));
+            }
+        }
+    }
+
     /// Fills t_k = ∂l_vec/∂q_k of [`Line::degrees`]; other columns stay as they are.
     #[inline]
     pub(super) fn fill_columns(&self, model: &Model, kinematics: &Kinematics<T>, columns: &mut [Vec3<T>]) {

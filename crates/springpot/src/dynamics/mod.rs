@@ -8,14 +8,17 @@
 //! [`Workspace`] is scratch, one per thread, with nothing worth reading. `foo_into` writes into the caller's slice and does
 //! not allocate; `foo` allocates its result and its scratch. Slices of a wrong length panic.
 //!
-//! Every algorithm is generic over one [`Scalar`](crate::spatial::Scalar) and never branches on its values.
+//! Every algorithm is generic over one [`Scalar`](crate::spatial::Scalar) and never branches on its values, but the coordinates of one
+//! frame in another: the rotation vector of a turn has branches.
 
 mod aba;
 mod aba_derivatives;
 mod body_coriolis;
+mod cable;
 mod cholesky;
 mod christoffel;
 mod com;
+mod coordinate;
 mod coriolis;
 mod crba;
 mod definite;
@@ -31,6 +34,7 @@ mod line;
 mod moments;
 mod pair;
 mod pair_stiffness;
+mod relative_frame;
 mod rnea;
 mod rnea_derivatives;
 mod workspace;
@@ -38,9 +42,11 @@ mod wrench;
 
 pub use aba::{aba, aba_into};
 pub use aba_derivatives::{AbaDerivatives, aba_derivatives, aba_derivatives_into};
+pub(crate) use cable::CableLength;
 pub use cholesky::{cholesky_into, cholesky_solve_into, inverse_from_cholesky_into, mass_inverse, mass_inverse_into};
 pub use christoffel::{christoffel, christoffel_into};
 pub use com::{com, com_jacobian, com_jacobian_into};
+pub(crate) use coordinate::{add_force, add_stiffness, gradient_into, hessian_into};
 pub use coriolis::{coriolis, coriolis_into};
 pub use crba::{crba, crba_into};
 pub use definite::{indefinite_joint, indefinite_joint_into};
@@ -55,6 +61,7 @@ pub use kinematics::Kinematics;
 pub use pair::{
     CoincidentAnchors, Pair, PairForce, add_generalized_force, pair, pair_hessian, pair_hessian_into, pair_into,
 };
+pub(crate) use relative_frame::RelativeCoordinate;
 pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_at_into, rnea_into};
 pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};
 pub use workspace::Workspace;

@@ -33,6 +33,12 @@ pub struct CoincidentAnchors {
 }
 
 impl Pair<f64> {
+    /// Whether the points met or passed each other until `after`: the line turned by more than a right angle.
+    pub(crate) fn lost_until(&self, after: &Self) -> bool {
+        let met = after.length < self.length && after.check().is_err();
+        met || self.direction.dot(after.direction) <= 0.0
+    }
+
     /// Whether the line has a direction.
     ///
     /// # Errors
@@ -71,19 +77,31 @@ pub fn pair_into<T: Scalar>(
     gradient: &mut [T],
 ) -> Pair<T> {
     let gradient = &mut gradient[..model.nv()];
+    gradient.fill(T::ZERO);
+    pair_with(model, kinematics, from, to, |b, slope| gradient[b] += slope)
+}
+
+/// [`pair_into`] with ∂l/∂q_b for `visit`, degree by degree.
+#[inline]
+pub(super) fn pair_with<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    from: &Site,
+    to: &Site,
+    mut visit: impl FnMut(usize, T),
+) -> Pair<T> {
     let v = kinematics.joint_velocities();
     let (start, end) = (kinematics.position(from), kinematics.position(to));
     let line = end - start;
     let length = line.norm();
     let direction = line * (T::ONE / length);
     let common = joint::common_link(model, from.link(), to.link());
-    gradient.fill(T::ZERO);
     let mut rate = T::ZERO;
     for (site, point, towards) in [(to, end, direction), (from, start, -direction)] {
         for k in joint::path_to(model, site.link(), common) {
             let degree = &model.degrees()[k];
             let slope = towards.dot(joint::point_column(degree, kinematics.link(degree.link), point));
-            gradient[degree.index] += slope;
+            visit(degree.index, slope);
             rate = slope.times_plus(v[degree.index], rate);
         }
     }

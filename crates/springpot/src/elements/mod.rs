@@ -7,5 +7,7 @@ mod measure;
 pub(crate) use bank::Kept;
 pub use bank::{ElementBank, MemoryRange};
 pub use element::Element;
-pub(crate) use measure::{Forces, Pull};
-pub use measure::{Joint, JointMeasureError, Line, Measure, Reading};
+pub use measure::{
+    Bushing, Cable, CableError, Component, Joint, JointMeasureError, Line, Measure, NoDirection, Reading,
+};
+pub(crate) use measure::{Forces, MeasureKind, Pull};

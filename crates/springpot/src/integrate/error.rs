@@ -17,6 +17,32 @@ pub enum RunError {
         /// Length, m.
         length: f64,
     },
+    /// The ends of a segment of a cable met, so that its direction is undefined.
+    #[error(
+        "t = {t} s: element \"{element}\" has no direction: the points of segment {segment} of its cable met (length {length:.1e} m)"
+    )]
+    SegmentLength {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// The segment, from 1.
+        segment: usize,
+        /// Its length, m.
+        length: f64,
+    },
+    /// The frames of a bushing came to half a turn, where their rotation vector jumps.
+    #[error(
+        "t = {t} s: element \"{element}\" is turned by {angle:.4} rad: a bushing's rotation vector jumps at half a turn, pi"
+    )]
+    HalfTurn {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Turn of its frames against each other, rad.
+        angle: f64,
+    },
     /// A signal gave NaN or infinity.
     #[error("t = {t} s: {what} is {value}, not a finite number")]
     NotFinite {

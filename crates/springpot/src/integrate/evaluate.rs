@@ -4,8 +4,8 @@ use super::context::Context;
 use super::error::RunError;
 use super::resistance::{add_resistance, joint_loss};
 use super::system::System;
-use crate::dynamics::{Kinematics, Workspace, kinetic_energy, potential_energy, rnea_at_into};
-use crate::elements::{Element, Reading};
+use crate::dynamics::{CoincidentAnchors, Kinematics, Workspace, kinetic_energy, potential_energy, rnea_at_into};
+use crate::elements::{Element, NoDirection, Reading};
 use crate::law::{InputValue, Point};
 use crate::model::Model;
 use crate::motion::{Trajectory, Wanted};
@@ -176,11 +176,20 @@ impl Context<'_> {
 
 impl Element {
     /// # Errors
-    /// [`RunError::ZeroLength`] where its force has no direction.
+    /// [`Self::without_direction`] where its force has none.
     #[inline]
     pub(super) fn check_direction(&self, t: f64, reading: &Reading) -> Result<(), RunError> {
-        let zero = |_| RunError::ZeroLength { t, element: self.name.clone(), length: reading.coordinate };
-        reading.check().map_err(zero)
+        reading.check().map_err(|why| self.without_direction(t, why))
+    }
+
+    /// Why its force had no direction at `t`.
+    pub(super) fn without_direction(&self, t: f64, why: NoDirection) -> RunError {
+        let element = self.name.clone();
+        match why {
+            NoDirection::Line(CoincidentAnchors { length }) => RunError::ZeroLength { t, element, length },
+            NoDirection::Segment { segment, length } => RunError::SegmentLength { t, element, segment, length },
+            NoDirection::HalfTurn { angle } => RunError::HalfTurn { t, element, angle },
+        }
     }
 
     pub(super) fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {

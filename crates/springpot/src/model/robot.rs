@@ -6,7 +6,7 @@ use super::degree::{Coordinates, Degree, JointMotion};
 use super::error::ModelError;
 use super::frame::{Frame, Site};
 use super::spec::{Anchor, FrictionLaw, JointKind, Limits, Parent};
-use crate::spatial::{Inertia, Placement, Vec3};
+use crate::spatial::{Inertia, Placement, Rotation, Vec3};
 use std::ops::Range;
 
 /// The robot: a tree of links, each moved by one joint; constant, shared by threads.
@@ -235,6 +235,26 @@ impl Model {
             return Err(ModelError::AnchorNotFinite { point: anchor.point });
         }
         Ok(Site { link: frame.link, point: frame.placement.point(point) })
+    }
+
+    /// A frame with its origin at the anchor, turned by `rotation` against the axes of the anchor's body.
+    ///
+    /// # Errors
+    /// As [`Self::resolve`].
+    pub fn resolve_frame(&self, anchor: &Anchor, rotation: &Rotation) -> Result<Frame, ModelError> {
+        let Site { link, point } = self.resolve(anchor)?;
+        let rotation = self.frame(anchor.body)?.placement.rotation * *rotation;
+        Ok(Frame { link, placement: Placement { rotation, translation: point } })
+    }
+
+    /// How far from the world's origin a frame's origin is where all joints that shift stand at 0, at most, m.
+    pub(crate) fn reach(&self, frame: &Frame) -> f64 {
+        let (mut reach, mut link) = (frame.placement.translation.norm(), frame.link);
+        while let Some(joint) = link.checked_sub(1) {
+            reach += self.placements[joint].translation.norm();
+            link = self.parents[joint];
+        }
+        reach
     }
 
     /// The link that moving joint `joint` hangs on; 0 is the world, joint j moves link j + 1.

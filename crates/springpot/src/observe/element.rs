@@ -3,6 +3,7 @@
 use super::evaluation::{ElementEvaluation, ElementRow};
 use super::subscript::at_joint;
 use super::units::ObservedElement;
+use crate::elements::MeasureKind;
 use crate::law::LeafState;
 use crate::model::Label;
 use std::fmt;
@@ -177,11 +178,17 @@ impl<'a> ElementQuantity<&'a str> {
         }
     }
 
-    /// [`Self::meaning`] where the element acts on the coordinate of a joint.
-    pub(super) fn meaning_on_joint(&self, element: &str) -> String {
+    /// [`Self::meaning`] where the element acts on another coordinate than a length.
+    pub(super) fn meaning_on(&self, kind: MeasureKind, element: &str) -> String {
+        let coordinate = match kind {
+            MeasureKind::Length => return self.meaning(element),
+            MeasureKind::Joint => "coordinate of the joint",
+            MeasureKind::Shift => "relative shift",
+            MeasureKind::Turn => "component of the relative rotation vector",
+        };
         match self {
-            Self::Length => format!("coordinate of the joint of {element}"),
-            Self::Stroke => format!("coordinate of the joint of {element} less its rest value"),
+            Self::Length => format!("{coordinate} of {element}"),
+            Self::Stroke => format!("{coordinate} of {element} less its rest value"),
             Self::Force => format!("force of {element}, positive where it drives the coordinate down"),
             _ => self.meaning(element),
         }

@@ -77,7 +77,7 @@ impl Observables {
     pub fn new<'a>(model: &Model, elements: impl IntoIterator<Item = &'a Element>) -> Self {
         let element = |element: &Element| ObservedElement {
             name: element.name.clone(),
-            on_joint: element.measure.is_on_joint(),
+            kind: element.measure.kind(),
             is_rotation: element.measure.is_rotation(),
             derivative_unit: derivative_unit(element),
             tells_derivative: element.law.tells_derivative(),
@@ -154,9 +154,9 @@ impl Observables {
                 let words = &self.elements[e].entry.inputs[i].meaning;
                 Quantity::Element(&*self.elements[e].name, ElementQuantity::InputValue(&**words)).meaning()
             }
-            Quantity::Element(e, quantity) if self.elements[e].on_joint => {
+            Quantity::Element(e, quantity) => {
                 let element = &self.elements[e];
-                quantity.named(element, &self.velocities).meaning_on_joint(&element.name)
+                quantity.named(element, &self.velocities).meaning_on(element.kind, &element.name)
             }
             _ => named.meaning(),
         };

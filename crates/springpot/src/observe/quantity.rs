@@ -1,6 +1,7 @@
 //! One number of a row: which it is, and what it is called.
 
 use super::element::ElementQuantity;
+use crate::elements::Component;
 use std::fmt;
 
 /// What can be observed. `Id` says which coordinate, velocity, element or input: its index in a system, or its name as in columns.
@@ -105,8 +106,8 @@ impl EnergyQuantity {
 impl<'a> Quantity<&'a str> {
     /// The quantity that a column of this name holds, of whatever system; `None` where no column can be called so.
     ///
-    /// Names of elements hold no dot; those of joints may, and the parts of a floating joint follow one. What is no quantity of every
-    /// element is taken for an input.
+    /// Names of elements hold no dot, but one before the component of a bushing; those of joints may, and the parts of a floating
+    /// joint follow one. What is no quantity of every element is taken for an input.
     pub fn read(name: &'a str) -> Option<Self> {
         let Some((first, rest)) = name.split_once('.') else { return (name == "t").then_some(Self::Time) };
         match first {
@@ -119,7 +120,9 @@ impl<'a> Quantity<&'a str> {
         }
         let axis = || Axis::ALL.into_iter().find(|axis| first == "gripper" && axis.name() == rest);
         let energy = || EnergyQuantity::ALL.into_iter().find(|energy| first == "energy" && energy.key() == rest);
-        let of_element = || ElementQuantity::read(rest).map(|quantity| Self::Element(first, quantity));
+        let component = rest.split_once('.').filter(|(part, _)| Component::ALL.iter().any(|c| c.name() == *part));
+        let (element, key) = component.map_or((first, rest), |(part, key)| (&name[..=first.len() + part.len()], key));
+        let of_element = || ElementQuantity::read(key).map(|quantity| Self::Element(element, quantity));
         axis().map(Self::Gripper).or_else(|| energy().map(Self::Energy)).or_else(of_element)
     }
 

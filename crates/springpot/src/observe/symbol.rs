@@ -71,6 +71,8 @@ mod tests {
             ("strut.Q.base.wz", "Q at base.wz of strut"),
             ("strut.input", "energy supplied to strut"),
             ("strut.T", "T of strut"),
+            ("mount.rx.force", "force F of mount.rx"),
+            ("mount.y.Q.q2", "Q₂ of mount.y"),
             ("gripper.y", "y of the gripper"),
             ("gripper.error", "distance of the gripper from its path"),
             ("energy.kinetic", "kinetic energy"),

@@ -1,5 +1,6 @@
 //! What names and units of quantities follow from.
 
+use crate::elements::MeasureKind;
 use crate::law::Entry;
 use std::sync::Arc;
 
@@ -7,8 +8,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(super) struct ObservedElement {
     pub(super) name: String,
-    /// Whether it acts on the coordinate of a joint.
-    pub(super) on_joint: bool,
+    pub(super) kind: MeasureKind,
     pub(super) is_rotation: bool,
     pub(super) derivative_unit: &'static str,
     /// Whether its law has one derivative to tell.

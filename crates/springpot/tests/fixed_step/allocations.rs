@@ -3,9 +3,11 @@
 #![allow(unsafe_code, reason = "a global allocator that counts")]
 
 use crate::loops::*;
-use springpot::elements::Joint;
+use springpot::elements::{Bushing, Cable, Component, Joint};
 use springpot::integrate::System;
 use springpot::integrate::fixed::Loop;
+use springpot::model::{Anchor, Parent};
+use springpot::spatial::Rotation;
 use std::alloc::{GlobalAlloc, Layout};
 use std::cell::Cell;
 use std::time::Instant;
@@ -80,4 +82,20 @@ fn steps_do_not_allocate() {
     let mut on_joint = system(&arm(&(strut("caputo") + &free("start = { v = { q1 = 1 } }"))));
     on_joint.elements[0].measure = Joint::named(&on_joint.model, "q2").unwrap().into();
     measure("joint", &on_joint);
+    let model = &on_joint.model.clone();
+    let anchor = |body, point| Anchor { body, point };
+    let (from, to) = (anchor(Parent::Body(0), [0.1; 3]), anchor(Parent::Body(2), [0.0, 0.1, 0.2]));
+    let via = anchor(Parent::Body(1), [0.1, 0.3, 0.2]);
+    let sites = [from, via, to].map(|anchor| model.resolve(&anchor).unwrap());
+    let mut cable = on_joint.clone();
+    cable.elements[0].measure = Cable::new(sites.to_vec()).unwrap().into();
+    measure("cable", &cable);
+    // The turn of the column alone stays below half a turn.
+    let world = anchor(Parent::World, [0.0; 3]);
+    for (ends, component) in [([from, to], Component::Y), ([world, from], Component::Rz)] {
+        let [from, to] = ends.map(|anchor| model.resolve_frame(&anchor, &Rotation::IDENTITY).unwrap());
+        let mut bushing = on_joint.clone();
+        bushing.elements[0].measure = Bushing::new(model, from, to, component).into();
+        measure("bushing", &bushing);
+    }
 }

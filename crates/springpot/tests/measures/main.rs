@@ -5,6 +5,7 @@ mod forces;
 #[path = "../rigid/support/mod.rs"]
 mod random;
 mod refusals;
+mod shapes;
 mod sliders;
 #[path = "../support/mod.rs"]
 mod support;

@@ -20,7 +20,7 @@ impl ElementStep {
     /// At the start of a motion.
     ///
     /// # Errors
-    /// [`RunError::ZeroLength`].
+    /// Where its force has no direction.
     pub(super) fn new(element: &Element, model: &Model, start: &Kinematics) -> Result<Self, RunError> {
         let (reading, gradient) = element.measure.read(model, start);
         element.check_direction(0.0, &reading)?;

@@ -65,7 +65,7 @@ impl OneStage {
     /// At rest where the motion starts; nothing is asked of the laws.
     ///
     /// # Errors
-    /// [`RunError::ZeroLength`].
+    /// Where the force of an element has no direction.
     pub(super) fn new(cx: Context, forward: &Arc<Forward>, method: Method) -> Result<Self, RunError> {
         let (system, model) = (cx.system, &cx.system.model);
         let nv = model.nv();
@@ -294,10 +294,8 @@ impl OneStage {
         }
         for (element, step) in cx.system.elements.iter().zip(&self.elements) {
             let [start, end] = &step.ends;
-            // One that turned by more than a right angle had length 0 on the way.
-            if end.check().is_err() || start.turned_over(end) {
-                let length = start.coordinate.min(end.coordinate);
-                return Err(RunError::ZeroLength { t: self.end.t, element: element.name.clone(), length });
+            if let Some(why) = start.lost_until(end).or(end.check().err()) {
+                return Err(element.without_direction(self.end.t, why));
             }
         }
         if self.method.node() == 1.0 {

@@ -15,6 +15,7 @@ use super::recorder::{Recorder, StepPowers};
 use super::settings::Settings;
 use super::stepper::{Behind, Stepper, Target, Trial};
 use crate::collocation::{MAX_NODES, RADAU_NODES, RADAU_WEIGHTS};
+use crate::elements::NoDirection;
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
 use serde::{Deserialize, Serialize};
@@ -269,17 +270,16 @@ fn gap(recorder: &Recorder, e: usize) -> f64 {
     (last - first - recorder.bank.size() * travel).abs()
 }
 
-/// An element whose direction turned by more than a right angle between two nodes: its points passed each other.
+/// An element whose points passed each other between two nodes, or that passed half a turn.
 fn turned_over(cx: Context, recorder: &Recorder, t: f64, h: f64) -> Result<Option<usize>, RunError> {
     for pair in recorder.evaluations.windows(2) {
         for (e, (a, b)) in pair[0].elements.iter().zip(&pair[1].elements).enumerate() {
-            if !a.reading.turned_over(&b.reading) {
-                continue;
-            }
+            let Some(why) = a.reading.lost_until(&b.reading) else { continue };
             let element = &cx.system.elements[e];
             let length = a.reading.coordinate.min(b.reading.coordinate);
-            if h < 1e-9 * recorder.settings.end || length < 1e-9 * element.rest {
-                return Err(RunError::ZeroLength { t: t + 0.5 * h, element: element.name.clone(), length });
+            let met = !matches!(why, NoDirection::HalfTurn { .. }) && length < 1e-9 * element.rest;
+            if h < 1e-9 * recorder.settings.end || met {
+                return Err(element.without_direction(t + 0.5 * h, why));
             }
             return Ok(Some(e));
         }

@@ -3,6 +3,7 @@
 use super::method::Radau;
 use super::newton::Outcome;
 use crate::collocation::MAX_NODES;
+use crate::elements::NoDirection;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::kinks::Seen;
@@ -50,7 +51,7 @@ impl Radau {
             }
         };
         self.newton_iterations += u64::from(iterations);
-        if let Some(e) = self.turned_over() {
+        if let Some((e, _)) = self.lost() {
             (error, worst) = (f64::INFINITY, Worst::Element(e));
         }
         self.refuse_overflow(t, h)?;
@@ -123,18 +124,16 @@ impl Radau {
         (error, worst)
     }
 
-    /// The first element whose points passed each other in the step.
-    fn turned_over(&self) -> Option<usize> {
-        self.step.elements.iter().position(super::step::ElementStage::turned_over)
+    /// The first element that lost its direction in the step.
+    fn lost(&self) -> Option<(usize, NoDirection)> {
+        self.step.elements.iter().enumerate().find_map(|(e, element)| Some((e, element.lost()?)))
     }
 
     fn step_too_small(&self, cx: Context, t: f64, h: f64, error: f64, worst: Worst) -> RunError {
         let system = cx.system;
         let joint = |k: usize| system.model.v_labels()[k].name.clone();
-        if let Some(e) = self.turned_over() {
-            let readings = self.step.elements[e].readings.iter();
-            let length = readings.map(|reading| reading.coordinate).fold(f64::INFINITY, f64::min);
-            return RunError::ZeroLength { t, element: system.elements[e].name.clone(), length };
+        if let Some((e, why)) = self.lost() {
+            return system.elements[e].without_direction(t, why);
         }
         match worst {
             Worst::Velocity(k) => RunError::StepTooSmall { t, h, error, subject: format!("joint \"{}\"", joint(k)) },

@@ -6,7 +6,7 @@ use crate::actuation::Forward;
 use crate::collocation::radau::A;
 use crate::collocation::{MAX_NODES, lagrange_row};
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
-use crate::elements::{Element, ElementBank, Forces, Reading};
+use crate::elements::{Element, ElementBank, Forces, NoDirection, Reading};
 use crate::integrate::context::Context;
 use crate::integrate::kinks::Kinks;
 use crate::integrate::system::System;
@@ -50,13 +50,9 @@ pub(super) struct ElementStage {
 }
 
 impl ElementStage {
-    /// An element whose direction turned by more than a right angle between two nodes: its points passed each other.
-    pub(super) fn turned_over(&self) -> bool {
-        self.readings.windows(2).any(|two| {
-            let (before, after) = (&two[0], &two[1]);
-            let met = after.coordinate < before.coordinate && after.check().is_err();
-            met || before.turned_over(after)
-        })
+    /// Why the element lost its direction between two nodes, where it did.
+    pub(super) fn lost(&self) -> Option<NoDirection> {
+        self.readings.windows(2).find_map(|two| two[0].lost_until(&two[1]))
     }
 }
 

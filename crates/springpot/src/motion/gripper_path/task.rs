@@ -74,7 +74,7 @@ impl Task {
         let mut residual = Residual { error: [0.0; CONDITIONS], distance: miss.norm(), angle: 0.0 };
         residual.error[..3].copy_from_slice(&miss.0);
         if let Some(wanted) = &target.rotation {
-            let turn = rotation_vector(&(*wanted * kinematics.frame(&self.frame).rotation.transpose()));
+            let turn = (*wanted * kinematics.frame(&self.frame).rotation.transpose()).rotation_vector();
             residual.angle = turn.norm();
             residual.error[3..].copy_from_slice(&turn.0);
         }
@@ -101,42 +101,5 @@ impl Task {
 
     pub(super) fn signals(&self) -> impl Iterator<Item = &Signal> {
         self.position.iter().chain(self.rpy.iter().flatten())
-    }
-}
-
-/// Axis times angle (0 … π) of a rotation.
-fn rotation_vector(rotation: &Rotation) -> Vec3 {
-    let r = &rotation.0;
-    let twice_sine = Vec3([r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]]);
-    let trace = r[0][0] + r[1][1] + r[2][2];
-    let sine = 0.5 * twice_sine.norm();
-    let angle = sine.atan2(0.5 * (trace - 1.0));
-    if sine > 1e-7 {
-        return twice_sine * (0.5 * angle / sine);
-    }
-    if trace > 0.0 {
-        return twice_sine * 0.5;
-    }
-    // Half a turn: the axis is the longest column of R + I.
-    let column = |k: usize| Vec3([0, 1, 2].map(|i| r[i][k] + if i == k { 1.0 } else { 0.0 }));
-    let longest = (0..3).map(column).max_by(|a, b| a.norm().total_cmp(&b.norm())).expect("three columns");
-    longest * (angle / longest.norm())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rotation_vectors_invert_axis_angle() {
-        let axis = Vec3([0.36, -0.48, 0.8]);
-        for angle in [0.0, 1e-9, 0.3, 2.0, std::f64::consts::PI - 1e-6] {
-            let vector = rotation_vector(&Rotation::from_axis_angle(axis, angle));
-            assert!((vector - axis * angle).norm() < 1e-8, "{angle}");
-        }
-        let half = rotation_vector(&Rotation::from_axis_angle(axis, std::f64::consts::PI));
-        assert!(
-            (half.norm() - std::f64::consts::PI).abs() < 1e-12 && (half.dot(axis).abs() - half.norm()).abs() < 1e-9
-        );
     }
 }
