@@ -5,7 +5,7 @@ use crate::support::{Run, cases, run_system};
 use springpot::fractional::mittag_leffler::{Complex64, MittagLeffler};
 
 /// A slider along x whose one element has this law, and a stroke of q(t).
-fn slider(element: &str, q: &str, end: f64) -> Run {
+pub(crate) fn slider(element: &str, q: &str, end: f64) -> Run {
     let text = format!(
         "[robot]\ngravity = [0, 0, 0]\n[[robot.body]]\nname = \"b\"\nmass = 1\n\
          joint = {{ name = \"q\", kind = \"prismatic\", axis = [1, 0, 0], origin = [1, 0, 0] }}\n\

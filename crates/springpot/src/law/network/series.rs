@@ -19,6 +19,9 @@ use num_complex::Complex64;
 type Matrix = [[f64; MAX_NODES]; MAX_NODES];
 type Values = [f64; MAX_NODES + 1];
 
+/// Where so many steps have led since t = 0, inner strokes no longer bend as at a start.
+const LAYER: f64 = 10.0;
+
 /// Iterations of nonlinear parts, and how often one of them is halved.
 const MOST_ITERATIONS: usize = 60;
 const MOST_HALVINGS: usize = 30;
@@ -215,16 +218,24 @@ pub(super) fn local_errors(parts: &[Network], step: &Step, state: &mut StateRef,
     let strokes = state.take(own(parts)).variables;
     let Solved { mut inner, shares, .. } = solve(parts, step, strokes, &mut state.clone());
     for ((part, inner), share) in parts.iter().zip(&mut inner).zip(shares) {
-        let first = errors.len();
+        let (first, end) = (errors.len(), step.nodes.count());
+        let rate = inner.rate[end];
         if step.nodes == Nodes::Radau {
             // The rates of the parabola through three of the strokes: what departs from it is the estimate.
             inner.rate = rates_of_parabola(&inner.stroke, step.h);
         }
         part.local_errors_part(&inner.step(step), state, errors);
         for error in &mut errors[first..] {
-            // A part that hardly yields in the step does not matter, however little is known of it.
-            error.error *= share;
-            error.sharpness = (4.0 - error.order) / (3.0 - error.order);
+            // Dashpots are told rates that are known no better than the strokes.
+            if error.error == 0.0 && error.order == 1.0 {
+                error.error = (rate - inner.rate[end]).abs();
+            }
+            // A part that hardly yields in the step does not matter, however little is known of it. With share = (h/τ)^α what a step near the
+            // start errs is h/τ of it later on, and no estimate is sharpened where strokes bend like t^α.
+            (error.error, error.sharpness) = match step.t > LAYER * step.h || error.order == 0.0 {
+                true => (error.error * share, (4.0 - error.order) / (3.0 - error.order)),
+                false => (error.error * share.powf(error.order.recip()), 1.0),
+            };
         }
     }
 }
