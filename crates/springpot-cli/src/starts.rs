@@ -24,14 +24,17 @@ pub(crate) fn warn(survey: &Survey, cases: &Cases) {
             diagnostic::warning(placed(found, &message), Some(help.into()));
         }
         if let Some(found) = singular {
+            let what = match found.start.infinite {
+                true => "its force is infinite at t = 0 and its energy is not known",
+                false => "its energy is not known",
+            };
             let message = format!(
-                "element \"{name}\" starts with x(0) = {} {unit} and the Riemann-Liouville derivative: its force \
-                 is infinite at t = 0 and its energy is not known",
+                "element \"{name}\" starts with x(0) = {} {unit} and the Riemann-Liouville derivative: {what}",
                 short(found.start.stroke)
             );
             let help = format!(
-                "this says that it jumped there from x = 0; derivative = \"caputo\" says that it was held \
-                 there before, {rest_key} = \"start\" that x(0) = 0"
+                "this says that it jumped there from x = 0; derivative = \"caputo\" says that it was held there before, \
+                 past = {{ held = \"1 s\" }} for a while, {rest_key} = \"start\" that x(0) = 0"
             );
             diagnostic::warning(placed(found, &message), Some(help));
         }

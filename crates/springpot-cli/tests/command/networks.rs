@@ -297,3 +297,23 @@ fn pasts_are_said_and_judged() {
         words.iter().for_each(|words| assert!(said.contains(words), "{past}: {words:?} is not in {}", refused.stderr));
     }
 }
+
+#[test]
+fn a_jump_is_infinite_only_where_nothing_yields() {
+    for (law, is_infinite) in [
+        ("law = \"springpot\"\nparameters = { c = 80, alpha = 0.4 }\n", true),
+        ("law = \"fractional-maxwell\"\nparameters = { k = 300, c = 80, alpha = 0.4 }\n", false),
+    ] {
+        let said = with(law).done(&[
+            "check",
+            "arm.toml",
+            "--set",
+            "element.damper.rest_length=0.45",
+            "--set",
+            "element.damper.past=unloaded",
+        ]);
+        let words = said.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains("its energy is not known") && words.contains("past = { held"), "{words}");
+        assert_eq!(words.contains("its force is infinite"), is_infinite, "{words}");
+    }
+}

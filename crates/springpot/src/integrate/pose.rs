@@ -17,8 +17,10 @@ pub struct ElementStart {
     pub stroke: f64,
     /// ∂y/∂q_b, nv values.
     pub gradient: Vec<f64>,
-    /// Whether its energies are unknown: a Riemann–Liouville start from x(0) ≠ 0, at which a springpot has an infinite force.
+    /// Whether its energies are unknown: it was unloaded and jumps to x(0) ≠ 0.
     pub singular: bool,
+    /// Whether its force is infinite then, as that of a springpot is; in series with a spring it is not.
+    pub infinite: bool,
 }
 
 /// The motion at one time.
@@ -52,10 +54,10 @@ impl System {
         self.context().fill(0.0, 0.0, None, &mut Scratch::new(&self.model), &mut evaluation)?;
         let starts = self.elements.iter().zip(evaluation.elements).map(|(element, state)| {
             let begun = element.begin(state.reading.coordinate, &state.inputs);
-            let singular = begun.map_err(RunError::of_kernel(&element.name))?;
-            let singular = !singular.is_accounted();
+            let law = begun.map_err(RunError::of_kernel(&element.name))?;
+            let (singular, infinite) = (!law.is_accounted(), law.is_singular());
             let (length, stroke) = (state.reading.coordinate, state.stroke);
-            Ok(ElementStart { length, stroke, gradient: state.gradient, singular })
+            Ok(ElementStart { length, stroke, gradient: state.gradient, singular, infinite })
         });
         starts.collect()
     }
