@@ -73,10 +73,8 @@ impl Periodic {
 
     /// The stroke at time t.
     pub fn stroke(&self, t: f64) -> f64 {
-        let Harmonics { omega, spectrum } = &self.harmonics();
-        let terms = spectrum.iter().enumerate().skip(1);
-        let swing: f64 = terms.map(|(n, x)| 2.0 * (x * Complex64::cis(n as f64 * omega * t)).re).sum();
-        spectrum.first().map_or(0.0, |mean| mean.re) + swing
+        let term = |(n, x): (usize, &Complex64)| 2.0 * (x * Complex64::cis(n as f64 * TAU / self.period * t)).re;
+        self.spectrum[0].re + self.spectrum.iter().enumerate().skip(1).map(term).sum::<f64>()
     }
 
     fn harmonics(&self) -> Harmonics {
