@@ -5,7 +5,7 @@ use super::plan::Plan;
 use super::reader::{Context, Field, Read, Refused, Table};
 use super::refusal::{Place, RefusalKind};
 use serde_json::{Value, json};
-use springpot::law::{Derivative, Past};
+use springpot::law::Derivative;
 
 /// What happened to an element before t = 0.
 #[derive(Debug, Clone)]
@@ -93,19 +93,14 @@ pub(crate) fn settle(ctx: &Context<'_>, plan: &mut Plan) -> Read<()> {
     for (e, plan) in plan.elements.iter_mut().enumerate() {
         let PastPlan::Steady { period, place } = &plan.past else { continue };
         let name = &plan.element.name;
-        let past: Past = system.steady_past(e, *period, end).map_err(|error| {
-            let refusal =
-                place.refuse(RefusalKind::Rule, format!("`past` of element {name:?} cannot be steady: {error}"));
-            ctx.refuse(refusal.help("write past = { held = \"30 s\" }, or run some periods first"))
-        })?;
-        plan.element = plan.element.clone().with_past(past).map_err(|error| {
-            let message = format!("`past` of element {name:?} cannot be steady: its law needs {error}");
-            ctx.refuse(
-                place
-                    .refuse(RefusalKind::Rule, message)
-                    .help("write past = { held = \"30 s\" }, or run some periods first"),
-            )
-        })?;
+        let refuse = |why: String| {
+            let message = format!("`past` of element {name:?} cannot be steady: {why}");
+            let help = "write past = { held = \"30 s\" }, or run some periods first";
+            ctx.refuse(place.refuse(RefusalKind::Rule, message).help(help))
+        };
+        let past = system.steady_past(e, *period, end).map_err(|error| refuse(error.to_string()))?;
+        let settled = plan.element.clone().with_past(past);
+        plan.element = settled.map_err(|error| refuse(format!("its law needs {error}")))?;
     }
     Ok(())
 }

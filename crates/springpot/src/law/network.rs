@@ -3,7 +3,7 @@
 mod series;
 
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
-use super::past::Harmonics;
+use super::past::Periodic;
 use super::rule::RuleError;
 use super::state::{State, StateMut, StateRef, StateSize};
 use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
@@ -471,17 +471,15 @@ impl Network {
     }
 
     /// Puts a periodic stroke since ever into the state of a law that is linear, its memories opened.
-    pub(super) fn recall(&self, harmonics: &Harmonics, at: &Point, state: &mut State) {
-        self.recall_part(harmonics, at, &mut state.view_mut());
+    pub(super) fn recall(&self, stroke: &Periodic, at: &Point, state: &mut State) {
+        self.recall_part(stroke, at, &mut state.view_mut());
     }
 
-    fn recall_part(&self, harmonics: &Harmonics, at: &Point, state: &mut StateMut) {
+    fn recall_part(&self, stroke: &Periodic, at: &Point, state: &mut StateMut) {
         match self {
-            Self::Leaf(leaf) => {
-                state.take(leaf.size()).memories.iter_mut().for_each(|memory| recall(memory, harmonics))
-            }
-            Self::Parallel(parts) => parts.iter().for_each(|part| part.recall_part(harmonics, at, state)),
-            Self::Series(parts) => series::recall(parts, harmonics, at, state),
+            Self::Leaf(leaf) => state.take(leaf.size()).memories.iter_mut().for_each(|memory| recall(memory, stroke)),
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.recall_part(stroke, at, state)),
+            Self::Series(parts) => series::recall(parts, stroke, at, state),
         }
     }
 
@@ -531,15 +529,15 @@ impl Network {
 }
 
 /// Puts a periodic stroke since ever into a memory.
-fn recall(memory: &mut Memory, harmonics: &Harmonics) {
-    let (alpha, width) = (memory.alpha(), harmonics.last());
-    let rate = |t: f64| harmonics.sum(|s| s * (s * t).exp());
-    let mode = |lambda: f64| harmonics.sum(|s| s / (lambda + s));
+fn recall(memory: &mut Memory, stroke: &Periodic) {
+    let (alpha, width) = (memory.alpha(), stroke.last());
+    let rate = |t: f64| stroke.sum(|s| s * (s * t).exp());
+    let mode = |lambda: f64| stroke.sum(|s| s / (lambda + s));
     let nodes = Nodes::Radau;
     let rates: Vec<f64> = [0.0].iter().chain(nodes.positions()).map(|theta| rate((theta - 1.0) * width)).collect();
     let last = RatePolynomial::through_rates(width, nodes, &rates);
-    let derivative = harmonics.sum(|s| if alpha == 0.0 { Complex64::ONE } else { s.powf(alpha) });
-    memory.recall(&mode, &last, derivative, harmonics.mean());
+    let derivative = stroke.sum(|s| if alpha == 0.0 { Complex64::ONE } else { s.powf(alpha) });
+    memory.recall(&mode, &last, derivative, stroke.mean());
 }
 
 /// How much the derivative that a leaf tells is worth, and its order.

@@ -44,14 +44,6 @@ pub struct Periodic {
     spectrum: Arc<[Complex64]>,
 }
 
-/// One leaf or part under a periodic stroke.
-pub(super) struct Harmonics {
-    /// Angular frequency of the first, rad/s.
-    pub(super) omega: f64,
-    /// Coefficients of e^{inωt}, n = 0, 1, …
-    pub(super) spectrum: Vec<Complex64>,
-}
-
 impl Periodic {
     /// From strokes at equal distances over one period, s, from t = 0 on, the end left out.
     ///
@@ -71,43 +63,40 @@ impl Periodic {
         (Self { period, spectrum: spectrum.into() }, sizes)
     }
 
-    /// The stroke at time t.
-    pub fn stroke(&self, t: f64) -> f64 {
-        let term = |(n, x): (usize, &Complex64)| 2.0 * (x * Complex64::cis(n as f64 * TAU / self.period * t)).re;
-        self.spectrum[0].re + self.spectrum.iter().enumerate().skip(1).map(term).sum::<f64>()
+    /// The same with other harmonics: the stroke of a part.
+    pub(super) fn with(&self, spectrum: Vec<Complex64>) -> Self {
+        Self { spectrum: spectrum.into(), ..*self }
     }
 
-    fn harmonics(&self) -> Harmonics {
-        Harmonics { omega: TAU / self.period, spectrum: self.spectrum.to_vec() }
+    /// The stroke at time t.
+    pub fn stroke(&self, t: f64) -> f64 {
+        self.mean() + self.sum(|s| Complex64::cis(s.im * t))
     }
 
     /// The period, s.
     pub fn period(&self) -> f64 {
         self.period
     }
-}
 
-impl Harmonics {
-    /// Σ f(inω) X_n over the harmonics above the mean, as a real number.
+    /// Coefficients of e^{2πint/P}, n = 0, 1, …, each with its 2πin/P.
+    pub(super) fn harmonics(&self) -> impl Iterator<Item = (Complex64, Complex64)> + '_ {
+        let omega = TAU / self.period;
+        self.spectrum.iter().enumerate().map(move |(n, x)| (Complex64::new(0.0, n as f64 * omega), *x))
+    }
+
+    /// Σ f(2πin/P) X_n over the harmonics above the mean, as a real number.
     pub(super) fn sum(&self, factor: impl Fn(Complex64) -> Complex64) -> f64 {
-        let frequency = |n: usize| Complex64::new(0.0, n as f64 * self.omega);
-        let terms = self.spectrum.iter().enumerate().skip(1).map(|(n, x)| factor(frequency(n)) * x);
-        2.0 * terms.sum::<Complex64>().re
+        2.0 * self.harmonics().skip(1).map(|(s, x)| factor(s) * x).sum::<Complex64>().re
     }
 
     /// The mean.
     pub(super) fn mean(&self) -> f64 {
-        self.spectrum.first().map_or(0.0, |mean| mean.re)
-    }
-
-    /// The stroke at t = 0.
-    pub(super) fn now(&self) -> f64 {
-        self.mean() + self.sum(|_| Complex64::ONE)
+        self.spectrum[0].re
     }
 
     /// The stretch before t = 0 of which fast modes are made, s.
     pub(super) fn last(&self) -> f64 {
-        LAST * TAU / self.omega
+        LAST * self.period
     }
 }
 
@@ -143,7 +132,7 @@ impl Past {
                 let [shortest, longest] = PERIODIC.map(|share| share * past.period);
                 state.open(tolerance, shortest, longest + horizon)?;
                 let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
-                law.recall(&past.harmonics(), &at, &mut state);
+                law.recall(past, &at, &mut state);
                 Ok(state)
             }
         }

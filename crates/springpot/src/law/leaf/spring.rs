@@ -1,11 +1,9 @@
 //! The linear spring.
 
-use super::contract::Leaf;
+use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
 use crate::law::catalog::{Param, Range};
-use crate::law::network::Network;
-use crate::law::state::StateRef;
-use crate::law::step::{Observation, Point, Response, Step, Term};
+use crate::law::network::{Holds, Network};
 
 /// F = k·x. Stores ½k·x².
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,30 +12,25 @@ pub struct Spring {
     pub stiffness: f64,
 }
 
-impl Leaf for Spring {
+impl Elastic for Spring {
     fn name(&self) -> &'static str {
         "spring"
     }
 
-    fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
-        for i in 0..step.nodes.count() {
-            response.force[i] += self.stiffness * step.stroke[i + 1];
-            response.d_stroke[i][i] += self.stiffness;
-        }
+    fn force(&self, x: f64) -> f64 {
+        self.stiffness * x
     }
 
-    fn now(&self, at: &Point, _: StateRef) -> Observation {
-        let x = at.stroke;
-        Observation {
-            derivative: x,
-            regular: self.stiffness * x,
-            singular: 0.0,
-            stored: Some(0.5 * self.stiffness * x * x),
-        }
+    fn slope(&self, _: f64) -> f64 {
+        self.stiffness
     }
 
-    fn linearised(&self, _: &Point) -> Term {
-        Term { coefficient: self.stiffness, order: 0.0 }
+    fn energy(&self, x: f64) -> f64 {
+        0.5 * self.stiffness * x * x
+    }
+
+    fn holds(&self) -> Holds {
+        if self.stiffness == 0.0 { Holds::Never } else { Holds::Always }
     }
 
     fn is_linear(&self) -> bool {

@@ -10,7 +10,7 @@ use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{Form, KernelError, RatePolynomial};
-use crate::law::past::Harmonics;
+use crate::law::past::Periodic;
 use crate::law::state::{State, StateMut, StateRef};
 use crate::law::step::{LocalError, Point, Powers, Response, Start, Step};
 
@@ -170,22 +170,21 @@ pub(super) fn prepare(parts: &[Network], step: &Step, state: &mut StateMut) {
 }
 
 /// The strokes of the parts under a periodic stroke since ever: all have one force at each frequency.
-pub(super) fn recall(parts: &[Network], harmonics: &Harmonics, at: &Point, state: &mut StateMut) {
-    let mut inner: Vec<Vec<Complex64>> = vec![Vec::with_capacity(harmonics.spectrum.len()); parts.len()];
+pub(super) fn recall(parts: &[Network], whole: &Periodic, at: &Point, state: &mut StateMut) {
+    let mut inner: Vec<Vec<Complex64>> = vec![Vec::new(); parts.len()];
     let rest = shares(parts, at, Onset::Long).of_parts;
-    for (n, stroke) in harmonics.spectrum.iter().enumerate() {
-        let s = Complex64::new(0.0, n as f64 * harmonics.omega);
+    for (n, (s, stroke)) in whole.harmonics().enumerate() {
         let compliances: Vec<Complex64> = parts.iter().map(|part| part.modulus(at, s).inv()).collect();
-        let whole: Complex64 = compliances.iter().sum();
+        let compliance: Complex64 = compliances.iter().sum();
         for (k, inner) in inner.iter_mut().enumerate() {
-            inner.push(if n == 0 { rest[k] * stroke } else { compliances[k] / whole * stroke });
+            inner.push(if n == 0 { rest[k] * stroke } else { compliances[k] / compliance * stroke });
         }
     }
     let strokes = state.take(own(parts)).variables;
     for ((part, spectrum), stroke) in parts.iter().zip(inner).zip(strokes) {
-        let harmonics = Harmonics { spectrum, ..*harmonics };
-        *stroke = harmonics.now();
-        part.recall_part(&harmonics, at, state);
+        let own = whole.with(spectrum);
+        *stroke = own.stroke(0.0);
+        part.recall_part(&own, at, state);
     }
 }
 
