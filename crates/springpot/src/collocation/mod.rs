@@ -2,6 +2,7 @@
 //!
 //! With θ = (t − t_n)/h the nodes are 0 < c_1 < … < c_s ≤ 1. A function over the step is known by its values at the start and at the nodes.
 
+pub(crate) mod inner;
 pub(crate) mod radau;
 
 use serde::{Deserialize, Serialize};
@@ -23,8 +24,11 @@ pub(crate) const RADAU_INVERSE: [[f64; 3]; 3] = [
     [5.531_972_647_421_808, -7.531_972_647_421_808, 5.0],
 ];
 
+/// Number of nodes of a step with [`Nodes::Radau`].
+pub const STAGES: usize = RADAU_NODES.len();
+
 /// The largest number of nodes of a step.
-pub const MAX_NODES: usize = 3;
+pub const MAX_NODES: usize = inner::NODES.len();
 
 /// Where a step is evaluated, 0 < c_1 < … < c_s ≤ 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,6 +39,8 @@ pub enum Nodes {
     Midpoint,
     /// s = 3, Radau IIA.
     Radau,
+    /// s = 4, Radau IIA: where the strokes inside a series are found in steps with [`Nodes::Radau`].
+    Inner,
 }
 
 impl Nodes {
@@ -44,24 +50,27 @@ impl Nodes {
             Self::One => &[1.0],
             Self::Midpoint => &[0.5],
             Self::Radau => &RADAU_NODES,
+            Self::Inner => &inner::NODES,
         }
     }
 
     /// The inverse of the collocation matrix: with x' a polynomial through its values at the nodes, x'_i = Σ_j inverse_ij (x_j − x_0)/h.
-    pub fn inverse(self) -> [[f64; MAX_NODES]; MAX_NODES] {
+    pub fn inverse(self) -> &'static [[f64; MAX_NODES]; MAX_NODES] {
         match self {
-            Self::One => [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]],
-            Self::Midpoint => [[2.0, 0.0, 0.0], [0.0; 3], [0.0; 3]],
-            Self::Radau => RADAU_INVERSE,
+            Self::One => &[[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]],
+            Self::Midpoint => &[[2.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]],
+            Self::Radau => &radau::PADDED_INVERSE,
+            Self::Inner => &inner::TABLEAU_OF_FOUR.inverse,
         }
     }
 
-    /// The collocation matrix A: x_i − x_0 = h Σ_j A_ij x'_j; exact for x' of degree 2 with three nodes, 0 with one.
-    pub fn matrix(self) -> [[f64; MAX_NODES]; MAX_NODES] {
+    /// The collocation matrix A: x_i − x_0 = h Σ_j A_ij x'_j; exact for x' of degree s − 1.
+    pub fn matrix(self) -> &'static [[f64; MAX_NODES]; MAX_NODES] {
         match self {
-            Self::One => [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]],
-            Self::Midpoint => [[0.5, 0.0, 0.0], [0.0; 3], [0.0; 3]],
-            Self::Radau => radau::A,
+            Self::One => &[[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]],
+            Self::Midpoint => &[[0.5, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]],
+            Self::Radau => &radau::PADDED,
+            Self::Inner => &inner::TABLEAU_OF_FOUR.matrix,
         }
     }
 
@@ -74,14 +83,21 @@ impl Nodes {
 /// Weights of ∫₀^θ f dθ on the values of f at 0 and at the nodes: the Radau weights at θ = 1, the
 /// value in the middle alone for [`Nodes::Midpoint`].
 pub fn quadrature(nodes: Nodes, theta: f64) -> [f64; MAX_NODES + 1] {
+    let mut weights = [0.0; MAX_NODES + 1];
     match nodes {
-        Nodes::One => [theta - 0.5 * theta * theta, 0.5 * theta * theta, 0.0, 0.0],
-        Nodes::Midpoint => [0.0, theta, 0.0, 0.0],
-        Nodes::Radau if theta == 1.0 => [0.0, RADAU_WEIGHTS[0], RADAU_WEIGHTS[1], RADAU_WEIGHTS[2]],
-        Nodes::Radau => std::array::from_fn(|k| {
-            (0..4).rev().fold(0.0, |sum, p| sum * theta + TABLEAU.rates[p][k] / (p + 1) as f64) * theta
-        }),
+        Nodes::One => weights[..2].copy_from_slice(&[theta - 0.5 * theta * theta, 0.5 * theta * theta]),
+        Nodes::Midpoint => weights[1] = theta,
+        Nodes::Radau if theta == 1.0 => weights[1..4].copy_from_slice(&RADAU_WEIGHTS),
+        Nodes::Radau => (0..4).for_each(|k| weights[k] = integral(&TABLEAU.rates, k, theta)),
+        Nodes::Inner if theta == 1.0 => weights[1..].copy_from_slice(&inner::TABLEAU_OF_FOUR.matrix[MAX_NODES - 1]),
+        Nodes::Inner => (0..5).for_each(|k| weights[k] = integral(&inner::TABLEAU_OF_FOUR.values, k, theta)),
     }
+    weights
+}
+
+/// ∫₀^θ of the polynomial with the coefficients `lagrange`[p][k], p = 0, 1, …
+fn integral<const N: usize>(lagrange: &[[f64; N]; N], k: usize, theta: f64) -> f64 {
+    (0..N).rev().fold(0.0, |sum, p| sum * theta + lagrange[p][k] / (p + 1) as f64) * theta
 }
 
 /// Coefficients of θ^p, p = 0…3, of the Lagrange polynomial of point `k` of (0, c_1, c_2, 1).
@@ -89,11 +105,16 @@ pub fn lagrange_row(k: usize) -> [f64; 4] {
     std::array::from_fn(|p| TABLEAU.rates[p][k])
 }
 
-/// Embedded error estimate of the Radau quadrature in units of h, from the values at 0 and at the nodes: γ_0 times the distance
-/// of the value at 0 from the parabola through the nodes (Hairer & Wanner, IV.8). Order 3.
-pub fn quadrature_defect(values: [f64; MAX_NODES + 1]) -> f64 {
-    let cubic: f64 = (0..4).map(|k| TABLEAU.rates[3][k] * values[k]).sum();
-    (radau::GAMMA * RADAU_NODES[0] * RADAU_NODES[1] * cubic).abs()
+/// Embedded error estimate of the quadrature at Radau nodes in units of h, from the values at 0 and at the nodes: γ_0 times the distance
+/// of the value at 0 from the polynomial through the nodes (Hairer & Wanner, IV.8). Of the order s; 0 with one node.
+pub fn quadrature_defect(nodes: Nodes, values: &[f64]) -> f64 {
+    let (highest, product): (&[f64], f64) = match nodes {
+        Nodes::One | Nodes::Midpoint => return 0.0,
+        Nodes::Radau => (&TABLEAU.rates[3], RADAU_NODES.iter().product()),
+        Nodes::Inner => (&inner::TABLEAU_OF_FOUR.values[4], inner::NODES.iter().product()),
+    };
+    let coefficient: f64 = highest.iter().zip(values).map(|(factor, value)| factor * value).sum();
+    (radau::GAMMA * product * coefficient).abs()
 }
 
 /// Inverse Vandermonde matrices of the Radau nodes.
@@ -112,19 +133,20 @@ pub(crate) static TABLEAU: LazyLock<Tableau> = LazyLock::new(|| {
 });
 
 /// coefficients[p][k] of θ^p in the Lagrange polynomial of node k.
-fn lagrange_coefficients(nodes: [f64; 4]) -> [[f64; 4]; 4] {
-    let mut coefficients = [[0.0; 4]; 4];
-    for k in 0..4 {
-        let mut polynomial = [1.0, 0.0, 0.0, 0.0];
+fn lagrange_coefficients<const N: usize>(nodes: [f64; N]) -> [[f64; N]; N] {
+    let mut coefficients = [[0.0; N]; N];
+    for k in 0..N {
+        let mut polynomial = [0.0; N];
+        polynomial[0] = 1.0;
         let mut denominator = 1.0;
-        for (degree, j) in (0..4).filter(|&j| j != k).enumerate() {
+        for (degree, j) in (0..N).filter(|&j| j != k).enumerate() {
             for p in (0..=degree).rev() {
                 polynomial[p + 1] += polynomial[p];
                 polynomial[p] *= -nodes[j];
             }
             denominator *= nodes[k] - nodes[j];
         }
-        for p in 0..4 {
+        for p in 0..N {
             coefficients[p][k] = polynomial[p] / denominator;
         }
     }

@@ -7,6 +7,15 @@ pub(crate) const A: [[f64; 3]; 3] = [
     [0.376_403_062_700_467_3, 0.512_485_826_188_421_6, 1.0 / 9.0],
 ];
 
+/// A and its inverse with room for the most nodes.
+pub(crate) const PADDED: [[f64; 4]; 4] = padded(&A);
+pub(crate) const PADDED_INVERSE: [[f64; 4]; 4] = padded(&super::RADAU_INVERSE);
+
+const fn padded(matrix: &[[f64; 3]; 3]) -> [[f64; 4]; 4] {
+    let [[a, b, c], [d, e, f], [g, h, i]] = *matrix;
+    [[a, b, c, 0.0], [d, e, f, 0.0], [g, h, i, 0.0], [0.0; 4]]
+}
+
 /// A²: Q_i = q_0 + h c_i v_0 + h² Σ_j (A²)_ij a_j.
 pub(crate) const A_SQUARED: [[f64; 3]; 3] = [
     [0.021_835_034_190_722_74, -0.019_857_254_098_612_275, 0.010_042_630_196_562_41],

@@ -4,7 +4,7 @@ use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::{Form, KernelError};
 use crate::law::{
-    Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Singular, Start,
+    Course, Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Start,
     State, Step, Term,
 };
 use serde::{Deserialize, Serialize};
@@ -61,7 +61,7 @@ struct StepShape {
     t: f64,
     h: f64,
     nodes: Nodes,
-    singular: Singular,
+    course: Course,
 }
 
 /// One element of a bank.
@@ -107,7 +107,7 @@ struct StepEnergies {
 }
 
 impl Told {
-    fn step(&self, StepShape { t, h, nodes, singular }: StepShape) -> Step<'_> {
+    fn step(&self, StepShape { t, h, nodes, course }: StepShape) -> Step<'_> {
         let count = nodes.count() + 1;
         let inputs = self.inputs.len() / (MAX_NODES + 1);
         Step {
@@ -122,7 +122,7 @@ impl Told {
                 let size = self.stroke[..count].iter().fold(0.0f64, |size, x| size.max(x.abs()));
                 4.0 * f64::EPSILON * size
             }),
-            singular,
+            course,
         }
     }
 
@@ -153,7 +153,7 @@ impl ElementBank {
                 end: Observation { derivative: 0.0, regular: 0.0, singular: 0.0, stored: None },
             },
         };
-        let step = StepShape { t: 0.0, h: 0.0, nodes, singular: Singular::Value };
+        let step = StepShape { t: 0.0, h: 0.0, nodes, course: Course::Given };
         Self { step, elements: laws.into_iter().map(element).collect() }
     }
 
@@ -245,9 +245,9 @@ impl ElementBank {
         self.step.nodes = nodes;
     }
 
-    /// How singular starts enter the forces at the nodes.
-    pub(crate) fn set_singular(&mut self, singular: Singular) {
-        self.step.singular = singular;
+    /// Whether strokes and rates are those of a known motion, as at first, or are sought so that equations of motion hold.
+    pub fn set_course(&mut self, course: Course) {
+        self.step.course = course;
     }
 
     /// Which data make the polynomial of element `e`.

@@ -15,8 +15,8 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 use serde::{Deserialize, Serialize};
 
-/// Lags that are kept ready: the three nodes of two alternating step sizes.
-const SLOTS: usize = 6;
+/// Lags that are kept ready: the nodes of two alternating step sizes, four at most.
+const SLOTS: usize = 8;
 
 /// Modes faster than the pieces need are dropped once there are this many.
 const SURPLUS: usize = 16;
@@ -293,6 +293,9 @@ impl History {
     /// Takes back what [`Self::save`] wrote of a history with this kernel, from the front of `numbers`; `None` where it is not that.
     pub(super) fn load(&mut self, numbers: &mut &[f64]) -> Option<()> {
         let &[delta, modes, count, width] = numbers.split_off(..4)? else { return None };
+        if !(delta > 0.0 && modes >= 1.0 && width >= 0.0) {
+            return None;
+        }
         let lambda = numbers.split_off(..modes as usize)?;
         let weight = numbers.split_off(..modes as usize)?;
         let z = numbers.split_off(..modes as usize)?;

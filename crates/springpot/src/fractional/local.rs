@@ -1,6 +1,7 @@
 //! The share of the step under way in D^alpha x: the exact kernel against the step's polynomial.
 
 use super::step::{RatePolynomial, local_factors};
+use crate::collocation::inner;
 use crate::collocation::{MAX_NODES, Nodes, RADAU_NODES, TABLEAU};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,8 @@ pub(super) struct Local {
     rates: [[f64; 4]; 3],
     /// Those of the strokes x_j − x_0.
     strokes: [[f64; 3]; 3],
+    /// Those of the strokes at the nodes inside a series.
+    inner: [[f64; 4]; 4],
     /// A lag and its power 1−alpha.
     power: [f64; 2],
 }
@@ -32,7 +35,12 @@ impl From<f64> for Local {
             let term = |p: usize, j: usize| factors[p] * (p + 1) as f64 * TABLEAU.strokes[p][j];
             std::array::from_fn(|j| scale * (0..3).rev().fold(0.0, |sum, p| sum * c + term(p, j)))
         });
-        Self { alpha, factors, rates, strokes, power: [1.0; 2] }
+        let inner = inner::NODES.map(|c| {
+            let scale = c.powf(1.0 - alpha);
+            let term = |p: usize, j: usize| factors[p] * (p + 1) as f64 * inner::TABLEAU_OF_FOUR.values[p + 1][j + 1];
+            std::array::from_fn(|j| scale * (0..4).rev().fold(0.0, |sum, p| sum * c + term(p, j)))
+        });
+        Self { alpha, factors, rates, strokes, inner, power: [1.0; 2] }
     }
 }
 
@@ -63,9 +71,13 @@ impl Local {
     pub(super) fn rate_row(&self, h: f64, i: usize, nodes: Nodes) -> [f64; MAX_NODES + 1] {
         let [first, second, ..] = self.factors;
         let row = match nodes {
-            Nodes::One => [first - second, second, 0.0, 0.0],
-            Nodes::Midpoint => [0.0, self.mean_factor(), 0.0, 0.0],
-            Nodes::Radau => self.rates[i],
+            Nodes::One => [first - second, second, 0.0, 0.0, 0.0],
+            Nodes::Midpoint => [0.0, self.mean_factor(), 0.0, 0.0, 0.0],
+            Nodes::Radau => padded(self.rates[i]),
+            Nodes::Inner => {
+                let by_node = |j: usize| (0..4).map(|k| self.inner[i][k] * nodes.matrix()[k][j]).sum();
+                [0.0, by_node(0), by_node(1), by_node(2), by_node(3)]
+            }
         };
         let scale = self.power(h);
         row.map(|factor| scale * factor)
@@ -74,9 +86,10 @@ impl Local {
     /// Factors of the strokes x_j − x_0, for node i.
     pub(super) fn stroke_row(&self, h: f64, i: usize, nodes: Nodes) -> [f64; MAX_NODES] {
         let row = match nodes {
-            Nodes::One => [self.factors[0], 0.0, 0.0],
-            Nodes::Midpoint => [2.0 * self.mean_factor(), 0.0, 0.0],
-            Nodes::Radau => self.strokes[i],
+            Nodes::One => [self.factors[0], 0.0, 0.0, 0.0],
+            Nodes::Midpoint => [2.0 * self.mean_factor(), 0.0, 0.0, 0.0],
+            Nodes::Radau => padded(self.strokes[i]),
+            Nodes::Inner => self.inner[i],
         };
         let scale = self.power(h) / h;
         row.map(|factor| scale * factor)
@@ -86,4 +99,9 @@ impl Local {
     fn mean_factor(&self) -> f64 {
         self.factors[0] / (2.0 - self.alpha)
     }
+}
+
+/// A row with room for one node more.
+fn padded<const N: usize, const M: usize>(row: [f64; N]) -> [f64; M] {
+    std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0))
 }

@@ -42,7 +42,7 @@ use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
 use super::local::Local;
 use super::step::{Form, NODE_POLYNOMIAL, RatePolynomial};
-use crate::collocation::{MAX_NODES, Nodes, RADAU_INVERSE, RADAU_NODES};
+use crate::collocation::{MAX_NODES, Nodes};
 use serde::{Deserialize, Serialize};
 
 /// Square of what the polynomial with its zeros at the nodes of a step has next to them; between them it is 0.003 to 0.018.
@@ -235,10 +235,11 @@ impl Memory {
             self.jump * self.singular_factor / power * grown / start.h
         };
         match nodes {
-            Nodes::One | Nodes::Midpoint => [impulse(1.0), 0.0, 0.0],
-            Nodes::Radau => {
-                let impulse = RADAU_NODES.map(impulse);
-                RADAU_INVERSE.map(|row| row.iter().zip(impulse).map(|(a, i)| a * i).sum())
+            Nodes::One | Nodes::Midpoint => [impulse(1.0), 0.0, 0.0, 0.0],
+            Nodes::Radau | Nodes::Inner => {
+                let mut impulses = [0.0; MAX_NODES];
+                impulses.iter_mut().zip(nodes.positions()).for_each(|(value, c)| *value = impulse(*c));
+                nodes.inverse().map(|row| row.iter().zip(impulses).map(|(a, i)| a * i).sum())
             }
         }
     }
@@ -273,7 +274,7 @@ impl Memory {
             };
             let before = match nodes {
                 Nodes::Midpoint => mean_history(past, start.h),
-                Nodes::One | Nodes::Radau => past.at(c * start.h),
+                Nodes::One | Nodes::Radau | Nodes::Inner => past.at(c * start.h),
             };
             affine.history[i] = before + self.singular_part(start.t + c * start.h);
             match form {
@@ -305,7 +306,7 @@ impl Memory {
             Nodes::One | Nodes::Midpoint => {
                 past.prepare(h, CUBIC, 0.0);
             }
-            Nodes::Radau => {
+            Nodes::Radau | Nodes::Inner => {
                 for c in nodes.positions() {
                     past.prepare(c * h, CUBIC, 0.0);
                 }
@@ -412,13 +413,17 @@ impl Memory {
     /// Takes `step` into the past, D^alpha x at its end being that of `as_found`.
     fn take(&mut self, step: &RatePolynomial, as_found: &RatePolynomial) {
         // Whoever does not prepare steps asks for the next one with the same lags.
-        if self.prepared.take().is_none() {
-            self.prepare_lags(step.h, Nodes::Radau);
-        }
+        let nodes = match self.prepared.take() {
+            Some(prepared) => prepared.nodes,
+            None => {
+                self.prepare_lags(step.h, Nodes::Radau);
+                Nodes::Radau
+            }
+        };
         let local = self.local.part(as_found, 1.0);
         let Some(past) = &mut self.past else { return };
         self.travelled += step.travel();
-        let shortest = RADAU_NODES[0] * step.h;
+        let shortest = Nodes::Radau.positions()[0].min(nodes.positions()[0]) * step.h;
         past.extend(shortest);
         self.now = local + past.advance(step.h, &step.u, 0.0);
         past.drop_surplus(shortest);

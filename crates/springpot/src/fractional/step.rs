@@ -4,6 +4,7 @@
 //! 1/Γ(1−alpha) ∫ (t−s)^−alpha x'(s) ds from t_n to t_n + θh = h^{1−alpha} Σ_p u_p p!/Γ(p+2−alpha) θ^{p+1−alpha}.
 
 use super::gamma::gamma;
+use crate::collocation::inner;
 use crate::collocation::{Nodes, RADAU_NODES, TABLEAU};
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +29,7 @@ pub struct RatePolynomial {
 
 impl RatePolynomial {
     /// Through x' at 0 and at the nodes (s + 1 values): the cubic for Radau, the straight line for one
-    /// node at the end, the constant for one in the middle.
+    /// node at the end, the constant for one in the middle; the cubic through the nodes alone where there are four.
     pub fn through_rates(h: f64, nodes: Nodes, rate: &[f64]) -> Self {
         let u = match nodes {
             Nodes::One => [rate[0], rate[1] - rate[0], 0.0, 0.0],
@@ -36,6 +37,10 @@ impl RatePolynomial {
             Nodes::Radau => {
                 let inverse = &TABLEAU.rates;
                 std::array::from_fn(|p| (0..4).map(|k| inverse[p][k] * rate[k]).sum())
+            }
+            Nodes::Inner => {
+                let inverse = &inner::TABLEAU_OF_FOUR.rates;
+                std::array::from_fn(|p| (0..4).map(|k| inverse[p][k] * rate[k + 1]).sum())
             }
         };
         Self { h, u }
@@ -50,6 +55,13 @@ impl RatePolynomial {
             Nodes::Radau => {
                 for p in 0..3 {
                     let coefficient: f64 = (0..3).map(|j| TABLEAU.strokes[p][j] * (stroke[j + 1] - stroke[0])).sum();
+                    u[p] = (p + 1) as f64 * coefficient / h;
+                }
+            }
+            Nodes::Inner => {
+                let values = &inner::TABLEAU_OF_FOUR.values;
+                for p in 0..4 {
+                    let coefficient: f64 = (0..4).map(|j| values[p + 1][j + 1] * (stroke[j + 1] - stroke[0])).sum();
                     u[p] = (p + 1) as f64 * coefficient / h;
                 }
             }

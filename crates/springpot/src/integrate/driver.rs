@@ -11,7 +11,7 @@ use super::settings::{Settings, Stop};
 use super::solver::Solver;
 use super::stepper::{Behind, Target, Trial};
 use super::system::Motion;
-use crate::collocation::{MAX_NODES, RADAU_NODES};
+use crate::collocation::{RADAU_NODES, STAGES};
 use crate::observe::Snapshot;
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
@@ -242,8 +242,8 @@ impl Driver {
         // Steps of one size are known at their ends alone.
         let is_fixed = self.solver.stepper().fixed_step().is_some();
         let mut before = (step.from, 0);
-        for node in if is_fixed { MAX_NODES } else { 1 }..=MAX_NODES {
-            let to = if node == MAX_NODES { step.to } else { step.from + RADAU_NODES[node - 1] * step.size };
+        for node in if is_fixed { STAGES } else { 1 }..=STAGES {
+            let to = if node == STAGES { step.to } else { step.from + RADAU_NODES[node - 1] * step.size };
             let q = [before.1, node].map(|node| self.recorder.evaluations[node].q.as_slice());
             definite.check_way(&cx.system.model, [before.0, to], q)?;
             before = (to, node);
@@ -310,7 +310,7 @@ impl Driver {
         let theta = if at == to { 1.0 } else { (at - from) / (to - from) };
         if at == to && behind != Behind::Break {
             self.solver.stepper_mut().complete(cx, &mut self.recorder, 1)?;
-            snapshot.evaluation.clone_from(&self.recorder.evaluations[MAX_NODES]);
+            snapshot.evaluation.clone_from(&self.recorder.evaluations[STAGES]);
         } else {
             self.solver.stepper_mut().interpolate(cx, &mut self.recorder, at, theta, &mut snapshot.evaluation)?;
         }

@@ -2,7 +2,7 @@
 
 use super::system::System;
 use super::zero::first_zero;
-use crate::collocation::{MAX_NODES, lagrange_row};
+use crate::collocation::{STAGES, lagrange_row};
 use crate::elements::{Element, ElementBank};
 use crate::law::{Guard, InputValue, Point};
 
@@ -82,7 +82,7 @@ impl Kinks {
                 let found = first_zero(|theta| sign * at(values, if on_it { theta.max(EARLY) } else { theta }));
                 let Some(theta) = found.filter(|theta| *theta > 0.0) else { continue };
                 let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
-                let behind = -sign * values[MAX_NODES];
+                let behind = -sign * values[STAGES];
                 if (0.0..=(SHARE * moved).max(noise)).contains(&behind) && theta > 0.9 {
                     is_at_end = true;
                 } else if first.is_none_or(|(earliest, _)| theta < earliest) {
@@ -108,8 +108,8 @@ impl Kinks {
 /// The cubic through the values at θ.
 fn at(values: &Guard, theta: f64) -> f64 {
     if theta == 1.0 {
-        return values[MAX_NODES];
+        return values[STAGES];
     }
-    let rows: [[f64; 4]; MAX_NODES + 1] = std::array::from_fn(lagrange_row);
-    (0..4).rev().fold(0.0, |sum, p| sum * theta + (0..=MAX_NODES).map(|k| rows[k][p] * values[k]).sum::<f64>())
+    let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
+    (0..4).rev().fold(0.0, |sum, p| sum * theta + (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>())
 }

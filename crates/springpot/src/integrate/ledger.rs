@@ -1,7 +1,7 @@
 //! The energy accounts of a run: kinetic + potential + stored + dissipated − input − actuators stays what it was at t = 0.
 
 use crate::collocation::Nodes;
-use crate::collocation::{MAX_NODES, lagrange_row, quadrature, quadrature_defect};
+use crate::collocation::{STAGES, lagrange_row, quadrature, quadrature_defect};
 use serde::{Deserialize, Serialize};
 
 /// Gauss–Legendre rule on [−1, 1], 12 points: positive nodes and weights.
@@ -15,7 +15,7 @@ const GAUSS: [(f64, f64); 6] = [
 ];
 
 /// A power at the start and at the nodes of a step, W.
-pub(super) type NodePower = [f64; MAX_NODES + 1];
+pub(super) type NodePower = [f64; STAGES + 1];
 
 /// ∫ power dt from t_n to t_n + θh.
 pub(super) fn work(power: &NodePower, h: f64, theta: f64) -> f64 {
@@ -24,14 +24,14 @@ pub(super) fn work(power: &NodePower, h: f64, theta: f64) -> f64 {
 }
 
 /// Error estimate of the work over the whole step.
-pub(super) fn work_defect(power: &NodePower, h: f64) -> f64 {
-    h * quadrature_defect(*power)
+pub(super) fn work_defect(power: &[f64], h: f64) -> f64 {
+    h * quadrature_defect(Nodes::Radau, power)
 }
 
 /// ∫ s^−alpha g(s) ds from t_n to t_n + θh for g given at the start and at the nodes: the work of a singular force.
 pub(super) fn singular_work(g: &NodePower, t: f64, h: f64, theta: f64, alpha: f64) -> f64 {
     let end = theta * h;
-    let polynomial: [f64; 4] = std::array::from_fn(|p| (0..=MAX_NODES).map(|k| lagrange_row(k)[p] * g[k]).sum());
+    let polynomial: [f64; 4] = std::array::from_fn(|p| (0..=STAGES).map(|k| lagrange_row(k)[p] * g[k]).sum());
     if t == 0.0 {
         let terms = polynomial.iter().enumerate().rev();
         return end.powf(1.0 - alpha) * terms.fold(0.0, |sum, (p, c)| sum * theta + c / (p as f64 + 1.0 - alpha));

@@ -10,7 +10,7 @@ use super::settings::{Settings, Stop};
 use super::state::SimulationState;
 use super::system::{Motion, System};
 use crate::actuation::Drive;
-use crate::collocation::MAX_NODES;
+use crate::collocation::STAGES;
 use crate::observe::Snapshot;
 use std::sync::Arc;
 
@@ -144,7 +144,7 @@ impl Simulation {
     }
 
     fn present(&self) -> &Evaluation {
-        let at = if self.driver.step_at_hand().is_some() { MAX_NODES } else { 0 };
+        let at = if self.driver.step_at_hand().is_some() { STAGES } else { 0 };
         &self.driver.recorder.evaluations[at]
     }
 

@@ -48,6 +48,6 @@ pub use past::{Past, Periodic};
 pub use rule::RuleError;
 pub use state::{State, StateMut, StateRef, StateSize};
 pub use step::{
-    InputValue, LeafState, LocalError, Observation, Point, Power, Powers, Response, Singular, Start, Step, Term,
+    Course, InputValue, LeafState, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term,
 };
 pub use written::{NetworkText, NetworkTextError};

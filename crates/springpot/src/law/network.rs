@@ -24,7 +24,7 @@ const MOST_IN_SERIES: usize = 8;
 /// ```
 /// use springpot::collocation::Nodes;
 /// use springpot::fractional::Form;
-/// use springpot::law::{Derivative, Network, Singular, Start, Step};
+/// use springpot::law::{Derivative, Network, Course, Start, Step};
 ///
 /// // A fractional Maxwell element: a spring, and a springpot behind it.
 /// let law = Network::series([Network::spring(100.0), Network::springpot(50.0, 0.5, Derivative::Caputo)]);
@@ -34,7 +34,7 @@ const MOST_IN_SERIES: usize = 8;
 /// let (stroke, rate) = ([0.0, 1e-5], [0.0, 2e-3]);
 /// let step = Step {
 ///     t: 0.0, h: 0.01, nodes: Nodes::One, form: Form::Strokes, stroke: &stroke, rate: &rate, inputs: &[],
-///     resolution: 0.0, singular: Singular::Value,
+///     resolution: 0.0, course: Course::Given,
 /// };
 /// let force = law.evaluate(&step, &state).force[0];
 /// assert!(0.0 < force && force < 100.0 * 1e-5); // softer than the spring alone

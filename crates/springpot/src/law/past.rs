@@ -2,7 +2,7 @@
 
 use super::network::Network;
 use super::state::State;
-use super::step::{Point, Singular, Start, Step};
+use super::step::{Course, Point, Start, Step};
 use crate::collocation::Nodes;
 use crate::fractional::{Form, KernelError};
 use num_complex::Complex64;
@@ -156,7 +156,7 @@ fn relax(law: &Network, start: &Start, age: f64, state: &mut State) {
             rate: &rates,
             inputs: &inputs,
             resolution: 4.0 * f64::EPSILON * start.stroke.abs(),
-            singular: Singular::Moments,
+            course: Course::Sought,
         };
         law.prepare(&step, state);
         law.commit(&step, state);

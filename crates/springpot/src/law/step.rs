@@ -46,17 +46,19 @@ pub struct Step<'a> {
     pub inputs: &'a [InputValue],
     /// Rounding of the strokes, m: differences below it mean nothing.
     pub resolution: f64,
-    /// How a singular start enters the forces at the nodes.
-    pub singular: Singular,
+    /// Whether strokes and rates are given.
+    pub course: Course,
 }
 
-/// How the singular part x(0) t^−alpha/Γ(1−alpha) of a Riemann–Liouville start enters the forces at the nodes.
+/// Whether strokes and rates of a step are given, or sought so that forces fit them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Singular {
-    /// By its value there.
-    Value,
-    /// By its moments over the step, so that impulses are exact ([`crate::fractional::Memory::singular_moments`]).
-    Moments,
+pub enum Course {
+    /// They are those of a motion that is known. The singular part x(0) t^−alpha/Γ(1−alpha) of a Riemann–Liouville start enters the
+    /// forces at the nodes by its value there.
+    Given,
+    /// They follow from equations of motion. A singular part enters by its moments over the step, so that impulses are exact
+    /// ([`crate::fractional::Memory::singular_moments`]).
+    Sought,
 }
 
 /// Where a law starts.

@@ -136,3 +136,25 @@ fn rows_between_steps_are_as_good_as_those_at_their_ends() {
         }
     }
 }
+
+/// Series too, what yields inside them being found at four nodes; the layer in which they begin costs some steps that the others do
+/// not need, so that work and precision tell a little less than steps of one size (`networks/convergence.rs`).
+#[test]
+fn series_cost_what_order_five_costs() {
+    let rtols = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
+    for alpha in [0.2, 0.5, 0.8, 0.95] {
+        for (name, parameters) in [
+            ("fractional-maxwell", "k = 90, c = 40"),
+            ("fractional-zener", "k_e = 50, k_m = 90, c = 40"),
+            ("poynting-thomson", "k_1 = 90, k_2 = 50, c = 40"),
+        ] {
+            let law = format!("law = \"{name}\"\nparameters = {{ {parameters}, alpha = {alpha} }}");
+            let text = slider("2", -9.81, &law, &state("0", "1"));
+            let efforts = work_precision(&text, 2.0, &rtols);
+            let order = measured_order(&efforts);
+            println!("{name}, alpha = {alpha}: order {order:.2}");
+            assert!(order >= 4.4, "{name}, alpha = {alpha}: {order}");
+            assert!(efforts.iter().zip(rtols).all(|(effort, rtol)| effort.error < rtol), "{name}, alpha = {alpha}");
+        }
+    }
+}

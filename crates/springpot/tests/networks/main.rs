@@ -1,6 +1,7 @@
 //! Laws as networks: any number of memories in any order, parts in series, leaves with inner variables.
 
 mod bouc_wen;
+mod convergence;
 mod named;
 mod nonlinear;
 mod orders;

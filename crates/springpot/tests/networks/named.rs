@@ -7,7 +7,7 @@ use springpot::fractional::mittag_leffler::{Complex64, MittagLeffler};
 const ORDERS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
 
 /// Largest error, in units of the largest force.
-const ALLOWED: f64 = 1e-8;
+const ALLOWED: f64 = 1e-9;
 
 fn law(name: &str, parameters: &str, past: &str) -> String {
     format!("law = \"{name}\"\nparameters = {{ {parameters} }}\n{past}")

@@ -348,7 +348,7 @@ fn work_less_ledger(alpha: f64, at: usize, edit: &dyn Fn(&mut Value)) -> f64 {
             rate: &rate,
             inputs: &[],
             resolution: 1e-16,
-            singular: springpot::law::Singular::Value,
+            course: springpot::law::Course::Given,
         };
         let response = law.evaluate(&step, &state);
         let weights = springpot::collocation::RADAU_WEIGHTS;

@@ -71,7 +71,7 @@ impl Samples {
             rate: &self.rate,
             inputs: &self.inputs,
             resolution: 1e-16,
-            singular: springpot::law::Singular::Value,
+            course: springpot::law::Course::Given,
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::integrate::definite::Definite;
 use crate::integrate::error::RunError;
 use crate::integrate::fixed_step::Method;
 use crate::integrate::system::{Motion, System};
-use crate::law::{Point, Singular};
+use crate::law::{Course, Point};
 
 /// How the memories of the elements are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,7 +106,7 @@ impl<'a> Loop<'a> {
         system.check_definite(&stage.origin.q)?;
         let laws = system.elements.iter().map(|element| element.law.clone()).collect();
         let mut bank = ElementBank::new(laws, method.nodes(), Form::Strokes);
-        bank.set_singular(Singular::Moments);
+        bank.set_course(Course::Sought);
         let range = MemoryRange { tolerance: memory.tolerance, shortest: step, horizon: memory.horizon };
         for (e, (element, at)) in system.elements.iter().zip(&stage.elements).enumerate() {
             if element.scheme.is_some() {

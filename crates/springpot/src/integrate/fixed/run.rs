@@ -4,7 +4,7 @@ use super::between::{Accelerator, Between};
 use super::step::{ITERATIONS, OneStage};
 use crate::actuation::Forward;
 use crate::collocation::Nodes;
-use crate::collocation::{MAX_NODES, RADAU_NODES};
+use crate::collocation::{RADAU_NODES, STAGES};
 use crate::elements::ElementBank;
 use crate::fractional::Form;
 use crate::integrate::context::Context;
@@ -16,7 +16,7 @@ use crate::integrate::recorder::Recorder;
 use crate::integrate::resistance::joint_loss;
 use crate::integrate::settings::Settings;
 use crate::integrate::stepper::{Stepper, Target, Trial};
-use crate::law::Singular;
+use crate::law::Course;
 use crate::signal::Agenda;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -104,12 +104,12 @@ impl Fixed {
             drive(cx, &step.forward, at, evaluation);
             evaluation.joint_loss = joint_loss(&step.model, &evaluation.v);
         }
-        let end = &mut recorder.evaluations[MAX_NODES];
+        let end = &mut recorder.evaluations[STAGES];
         end.q.copy_from_slice(&step.end.q);
         end.v.copy_from_slice(&step.end.v);
         if !self.has_paths {
             let elements = step.elements.iter().enumerate();
-            let elements = elements.map(|(e, element)| (&element.ends[1], bank.point(e, MAX_NODES).inputs));
+            let elements = elements.map(|(e, element)| (&element.ends[1], bank.point(e, STAGES).inputs));
             cx.fill_energies(target.to, &step.end.kinematics, elements, end);
         }
         Ok(())
@@ -134,7 +134,7 @@ impl Fixed {
     /// Accelerations and all else that a row asks for, at the start (0) or at the end (1) of the step.
     fn accelerate(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
         let Recorder { evaluations, bank, scratch, is_whole, .. } = recorder;
-        let evaluation = &mut evaluations[end * MAX_NODES];
+        let evaluation = &mut evaluations[end * STAGES];
         let force = |e: usize, evaluation: &Evaluation| match end {
             0 => bank.now(e, &evaluation.elements[e].point(evaluation.t)).map_or(0.0, |now| now.finite_force()),
             _ => bank.end(e).force(),
@@ -156,7 +156,7 @@ impl Stepper for Fixed {
 
     fn set_up(&self, recorder: &mut Recorder) {
         recorder.takes_elements_work = false;
-        recorder.bank.set_singular(Singular::Moments);
+        recorder.bank.set_course(Course::Sought);
         (0..recorder.bank.len()).for_each(|e| recorder.bank.set_form(e, Form::Strokes));
     }
 

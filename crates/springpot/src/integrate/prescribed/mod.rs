@@ -14,7 +14,7 @@ use super::on_grid;
 use super::recorder::{Recorder, StepPowers};
 use super::settings::Settings;
 use super::stepper::{Behind, Stepper, Target, Trial};
-use crate::collocation::{MAX_NODES, RADAU_NODES, RADAU_WEIGHTS};
+use crate::collocation::{RADAU_NODES, RADAU_WEIGHTS, STAGES};
 use crate::elements::NoDirection;
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
@@ -327,7 +327,7 @@ impl Stepper for Prescribed {
         }
         // Before any row is written, since a jump must leave none behind.
         self.behind = match step.behind {
-            Behind::Kink(after) => Some(self.look_across(cx, recorder, MAX_NODES, after)?),
+            Behind::Kink(after) => Some(self.look_across(cx, recorder, STAGES, after)?),
             _ => None,
         };
         Ok(Trial::Accepted { step, next })

@@ -1,7 +1,7 @@
 //! Where joints turn round against friction that sticks: its power |v|·F has a kink there, on which steps end.
 
 use super::Prescribed;
-use crate::collocation::{MAX_NODES, lagrange_row};
+use crate::collocation::{STAGES, lagrange_row};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;
@@ -33,13 +33,13 @@ impl Prescribed {
         let Target { from: t, to, size: h, .. } = *step;
         let mut first: Option<f64> = None;
         for &k in &self.rubbing {
-            let values: [f64; MAX_NODES + 1] = std::array::from_fn(|node| recorder.evaluations[node].v[k]);
+            let values: [f64; STAGES + 1] = std::array::from_fn(|node| recorder.evaluations[node].v[k]);
             let largest = values.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
             let cubic: [f64; 4] =
-                std::array::from_fn(|p| (0..=MAX_NODES).map(|node| lagrange_row(node)[p] * values[node]).sum());
+                std::array::from_fn(|p| (0..=STAGES).map(|node| lagrange_row(node)[p] * values[node]).sum());
             let foreseen = |theta: f64| cubic.iter().rev().fold(0.0, |sum, c| sum * theta + c);
             let sign = foreseen(EARLY).signum();
-            if values[MAX_NODES].abs() <= AT_REST * largest {
+            if values[STAGES].abs() <= AT_REST * largest {
                 continue;
             }
             let Some(near) = first_zero(|theta| sign * foreseen(theta.max(EARLY))) else { continue };

@@ -2,7 +2,7 @@
 
 use super::method::Radau;
 use super::newton::Outcome;
-use crate::collocation::MAX_NODES;
+use crate::collocation::STAGES;
 use crate::elements::NoDirection;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
@@ -89,7 +89,7 @@ impl Radau {
 
     /// Velocities whose energy is beyond double precision.
     fn refuse_overflow(&self, t: f64, h: f64) -> Result<(), RunError> {
-        let overflow = self.step.stages[MAX_NODES - 1].v.iter().position(|v| v.abs() > FASTEST);
+        let overflow = self.step.stages[STAGES - 1].v.iter().position(|v| v.abs() > FASTEST);
         let Some(k) = overflow else { return Ok(()) };
         let what = format!("v.{}", self.step.model.v_labels()[k].name);
         Err(RunError::NotFinite { t: t + h, what, value: f64::INFINITY })

@@ -4,7 +4,7 @@ use super::dense::Dense;
 use super::drives::drive;
 use super::method::Radau;
 use super::start;
-use crate::collocation::{MAX_NODES, RADAU_NODES};
+use crate::collocation::{RADAU_NODES, STAGES};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;
@@ -25,7 +25,7 @@ impl Radau {
         let (t, h) = (target.from, target.size);
         recorder.is_whole[1] = is_whole;
         for (k, c) in RADAU_NODES.into_iter().enumerate() {
-            let is_end = k + 1 == MAX_NODES;
+            let is_end = k + 1 == STAGES;
             let at = if is_end { target.to } else { t + c * h };
             let (evaluation, bank) = (&mut recorder.evaluations[k + 1], &recorder.bank);
             if is_whole || is_end {

@@ -1,15 +1,15 @@
 //! The embedded error estimate of a step.
 
 use super::step::RadauStep;
-use crate::collocation::MAX_NODES;
 use crate::collocation::radau::{ESTIMATE, GAMMA, LEFT, RIGHT};
+use crate::collocation::{MAX_NODES, STAGES};
 use crate::elements::ElementBank;
 
 impl RadauStep {
     /// Accelerations without what a singular start adds: a_i − s σ_i with s σ = −M⁻¹ Σ g F_singular.
     pub(super) fn collect_regular(&mut self, bank: &ElementBank) {
         self.regular[0].copy_from_slice(&self.origin.a);
-        for i in 0..MAX_NODES {
+        for i in 0..STAGES {
             self.regular[i + 1].copy_from_slice(&self.stages[i].a);
         }
         if !self.is_singular {
@@ -17,7 +17,7 @@ impl RadauStep {
         }
         for (e, element) in self.elements.iter().enumerate() {
             let singular = &bank.response(e).singular;
-            for i in 0..MAX_NODES {
+            for i in 0..STAGES {
                 for &k in &self.free {
                     self.regular[i + 1][k] -= element.share[k] * singular[i];
                 }
@@ -51,7 +51,7 @@ impl RadauStep {
         scratch.stiffness.extend((0..count * count).map(|k| slopes.d_q[free[k / count] * n + free[k % count]]));
         for (e, element) in self.elements.iter().enumerate() {
             let response = bank.response(e);
-            let along = |m: &[[f64; 3]; 3]| -> f64 {
+            let along = |m: &[[f64; MAX_NODES]; MAX_NODES]| -> f64 {
                 (0..3).map(|i| LEFT[i] * (0..3).map(|j| m[i][j] * RIGHT[j]).sum::<f64>()).sum()
             };
             let k = along(&response.d_stroke) + along(&response.d_rate) / step;

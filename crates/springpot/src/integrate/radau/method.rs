@@ -15,7 +15,7 @@ use crate::integrate::recorder::Recorder;
 use crate::integrate::settings::Settings;
 use crate::integrate::stepper::{Behind, Stepper, Target, Trial};
 use crate::integrate::system::{Motion, System};
-use crate::law::Singular;
+use crate::law::Course;
 use crate::signal::Agenda;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -109,7 +109,7 @@ impl Stepper for Radau {
 
     fn set_up(&self, recorder: &mut Recorder) {
         recorder.takes_elements_work = false;
-        recorder.bank.set_singular(Singular::Moments);
+        recorder.bank.set_course(Course::Sought);
     }
 
     fn ends_on_sparse_rows(&self) -> bool {

@@ -1,8 +1,8 @@
 //! The Newton iteration for the accelerations of the stages: three unknowns for each free velocity.
 
 use super::step::RadauStep;
-use crate::collocation::MAX_NODES;
 use crate::collocation::radau::{A, A_SQUARED};
+use crate::collocation::{MAX_NODES, STAGES};
 use crate::elements::{ElementBank, Pull};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
@@ -95,7 +95,7 @@ impl RadauStep {
     /// RNEA(q_i, v_i, a_i) + resistance − drive, node by node, of the free velocities.
     fn fill_residual(&mut self, cx: Context, bank: &ElementBank) {
         self.residual.clear();
-        for i in 0..MAX_NODES {
+        for i in 0..STAGES {
             self.forces.clear();
             for (e, element) in cx.system.elements.iter().enumerate() {
                 self.forces.push(&element.measure, Pull::constant(bank.response(e).force[i]));
@@ -114,13 +114,13 @@ impl RadauStep {
     fn factor(&mut self, bank: &ElementBank, h: f64) -> bool {
         let (n, count, free) = (self.model.nv(), self.free.len(), &self.free);
         let (slopes, elements) = (&self.slopes, &self.elements);
-        let size = MAX_NODES * count;
-        let product = |x: &[[f64; 3]; 3], y: &[[f64; 3]; 3], i: usize, j: usize| -> f64 {
-            (0..MAX_NODES).map(|m| x[i][m] * y[m][j]).sum()
+        let size = STAGES * count;
+        let product = |x: &[[f64; MAX_NODES]; MAX_NODES], y: &[[f64; STAGES]; STAGES], i: usize, j: usize| -> f64 {
+            (0..STAGES).map(|m| x[i][m] * y[m][j]).sum()
         };
         self.newton.factor(size, |matrix| {
-            for i in 0..MAX_NODES {
-                for j in 0..MAX_NODES {
+            for i in 0..STAGES {
+                for j in 0..STAGES {
                     let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
                     for (r, &row) in free.iter().enumerate() {
                         let line = &mut matrix[(i * count + r) * size + j * count..][..count];
@@ -157,7 +157,7 @@ impl RadauStep {
         for (r, &k) in self.free.iter().enumerate() {
             let [tolerance, _] = self.allowed[r];
             for row in &A {
-                let moved: f64 = (0..MAX_NODES).map(|j| row[j] * self.residual[j * count + r]).sum();
+                let moved: f64 = (0..STAGES).map(|j| row[j] * self.residual[j * count + r]).sum();
                 let square = (h * moved / tolerance).powi(2);
                 sum += square;
                 if square > largest {
@@ -165,12 +165,12 @@ impl RadauStep {
                 }
             }
         }
-        ((sum / (MAX_NODES * count) as f64).sqrt(), worst)
+        ((sum / (STAGES * count) as f64).sqrt(), worst)
     }
 
     /// When the iteration may stop: a share of the tolerance, not below rounding.
     fn enough(&self, h: f64) -> f64 {
-        let end = &self.stages[MAX_NODES - 1];
+        let end = &self.stages[STAGES - 1];
         let moved = |k: usize| end.v[k].abs().max(self.origin.v[k].abs()) + h * end.a[k].abs();
         let largest = self.free.iter().zip(&self.allowed).fold(0.0, |m: f64, (&k, [v, _])| m.max(moved(k) / v));
         self.rtol.sqrt().min(0.03) + 2e-14 * largest

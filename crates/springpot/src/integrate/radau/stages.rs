@@ -4,7 +4,7 @@ use super::drives::{force_at, take_path};
 use super::step::{RadauStep, may_yield};
 use crate::actuation::Drive;
 use crate::collocation::radau::{A_SQUARED, GAMMA};
-use crate::collocation::{MAX_NODES, RADAU_NODES};
+use crate::collocation::{RADAU_NODES, STAGES};
 use crate::elements::{ElementBank, Pull};
 use crate::fractional::Form;
 use crate::integrate::context::Context;
@@ -160,7 +160,7 @@ impl RadauStep {
     /// Positions and velocities of the stages from their accelerations, and the elements there; `false` where a floating joint
     /// turns too far in the step.
     pub(super) fn place_stages(&mut self, cx: Context, bank: &mut ElementBank, h: f64) -> bool {
-        for i in 0..MAX_NODES {
+        for i in 0..STAGES {
             for &k in &self.free {
                 let push = self.collocate(i, |stage| stage.a[k]);
                 let travel: f64 = A_SQUARED[i].iter().zip(&self.stages).map(|(a, stage)| a * stage.a[k]).sum();
@@ -172,7 +172,7 @@ impl RadauStep {
         if !self.model.is_one_degree() && !self.bend_tangents(h) {
             return false;
         }
-        for i in 0..MAX_NODES {
+        for i in 0..STAGES {
             self.move_free_joints(i);
             let stage = &mut self.stages[i];
             stage.kinematics.update_velocity(&self.model, &stage.q, &stage.v);
@@ -218,7 +218,7 @@ impl RadauStep {
                 self.model.tangent_rate_into(&stage.xi, &stage.v, &mut stage.xi_rate);
             }
             let (mut change, mut size): (f64, f64) = (0.0, 0.0);
-            for i in 0..MAX_NODES {
+            for i in 0..STAGES {
                 for &k in &self.free {
                     let xi = h * self.collocate(i, |stage| stage.xi_rate[k]);
                     change = change.max((xi - self.stages[i].xi[k]).abs());

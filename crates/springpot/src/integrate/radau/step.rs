@@ -4,7 +4,7 @@ use super::sizes::{Sizes, Tolerance};
 use super::stick::{Sliding, Stick};
 use crate::actuation::Forward;
 use crate::collocation::radau::A;
-use crate::collocation::{MAX_NODES, lagrange_row};
+use crate::collocation::{STAGES, lagrange_row};
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{Element, ElementBank, Forces, NoDirection, Reading};
 use crate::integrate::context::Context;
@@ -39,7 +39,7 @@ impl Origin {
 #[derive(Debug, Clone)]
 pub(super) struct ElementStage {
     /// At the start (0) and at the nodes.
-    pub(super) readings: [Reading; MAX_NODES + 1],
+    pub(super) readings: [Reading; STAGES + 1],
     /// ∂y/∂q at the start.
     pub(super) gradient: Vec<f64>,
     /// −M⁻¹ ∂y/∂q at the start: the accelerations that a unit of force gives. Only kept up to date where a run needs
@@ -73,7 +73,7 @@ pub(super) struct Stage {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Carried {
     origin: Origin,
-    cubic: [Vec<f64>; MAX_NODES + 1],
+    cubic: [Vec<f64>; STAGES + 1],
     last: Option<f64>,
     is_singular: bool,
     singular_before: Vec<f64>,
@@ -100,14 +100,14 @@ pub(super) struct RadauStep {
     /// The coordinate that each velocity moves; none for those of floating joints.
     pub(super) coordinates: Vec<Option<usize>>,
     pub(super) origin: Origin,
-    pub(super) stages: [Stage; MAX_NODES],
+    pub(super) stages: [Stage; STAGES],
     pub(super) elements: Vec<ElementStage>,
     /// Accelerations at the start and at the nodes without the share of a singular start.
-    pub(super) regular: [Vec<f64>; MAX_NODES + 1],
+    pub(super) regular: [Vec<f64>; STAGES + 1],
     /// Coefficients of θ^p of the cubic through `regular` over the last step fitted.
-    pub(super) cubic: [Vec<f64>; MAX_NODES + 1],
+    pub(super) cubic: [Vec<f64>; STAGES + 1],
     /// The same of the rate of ξ, for robots with floating joints.
-    pub(super) turning: [Vec<f64>; MAX_NODES + 1],
+    pub(super) turning: [Vec<f64>; STAGES + 1],
     /// Size of the step before, whose cubic predicts the next; none after a break.
     pub(super) last: Option<f64>,
     /// Whether a start is singular, so that its share of the accelerations is kept apart.
@@ -128,7 +128,7 @@ pub(super) struct RadauStep {
     pub(super) held: Vec<f64>,
     pub(super) forces: Forces,
     /// Actuator forces of the free velocities at the nodes.
-    pub(super) drives: [Vec<f64>; MAX_NODES],
+    pub(super) drives: [Vec<f64>; STAGES],
     /// Ratio of successive increments, carried from step to step.
     pub(super) contraction: f64,
     /// How large the motion is.
@@ -217,8 +217,8 @@ impl RadauStep {
     /// Fits the cubics of the step that was just attempted.
     pub(super) fn fit(&mut self) {
         let is_one_degree = self.model.is_one_degree();
-        for p in 0..=MAX_NODES {
-            let row: [f64; MAX_NODES + 1] = std::array::from_fn(|k| lagrange_row(k)[p]);
+        for p in 0..=STAGES {
+            let row: [f64; STAGES + 1] = std::array::from_fn(|k| lagrange_row(k)[p]);
             for j in 0..self.model.nv() {
                 self.cubic[p][j] = row.iter().zip(&self.regular).map(|(l, a)| l * a[j]).sum();
                 if !is_one_degree {
@@ -234,15 +234,15 @@ impl RadauStep {
     pub(super) fn accept(&mut self, bank: &ElementBank, h: f64, to: f64) {
         self.last = Some(h);
         self.linearised = false;
-        let end = &self.stages[MAX_NODES - 1];
+        let end = &self.stages[STAGES - 1];
         self.origin.q.copy_from_slice(&end.q);
         self.origin.v.copy_from_slice(&end.v);
         self.origin.a.copy_from_slice(&end.a);
         self.sizes.take(&self.model, &self.origin.q, &self.origin.v);
         for (e, (force, element)) in self.origin.forces.iter_mut().zip(&mut self.elements).enumerate() {
             let response = bank.response(e);
-            let singular = response.singular[MAX_NODES - 1];
-            *force = response.force[MAX_NODES - 1] - singular;
+            let singular = response.singular[STAGES - 1];
+            *force = response.force[STAGES - 1] - singular;
             element.singular_before = singular;
         }
         self.origin.t = to;

@@ -3,7 +3,7 @@
 use super::events::{Change, Look};
 use super::method::Radau;
 use crate::actuation::Drive;
-use crate::collocation::{MAX_NODES, lagrange_row};
+use crate::collocation::{STAGES, lagrange_row};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::evaluate::{ElementEvaluation, Evaluation};
@@ -30,7 +30,7 @@ const START: f64 = 1e-9;
 /// A holding force at the start and at the nodes of a step.
 struct Holding {
     /// Coefficients of θ^p of the cubic through the values.
-    cubic: [f64; MAX_NODES + 1],
+    cubic: [f64; STAGES + 1],
     /// The force that breaks it, and how near a change has to be.
     breaking: f64,
     tolerance: f64,
@@ -132,14 +132,14 @@ impl Radau {
     /// The force with which friction holds velocity `k` at the start and at the nodes.
     fn holding(&self, recorder: &Recorder, k: usize) -> Holding {
         let bank = &recorder.bank;
-        let (mut values, mut size) = ([0.0; MAX_NODES + 1], 0.0f64);
+        let (mut values, mut size) = ([0.0; STAGES + 1], 0.0f64);
         for (i, (value, evaluation)) in values.iter_mut().zip(&recorder.evaluations).enumerate() {
             let driven = evaluation.driven[k].unwrap_or(0.0);
             let (mut pull, mut terms) = (0.0, driven.abs() + evaluation.rigid[k].abs());
             for (e, element) in evaluation.elements.iter().enumerate() {
                 let force = match i {
                     0 => bank.now(e, &element.point(evaluation.t)).map_or(0.0, |observation| observation.force()),
-                    MAX_NODES => bank.end(e).force(),
+                    STAGES => bank.end(e).force(),
                     _ => bank.response(e).force[i - 1],
                 };
                 let share = force * element.gradient[k];
@@ -153,7 +153,7 @@ impl Radau {
         if !values[0].is_finite() {
             values[0] = values[1];
         }
-        let cubic = std::array::from_fn(|p| (0..=MAX_NODES).map(|i| lagrange_row(i)[p] * values[i]).sum());
+        let cubic = std::array::from_fn(|p| (0..=STAGES).map(|i| lagrange_row(i)[p] * values[i]).sum());
         let stick = &self.step.stick;
         let tolerance = SHARE * recorder.settings.rtol * stick.limit(k);
         Holding { cubic, breaking: stick.breaking(k, size) + 0.5 * tolerance, tolerance }
@@ -197,7 +197,7 @@ impl Radau {
             let largest = nodes.into_iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
             // At the start it may have turned round just now.
             let early = velocity(0.25 / SAMPLES as f64);
-            if nodes[MAX_NODES - 1].abs() <= AT_REST * largest || early == 0.0 {
+            if nodes[STAGES - 1].abs() <= AT_REST * largest || early == 0.0 {
                 continue;
             }
             let zero = first_zero(|theta| early.signum() * velocity(theta.max(0.25 / SAMPLES as f64)));

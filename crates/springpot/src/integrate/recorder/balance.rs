@@ -1,7 +1,7 @@
 //! The balance of energies, and what a step may add to its error.
 
 use super::Recorder;
-use crate::collocation::MAX_NODES;
+use crate::collocation::STAGES;
 use crate::integrate::evaluate::Evaluation;
 use crate::integrate::ledger::{Balance, NodePower, singular_work, work, work_defect};
 use crate::observe::Snapshot;
@@ -22,9 +22,6 @@ const ENERGY_SHARE: f64 = 0.01;
 const ACCOUNT_SHARE: f64 = 0.03;
 const ACCOUNT_FLOOR: f64 = 100.0;
 
-/// A step this short, in units of end·rtol^{1/(1+alpha)}, is kept whatever is known of inner strokes.
-const ONSET: f64 = 0.1;
-
 impl Recorder {
     /// Time and size of the step.
     pub(super) fn span(&self) -> (f64, f64) {
@@ -42,11 +39,11 @@ impl Recorder {
             }
             // Without their power of t, which singular_work integrates exactly.
             let mut shares: Vec<(f64, NodePower)> = Vec::new();
-            for k in 0..=MAX_NODES {
+            for k in 0..=STAGES {
                 let (at, mut m) = (self.bank.point(e, k), 0);
                 self.bank.for_each_singularity(e, at.inputs, &mut |term| {
                     if k == 0 {
-                        shares.push((term.order, [0.0; MAX_NODES + 1]));
+                        shares.push((term.order, [0.0; STAGES + 1]));
                     }
                     shares[m].1[k] = term.coefficient * at.rate;
                     m += 1;
@@ -61,7 +58,7 @@ impl Recorder {
     pub(in crate::integrate) fn add_actuator_power(&mut self, e: usize) {
         self.bank.evaluate_element(e);
         let response = *self.bank.response(e);
-        for k in 0..=MAX_NODES {
+        for k in 0..=STAGES {
             let at = self.bank.point(e, k);
             let regular = match k {
                 0 => self.bank.now(e, &at).map_or(0.0, |observation| observation.regular),
@@ -118,13 +115,9 @@ impl Recorder {
 
     /// The largest of the local errors of element `e` in units of their tolerances, and its order.
     pub(in crate::integrate) fn memory_error(&self, e: usize) -> (f64, f64) {
-        let (settings, (_, h)) = (&self.settings, self.span());
+        let settings = &self.settings;
         let mut worst = (0.0, 0.0);
         for (m, error) in self.bank.errors(e).iter().enumerate() {
-            // Where an inner stroke begins like t^alpha, every step knows little of it; what that does fades like (h/t)^{1+alpha}.
-            if error.sharpness != 1.0 && h <= ONSET * settings.end * settings.rtol.powf(1.0 / (1.0 + error.order)) {
-                continue;
-            }
             let scale = self.bank.scale(e, m);
             let allowed = settings.atol.unwrap_or(0.0).max(settings.rtol * scale);
             let share = error.share(scale, allowed);

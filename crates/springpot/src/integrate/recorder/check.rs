@@ -1,7 +1,7 @@
 //! Whether the steps of a run saw what the motion does.
 
 use super::Recorder;
-use crate::collocation::{MAX_NODES, lagrange_row};
+use crate::collocation::{STAGES, lagrange_row};
 use crate::observe::Snapshot;
 
 /// How much more than the tolerance a row may depart from its step, and what it may in any case: steps err less than the
@@ -19,7 +19,7 @@ impl Recorder {
         if theta >= 1.0 || h <= 0.0 {
             return None;
         }
-        let mut cubic = [0.0; MAX_NODES + 1];
+        let mut cubic = [0.0; STAGES + 1];
         for (k, weight) in cubic.iter_mut().enumerate() {
             *weight = lagrange_row(k).iter().rev().fold(0.0, |sum, c| sum * theta + c);
         }

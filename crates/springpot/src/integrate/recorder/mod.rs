@@ -12,8 +12,8 @@ use super::evaluate::{Evaluation, Scratch};
 use super::ledger::{NodePower, Turnover};
 use super::on_grid::{GridDerivatives, on_grid_observation};
 use super::settings::Settings;
-use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
+use crate::collocation::STAGES;
 use crate::elements::{ElementBank, Kept, MemoryRange};
 use crate::fractional::Form;
 use crate::law::{Observation, Point};
@@ -34,7 +34,7 @@ pub(super) struct Recorder {
     pub(super) settings: Settings,
     pub(super) scratch: Scratch,
     /// At the start of the step and at its nodes.
-    pub(super) evaluations: [Evaluation; MAX_NODES + 1],
+    pub(super) evaluations: [Evaluation; STAGES + 1],
     /// Whether those at the start and at the end have all that a row asks for.
     pub(super) is_whole: [bool; 2],
     pub(super) bank: ElementBank,
@@ -132,7 +132,7 @@ impl Recorder {
     /// Makes sure that the evaluation at the start (0) or at the end (1) has all that a row asks for.
     pub(super) fn complete(&mut self, cx: Context, end: usize) -> Result<(), RunError> {
         if !self.is_whole[end] {
-            let evaluation = &mut self.evaluations[end * MAX_NODES];
+            let evaluation = &mut self.evaluations[end * STAGES];
             cx.fill(evaluation.t, evaluation.t, None, &mut self.scratch, evaluation)?;
             self.is_whole[end] = true;
         }
@@ -142,7 +142,7 @@ impl Recorder {
     /// Takes the step that was worked out into the past.
     pub(super) fn commit(&mut self) {
         let (actuators, joints) = self.work_until(1.0);
-        let end = &self.evaluations[MAX_NODES];
+        let end = &self.evaluations[STAGES];
         let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);
         for e in 0..self.bank.len() {
             let until = self.bank.energies_until(e, 1.0);
@@ -155,7 +155,7 @@ impl Recorder {
         self.ledger.actuators += actuators;
         self.ledger.joints += joints;
         self.bank.commit_account();
-        self.evaluations.swap(0, MAX_NODES);
+        self.evaluations.swap(0, STAGES);
         self.is_whole.swap(0, 1);
     }
 

@@ -164,7 +164,7 @@ impl Leaf for BoucWen {
 
     fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
         let (z, _) = self.solve(step, state.variables[0]);
-        let defect = step.h * quadrature_defect(self.rates(step, &z));
+        let defect = step.h * quadrature_defect(step.nodes, &self.rates(step, &z));
         // What rounding leaves of a stroke is no error of z.
         let error = if defect <= self.a * step.resolution { 0.0 } else { defect };
         errors.push(LocalError { error, value: z[step.nodes.count()], order: 0.0, sharpness: 1.0 });

@@ -10,7 +10,7 @@ use crate::law::catalog::{Param, Range, alpha};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::Singular;
+use crate::law::step::Course;
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use std::borrow::Cow;
 
@@ -102,8 +102,8 @@ impl Leaf for Springpot {
         let memory = &state.memories[0];
         let start = step.start();
         let affine = memory.respond(&start, step.nodes, step.form);
-        let moments = match step.singular {
-            Singular::Moments if memory.is_singular() => memory.singular_moments(&start, step.nodes),
+        let moments = match step.course {
+            Course::Sought if memory.is_singular() => memory.singular_moments(&start, step.nodes),
             _ => [0.0; MAX_NODES],
         };
         let count = step.nodes.count();
@@ -112,7 +112,7 @@ impl Leaf for Springpot {
             let mut derivative = affine.history[i];
             if memory.is_singular() {
                 let value = memory.singular_part(step.t + step.nodes.positions()[i] * step.h);
-                let share = if step.singular == Singular::Moments { moments[i] } else { value };
+                let share = if step.course == Course::Sought { moments[i] } else { value };
                 derivative += share - value;
                 response.singular[i] += c * share;
             }

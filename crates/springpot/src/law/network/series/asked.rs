@@ -1,0 +1,168 @@
+//! What the parts of a series are asked: at nodes of their own, under the stroke of the whole.
+
+use super::Values;
+use crate::collocation::inner::{TABLEAU_OF_FOUR, Weights};
+use crate::collocation::{MAX_NODES, Nodes, STAGES};
+use crate::fractional::{Form, RatePolynomial};
+use crate::law::step::{Course, InputValue, Point, Response, Step};
+
+/// The stroke of a whole series over a step, or the first share of it, at the nodes of its parts.
+pub(super) struct Asked {
+    way: Way,
+    pub(super) nodes: Nodes,
+    pub(super) h: f64,
+    pub(super) stroke: Values,
+    /// None where they are those of the step.
+    inputs: Option<Vec<InputValue>>,
+}
+
+/// How the stroke between the nodes of a step follows from what is known at them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    /// The nodes are those of the parts.
+    Same,
+    /// The stroke is sought: it has no more than its values, else a stiff spring would not be stable.
+    Strokes,
+    /// The stroke is sought, and every part yields: the rates are known one order better.
+    Rates,
+    /// The stroke is given, with its rates.
+    Both,
+}
+
+impl Way {
+    fn of(step: &Step, is_yielding: bool) -> Self {
+        match (step.nodes, step.course, step.form) {
+            (Nodes::One | Nodes::Midpoint | Nodes::Inner, ..) => Self::Same,
+            (Nodes::Radau, Course::Given, _) => Self::Both,
+            (Nodes::Radau, Course::Sought, Form::Rates) if is_yielding => Self::Rates,
+            (Nodes::Radau, Course::Sought, _) => Self::Strokes,
+        }
+    }
+
+    /// The weights at the nodes of the parts.
+    fn weights(self) -> &'static [Weights; MAX_NODES] {
+        match self {
+            Self::Same | Self::Strokes => &TABLEAU_OF_FOUR.by_strokes,
+            Self::Rates => &TABLEAU_OF_FOUR.by_rates,
+            Self::Both => &TABLEAU_OF_FOUR.by_both,
+        }
+    }
+
+    /// The stroke at θ.
+    fn stroke(self, step: &Step, theta: f64) -> f64 {
+        let weights = match self {
+            Self::Same => {
+                let polynomial = RatePolynomial::through_strokes(step.h, step.nodes, step.stroke);
+                return step.stroke[0] + polynomial.travel_until(theta);
+            }
+            Self::Strokes => Weights::by_strokes(theta),
+            Self::Rates => Weights::by_rates(theta),
+            Self::Both => Weights::by_both(theta),
+        };
+        weights.apply(|k| step.stroke[k], |k| step.h * step.rate[k])
+    }
+}
+
+impl Asked {
+    /// The whole step; `is_yielding`: no part of the series gives a force that follows from its stroke alone.
+    pub(super) fn whole(step: &Step, is_yielding: bool) -> Self {
+        let way = Way::of(step, is_yielding);
+        let mut stroke = Values::default();
+        if way == Way::Same {
+            stroke[..step.stroke.len()].copy_from_slice(step.stroke);
+            return Self { way, nodes: step.nodes, h: step.h, stroke, inputs: None };
+        }
+        stroke[0] = step.stroke[0];
+        for (stroke, weights) in stroke[1..].iter_mut().zip(way.weights()) {
+            *stroke = weights.apply(|k| step.stroke[k], |k| step.h * step.rate[k]);
+        }
+        let inputs = (!step.inputs.is_empty()).then(|| inputs(step));
+        Self { way, nodes: Nodes::Inner, h: step.h, stroke, inputs }
+    }
+
+    /// The step up to `theta`, where the kinematics are those of `at`.
+    pub(super) fn until(step: &Step, is_yielding: bool, theta: f64, at: &Point) -> Self {
+        let way = Way::of(step, is_yielding);
+        let nodes = if step.nodes == Nodes::Radau { Nodes::Inner } else { step.nodes };
+        let mut stroke = Values::default();
+        stroke[0] = step.stroke[0];
+        for (stroke, c) in stroke[1..].iter_mut().zip(nodes.positions()) {
+            *stroke = way.stroke(step, theta * c);
+        }
+        if nodes != Nodes::Midpoint {
+            stroke[nodes.count()] = at.stroke;
+        }
+        // Inputs hardly bend within a step; at the end they are those asked for.
+        let start = step.point(0).inputs;
+        let mut inputs = start.to_vec();
+        for c in nodes.positions() {
+            inputs.extend(
+                start
+                    .iter()
+                    .zip(at.inputs)
+                    .map(|(from, to)| InputValue { value: from.value + c * (to.value - from.value), rate: to.rate }),
+            );
+        }
+        Self { way, nodes, h: theta * step.h, stroke, inputs: Some(inputs) }
+    }
+
+    /// The step as the parts see it, but for strokes and rates, which are not theirs.
+    pub(super) fn step<'a>(&'a self, outer: &Step<'a>) -> Step<'a> {
+        let Self { nodes, h, ref stroke, ref inputs, .. } = *self;
+        let inputs = inputs.as_deref().unwrap_or(outer.inputs);
+        Step { h, nodes, form: Form::Strokes, stroke: &stroke[..=nodes.count()], rate: &[], inputs, ..*outer }
+    }
+
+    /// Adds forces and tangents at the nodes of the parts, as they are at those of the whole.
+    pub(super) fn respond(&self, force: &[f64; MAX_NODES], tangent: &super::Matrix, response: &mut Response) {
+        if self.way == Way::Same {
+            for i in 0..self.nodes.count() {
+                response.force[i] += force[i];
+                (0..self.nodes.count()).for_each(|j| response.d_stroke[i][j] += tangent[i][j]);
+            }
+            return;
+        }
+        for (i, row) in TABLEAU_OF_FOUR.outer.iter().enumerate() {
+            response.force[i] += outer(row, force);
+            for (k, weights) in self.way.weights().iter().enumerate() {
+                let along: f64 = (0..MAX_NODES).map(|m| row[m] * tangent[m][k]).sum();
+                for j in 0..STAGES {
+                    response.d_stroke[i][j] += along * weights.stroke[j + 1];
+                    response.d_rate[i][j] += self.h * along * weights.rate[j + 1];
+                }
+            }
+        }
+    }
+
+    /// What is known at the start and at the nodes of the parts, at those of the whole.
+    pub(super) fn outer(&self, values: &Values) -> Values {
+        match self.way {
+            Way::Same => *values,
+            _ => {
+                let at = |i: usize| outer(&TABLEAU_OF_FOUR.outer[i], &[values[1], values[2], values[3], values[4]]);
+                [values[0], at(0), at(1), at(2), 0.0]
+            }
+        }
+    }
+}
+
+fn outer(row: &[f64; MAX_NODES], values: &[f64; MAX_NODES]) -> f64 {
+    row.iter().zip(values).map(|(weight, value)| weight * value).sum()
+}
+
+/// Inputs at the start and at the nodes of the parts.
+fn inputs(step: &Step) -> Vec<InputValue> {
+    let start = step.point(0).inputs;
+    let mut inputs = start.to_vec();
+    let places = TABLEAU_OF_FOUR.by_both.iter().zip(&TABLEAU_OF_FOUR.by_strokes);
+    inputs.extend(places.flat_map(|(both, plain)| {
+        (0..start.len()).map(|i| {
+            let known = |k: usize| step.point(k).inputs[i];
+            InputValue {
+                value: both.apply(|k| known(k).value, |k| step.h * known(k).rate),
+                rate: plain.apply(|k| known(k).rate, |_| 0.0),
+            }
+        })
+    }));
+    inputs
+}
