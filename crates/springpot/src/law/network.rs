@@ -2,6 +2,8 @@
 
 mod series;
 
+pub(super) use series::Ready;
+
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
 use super::past::Periodic;
 use super::rule::RuleError;
@@ -219,7 +221,22 @@ impl Network {
 
     /// Makes ready what does not change while a step is worked out; no answer changes.
     pub fn prepare(&self, step: &Step, state: &mut State) {
+        state.make_room(self.series_count());
         self.prepare_part(step, &mut state.view_mut());
+    }
+
+    /// How many series are in it.
+    fn series_count(&self) -> usize {
+        match self {
+            Self::Leaf(_) => 0,
+            Self::Parallel(parts) => parts.iter().map(Self::series_count).sum(),
+            Self::Series(parts) => 1 + parts.iter().map(Self::series_count).sum::<usize>(),
+        }
+    }
+
+    /// Passes over its share of a state.
+    fn pass(&self, state: &mut StateRef) {
+        state.skip(self.size(), self.series_count());
     }
 
     fn prepare_part(&self, step: &Step, state: &mut StateMut) {
@@ -381,7 +398,7 @@ impl Network {
             }
             Self::Parallel(parts) => parts.iter().map(|part| part.estimate_part(at, state, omega)).sum(),
             Self::Series(_) => {
-                state.take(self.size());
+                self.pass(state);
                 self.stiffness(at, omega) * at.stroke
             }
         }
@@ -417,9 +434,7 @@ impl Network {
                 }
             }
             Self::Parallel(parts) => parts.iter().for_each(|part| part.singularities(inputs, state, take)),
-            Self::Series(_) => {
-                state.take(self.size());
-            }
+            Self::Series(_) => self.pass(state),
         }
     }
 

@@ -1,5 +1,6 @@
 //! What a law keeps between steps.
 
+use super::network::Ready;
 use crate::fractional::{KernelError, Memory};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +18,9 @@ pub struct StateSize {
 pub struct State {
     memories: Vec<Memory>,
     variables: Vec<f64>,
+    /// What series have worked out for the step under way, one after the other; none before a step was prepared.
+    #[serde(skip)]
+    ready: Vec<Ready>,
 }
 
 /// The share of a state that belongs to one part of a law.
@@ -26,6 +30,7 @@ pub struct StateRef<'a> {
     pub memories: &'a [Memory],
     /// Its inner variables.
     pub variables: &'a [f64],
+    pub(super) ready: &'a [Ready],
 }
 
 /// As [`StateRef`], to be changed.
@@ -35,6 +40,7 @@ pub struct StateMut<'a> {
     pub memories: &'a mut [Memory],
     /// Its inner variables.
     pub variables: &'a mut [f64],
+    pub(super) ready: &'a mut [Ready],
 }
 
 impl State {
@@ -89,12 +95,17 @@ impl State {
 
     /// All of it.
     pub fn view(&self) -> StateRef<'_> {
-        StateRef { memories: &self.memories, variables: &self.variables }
+        StateRef { memories: &self.memories, variables: &self.variables, ready: &self.ready }
     }
 
     /// All of it, to be changed.
     pub fn view_mut(&mut self) -> StateMut<'_> {
-        StateMut { memories: &mut self.memories, variables: &mut self.variables }
+        StateMut { memories: &mut self.memories, variables: &mut self.variables, ready: &mut self.ready }
+    }
+
+    /// Makes room for what `count` series work out for a step.
+    pub(super) fn make_room(&mut self, count: usize) {
+        self.ready.resize_with(count, Ready::default);
     }
 
     /// Appends all numbers of the state to `numbers`.
@@ -106,7 +117,7 @@ impl State {
     /// Takes back what [`Self::save`] wrote, from the front of `numbers`; `None`, and the state as it was, where they are not those of a
     /// state of the same law.
     pub fn load(&mut self, numbers: &mut &[f64]) -> Option<()> {
-        let (mut loaded, mut rest) = (self.clone(), *numbers);
+        let (mut loaded, mut rest) = (Self { ready: Vec::new(), ..self.clone() }, *numbers);
         for memory in &mut loaded.memories {
             memory.load(&mut rest)?;
         }
@@ -118,20 +129,52 @@ impl State {
 }
 
 impl<'a> StateRef<'a> {
-    /// Splits off the share of the next part.
+    /// Splits off the share of the next leaf, or what a series itself keeps.
     pub(super) fn take(&mut self, size: StateSize) -> StateRef<'a> {
         let (memories, other_memories) = self.memories.split_at(size.memories);
         let (variables, other_variables) = self.variables.split_at(size.variables);
-        *self = StateRef { memories: other_memories, variables: other_variables };
-        StateRef { memories, variables }
+        (self.memories, self.variables) = (other_memories, other_variables);
+        StateRef { memories, variables, ready: &[] }
+    }
+
+    /// Splits off what the next series has worked out.
+    pub(super) fn take_ready(&mut self) -> Option<&'a Ready> {
+        self.ready.split_off_first()
+    }
+
+    /// Passes over the share of a part that holds so many series.
+    pub(super) fn skip(&mut self, size: StateSize, series: usize) {
+        self.take(size);
+        self.ready = self.ready.get(series..).unwrap_or_default();
     }
 }
 
 impl<'a> StateMut<'a> {
-    /// Splits off the share of the next part.
+    /// Splits off the share of the next leaf, or what a series itself keeps.
     pub(super) fn take(&mut self, size: StateSize) -> StateMut<'a> {
         let memories = self.memories.split_off_mut(..size.memories).expect("a state of this law");
         let variables = self.variables.split_off_mut(..size.variables).expect("a state of this law");
-        StateMut { memories, variables }
+        StateMut { memories, variables, ready: &mut [] }
+    }
+
+    /// Splits off what the next series works out.
+    pub(super) fn take_ready(&mut self) -> Option<&'a mut Ready> {
+        self.ready.split_off_first_mut()
+    }
+
+    /// Passes over the share of parts that hold so many series.
+    pub(super) fn skip(&mut self, size: StateSize, series: usize) {
+        self.take(size);
+        self.ready = std::mem::take(&mut self.ready).get_mut(series..).unwrap_or_default();
+    }
+
+    /// The same for a while.
+    pub(super) fn reborrow(&mut self) -> StateMut<'_> {
+        StateMut { memories: self.memories, variables: self.variables, ready: self.ready }
+    }
+
+    /// The same, to be looked at.
+    pub(super) fn view(&self) -> StateRef<'_> {
+        StateRef { memories: self.memories, variables: self.variables, ready: self.ready }
     }
 }

@@ -20,6 +20,7 @@ use crate::law::step::{LocalError, Point, Power, Powers, Response, Step};
 use asked::Asked;
 use solve::{Inner, Solved, solve};
 
+pub(in crate::law) use solve::Ready;
 pub(super) use start::{begin, recall};
 
 type Matrix = [[f64; MAX_NODES]; MAX_NODES];
@@ -50,28 +51,45 @@ fn is_yielding(parts: &[Network], step: &Step) -> bool {
     parts.iter().all(|part| part.asymptote(&at, Onset::Short).order > 0.0)
 }
 
+/// The step as the parts are asked it.
+fn asked(parts: &[Network], step: &Step, ready: Option<&Ready>) -> Asked {
+    let ready = ready.filter(|ready| ready.is_for(step.t, step.h));
+    Asked::whole(step, ready.map_or_else(|| is_yielding(parts, step), |ready| ready.is_yielding))
+}
+
 pub(super) fn prepare(parts: &[Network], step: &Step, state: &mut StateMut) {
-    let asked = Asked::whole(step, false);
-    let strokes = state.take(own(parts)).variables;
-    for (part, stroke) in parts.iter().zip(strokes) {
+    let is_yielding = is_yielding(parts, step);
+    let asked = Asked::whole(step, is_yielding);
+    let step = &asked.step(step);
+    let (ready, strokes) = (state.take_ready(), state.take(own(parts)).variables);
+    let mut shares = state.reborrow();
+    for (part, stroke) in parts.iter().zip(&*strokes) {
         let inner = Inner { stroke: [*stroke; MAX_NODES + 1], ..Inner::default() };
-        part.prepare_part(&inner.step(&asked.step(step)), state);
+        part.prepare_part(&inner.step(step), &mut shares);
     }
+    if let Some(ready) = ready {
+        ready.get(parts, is_yielding, step, strokes, state.view());
+    }
+    parts.iter().for_each(|part| state.skip(part.size(), part.series_count()));
 }
 
 pub(super) fn evaluate(parts: &[Network], step: &Step, state: &mut StateRef, response: &mut Response) {
-    let asked = Asked::whole(step, is_yielding(parts, step));
+    let ready = state.take_ready();
+    let asked = asked(parts, step, ready);
     let strokes = state.take(own(parts)).variables;
-    let Solved { force, tangent, .. } = solve(parts, &asked.step(step), strokes, state);
+    let Solved { force, tangent, .. } = solve(parts, &asked.step(step), strokes, ready, state);
     asked.respond(&force, &tangent, response);
 }
 
 pub(super) fn commit(parts: &[Network], step: &Step, state: &mut StateMut) {
-    let asked = Asked::whole(step, is_yielding(parts, step));
+    let ready = state.take_ready();
+    let asked = asked(parts, step, ready.as_deref());
     let step = &asked.step(step);
     let strokes = state.take(own(parts)).variables;
-    let mut view = StateRef { memories: state.memories, variables: state.variables };
-    let Solved { inner, .. } = solve(parts, step, strokes, &mut view);
+    let Solved { inner, .. } = solve(parts, step, strokes, ready.as_deref(), &mut state.view());
+    if let Some(ready) = ready {
+        ready.forget();
+    }
     for ((part, inner), stroke) in parts.iter().zip(&inner).zip(strokes) {
         part.commit_part(&inner.step(step), state);
         *stroke = match step.nodes {
@@ -83,12 +101,13 @@ pub(super) fn commit(parts: &[Network], step: &Step, state: &mut StateMut) {
 }
 
 pub(super) fn local_errors(parts: &[Network], step: &Step, state: &mut StateRef, errors: &mut Vec<LocalError>) {
-    let asked = Asked::whole(step, is_yielding(parts, step));
+    let ready = state.take_ready();
+    let asked = asked(parts, step, ready);
     // Of series within each other the outermost one weighs.
     let onset = if step.nodes == Nodes::Inner { 1.0 } else { ONSET };
     let step = &asked.step(step);
     let strokes = state.take(own(parts)).variables;
-    let Solved { mut inner, shares, .. } = solve(parts, step, strokes, &mut state.clone());
+    let Solved { mut inner, shares, .. } = solve(parts, step, strokes, ready, &mut state.clone());
     for ((part, inner), share) in parts.iter().zip(&mut inner).zip(shares) {
         let (first, end) = (errors.len(), step.nodes.count());
         let rate = inner.rate[end];
@@ -120,10 +139,11 @@ fn embedded_rates(stroke: &Values, h: f64) -> Values {
 }
 
 pub(super) fn powers(parts: &[Network], step: &Step, state: &mut StateRef, powers: &mut Powers) {
-    let asked = Asked::whole(step, is_yielding(parts, step));
+    let ready = state.take_ready();
+    let asked = asked(parts, step, ready);
     let step = &asked.step(step);
     let strokes = state.take(own(parts)).variables;
-    let Solved { inner, .. } = solve(parts, step, strokes, &mut state.clone());
+    let Solved { inner, .. } = solve(parts, step, strokes, ready, &mut state.clone());
     let mut own = Powers::default();
     for (part, inner) in parts.iter().zip(&inner) {
         part.powers_part(&inner.step(step), state, &mut own);
@@ -137,14 +157,14 @@ pub(super) fn powers(parts: &[Network], step: &Step, state: &mut StateRef, power
 }
 
 pub(super) fn guards(parts: &[Network], step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
-    let strokes = state.take(own(parts)).variables;
+    let (ready, strokes) = (state.take_ready(), state.take(own(parts)).variables);
     if !parts.iter().any(|part| part.has_guards(&step.point(0))) {
-        *state = advance(parts, *state);
+        parts.iter().for_each(|part| part.pass(state));
         return;
     }
-    let asked = Asked::whole(step, is_yielding(parts, step));
+    let asked = asked(parts, step, ready);
     let step = &asked.step(step);
-    let Solved { inner, .. } = solve(parts, step, strokes, &mut state.clone());
+    let Solved { inner, .. } = solve(parts, step, strokes, ready, &mut state.clone());
     let first = guards.len();
     for (part, inner) in parts.iter().zip(&inner) {
         part.guards_part(&inner.step(step), state, guards);
@@ -156,10 +176,12 @@ pub(super) fn guards(parts: &[Network], step: &Step, state: &mut StateRef, guard
 
 /// Inside a step: as a shorter one that ends there, so that rows are as good as ends of steps.
 pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: &mut StateRef, take: Take) -> Reported {
-    let asked = Asked::until(step, is_yielding(parts, step), theta, at);
+    let ready = state.take_ready();
+    let asked =
+        if theta == 1.0 { asked(parts, step, ready) } else { Asked::until(step, is_yielding(parts, step), theta, at) };
     let step = &asked.step(step);
     let strokes = state.take(own(parts)).variables;
-    let Solved { inner, force, .. } = solve(parts, step, strokes, &mut state.clone());
+    let Solved { inner, force, .. } = solve(parts, step, strokes, ready, &mut state.clone());
     let last = step.nodes.count();
     let mut sum = Reported::sum(
         at,
@@ -175,6 +197,7 @@ pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: 
 /// Between two steps strokes do not jump: the force is that of the parts whose force follows from them alone; where every part has a
 /// dashpot beside it, that of the rates that add up.
 pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef, take: Take) -> Reported {
+    state.take_ready();
     let strokes = state.take(own(parts)).variables;
     let force = |part: &Network, stroke: f64, rate: f64, state: &StateRef| {
         part.now_part(&Point { stroke, rate, ..*at }, &mut state.clone(), &mut |_| ()).observation.regular
@@ -195,7 +218,7 @@ pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef, take: Tak
                 (yielding, owed) = (yielding + slope.recip(), owed + rest / slope);
             }
             lines[k] = [rest, slope];
-            ahead.take(part.size());
+            part.pass(&mut ahead);
         }
         whole = follows.unwrap_or((at.rate + owed) / yielding);
         for (rate, [rest, slope]) in rates.iter_mut().zip(lines) {
@@ -224,12 +247,4 @@ pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef, take: Tak
 /// What a series itself keeps: the strokes of its parts.
 fn own(parts: &[Network]) -> StateSize {
     StateSize { memories: 0, variables: parts.len() }
-}
-
-/// The state behind these parts.
-fn advance<'a>(parts: &[Network], mut state: StateRef<'a>) -> StateRef<'a> {
-    parts.iter().for_each(|part| {
-        state.take(part.size());
-    });
-    state
 }

@@ -5,7 +5,7 @@ use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{Form, RatePolynomial};
 use crate::law::network::{MOST_IN_SERIES, Network};
 use crate::law::state::StateRef;
-use crate::law::step::{Response, Step};
+use crate::law::step::{Course, Response, Step};
 
 /// Change of the strokes, in units of the largest, at which nonlinear parts end where rounding lets them come no nearer.
 const NEARLY: f64 = 1e-9;
@@ -48,91 +48,188 @@ impl Inner {
     }
 }
 
-/// Finds the strokes of the parts under the strokes of `step`, whose nodes are theirs, from those at its start.
-pub(super) fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut StateRef) -> Solved {
-    let nodes = step.nodes;
-    let (count, inverse) = (nodes.count(), nodes.inverse());
-    let is_linear = parts.iter().all(Network::is_linear);
-    let mut search = Search::default();
-    let mut inner = [Inner::default(); MOST_IN_SERIES];
-    let missing = step.stroke[0] - starts.iter().sum::<f64>();
-    for (inner, start) in inner.iter_mut().zip(starts) {
-        for k in 0..=count {
-            let moved = step.stroke[k] - step.stroke[0] + missing;
-            // A nonlinear part would begin far from where it is: the stiffness where it was shares the way out.
-            inner.stroke[k] = start + if k == 0 || !is_linear { 0.0 } else { moved / parts.len() as f64 };
-        }
-        inner.take_rates(nodes, step.h);
-    }
-    let (mut force, mut tangent) = ([0.0; MAX_NODES], [[0.0; MAX_NODES]; MAX_NODES]);
-    let mut shares = [0.0; MOST_IN_SERIES];
-    let mut is_found = is_linear;
-    while search.ways <= MOST_ITERATIONS {
-        let mut compliances = [[[0.0; MAX_NODES]; MAX_NODES]; MOST_IN_SERIES];
-        let mut forces = [[0.0; MAX_NODES]; MOST_IN_SERIES];
-        let mut each = *state;
-        let mut stiffest = 0.0f64;
-        for (k, part) in parts.iter().enumerate() {
+/// Parts about strokes of theirs: F = F_m + C_m⁻¹ δ_m.
+#[derive(Debug, Clone, Default)]
+struct Lines {
+    each: Vec<Line>,
+    /// (Σ C_m)⁻¹.
+    tangent: Matrix,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Line {
+    force: [f64; MAX_NODES],
+    compliance: Matrix,
+}
+
+impl Lines {
+    /// Forces and stiffnesses of all parts about `inner`; compliances are still to be found.
+    fn look(&mut self, parts: &[Network], inner: &[Inner; MOST_IN_SERIES], step: &Step, mut state: StateRef) {
+        let (count, inverse) = (step.nodes.count(), step.nodes.inverse());
+        self.each.clear();
+        for (part, inner) in parts.iter().zip(inner) {
             let mut response = Response::default();
-            part.evaluate_part(&inner[k].step(step), &mut each, &mut response);
-            forces[k] = response.force;
-            let stiffness = &mut compliances[k];
+            part.evaluate_part(&inner.step(step), &mut state, &mut response);
+            let mut stiffness = response.d_stroke;
             for i in 0..count {
                 for j in 0..count {
-                    let through_rates = (0..count).map(|m| response.d_rate[i][m] * inverse[m][j]).sum::<f64>();
-                    stiffness[i][j] = response.d_stroke[i][j] + through_rates / step.h;
-                    stiffest = stiffest.max(stiffness[i][j].abs());
+                    let through_rates: f64 = (0..count).map(|m| response.d_rate[i][m] * inverse[m][j]).sum();
+                    stiffness[i][j] += through_rates / step.h;
                 }
             }
+            self.each.push(Line { force: response.force, compliance: stiffness });
         }
-        if !is_linear && !search.goes_on(&forces[..parts.len()], count, &mut inner) {
-            for inner in inner.iter_mut().take(parts.len()) {
-                inner.take_rates(nodes, step.h);
+    }
+
+    /// Makes compliances of the stiffnesses.
+    fn turn(&mut self, count: usize) {
+        let entries = self.each.iter().flat_map(|line| line.compliance[..count].iter().flat_map(|row| &row[..count]));
+        let stiffest = entries.fold(0.0f64, |stiffest, entry| stiffest.max(entry.abs()));
+        let floor = (SOFTEST * stiffest).max(f64::MIN_POSITIVE);
+        self.tangent = Matrix::default();
+        for Line { compliance, .. } in &mut self.each {
+            invert(compliance, count, floor);
+            for (row, own) in self.tangent.iter_mut().zip(&*compliance) {
+                row.iter_mut().zip(own).for_each(|(entry, own)| *entry += own);
             }
+        }
+        invert(&mut self.tangent, count, f64::MIN_POSITIVE);
+    }
+
+    /// The force at which the strokes of the parts are longer by `missing` in all.
+    fn force(&self, mut missing: [f64; MAX_NODES]) -> [f64; MAX_NODES] {
+        for Line { force, compliance } in &self.each {
+            missing.iter_mut().zip(times(compliance, force)).for_each(|(missing, own)| *missing += own);
+        }
+        times(&self.tangent, &missing)
+    }
+
+    /// By how much the stroke of part `k` is longer under the force `force`.
+    fn longer(&self, k: usize, force: &[f64; MAX_NODES]) -> [f64; MAX_NODES] {
+        let Line { force: own, compliance } = &self.each[k];
+        times(compliance, &std::array::from_fn(|i| force[i] - own[i]))
+    }
+
+    fn share(&self, k: usize, count: usize) -> f64 {
+        (0..count).map(|j| self.tangent[count - 1][j] * self.each[k].compliance[j][count - 1]).sum::<f64>().abs()
+    }
+}
+
+/// What linear parts answer in a step under way, worked out once for however often they are asked.
+#[derive(Debug, Clone, Default)]
+pub(in crate::law) struct Ready {
+    /// Start, size, nodes and course of the step; none where the state has changed.
+    step: Option<(f64, f64, Nodes, Course)>,
+    /// [`super::is_yielding`].
+    pub(super) is_yielding: bool,
+    /// About the strokes at the start of the step.
+    lines: Lines,
+}
+
+impl Ready {
+    /// Gets ready for `step`, whose nodes are those of the parts; nothing where its answers are not the same however often it is asked.
+    pub(super) fn get(&mut self, parts: &[Network], is_yielding: bool, step: &Step, starts: &[f64], state: StateRef) {
+        if step.inputs.is_empty() && parts.iter().all(Network::is_linear) {
+            self.lines.look(parts, &resting(starts, step), step, state);
+            self.lines.turn(step.nodes.count());
+            (self.step, self.is_yielding) = (Some((step.t, step.h, step.nodes, step.course)), is_yielding);
+        }
+    }
+
+    /// The state changes.
+    pub(super) fn forget(&mut self) {
+        self.step = None;
+    }
+
+    pub(super) fn is_for(&self, t: f64, h: f64) -> bool {
+        self.step.is_some_and(|(at, size, ..)| (at, size) == (t, h))
+    }
+
+    fn lines(&self, step: &Step) -> Option<&Lines> {
+        (self.step == Some((step.t, step.h, step.nodes, step.course))).then_some(&self.lines)
+    }
+}
+
+/// Parts that stay where they are.
+fn resting(starts: &[f64], step: &Step) -> [Inner; MOST_IN_SERIES] {
+    let mut inner = [Inner::default(); MOST_IN_SERIES];
+    let last = step.nodes.count();
+    inner.iter_mut().zip(starts).for_each(|(inner, start)| inner.stroke[..=last].fill(*start));
+    inner
+}
+
+/// Finds the strokes of the parts under the strokes of `step`, whose nodes are theirs, from those at its start.
+pub(super) fn solve(
+    parts: &[Network],
+    step: &Step,
+    starts: &[f64],
+    ready: Option<&Ready>,
+    state: &mut StateRef,
+) -> Solved {
+    let before = *state;
+    parts.iter().for_each(|part| part.pass(state));
+    if let Some(lines) = ready.and_then(|ready| ready.lines(step)) {
+        return along(lines, parts.len(), step, starts);
+    }
+    if parts.iter().all(Network::is_linear) {
+        let mut lines = Lines::default();
+        lines.look(parts, &resting(starts, step), step, before);
+        lines.turn(step.nodes.count());
+        return along(&lines, parts.len(), step, starts);
+    }
+    search(parts, step, starts, before)
+}
+
+/// The strokes of linear parts.
+fn along(lines: &Lines, parts: usize, step: &Step, starts: &[f64]) -> Solved {
+    let (count, rest) = (step.nodes.count(), starts.iter().sum::<f64>());
+    let missing = std::array::from_fn(|i| if i < count { step.stroke[i + 1] - rest } else { 0.0 });
+    let mut solved = Solved {
+        inner: resting(starts, step),
+        force: lines.force(missing),
+        tangent: lines.tangent,
+        shares: [0.0; MOST_IN_SERIES],
+    };
+    for k in 0..parts {
+        let inner = &mut solved.inner[k];
+        inner.stroke[1..=count].iter_mut().zip(lines.longer(k, &solved.force)).for_each(|(x, delta)| *x += delta);
+        inner.take_rates(step.nodes, step.h);
+        solved.shares[k] = lines.share(k, count);
+    }
+    solved
+}
+
+/// The strokes of parts that are not all linear, by Newton's method.
+fn search(parts: &[Network], step: &Step, starts: &[f64], state: StateRef) -> Solved {
+    let count = step.nodes.count();
+    // Spread evenly a nonlinear part would begin far from where it is: the stiffness where it was shares the way out.
+    let mut inner = resting(starts, step);
+    let (mut search, mut lines) = (Search::default(), Lines::default());
+    let mut force = [0.0; MAX_NODES];
+    let mut is_found = false;
+    while search.ways <= MOST_ITERATIONS {
+        lines.look(parts, &inner, step, state);
+        if !search.goes_on(&lines.each, count, &mut inner) {
+            inner.iter_mut().take(parts.len()).for_each(|inner| inner.take_rates(step.nodes, step.h));
             if search.halvings > MOST_HALVINGS {
                 is_found = search.change <= NEARLY;
                 break;
             }
             continue;
         }
-        let floor = (SOFTEST * stiffest).max(f64::MIN_POSITIVE);
-        compliances.iter_mut().take(parts.len()).for_each(|matrix| invert(matrix, count, floor));
-        let mut whole: Matrix = Default::default();
-        let mut right = [0.0; MAX_NODES];
-        for i in 0..count {
-            let gathered: f64 = inner.iter().take(parts.len()).map(|inner| inner.stroke[i + 1]).sum();
-            right[i] = step.stroke[i + 1] - gathered;
-            for (matrix, forces) in compliances.iter().zip(&forces).take(parts.len()) {
-                for j in 0..count {
-                    whole[i][j] += matrix[i][j];
-                    right[i] += matrix[i][j] * forces[j];
-                }
-            }
-        }
-        invert(&mut whole, count, f64::MIN_POSITIVE);
-        tangent = whole;
-        let product = |matrix: &Matrix, vector: &[f64; MAX_NODES], i: usize| -> f64 {
-            (0..count).map(|j| matrix[i][j] * vector[j]).sum()
-        };
-        force = std::array::from_fn(|i| product(&tangent, &right, i));
-        for (share, matrix) in shares.iter_mut().zip(&compliances) {
-            *share = (0..count).map(|j| tangent[count - 1][j] * matrix[j][count - 1]).sum::<f64>().abs();
-        }
+        lines.turn(count);
+        let gathered = |i: usize| inner.iter().take(parts.len()).map(|inner| inner.stroke[i + 1]).sum::<f64>();
+        force = lines.force(std::array::from_fn(|i| if i < count { step.stroke[i + 1] - gathered(i) } else { 0.0 }));
         let (mut change, mut size) = (0.0f64, step.resolution);
         search.from = inner;
-        for (k, matrix) in compliances.iter().enumerate().take(parts.len()) {
-            let lacking: [f64; MAX_NODES] = std::array::from_fn(|i| force[i] - forces[k][i]);
-            for i in 0..count {
-                let delta = product(matrix, &lacking, i);
-                inner[k].stroke[i + 1] += delta;
+        for (k, inner) in inner.iter_mut().enumerate().take(parts.len()) {
+            for (x, delta) in inner.stroke[1..=count].iter_mut().zip(lines.longer(k, &force)) {
+                *x += delta;
                 // Not `max`, which would pass over what is no number.
                 change = if delta.abs() > change || delta.is_nan() { delta.abs() } else { change };
-                size = size.max(inner[k].stroke[i + 1].abs());
+                size = size.max(x.abs());
             }
-            inner[k].take_rates(nodes, step.h);
-        }
-        if is_linear {
-            break;
+            inner.take_rates(step.nodes, step.h);
         }
         search.change = change / size;
         if search.change <= search.enough() {
@@ -144,8 +241,13 @@ pub(super) fn solve(parts: &[Network], step: &Step, starts: &[f64], state: &mut 
         force = [f64::NAN; MAX_NODES];
         inner.iter_mut().for_each(|inner| inner.stroke[1..].fill(f64::NAN));
     }
-    *state = super::advance(parts, *state);
-    Solved { inner, force, tangent, shares }
+    let mut shares = [0.0; MOST_IN_SERIES];
+    (0..parts.len()).for_each(|k| shares[k] = lines.share(k, count));
+    Solved { inner, force, tangent: lines.tangent, shares }
+}
+
+fn times(matrix: &Matrix, vector: &[f64; MAX_NODES]) -> [f64; MAX_NODES] {
+    matrix.each_ref().map(|row| row.iter().zip(vector).map(|(entry, value)| entry * value).sum())
 }
 
 /// A search for the strokes at which nonlinear parts have one force: along Newton's way, in halves where the whole does not bring
@@ -166,12 +268,12 @@ struct Search {
 impl Search {
     /// Whether forces are nearer each other than where the way began; else `inner` is half as far on it. Far from rounding only: there
     /// nothing brings them nearer.
-    fn goes_on(&mut self, forces: &[[f64; MAX_NODES]], count: usize, inner: &mut [Inner; MOST_IN_SERIES]) -> bool {
+    fn goes_on(&mut self, lines: &[Line], count: usize, inner: &mut [Inner; MOST_IN_SERIES]) -> bool {
         let (mut apart, mut size) = (0.0, 0.0);
         for i in 0..count {
-            let mean = forces.iter().map(|force| force[i]).sum::<f64>() / forces.len() as f64;
-            apart += forces.iter().map(|force| (force[i] - mean).powi(2)).sum::<f64>();
-            size += forces.iter().map(|force| force[i].powi(2)).sum::<f64>();
+            let mean = lines.iter().map(|line| line.force[i]).sum::<f64>() / lines.len() as f64;
+            apart += lines.iter().map(|line| (line.force[i] - mean).powi(2)).sum::<f64>();
+            size += lines.iter().map(|line| line.force[i].powi(2)).sum::<f64>();
         }
         self.is_rounding = self.ways > 1 && apart <= ROUNDED * size;
         let is_nearer = match self.apart {
