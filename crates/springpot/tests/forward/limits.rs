@@ -158,3 +158,43 @@ fn series_cost_what_order_five_costs() {
         }
     }
 }
+
+/// What the first accelerations would lead to over a long run is no measure of a motion that they do not lead to.
+#[test]
+fn a_motion_is_measured_by_what_it_does() {
+    let system = |torque: &str| {
+        format!(
+            "[robot]\ngravity = [0, 0, 0]\n[[robot.body]]\nname = \"b\"\nmass = 1\n\
+             joint = {{ name = \"z\", kind = \"prismatic\", axis = [0, 0, 1] }}\n\
+             [motion]\nkind = \"forward\"\ntorque = {{ z = {torque} }}\n"
+        )
+    };
+    // Alone it would come to 10 km/s in 1000 s; it never moves faster than 0.1 m/s.
+    let shaken = run(&(system("\"10*cos(100*t)\"") + &at("1000", "1, 10, 100", 1e-9)));
+    for (t, v) in shaken.t().iter().zip(shaken.column("v.z")) {
+        let error = (v - 0.1 * (100.0 * t).sin()).abs();
+        assert!(error < 1e-8 * t, "{t}: {error:e}");
+    }
+}
+
+/// A ball that falls on a stop again and again: each bounce costs no more than a share of the tolerance.
+#[test]
+fn ten_thousand_bounces_keep_the_tolerance() {
+    let (gravity, height, omega) = (9.81, 0.01, 100.0f64);
+    let speed = (2.0f64 * gravity * height).sqrt();
+    let in_contact = 2.0 * (std::f64::consts::PI - (speed / omega).atan2(gravity / omega.powi(2))) / omega;
+    let period = 2.0 * speed / gravity + in_contact;
+    let law =
+        format!("network = \"stop(k, lower, upper)\"\nparameters = {{ k = {}, lower = 0, upper = 1 }}", omega.powi(2));
+    let text = slider("1", -gravity, &law, &state(&height.to_string(), "0"));
+    let bounces = 10_000.0;
+    let times = [1.0, 10.0, 100.0, bounces].map(|n| (n * period).to_string()).join(", ");
+    let rtol = 1e-9;
+    let run = run(&(text + &at(&(bounces * period).to_string(), &times, rtol) + "max_steps = 10000000\n"));
+    for (row, n) in [1.0, 10.0, 100.0, bounces].into_iter().enumerate() {
+        let lost = run.column("energy.residual")[row].abs() / (gravity * height);
+        println!("{n} bounces: {lost:.1e} of the energy");
+        assert!(lost < n * rtol, "{n} bounces: {lost:e}");
+    }
+    assert!((run.column("q.q")[2] - height).abs() < 100.0 * rtol);
+}

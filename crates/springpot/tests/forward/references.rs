@@ -1,7 +1,7 @@
 //! Whole reference files: the falling arm, one mass on every law, oscillators.
 
 use crate::support::forward::{at, distance, falling, slider, state};
-use crate::support::{Run, run, run_system};
+use crate::support::{Run, run, run_case, run_system, shipped};
 use serde_json::Value;
 use springpot::actuation::{Drive, Forward};
 use springpot::elements::{Element, Line};
@@ -220,4 +220,25 @@ fn the_library_alone_gives_the_same_bits_as_a_scenario() {
         compared += 1;
     }
     assert_eq!(compared, 12);
+}
+
+/// The stiff flyball governor of IFToMM's benchmarks, as shipped.
+#[test]
+fn the_flyball_governor() {
+    let reference = read("multibody/flyball_governor.json");
+    let run = run_case(&shipped("flyball_governor.toml", &[]), 0);
+    let (mut compared, mut worst) = (0, 0.0f64);
+    for (k, time) in reference["t"].as_array().unwrap().iter().enumerate() {
+        let row = run.column("t").iter().position(|t| (t - number(time)).abs() < 1e-9).unwrap();
+        for (j, joint) in reference["columns"].as_array().unwrap().iter().enumerate() {
+            for symbol in ["q", "v"] {
+                let found = run.column(&format!("{symbol}.{}", text(joint)))[row];
+                worst = worst.max((found - number(&reference[symbol][k][j])).abs());
+                compared += 1;
+            }
+        }
+    }
+    println!("flyball governor: {compared} numbers, worst {worst:.1e}");
+    assert_eq!(compared, 808);
+    assert!(worst < 2e-9, "{worst:e}");
 }

@@ -89,7 +89,7 @@ impl Radau {
         bank.start(t, 0.0);
         self.step.take_inputs(cx, bank, 0.0, t)?;
         self.step.linearise(cx, bank)?;
-        self.step.sizes.take(&self.step.model, &self.step.origin.q, &self.step.origin.v);
+        self.step.sizes.take(&self.step.model, t, &self.step.origin.q, &self.step.origin.v);
         self.step.expect(cx, bank, 1.0 / recorder.settings.end);
         Ok(())
     }

@@ -18,10 +18,11 @@ impl RadauStep {
         }
         let (n, sizes, tolerance) = (self.model.nv(), &self.sizes, self.tolerance);
         self.allowed.clear();
-        for &k in &self.free {
+        let until = self.origin.t + h;
+        for (r, &k) in self.free.iter().enumerate() {
             let mass = self.slopes.d_a[k * n + k];
             let of_energy = if mass > 0.0 { ENERGY_FLOOR * (2.0 * self.energy / mass).sqrt() } else { 0.0 };
-            let speed = sizes.speed(k).max(self.origin.v[k].abs()).max(of_energy);
+            let speed = sizes.speed(k, until).max(self.origin.v[k].abs()).max(of_energy);
             // A joint that no force moved yet is measured by what this very step does.
             let own = || self.stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
             let speed = if speed > 0.0 { speed } else { own() };
@@ -32,10 +33,11 @@ impl RadauStep {
             });
             let square = stops.sum::<f64>() / mass;
             let taken_up = if square > 0.0 { speed / square.sqrt() } else { f64::INFINITY };
-            let travel = sizes.travel(k).min(taken_up).max(h * speed);
-            // Strokes are differences of lengths: what they lose to rounding pushes the joints.
-            let push: f64 = self.elements.iter().zip(&self.rounded).map(|(e, s)| e.gradient[k].abs() * s).sum();
-            let noise = if mass > 0.0 { h * push / mass } else { 0.0 };
+            let travel = sizes.travel(k, until).min(taken_up).max(h * speed);
+            // Strokes are differences of lengths: what they lose to rounding pushes the joints, and so does that of the drives.
+            let strokes: f64 = self.elements.iter().zip(&self.rounded).map(|(e, s)| e.gradient[k].abs() * s).sum();
+            let drives = self.drives.iter().fold(0.0, |largest: f64, drives| largest.max(drives[r].abs()));
+            let noise = if mass > 0.0 { h * (strokes + 4.0 * f64::EPSILON * drives) / mass } else { 0.0 };
             let place = self.coordinates[k].map_or(1.0, |c| self.origin.q[c]);
             let rounding = 4.0 * f64::EPSILON * place.abs();
             self.allowed.push([
@@ -83,7 +85,7 @@ impl RadauStep {
     /// Expects what the accelerations at the origin begin.
     pub(super) fn expect(&mut self, cx: Context, bank: &ElementBank, slowest: f64) {
         let omega = self.answering_rate(cx, bank, slowest);
-        self.sizes.expect(&self.origin.a, omega);
+        self.sizes.expect(self.origin.t, &self.origin.a, omega, self.is_singular);
     }
 }
 

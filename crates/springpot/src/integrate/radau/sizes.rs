@@ -17,14 +17,25 @@ impl Tolerance {
     }
 }
 
+/// How much less than expected a motion may come to before nothing more is expected of it.
+const SHORTFALL: f64 = 0.1;
+
 /// The largest travel |q − q(0)| and speed |v| of every velocity, so far and as the forces at a start or restart let expect.
+///
+/// Accelerations a that a system answers at the rate ω lead to the speed a·min(t, 1/ω), and so far; what falls short of that, since forces
+/// change or something stands in the way, is measured by what it does alone. A singular start moves it at once: there it is a/ω from the first.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Sizes {
     from: Vec<f64>,
     travel: Vec<f64>,
     speed: Vec<f64>,
-    expected_travel: Vec<f64>,
-    expected_speed: Vec<f64>,
+    /// Of the expectation: from when on it counts, s, the rate, rad/s, and the accelerations as speeds and as places come from them; 0 where none is
+    /// expected.
+    since: f64,
+    omega: f64,
+    is_singular: bool,
+    to_travel: Vec<f64>,
+    to_speed: Vec<f64>,
 }
 
 impl Sizes {
@@ -34,33 +45,52 @@ impl Sizes {
             from: q.to_vec(),
             travel: zero.clone(),
             speed: zero.clone(),
-            expected_travel: zero.clone(),
-            expected_speed: zero,
+            since: 0.0,
+            omega: 0.0,
+            is_singular: false,
+            to_travel: zero.clone(),
+            to_speed: zero,
         }
     }
 
     /// Takes a state of the run in.
-    pub(super) fn take(&mut self, model: &Model, q: &[f64], v: &[f64]) {
+    pub(super) fn take(&mut self, model: &Model, t: f64, q: &[f64], v: &[f64]) {
         let travel = model.difference(&self.from, q);
         for (largest, value) in self.travel.iter_mut().zip(&travel).chain(self.speed.iter_mut().zip(v)) {
             *largest = largest.max(value.abs());
         }
-    }
-
-    /// Where accelerations `a` begin in a system that answers them at the rate `omega` (rad/s): a/ω and a/ω².
-    pub(super) fn expect(&mut self, a: &[f64], omega: f64) {
-        let expected = self.expected_travel.iter_mut().zip(&mut self.expected_speed);
-        for ((travel, speed), a) in expected.zip(a).filter(|(_, a)| a.is_finite()) {
-            *speed = speed.max(a.abs() / omega);
-            *travel = travel.max(a.abs() / (omega * omega));
+        let time = self.elapsed(t);
+        let travels = self.travel.iter().zip(&mut self.to_travel).map(|(seen, a)| (seen, a, 0.5 * time * time));
+        let speeds = self.speed.iter().zip(&mut self.to_speed).map(|(seen, a)| (seen, a, time));
+        for (_, a, _) in travels.chain(speeds).filter(|(seen, a, factor)| **seen < SHORTFALL * **a * factor) {
+            *a = 0.0;
         }
     }
 
-    pub(super) fn speed(&self, k: usize) -> f64 {
-        self.speed[k].max(self.expected_speed[k])
+    /// Where accelerations `a` begin at `t` in a system that answers them at the rate `omega` (rad/s).
+    pub(super) fn expect(&mut self, t: f64, a: &[f64], omega: f64, is_singular: bool) {
+        (self.since, self.omega, self.is_singular) = (t, omega, is_singular);
+        let finite = |a: &f64| if a.is_finite() { a.abs() } else { 0.0 };
+        self.to_travel = a.iter().map(finite).collect();
+        self.to_speed = self.to_travel.clone();
     }
 
-    pub(super) fn travel(&self, k: usize) -> f64 {
-        self.travel[k].max(self.expected_travel[k])
+    /// The largest speed of velocity `k` until `t`.
+    pub(super) fn speed(&self, k: usize, t: f64) -> f64 {
+        self.speed[k].max(self.to_speed[k] * self.time(t))
+    }
+
+    /// The largest travel of velocity `k` until `t`.
+    pub(super) fn travel(&self, k: usize, t: f64) -> f64 {
+        self.travel[k].max(self.to_travel[k] * self.time(t).powi(2))
+    }
+
+    fn time(&self, t: f64) -> f64 {
+        if self.is_singular { self.omega.recip() } else { self.elapsed(t) }
+    }
+
+    /// For how long accelerations have led to speed until `t`, s.
+    fn elapsed(&self, t: f64) -> f64 {
+        (t - self.since).max(0.0).min(self.omega.recip())
     }
 }

@@ -247,13 +247,13 @@ pub(super) fn first_step(
         let bend: f64 = start.gradient.iter().zip(&origin.a).map(|(g, a)| g * a).sum();
         for Term { coefficient, order } in terms {
             if element.derivative == Derivative::RiemannLiouville && start.jump != 0.0 {
-                let travel = |k: usize| sizes.travel(k).max(jump_travel(start.jump, &start.gradient, k));
+                let travel = |k: usize| sizes.travel(k, end).max(jump_travel(start.jump, &start.gradient, k));
                 let kick = largest(&|k, push| push / strict.of(travel(k))) * (coefficient * start.jump).abs();
                 if kick > 0.0 {
                     h = h.min((1.0 / kick).powf(1.0 / (2.0 - order)));
                 }
             }
-            let reach = largest(&|k, push| push / tolerance.of(sizes.speed(k))) * coefficient.abs();
+            let reach = largest(&|k, push| push / tolerance.of(sizes.speed(k, end))) * coefficient.abs();
             for _ in 0..200 {
                 let travel = (h * slope).abs() + (0.5 * h * h * bend).abs();
                 if h * reach * h.powf(-order) * travel <= 1.0 {

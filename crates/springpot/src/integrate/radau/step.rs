@@ -238,7 +238,7 @@ impl RadauStep {
         self.origin.q.copy_from_slice(&end.q);
         self.origin.v.copy_from_slice(&end.v);
         self.origin.a.copy_from_slice(&end.a);
-        self.sizes.take(&self.model, &self.origin.q, &self.origin.v);
+        self.sizes.take(&self.model, to, &self.origin.q, &self.origin.v);
         for (e, (force, element)) in self.origin.forces.iter_mut().zip(&mut self.elements).enumerate() {
             let response = bank.response(e);
             let singular = response.singular[STAGES - 1];
