@@ -37,6 +37,7 @@ mod init;
 mod laws;
 mod manual;
 mod mistakes;
+mod modes;
 mod modulus;
 mod numbers;
 mod output;
@@ -140,6 +141,7 @@ pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item
         Command::Man(options) => manual::man(&options),
         Command::Prony(options) => prony::prony(&options),
         Command::Modulus(options) => modulus::modulus(&options, catalog),
+        Command::Modes(options) => modes::modes(&options, catalog),
     };
     ending.into()
 }
