@@ -117,8 +117,7 @@ Examples:
   springpot modes scenarios/falling_thermoviscoelastic.toml --equilibrium
   springpot modes arm.toml --at 0.5 --set element.strut.alpha=0.3
   springpot modes arm.toml --out eigenvalues.svg
-  springpot modes arm.toml --frequency-response tau.q2 strut.force \\
-    --from '0.1 Hz' --to '100 Hz' --out strut.csv
+  springpot modes arm.toml --frequency-response tau.q2 strut.force --to 20
 
 Linearises about the start, the configuration at a time, or the static equilibrium that the robot sinks into, and prints the \
 eigenvalues of M s^2 + D s + K(s) on the principal sheet. At rest springpots and dashpots carry no force. Torques and inputs have their values at \
@@ -501,11 +500,17 @@ pub(crate) struct ScenarioOptions {
 #[derive(Debug, Args)]
 pub(crate) struct PronyOptions {
     /// Order alpha of the springpot, above 0 and below 1
-    #[arg(long, value_name = "ALPHA", allow_hyphen_values = true)]
-    pub(crate) order: f64,
+    #[arg(long, value_name = "ALPHA", allow_hyphen_values = true, required_unless_present = "law")]
+    pub(crate) order: Option<f64>,
     /// Coefficient c, such as '50 N*s^alpha/m' or '2 MPa*s^alpha'
-    #[arg(long, value_name = "C", allow_hyphen_values = true)]
-    pub(crate) coefficient: String,
+    #[arg(long, value_name = "C", allow_hyphen_values = true, required_unless_present = "law")]
+    pub(crate) coefficient: Option<String>,
+    /// A whole law in place of the springpot, such as fractional-zener
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["order", "coefficient", "equilibrium"])]
+    pub(crate) law: Option<String>,
+    /// A parameter of the law; may be given several times
+    #[arg(long = "parameter", value_name = "NAME=VALUE", requires = "law", allow_hyphen_values = true)]
+    pub(crate) parameters: Vec<String>,
     /// Shortest time, in s or with a unit; with --band the lowest frequency
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub(crate) from: String,

@@ -139,7 +139,7 @@ pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),
-        Command::Prony(options) => prony::prony(&options),
+        Command::Prony(options) => prony::prony(&options, catalog),
         Command::Modulus(options) => modulus::modulus(&options, catalog),
         Command::Modes(options) => modes::modes(&options, catalog),
     };

@@ -2,7 +2,9 @@
 
 use super::network::Network;
 use super::step::{Point, Term};
+use crate::fractional::prony::{Relaxation, Spectrum};
 use num_complex::Complex64;
+use std::f64::consts::PI;
 
 /// Rounds in which parts in series come to one force.
 const MOST_ROUNDS: usize = 200;
@@ -214,6 +216,14 @@ impl Tangent {
         }
     }
 
+    /// Whether all that relaxes does so by springpots: dashpots relax by single exponentials and answer a step by an impulse.
+    pub fn is_smooth(&self) -> bool {
+        match self {
+            Self::Leaf(term, _) => term.order < 1.0 || term.coefficient == 0.0,
+            Self::Parallel(parts) | Self::Series(parts) => parts.iter().all(Self::is_smooth),
+        }
+    }
+
     /// The same without inputs and with as few parts as it takes: those of one order are one.
     pub fn reduced(&self) -> Self {
         let (parts, is_series) = match self {
@@ -250,6 +260,25 @@ impl Tangent {
             _ if is_series => Self::Series(all),
             _ => Self::Parallel(all),
         }
+    }
+}
+
+/// The relaxation of a law that is smooth ([`Tangent::is_smooth`]): H(τ) = Im K(−1/τ + i0)/π.
+impl Relaxation for Tangent {
+    fn equilibrium(&self) -> f64 {
+        self.relaxed()
+    }
+
+    fn spectrum(&self, tau: f64) -> f64 {
+        self.modulus(Complex64::new(-tau.recip(), 0.0)).im / PI
+    }
+
+    fn relaxation(&self, t: f64) -> f64 {
+        Spectrum::new(self.relaxed(), |tau| self.spectrum(tau)).map_or(f64::NAN, |spectrum| spectrum.relaxation(t))
+    }
+
+    fn complex_modulus(&self, omega: f64) -> Complex64 {
+        self.modulus(Complex64::new(0.0, omega))
     }
 }
 
@@ -319,6 +348,22 @@ mod tests {
         assert!(slack.force.abs() < 1e-12 && slack.tangent.modulus(s) == Complex64::ZERO, "{slack:?}");
         let taut = Network::series([rope, Network::spring(10.0)]).at_rest(&at(0.6), 0.0).unwrap();
         assert!((taut.force - 5.0).abs() < 1e-12, "{taut:?}");
+    }
+
+    #[test]
+    fn it_relaxes_as_the_closed_form_does() {
+        use crate::fractional::prony::FractionalZener;
+        let springpot = Network::springpot(4.0, 0.4, Derivative::Caputo);
+        let law = Network::parallel([Network::spring(3.0), Network::series([Network::spring(20.0), springpot])]);
+        let own = law.at_rest(&at(0.0), 0.0).unwrap().tangent;
+        let zener = FractionalZener::new(3.0, 20.0, 0.4, (4.0f64 / 20.0).powf(2.5)).unwrap();
+        assert!(own.is_smooth() && !Tangent::Leaf(Term { coefficient: 1.0, order: 1.0 }, None).is_smooth());
+        assert_eq!(own.equilibrium(), 3.0);
+        for t in [1e-4, 1e-2, 0.3, 5.0, 1e3] {
+            assert!((own.spectrum(t) / zener.spectrum(t) - 1.0).abs() < 1e-11, "{t}");
+            assert!((own.relaxation(t) / zener.relaxation(t) - 1.0).abs() < 1e-10, "{t}");
+            assert!((own.complex_modulus(t) / zener.complex_modulus(t) - 1.0).norm() < 1e-12, "{t}");
+        }
     }
 
     #[test]
