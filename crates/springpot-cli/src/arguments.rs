@@ -111,6 +111,22 @@ K* = K' + i K'' is the force over the stroke of a sine that has lasted for ever;
 pi K'' X^2. Inputs have their values at t = 0, sweeps their first ones. The law must be linear. \
 Frequencies without a unit are in Hz.")]
     Modulus(ModulusOptions),
+    /// Natural frequencies and damping about rest, and answers to sines.
+    #[command(after_help = "\
+Examples:
+  springpot modes scenarios/falling_thermoviscoelastic.toml --equilibrium
+  springpot modes arm.toml --at 0.5 --set element.strut.alpha=0.3
+  springpot modes arm.toml --out eigenvalues.svg
+  springpot modes arm.toml --frequency-response tau.q2 strut.force --to 20
+
+Linearises about the start, the configuration at a time, or the static equilibrium that the robot sinks into, and prints the \
+eigenvalues of M s^2 + D s + K(s) on the principal sheet. At rest springpots and dashpots carry no force. Torques and inputs have their values at \
+that time, sweeps their first ones; where the motion is prescribed, constant actuator forces hold it. \
+INPUT is tau.JOINT, ELEMENT.INPUT, or q.JOINT of a prescribed joint; COLUMN is one of the results. \
+Frequencies without a unit are in Hz.
+
+Exit codes: 0 done, 1 the motion does not come as far, 2 the input was refused, or there is no equilibrium.")]
+    Modes(ModesOptions),
     /// Show the laws of elements, or find the parameters of one from a data sheet or a measurement.
     #[command(after_help = "\
 Examples:
@@ -349,6 +365,42 @@ pub(crate) struct ModulusOptions {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ModesOptions {
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) file: PathBuf,
+    /// Go to the static equilibrium first
+    #[arg(long)]
+    pub(crate) equilibrium: bool,
+    /// Time of the motion, in s or with a unit [default: the start]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(crate) at: Option<String>,
+    /// Answer of a column to sines of an input, over the frequency
+    #[arg(long, value_names = ["INPUT", "COLUMN"], num_args = 2)]
+    pub(crate) frequency_response: Vec<String>,
+    /// Lowest frequency
+    #[arg(long, value_name = "FREQUENCY", default_value = "0.1 Hz", requires = "frequency_response")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) from: String,
+    /// Highest frequency
+    #[arg(long, value_name = "FREQUENCY", default_value = "100 Hz", requires = "frequency_response")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) to: String,
+    /// Number of frequencies, evenly on a logarithmic scale
+    #[arg(long, value_name = "N", default_value_t = 301, requires = "frequency_response", allow_hyphen_values = true)]
+    pub(crate) points: usize,
+    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Print all of it as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write FILE.csv, .json, .svg, .png or .pdf instead of printing
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct RobotOptions {
     /// Robot: a URDF file (.urdf), or a scenario or its [robot] alone (.toml)
     #[arg(value_name = "ROBOT")]
@@ -448,11 +500,17 @@ pub(crate) struct ScenarioOptions {
 #[derive(Debug, Args)]
 pub(crate) struct PronyOptions {
     /// Order alpha of the springpot, above 0 and below 1
-    #[arg(long, value_name = "ALPHA", allow_hyphen_values = true)]
-    pub(crate) order: f64,
+    #[arg(long, value_name = "ALPHA", allow_hyphen_values = true, required_unless_present = "law")]
+    pub(crate) order: Option<f64>,
     /// Coefficient c, such as '50 N*s^alpha/m' or '2 MPa*s^alpha'
-    #[arg(long, value_name = "C", allow_hyphen_values = true)]
-    pub(crate) coefficient: String,
+    #[arg(long, value_name = "C", allow_hyphen_values = true, required_unless_present = "law")]
+    pub(crate) coefficient: Option<String>,
+    /// A whole law in place of the springpot, such as fractional-zener
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["order", "coefficient", "equilibrium"])]
+    pub(crate) law: Option<String>,
+    /// A parameter of the law; may be given several times
+    #[arg(long = "parameter", value_name = "NAME=VALUE", requires = "law", allow_hyphen_values = true)]
+    pub(crate) parameters: Vec<String>,
     /// Shortest time, in s or with a unit; with --band the lowest frequency
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub(crate) from: String,

@@ -36,3 +36,23 @@ pub(crate) fn angular(text: &str) -> Result<f64, Misread> {
     let value = parse_quantity(text, "Hz", &|_| None).map_err(Misread::Unit)?;
     Ok(value * radians(split_quantity(text).map_or("", |(_, unit)| unit))?)
 }
+
+/// The ends of a band, Hz, of which the options --from, --to and --points speak; what is wrong, and what would be right.
+pub(crate) fn band(from: &str, to: &str, points: usize, most: usize) -> Result<[f64; 2], (String, String)> {
+    let read = |name: &str, text: &str| {
+        let help = || "write 10, '10 Hz' or '60 rad/s'".to_owned();
+        match angular(text) {
+            Ok(omega) if omega > 0.0 && omega.is_finite() => Ok(omega / TAU),
+            Ok(_) => Err((format!("--{name} {text}: not a frequency above 0"), help())),
+            Err(error) => Err((format!("--{name} {text}: {error}"), help())),
+        }
+    };
+    let (low, high) = (read("from", from)?, read("to", to)?);
+    if low >= high {
+        return Err((format!("--from {from} is not below --to {to}"), "swap them".to_owned()));
+    }
+    if !(2..=most).contains(&points) {
+        return Err((format!("--points {points}: out of range"), format!("write 2 to {most}")));
+    }
+    Ok([low, high])
+}

@@ -37,6 +37,7 @@ mod init;
 mod laws;
 mod manual;
 mod mistakes;
+mod modes;
 mod modulus;
 mod numbers;
 mod output;
@@ -138,8 +139,9 @@ pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),
-        Command::Prony(options) => prony::prony(&options),
+        Command::Prony(options) => prony::prony(&options, catalog),
         Command::Modulus(options) => modulus::modulus(&options, catalog),
+        Command::Modes(options) => modes::modes(&options, catalog),
     };
     ending.into()
 }

@@ -57,24 +57,11 @@ pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
 
 /// The frequencies from and to, Hz, and the amplitude of the stroke, m or rad.
 fn asked(options: &ModulusOptions) -> Result<([f64; 2], f64), Problem> {
-    let read = |name: &str, text: &str| match frequency::angular(text) {
-        Ok(omega) if omega > 0.0 && omega.is_finite() => Ok(omega / TAU),
-        Ok(_) => {
-            Err((format!("--{name} {text}: not a frequency above 0"), "write 10, '10 Hz' or '60 rad/s'".to_owned()))
-        }
-        Err(error) => Err((format!("--{name} {text}: {error}"), "write 10, '10 Hz' or '60 rad/s'".to_owned())),
-    };
-    let (from, to) = (read("from", &options.from)?, read("to", &options.to)?);
-    if from >= to {
-        return Err((format!("--from {} is not below --to {}", options.from, options.to), "swap them".to_owned()));
-    }
-    if !(2..=MOST).contains(&options.points) {
-        return Err((format!("--points {}: out of range", options.points), format!("write 2 to {MOST}")));
-    }
+    let band = frequency::band(&options.from, &options.to, options.points, MOST)?;
     let text = &options.amplitude;
     let amplitude = ["m", "rad"].into_iter().find_map(|unit| parse_quantity(text, unit, &|_| None).ok());
     match amplitude.filter(|amplitude| *amplitude > 0.0 && amplitude.is_finite()) {
-        Some(amplitude) => Ok(([from, to], amplitude)),
+        Some(amplitude) => Ok((band, amplitude)),
         None => Err((format!("--amplitude {text}: not a stroke above 0"), "write '1 mm' or '1 deg'".to_owned())),
     }
 }

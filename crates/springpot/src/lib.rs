@@ -21,6 +21,7 @@
 //! | [`actuation`] | forward dynamics: start, torques, prescribed and locked joints | `model`, `motion` |
 //! | [`observe`] | what can be observed: quantities with names, units and values; the table in memory | `elements`, `table` |
 //! | [`integrate`] | runs and simulations: steps, rows, energy | all above |
+//! | [`linear`] | small motions about rest: equilibria, eigenvalues, answers to sines | `integrate` |
 //! | [`table`] | the columns of rows | nothing |
 //!
 //! It knows numbers only: no files but URDF, no threads, no terminal. Scenario files are read by the crate `springpot-scenario`, sweeps,
@@ -78,6 +79,7 @@ pub mod fractional;
 pub mod integrate;
 pub mod law;
 mod linalg;
+pub mod linear;
 pub mod model;
 pub mod motion;
 pub mod names;

@@ -2,7 +2,7 @@
 
 use crate::{Ending, drawing};
 use springpot::law::Entry;
-use springpot::law::datasheet::{Fitted, Measured};
+use springpot::law::datasheet::Measured;
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -11,13 +11,17 @@ use std::path::Path;
 const MOST: usize = 150;
 /// Points of the curve.
 const POINTS: usize = 200;
+
+/// K' and K'' of the fitted law at an angular frequency.
+pub(super) type Stiffness<'a> = dyn Fn(f64) -> [f64; 2] + 'a;
+
 /// Draws storage and loss over the frequency, and writes them as the ending of `file` says.
-pub(super) fn write(file: &Path, law: &Entry, found: &Fitted, rows: &[Measured]) -> Ending {
-    drawing::write(file, &plot(law, found, rows))
+pub(super) fn write(file: &Path, law: &Entry, stiffness: &Stiffness, rows: &[Measured]) -> Ending {
+    drawing::write(file, &plot(law, stiffness, rows))
 }
 
 /// Two panels, the rows as marks.
-fn plot(law: &Entry, found: &Fitted, rows: &[Measured]) -> Plot {
+fn plot(law: &Entry, stiffness: &Stiffness, rows: &[Measured]) -> Plot {
     let mut drawn: Vec<&Measured> = rows.iter().collect();
     drawn.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     let (first, last) = (drawn[0].omega / TAU, drawn[drawn.len() - 1].omega / TAU);
@@ -26,7 +30,7 @@ fn plot(law: &Entry, found: &Fitted, rows: &[Measured]) -> Plot {
         let measured = drawn.iter().map(|row| [row.omega / TAU, [row.storage, row.loss][part]]);
         let fitted = (0..POINTS).map(|k| {
             let hertz = first * (last / first).powf(k as f64 / (POINTS - 1) as f64);
-            [hertz, found.law.complex_stiffness(TAU * hertz)[part]]
+            [hertz, stiffness(TAU * hertz)[part]]
         });
         let measured = Curve { is_marked: true, ..curve("measured", measured) };
         Panel { title: Some(title.to_owned()), curves: vec![measured, curve(&law.name, fitted)], ..Panel::default() }

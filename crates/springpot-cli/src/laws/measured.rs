@@ -7,7 +7,7 @@ use crate::arguments::LawsOptions;
 use crate::numbers::{count, rough, short};
 use crate::{Ending, terminal};
 use serde_json::{Map, Value, json};
-use springpot::law::datasheet::{FitError, Fitted, Model, fit};
+use springpot::law::datasheet::{FitError, Measured, Model, can_fit, fit, fit_network};
 use springpot::law::{Catalog, Entry};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -29,14 +29,47 @@ pub(super) fn text(
             Refused::new("no law of the catalog is k·x + c·D^alpha x", help)
         })?,
     };
-    let found = fit(law, &table.rows).map_err(|error| refused(&error, catalog, file, &table))?;
-    match figure::write(&drawing, law, &found, &table.rows) {
+    let found = Found::of(law, &table.rows).map_err(|error| refused(&error, catalog, file, &table))?;
+    match figure::write(&drawing, law, &*found.stiffness, &table.rows) {
         Ending::Done => {}
         ending => return Ok((String::new(), Some(ending))),
     }
     let told =
         if options.json { json(law, &found, &table, &drawing) } else { page(law, &found, &table, file, &drawing) };
     Ok((told, None))
+}
+
+/// A law fitted to rows, whatever its form.
+struct Found {
+    /// Values and spreads, in the order of the law's parameters.
+    values: Vec<f64>,
+    spreads: Vec<Option<f64>>,
+    rms: f64,
+    largest: f64,
+    farthest: usize,
+    stiffness: Box<figure::Stiffness<'static>>,
+}
+
+impl Found {
+    fn of(law: &Entry, rows: &[Measured]) -> Result<Self, FitError> {
+        if Model::of(law).is_none() && can_fit(law) {
+            let found = fit_network(law, rows)?;
+            let (values, spreads) = (found.values.clone(), found.spreads.clone());
+            let (rms, largest, farthest) = (found.rms, found.largest, found.farthest);
+            let stiffness = Box::new(move |omega| found.complex_stiffness(omega));
+            return Ok(Self { values, spreads, rms, largest, farthest, stiffness });
+        }
+        let found = fit(law, rows)?;
+        let each = || law.params.iter().map(|param| &*param.name);
+        Ok(Self {
+            values: each().map(|name| found.law.parameter(name).unwrap_or(f64::NAN)).collect(),
+            spreads: each().map(|name| found.spread(name)).collect(),
+            rms: found.rms,
+            largest: found.largest,
+            farthest: found.farthest,
+            stiffness: Box::new(move |omega| found.law.complex_stiffness(omega)),
+        })
+    }
 }
 
 /// Where the figure goes: into the current folder, unless the options say where.
@@ -61,7 +94,9 @@ fn refused(error: &FitError, catalog: &Catalog, file: &Path, table: &Table) -> R
     let last = table.lines.last().copied();
     let (line, help) = match error {
         FitError::OtherLaw { .. } => {
-            return Refused::new(error.to_string(), format!("choose one of {}", super::determined(catalog)));
+            let known = catalog.entries().iter().filter(|law| Model::of(law).is_some() || can_fit(law));
+            let names = known.map(|law| &*law.name).collect::<Vec<_>>().join(", ");
+            return Refused::new(error.to_string(), format!("choose one of {names}"));
         }
         FitError::NotPositive { row, .. } => (line(*row), "correct the row or leave it out".to_owned()),
         FitError::TooFew { needed, .. } => (last, format!("measure at {needed} frequencies or more")),
@@ -76,13 +111,13 @@ fn refused(error: &FitError, catalog: &Catalog, file: &Path, table: &Table) -> R
     Refused::new(columns::place(file, line, &error.to_string()), help)
 }
 
-fn page(law: &Entry, found: &Fitted, table: &Table, file: &Path, drawing: &Path) -> String {
+fn page(law: &Entry, found: &Found, table: &Table, file: &Path, drawing: &Path) -> String {
     let width = terminal::stdout_width().or(Some(80));
-    let value = |name: &str| found.law.parameter(name).unwrap_or(f64::NAN);
-    let params: Vec<_> = law.params.iter().map(|param| (&*param.name, &*param.unit, value(&param.name))).collect();
+    let named = law.params.iter().zip(&found.values);
+    let params: Vec<_> = named.map(|(param, value)| (&*param.name, &*param.unit, *value)).collect();
     let mut text = format!("{}   {}\n\n", law.name, law.equation);
-    for (name, unit, value) in &params {
-        let spread = match found.spread(name) {
+    for ((name, unit, value), spread) in params.iter().zip(&found.spreads) {
+        let spread = match *spread {
             Some(spread) => format!("± {} {unit}", rough(spread)),
             None => format!("{unit}, an end of its range"),
         };
@@ -113,14 +148,14 @@ fn page(law: &Entry, found: &Fitted, table: &Table, file: &Path, drawing: &Path)
     text
 }
 
-fn json(law: &Entry, found: &Fitted, table: &Table, drawing: &Path) -> String {
-    let each = |of: &dyn Fn(&str) -> Option<f64>| -> Map<String, Value> {
-        law.params.iter().map(|param| (param.name.to_string(), of(&param.name).into())).collect()
+fn json(law: &Entry, found: &Found, table: &Table, drawing: &Path) -> String {
+    let each = |of: &dyn Fn(usize) -> Option<f64>| -> Map<String, Value> {
+        law.params.iter().enumerate().map(|(k, param)| (param.name.to_string(), of(k).into())).collect()
     };
     let value = json!({
         "law": law.name,
-        "parameters": each(&|name| found.law.parameter(name)),
-        "spread": each(&|name| found.spread(name)),
+        "parameters": each(&|k| Some(found.values[k])),
+        "spread": each(&|k| found.spreads[k]),
         "rows": table.rows.len(),
         "columns": table.columns,
         "rms": found.rms,

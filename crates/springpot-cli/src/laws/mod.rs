@@ -5,6 +5,7 @@ mod figure;
 mod measured;
 mod names;
 mod page;
+mod parts;
 mod sample;
 mod sheet;
 

@@ -1,5 +1,6 @@
 //! One law: equation, parameters, inputs, source, and an element to start from.
 
+use super::parts::Part;
 use crate::grid::{Grid, Set};
 use crate::numbers::short;
 use crate::terminal;
@@ -11,6 +12,7 @@ pub(super) fn text(law: &Entry) -> String {
     let width = terminal::stdout_width().or(Some(80));
     let mut text = format!("{}\n", law.name);
     text.push_str(&terminal::hanging("  ", &law.equation, width));
+    text.push_str(&parts(law, width));
     text.push_str("\nparameters\n");
     let mut grid = Grid::new(["name", "unit", "range", "default", "meaning"].map(|title| (title, Set::Text)));
     for Param { name, unit, meaning, range, default, .. } in &law.params {
@@ -30,6 +32,24 @@ pub(super) fn text(law: &Entry) -> String {
     text.push_str(&terminal::hanging("source  ", &law.source, width));
     text.push_str("\nan element of this law in a scenario\n\n");
     text.push_str(&example(law));
+    text
+}
+
+/// The law as parts in series and beside one another, and what follows from them where it is linear.
+fn parts(law: &Entry, width: Option<usize>) -> String {
+    let Some(part) = Part::of(law) else { return String::new() };
+    let mut text = part.drawing().map_or_else(String::new, |drawing| format!("\nparts\n{drawing}"));
+    let formulas = [("K*(ω) = ", part.modulus()), ("G(t)  = ", part.relaxation())];
+    let told = formulas.iter().filter_map(|(lead, formula)| formula.as_ref().map(|formula| (lead, formula)));
+    for (k, (lead, formula)) in told.enumerate() {
+        if k == 0 {
+            text.push_str("\ncomplex modulus and relaxation\n");
+        }
+        text.push_str(&terminal::hanging(&format!("  {lead}"), formula, width));
+    }
+    if text.contains("·E_alpha(") {
+        text.push_str("  E_alpha is the Mittag-Leffler function.\n");
+    }
     text
 }
 

@@ -15,6 +15,7 @@ fn help_is_where_it_is_looked_for() {
         "  dynamics     Compute the dynamics",
         "  derivative   Differentiate columns",
         "  prony        Turn a springpot",
+        "  modes        Natural frequencies",
         "  laws         Show the laws",
         "  plot         Draw columns",
         "  init         Write a commented scenario",

@@ -156,3 +156,19 @@ fn what_is_wrong_is_said() {
     refused(&["springpot", "--from", "stiffness = 2 at 3 Hz"], &["add the losses"]);
     refused(&["springpot", "--from", "stiffness = 2, storage = 1"], &["no static stiffness"]);
 }
+
+#[test]
+fn networks_are_drawn_with_their_modulus_and_relaxation() {
+    let place = Place::new();
+    let page = place.done(&["laws", "fractional-zener"]).stdout;
+    for line in [
+        "  o--+--[spring k_e]------------------------+--o",
+        "     +--[spring k_m]--[springpot c, alpha]--+",
+        "  K*(ω) = k_e + 1/(1/k_m + 1/(c·(iω)^alpha))",
+        "  G(t)  = k_e + k_m·E_alpha(−k_m·t^alpha/c)",
+        "  E_alpha is the Mittag-Leffler function.",
+    ] {
+        assert!(page.lines().any(|own| own == line), "{line}: {page}");
+    }
+    assert!(!place.done(&["laws", "bouc-wen"]).stdout.contains("K*("));
+}

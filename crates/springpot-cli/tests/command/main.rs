@@ -22,6 +22,7 @@ mod looks;
 mod manual;
 mod measured;
 mod messages;
+mod modes;
 mod modulus;
 mod networks;
 #[cfg(unix)]

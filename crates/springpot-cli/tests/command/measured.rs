@@ -246,3 +246,32 @@ fn measurements_that_make_no_law_are_refused() {
     assert!(place.files(".").iter().all(|name| !name.ends_with("svg")));
     assert_eq!(place.springpot(&["laws", "--from", "good.csv", "--out", "no/such/folder.svg"]).code, Some(1));
 }
+
+#[test]
+fn networks_are_fitted_too() {
+    // k_e beside k_m in series with c·(iω)^alpha.
+    let (k_e, k_m, c, alpha) = (300.0, 5000.0, 400.0, 0.45);
+    let mut text = "frequency,storage,loss\n".to_owned();
+    for k in 0..33 {
+        let hertz = 10f64.powf(-2.0 + 0.125 * f64::from(k));
+        let (size, angle) = (c * (std::f64::consts::TAU * hertz).powf(alpha), alpha * std::f64::consts::FRAC_PI_2);
+        let (re, im) = (size * angle.cos(), size * angle.sin());
+        let whole = (k_m + re).powi(2) + im * im;
+        text.push_str(&format!(
+            "{hertz},{},{}\n",
+            k_e + k_m * (re * (k_m + re) + im * im) / whole,
+            k_m * k_m * im / whole
+        ));
+    }
+    let place = Place::new();
+    place.write("dma.csv", &text);
+    let answer = place.done(&["laws", "fractional-zener", "--from", "dma.csv", "--json"]).stdout;
+    let answer: serde_json::Value = serde_json::from_str(&answer).unwrap();
+    for (name, value) in [("k_e", k_e), ("k_m", k_m), ("c", c), ("alpha", alpha)] {
+        assert!((answer["parameters"][name].as_f64().unwrap() / value - 1.0).abs() < 1e-5, "{answer}");
+    }
+    let page = place.done(&["laws", "fractional-zener", "--from", "dma.csv", "--out", "fit.svg"]).stdout;
+    assert!(page.contains("k_e   = 300 ±") && page.contains("law = \"fractional-zener\""), "{page}");
+    let refused = place.springpot(&["laws", "bouc-wen", "--from", "dma.csv"]);
+    assert!(refused.code == Some(2) && refused.stderr.contains("fractional-burgers"), "{}", refused.stderr);
+}

@@ -186,3 +186,32 @@ fn help_shows_an_example_and_every_option() {
         assert!(help.contains(words), "{help}");
     }
 }
+
+#[test]
+fn whole_laws_relax_too() {
+    let place = Place::new();
+    let ask = |law: &str, parameters: &[&str]| {
+        let each = parameters.iter().flat_map(|parameter| ["--parameter", *parameter]);
+        let all: Vec<&str> = ["prony", "--law", law, "--from", "1e-3", "--to", "10"].into_iter().chain(each).collect();
+        place.springpot(&all)
+    };
+    let zener = ask("fractional-zener", &["k_e=2 N/cm", "k_m=900", "c=120 N*s^alpha/m", "alpha=0.6"]);
+    assert_eq!(zener.code, Some(0), "{}", zener.stderr);
+    for words in ["law        fractional-zener, k_e=2 N/cm", "G_e        200 N/m", "all moduli positive"] {
+        assert!(zener.stdout.contains(words), "{words}: {}", zener.stdout);
+    }
+    for (law, parameters, words) in [
+        ("fractional-zenner", &[][..], "did you mean `fractional-zener`?"),
+        ("fractional-maxwell", &["k=1", "c=2"], "--parameter alpha is missing"),
+        ("fractional-maxwell", &["k=1", "c=2", "beta=1"], "has no such parameter"),
+        ("fractional-maxwell", &["k=1", "c=2", "alpha=1.5"], "out of range"),
+        ("fractional-maxwell", &["k=1 s", "c=2", "alpha=0.5"], "--parameter k=1 s"),
+        ("fractional-maxwell", &["k"], "no value"),
+        ("maxwell", &["k=1", "c=2"], "are not springs and springpots alone"),
+        ("thermoviscoelastic", &["E_c=1", "E_kv=1", "E_d=1", "alpha=0.5", "a_kv=0"], "has inputs"),
+    ] {
+        let refused = ask(law, parameters);
+        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(refused.code == Some(2) && said.contains(words), "{law} {parameters:?}: {}", refused.stderr);
+    }
+}

@@ -56,4 +56,6 @@ pub use state::{Checkpoint, SimulationState};
 pub use steady::SteadyError;
 pub use system::{Motion, System};
 
+pub(crate) use resistance::add_tangents as add_resistance_slopes;
+
 pub use crate::model::FRICTION_SPEED;

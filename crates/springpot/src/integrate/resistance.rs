@@ -71,7 +71,7 @@ pub(super) fn add_smooth_resistance(model: &Model, v: &[f64], tau: &mut [f64]) {
 }
 
 /// Adds the derivatives of [`add_smooth_resistance`] by v to ∂τ/∂v (nv × nv).
-pub(super) fn add_tangents(model: &Model, v: &[f64], d_v: &mut [f64]) {
+pub(crate) fn add_tangents(model: &Model, v: &[f64], d_v: &mut [f64]) {
     let n = model.nv();
     for Resisting { index, ratio, speed, damping, friction, law } in resisting(model, v) {
         let slope = match law {

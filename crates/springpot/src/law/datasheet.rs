@@ -39,8 +39,10 @@
 mod closed;
 mod fit;
 mod nearest;
+mod networks;
 
 pub use fit::{FitError, Fitted, Measured, fit};
+pub use networks::{FittedNetwork, can_fit, fit_network};
 
 use super::catalog::{Catalog, Entry, Param};
 use super::network::Network;

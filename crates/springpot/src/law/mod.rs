@@ -30,6 +30,7 @@ pub mod network;
 pub mod past;
 pub mod state;
 pub mod step;
+pub mod tangent;
 
 mod kelvin_voigt;
 mod magnetorheological;
@@ -50,4 +51,5 @@ pub use state::{State, StateMut, StateRef, StateSize};
 pub use step::{
     Course, InputValue, LeafState, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term,
 };
+pub use tangent::{AtRest, LeafAtRest, Tangent};
 pub use written::{NetworkText, NetworkTextError};

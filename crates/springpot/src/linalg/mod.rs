@@ -1,14 +1,18 @@
 //! Small dense linear algebra. Matrices are row-major; the joint-space mass matrix has its own factors in `dynamics`.
 
+mod complex;
 mod eigen;
 mod gauss;
+mod hessenberg;
 mod least_norm;
 mod least_squares;
 mod lu;
 mod svd;
 
+pub(crate) use complex::ComplexLu;
 pub(crate) use eigen::symmetric_eigenvalues;
 pub(crate) use gauss::{gauss_rule, gauss_rules};
+pub(crate) use hessenberg::eigenvalues;
 pub(crate) use least_norm::LeastNorm;
 pub(crate) use least_squares::{Unknown, are_independent, cholesky_solve, levenberg_marquardt};
 pub(crate) use lu::Lu;

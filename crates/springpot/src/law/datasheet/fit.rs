@@ -162,6 +162,12 @@ pub fn fit(law: &Entry, rows: &[Measured]) -> Result<Fitted, FitError> {
 }
 
 fn check(law: &str, model: Model, rows: &[Measured]) -> Result<(), FitError> {
+    // With every row left out once, the others must determine the law.
+    check_rows(law, rows, if model.parameter_count() == 3 { 3 } else { 2 })
+}
+
+/// Refuses rows that are not positive, fewer than three or than are `needed`, and fewer frequencies than are `needed`.
+pub(super) fn check_rows(law: &str, rows: &[Measured], needed: usize) -> Result<(), FitError> {
     for (row, Measured { omega, storage, loss }) in rows.iter().enumerate() {
         for (what, value) in [("frequency", *omega), ("storage", *storage), ("loss", *loss)] {
             if !(value > 0.0 && value.is_finite()) {
@@ -169,10 +175,9 @@ fn check(law: &str, model: Model, rows: &[Measured]) -> Result<(), FitError> {
             }
         }
     }
-    // With every row left out once, the others must determine the law.
-    let needed = if model.parameter_count() == 3 { 3 } else { 2 };
-    if rows.len() < 3 {
-        return Err(FitError::TooFew { law: law.to_owned(), needed: 3, given: rows.len() });
+    let least = needed.max(3);
+    if rows.len() < least {
+        return Err(FitError::TooFew { law: law.to_owned(), needed: least, given: rows.len() });
     }
     let mut frequencies: Vec<f64> = rows.iter().map(|row| row.omega).collect();
     frequencies.sort_unstable_by(f64::total_cmp);

@@ -190,6 +190,7 @@ impl Leaf for BoucWen {
         self.observation(at, state.variables[0])
     }
 
+    /// About z = 0, so that at rest it gives no force and small motions meet the spring alpha_h·A.
     fn linearised(&self, _: &Point) -> Term {
         Term { coefficient: self.alpha_h * self.a, order: 0.0 }
     }

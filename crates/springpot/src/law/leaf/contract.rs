@@ -5,6 +5,7 @@ use crate::law::network::Holds;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::tangent::LeafAtRest;
 
 /// A part of a law that gives a force by itself: linear or not, with or without memories and inner variables.
 ///
@@ -57,6 +58,13 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
 
     /// What it is like under small and fast strokes about `at`.
     fn linearised(&self, at: &Point) -> Term;
+
+    /// The leaf at rest since ever at the stroke of `at`; `held` is x(0), from which Caputo's derivative counts.
+    ///
+    /// What is provided is that of a leaf that flows: no force remains, and small motions meet [`Leaf::linearised`].
+    fn at_rest(&self, at: &Point, _held: f64) -> LeafAtRest {
+        LeafAtRest { force: 0.0, stiffness: None, term: self.linearised(&Point { rate: 0.0, ..*at }), input: None }
+    }
 
     /// Whether it gives a force that grows with its stroke, or the rate of it, wherever it is: what may stand in a series by itself.
     fn holds(&self) -> Holds {

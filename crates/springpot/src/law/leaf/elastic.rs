@@ -4,6 +4,7 @@ use super::contract::Leaf;
 use crate::law::network::Holds;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Response, Step, Term};
+use crate::law::tangent::LeafAtRest;
 
 /// F(x), linear or not: a leaf that keeps nothing and loses nothing.
 ///
@@ -72,6 +73,13 @@ impl<T: Elastic> Leaf for T {
 
     fn linearised(&self, at: &Point) -> Term {
         Term { coefficient: self.slope(at.stroke).abs(), order: 0.0 }
+    }
+
+    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
+        let slope = self.slope(at.stroke);
+        let stiffness = (Elastic::holds(self) != Holds::Never).then_some(slope);
+        let term = Term { coefficient: slope, order: 0.0 };
+        LeafAtRest { force: self.force(at.stroke), stiffness, term, input: None }
     }
 
     fn holds(&self) -> Holds {

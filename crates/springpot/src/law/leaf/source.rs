@@ -3,6 +3,7 @@
 use super::contract::Leaf;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
+use crate::law::tangent::LeafAtRest;
 
 /// F = −gain·(input − reference): expansion by heat or voltage, turned into force by a stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +46,11 @@ impl Leaf for Source {
 
     fn linearised(&self, _: &Point) -> Term {
         Term { coefficient: 0.0, order: 0.0 }
+    }
+
+    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
+        let input = Some((self.input, -self.gain));
+        LeafAtRest { force: self.force(at), stiffness: None, term: self.linearised(at), input }
     }
 
     fn is_linear(&self) -> bool {

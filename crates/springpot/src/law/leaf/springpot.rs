@@ -12,6 +12,7 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::Course;
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::tangent::LeafAtRest;
 use std::borrow::Cow;
 
 /// A coefficient that may follow an input: constant + slope·input.
@@ -184,6 +185,16 @@ impl Leaf for Springpot {
 
     fn linearised(&self, at: &Point) -> Term {
         Term { coefficient: self.coefficient.at(at.inputs).value, order: self.alpha }
+    }
+
+    fn at_rest(&self, at: &Point, held: f64) -> LeafAtRest {
+        let term = self.linearised(at);
+        let Term { coefficient, order } = term;
+        if order > 0.0 {
+            return LeafAtRest { force: 0.0, stiffness: None, term, input: None };
+        }
+        let held = if self.derivative == Derivative::Caputo { held } else { 0.0 };
+        LeafAtRest { force: coefficient * (at.stroke - held), stiffness: Some(coefficient), term, input: None }
     }
 
     fn holds(&self) -> Holds {

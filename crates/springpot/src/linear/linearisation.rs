@@ -1,0 +1,146 @@
+//! The equations of small motions about a configuration.
+
+use super::error::LinearError;
+use super::statics::ElementAtRest;
+use crate::dynamics::point_jacobian;
+use crate::integrate::System;
+use crate::law::Tangent;
+use crate::model::{FrictionLaw, Model};
+use std::sync::Arc;
+
+/// A system about a configuration at rest: M s² + D s + K + Σ K_e*(s) g_e g_eᵀ. Matrices are nv × nv, row-major.
+#[derive(Debug, Clone)]
+pub struct Linearisation {
+    /// The configuration, nq values.
+    pub q: Vec<f64>,
+    /// The velocities that forces move, in rising order; signals move the others, or nothing does.
+    pub free: Vec<usize>,
+    /// Mass matrix M.
+    pub mass: Vec<f64>,
+    /// D of damping and friction of joints.
+    pub damping: Vec<f64>,
+    /// K of gravity and of the forces that the elements keep: ∂g/∂q + Σ F_e ∂²y_e.
+    pub stiffness: Vec<f64>,
+    /// The elements, in their order.
+    pub elements: Vec<LinearElement>,
+    /// The torque that is missing for an equilibrium on every velocity that forces move, else 0 (nv). Kinematics that are given have actuators
+    /// that hold them.
+    pub left_over: Vec<f64>,
+    /// The joints that friction which sticks would hold; it has no part in what is linear.
+    pub sticking: Vec<String>,
+    pub(super) model: Arc<Model>,
+    /// ∂q/∂ξ of coordinates by tangent steps, nq × nv.
+    pub(super) coordinates: Vec<f64>,
+    /// Jacobian of the gripper, 3 × nv.
+    pub(super) gripper: Option<Vec<f64>>,
+}
+
+/// An element about rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearElement {
+    /// Its name.
+    pub name: String,
+    /// x, m or rad.
+    pub stroke: f64,
+    /// F that remains, N or N·m.
+    pub force: f64,
+    /// ∂y/∂q_b, nv values.
+    pub gradient: Vec<f64>,
+    /// Its law under small motions.
+    pub tangent: Tangent,
+    /// ∂²y/∂q_a∂q_b, nv × nv.
+    pub(super) hessian: Vec<f64>,
+}
+
+impl System {
+    /// The small motions about the configuration `q` (nq) at rest, torques and inputs as they are at `t`.
+    ///
+    /// Forces that remain are those after endless rest: springpots and dashpots carry nothing. Where kinematics are given all joints are
+    /// free and the actuators hold the configuration with constant forces; of forward dynamics, prescribed and locked joints stand still.
+    ///
+    /// # Errors
+    /// [`LinearError`].
+    pub fn linearised(&self, q: &[f64], t: f64) -> Result<Linearisation, LinearError> {
+        if let Some(value) = q.iter().find(|value| !value.is_finite()) {
+            return Err(LinearError::Value { what: "q".to_owned(), problem: format!("{value} is no finite number") });
+        }
+        let model = &self.model;
+        let statics = self.at_rest(q, t, &self.strokes_at_start())?;
+        let free = self.moved_by_forces();
+        let mut left_over = vec![0.0; model.nv()];
+        if let Some(torques) = self.torques_at(t)? {
+            free.iter().for_each(|&k| left_over[k] = statics.holding[k] - torques[k]);
+        }
+        let mut damping = vec![0.0; model.nv() * model.nv()];
+        crate::integrate::add_resistance_slopes(model, &vec![0.0; model.nv()], &mut damping);
+        let sticks = |&j: &usize| model.friction()[j] > 0.0 && model.friction_laws()[j] == FrictionLaw::Sticking;
+        let sticking = (0..model.joint_count()).filter(sticks).map(|j| model.joint_names()[j].clone()).collect();
+        let linear = |(element, at): (&crate::elements::Element, ElementAtRest)| LinearElement {
+            name: element.name.clone(),
+            stroke: at.stroke,
+            force: at.law.force,
+            gradient: at.gradient,
+            tangent: at.law.tangent,
+            hessian: element.measure.hessian(model, &statics.kinematics),
+        };
+        let elements = self.elements.iter().zip(statics.elements).map(linear).collect();
+        let gripper = self.gripper.as_ref().map(|site| point_jacobian(model, &statics.kinematics, site));
+        Ok(Linearisation {
+            q: q.to_vec(),
+            free,
+            mass: statics.slopes.d_a,
+            damping,
+            stiffness: statics.slopes.d_q,
+            elements,
+            left_over,
+            sticking,
+            model: self.model.clone(),
+            coordinates: coordinate_slopes(model, q),
+            gripper,
+        })
+    }
+}
+
+impl Linearisation {
+    /// The largest torque that is missing for an equilibrium: its velocity, its size and its unit; `None` where it is rounding.
+    pub fn largest_left_over(&self) -> Option<(String, f64, &'static str)> {
+        let size = |k: &usize| self.left_over[*k].abs();
+        let k = self.free.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let pulls = self.elements.iter().map(|element| (element.gradient[k] * element.force).abs());
+        let terms: f64 = pulls.sum::<f64>() + size(&k);
+        let label = &self.model.v_labels()[k];
+        let is_rounding = size(&k) <= 1e-9 * terms.max(1e-3);
+        (!is_rounding).then(|| (label.name.clone(), size(&k), label.dimension.units().force))
+    }
+
+    /// The names of the velocities, in their order.
+    pub fn velocity_names(&self) -> Vec<String> {
+        self.model.v_labels().into_iter().map(|label| label.name).collect()
+    }
+}
+
+/// ∂q/∂ξ of q ⊕ ξ: 1 but for the numbers of floating joints.
+fn coordinate_slopes(model: &Model, q: &[f64]) -> Vec<f64> {
+    let (nq, nv) = (model.nq(), model.nv());
+    let mut slopes = vec![0.0; nq * nv];
+    for j in model.own_joints() {
+        let (places, rates) = (model.q_range(j), model.v_range(j));
+        for k in rates.clone() {
+            if rates.len() == 1 {
+                slopes[places.start * nv + k] = 1.0;
+                continue;
+            }
+            let h = 1e-4;
+            let moved = |factor: f64| {
+                let mut step = vec![0.0; nv];
+                step[k] = factor * h;
+                model.integrate(q, &step)
+            };
+            let [far, near, back, farther] = [2.0, 1.0, -1.0, -2.0].map(moved);
+            for i in places.clone() {
+                slopes[i * nv + k] = (8.0 * (near[i] - back[i]) - (far[i] - farther[i])) / (12.0 * h);
+            }
+        }
+    }
+    slopes
+}
