@@ -12,7 +12,7 @@ use super::root::SCENARIO;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
 use super::urdf::UrdfCache;
-use super::{Scenario, constants, elements, motion, overrides, past, robot, time};
+use super::{Scenario, constants, elements, events, motion, overrides, past, robot, time};
 use springpot::law::Catalog;
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
@@ -432,6 +432,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         gripper: robot.gripper,
         elements: elements?,
         motion: motion?,
+        events: Vec::new(),
         tells_joint_losses: false,
         tells_leaves: tells_leaves?,
         warnings: ctx.warnings(),
@@ -441,5 +442,6 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     };
     plan.rest_at_start();
     past::settle(ctx, &mut plan)?;
+    plan.events = events::read(&root, &plan)?;
     Ok(plan)
 }

@@ -41,6 +41,7 @@ pub mod csv;
 mod cure;
 mod document;
 mod elements;
+mod events;
 mod figures;
 mod inputs;
 mod keys;
@@ -67,6 +68,7 @@ mod urdf;
 
 pub use cases::{Cases, SweptValue};
 pub use cure::Cure;
+pub use events::EventPlan;
 pub use figures::{
     AxisLook, AxisRange, ColumnGlob, FigureFormat, FigureKind, FigureLabel, FigurePlan, FigureUnit, Look, RangeEnd,
     Selection, Statistic, Summarised, SweptAxis,

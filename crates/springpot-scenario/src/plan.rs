@@ -1,5 +1,6 @@
 //! The plan: a scenario validated and resolved, in SI units, with every default filled in.
 
+use super::events::EventPlan;
 use super::figures::{ColumnGlob, FigurePlan};
 use super::motion::MotionPlan;
 use super::past::PastPlan;
@@ -32,6 +33,8 @@ pub struct Plan {
     pub elements: Vec<ElementPlan>,
     /// What moves the robot.
     pub motion: MotionPlan,
+    /// What is watched in forward runs.
+    pub events: Vec<EventPlan>,
     /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
     /// lost there.
     pub tells_joint_losses: bool,

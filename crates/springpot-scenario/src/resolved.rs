@@ -22,7 +22,7 @@ impl Plan {
                 time["output_times"] = json!(format!("{} times", times.len()));
             }
         }
-        json!({
+        let mut resolved = json!({
             "title": self.title,
             "gravity": self.gravity,
             "urdf": self.urdf.as_ref().map(urdf),
@@ -34,7 +34,11 @@ impl Plan {
             "solver": self.solver(),
             "figures": self.figures.iter().map(FigurePlan::record).collect::<Vec<_>>(),
             "columns": self.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
-        })
+        });
+        if !self.events.is_empty() {
+            resolved["events"] = self.events.iter().map(|plan| plan.record.clone()).collect();
+        }
+        resolved
     }
 
     /// The keys of `[solver]`.

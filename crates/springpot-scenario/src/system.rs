@@ -28,6 +28,7 @@ impl Plan {
             model: self.model.clone(),
             tells_joint_losses: self.tells_joint_losses,
             tells_leaves: self.tells_leaves,
+            events: self.events.iter().map(|plan| plan.event.clone()).collect(),
         }
     }
 

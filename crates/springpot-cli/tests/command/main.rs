@@ -6,6 +6,7 @@ mod documents;
 mod dynamics;
 mod dynamics_refusals;
 mod equation;
+mod events;
 mod failures;
 mod figures;
 mod first_week;

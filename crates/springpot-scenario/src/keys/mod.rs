@@ -5,6 +5,7 @@
 
 mod constants;
 mod element;
+mod event;
 mod motion;
 mod output;
 mod robot;
@@ -18,6 +19,7 @@ pub(crate) use element::{
     BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, END, HELD, ON_JOINT, PASTS, RESERVED_NAMES,
     START as AT_START,
 };
+pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
 pub(crate) use motion::{
     FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,
 };

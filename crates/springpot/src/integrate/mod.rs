@@ -13,6 +13,7 @@ mod driver_state;
 mod equation;
 mod error;
 mod evaluate;
+mod event;
 pub mod fixed;
 mod fixed_step;
 mod jump;
@@ -43,6 +44,7 @@ mod zero;
 
 pub use equation::{ElementTerm, Equation, EquationError};
 pub use error::RunError;
+pub use event::{Action, Direction, Event, Setting};
 pub use fixed_step::FixedStep;
 pub use limits::{LimitKind, LimitWatch, PassedLimit, Watch};
 pub use pose::{ElementStart, Pose, State};

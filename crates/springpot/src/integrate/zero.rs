@@ -46,7 +46,7 @@ pub(super) fn zero_between(f: &mut impl FnMut(f64) -> f64, mut above: f64, mut b
 }
 
 /// The lowest place of a function with one dip between `a` and `b`, by golden sections.
-fn lowest_between(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+pub(super) fn lowest_between(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     const SECTION: f64 = 0.618_033_988_749_894_8;
     for _ in 0..40 {
         let (c, d) = (b - SECTION * (b - a), a + SECTION * (b - a));

@@ -198,7 +198,7 @@ impl Recorder {
                 None => self.on_grid(cx, e, &point, row)?,
             };
             let mut leaves = Vec::new();
-            if cx.system.tells_leaves {
+            if cx.system.needs_leaves() {
                 self.bank.leaves(e, theta, &point, &mut leaves);
             }
             elements.push(ElementRow { observation, leaves, dissipated, input });
