@@ -379,7 +379,7 @@ impl Cases {
 
 /// Whether a joint has damping or friction.
 fn has_joint_losses(plan: &Plan) -> bool {
-    plan.model.damping().iter().chain(plan.model.friction()).any(|x| *x != 0.0)
+    plan.end_stops.is_some() || plan.model.damping().iter().chain(plan.model.friction()).any(|x| *x != 0.0)
 }
 
 /// Names of the columns of a case, but for the energy lost in joints, which all cases have or none.
@@ -430,6 +430,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         body_places: robot.parts.places,
         urdf: robot.parts.urdf,
         gripper: robot.gripper,
+        end_stops: robot.end_stops,
         elements: elements?,
         motion: motion?,
         events: Vec::new(),

@@ -78,7 +78,9 @@ pub use motion::MotionPlan;
 pub use names::{list, suggest};
 pub use past::PastPlan;
 pub use path::{equals_sign, toml_key};
-pub use plan::{BodyPlaces, ElementPlan, FramePlan, Gripper, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan};
+pub use plan::{
+    BodyPlaces, ElementPlan, EndStops, FramePlan, Gripper, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan,
+};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use schema::json_schema;
 

@@ -29,6 +29,8 @@ pub struct Plan {
     pub urdf: Option<UrdfPlan>,
     /// The gripper, if there is one.
     pub gripper: Option<Gripper>,
+    /// Whether limits of joints are stops.
+    pub end_stops: Option<EndStops>,
     /// The elements, in the order of the scenario.
     pub elements: Vec<ElementPlan>,
     /// What moves the robot.
@@ -105,6 +107,15 @@ pub struct UrdfPlan {
     pub package_path: Vec<String>,
     /// What the file says; its warnings are among those of [`super::Cases::warnings`].
     pub robot: Arc<Urdf>,
+}
+
+/// Limits of joints as stops, SI of each joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndStops {
+    /// Stiffness, N·m/rad or N/m.
+    pub stiffness: f64,
+    /// Damping, N·m·s/rad or N·s/m.
+    pub damping: f64,
 }
 
 /// The point that a gripper path is about, and whose coordinates are columns.

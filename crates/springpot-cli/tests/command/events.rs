@@ -13,9 +13,9 @@ mass = 2
 [[element]]
 name = "pad"
 joint = "q-1"
-network = "parallel(spring(k), active: source(g))"
-parameters = { k = "0 N/m", g = "1 N/V" }
-inputs = { u = "0 V" }
+law = "piezo-kelvin-voigt"
+parameters = { E_c = 0, E_pz = 1e-20, E_d = 0, alpha = 0.5, alpha_pz = 1 }
+inputs = { U = "0 V" }
 [motion]
 kind = "forward"
 torque = { q-1 = "4 N" }
@@ -76,7 +76,11 @@ fn a_stop_is_a_run_that_is_done() {
     let place = Place::with(MASS);
     let ended = place.done(&["run", "arm.toml", "--out", "o", "--set", "event.brake.action=stop"]);
     assert!(ended.stderr.is_empty(), "{}", ended.stderr);
-    assert!(ended.stdout.contains("events   half 1 time, brake 1 time; brake ended the run at t = 1 s\n"), "{}", ended.stdout);
+    assert!(
+        ended.stdout.contains("events   half 1 time, brake 1 time; brake ended the run at t = 1 s\n"),
+        "{}",
+        ended.stdout
+    );
     let record = place.record("o");
     assert_eq!((&record["status"], &record["cases"][0]["stopped_by"]), (&"done".into(), &"brake".into()));
     let t = place.table("o/results.csv").numbers("t");
@@ -106,13 +110,13 @@ fn cases_of_a_sweep_have_their_own() {
 
 #[test]
 fn leaves_and_inputs() {
-    let leaf = "[[event]]\nname = \"leaf\"\nwhen = \"pad.active.force + pad.spring1.stroke - 1\"\n\
-                action = { set = { \"pad.u\" = \"-3 V\", \"tau.q-1\" = 0 } }\n";
+    let leaf = "[[event]]\nname = \"leaf\"\nwhen = \"pad.spring1.force + pad.spring1.stroke - 1\"\n\
+                action = { set = { \"pad.U\" = \"-3 V\", \"tau.q-1\" = 0 } }\n";
     let place = Place::with(&format!("{MASS}{leaf}"));
     place.done(&["run", "arm.toml", "--out", "o"]);
     let events = place.table("o/events.csv");
     assert_eq!(events.texts("event"), ["half", "brake", "leaf"]);
-    near(&[*place.table("o/results.csv").numbers("pad.u").last().unwrap()], &[-3.0]);
+    near(&[*place.table("o/results.csv").numbers("pad.U").last().unwrap()], &[-3.0]);
 }
 
 #[test]
@@ -130,10 +134,10 @@ fn what_is_refused() {
         ("event.brake.action={ put = { \"tau.q-1\" = 1 } }", "unknown key `put`"),
         ("event.brake.action={ set = { \"tau.q-2\" = 1 } }", "did you mean `tau.q-1`"),
         ("event.brake.action={ set = { \"pad.force\" = 1 } }", "is no input of an element and no torque"),
-        ("event.brake.action={ set = { pad = { u = 1 } } }", "a column is written in quotes"),
+        ("event.brake.action={ set = { pad = { U = 1 } } }", "a column is written in quotes"),
         ("event.brake.action={ set = { \"tau.q-1\" = \"1 N*m\" } }", "this place takes `N`"),
-        ("event.brake.action={ set = { \"pad.u\" = \"3 s\" } }", "this place takes `V`"),
-        ("event.brake.action={ set = { \"pad.u\" = \"2*t\" } }", "varies with t"),
+        ("event.brake.action={ set = { \"pad.U\" = \"3 s\" } }", "this place takes `V`"),
+        ("event.brake.action={ set = { \"pad.U\" = \"2*t\" } }", "varies with t"),
         ("event.half.name=brake", "taken on line"),
         ("event.half.name=\"a b\"", "is not a name"),
         ("event.half.where=3", "unknown key `where`"),

@@ -5,6 +5,7 @@ mod derivative;
 mod documents;
 mod dynamics;
 mod dynamics_refusals;
+mod end_stops;
 mod equation;
 mod events;
 mod failures;

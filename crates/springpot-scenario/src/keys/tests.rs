@@ -181,7 +181,7 @@ fn the_document_has_the_same_keys() {
     }
     assert!(compared > 50, "{compared}");
     // Keys that stand in sentences.
-    for keys in [&SIGNAL, &INERTIA, &ANCHOR, &SPAN, &POSE, &START_VELOCITIES, &OUTPUT, &ACTION] {
+    for keys in [&SIGNAL, &INERTIA, &ANCHOR, &SPAN, &POSE, &START_VELOCITIES, &OUTPUT, &ACTION, &END_STOPS] {
         for key in keys.keys {
             let named = [
                 format!("`{}`", key.name),

@@ -10,6 +10,7 @@ mod coulomb;
 mod definite;
 mod driver;
 mod driver_state;
+mod end_stops;
 mod equation;
 mod error;
 mod evaluate;

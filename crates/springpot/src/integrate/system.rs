@@ -14,8 +14,10 @@ use std::sync::Arc;
 pub struct System {
     /// The robot.
     pub model: Arc<Model>,
-    /// The elements.
+    /// The elements, end stops behind all others.
     pub elements: Vec<Element>,
+    /// How many end stops there are ([`System::with_end_stops`]).
+    pub end_stops: usize,
     /// How it moves.
     pub motion: Motion,
     /// The gripper, where there is one.
@@ -64,6 +66,7 @@ impl System {
         Self {
             model,
             elements,
+            end_stops: 0,
             motion,
             gripper: None,
             tells_joint_losses: false,
@@ -74,7 +77,7 @@ impl System {
 
     /// What can be observed of it, in the order of a run's rows.
     pub fn observables(&self) -> Observables {
-        let mut observables = Observables::new(&self.model, &self.elements);
+        let mut observables = Observables::new(&self.model, self.materials());
         if self.gripper.is_some() {
             observables = observables.with_gripper(self.motion.has_path());
         }

@@ -5,12 +5,16 @@ use crate::integrate::context::Context;
 use crate::integrate::driver::Driver;
 use crate::integrate::error::RunError;
 use crate::integrate::stepper::Target;
-use crate::integrate::zero::{SAMPLES, lowest_between, zero_between};
+use crate::integrate::system::Motion;
+use crate::integrate::zero::{SAMPLES, lowest_between, zero_within};
 use crate::observe::Snapshot;
 use serde::{Deserialize, Serialize};
 
 /// Where a step is looked at besides, where some function has just left zero.
 const EARLY: [f64; 2] = [1.0 / 1024.0, 1.0 / 64.0];
+
+/// How closely passages are found, in units of the step.
+const CLOSE: f64 = 1e-13;
 
 /// A value is zero that rounding of its columns may have made: this share of them, and so much in SI.
 const ROUNDING: f64 = 1e-12;
@@ -51,7 +55,11 @@ pub(super) struct Sides {
 
 impl<'s> Functions<'s> {
     pub(super) fn new(cx: Context<'s>) -> Self {
-        Self { cx, events: &cx.system.events, snapshot: Snapshot::new(cx.system), columns: Vec::new() }
+        let events: &[Event] = match cx.system.motion {
+            Motion::Given(_) => &[],
+            Motion::Forward(_) => &cx.system.events,
+        };
+        Self { cx, events, snapshot: Snapshot::new(cx.system), columns: Vec::new() }
     }
 
     /// Whether a passage is in the direction of its event.
@@ -151,14 +159,14 @@ impl<'s> Functions<'s> {
                 };
                 let mut note = |theta: f64, rises: bool| passages.push(Passage { event, t: time(step, theta), rises });
                 if here.1 <= 0.0 {
-                    note(zero_between(&mut at, left.0, here.0), side < 0.0);
+                    note(zero_within(&mut at, left.0, here.0, CLOSE), side < 0.0);
                     *sign = side_of(values[event]);
                 } else if may_dip([first.1, left.1, here.1]) {
                     let lowest = lowest_between(&mut at, first.0, here.0);
                     if at(lowest) < 0.0 {
-                        note(zero_between(&mut at, first.0, lowest), side < 0.0);
+                        note(zero_within(&mut at, first.0, lowest, CLOSE), side < 0.0);
                         // From behind, where it is above zero again.
-                        let back = zero_between(&mut |back| at(here.0 - back), 0.0, here.0 - lowest);
+                        let back = zero_within(&mut |back| at(here.0 - back), 0.0, here.0 - lowest, CLOSE);
                         note(here.0 - back, side > 0.0);
                     }
                 }
