@@ -141,7 +141,7 @@ fn directions_and_the_start() {
         near(&run.at(2, "t"), &[PI, 2.0 * PI, 3.0 * PI], 2e-6, "both");
         near(&run.at(3, "t"), &[PI / 3.0, PI / 3.0 + 2.0 * PI], 2e-6, "height");
         // It comes back to where it started and does not pass it.
-        assert!(run.at(4, "t").len() % 2 == 0, "{:?}", run.at(4, "t"));
+        assert!(run.at(4, "t").len().is_multiple_of(2), "{:?}", run.at(4, "t"));
         assert!(run.kept.events.windows(2).all(|pair| pair[0].1[0] <= pair[1].1[0]), "not in order");
     }
 }
