@@ -280,3 +280,14 @@ fn going_on_keeps_every_bit() {
         }
     }
 }
+
+#[test]
+fn a_switch_with_a_gap_acts_once_each_time() {
+    // Steps far longer than the last bits of their times.
+    let events = event("low", "when = \"q.q + 0.1\"\ndirection = \"falling\"\naction = { set = { \"tau.q\" = 3 } }")
+        + &event("high", "when = \"q.q - 0.1\"\ndirection = \"rising\"\naction = { set = { \"tau.q\" = -3 } }");
+    let run = done(&mass("torque = { q = 3 }", &events, 60.0, "rtol = 1e-6"));
+    let numbers: Vec<usize> = run.kept.events.iter().map(|(k, _)| *k).collect();
+    assert!(numbers.len() > 15, "{numbers:?}");
+    assert!(numbers.iter().enumerate().all(|(k, number)| (k + 1) % 2 == *number), "{numbers:?}");
+}

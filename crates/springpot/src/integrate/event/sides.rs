@@ -111,7 +111,11 @@ impl<'s> Functions<'s> {
             if *sign != 0 && now == -*sign {
                 passages.push(Passage { event, t, rises: now > 0 });
             }
-            *sign = if now == 0 { *sign } else { now };
+            // Where a step ends at an event, the function is as near to zero as times can be told.
+            let near = values.get(event).map_or(0.0, |value| 2.0 * value.abs());
+            if now != 0 && (*sign != 0 || self.value(event).abs() > near) {
+                *sign = now;
+            }
         }
         *values = self.values();
         Ok(passages)
@@ -134,6 +138,8 @@ impl<'s> Functions<'s> {
         Sides { signs, values: start }: &mut Sides,
     ) -> Result<Vec<Passage>, RunError> {
         let mut passages = Vec::new();
+        // At the very start of a step no law is asked.
+        let close = CLOSE.max(f64::EPSILON * step.to / (step.to - step.from));
         let early = EARLY.into_iter().filter(|_| signs.contains(&0)).collect::<Vec<_>>();
         // The two places before, and the values there.
         let mut before = [(f64::NAN, vec![f64::NAN; start.len()]), (0.0, std::mem::take(start))];
@@ -150,7 +156,7 @@ impl<'s> Functions<'s> {
                 let [first, left] = [0, 1].map(|k| (before[k].0, side * before[k].1[event]));
                 let here = (theta, side * values[event]);
                 let mut failed = None;
-                let mut at = |theta: f64| match self.go_to(cx, driver, time(step, theta)) {
+                let mut at = |theta: f64| match self.go_to(cx, driver, time(step, theta.max(0.5 * close))) {
                     Ok(()) => side * self.value(event),
                     Err(error) => {
                         failed.get_or_insert(error);
@@ -159,14 +165,14 @@ impl<'s> Functions<'s> {
                 };
                 let mut note = |theta: f64, rises: bool| passages.push(Passage { event, t: time(step, theta), rises });
                 if here.1 <= 0.0 {
-                    note(zero_within(&mut at, left.0, here.0, CLOSE), side < 0.0);
+                    note(zero_within(&mut at, left.0, here.0, close), side < 0.0);
                     *sign = side_of(values[event]);
                 } else if may_dip([first.1, left.1, here.1]) {
                     let lowest = lowest_between(&mut at, first.0, here.0);
                     if at(lowest) < 0.0 {
-                        note(zero_within(&mut at, first.0, lowest, CLOSE), side < 0.0);
+                        note(zero_within(&mut at, first.0, lowest, close), side < 0.0);
                         // From behind, where it is above zero again.
-                        let back = zero_within(&mut |back| at(here.0 - back), 0.0, here.0 - lowest, CLOSE);
+                        let back = zero_within(&mut |back| at(here.0 - back), 0.0, here.0 - lowest, close);
                         note(here.0 - back, side > 0.0);
                     }
                 }
@@ -206,7 +212,7 @@ fn may_dip([first, middle, last]: [f64; 3]) -> bool {
 }
 
 fn time(step: &Target, theta: f64) -> f64 {
-    if theta == 1.0 { step.to } else { (step.from + theta * (step.to - step.from)).min(step.to) }
+    if theta == 1.0 { step.to } else { (step.from + theta * (step.to - step.from)).clamp(step.from.next_up(), step.to) }
 }
 
 fn side_of(value: f64) -> i8 {
