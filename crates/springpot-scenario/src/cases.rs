@@ -12,7 +12,7 @@ use super::root::SCENARIO;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
 use super::urdf::UrdfCache;
-use super::{Scenario, constants, elements, motion, overrides, past, robot, time};
+use super::{Scenario, constants, elements, events, motion, overrides, past, robot, time};
 use springpot::law::Catalog;
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
@@ -379,7 +379,7 @@ impl Cases {
 
 /// Whether a joint has damping or friction.
 fn has_joint_losses(plan: &Plan) -> bool {
-    plan.model.damping().iter().chain(plan.model.friction()).any(|x| *x != 0.0)
+    plan.end_stops.is_some() || plan.model.damping().iter().chain(plan.model.friction()).any(|x| *x != 0.0)
 }
 
 /// Names of the columns of a case, but for the energy lost in joints, which all cases have or none.
@@ -430,8 +430,10 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         body_places: robot.parts.places,
         urdf: robot.parts.urdf,
         gripper: robot.gripper,
+        end_stops: robot.end_stops,
         elements: elements?,
         motion: motion?,
+        events: Vec::new(),
         tells_joint_losses: false,
         tells_leaves: tells_leaves?,
         warnings: ctx.warnings(),
@@ -441,5 +443,6 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     };
     plan.rest_at_start();
     past::settle(ctx, &mut plan)?;
+    plan.events = events::read(&root, &plan)?;
     Ok(plan)
 }

@@ -41,6 +41,7 @@ pub mod csv;
 mod cure;
 mod document;
 mod elements;
+mod events;
 mod figures;
 mod inputs;
 mod keys;
@@ -67,6 +68,7 @@ mod urdf;
 
 pub use cases::{Cases, SweptValue};
 pub use cure::Cure;
+pub use events::EventPlan;
 pub use figures::{
     AxisLook, AxisRange, ColumnGlob, FigureFormat, FigureKind, FigureLabel, FigurePlan, FigureUnit, Look, RangeEnd,
     Selection, Statistic, Summarised, SweptAxis,
@@ -76,7 +78,9 @@ pub use motion::MotionPlan;
 pub use names::{list, suggest};
 pub use past::PastPlan;
 pub use path::{equals_sign, toml_key};
-pub use plan::{BodyPlaces, ElementPlan, FramePlan, Gripper, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan};
+pub use plan::{
+    BodyPlaces, ElementPlan, EndStops, FramePlan, Gripper, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan,
+};
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use schema::json_schema;
 

@@ -1,5 +1,6 @@
 //! The plan: a scenario validated and resolved, in SI units, with every default filled in.
 
+use super::events::EventPlan;
 use super::figures::{ColumnGlob, FigurePlan};
 use super::motion::MotionPlan;
 use super::past::PastPlan;
@@ -28,10 +29,14 @@ pub struct Plan {
     pub urdf: Option<UrdfPlan>,
     /// The gripper, if there is one.
     pub gripper: Option<Gripper>,
+    /// Whether limits of joints are stops.
+    pub end_stops: Option<EndStops>,
     /// The elements, in the order of the scenario.
     pub elements: Vec<ElementPlan>,
     /// What moves the robot.
     pub motion: MotionPlan,
+    /// What is watched in forward runs.
+    pub events: Vec<EventPlan>,
     /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
     /// lost there.
     pub tells_joint_losses: bool,
@@ -102,6 +107,15 @@ pub struct UrdfPlan {
     pub package_path: Vec<String>,
     /// What the file says; its warnings are among those of [`super::Cases::warnings`].
     pub robot: Arc<Urdf>,
+}
+
+/// Limits of joints as stops, SI of each joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndStops {
+    /// Stiffness, N·m/rad or N/m.
+    pub stiffness: f64,
+    /// Damping, N·m·s/rad or N·s/m.
+    pub damping: f64,
 }
 
 /// The point that a gripper path is about, and whose coordinates are columns.

@@ -3,7 +3,7 @@
 use super::figures::FigurePlan;
 use super::keys::solver::ADAPTIVE;
 use super::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
-use super::plan::{ElementPlan, FramePlan, Plan, ShapePlan, SignalPlan, UrdfPlan};
+use super::plan::{ElementPlan, EndStops, FramePlan, Plan, ShapePlan, SignalPlan, UrdfPlan};
 use serde_json::{Map, Value, json};
 use springpot::integrate::RowTimes;
 use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
@@ -22,7 +22,7 @@ impl Plan {
                 time["output_times"] = json!(format!("{} times", times.len()));
             }
         }
-        json!({
+        let mut resolved = json!({
             "title": self.title,
             "gravity": self.gravity,
             "urdf": self.urdf.as_ref().map(urdf),
@@ -34,7 +34,14 @@ impl Plan {
             "solver": self.solver(),
             "figures": self.figures.iter().map(FigurePlan::record).collect::<Vec<_>>(),
             "columns": self.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
-        })
+        });
+        if let Some(EndStops { stiffness, damping }) = self.end_stops {
+            resolved["limits"] = json!({ "stiffness": stiffness, "damping": damping });
+        }
+        if !self.events.is_empty() {
+            resolved["events"] = self.events.iter().map(|plan| plan.record.clone()).collect();
+        }
+        resolved
     }
 
     /// The keys of `[solver]`.

@@ -1,9 +1,9 @@
 //! `[robot]`: bodies or a URDF file, gravity, gripper.
 
 use super::document::shorten;
-use super::keys::{ANCHOR, FROM_URDF, ROBOT};
+use super::keys::{ANCHOR, END_STOPS, FROM_URDF, ROBOT};
 use super::names;
-use super::plan::{BodyPlaces, Gripper, UrdfPlan};
+use super::plan::{BodyPlaces, EndStops, Gripper, UrdfPlan};
 use super::reader::{Field, Read, Refused, Table};
 use super::refusal::{Place, RefusalKind};
 use super::{bodies, urdf};
@@ -19,6 +19,7 @@ pub(crate) struct Robot {
     pub(crate) gravity: [f64; 3],
     pub(crate) parts: Parts,
     pub(crate) gripper: Option<Gripper>,
+    pub(crate) end_stops: Option<EndStops>,
     /// Kind of every joint by its name, fixed ones included.
     joint_kinds: HashMap<String, JointKind>,
 }
@@ -76,7 +77,10 @@ pub(crate) fn read(root: &Table<'_>) -> Read<Robot> {
         (None, None) => return Err(table.missing("body", RIGHT)),
     };
     let joint_kinds = parts.bodies.iter().map(|body| (body.joint.name.clone(), body.joint.kind)).collect();
-    let mut robot = Robot { gravity: gravity?, parts, gripper: None, joint_kinds };
+    let mut robot = Robot { gravity: gravity?, parts, gripper: None, end_stops: None, joint_kinds };
+    if let Some(field) = table.get("limits") {
+        robot.end_stops = Some(end_stops(&field, &robot)?);
+    }
     if let Some(field) = table.get("gripper") {
         robot.gripper = Some(gripper(&field, &robot)?);
     }
@@ -181,6 +185,25 @@ pub(crate) fn unique(seen: &mut HashMap<String, Place>, field: &Field<'_>, name:
             Err(field.refuse(RefusalKind::BadName, message, Some("names are unique; choose another".to_owned())))
         }
     }
+}
+
+/// Limits of joints as stops, where some joint has any.
+fn end_stops(field: &Field<'_>, robot: &Robot) -> Read<EndStops> {
+    let table = field.table(&END_STOPS)?;
+    let (stiffness, damping) = (table.number("stiffness"), table.number("damping"));
+    let model = robot.model();
+    let mut limits = (0..model.joint_count()).map(|joint| model.limits(joint));
+    if !limits.any(|limits| limits.lower.is_finite() || limits.upper.is_finite()) {
+        let message = "stands where no joint of the robot has a smallest or largest coordinate";
+        return Err(field.refuse(RefusalKind::Rule, message, Some("leave it out".to_owned())));
+    }
+    let (stiffness, damping) = (stiffness?, damping?);
+    if damping < 0.0 {
+        let field = table.require("damping")?;
+        let message = format!("is {damping}, less than 0");
+        return Err(field.refuse(RefusalKind::OutOfRange, message, Some("write 0 or a positive number".to_owned())));
+    }
+    Ok(EndStops { stiffness, damping })
 }
 
 fn gripper(field: &Field<'_>, robot: &Robot) -> Read<Gripper> {

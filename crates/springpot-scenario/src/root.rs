@@ -1,7 +1,7 @@
 //! The keys of a whole scenario, above the tables that it holds.
 
 use super::figures::FIGURE;
-use super::keys::{ELEMENT, Keys, MAX_BLOCKS, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
+use super::keys::{ELEMENT, EVENT, Keys, MAX_BLOCKS, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
 use super::motion::MOTION;
 
 /// The whole scenario.
@@ -18,6 +18,12 @@ pub(crate) static SCENARIO: Keys = Keys {
         ),
         key("element", Shape::Tables(&ELEMENT, None), Need::Optional, "Materials between two points."),
         key("motion", Shape::Table(&MOTION), Need::Kind, "What moves the robot."),
+        key(
+            "event",
+            Shape::Tables(&EVENT, None),
+            Need::Optional,
+            "What is watched in forward runs, and what happens then.",
+        ),
         key(
             "time",
             Shape::Table(&TIME),

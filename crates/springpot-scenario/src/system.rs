@@ -1,6 +1,6 @@
 //! From a plan to what the time loop runs.
 
-use super::plan::Plan;
+use super::plan::{EndStops, Plan};
 use springpot::integrate::{Stop, System};
 use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::Course;
@@ -21,13 +21,21 @@ impl Plan {
     }
 
     fn system_along(&self, course: &Course<'_>) -> System {
-        System {
+        let system = System {
             elements: self.elements.iter().map(|plan| plan.element.clone()).collect(),
             motion: self.motion.made(&self.model, course),
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: self.model.clone(),
             tells_joint_losses: self.tells_joint_losses,
             tells_leaves: self.tells_leaves,
+            events: self.events.iter().map(|plan| plan.event.clone()).collect(),
+            end_stops: 0,
+        };
+        match self.end_stops {
+            None => system,
+            Some(EndStops { stiffness, damping }) => {
+                system.with_end_stops(stiffness, damping).expect("numbers that were read in their ranges")
+            }
         }
     }
 

@@ -7,6 +7,9 @@ use springpot_run::Finished;
 use springpot_run::sweep::{CaseResult, CasesPassing, Status};
 use std::time::Duration;
 
+/// So many events are counted on the terminal.
+const NAMED_EVENTS: usize = 12;
+
 /// What is said of it.
 pub(super) struct Said(pub(super) Finished);
 
@@ -84,7 +87,7 @@ impl Said {
 
     /// The lines after a run: how much was done, how well the energy balance closes, where the results are.
     pub(super) fn summary(&self, wall: Duration) -> String {
-        let Finished { cases, outcome, folder, rows, .. } = &self.0;
+        let Finished { cases, outcome, folder, rows, events: cases_events, .. } = &self.0;
         let mut work = Vec::new();
         if cases.len() > 1 {
             work.push(count(outcome.done + outcome.failed, "case", "cases"));
@@ -97,6 +100,9 @@ impl Said {
         let width = terminal::stdout_width();
         let mut lines = terminal::hanging("", &work, width);
         lines.push_str(&terminal::hanging("energy   ", &self.balance(), width));
+        if !cases_events.is_empty() {
+            lines.push_str(&terminal::hanging("events   ", &self.events(cases_events), width));
+        }
         let endings = ["svg", "png", "pdf"];
         let drawn = |name: &String| {
             name.rsplit_once('.').filter(|(_, ending)| endings.contains(ending)).map(|(figure, _)| figure.to_owned())
@@ -107,7 +113,8 @@ impl Said {
             endings.iter().filter(|ending| has(ending)).map(|ending| ending.to_uppercase()).collect();
         let rows =
             folder.files().iter().find(|name| name.starts_with("results.")).map_or("results.csv", String::as_str);
-        let mut files = format!("{rows}, summary.csv, run.json");
+        let happened = if cases_events.is_empty() { "" } else { "events.csv, " };
+        let mut files = format!("{rows}, {happened}summary.csv, run.json");
         if figures > 0 {
             let figures = count(figures, "figure", "figures").replace(' ', terminal::NO_BREAK);
             files.push_str(&format!(", {figures} ({})", formats.join(" and ")));
@@ -123,6 +130,28 @@ impl Said {
             lines.push_str(&terminal::hanging("forward  ", &self.effort(iterations), width));
         }
         lines
+    }
+
+    /// How often events happened, and which of them ended cases.
+    fn events(&self, names: &[String]) -> String {
+        let outcome = &self.0.outcome;
+        let happened = outcome.events.counts.iter().copied().chain(std::iter::repeat(0));
+        let each =
+            names.iter().zip(happened).map(|(name, happened)| format!("{name} {}", count(happened, "time", "times")));
+        let mut said = each.take(NAMED_EVENTS).collect::<Vec<_>>().join(", ");
+        if let Some(more @ 1..) = names.len().checked_sub(NAMED_EVENTS) {
+            said.push_str(&format!(" and {}; run.json counts all", count(more, "more event", "more events")));
+        }
+        let stopped = || outcome.cases.iter().filter_map(|case| Some((case, case.events.stopped_by?)));
+        match (self.0.cases.len(), stopped().next()) {
+            (_, None) => {}
+            (1, Some((case, event))) => {
+                let t = short(case.report.t_reached.unwrap_or(0.0));
+                said.push_str(&format!("; {} ended the run at t = {t} s", names[event]));
+            }
+            _ => said.push_str(&format!("; {} ended by one", count(stopped().count(), "case was", "cases were"))),
+        }
+        said
     }
 
     /// What robots that move by themselves took: work, wall time, how much faster than life, and how well the energy balance closes.

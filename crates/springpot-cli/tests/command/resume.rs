@@ -168,6 +168,17 @@ fn a_killed_sweep_goes_on() {
 }
 
 #[test]
+fn a_killed_run_keeps_its_events() {
+    let events = "[[event]]\nname = \"up\"\nwhen = \"v.q1\"\naction = { set = { \"strut.T\" = \"60 degC\", \"tau.q1\" = 1.5 } }\n\
+                  [[event]]\nname = \"clock\"\nwhen = \"sin(2*t)\"\ndirection = \"rising\"\naction = { set = { \"strut.T\" = 293, \"tau.q1\" = -1 } }\n\
+                  [[sweep]]\nparameter = [\"element.strut.alpha\"]\nvalues = [0.2, 0.5, 0.8]\n";
+    let place = Place::with(&format!("{FALLING}{events}"));
+    let kills = killed_and_equal(&place, &["--jobs", "2"], "0.5", &mut Dice(5));
+    assert!(kills > 0);
+    assert!(place.table("out/events.csv").rows.len() > 30);
+}
+
+#[test]
 fn a_killed_prescribed_motion_goes_on() {
     let place = Place::with(ARM);
     let set = ["--set", "time.end=20", "--set", "time.output_step=0.01", "--no-figures"];

@@ -2,6 +2,7 @@
 
 use super::Sweep;
 use super::checkpoint::CaseDone;
+use super::events::Happened;
 use super::kept::{CaseCurves, Kept};
 use super::output::{self, CaseRows, Output};
 use crate::table::disk::DiskFile;
@@ -27,14 +28,58 @@ pub struct CaseResult {
     pub wall: Duration,
     /// Why its energy ledger is not known; `None` where it is.
     pub no_ledger: Option<String>,
+    /// How often its events happened.
+    pub events: Happened,
     /// The limits of joints that it passes.
     pub limits: Vec<PassedLimit>,
     /// What figures draw of it, where they do.
     pub curves: Option<CaseCurves>,
 }
 
-/// The rows and the statistics of one case, in the files that all cases share.
-pub(super) type Sections<'a> = (Section<'a, DiskFile>, Section<'a, DiskFile>);
+/// The rows, the statistics and the events of one case, in the files that all cases share.
+#[derive(Debug)]
+pub(super) struct Sections<'a> {
+    rows: Section<'a, DiskFile>,
+    rest: Rest<'a>,
+}
+
+/// What is written at the end of a case.
+#[derive(Debug)]
+struct Rest<'a> {
+    summary: Section<'a, DiskFile>,
+    events: Option<Section<'a, DiskFile>>,
+}
+
+impl<'a> Sections<'a> {
+    /// Those of case `index`, once its rows are within the window.
+    pub(super) fn of(sweep: &'a Sweep<'a>, index: usize) -> Self {
+        Self { rows: sweep.rows.section(index), rest: Rest::of(sweep, index) }
+    }
+
+    /// Leaves them empty.
+    pub(super) fn finish(self) -> io::Result<()> {
+        self.rows.finish()?;
+        self.rest.write("", "")
+    }
+}
+
+impl<'a> Rest<'a> {
+    fn of(sweep: &'a Sweep<'a>, index: usize) -> Self {
+        Self {
+            summary: sweep.summary.section(index),
+            events: sweep.events.as_ref().map(|events| events.section(index)),
+        }
+    }
+
+    fn write(self, summary: &str, events: &str) -> io::Result<()> {
+        let events = self.events.map(|section| (section, events));
+        for (section, text) in [(self.summary, summary)].into_iter().chain(events) {
+            section.write(text.as_bytes())?;
+            section.finish()?;
+        }
+        Ok(())
+    }
+}
 
 /// Runs case `index`, or goes on with it.
 ///
@@ -45,7 +90,7 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
     if let Some(done) = checkpoints.map(|checkpoints| checkpoints.done(index)).transpose()?.flatten() {
         return again(sweep, done, Some(sections));
     }
-    let (rows, summary) = sections;
+    let Sections { rows, rest } = sections;
     let state = checkpoints.and_then(|checkpoints| checkpoints.take_state(index));
     let mut output = Output::open(sweep, index, rows, state.as_ref())?;
     let (report, no_ledger, limits, outcome) = match sweep.cases.plan(index) {
@@ -80,7 +125,7 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
         Err((_, Some(RunError::Output(error)))) => return Err(error),
         Err((trouble, error)) => (Some(trouble), matches!(error, Some(RunError::Interrupted { .. }))),
     };
-    let (wall, statistics) = (output.wall(), output.statistics.clone());
+    let (wall, statistics, events) = (output.wall(), output.statistics.clone(), output.events.clone());
     let curves = output.close(|output| {
         if interrupted || output.files.is_none() {
             return Ok(());
@@ -89,9 +134,9 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
         let done = CaseDone { index, written: output.written(), report, error, no_ledger, limits };
         output.files.take().map_or(Ok(()), |files| files.end(&done, || sweep.sync()))
     })?;
-    summary.write(output::summary(sweep, index, &statistics).as_bytes())?;
-    summary.finish()?;
-    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, limits, curves })
+    rest.write(&output::summary(sweep, index, &statistics), &events.lines)?;
+    let events = events.happened;
+    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, events, limits, curves })
 }
 
 /// A case that an earlier run brought to its end, and whose rows stand where they belong.
@@ -107,19 +152,15 @@ pub(super) fn ended(sweep: &Sweep, index: usize) -> io::Result<CaseResult> {
 fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<CaseResult> {
     let lines = output::summary(sweep, done.index, &done.written.statistics);
     let checkpoints = sweep.options.checkpoints.expect("it has the record");
-    match rows {
-        Some((rows, summary)) => {
+    let rest = match rows {
+        Some(Sections { rows, rest }) => {
             checkpoints.copy_rows(&done, &mut |text| rows.write(text))?;
             rows.finish()?;
-            summary.write(lines.as_bytes())?;
-            summary.finish()?;
+            rest
         }
-        None => {
-            let summary = sweep.summary.section(done.index);
-            summary.write(lines.as_bytes())?;
-            summary.finish()?;
-        }
-    }
+        None => Rest::of(sweep, done.index),
+    };
+    rest.write(&lines, &done.written.events.lines)?;
     let mut kept = Kept::of(sweep.layout, done.index);
     if let Some(kept) = &mut kept {
         checkpoints.kept(done.index, done.written.kept, kept.width(), &mut |values| kept.again(values))?;
@@ -127,7 +168,8 @@ fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<Ca
     let curves = kept.map(Kept::into_curves);
     let CaseDone { index, written, report, error, no_ledger, limits } = done;
     sweep.options.progress.rows.fetch_add(report.rows, Ordering::Relaxed);
-    Ok(CaseResult { index, report, error, interrupted: false, wall: written.wall, no_ledger, limits, curves })
+    let (wall, events) = (written.wall, written.events.happened);
+    Ok(CaseResult { index, report, error, interrupted: false, wall, no_ledger, events, limits, curves })
 }
 
 /// Why a case does not know its energies; `None` where it does.

@@ -18,6 +18,8 @@ pub struct Layout {
     /// The run's columns, and those of them that figures want.
     wanted: Wanted,
     figures: Vec<FigureData>,
+    /// The names of the events.
+    events: Vec<String>,
 }
 
 impl Layout {
@@ -45,7 +47,8 @@ impl Layout {
         let written = parameters.chain(selected.iter().map(|&k| wanted.columns()[k].clone())).collect();
         let figures =
             cases.figures().iter().map(|figure| figures::data(cases, figure, &mut wanted)).collect::<Result<_, _>>()?;
-        Ok(Self { written, swept, selected, wanted, figures })
+        let events = system.events.iter().map(|event| event.name.clone()).collect();
+        Ok(Self { written, swept, selected, wanted, figures, events })
     }
 
     /// Columns of results.csv.
@@ -63,6 +66,21 @@ impl Layout {
         let plain = |name: &str| Column::new(name, "", "");
         let swept = self.written[..self.swept].iter().cloned();
         swept.chain(["column", "unit", "min", "max", "rms"].map(plain)).collect()
+    }
+
+    /// The names of the events, in the order of the scenario.
+    pub fn events(&self) -> &[String] {
+        &self.events
+    }
+
+    /// Columns of events.csv: all of the run.
+    pub(super) fn event_columns(&self) -> Vec<Column> {
+        let (time, others) = self.wanted.columns().split_first().expect("a run has a time");
+        let swept = self.written[..self.swept].iter().cloned();
+        swept
+            .chain([Column::new("event", "", "name of the event"), time.clone()])
+            .chain(others.iter().cloned())
+            .collect()
     }
 
     /// The run's columns that are written, with their indices in a row.

@@ -3,6 +3,7 @@
 mod case;
 mod checkpoint;
 mod curve;
+mod events;
 mod kept;
 mod layout;
 mod limits;
@@ -13,6 +14,7 @@ mod wanted;
 pub use case::CaseResult;
 pub use checkpoint::{CheckpointError, Checkpoints, Origin, Unfinished};
 pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
+pub use events::Happened;
 pub use kept::CaseCurves;
 pub use layout::Layout;
 pub use limits::{CasesPassing, LimitTally};
@@ -23,6 +25,7 @@ use crate::table::disk::DiskFile;
 use crate::table::folder::Folder;
 use crate::table::ordered::Ordered;
 use crate::table::push_text;
+use case::Sections;
 use springpot::integrate::Stop;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Refusals};
@@ -104,6 +107,8 @@ pub struct Outcome {
     /// The energy residual of the case in which it is largest beside the energy turned over, and that energy, J; `None`
     /// where no case knows its ledger.
     pub energy_residual: Option<(f64, f64)>,
+    /// How often each event happened over all cases.
+    pub events: Happened,
     /// The limits of joints that cases pass.
     pub limits: Vec<CasesPassing>,
     /// Number of cases that do not know their ledger, and why the first of them does not.
@@ -150,11 +155,10 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
             if index >= cases.len() {
                 break;
             }
-            let sections = (sweep.rows.section(index), sweep.summary.section(index));
+            let sections = Sections::of(&sweep, index);
             // The section may have been long in coming.
             if stopped() {
-                sections.0.finish()?;
-                sections.1.finish()?;
+                sections.finish()?;
                 break;
             }
             let result = case::run(&sweep, index, sections)?;
@@ -196,6 +200,7 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         simulated: tally.simulated,
         t_reached: tally.t_reached.flatten(),
         energy_residual: tally.energy_residual,
+        events: tally.events,
         limits: tally.limits.passing(),
         no_ledger: tally.no_ledger.map(|(count, _, why)| (count, why)),
         wall: sweep.wall(),
@@ -210,6 +215,8 @@ struct Sweep<'a> {
     options: Options<'a>,
     rows: Ordered<DiskFile>,
     summary: Ordered<DiskFile>,
+    /// Where there are events.
+    events: Option<Ordered<DiskFile>>,
     /// The file of `rows`, to wait for the disk without keeping others from writing.
     file: DiskFile,
     /// The first case that has not ended.
@@ -230,6 +237,13 @@ impl<'a> Sweep<'a> {
         let first = options.checkpoints.and_then(Checkpoints::first);
         let mut summary = folder.create_summary()?;
         summary.write_all(header(&layout.summary_columns()).as_bytes())?;
+        let events = if layout.events().is_empty() {
+            None
+        } else {
+            let mut events = folder.create_events()?;
+            events.write_all(header(&layout.event_columns()).as_bytes())?;
+            Some(Ordered::new(events, usize::MAX))
+        };
         let rows = if first.is_some() {
             let mut rows = folder.reopen_rows()?;
             rows.seek(SeekFrom::End(0))?;
@@ -252,6 +266,7 @@ impl<'a> Sweep<'a> {
             rows: Ordered::new(rows, 4 * jobs + 16).from_case(first),
             // It begins with the cases that have ended.
             summary: Ordered::new(summary, usize::MAX),
+            events,
             first,
             begun,
             earlier_wall: options.checkpoints.map_or(Duration::ZERO, Checkpoints::earlier_wall),
@@ -291,6 +306,7 @@ struct Tally {
     /// `None` before the first case.
     t_reached: Option<Option<f64>>,
     energy_residual: Option<(f64, f64)>,
+    events: Happened,
     limits: LimitTally,
     /// How many, index of the first, and its reason.
     no_ledger: Option<(usize, usize, String)>,
@@ -323,6 +339,7 @@ impl Tally {
                 self.energy_residual = Some(new);
             }
         }
+        self.events.add(&case.events);
         self.limits.take(case.index, &case.limits);
         if let Some(why) = &case.no_ledger {
             let (count, first, reason) = self.no_ledger.get_or_insert_with(|| (0, case.index, why.clone()));

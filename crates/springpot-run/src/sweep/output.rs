@@ -2,6 +2,7 @@
 
 use super::Sweep;
 use super::checkpoint::{CaseFiles, CaseState, Written};
+use super::events::CaseEvents;
 use super::kept::{CaseCurves, Kept};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
@@ -25,6 +26,7 @@ pub(super) struct Output<'a> {
     lead: String,
     selected: Vec<usize>,
     pub(super) statistics: Vec<Statistics>,
+    pub(super) events: CaseEvents,
     kept: Option<Kept<'a>>,
     /// Values for figures that are not handed over yet, where a checkpoint wants them.
     values: Vec<f64>,
@@ -59,6 +61,7 @@ impl<'a> Output<'a> {
             index,
             lead: lead(sweep, index),
             statistics: vec![Statistics::default(); selected.len()],
+            events: CaseEvents::default(),
             selected,
             kept: Kept::of(sweep.layout, index),
             values: Vec::new(),
@@ -77,9 +80,10 @@ impl<'a> Output<'a> {
         };
         let section = &output.rows;
         output.files = Some(CaseFiles::go_on(checkpoints, state, &mut |text| section.write(text))?);
-        let Written { kept, ref statistics, wall, .. } = state.written;
+        let Written { kept, ref statistics, ref events, wall, .. } = state.written;
         output.earlier_wall = wall;
         output.statistics.clone_from(statistics);
+        output.events.clone_from(events);
         if let Some(curves) = &mut output.kept {
             checkpoints.kept(index, kept, curves.width(), &mut |values| curves.again(values))?;
         }
@@ -108,6 +112,7 @@ impl<'a> Output<'a> {
             aside: self.files.as_ref().is_some_and(CaseFiles::is_aside),
             kept,
             statistics: self.statistics.clone(),
+            events: self.events.clone(),
             wall: self.wall(),
             wall_of_run: self.sweep.wall(),
         }
@@ -149,6 +154,12 @@ impl Rows for CaseRows<'_, '_> {
         if self.output.text.len() >= CHUNK || self.output.handed_over.elapsed() > PATIENCE {
             self.output.hand_over()?;
         }
+        Ok(())
+    }
+
+    fn event(&mut self, event: usize, row: &[f64]) -> io::Result<()> {
+        let Output { lead, events, .. } = &mut *self.output;
+        events.take(self.system, lead, event, row);
         Ok(())
     }
 

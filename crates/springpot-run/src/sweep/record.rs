@@ -1,7 +1,7 @@
 //! The record of a run: run.json.
 
 use super::layout::Layout;
-use super::{CaseResult, MAX_LISTED, Outcome};
+use super::{CaseResult, Happened, MAX_LISTED, Outcome};
 use crate::table::Format;
 use serde_json::{Map, Value, json};
 use springpot_scenario::{Cases, Plan, SweptValue};
@@ -18,7 +18,7 @@ impl Outcome {
         files: &[String],
     ) -> Map<String, Value> {
         let (residual, turned_over) = self.energy_residual.unzip();
-        let listed: Vec<Value> = self.cases.iter().take(2 * MAX_LISTED).map(|case| one(cases, case)).collect();
+        let listed: Vec<Value> = self.cases.iter().take(2 * MAX_LISTED).map(|case| one(cases, layout, case)).collect();
         let ledger = self.no_ledger.as_ref().map(|(count, why)| {
             if cases.len() == 1 { format!("unknown: {why}") } else { format!("unknown in {count} cases: {why}") }
         });
@@ -47,6 +47,9 @@ impl Outcome {
         });
         match record {
             Value::Object(mut map) => {
+                if !layout.events().is_empty() {
+                    map.insert("events".to_owned(), counts(layout, &self.events));
+                }
                 if let Some(iterations) = self.newton_iterations {
                     map.insert("newton_iterations".to_owned(), iterations.into());
                 }
@@ -55,6 +58,13 @@ impl Outcome {
             _ => unreachable!("the literal above is an object"),
         }
     }
+}
+
+/// How often each event happened, by name.
+fn counts(layout: &Layout, happened: &Happened) -> Value {
+    let count = |k: usize| happened.counts.get(k).copied().unwrap_or(0);
+    let named = layout.events().iter().enumerate().map(|(k, name)| (name.clone(), json!(count(k))));
+    named.collect::<Map<_, _>>().into()
 }
 
 /// Values of a sweep that are listed.
@@ -84,7 +94,7 @@ fn value(value: &SweptValue) -> Value {
     }
 }
 
-fn one(cases: &Cases, case: &CaseResult) -> Value {
+fn one(cases: &Cases, layout: &Layout, case: &CaseResult) -> Value {
     let values = cases.values(case.index);
     let parameters: Map<String, Value> = cases.parameters().iter().cloned().zip(values.iter().map(value)).collect();
     let status = match (&case.error, case.interrupted) {
@@ -102,6 +112,11 @@ fn one(cases: &Cases, case: &CaseResult) -> Value {
         "wall_time": case.wall.as_secs_f64(),
     });
     if let (Value::Object(record), Ok(Value::Object(report))) = (&mut record, serde_json::to_value(case.report)) {
+        if !layout.events().is_empty() {
+            record.insert("events".to_owned(), counts(layout, &case.events));
+            let stopped_by = case.events.stopped_by.map(|event| &layout.events()[event]);
+            record.insert("stopped_by".to_owned(), json!(stopped_by));
+        }
         // What does not belong to a way of running says nothing: Newton iterations, switches and resolution.
         let silent = |key: &str| ["newton_iterations", "switches", "resolution"].contains(&key);
         record.extend(report.into_iter().filter(|(key, value)| !(value.is_null() && silent(key))));

@@ -5,6 +5,7 @@
 
 mod constants;
 mod element;
+mod event;
 mod motion;
 mod output;
 mod robot;
@@ -18,11 +19,12 @@ pub(crate) use element::{
     BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, END, HELD, ON_JOINT, PASTS, RESERVED_NAMES,
     START as AT_START,
 };
+pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
 pub(crate) use motion::{
     FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,
 };
 pub(crate) use output::OUTPUT;
-pub(crate) use robot::{ANCHOR, BODY, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, keys_of};
+pub(crate) use robot::{ANCHOR, BODY, END_STOPS, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, keys_of};
 pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME};
 pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};

@@ -41,6 +41,13 @@ pub(crate) static ROBOT: Keys = Keys {
         )
         .only(WITH_URDF),
         key(
+            "limits",
+            Shape::Table(&END_STOPS),
+            Need::Optional,
+            "Makes limits of joints end stops: outside, the force -stiffness*excess - damping*v, never pulling.",
+        )
+        .only(WITH_URDF),
+        key(
             "package_path",
             Shape::Texts,
             Need::Said("[]"),
@@ -54,6 +61,19 @@ pub(crate) static ROBOT: Keys = Keys {
             "Kinds of warnings of the file that were read and need not be told again.",
         )
         .only(WITH_URDF),
+    ],
+};
+
+pub(crate) static END_STOPS: Keys = Keys {
+    words: "Limits of joints as end stops.",
+    keys: &[
+        key(
+            "stiffness",
+            Shape::Number("", Bound::Positive),
+            Need::Required("stiffness = 1e4 (SI of each joint)"),
+            "Stiffness, N*m/rad or N/m.",
+        ),
+        key("damping", Shape::Number("", Bound::NotNegative), Need::Number(0.0), "Damping, N*m*s/rad or N*s/m."),
     ],
 };
 

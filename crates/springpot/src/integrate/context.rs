@@ -2,6 +2,7 @@
 
 use super::system::System;
 use crate::law::InputValue;
+use crate::signal::Signal;
 use serde::{Deserialize, Serialize};
 
 /// A system, and what is held from outside.
@@ -11,23 +12,31 @@ pub(super) struct Context<'a> {
     pub(super) held: &'a Held,
 }
 
-/// Torques and inputs that somebody outside holds; the default holds nothing.
+/// Torques and inputs that somebody outside or an event holds; the default holds nothing.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Held {
     /// Added to the actuator forces, nv values or none.
     torques: Vec<f64>,
+    /// In place of the signal, for each velocity, or none.
+    forces: Vec<Option<f64>>,
     /// In place of the signal, for each input of each element, or none.
     inputs: Vec<Vec<Option<f64>>>,
 }
 
 impl Held {
     /// Nothing is held.
-    pub(super) const NONE: &'static Self = &Self { torques: Vec::new(), inputs: Vec::new() };
+    pub(super) const NONE: &'static Self = &Self { torques: Vec::new(), forces: Vec::new(), inputs: Vec::new() };
 
     /// The torques on the velocities of a system, to be set.
     pub(super) fn torques_mut(&mut self, nv: usize) -> &mut [f64] {
         self.torques.resize(nv, 0.0);
         &mut self.torques
+    }
+
+    /// Holds the actuator force on velocity `k` of `nv`, N·m or N.
+    pub(super) fn hold_force(&mut self, nv: usize, k: usize, value: f64) {
+        self.forces.resize(nv, None);
+        self.forces[k] = Some(value);
     }
 
     /// Holds input `i` of element `e` of a system, or gives it back to its signal; `None` where there is no such input.
@@ -50,6 +59,12 @@ impl Context<'_> {
                 *value = InputValue { value: held, rate: 0.0 };
             }
         }
+    }
+
+    /// The actuator force on velocity `k` at t, N·m or N, where `signal` says what it is unless one is held.
+    pub(super) fn force(&self, k: usize, signal: &Signal, t: f64) -> f64 {
+        let held = self.held.forces.get(k).copied().flatten();
+        held.unwrap_or_else(|| signal.at(t).value) + self.torque(k)
     }
 
     /// What is added to the actuator force on velocity `k`, N·m or N.

@@ -29,6 +29,14 @@ pub(super) struct RowsAhead {
     pub(super) last: f64,
 }
 
+/// Where a driver was before it took a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mark {
+    h: f64,
+    tick: usize,
+    steps: u64,
+}
+
 /// A run between two steps, or with one that was worked out and is not yet taken into the past, so that it can be looked into.
 #[derive(Debug)]
 pub(super) struct Driver {
@@ -138,6 +146,24 @@ impl Driver {
     /// Whether the end is reached.
     pub(super) fn has_ended(&self) -> bool {
         self.reached() >= self.recorder.settings.end
+    }
+
+    /// Where the last step taken into the past ended, s.
+    pub(super) fn t(&self) -> f64 {
+        self.t
+    }
+
+    /// Where it is, to be asked before a step that may be taken back.
+    pub(super) fn mark(&self) -> Mark {
+        Mark { h: self.h, tick: self.tick, steps: self.steps }
+    }
+
+    /// Forgets the step at hand, before which it was at `mark`.
+    pub(super) fn take_back(&mut self, mark: Mark) {
+        if self.step.take().is_some() {
+            self.rejected_steps += 1;
+        }
+        Mark { h: self.h, tick: self.tick, steps: self.steps } = mark;
     }
 
     /// The step that can be looked into.

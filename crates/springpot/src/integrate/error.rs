@@ -140,6 +140,21 @@ pub enum RunError {
         /// Within this time, s.
         span: f64,
     },
+    /// Events set one another off without getting on.
+    #[error(
+        "t = {t} s: event \"{event}\" acts again and again without getting on: {count} events act within {span:.1e} s; \
+         leave a gap between what sets them off"
+    )]
+    EventChatter {
+        /// Time, s.
+        t: f64,
+        /// The event that acted last.
+        event: String,
+        /// How many acted.
+        count: u32,
+        /// Within this time, s.
+        span: f64,
+    },
     /// Which joints hold by friction and which slide has no answer.
     #[error(
         "t = {t} s: no friction between -force and force of joint \"{joint}\" goes with the forces on it; \

@@ -42,6 +42,8 @@ pub(super) enum Seen {
 pub(super) struct Kinks {
     elements: Vec<usize>,
     guards: Vec<Guard>,
+    /// Whether forces may jump there.
+    may_jump: bool,
 }
 
 impl Kinks {
@@ -51,12 +53,17 @@ impl Kinks {
             element.law.has_guards(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs })
         };
         let elements = system.elements.iter().enumerate().filter(|(_, element)| has_guards(element));
-        Self { elements: elements.map(|(e, _)| e).collect(), guards: Vec::new() }
+        Self { elements: elements.map(|(e, _)| e).collect(), guards: Vec::new(), may_jump: system.end_stops > 0 }
     }
 
     /// Their numbers.
     pub(super) fn elements(&self) -> &[usize] {
         &self.elements
+    }
+
+    /// Whether what follows a kink starts anew, since a force may jump there.
+    pub(super) fn may_jump(&self) -> bool {
+        self.may_jump
     }
 
     /// Whether there are none.

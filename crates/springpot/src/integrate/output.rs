@@ -49,19 +49,41 @@ impl<'a> Output<'a> {
         Ok(())
     }
 
+    /// Writes a last row where the run ends before its time.
+    pub(super) fn end_here(&mut self, cx: Context, driver: &mut Driver) -> Result<(), RunError> {
+        let t = driver.reached();
+        if self.written.last == Some(t) {
+            return Ok(());
+        }
+        driver.read(cx, t, self.written.rows, &mut self.snapshot)?;
+        self.write(cx, driver)
+    }
+
+    /// Tells the row at the time of an event.
+    pub(super) fn event(&mut self, cx: Context, driver: &mut Driver, event: usize, at: f64) -> Result<(), RunError> {
+        driver.read(cx, at, self.written.rows, &mut self.snapshot)?;
+        self.take_row(cx)?;
+        self.rows.event(event, &self.row)?;
+        Ok(())
+    }
+
     fn write(&mut self, cx: Context, driver: &Driver) -> Result<(), RunError> {
         self.take_residual(driver);
+        self.take_row(cx)?;
+        self.rows.row(&self.row)?;
+        self.written.rows += 1;
+        self.written.last = Some(self.snapshot.t());
+        Ok(())
+    }
+
+    fn take_row(&mut self, cx: Context) -> Result<(), RunError> {
         self.row.clear();
         // No field says -0.
         self.row.extend(self.quantities.iter().map(|quantity| self.snapshot.value(*quantity) + 0.0));
-        let t = self.snapshot.t();
         if let Some(k) = self.row.iter().position(|value| value.is_infinite()) {
             let what = cx.system.columns().swap_remove(k).name;
-            return Err(RunError::NotFinite { t, what, value: self.row[k] });
+            return Err(RunError::NotFinite { t: self.snapshot.t(), what, value: self.row[k] });
         }
-        self.rows.row(&self.row)?;
-        self.written.rows += 1;
-        self.written.last = Some(t);
         Ok(())
     }
 

@@ -11,6 +11,14 @@ pub trait Rows {
     /// Whatever keeps the row from being kept; the run stops.
     fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
 
+    /// One complete row at the time of an event of [`super::System::events`], by its number there, before what the event sets holds.
+    ///
+    /// # Errors
+    /// As [`Self::row`].
+    fn event(&mut self, _event: usize, _values: &[f64]) -> std::io::Result<()> {
+        Ok(())
+    }
+
     /// Before the first row, how often the signals of the run will switch ([`super::Report::switches`]).
     fn looked_ahead(&mut self, _switches: u64) {}
 

@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::driver::{Driver, RowsAhead};
 use super::error::RunError;
+use super::event::{Course, Watch, WatchState};
 use super::output::Output;
 use super::report::Report;
 use super::rows::Rows;
@@ -18,7 +19,7 @@ use std::sync::atomic::Ordering;
 pub fn run(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
     let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
     let driver = Driver::new(system.context(), settings, stop, looked_ahead);
-    go(system.context(), driver, rows, Written::default(), stop)
+    go(system, driver, rows, (Written::default(), WatchState::default()), stop)
 }
 
 /// Goes on with a run of this very `system` and these `settings` from where its `checkpoint` was taken: rows that are still to
@@ -30,49 +31,71 @@ pub fn resume(
     rows: &mut dyn Rows,
     stop: &Stop,
 ) -> (Report, Result<(), RunError>) {
-    let Checkpoint { driver, written } = checkpoint;
+    let Checkpoint { driver, written, events } = checkpoint;
     let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
-    let driver = Driver::resume(system.context(), settings, driver, stop, looked_ahead);
-    go(system.context(), driver, rows, written, stop)
+    let cx = Context { system, held: &events.held };
+    let driver = Driver::resume(cx, settings, driver, stop, looked_ahead);
+    go(system, driver, rows, (written, events), stop)
 }
 
 fn go(
-    cx: Context,
+    system: &System,
     driver: Result<Driver, RunError>,
     rows: &mut dyn Rows,
-    written: Written,
+    (written, events): (Written, WatchState),
     stop: &Stop,
 ) -> (Report, Result<(), RunError>) {
     let mut driver = match driver {
         Ok(driver) => driver,
         Err(error) => return (Report::default(), Err(error)),
     };
-    let mut output = Output::new(cx, rows, written);
-    let outcome = to_the_end(cx, &mut driver, &mut output, stop);
+    let mut output = Output::new(system.context(), rows, written);
+    let outcome = to_the_end(&mut driver, &mut output, Watch::new(system, events), stop);
     (output.report(&driver), outcome)
 }
 
 /// Takes step after step, `output` writing the rows.
-fn to_the_end(cx: Context, driver: &mut Driver, output: &mut Output, stop: &Stop) -> Result<(), RunError> {
-    output.emit(cx, driver)?;
+fn to_the_end(driver: &mut Driver, output: &mut Output, mut events: Watch, stop: &Stop) -> Result<(), RunError> {
+    output.emit(events.cx(), driver)?;
+    events.start(driver)?;
     loop {
-        while driver.settle(cx)? {
-            output.emit(cx, driver)?;
+        while driver.settle(events.cx())? {
+            output.emit(events.cx(), driver)?;
+            events.look_now(driver)?;
+            if events.happen(driver, output)? == Course::Stops {
+                return end(events.cx(), driver, output);
+            }
         }
         if driver.has_ended() {
-            return if driver.has_fixed_steps() { Ok(()) } else { output.verdict(cx, driver) };
+            return verdict(events.cx(), driver, output);
         }
         let (t, stopped) = (driver.reached(), stop.load(Ordering::Relaxed));
         if output.rows.wants_checkpoint(t, stopped) {
-            let checkpoint = Checkpoint { driver: driver.state(cx), written: output.written };
-            output.rows.checkpoint(checkpoint)?;
+            let (driver, written) = (driver.state(events.cx()), output.written);
+            output.rows.checkpoint(Checkpoint { driver, written, events: events.state().clone() })?;
         }
         if stopped {
             return Err(RunError::Interrupted { t });
         }
         let next = output.next(&driver.recorder.settings);
         let rows = next.map(|next| RowsAhead { next, last: output.written.last.unwrap_or(0.0) });
-        driver.advance(cx, f64::INFINITY, rows)?;
-        output.emit(cx, driver)?;
+        let before = driver.mark();
+        driver.advance(events.cx(), f64::INFINITY, rows)?;
+        events.look(driver, before, rows)?;
+        output.emit(events.cx(), driver)?;
+        if events.happen(driver, output)? == Course::Stops {
+            return end(events.cx(), driver, output);
+        }
     }
+}
+
+/// Ends a run before its time.
+fn end(cx: Context, driver: &mut Driver, output: &mut Output) -> Result<(), RunError> {
+    output.end_here(cx, driver)?;
+    driver.close(cx)?;
+    verdict(cx, driver, output)
+}
+
+fn verdict(cx: Context, driver: &Driver, output: &Output) -> Result<(), RunError> {
+    if driver.has_fixed_steps() { Ok(()) } else { output.verdict(cx, driver) }
 }

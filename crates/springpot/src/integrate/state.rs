@@ -2,6 +2,7 @@
 
 use super::context::Held;
 use super::driver_state::DriverState;
+use super::event::WatchState;
 use super::written::Written;
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +15,7 @@ use serde::{Deserialize, Serialize};
 pub struct Checkpoint {
     pub(super) driver: DriverState,
     pub(super) written: Written,
+    pub(super) events: WatchState,
 }
 
 /// The state of a [`super::Simulation`] between two steps, memories and what is held from outside included.

@@ -1,10 +1,11 @@
 //! What is simulated: a robot with its elements and what moves it.
 
+use super::event::Event;
 use crate::actuation::Forward;
 use crate::elements::Element;
 use crate::model::{Model, Site};
 use crate::motion::Trajectory;
-use crate::observe::{Observables, Table};
+use crate::observe::{ElementQuantity, Observables, Quantity, Table};
 use crate::table::Column;
 use std::sync::Arc;
 
@@ -13,8 +14,10 @@ use std::sync::Arc;
 pub struct System {
     /// The robot.
     pub model: Arc<Model>,
-    /// The elements.
+    /// The elements, end stops behind all others.
     pub elements: Vec<Element>,
+    /// How many end stops there are ([`System::with_end_stops`]).
+    pub end_stops: usize,
     /// How it moves.
     pub motion: Motion,
     /// The gripper, where there is one.
@@ -23,6 +26,9 @@ pub struct System {
     pub tells_joint_losses: bool,
     /// Whether the rows tell the leaves of the elements' laws.
     pub tells_leaves: bool,
+    /// What is watched in forward runs, in the order in which it is done where several happen at one time. [`super::run`] watches, a
+    /// [`super::Simulation`] leaves that to its owner.
+    pub events: Vec<Event>,
 }
 
 /// Whether motion or forces are given.
@@ -57,12 +63,21 @@ impl System {
     /// A system without a gripper, whose rows tell nothing of losses in joints.
     pub fn new(model: impl Into<Arc<Model>>, elements: Vec<Element>, motion: impl Into<Motion>) -> Self {
         let (model, motion) = (model.into(), motion.into());
-        Self { model, elements, motion, gripper: None, tells_joint_losses: false, tells_leaves: false }
+        Self {
+            model,
+            elements,
+            end_stops: 0,
+            motion,
+            gripper: None,
+            tells_joint_losses: false,
+            tells_leaves: false,
+            events: Vec::new(),
+        }
     }
 
     /// What can be observed of it, in the order of a run's rows.
     pub fn observables(&self) -> Observables {
-        let mut observables = Observables::new(&self.model, &self.elements);
+        let mut observables = Observables::new(&self.model, self.materials());
         if self.gripper.is_some() {
             observables = observables.with_gripper(self.motion.has_path());
         }
@@ -70,6 +85,12 @@ impl System {
             observables = observables.with_joint_losses();
         }
         if self.tells_leaves { observables.with_leaves() } else { observables }
+    }
+
+    /// Whether somebody asks for the leaves of the elements' laws.
+    pub(super) fn needs_leaves(&self) -> bool {
+        let is_leaf = |quantity: &Quantity| matches!(quantity, Quantity::Element(_, ElementQuantity::Leaf(..)));
+        self.tells_leaves || self.events.iter().flat_map(|event| &event.columns).any(is_leaf)
     }
 
     /// The columns of a run's rows, in order.

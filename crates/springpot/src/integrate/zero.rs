@@ -34,8 +34,13 @@ pub(super) fn first_zero(mut f: impl FnMut(f64) -> f64) -> Option<f64> {
 }
 
 /// The zero between a place where `f` is positive and one where it is not.
-pub(super) fn zero_between(f: &mut impl FnMut(f64) -> f64, mut above: f64, mut below: f64) -> f64 {
-    while below - above > f64::EPSILON * below {
+pub(super) fn zero_between(f: &mut impl FnMut(f64) -> f64, above: f64, below: f64) -> f64 {
+    zero_within(f, above, below, 0.0)
+}
+
+/// As [`zero_between`], no closer than this.
+pub(super) fn zero_within(f: &mut impl FnMut(f64) -> f64, mut above: f64, mut below: f64, close: f64) -> f64 {
+    while below - above > (f64::EPSILON * below).max(close) {
         let middle = 0.5 * (above + below);
         if middle <= above || middle >= below {
             break;
@@ -46,7 +51,7 @@ pub(super) fn zero_between(f: &mut impl FnMut(f64) -> f64, mut above: f64, mut b
 }
 
 /// The lowest place of a function with one dip between `a` and `b`, by golden sections.
-fn lowest_between(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+pub(super) fn lowest_between(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     const SECTION: f64 = 0.618_033_988_749_894_8;
     for _ in 0..40 {
         let (c, d) = (b - SECTION * (b - a), a + SECTION * (b - a));

@@ -12,10 +12,12 @@
 mod error;
 mod formula;
 mod look;
+mod of_columns;
 mod parse;
 mod program;
 
 pub use error::ExpressionError;
 pub use formula::Expression;
+pub use of_columns::ColumnExpression;
 pub use parse::number_length;
 pub use program::{MAX_DEPTH, MAX_KINKS, MAX_LENGTH, is_name};

@@ -1,5 +1,6 @@
 //! What a checkpoint holds, as it is written.
 
+use crate::sweep::events::CaseEvents;
 use crate::table::sealed::SealError;
 use crate::table::{Format, Statistics};
 use crate::trouble::Trouble;
@@ -70,6 +71,8 @@ pub(in crate::sweep) struct Written {
     pub(in crate::sweep) kept: Stretch,
     /// One for each selected column.
     pub(in crate::sweep) statistics: Vec<Statistics>,
+    /// Its events.
+    pub(in crate::sweep) events: CaseEvents,
     /// Wall time of the case.
     pub(in crate::sweep) wall: Duration,
     /// Wall time of the whole run when this was written.

@@ -173,7 +173,7 @@ impl OneStage {
             match drive {
                 Drive::Force(signals) => {
                     for (k, signal) in v.zip(signals) {
-                        let force = signal.at(t).value + cx.torque(k);
+                        let force = cx.force(k, signal, t);
                         if !force.is_finite() {
                             let what = format!("tau.{}", self.model.v_labels()[k].name);
                             return Err(RunError::NotFinite { t, what, value: force });

@@ -10,7 +10,7 @@ use crate::signal::Signal;
 
 /// The actuator force on velocity `k` at t.
 pub(super) fn force_at(cx: Context, k: usize, signal: &Signal, t: f64) -> Result<f64, RunError> {
-    let value = signal.at(t).value + cx.torque(k);
+    let value = cx.force(k, signal, t);
     if value.is_finite() {
         return Ok(value);
     }
@@ -47,7 +47,7 @@ pub(in crate::integrate) fn drive(cx: Context, forward: &Forward, t: f64, evalua
         match drive {
             Drive::Force(signals) => {
                 for (k, signal) in v.zip(signals) {
-                    evaluation.driven[k] = Some(signal.at(t).value + cx.torque(k));
+                    evaluation.driven[k] = Some(cx.force(k, signal, t));
                 }
             }
             Drive::Prescribed(path) => {

@@ -155,7 +155,8 @@ impl Stepper for Radau {
             }
             Settled::At(step) => step,
         };
-        let changes = self.step.stick.changes() && step.behind == Behind::Step;
+        let jumps = self.is_at_kink && self.kinks.may_jump();
+        let changes = (self.step.stick.changes() || jumps) && step.behind == Behind::Step;
         let behind = if changes { Behind::Change } else { step.behind };
         Ok(Trial::Accepted { step: Target { behind, ..step }, next: target.size * factor })
     }

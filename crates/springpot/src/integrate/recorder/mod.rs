@@ -198,7 +198,7 @@ impl Recorder {
                 None => self.on_grid(cx, e, &point, row)?,
             };
             let mut leaves = Vec::new();
-            if cx.system.tells_leaves {
+            if cx.system.needs_leaves() {
                 self.bank.leaves(e, theta, &point, &mut leaves);
             }
             elements.push(ElementRow { observation, leaves, dissipated, input });
@@ -206,7 +206,9 @@ impl Recorder {
         let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
         let balance = self.balance(snapshot, actuators, joints);
         snapshot.actuators = balance.actuators;
-        snapshot.joints = self.ledger.joints + joints;
+        let stops = &snapshot.elements[snapshot.elements.len() - cx.system.end_stops..];
+        let stops = stops.iter().map(|row| row.observation.stored.unwrap_or(f64::NAN) + row.dissipated).sum::<f64>();
+        snapshot.joints = self.ledger.joints + joints + stops;
         snapshot.residual = balance.total() - self.ledger.origin;
         Ok(())
     }

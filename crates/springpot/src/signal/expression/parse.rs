@@ -9,13 +9,23 @@ use std::ops::Range;
 const SIGN: u8 = 5;
 
 pub(super) fn program(text: &str, constants: &[(String, f64)]) -> Result<Vec<Op>, ExpressionError> {
+    program_of(text, constants, &[]).map(|(program, _)| program)
+}
+
+/// The program of an expression that may name columns, and those that it names.
+pub(super) fn program_of(
+    text: &str,
+    constants: &[(String, f64)],
+    columns: &[&str],
+) -> Result<(Vec<Op>, Vec<usize>), ExpressionError> {
     if text.len() > MAX_LENGTH {
         return Err(ExpressionError::TooLong { length: text.len(), limit: MAX_LENGTH });
     }
-    let mut parser = Parser { text, constants, at: 0, depth: 0, height: 0, program: Vec::new() };
+    let (program, named) = (Vec::new(), Vec::new());
+    let mut parser = Parser { text, constants, columns, at: 0, depth: 0, height: 0, program, named };
     parser.expression(0)?;
     match parser.peek() {
-        None => Ok(parser.program),
+        None => Ok((parser.program, parser.named)),
         Some(_) => Err(parser.unexpected("an operator")),
     }
 }
@@ -47,11 +57,14 @@ pub fn number_length(text: &str) -> Option<usize> {
 struct Parser<'a> {
     text: &'a str,
     constants: &'a [(String, f64)],
+    columns: &'a [&'a str],
     at: usize,
     depth: usize,
     /// Intermediate results on the stack after the program so far.
     height: usize,
     program: Vec<Op>,
+    /// The columns that occur.
+    named: Vec<usize>,
 }
 
 impl Parser<'_> {
@@ -125,6 +138,15 @@ impl Parser<'_> {
 
     fn name(&mut self) -> Result<(), ExpressionError> {
         let rest = &self.text[self.at..];
+        if let Some(column) = self.column(rest) {
+            self.at += self.columns[column].len();
+            let known = self.named.iter().position(|named| *named == column);
+            let place = known.unwrap_or_else(|| {
+                self.named.push(column);
+                self.named.len() - 1
+            });
+            return self.emit(Op::Column(place));
+        }
         let name = &rest[..rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len())];
         let at = self.at..self.at + name.len();
         self.at = at.end;
@@ -134,12 +156,30 @@ impl Parser<'_> {
             Some(Name::Function(_)) => Err(ExpressionError::NeedsParentheses { function: name.to_owned(), at }),
             None => match self.constants.iter().find(|(constant, _)| constant == name) {
                 Some(&(_, value)) => self.emit(Op::Number(value)),
+                None if !self.columns.is_empty() => {
+                    // The dots of its columns belong to a name here.
+                    let length = rest.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.')));
+                    let name = &rest[..length.unwrap_or(rest.len())];
+                    let near = nearest_column(name, self.columns).map(str::to_owned);
+                    let suggestion = near.or_else(|| suggest(name, self.constants));
+                    let at = at.start..at.start + name.len();
+                    Err(ExpressionError::UnknownName { name: name.to_owned(), suggestion, at })
+                }
                 None => {
                     let suggestion = suggest(name, self.constants);
                     Err(ExpressionError::UnknownName { name: name.to_owned(), suggestion, at })
                 }
             },
         }
+    }
+
+    /// The column with the longest name that `rest` begins with: names may hold dots and signs.
+    fn column(&self, rest: &str) -> Option<usize> {
+        let ends =
+            |name: &str| !rest[name.len()..].starts_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | '.'));
+        let fits = |name: &str| name.contains('.') && rest.starts_with(name) && ends(name);
+        let found = self.columns.iter().enumerate().filter(|(_, name)| fits(name));
+        found.max_by_key(|(_, name)| name.len()).map(|(k, _)| k)
     }
 
     fn call(&mut self, name: &str, op: Op, start: usize) -> Result<(), ExpressionError> {
@@ -303,5 +343,14 @@ fn nearest<'c>(name: &str, constants: &'c [(String, f64)]) -> Option<&'c str> {
     let own = constants.iter().map(|(constant, _)| constant.as_str());
     let known = NAMES.iter().map(|(known, _)| *known).chain(own).filter(|known| known.len() > 2);
     let measured = known.map(|known| (strsim::damerau_levenshtein(name, known), known));
+    measured.filter(|(distance, _)| *distance <= 2).min_by_key(|(distance, _)| *distance).map(|(_, known)| known)
+}
+
+fn nearest_column<'c>(name: &str, columns: &[&'c str]) -> Option<&'c str> {
+    // Longer names resemble nothing.
+    if name.len() > 64 {
+        return None;
+    }
+    let measured = columns.iter().map(|known| (strsim::damerau_levenshtein(name, known), *known));
     measured.filter(|(distance, _)| *distance <= 2).min_by_key(|(distance, _)| *distance).map(|(_, known)| known)
 }

@@ -18,6 +18,8 @@ pub(super) const SMALL_STACK: usize = 8;
 pub(super) enum Op {
     Number(f64),
     Time,
+    /// The value of a column, by its place among those that the expression names.
+    Column(usize),
     Negate,
     Add,
     Subtract,
@@ -40,7 +42,7 @@ pub(super) enum Op {
 impl Op {
     pub(super) fn operands(self) -> usize {
         match self {
-            Self::Number(_) | Self::Time => 0,
+            Self::Number(_) | Self::Time | Self::Column(_) => 0,
             Self::Negate | Self::Smooth(_) | Self::Abs | Self::Sign | Self::Step | Self::AsinSin | Self::AcosCos => 1,
             Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Power => 2,
             Self::Min | Self::Max | Self::Atan2 => 2,
@@ -118,11 +120,16 @@ impl Trace {
 
 /// Runs a program that `parse` has checked: operands present, at most `MAX_STACK` of them.
 pub(super) fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace) -> V {
+    run_on(program, time, &[], trace)
+}
+
+/// As [`run`], where the program names columns.
+pub(super) fn run_on<V: Value>(program: &[Op], time: V, columns: &[f64], trace: &mut Trace) -> V {
     // A stack of n takes 2n − 1 instructions at least.
     if program.len() < 2 * SMALL_STACK {
-        stack_after::<V, SMALL_STACK>(program, time, trace).0[0]
+        stack_after::<V, SMALL_STACK>(program, time, columns, trace).0[0]
     } else {
-        stack_after::<V, MAX_STACK>(program, time, trace).0[0]
+        stack_after::<V, MAX_STACK>(program, time, columns, trace).0[0]
     }
 }
 
@@ -130,6 +137,7 @@ pub(super) fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace) -> V {
 pub(super) fn stack_after<V: Value, const STACK: usize>(
     program: &[Op],
     time: V,
+    columns: &[f64],
     trace: &mut Trace,
 ) -> ([V; STACK], usize) {
     let mut stack = [time; STACK];
@@ -138,6 +146,7 @@ pub(super) fn stack_after<V: Value, const STACK: usize>(
         let result = match op.operands() {
             0 => match op {
                 Op::Number(value) => V::constant(value),
+                Op::Column(k) => V::constant(columns[k]),
                 _ => time,
             },
             1 => {
