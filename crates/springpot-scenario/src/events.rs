@@ -107,7 +107,14 @@ fn when(field: &Field<'_>, observables: &Observables) -> Read<(ColumnExpression,
         let help = "write a function that passes zero, such as \"gripper.z - 0.1\"".to_owned();
         return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
     }
-    let held = when.columns().iter().map(|&k| quantities[k]).collect();
+    let held: Vec<Quantity> = when.columns().iter().map(|&k| quantities[k]).collect();
+    if let Some(k) = held.iter().position(|quantity| matches!(quantity, Quantity::Acceleration(_))) {
+        let name = names[when.columns()[k]];
+        let message =
+            format!("has {name:?} in it: accelerations jump where forces do, and need not pass zero at any time");
+        let help = format!("write it of a velocity or of a force, such as {:?}", name.replacen('a', "v", 1));
+        return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
+    }
     Ok((when, held))
 }
 

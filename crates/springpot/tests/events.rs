@@ -240,7 +240,7 @@ fn several_events_at_one_time_come_in_their_order() {
 fn what_jumps_through_zero_happens_then() {
     let events = event("signal", "when = \"tau.q - 2\"\naction = \"record\"")
         + &event("first", "when = \"t - 2\"\naction = { set = { \"tau.q\" = -1 } }")
-        + &event("second", "when = \"a.q\"\ndirection = \"falling\"\naction = { set = { \"tau.q\" = 8 } }");
+        + &event("second", "when = \"tau.q\"\ndirection = \"falling\"\naction = { set = { \"tau.q\" = 8 } }");
     let run = done(&mass("torque = { q = \"1 + 2*step(t - 1)\" }", &events, 3.0, "rtol = 1e-9"));
     // Up by the signal, down by the first event, up by the second.
     near(&run.at(0, "t"), &[1.0, 2.0, 2.0], 1e-12, "signal");

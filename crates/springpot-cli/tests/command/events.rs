@@ -126,6 +126,7 @@ fn what_is_refused() {
         ("event.brake.when=\"gripper.z - 1\"", "unknown name `gripper.z`"),
         ("event.brake.when=\"v.q-2 - 1\"", "did you mean `v.q-1`"),
         ("event.brake.when=\"1 - x0\"", "is 0 all the time"),
+        ("event.brake.when=\"v.q-1 + a.q-1\"", "accelerations jump"),
         ("event.brake.when=\"q.q-1 -\"", "the expression ends where"),
         ("event.brake.when=3", "must be a text"),
         ("event.brake.direction=up", "is \"up\", which is no direction"),

@@ -20,6 +20,8 @@ pub struct LeafAtRest {
     pub term: Term,
     /// An input and ∂F of it.
     pub input: Option<(usize, f64)>,
+    /// What small motions meet beside the term: d·s, N·s/m.
+    pub damping: f64,
 }
 
 /// A law that has been at rest since ever ([`Network::at_rest`]).
@@ -65,8 +67,13 @@ impl Network {
     pub fn at_rest(&self, at: &Point, held: f64) -> Option<AtRest> {
         match self {
             Self::Leaf(leaf) => {
-                let LeafAtRest { force, stiffness, term, input } = leaf.at_rest(at, held);
-                Some(AtRest { force, stiffness, tangent: Tangent::Leaf(term, input) })
+                let LeafAtRest { force, stiffness, term, input, damping } = leaf.at_rest(at, held);
+                let tangent = Tangent::Leaf(term, input);
+                if damping == 0.0 {
+                    return Some(AtRest { force, stiffness, tangent });
+                }
+                let beside = Tangent::Leaf(Term { coefficient: damping, order: 1.0 }, None);
+                Some(AtRest { force, stiffness, tangent: Tangent::Parallel(vec![tangent, beside]) })
             }
             Self::Parallel(parts) => {
                 let mut sum = AtRest { force: 0.0, stiffness: None, tangent: Tangent::Parallel(Vec::new()) };

@@ -95,9 +95,9 @@ impl Radau {
         Err(RunError::NotFinite { t: t + h, what, value: f64::INFINITY })
     }
 
-    /// The largest of `error` and of what the estimate of the free joints may not see where others are prescribed: the errors of
-    /// D^alpha x and of the energy ledger; else, where not the `whole`, those of laws with inner variables. In units of their tolerances,
-    /// brought to the order of that estimate.
+    /// The largest of `error` and of what the estimate of the free joints may not see: the errors of the energy ledger, and of D^alpha x of
+    /// laws with inner variables, of all laws where `whole`, other joints being prescribed. In units of their tolerances, brought to the
+    /// order of that estimate.
     fn recorder_error(
         &self,
         cx: Context,
@@ -107,7 +107,7 @@ impl Radau {
         (mut error, mut worst): (f64, Worst),
     ) -> (f64, Worst) {
         // Beside a singular start there is no ledger, and what the actuators do against it is integrated by its moments.
-        let energy = if self.step.is_singular || !whole { 0.0 } else { recorder.energy_error(h, 0.0) };
+        let energy = if self.step.is_singular { 0.0 } else { recorder.energy_error(h, 0.0) };
         if energy > error {
             (error, worst) = (energy, Worst::Energy);
         }

@@ -63,7 +63,13 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     ///
     /// What is provided is that of a leaf that flows: no force remains, and small motions meet [`Leaf::linearised`].
     fn at_rest(&self, at: &Point, _held: f64) -> LeafAtRest {
-        LeafAtRest { force: 0.0, stiffness: None, term: self.linearised(&Point { rate: 0.0, ..*at }), input: None }
+        LeafAtRest {
+            force: 0.0,
+            stiffness: None,
+            term: self.linearised(&Point { rate: 0.0, ..*at }),
+            input: None,
+            damping: 0.0,
+        }
     }
 
     /// Whether it gives a force that grows with its stroke, or the rate of it, wherever it is: what may stand in a series by itself.

@@ -79,7 +79,7 @@ impl<T: Elastic> Leaf for T {
         let slope = self.slope(at.stroke);
         let stiffness = (Elastic::holds(self) != Holds::Never).then_some(slope);
         let term = Term { coefficient: slope, order: 0.0 };
-        LeafAtRest { force: self.force(at.stroke), stiffness, term, input: None }
+        LeafAtRest { force: self.force(at.stroke), stiffness, term, input: None, damping: 0.0 }
     }
 
     fn holds(&self) -> Holds {

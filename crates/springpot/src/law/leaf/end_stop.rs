@@ -5,6 +5,7 @@ use crate::law::network::Holds;
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
+use crate::law::tangent::LeafAtRest;
 
 /// F = max(k·e + d·x', 0) where x is e ≥ 0 above `upper`, F = min(k·e + d·x', 0) where it is e ≤ 0 below `lower`, 0 between them: it pushes back and
 /// never pulls. Stores ½k·e²; what it does not give back is dissipated.
@@ -85,6 +86,12 @@ impl Leaf for EndStop {
 
     fn linearised(&self, at: &Point) -> Term {
         Term { coefficient: self.response(at.stroke, at.rate).1, order: 0.0 }
+    }
+
+    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
+        let (force, slope, damping) = self.response(at.stroke, 0.0);
+        let term = Term { coefficient: slope, order: 0.0 };
+        LeafAtRest { force, stiffness: Some(slope), term, input: None, damping }
     }
 
     fn holds(&self) -> Holds {

@@ -50,7 +50,7 @@ impl Leaf for Source {
 
     fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
         let input = Some((self.input, -self.gain));
-        LeafAtRest { force: self.force(at), stiffness: None, term: self.linearised(at), input }
+        LeafAtRest { force: self.force(at), stiffness: None, term: self.linearised(at), input, damping: 0.0 }
     }
 
     fn is_linear(&self) -> bool {

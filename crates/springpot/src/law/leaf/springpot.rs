@@ -191,10 +191,16 @@ impl Leaf for Springpot {
         let term = self.linearised(at);
         let Term { coefficient, order } = term;
         if order > 0.0 {
-            return LeafAtRest { force: 0.0, stiffness: None, term, input: None };
+            return LeafAtRest { force: 0.0, stiffness: None, term, input: None, damping: 0.0 };
         }
         let held = if self.derivative == Derivative::Caputo { held } else { 0.0 };
-        LeafAtRest { force: coefficient * (at.stroke - held), stiffness: Some(coefficient), term, input: None }
+        LeafAtRest {
+            force: coefficient * (at.stroke - held),
+            stiffness: Some(coefficient),
+            term,
+            input: None,
+            damping: 0.0,
+        }
     }
 
     fn holds(&self) -> Holds {

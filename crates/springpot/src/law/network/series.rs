@@ -16,7 +16,7 @@ use super::{Guard, MOST_IN_SERIES, Network, Onset, Reported, Take};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::law::state::{StateMut, StateRef, StateSize};
-use crate::law::step::{LocalError, Point, Power, Powers, Response, Step};
+use crate::law::step::{Course, LocalError, Point, Power, Powers, Response, Step};
 use asked::Asked;
 use solve::{Inner, Solved, solve};
 
@@ -176,6 +176,8 @@ pub(super) fn guards(parts: &[Network], step: &Step, state: &mut StateRef, guard
 
 /// Inside a step: as a shorter one that ends there, so that rows are as good as ends of steps.
 pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: &mut StateRef, take: Take) -> Reported {
+    let known = (theta < 1.0 && step.nodes == Nodes::Radau && step.course == Course::Sought)
+        .then(|| between(parts, step, theta, *state));
     let ready = state.take_ready();
     let asked =
         if theta == 1.0 { asked(parts, step, ready) } else { Asked::until(step, is_yielding(parts, step), theta, at) };
@@ -190,8 +192,20 @@ pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: 
             part.at_part(&inner.step(step), 1.0, &inside, state, take)
         }),
     );
-    (sum.observation.regular, sum.observation.singular) = (force[last - 1], 0.0);
+    (sum.observation.regular, sum.observation.singular) = (known.unwrap_or(force[last - 1]), 0.0);
     sum
+}
+
+/// The force at θ of a step whose strokes were sought: the polynomial through that at its start and at the nodes, on which its accelerations rest.
+fn between(parts: &[Network], step: &Step, theta: f64, mut state: StateRef) -> f64 {
+    let start = now(parts, &step.point(0), &mut state.clone(), &mut |_| ()).observation.regular;
+    let ready = state.take_ready();
+    let asked = asked(parts, step, ready);
+    let strokes = state.take(own(parts)).variables;
+    let Solved { force, .. } = solve(parts, &asked.step(step), strokes, ready, &mut state);
+    let values = [start, force[0], force[1], force[2], force[3]];
+    let at = |row: &Values| row.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
+    TABLEAU_OF_FOUR.values.iter().rev().fold(0.0, |sum, row| sum * theta + at(row))
 }
 
 /// Between two steps strokes do not jump: the force is that of the parts whose force follows from them alone; where every part has a

@@ -2,9 +2,12 @@
 
 use super::Values;
 use crate::collocation::inner::{TABLEAU_OF_FOUR, Weights};
-use crate::collocation::{MAX_NODES, Nodes, STAGES};
+use crate::collocation::{MAX_NODES, Nodes, RADAU_NODES, STAGES};
 use crate::fractional::{Form, RatePolynomial};
 use crate::law::step::{Course, InputValue, Point, Response, Step};
+
+/// Square of the product of a place's distances to the nodes below which it is one of them.
+const NEXT_TO_NODE: f64 = 1e-8;
 
 /// The stroke of a whole series over a step, or the first share of it, at the nodes of its parts.
 pub(super) struct Asked {
@@ -86,8 +89,14 @@ impl Asked {
         let nodes = if step.nodes == Nodes::Radau { Nodes::Inner } else { step.nodes };
         let mut stroke = Values::default();
         stroke[0] = step.stroke[0];
+        // The cubic through the strokes misses what the step's own motion is at θ, and elsewhere by as much as the nodes are away.
+        let away = |at: f64| at * RADAU_NODES.iter().map(|c| at - c).product::<f64>();
+        let miss = match way {
+            Way::Strokes => (at.stroke - way.stroke(step, theta)) * away(theta) / (away(theta).powi(2) + NEXT_TO_NODE),
+            Way::Same | Way::Rates | Way::Both => 0.0,
+        };
         for (stroke, c) in stroke[1..].iter_mut().zip(nodes.positions()) {
-            *stroke = way.stroke(step, theta * c);
+            *stroke = way.stroke(step, theta * c) + miss * away(theta * c);
         }
         if nodes != Nodes::Midpoint {
             stroke[nodes.count()] = at.stroke;
