@@ -22,7 +22,7 @@ type Matrix = [[f64; MAX_NODES]; MAX_NODES];
 /// F = alpha_h·z, z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n, z(0) = 0 (Bouc 1967, Wen 1976).
 ///
 /// Stores alpha_h·z²/(2A), dissipates (alpha_h/A)·|z|^(n+1)·(gamma·|x'| + beta·x'·sgn z). z is one inner variable, collocated at the nodes of
-/// the step.
+/// the step; where the stroke turns round z' has a kink.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoucWen {
     alpha_h: f64,
@@ -193,6 +193,10 @@ impl Leaf for BoucWen {
     /// About z = 0, so that at rest it gives no force and small motions meet the spring alpha_h·A.
     fn linearised(&self, _: &Point) -> Term {
         Term { coefficient: self.alpha_h * self.a, order: 0.0 }
+    }
+
+    fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
+        take(at.rate);
     }
 
     fn holds(&self) -> Holds {
