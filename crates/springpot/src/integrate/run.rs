@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::driver::{Driver, RowsAhead};
 use super::error::RunError;
-use super::event::{Course, Watch, WatchState};
+use super::event::{Next, Watch, WatchState};
 use super::output::Output;
 use super::report::Report;
 use super::rows::Rows;
@@ -62,7 +62,7 @@ fn to_the_end(driver: &mut Driver, output: &mut Output, mut events: Watch, stop:
         while driver.settle(events.cx())? {
             output.emit(events.cx(), driver)?;
             events.look_now(driver)?;
-            if events.happen(driver, output)? == Course::Stops {
+            if events.happen(driver, output)? == Next::Stops {
                 return end(events.cx(), driver, output);
             }
         }
@@ -83,7 +83,7 @@ fn to_the_end(driver: &mut Driver, output: &mut Output, mut events: Watch, stop:
         driver.advance(events.cx(), f64::INFINITY, rows)?;
         events.look(driver, before, rows)?;
         output.emit(events.cx(), driver)?;
-        if events.happen(driver, output)? == Course::Stops {
+        if events.happen(driver, output)? == Next::Stops {
             return end(events.cx(), driver, output);
         }
     }

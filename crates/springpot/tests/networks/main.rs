@@ -9,6 +9,7 @@ mod pasts;
 mod series;
 #[path = "../support/mod.rs"]
 mod support;
+mod tolerance;
 
 use springpot::law::Network;
 use support::{Run, cases, run_system};

@@ -3,7 +3,7 @@
 mod sides;
 mod watch;
 
-pub(super) use watch::{Course, Watch, WatchState};
+pub(super) use watch::{Next, Watch, WatchState};
 
 use crate::observe::Quantity;
 use crate::signal::ColumnExpression;

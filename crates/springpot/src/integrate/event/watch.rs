@@ -41,7 +41,7 @@ pub(in crate::integrate) struct WatchState {
 
 /// What becomes of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::integrate) enum Course {
+pub(in crate::integrate) enum Next {
     GoesOn,
     /// An event ends it here.
     Stops,
@@ -191,13 +191,9 @@ impl<'s> Watch<'s> {
     ///
     /// # Errors
     /// What the rows or the new torques and inputs may show; [`RunError::EventChatter`].
-    pub(in crate::integrate) fn happen(
-        &mut self,
-        driver: &mut Driver,
-        output: &mut Output,
-    ) -> Result<Course, RunError> {
+    pub(in crate::integrate) fn happen(&mut self, driver: &mut Driver, output: &mut Output) -> Result<Next, RunError> {
         let mut passages = std::mem::take(&mut self.passages);
-        let Some(last) = passages.last().copied() else { return Ok(Course::GoesOn) };
+        let Some(last) = passages.last().copied() else { return Ok(Next::GoesOn) };
         let near = driver.step_at_hand().map_or(0.0, |step| near(&step));
         // What happens at one time does so in the order of the scenario.
         let mut from = 0;
@@ -222,13 +218,13 @@ impl<'s> Watch<'s> {
             self.count(event, last.t, driver.recorder.settings.end)?;
         }
         if acting().any(|event| event.action == Action::Stop) {
-            return Ok(Course::Stops);
+            return Ok(Next::Stops);
         }
         if held != before {
             driver.disturb(cx)?;
             self.state.held = held;
         }
-        Ok(Course::GoesOn)
+        Ok(Next::GoesOn)
     }
 
     fn count(&mut self, event: &Event, t: f64, end: f64) -> Result<(), RunError> {

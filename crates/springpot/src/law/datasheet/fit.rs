@@ -148,17 +148,22 @@ pub fn fit(law: &Entry, rows: &[Measured]) -> Result<Fitted, FitError> {
         order,
     };
     let covariance = problem.covariance([k, c, order]).ok_or_else(|| FitError::Undetermined { law: name() })?;
-    let mut fitted = Fitted { law, covariance, rms: 0.0, largest: 0.0, farthest: 0 };
+    let (rms, largest, farthest) = misfit(rows, |omega| law.complex_stiffness(omega));
+    Ok(Fitted { law, covariance, rms, largest, farthest })
+}
+
+/// Root mean square and largest of the deviations |K*(ω) − measured|/|measured|, and the row of the latter.
+pub(super) fn misfit(rows: &[Measured], stiffness: impl Fn(f64) -> [f64; 2]) -> (f64, f64, usize) {
+    let (mut square, mut largest, mut farthest) = (0.0, 0.0, 0);
     for (row, Measured { omega, storage, loss }) in rows.iter().enumerate() {
-        let [re, im] = law.complex_stiffness(*omega);
+        let [re, im] = stiffness(*omega);
         let deviation = (re - storage).hypot(im - loss) / storage.hypot(*loss);
-        fitted.rms += deviation * deviation / rows.len() as f64;
-        if deviation > fitted.largest {
-            (fitted.largest, fitted.farthest) = (deviation, row);
+        square += deviation * deviation / rows.len() as f64;
+        if deviation > largest {
+            (largest, farthest) = (deviation, row);
         }
     }
-    fitted.rms = fitted.rms.sqrt();
-    Ok(fitted)
+    (square.sqrt(), largest, farthest)
 }
 
 fn check(law: &str, model: Model, rows: &[Measured]) -> Result<(), FitError> {

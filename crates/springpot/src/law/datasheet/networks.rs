@@ -1,6 +1,6 @@
 //! The parameters of any linear law of springs, dashpots and springpots nearest to a measured complex stiffness.
 
-use super::fit::{FitError, Measured, check_rows};
+use super::fit::{FitError, Measured, check_rows, misfit};
 use crate::fractional::Kind as Derivative;
 use crate::law::catalog::{Entry, Param};
 use crate::law::network::Network;
@@ -83,15 +83,7 @@ pub fn fit_network(law: &Entry, rows: &[Measured]) -> Result<FittedNetwork, FitE
         spreads[p] = Some(by_unknown * (inverse * variance).sqrt());
     }
     let mut fitted = FittedNetwork { values, spreads, network, rms: 0.0, largest: 0.0, farthest: 0 };
-    for (row, Measured { omega, storage, loss }) in rows.iter().enumerate() {
-        let [re, im] = fitted.complex_stiffness(*omega);
-        let deviation = (re - storage).hypot(im - loss) / storage.hypot(*loss);
-        fitted.rms += deviation * deviation / rows.len() as f64;
-        if deviation > fitted.largest {
-            (fitted.largest, fitted.farthest) = (deviation, row);
-        }
-    }
-    fitted.rms = fitted.rms.sqrt();
+    (fitted.rms, fitted.largest, fitted.farthest) = misfit(rows, |omega| fitted.complex_stiffness(omega));
     Ok(fitted)
 }
 
