@@ -97,7 +97,7 @@ impl EnergyQuantity {
             Self::Kinetic => "kinetic energy",
             Self::Potential => "potential energy in the field of gravity, 0 at the world origin",
             Self::Actuators => "work of the actuators since t = 0",
-            Self::Joints => "energy lost in joint damping and friction since t = 0",
+            Self::Joints => "energy lost in joint damping and friction, and taken up by end stops, since t = 0",
             Self::Residual => "kinetic + potential + stored + dissipated - input - actuators, less its value at t = 0",
         }
     }
