@@ -1,7 +1,7 @@
 //! All elements of a system, step by step.
 
-use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
+use crate::collocation::{MAX_NODES, STAGES};
 use crate::fractional::{Form, KernelError};
 use crate::law::{
     Course, Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Start,
@@ -270,10 +270,10 @@ impl ElementBank {
         self.elements[e].told.step(self.step).point(point)
     }
 
-    /// The strokes and rates that element `e` was told.
-    pub(crate) fn told(&self, e: usize) -> (&[f64; MAX_NODES + 1], &[f64; MAX_NODES + 1]) {
+    /// The strokes and rates that element `e` was told of a step with [`Nodes::Radau`].
+    pub(crate) fn told(&self, e: usize) -> [&[f64; STAGES + 1]; 2] {
         let Told { stroke, rate, .. } = &self.elements[e].told;
-        (stroke, rate)
+        [stroke, rate].map(|values| values.first_chunk().expect("as many nodes as the most"))
     }
 
     /// Makes ready what does not change while the step is worked out.

@@ -2,7 +2,7 @@
 
 use crate::support::robots::{ARM, every, springpot};
 use crate::support::truth::derivatives;
-use crate::support::{Run, cases, largest, relative_difference, run, run_case, system};
+use crate::support::{Run, cases, largest, relative_difference, run, run_case, shipped, system};
 use springpot::dynamics::{Kinematics, angular_jacobian, angular_jacobian_rate, point_jacobian, point_jacobian_rate};
 use springpot::integrate::{RunError, System};
 use springpot::model::Parent;
@@ -335,5 +335,15 @@ fn kinked_paths() {
         assert!(error < 1e-9, "alpha = {alpha}: {error:.1e}");
         assert!(residual < 1e-7, "alpha = {alpha}: {residual:.1e}");
         assert!(largest(&run.column("gripper.error")) < 1e-12);
+    }
+}
+
+/// What a solved path is not known to is told from what steps err.
+#[test]
+fn solved_paths_do_not_try_in_vain() {
+    let cases = shipped("magnetorheological_order.toml", &[]);
+    for index in 0..cases.len() {
+        let report = run_case(&cases, index).report;
+        assert!(report.rejected_steps < 50, "case {index}: {} of {}", report.rejected_steps, report.steps);
     }
 }

@@ -265,9 +265,9 @@ impl Prescribed {
 
 /// How far stroke `e` at the end of the step is from the integral of its rates, m: of order h⁶ where the motion is smooth.
 fn gap(recorder: &Recorder, e: usize) -> f64 {
-    let ([first, .., last], [_, rates @ ..]) = recorder.bank.told(e);
-    let travel: f64 = rates.iter().zip(RADAU_WEIGHTS).map(|(rate, weight)| rate * weight).sum();
-    (last - first - recorder.bank.size() * travel).abs()
+    let [strokes, rates] = recorder.bank.told(e);
+    let travel: f64 = rates[1..].iter().zip(RADAU_WEIGHTS).map(|(rate, weight)| rate * weight).sum();
+    (strokes[STAGES] - strokes[0] - recorder.bank.size() * travel).abs()
 }
 
 /// An element whose points passed each other between two nodes, or that passed half a turn.

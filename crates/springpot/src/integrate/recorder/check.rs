@@ -26,7 +26,7 @@ impl Recorder {
         let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
         let taking_part = (0..self.bank.len()).filter(|&e| self.bank.takes_part(e));
         for e in taking_part {
-            let (_, rates) = self.bank.told(e);
+            let [_, rates] = self.bank.told(e);
             let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
             let is = snapshot.evaluation.elements[e].reading.rate;
             let derivative = snapshot.elements[e].observation.derivative.abs();

@@ -149,7 +149,7 @@ impl Asked {
             Way::Same => *values,
             _ => {
                 let at = |i: usize| outer(&TABLEAU_OF_FOUR.outer[i], &[values[1], values[2], values[3], values[4]]);
-                [values[0], at(0), at(1), at(2), 0.0]
+                [values[0], at(0), at(1), at(2), values[0]]
             }
         }
     }
