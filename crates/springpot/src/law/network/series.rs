@@ -73,11 +73,18 @@ pub(super) fn prepare(parts: &[Network], step: &Step, state: &mut StateMut) {
     parts.iter().for_each(|part| state.skip(part.size(), part.series_count()));
 }
 
-pub(super) fn evaluate(parts: &[Network], step: &Step, state: &mut StateRef, response: &mut Response) {
+/// What the parts are asked and how they answer; leaves the state at their shares.
+fn solved(parts: &[Network], step: &Step, state: &mut StateRef) -> (Asked, Solved) {
     let ready = state.take_ready();
     let asked = asked(parts, step, ready);
     let strokes = state.take(own(parts)).variables;
-    let Solved { force, tangent, .. } = solve(parts, &asked.step(step), strokes, ready, state);
+    let solved = solve(parts, &asked.step(step), strokes, ready, *state);
+    (asked, solved)
+}
+
+pub(super) fn evaluate(parts: &[Network], step: &Step, state: &mut StateRef, response: &mut Response) {
+    let (asked, Solved { force, tangent, .. }) = solved(parts, step, state);
+    parts.iter().for_each(|part| part.pass(state));
     asked.respond(&force, &tangent, response);
 }
 
@@ -86,7 +93,7 @@ pub(super) fn commit(parts: &[Network], step: &Step, state: &mut StateMut) {
     let asked = asked(parts, step, ready.as_deref());
     let step = &asked.step(step);
     let strokes = state.take(own(parts)).variables;
-    let Solved { inner, .. } = solve(parts, step, strokes, ready.as_deref(), &mut state.view());
+    let Solved { inner, .. } = solve(parts, step, strokes, ready.as_deref(), state.view());
     if let Some(ready) = ready {
         ready.forget();
     }
@@ -101,13 +108,10 @@ pub(super) fn commit(parts: &[Network], step: &Step, state: &mut StateMut) {
 }
 
 pub(super) fn local_errors(parts: &[Network], step: &Step, state: &mut StateRef, errors: &mut Vec<LocalError>) {
-    let ready = state.take_ready();
-    let asked = asked(parts, step, ready);
+    let (asked, Solved { mut inner, shares, .. }) = solved(parts, step, state);
     // Of series within each other the outermost one weighs.
     let onset = if step.nodes == Nodes::Inner { 1.0 } else { ONSET };
     let step = &asked.step(step);
-    let strokes = state.take(own(parts)).variables;
-    let Solved { mut inner, shares, .. } = solve(parts, step, strokes, ready, &mut state.clone());
     for ((part, inner), share) in parts.iter().zip(&mut inner).zip(shares) {
         let (first, end) = (errors.len(), step.nodes.count());
         let rate = inner.rate[end];
@@ -139,11 +143,8 @@ fn embedded_rates(stroke: &Values, h: f64) -> Values {
 }
 
 pub(super) fn powers(parts: &[Network], step: &Step, state: &mut StateRef, powers: &mut Powers) {
-    let ready = state.take_ready();
-    let asked = asked(parts, step, ready);
+    let (asked, Solved { inner, .. }) = solved(parts, step, state);
     let step = &asked.step(step);
-    let strokes = state.take(own(parts)).variables;
-    let Solved { inner, .. } = solve(parts, step, strokes, ready, &mut state.clone());
     let mut own = Powers::default();
     for (part, inner) in parts.iter().zip(&inner) {
         part.powers_part(&inner.step(step), state, &mut own);
@@ -157,14 +158,14 @@ pub(super) fn powers(parts: &[Network], step: &Step, state: &mut StateRef, power
 }
 
 pub(super) fn guards(parts: &[Network], step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
-    let (ready, strokes) = (state.take_ready(), state.take(own(parts)).variables);
     if !parts.iter().any(|part| part.has_guards(&step.point(0))) {
+        state.take_ready();
+        state.take(own(parts));
         parts.iter().for_each(|part| part.pass(state));
         return;
     }
-    let asked = asked(parts, step, ready);
+    let (asked, Solved { inner, .. }) = solved(parts, step, state);
     let step = &asked.step(step);
-    let Solved { inner, .. } = solve(parts, step, strokes, ready, &mut state.clone());
     let first = guards.len();
     for (part, inner) in parts.iter().zip(&inner) {
         part.guards_part(&inner.step(step), state, guards);
@@ -183,7 +184,7 @@ pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: 
         if theta == 1.0 { asked(parts, step, ready) } else { Asked::until(step, is_yielding(parts, step), theta, at) };
     let step = &asked.step(step);
     let strokes = state.take(own(parts)).variables;
-    let Solved { inner, force, .. } = solve(parts, step, strokes, ready, &mut state.clone());
+    let Solved { inner, force, .. } = solve(parts, step, strokes, ready, *state);
     let last = step.nodes.count();
     let mut sum = Reported::sum(
         at,
@@ -199,10 +200,7 @@ pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: 
 /// The force at θ of a step whose strokes were sought: the polynomial through that at its start and at the nodes, on which its accelerations rest.
 fn between(parts: &[Network], step: &Step, theta: f64, mut state: StateRef) -> f64 {
     let start = now(parts, &step.point(0), &mut state.clone(), &mut |_| ()).observation.regular;
-    let ready = state.take_ready();
-    let asked = asked(parts, step, ready);
-    let strokes = state.take(own(parts)).variables;
-    let Solved { force, .. } = solve(parts, &asked.step(step), strokes, ready, &mut state);
+    let (_, Solved { force, .. }) = solved(parts, step, &mut state);
     let values = [start, force[0], force[1], force[2], force[3]];
     let at = |row: &Values| row.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
     TABLEAU_OF_FOUR.values.iter().rev().fold(0.0, |sum, row| sum * theta + at(row))

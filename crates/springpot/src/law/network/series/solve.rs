@@ -129,7 +129,8 @@ pub(in crate::law) struct Ready {
 impl Ready {
     /// Gets ready for `step`, whose nodes are those of the parts; nothing where its answers are not the same however often it is asked.
     pub(super) fn get(&mut self, parts: &[Network], is_yielding: bool, step: &Step, starts: &[f64], state: StateRef) {
-        if step.inputs.is_empty() && parts.iter().all(Network::is_linear) {
+        let is_ready = self.lines(step).is_some();
+        if !is_ready && step.inputs.is_empty() && parts.iter().all(Network::is_linear) {
             self.lines.look(parts, &resting(starts, step), step, state);
             self.lines.turn(step.nodes.count());
             (self.step, self.is_yielding) = (Some((step.t, step.h, step.nodes, step.course)), is_yielding);
@@ -159,25 +160,17 @@ fn resting(starts: &[f64], step: &Step) -> [Inner; MOST_IN_SERIES] {
 }
 
 /// Finds the strokes of the parts under the strokes of `step`, whose nodes are theirs, from those at its start.
-pub(super) fn solve(
-    parts: &[Network],
-    step: &Step,
-    starts: &[f64],
-    ready: Option<&Ready>,
-    state: &mut StateRef,
-) -> Solved {
-    let before = *state;
-    parts.iter().for_each(|part| part.pass(state));
+pub(super) fn solve(parts: &[Network], step: &Step, starts: &[f64], ready: Option<&Ready>, state: StateRef) -> Solved {
     if let Some(lines) = ready.and_then(|ready| ready.lines(step)) {
         return along(lines, parts.len(), step, starts);
     }
     if parts.iter().all(Network::is_linear) {
         let mut lines = Lines::default();
-        lines.look(parts, &resting(starts, step), step, before);
+        lines.look(parts, &resting(starts, step), step, state);
         lines.turn(step.nodes.count());
         return along(&lines, parts.len(), step, starts);
     }
-    search(parts, step, starts, before)
+    search(parts, step, starts, state)
 }
 
 /// The strokes of linear parts.
