@@ -1,6 +1,10 @@
 //! Ten seconds of the stiff flyball governor by Springpot and by MuJoCo (`benches/peers/flyball_governor.py`; an interpreter with mujoco by the
 //! variable PYTHON), in turn. The error is the largest of the slider's place at the 101 times of the reference.
 
+#[path = "comparison/median.rs"]
+mod median;
+
+use median::median;
 use springpot::integrate::{RowTimes, Settings, Stop, System, run};
 use springpot::law::Catalog;
 use springpot_scenario::Scenario;
@@ -51,11 +55,6 @@ fn mujoco(reference: &Reference) -> Option<Vec<(f64, f64)>> {
         Some((words.next()??, words.next()??))
     };
     output.lines().map(numbers).collect::<Option<Vec<_>>>().filter(|runs| runs.len() == STEPS.len())
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 fn main() {

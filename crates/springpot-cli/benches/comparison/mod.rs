@@ -1,16 +1,15 @@
 //! What comparisons of time and error share: medians, the best points, curves, the figure's file.
 
+mod median;
+
 use springpot_report::{Curve, Plot};
+
+pub(crate) use median::median;
 
 /// What one run took and by how much it errs.
 pub(crate) trait Timed {
     fn seconds(&self) -> f64;
     fn error(&self) -> f64;
-}
-
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// The points that no other one beats in both time and error, fastest first.
