@@ -4,6 +4,11 @@ use springpot_scenario::units::{UnitError, parse_quantity, split_quantity};
 use std::f64::consts::TAU;
 use std::fmt;
 
+/// Most frequencies of a band.
+const MOST: usize = 100_000;
+/// Rows that are printed, where nothing asks for all.
+const PRINTED: usize = 13;
+
 /// Why a text is no frequency.
 pub(crate) enum Misread {
     /// It is no quantity of that dimension.
@@ -37,8 +42,8 @@ pub(crate) fn angular(text: &str) -> Result<f64, Misread> {
     Ok(value * radians(split_quantity(text).map_or("", |(_, unit)| unit))?)
 }
 
-/// The ends of a band, Hz, of which the options --from, --to and --points speak; what is wrong, and what would be right.
-pub(crate) fn band(from: &str, to: &str, points: usize, most: usize) -> Result<[f64; 2], (String, String)> {
+/// The frequencies, Hz, of which the options --from, --to and --points speak, evenly on a logarithmic scale; what is wrong, and what would be right.
+pub(crate) fn band(from: &str, to: &str, points: usize) -> Result<Vec<f64>, (String, String)> {
     let read = |name: &str, text: &str| {
         let help = || "write 10, '10 Hz' or '60 rad/s'".to_owned();
         match angular(text) {
@@ -51,8 +56,15 @@ pub(crate) fn band(from: &str, to: &str, points: usize, most: usize) -> Result<[
     if low >= high {
         return Err((format!("--from {from} is not below --to {to}"), "swap them".to_owned()));
     }
-    if !(2..=most).contains(&points) {
-        return Err((format!("--points {points}: out of range"), format!("write 2 to {most}")));
+    if !(2..=MOST).contains(&points) {
+        return Err((format!("--points {points}: out of range"), format!("write 2 to {MOST}")));
     }
-    Ok([low, high])
+    Ok((0..points).map(|k| low * (high / low).powf(k as f64 / (points - 1) as f64)).collect())
+}
+
+/// The rows of a band that are printed, and what a page says where they are not all.
+pub(crate) fn printed(count: usize) -> (impl Iterator<Item = usize>, String) {
+    let (last, printed) = (count - 1, count.min(PRINTED));
+    let left_out = format!("\n{printed} of {count} frequencies; all of them: --json or --out FILE.csv\n");
+    ((0..printed).map(move |k| k * last / (printed - 1)), if printed < count { left_out } else { String::new() })
 }

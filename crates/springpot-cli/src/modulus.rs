@@ -2,7 +2,7 @@
 
 use crate::arguments::ModulusOptions;
 use crate::grid::{Grid, Set};
-use crate::numbers::short;
+use crate::numbers::{four, short};
 use crate::{Ending, diagnostic, drawing, frequency, output, printed, terminal};
 use serde_json::json;
 use springpot::law::{Catalog, InputValue, Point};
@@ -11,11 +11,6 @@ use springpot_scenario::units::parse_quantity;
 use springpot_scenario::{ElementPlan, suggest};
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
-
-/// Most frequencies.
-const MOST: usize = 100_000;
-/// Rows that are printed, where nothing asks for all.
-const PRINTED: usize = 13;
 
 /// K*(ω) at one frequency.
 struct Row {
@@ -45,8 +40,7 @@ pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
         diagnostic::error_with_help(format!("there is no element {:?}", options.element), help);
         return Ending::Refused;
     };
-    match asked(options).and_then(|(band, amplitude)| Ok((rows(element, band, options.points, amplitude)?, amplitude)))
-    {
+    match asked(options).and_then(|(band, amplitude)| Ok((rows(element, band, amplitude)?, amplitude))) {
         Ok((rows, amplitude)) => tell(options, element, &rows, amplitude),
         Err((message, help)) => {
             diagnostic::error_with_help(message, help);
@@ -55,9 +49,9 @@ pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
     }
 }
 
-/// The frequencies from and to, Hz, and the amplitude of the stroke, m or rad.
-fn asked(options: &ModulusOptions) -> Result<([f64; 2], f64), Problem> {
-    let band = frequency::band(&options.from, &options.to, options.points, MOST)?;
+/// The frequencies, Hz, and the amplitude of the stroke, m or rad.
+fn asked(options: &ModulusOptions) -> Result<(Vec<f64>, f64), Problem> {
+    let band = frequency::band(&options.from, &options.to, options.points)?;
     let text = &options.amplitude;
     let amplitude = ["m", "rad"].into_iter().find_map(|unit| parse_quantity(text, unit, &|_| None).ok());
     match amplitude.filter(|amplitude| *amplitude > 0.0 && amplitude.is_finite()) {
@@ -66,7 +60,7 @@ fn asked(options: &ModulusOptions) -> Result<([f64; 2], f64), Problem> {
     }
 }
 
-fn rows(element: &ElementPlan, [from, to]: [f64; 2], points: usize, amplitude: f64) -> Result<Vec<Row>, Problem> {
+fn rows(element: &ElementPlan, band: Vec<f64>, amplitude: f64) -> Result<Vec<Row>, Problem> {
     let element = &element.element;
     if !element.law.is_linear() {
         let message = format!("the law of element {:?} is not linear: its modulus depends on the stroke", element.name);
@@ -75,12 +69,11 @@ fn rows(element: &ElementPlan, [from, to]: [f64; 2], points: usize, amplitude: f
     let mut inputs = vec![InputValue::default(); element.inputs.len()];
     element.inputs_at(0.0, &mut inputs);
     let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
-    let row = |k: usize| {
-        let hertz = from * (to / from).powf(k as f64 / (points - 1) as f64);
+    let row = |hertz: f64| {
         let [storage, loss] = element.law.complex_modulus(&at, TAU * hertz);
         Row { hertz, storage, loss, cycle: PI * loss * amplitude * amplitude }
     };
-    Ok((0..points).map(row).collect())
+    Ok(band.into_iter().map(row).collect())
 }
 
 /// Prints the rows, or writes them as the ending of the file says.
@@ -123,9 +116,8 @@ fn table(element: &ElementPlan, rows: &[Row], amplitude: f64) -> String {
         ("tan delta".to_owned(), Set::Number),
         ("loss a cycle, J".to_owned(), Set::Number),
     ]);
-    let last = rows.len() - 1;
-    let printed = rows.len().min(PRINTED);
-    for k in (0..printed).map(|k| k * last / (printed - 1)) {
+    let (printed, left_out) = frequency::printed(rows.len());
+    for k in printed {
         let Row { hertz, storage, loss, cycle } = &rows[k];
         grid.row([*hertz, *storage, *loss, loss / storage, *cycle].iter().map(|value| four(*value)).collect());
     }
@@ -135,15 +127,8 @@ fn table(element: &ElementPlan, rows: &[Row], amplitude: f64) -> String {
         short(amplitude)
     );
     text.push_str(&grid.text(terminal::stdout_width()));
-    if printed < rows.len() {
-        text.push_str(&format!("\n{printed} of {} frequencies; all of them: --json or --out FILE.csv\n", rows.len()));
-    }
+    text.push_str(&left_out);
     text
-}
-
-/// A number with four digits.
-fn four(value: f64) -> String {
-    short(format!("{value:.3e}").parse().unwrap_or(value))
 }
 
 fn csv(element: &ElementPlan, rows: &[Row]) -> String {

@@ -29,6 +29,11 @@ pub(crate) fn count(number: impl TryInto<u64>, one: &str, many: &str) -> String 
     }
 }
 
+/// A number with four digits.
+pub(crate) fn four(value: f64) -> String {
+    short(format!("{value:.3e}").parse().unwrap_or(value))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

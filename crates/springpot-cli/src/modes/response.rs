@@ -4,7 +4,7 @@ use super::asked::Asked;
 use super::{Problem, Stopped, Told};
 use crate::arguments::ModesOptions;
 use crate::grid::{Grid, Set};
-use crate::numbers::short;
+use crate::numbers::four;
 use crate::{frequency, terminal};
 use serde_json::Value;
 use springpot::actuation::Drive;
@@ -14,11 +14,6 @@ use springpot::observe::Quantity;
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
 use springpot_scenario::suggest;
 use std::f64::consts::TAU;
-
-/// Most frequencies.
-const MOST: usize = 100_000;
-/// Rows that are printed, where nothing asks for all.
-const PRINTED: usize = 13;
 
 /// The answer at one frequency.
 struct Row {
@@ -45,8 +40,8 @@ struct Named<T> {
 pub(super) fn told(asked: &Asked, options: &ModesOptions, input: &str, column: &str) -> Result<Told, Stopped> {
     let input = find_input(asked, input)?;
     let column = find_column(asked, column)?;
-    let band = frequency::band(&options.from, &options.to, options.points, MOST)?;
-    let rows = rows(asked, &input, &column, band, options.points)?;
+    let band = frequency::band(&options.from, &options.to, options.points)?;
+    let rows = rows(asked, &input, &column, &band)?;
     let unit = match (&*column.unit, &*input.unit) {
         (column, "") => column.to_owned(),
         ("", input) => format!("1/({input})"),
@@ -134,16 +129,9 @@ fn find_column(asked: &Asked, name: &str) -> Result<Named<Quantity>, Problem> {
     }
 }
 
-fn rows(
-    asked: &Asked,
-    input: &Named<Excitation>,
-    column: &Named<Quantity>,
-    [from, to]: [f64; 2],
-    points: usize,
-) -> Result<Vec<Row>, Problem> {
-    let mut rows: Vec<Row> = Vec::with_capacity(points);
-    for k in 0..points {
-        let hertz = from * (to / from).powf(k as f64 / (points - 1) as f64);
+fn rows(asked: &Asked, input: &Named<Excitation>, column: &Named<Quantity>, band: &[f64]) -> Result<Vec<Row>, Problem> {
+    let mut rows: Vec<Row> = Vec::with_capacity(band.len());
+    for &hertz in band {
         let answer = asked.linear.frequency_response(input.what, column.what, TAU * hertz);
         let answer = answer.map_err(|why| (format!("{}: {why}", column.name), "take another column".to_owned()))?;
         let own = answer.arg().to_degrees();
@@ -160,19 +148,16 @@ fn page(asked: &Asked, input: &str, column: &str, unit: &str, rows: &[Row]) -> S
         (format!("gain, {unit}"), Set::Number),
         ("phase, deg".to_owned(), Set::Number),
     ]);
-    let (last, printed) = (rows.len() - 1, rows.len().min(PRINTED));
-    for k in (0..printed).map(|k| k * last / (printed - 1)) {
+    let (printed, left_out) = frequency::printed(rows.len());
+    for k in printed {
         let row = &rows[k];
-        let four = |value: f64| short(format!("{value:.3e}").parse().unwrap_or(value));
         grid.row([row.hertz, row.gain(), row.phase].map(four).to_vec());
     }
     let what = format!("{column} under a sine of {input}, small and steady, about {}", asked.place());
     let mut text = terminal::hanging("", &what, width);
     text.push('\n');
     text.push_str(&grid.text(terminal::stdout_width()));
-    if printed < rows.len() {
-        text.push_str(&format!("\n{printed} of {} frequencies; all of them: --json or --out FILE.csv\n", rows.len()));
-    }
+    text.push_str(&left_out);
     text
 }
 
