@@ -305,6 +305,13 @@ impl ElementBank {
         &self.elements[e].response
     }
 
+    /// ∂F_i/∂u_j of element `e` for its input `input`, at what it was told of the step.
+    pub(crate) fn by_input(&self, e: usize, input: usize) -> [[f64; MAX_NODES]; MAX_NODES] {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        let state = kept.as_ref().map(|kept| &kept.state);
+        state.map_or([[0.0; MAX_NODES]; MAX_NODES], |state| law.by_input(&told.step(self.step), state, input))
+    }
+
     /// Force of element `e` at the last node of the step, N, as last evaluated.
     pub fn force(&self, e: usize) -> f64 {
         self.elements[e].response.force[self.step.nodes.count() - 1]

@@ -262,6 +262,28 @@ impl Network {
         }
     }
 
+    /// ∂F_i/∂u_j for input `input`, u_j its value at node j, at the strokes of `step`. Pure. Inputs of parts in series are left out: a method
+    /// that solves for them converges without, more slowly.
+    pub fn by_input(&self, step: &Step, state: &State, input: usize) -> [[f64; MAX_NODES]; MAX_NODES] {
+        let mut slopes = [[0.0; MAX_NODES]; MAX_NODES];
+        self.by_input_part(step, &mut state.view(), input, &mut slopes);
+        slopes
+    }
+
+    fn by_input_part(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        input: usize,
+        slopes: &mut [[f64; MAX_NODES]; MAX_NODES],
+    ) {
+        match self {
+            Self::Leaf(leaf) => leaf.by_input(step, state.take(leaf.size()), input, slopes),
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.by_input_part(step, state, input, slopes)),
+            Self::Series(_) => self.pass(state),
+        }
+    }
+
     /// Takes an accepted step into the state: the only change of it.
     pub fn commit(&self, step: &Step, state: &mut State) {
         self.commit_part(step, &mut state.view_mut());

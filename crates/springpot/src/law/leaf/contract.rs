@@ -1,5 +1,6 @@
 //! What every leaf answers.
 
+use crate::collocation::MAX_NODES;
 use crate::fractional::KernelError;
 use crate::law::network::Holds;
 use crate::law::rule::RuleError;
@@ -37,6 +38,10 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
 
     /// Adds its forces at the nodes and their tangents.
     fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response);
+
+    /// Adds ∂F_i/∂u_j for input `input`, u_j its value at node j: what a method asks for whose inputs follow from the state. A leaf that no input
+    /// moves adds nothing.
+    fn by_input(&self, _step: &Step, _state: StateRef, _input: usize, _slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {}
 
     /// Takes an accepted step into the state. With [`crate::collocation::Nodes::Midpoint`] what is known at the node is that of the middle of the
     /// step: an inner variable ends as far beyond it as it began before it.

@@ -1,6 +1,7 @@
 //! A force that an input commands.
 
 use super::contract::Leaf;
+use crate::collocation::MAX_NODES;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
 use crate::law::tangent::LeafAtRest;
@@ -30,6 +31,12 @@ impl Leaf for Source {
     fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
         for i in 0..step.nodes.count() {
             response.force[i] += self.force(&step.point(i + 1));
+        }
+    }
+
+    fn by_input(&self, step: &Step, _: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
+        if input == self.input {
+            (0..step.nodes.count()).for_each(|i| slopes[i][i] -= self.gain);
         }
     }
 

@@ -127,6 +127,21 @@ impl Leaf for Springpot {
         }
     }
 
+    fn by_input(&self, step: &Step, state: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
+        if self.coefficient.input != Some(input) || self.coefficient.slope == 0.0 {
+            return;
+        }
+        let affine = state.memories[0].respond(&step.start(), step.nodes, step.form);
+        let count = step.nodes.count();
+        for i in 0..count {
+            let own = |j: usize| {
+                affine.stroke[i][j] * (step.stroke[j + 1] - step.stroke[0]) + affine.rate[i][j] * step.rate[j + 1]
+            };
+            let derivative = affine.history[i] + (0..count).map(own).sum::<f64>();
+            slopes[i][i] += self.coefficient.slope * derivative;
+        }
+    }
+
     fn commit(&self, step: &Step, state: StateMut) {
         let polynomial = polynomial(step);
         let memory = &mut state.memories[0];

@@ -109,7 +109,12 @@ impl Expression {
         let wanted = bit.trailing_zeros() as usize;
         let mut kinks = self.program.iter().enumerate().filter(|(_, op)| op.has_kink());
         let Some((at, &op)) = kinks.nth(wanted) else { return (f64::NAN, f64::NAN) };
-        let (stack, top) = stack_after::<Jet, MAX_STACK>(&self.program[..at], Jet::time(t), &[], &mut Trace::default());
+        let (stack, top) = stack_after::<Jet, MAX_STACK>(
+            &self.program[..at],
+            Jet::time(t),
+            &|_| Jet::default(),
+            &mut Trace::default(),
+        );
         let argument = match op {
             Op::Min | Op::Max => stack[top - 2].sub(stack[top - 1]),
             Op::Atan2 => stack[top - 2],

@@ -1,8 +1,10 @@
 //! An expression as a function of the columns of a row.
 
 use super::error::ExpressionError;
+use super::formula::Expression;
 use super::parse::program_of;
-use super::program::{MAX_KINKS, Op, Trace, run_on};
+use super::program::{MAX_KINKS, MAX_STACK, Op, Trace, run_on, stack_after};
+use crate::signal::jet::Jet;
 use std::fmt;
 
 /// A function of t and of named columns, such as `gripper.z - 0.1`; otherwise as [`super::Expression`].
@@ -46,7 +48,102 @@ impl ColumnExpression {
     /// # Panics
     /// Where there are fewer values than columns.
     pub fn value(&self, t: f64, values: &[f64]) -> f64 {
-        run_on(&self.program, t, values, &mut Trace::default())
+        run_on(&self.program, t, &|k| values[k], &mut Trace::default())
+    }
+
+    /// As [`Self::value`], its kinks on the sides that `branch` says ([`Self::branch`]), whatever their arguments are: beyond a kink it goes on
+    /// as before it.
+    pub(crate) fn value_on(&self, branch: u64, t: f64, values: &[f64]) -> f64 {
+        run_on(&self.program, t, &|k| values[k], &mut Trace::held(branch))
+    }
+
+    /// Value and time derivatives where time and columns have these, on a branch.
+    pub(crate) fn jet_on(&self, branch: u64, t: f64, values: &[Jet]) -> Jet {
+        run_on(&self.program, Jet::time(t), &|k| values[k], &mut Trace::held(branch))
+    }
+
+    /// Its derivative by each of its columns, on a branch.
+    pub(crate) fn slopes_on(&self, branch: u64, t: f64, values: &[f64], slopes: &mut Vec<f64>) {
+        slopes.clear();
+        slopes.extend((0..self.columns.len()).map(|column| {
+            let moved = |k: usize| Jet { value: values[k], first: if k == column { 1.0 } else { 0.0 }, second: 0.0 };
+            run_on(&self.program, Jet::constant(t), &moved, &mut Trace::held(branch)).first
+        }));
+    }
+
+    /// A bit for each of its kinks: on which side it is just after t, where columns have these values and derivatives.
+    pub(crate) fn branch(&self, t: f64, values: &[Jet]) -> u64 {
+        let mut trace = Trace::default();
+        run_on(&self.program, Jet::time(t), &|k| values[k], &mut trace);
+        trace.branch
+    }
+
+    /// Whether its value jumps at a kink.
+    pub(crate) fn may_jump(&self) -> bool {
+        self.program.iter().any(|op| matches!(op, Op::Sign | Op::Step | Op::Atan2))
+    }
+
+    /// Hands over the bit and the argument of each kink that hangs on a column: it is positive on the side of `branch` and passes zero at the kink.
+    pub(crate) fn guards(&self, branch: u64, t: f64, values: &[f64], take: &mut dyn FnMut(u32, f64)) {
+        let mut bit = 0;
+        for (at, op) in self.program.iter().enumerate().filter(|(_, op)| op.has_kink()) {
+            let own = bit;
+            bit += 1;
+            if !self.depends_on_columns(at) {
+                continue;
+            }
+            let columns = |k: usize| values[k];
+            let (stack, top) =
+                stack_after::<f64, MAX_STACK>(&self.program[..at], t, &columns, &mut Trace::held(branch));
+            let argument = match op {
+                Op::Min | Op::Max => stack[top - 2] - stack[top - 1],
+                Op::Atan2 if stack[top - 1] < 0.0 => stack[top - 2],
+                Op::Abs | Op::Sign | Op::Step => stack[top - 1],
+                Op::AsinSin => stack[top - 1].cos(),
+                Op::AcosCos => stack[top - 1].sin(),
+                // Functions that end there, and the angle of a point that is not beside the cut.
+                _ => continue,
+            };
+            take(own, if branch >> own & 1 == 1 { -argument } else { argument });
+        }
+    }
+
+    /// Whether a column occurs in the operands of instruction `at`.
+    fn depends_on_columns(&self, at: usize) -> bool {
+        self.program[self.first_of(at)..at].iter().any(|op| matches!(op, Op::Column(_)))
+    }
+
+    /// Where the operands of instruction `at` begin.
+    fn first_of(&self, at: usize) -> usize {
+        let (mut first, mut wanted) = (at, self.program[at].operands());
+        while wanted > 0 {
+            first -= 1;
+            wanted = wanted - 1 + self.program[first].operands();
+        }
+        first
+    }
+
+    /// Its largest parts that hang on t alone, as functions of it: steps must see what they do.
+    pub(crate) fn parts_of_time(&self) -> Vec<Expression> {
+        let mut parts = Vec::new();
+        let mut end = self.program.len();
+        while end > 0 {
+            let at = end - 1;
+            let first = self.first_of(at);
+            let part = &self.program[first..end];
+            let has = |wanted: fn(&Op) -> bool| part.iter().any(wanted);
+            if has(|op| matches!(op, Op::Column(_))) {
+                // Its operands come before it.
+                end = at;
+                continue;
+            }
+            if part.len() > 1 && has(|op| *op == Op::Time) {
+                let kinks = part.iter().filter(|op| op.has_kink()).count();
+                parts.push(Expression { source: self.source.clone(), program: part.to_vec(), kinks });
+            }
+            end = first;
+        }
+        parts
     }
 
     /// The value, if neither t nor a column occurs.

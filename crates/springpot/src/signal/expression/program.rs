@@ -108,10 +108,18 @@ pub(super) struct Trace {
     pub(super) count: u32,
     /// Whether the value is that of this instant alone.
     pub(super) turns: bool,
+    /// The sides to be taken, in place of those where the arguments are.
+    pub(super) held: Option<u64>,
 }
 
 impl Trace {
+    /// On the sides of this branch, whatever the arguments are.
+    pub(super) fn held(branch: u64) -> Self {
+        Self { held: Some(branch), ..Self::default() }
+    }
+
     pub(super) fn take(&mut self, below: bool) -> bool {
+        let below = self.held.map_or(below, |branch| branch >> self.count & 1 == 1);
         self.branch |= u64::from(below) << self.count;
         self.count = (self.count + 1) % u64::BITS;
         below
@@ -120,11 +128,11 @@ impl Trace {
 
 /// Runs a program that `parse` has checked: operands present, at most `MAX_STACK` of them.
 pub(super) fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace) -> V {
-    run_on(program, time, &[], trace)
+    run_on(program, time, &|_| unreachable!("a program without columns"), trace)
 }
 
 /// As [`run`], where the program names columns.
-pub(super) fn run_on<V: Value>(program: &[Op], time: V, columns: &[f64], trace: &mut Trace) -> V {
+pub(super) fn run_on<V: Value>(program: &[Op], time: V, columns: &dyn Fn(usize) -> V, trace: &mut Trace) -> V {
     // A stack of n takes 2n − 1 instructions at least.
     if program.len() < 2 * SMALL_STACK {
         stack_after::<V, SMALL_STACK>(program, time, columns, trace).0[0]
@@ -137,7 +145,7 @@ pub(super) fn run_on<V: Value>(program: &[Op], time: V, columns: &[f64], trace: 
 pub(super) fn stack_after<V: Value, const STACK: usize>(
     program: &[Op],
     time: V,
-    columns: &[f64],
+    columns: &dyn Fn(usize) -> V,
     trace: &mut Trace,
 ) -> ([V; STACK], usize) {
     let mut stack = [time; STACK];
@@ -146,7 +154,7 @@ pub(super) fn stack_after<V: Value, const STACK: usize>(
         let result = match op.operands() {
             0 => match op {
                 Op::Number(value) => V::constant(value),
-                Op::Column(k) => V::constant(columns[k]),
+                Op::Column(k) => columns(k),
                 _ => time,
             },
             1 => {
@@ -185,8 +193,13 @@ fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace) -> V {
         _ => {
             let below = trace.take(argument.is_below_zero());
             match op {
-                Op::Abs => argument.apply(u.abs(), || (if below { -1.0 } else { 1.0 }, 0.0)),
+                Op::Abs => {
+                    let value = if trace.held.is_none() { u.abs() } else { if below { -u } else { u } };
+                    argument.apply(value, || (if below { -1.0 } else { 1.0 }, 0.0))
+                }
                 _ if u.is_nan() => argument,
+                Op::Sign if trace.held.is_some() => V::constant(if below { -1.0 } else { 1.0 }),
+                Op::Step if trace.held.is_some() => V::constant(if below { 0.0 } else { 1.0 }),
                 Op::Sign => {
                     trace.turns |= u == 0.0 && (below || argument.neg().is_below_zero());
                     V::constant(if u == 0.0 { 0.0 } else { u.signum() })
@@ -222,6 +235,9 @@ fn binary<V: Value>(op: Op, first: V, second: V, trace: &mut Trace) -> V {
         _ => {
             let below = trace.take(first.sub(second).is_below_zero());
             let (u, v) = (first.value(), second.value());
+            if trace.held.is_some() {
+                return if below == (op == Op::Min) { first } else { second };
+            }
             // A NaN must not be chosen away.
             let chosen = if u.is_nan() || (!v.is_nan() && below == (op == Op::Min)) { first } else { second };
             // Of two zeros the sign must not depend on where the derivatives are taken from.
