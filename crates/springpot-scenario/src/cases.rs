@@ -12,7 +12,8 @@ use super::root::SCENARIO;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
 use super::urdf::UrdfCache;
-use super::{Scenario, constants, elements, events, motion, overrides, past, robot, time};
+use super::{Scenario, constants, elements, events, feedback, motion, overrides, past, robot, time};
+use springpot::control::Control;
 use springpot::law::Catalog;
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
@@ -433,6 +434,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         end_stops: robot.end_stops,
         elements: elements?,
         motion: motion?,
+        feedback: Control::default(),
         events: Vec::new(),
         tells_joint_losses: false,
         tells_leaves: tells_leaves?,
@@ -443,6 +445,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     };
     plan.rest_at_start();
     past::settle(ctx, &mut plan)?;
+    plan.feedback = feedback::settle(ctx, &plan)?;
     plan.events = events::read(&root, &plan)?;
     Ok(plan)
 }

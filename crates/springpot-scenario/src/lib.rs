@@ -42,6 +42,7 @@ mod cure;
 mod document;
 mod elements;
 mod events;
+mod feedback;
 mod figures;
 mod inputs;
 mod keys;

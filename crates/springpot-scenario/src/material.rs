@@ -2,11 +2,12 @@
 
 use super::csv;
 use super::document::{Node, shorten};
+use super::feedback;
 use super::names;
 use super::plan::SignalPlan;
 use super::reader::{Context, Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
-use super::signals::{self, Wanted, celsius, how_outside, interval};
+use super::signals::{Wanted, celsius, how_outside, interval};
 use super::time::Duration;
 use springpot::law::{Entry, NetworkText, NetworkTextError, Param, Table as LawTable};
 use std::sync::Arc;
@@ -336,7 +337,7 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, time: Option<&Duration>) -> Rea
     all(law.inputs.iter().map(|input| {
         let field = given.as_ref().and_then(|given| given.get(&input.name)).ok_or(Refused)?;
         let end = time.map(|time| time.end);
-        signals::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })
+        feedback::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })
     }))
 }
 

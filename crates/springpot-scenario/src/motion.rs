@@ -1,16 +1,22 @@
 //! `[motion]`: the kinds of motion, each read by a file of its own.
 
+mod controller;
 mod forward;
 mod gripper_path;
 mod joints;
 mod prescribed;
 
-use super::keys::{Each, FORWARD_RUNS, Key, Keys, Need, OUTSIDE, SEPARATOR, START, Shape, TIME_COLUMN, TIME_UNIT, key};
+use super::feedback::TorqueTexts;
+use super::keys::{
+    CONTROLLER, Each, FORWARD_RUNS, Key, Keys, Need, OUTSIDE, SEPARATOR, START, Shape, TIME_COLUMN, TIME_UNIT, key,
+};
 use super::names;
 use super::reader::{Field, Read, Table};
 use super::refusal::{Place, RefusalKind};
 use super::robot::Robot;
+use controller::ControllerPlan;
 use serde_json::{Map, Value, json};
+use springpot::control::Controlled;
 use springpot::integrate::Motion;
 use springpot::model::Model;
 use springpot::motion::gripper_path::Course;
@@ -127,6 +133,13 @@ pub(crate) static MOTION: Keys = Keys {
             "Joints that stay where they start, whatever force that takes.",
         )
         .only(FORWARD),
+        key(
+            "controller",
+            Shape::Table(&CONTROLLER),
+            Need::Said("none"),
+            "A controller that drives all joints that forces drive.",
+        )
+        .only(FORWARD),
     ],
 };
 
@@ -150,6 +163,9 @@ pub struct MotionPlan {
     place: Place,
     joints: Vec<(String, Place)>,
     has_orientation: bool,
+    /// Torques that are feedback, by velocity.
+    feedback: TorqueTexts,
+    controller: Option<ControllerPlan>,
 }
 
 /// What makes the motion of a run.
@@ -204,6 +220,21 @@ impl MotionPlan {
         self.joints.iter().find(|(name, _)| name == joint).map_or(&self.place, |(_, place)| place)
     }
 
+    /// Torques that are feedback, by velocity.
+    pub(crate) fn feedback(&self) -> &TorqueTexts {
+        &self.feedback
+    }
+
+    /// Whether a controller drives it, which says where the gripper should be.
+    pub(crate) fn has_controller(&self) -> bool {
+        self.controller.is_some()
+    }
+
+    /// The controller of `model`, its reference solved along `course`.
+    pub(crate) fn controller(&self, model: &Model, course: &Course<'_>) -> Option<Controlled> {
+        self.controller.as_ref().map(|controller| controller.made(model, course))
+    }
+
     /// Whether it says how the gripper is to be turned.
     pub(crate) fn has_orientation(&self) -> bool {
         self.has_orientation
@@ -239,13 +270,18 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
     let word = Field { key: "kind", row, node, owner: "[motion]".into(), ..field.clone() }.word("kind of motion")?;
     let kind = MotionKind::named(word).expect("a word that may stand there");
     let table = Table::of_kind(field.ctx, field.node, "[motion]", (&MOTION, kind.name()), |_| None)?;
+    let (mut feedback, mut controller) = (TorqueTexts::new(), None);
     let (record, maker) = match kind {
         MotionKind::Prescribed => prescribed::read(&table, robot, end)?,
         MotionKind::GripperPath => gripper_path::read(&table, robot, end)?,
-        MotionKind::Forward => forward::read(&table, robot, end)?,
+        MotionKind::Forward => {
+            let made;
+            (made, feedback, controller) = forward::read(&table, robot, end)?;
+            made
+        }
     };
     let of_joints = ["joints", "prescribed"].into_iter().filter_map(|key| field.node.get(key)?.entries()).flatten();
     let joints = of_joints.map(|entry| (entry.key.clone(), entry.node.place.clone())).collect();
     let (place, has_orientation) = (field.node.place.clone(), field.node.get("rpy").is_some());
-    Ok(MotionPlan { kind, record, maker, place, joints, has_orientation })
+    Ok(MotionPlan { kind, record, maker, place, joints, has_orientation, feedback, controller })
 }

@@ -1,10 +1,12 @@
 //! The plan: a scenario validated and resolved, in SI units, with every default filled in.
 
 use super::events::EventPlan;
+use super::feedback::FeedbackText;
 use super::figures::{ColumnGlob, FigurePlan};
 use super::motion::MotionPlan;
 use super::past::PastPlan;
 use super::refusal::Place;
+use springpot::control::Control;
 use springpot::elements::{Component, Element};
 use springpot::integrate::Settings;
 use springpot::model::urdf::Urdf;
@@ -35,6 +37,8 @@ pub struct Plan {
     pub elements: Vec<ElementPlan>,
     /// What moves the robot.
     pub motion: MotionPlan,
+    /// Torques and inputs that follow from the state.
+    pub(crate) feedback: Control,
     /// What is watched in forward runs.
     pub events: Vec<EventPlan>,
     /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
@@ -138,6 +142,8 @@ pub struct SignalPlan {
     pub written: String,
     /// Where it stands.
     pub place: Place,
+    /// Where it is none, but an expression of the state: the function counts for nothing then.
+    pub(crate) feedback: Option<Arc<FeedbackText>>,
 }
 
 /// One element: as the engine has it, and what the scenario says besides.

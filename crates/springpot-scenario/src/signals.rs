@@ -86,6 +86,7 @@ pub(crate) fn read(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
             constant: None,
             written: text.clone(),
             place: field.node.place.clone(),
+            feedback: None,
         },
         Value::Table(_) => table(field, wanted)?,
         _ => return Err(field.wrong_type("a number, a quantity, an expression of t or a table")),
@@ -101,6 +102,7 @@ fn constant(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
         constant: Some(value),
         written: field.node.label(),
         place: field.node.place.clone(),
+        feedback: None,
     })
 }
 
@@ -117,6 +119,10 @@ fn expression(field: &Field<'_>, text: &str) -> Read<Expression> {
 
 fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
     let table = field.table(&SIGNAL)?;
+    if let Some(field) = table.get("sample") {
+        let message = "belongs to feedback: torques and inputs that follow from the state";
+        return Err(field.refuse(RefusalKind::UnknownKey, message, None));
+    }
     let signal = match (table.get("expression"), table.get("csv")) {
         (Some(text), None) => {
             let of_csv = ["column", "time", "time_unit", "separator", "outside"];
@@ -143,7 +149,7 @@ fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
         None => signal,
     };
     let written = field.node.place.text().to_owned();
-    Ok(SignalPlan { signal, constant: None, written, place: field.node.place.clone() })
+    Ok(SignalPlan { signal, constant: None, written, place: field.node.place.clone(), feedback: None })
 }
 
 /// The signal converted from the unit in `field` to SI.

@@ -1,6 +1,7 @@
 //! From a plan to what the time loop runs.
 
 use super::plan::{EndStops, Plan};
+use springpot::control::Control;
 use springpot::integrate::{Stop, System};
 use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::Course;
@@ -30,6 +31,8 @@ impl Plan {
             tells_leaves: self.tells_leaves,
             events: self.events.iter().map(|plan| plan.event.clone()).collect(),
             end_stops: 0,
+            control: Control { controller: self.motion.controller(&self.model, course), ..self.feedback.clone() }
+                .into(),
         };
         match self.end_stops {
             None => system,
@@ -61,7 +64,7 @@ impl Plan {
         let observables = Observables::new(&self.model, self.elements.iter().map(|plan| &plan.element));
         let observables = if self.tells_leaves { observables.with_leaves() } else { observables };
         match self.gripper {
-            Some(_) => observables.with_gripper(self.motion.has_path()),
+            Some(_) => observables.with_gripper(self.motion.has_path() || self.motion.has_controller()),
             None => observables,
         }
     }

@@ -73,6 +73,7 @@
 
 pub mod actuation;
 pub mod collocation;
+pub mod control;
 pub mod dynamics;
 pub mod elements;
 pub mod fractional;

@@ -4,6 +4,7 @@
 //! the place of a misspelt one, the JSON schema, and a test that compares them with the tables of docs/SCENARIO.md.
 
 mod constants;
+mod controller;
 mod element;
 mod event;
 mod motion;
@@ -15,6 +16,10 @@ mod sweep;
 mod tests;
 
 pub(crate) use constants::SCALAR;
+pub(crate) use controller::{
+    COMPUTED_TORQUE, CONDITIONAL, CONTROLLER, FRACTIONAL_PID, GRIPPER_PATH, IMPEDANCE, MOVE, NONE, PD_GRAVITY, PID,
+    REFERENCE, TRAPEZOID,
+};
 pub(crate) use element::{
     BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, END, HELD, ON_JOINT, PASTS, RESERVED_NAMES,
     START as AT_START,
@@ -115,6 +120,10 @@ pub(crate) enum Shape {
     ValuesOr(&'static Keys),
     /// A table with a value for each joint.
     ByJoint(Each),
+    /// A number for all joints, or a table with one for each.
+    ByJointOrNumber,
+    /// A table with keys of its own and with how joints move.
+    TableWithJoints(&'static Keys),
     /// A table of texts under names that other keys give.
     TextsByName,
     /// A table of texts as above, or false.
@@ -144,6 +153,8 @@ pub(crate) enum Each {
     Force,
     /// A coordinate.
     Coordinate,
+    /// A number in units of its own, zero and above.
+    Number,
     /// A number, or a table for a floating joint.
     NumberOr(&'static Keys),
 }

@@ -15,6 +15,12 @@ pub(crate) static SIGNAL: Keys = Keys {
         ),
         key("column", Shape::Text, Need::Optional, "Column of the CSV file."),
         key("unit", Shape::Text, Need::Said("SI"), "Unit of the values."),
+        key(
+            "sample",
+            Shape::Number("s", Bound::Positive),
+            Need::Said("at every time"),
+            "Of feedback: it is taken at so many seconds, and holds in between.",
+        ),
         TIME_COLUMN,
         TIME_UNIT,
         SEPARATOR,

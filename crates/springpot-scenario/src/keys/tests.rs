@@ -146,6 +146,7 @@ fn the_document_has_the_same_keys() {
         ("## [[element]]", vec![all(&ELEMENT)]),
         ("### Past", vec![all(&HELD)]),
         ("## [motion]", with_tables.map(|kind| of_motion(kind.name())).collect()),
+        ("### Controllers", vec![all(&CONTROLLER)]),
         ("## [[event]]", vec![all(&EVENT)]),
         ("## [time]", vec![all(&TIME)]),
         ("## [solver]", vec![all(&SOLVER)]),
@@ -181,7 +182,8 @@ fn the_document_has_the_same_keys() {
     }
     assert!(compared > 50, "{compared}");
     // Keys that stand in sentences.
-    for keys in [&SIGNAL, &INERTIA, &ANCHOR, &SPAN, &POSE, &START_VELOCITIES, &OUTPUT, &ACTION, &END_STOPS] {
+    for keys in [&SIGNAL, &INERTIA, &ANCHOR, &SPAN, &POSE, &START_VELOCITIES, &OUTPUT, &ACTION, &END_STOPS, &REFERENCE]
+    {
         for key in keys.keys {
             let named = [
                 format!("`{}`", key.name),

@@ -1,15 +1,17 @@
 //! Forward dynamics: where the robot starts and what drives its joints.
 
+use super::controller::{self, ControllerPlan};
 use super::joints::{open_joints, path_of_joint, signal, zero};
 use super::{Made, ready};
 use crate::document::shorten;
+use crate::feedback::{self, TorqueTexts};
 use crate::keys::{FORCES, START, START_POSE, START_VELOCITIES};
 use crate::names;
 use crate::plan::SignalPlan;
 use crate::reader::{Field, Read, Table, all};
 use crate::refusal::RefusalKind;
 use crate::robot::{OwnJoint, Robot};
-use crate::signals::{self, Wanted};
+use crate::signals::Wanted;
 use serde_json::{Map, Value, json};
 use springpot::actuation::{Drive, Forward};
 use springpot::law::Range;
@@ -18,13 +20,18 @@ use springpot::spatial::Quaternion;
 use std::collections::HashSet;
 
 /// Reads what belongs to the kind "forward".
-pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Made> {
+pub(super) fn read(
+    table: &Table<'_>,
+    robot: &Robot,
+    end: Option<f64>,
+) -> Read<(Made, TorqueTexts, Option<ControllerPlan>)> {
     let start = table.get("start").map(|field| start(&field, robot)).transpose();
     let torque = table.get("torque").map(|field| open_joints(&field, robot)).transpose();
     let prescribed = table.get("prescribed").map(|field| open_joints(&field, robot)).transpose();
     let locked = table.get("locked").map_or_else(|| Ok(HashSet::new()), |field| locked(&field, robot));
     let (torque, prescribed, locked) = (torque?, prescribed?, locked?);
     let place = &table.node.place;
+    let mut feedback = TorqueTexts::new();
     let drives = all(robot.own_joints().map(|joint| {
         let given = |table: &Option<Table<'_>>| table.as_ref().and_then(|table| table.get(joint.name)).is_some();
         let is_locked = locked.contains(joint.name);
@@ -47,12 +54,31 @@ pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<M
             Some(field) => force(&field, &joint, end)?,
             None => (0..joint.kind.nv()).map(|_| zero(place)).collect(),
         };
+        let first = robot.model().v_range(index_of(robot, joint.name)).start;
+        let texts = forces.iter().enumerate().filter_map(|(k, force)| Some((first + k, force.feedback.clone()?)));
+        feedback.extend(texts);
         Ok(driven_by(forces))
     }));
     let (q, v) = start?.unwrap_or_else(|| (robot.model().neutral(), vec![0.0; robot.model().nv()]));
+    let controller = table.get("controller");
+    let is_forced = |joint: &str| {
+        let is_moved = prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
+        !is_moved && !locked.contains(joint)
+    };
+    let controller = controller.map(|field| controller::read(&field, robot, (&q, &is_forced), end)).transpose();
     let (drives, records): (Vec<Drive>, Vec<Value>) = drives?.into_iter().unzip();
     let records: Map<String, Value> = robot.own_joints().map(|joint| joint.name.to_owned()).zip(records).collect();
-    Ok(ready([("start", json!({ "q": q, "v": v })), ("joints", records.into())], Forward { q, v, drives }))
+    let controller = controller?;
+    let mut made = ready([("start", json!({ "q": q, "v": v })), ("joints", records.into())], Forward { q, v, drives });
+    if let Some(controller) = &controller {
+        made.0.insert("controller".to_owned(), controller.record.clone());
+    }
+    Ok((made, feedback, controller))
+}
+
+/// The joint of that name, of a robot that has it.
+fn index_of(robot: &Robot, joint: &str) -> usize {
+    robot.model().joint_index(joint).expect("a joint of its own")
 }
 
 /// A joint that forces drive, and the record of it.
@@ -132,7 +158,7 @@ fn locked<'a>(field: &Field<'a>, robot: &Robot) -> Read<HashSet<&'a str>> {
 fn force(field: &Field<'_>, joint: &OwnJoint<'_>, end: Option<f64>) -> Read<Vec<SignalPlan>> {
     if joint.kind != JointKind::Floating {
         let unit = joint.units().force;
-        return Ok(vec![signals::read(field, Wanted { unit, range: Range::ANY, smooth: false, end })?]);
+        return Ok(vec![feedback::read(field, Wanted { unit, range: Range::ANY, smooth: false, end })?]);
     }
     let table = field.table(&FORCES)?;
     all(FORCES.names().into_iter().map(|name| match table.get(name) {

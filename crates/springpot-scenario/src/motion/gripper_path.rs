@@ -16,16 +16,28 @@ use std::sync::Arc;
 
 /// A path that is followed from near a guess.
 #[derive(Debug)]
-struct Path {
+pub(super) struct Path {
     task: Task,
     /// Coordinates near the start (every joint has one), in the order of q, rad or m.
     guess: Vec<f64>,
 }
 
+impl Path {
+    /// Near these coordinates, in place of a guess.
+    pub(super) fn start_from(&mut self, q: &[f64]) {
+        self.guess.copy_from_slice(q);
+    }
+
+    /// The motion of `model` along it, as far as `course` goes.
+    pub(super) fn trajectory(&self, model: &Model, course: &Course<'_>) -> Trajectory {
+        let path = GripperPath::new(model, self.task.clone(), &self.guess, course);
+        Trajectory::GripperPath(Box::new(path))
+    }
+}
+
 impl Maker for Path {
     fn motion(&self, model: &Model, course: &Course<'_>) -> Motion {
-        let path = GripperPath::new(model, self.task.clone(), &self.guess, course);
-        Trajectory::GripperPath(Box::new(path)).into()
+        self.trajectory(model, course).into()
     }
 
     fn has_path(&self) -> bool {
@@ -35,6 +47,12 @@ impl Maker for Path {
 
 /// Reads what belongs to the kind "gripper-path".
 pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Made> {
+    let (record, path) = path(table, robot, end)?;
+    Ok((record, Arc::new(path)))
+}
+
+/// Reads a path of the gripper and its record, whoever follows it.
+pub(super) fn path(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<(Map<String, Value>, Path)> {
     if robot.gripper.is_none() {
         let message = "kind = \"gripper-path\" needs a gripper, but the robot has none";
         let place = table.get("kind").map_or(&table.node.place, |field| &field.node.place);
@@ -76,7 +94,7 @@ pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<M
         position: [x, y, z].map(|signal| signal.signal),
         rpy: rpy.map(|rpy| rpy.map(|signal| signal.signal)),
     };
-    Ok((record, Arc::new(Path { task, guess })))
+    Ok((record, Path { task, guess }))
 }
 
 fn guess(field: &Field<'_>, robot: &Robot) -> Read<Vec<f64>> {

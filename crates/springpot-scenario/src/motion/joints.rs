@@ -27,7 +27,8 @@ pub(super) fn signal(field: &Field<'_>, smooth: bool, end: Option<f64>) -> Read<
 
 /// What stands for a signal that is left out.
 pub(super) fn zero(place: &Place) -> SignalPlan {
-    SignalPlan { signal: Signal::constant(0.0), constant: Some(0.0), written: "0".to_owned(), place: place.clone() }
+    let (signal, written) = (Signal::constant(0.0), "0".to_owned());
+    SignalPlan { signal, constant: Some(0.0), written, place: place.clone(), feedback: None }
 }
 
 /// How one joint moves, and the record of it.

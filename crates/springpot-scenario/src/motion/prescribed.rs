@@ -93,7 +93,7 @@ fn from_csv(
             (None, _) => signal,
         };
         let written = format!("{{ csv = {}, column = {name:?} }}", csv.node.written());
-        Ok(SignalPlan { signal, constant: None, written, place: csv.node.place.clone() })
+        Ok(SignalPlan { signal, constant: None, written, place: csv.node.place.clone(), feedback: None })
     };
     all(columns.iter().zip(joints).map(|(names, joint)| match &names[..] {
         [x, y, z, roll, pitch, yaw] => {

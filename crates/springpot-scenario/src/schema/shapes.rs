@@ -112,6 +112,7 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             let each = match each {
                 Each::Path => json!({ "$ref": "#/definitions/path" }),
                 Each::Force => json!({ "$ref": "#/definitions/force" }),
+                Each::Number => json!({ "$ref": "#/definitions/quantity" }),
                 Each::Coordinate => joint_number(["rad", "m"], Bound::Any, "Coordinate."),
                 Each::NumberOr(keys) => {
                     let number = json!({ "$ref": "#/definitions/quantity" });
@@ -119,6 +120,16 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
                 }
             };
             json!({ "type": "object", "additionalProperties": each, "description": words })
+        }
+        Shape::ByJointOrNumber => {
+            let number = json!({ "$ref": "#/definitions/quantity" });
+            let table = json!({ "type": "object", "additionalProperties": number });
+            json!({ "description": words, "anyOf": [number, table] })
+        }
+        Shape::TableWithJoints(keys) => {
+            let mut schema = object(&words, keys, catalog);
+            schema["additionalProperties"] = json!({ "$ref": "#/definitions/path" });
+            schema
         }
         Shape::Scalars => {
             json!({ "type": "object", "additionalProperties": { "$ref": "#/definitions/quantity" }, "description": words })

@@ -1,5 +1,6 @@
 //! Scenario files: plans, sweeps, refusals, limits, broken texts.
 
+mod control;
 mod friction;
 mod fuzz;
 mod joints;

@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Context<'a> {
     pub(super) system: &'a System,
     pub(super) held: &'a Held,
+    /// What sampled laws said last, for which the same goes; what is held in `held` comes before it.
+    pub(super) sampled: &'a Held,
 }
 
 /// Torques and inputs that somebody outside or an event holds; the default holds nothing.
@@ -25,7 +27,8 @@ pub(super) struct Held {
 
 impl Held {
     /// Nothing is held.
-    pub(super) const NONE: &'static Self = &Self { torques: Vec::new(), forces: Vec::new(), inputs: Vec::new() };
+    pub(in crate::integrate) const NONE: &'static Self =
+        &Self { torques: Vec::new(), forces: Vec::new(), inputs: Vec::new() };
 
     /// The torques on the velocities of a system, to be set.
     pub(super) fn torques_mut(&mut self, nv: usize) -> &mut [f64] {
@@ -53,18 +56,31 @@ impl Context<'_> {
     /// Values and rates of the inputs of element `e` at t.
     pub(super) fn inputs_at(&self, e: usize, t: f64, values: &mut [InputValue]) {
         self.system.elements[e].inputs_at(t, values);
-        let Some(held) = self.held.inputs.get(e) else { return };
-        for (value, held) in values.iter_mut().zip(held) {
-            if let Some(held) = *held {
-                *value = InputValue { value: held, rate: 0.0 };
+        for held in [self.sampled, self.held] {
+            let Some(held) = held.inputs.get(e) else { continue };
+            for (value, held) in values.iter_mut().zip(held) {
+                if let Some(held) = *held {
+                    *value = InputValue { value: held, rate: 0.0 };
+                }
             }
         }
+    }
+
+    /// Whether input `i` of element `e` is held, whatever else says what it is.
+    pub(super) fn holds_input(&self, e: usize, i: usize) -> bool {
+        self.held.inputs.get(e).is_some_and(|held| held[i].is_some())
+    }
+
+    /// Whether the actuator force on velocity `k` is held, whatever else says what it is.
+    pub(super) fn holds_force(&self, k: usize) -> bool {
+        self.held.forces.get(k).is_some_and(Option::is_some)
     }
 
     /// The actuator force on velocity `k` at t, N·m or N, where `signal` says what it is unless one is held.
     pub(super) fn force(&self, k: usize, signal: &Signal, t: f64) -> f64 {
         let held = self.held.forces.get(k).copied().flatten();
-        held.unwrap_or_else(|| signal.at(t).value) + self.torque(k)
+        let sampled = self.sampled.torques.get(k).copied().unwrap_or(0.0);
+        held.unwrap_or_else(|| signal.at(t).value + sampled) + self.torque(k)
     }
 
     /// What is added to the actuator force on velocity `k`, N·m or N.
@@ -76,6 +92,6 @@ impl Context<'_> {
 impl System {
     /// It alone.
     pub(super) fn context(&self) -> Context<'_> {
-        Context { system: self, held: Held::NONE }
+        Context { system: self, held: Held::NONE, sampled: Held::NONE }
     }
 }

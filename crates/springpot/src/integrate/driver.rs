@@ -1,6 +1,7 @@
 //! The one loop: which step is tried next, what becomes of it, and what is crossed between two of them.
 
-use super::context::Context;
+use super::context::{Context, Held};
+use super::control::{Eye, Sampler};
 use super::definite::Definite;
 use super::driver_state::{DriverState, fingerprint};
 use super::error::RunError;
@@ -12,15 +13,20 @@ use super::solver::Solver;
 use super::stepper::{Behind, Target, Trial};
 use super::system::Motion;
 use crate::collocation::{RADAU_NODES, STAGES};
+use crate::dynamics::Kinematics;
 use crate::observe::Snapshot;
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
+use std::sync::Arc;
 
 /// Steps above this many last bits of the end are whole multiples of such a bit.
 const COARSE: f64 = (1u64 << 20) as f64;
 
 /// Times that differ by less than this share of them are one.
 const TICK: f64 = 1e-12;
+
+/// A sample and a kink of a signal that differ by less than this share of their time are crossed together.
+const ONE_STOP: f64 = 1e-12;
 
 /// Where the next row and the last one are: steps may end on rows that are far apart.
 #[derive(Debug, Clone, Copy)]
@@ -44,6 +50,8 @@ pub(super) struct Driver {
     pub(super) recorder: Recorder,
     /// What looks at the mass matrix of robots where it may be indefinite.
     definite: Option<Definite>,
+    /// Laws that are sampled, where there are some.
+    sampler: Option<Box<Sampler>>,
     /// What the signals do.
     agenda: Agenda,
     longest_step: f64,
@@ -73,11 +81,50 @@ impl Driver {
     ) -> Result<Self, RunError> {
         let mut driver = Self::unstarted(cx, settings, stop)?;
         looked_ahead(&driver);
-        let first = driver.solver.stepper_mut().start(cx, &mut driver.recorder, &driver.agenda)?;
-        cx.system.check_definite(&driver.recorder.evaluations[0].q)?;
-        driver.recorder.open(cx, first)?;
-        driver.h = driver.aligned(first);
+        driver.start(cx)?;
+        if driver.sampler.is_some() {
+            // What the first samples say follows from the start without them, and acts at the start.
+            driver.sample(cx, 0.0)?;
+            let Self { sampler, agenda, .. } = driver;
+            driver = Self::with(cx, settings, sampler, agenda)?;
+            driver.start(cx)?;
+        }
         Ok(driver)
+    }
+
+    fn start(&mut self, cx: Context) -> Result<(), RunError> {
+        let acting = self.acting();
+        let cx = Context { sampled: &acting, ..cx };
+        self.recorder.begin_control(cx)?;
+        if let (Some(sampler), Some(control)) = (&self.sampler, &mut self.recorder.control) {
+            control.set_sides(sampler.sides());
+        }
+        let first = self.solver.stepper_mut().start(cx, &mut self.recorder, &self.agenda)?;
+        cx.system.check_definite(&self.recorder.evaluations[0].q)?;
+        self.recorder.open(cx, first)?;
+        self.h = self.aligned(first);
+        Ok(())
+    }
+
+    /// What sampled laws said last.
+    fn acting(&self) -> Arc<Held> {
+        self.sampler.as_ref().map_or_else(Arc::default, |sampler| sampler.acting().clone())
+    }
+
+    /// Takes the samples that are due at t, from what is known at the present time, which is just before.
+    fn sample(&mut self, cx: Context, t: f64) -> Result<(), RunError> {
+        let mut shown = Snapshot::new(cx.system);
+        self.read(cx, self.t, 0, &mut shown)?;
+        let Snapshot { evaluation, .. } = &shown;
+        let kinematics = Kinematics::at_velocity(&cx.system.model, &evaluation.q, &evaluation.v);
+        let read = |e: usize| [evaluation.elements[e].reading.coordinate, evaluation.elements[e].reading.rate];
+        let (system, q, v) = (cx.system, &evaluation.q[..], &evaluation.v[..]);
+        let eye = Eye { system, t, q, v, kinematics: &kinematics, element: &read };
+        if let (Some(sampler), Some(control)) = (&mut self.sampler, &mut self.recorder.control) {
+            sampler.take(&eye, &shown, control)?;
+            control.set_sides(sampler.sides());
+        }
+        Ok(())
     }
 
     /// Where a run of the same system was.
@@ -93,6 +140,7 @@ impl Driver {
     ) -> Result<Self, RunError> {
         let mut driver = Self::unstarted(cx, settings, stop)?;
         looked_ahead(&driver);
+        driver.recorder.begin_control(cx)?;
         driver.go_on(cx, state)?;
         Ok(driver)
     }
@@ -105,12 +153,20 @@ impl Driver {
             None => cx.system.agenda(settings, longest_step, stop)?,
             Some(_) => Agenda::default(),
         };
+        let sampler = Sampler::of(cx.system, solver.stepper().fixed_step());
+        Self::with(cx, settings, sampler, agenda)
+    }
+
+    fn with(cx: Context, settings: &Settings, sampler: Option<Box<Sampler>>, agenda: Agenda) -> Result<Self, RunError> {
+        let solver = Solver::new(cx, settings)?;
+        let longest_step = solver.stepper().longest_step(cx, settings);
         let mut recorder = Recorder::new(cx, settings);
         solver.stepper().set_up(&mut recorder);
         Ok(Self {
             solver,
             recorder,
             definite: Definite::of(&cx.system.model),
+            sampler,
             agenda,
             longest_step,
             t: 0.0,
@@ -179,6 +235,11 @@ impl Driver {
     pub(super) fn settle(&mut self, cx: Context) -> Result<bool, RunError> {
         self.close(cx)?;
         let Some(after) = self.crossing.take().or_else(|| self.kink_at_hand(cx)) else { return Ok(false) };
+        if self.sampler.as_ref().is_some_and(|sampler| sampler.is_due(after)) && !self.has_fixed_steps() {
+            self.sample(cx, after)?;
+        }
+        let acting = self.acting();
+        let cx = Context { sampled: &acting, ..cx };
         self.solver.stepper_mut().cross(cx, &mut self.recorder, after)?;
         self.t = after;
         // A little further, since a sign is 0 while it turns.
@@ -198,7 +259,9 @@ impl Driver {
     /// Where nothing can follow.
     pub(super) fn close(&mut self, cx: Context) -> Result<(), RunError> {
         let Some(step) = self.step.take() else { return Ok(()) };
-        self.recorder.commit();
+        let acting = self.acting();
+        let cx = Context { sampled: &acting, ..cx };
+        self.recorder.commit(cx)?;
         self.t = step.to;
         self.crossing = step.crossing();
         self.solver.stepper_mut().accept(cx, &self.recorder, &step)
@@ -232,6 +295,11 @@ impl Driver {
     /// Where no step leads on, or no more are allowed.
     pub(super) fn advance(&mut self, cx: Context, until: f64, rows: Option<RowsAhead>) -> Result<(), RunError> {
         let limit = self.recorder.settings.step_limit(self.agenda.switches());
+        if self.has_fixed_steps() && self.sampler.as_ref().is_some_and(|sampler| sampler.is_due(self.t)) {
+            self.sample(cx, self.t)?;
+        }
+        let acting = self.acting();
+        let cx = Context { sampled: &acting, ..cx };
         loop {
             if self.steps >= limit {
                 return Err(RunError::TooManySteps { t: self.t, limit: self.steps });
@@ -294,9 +362,10 @@ impl Driver {
             let size = if (to - t - step).abs() <= 1e-9 * step { step } else { to - t };
             return Target { from: t, to, size, behind: Behind::Step };
         }
-        let stop = self.agenda.next_stop(t);
+        let stop = self.next_stop(t);
         let stop_at = stop.map_or(end, |stop| stop.before.min(end));
         let reach = self.solver.stepper().reach(t, self.agenda.reach(t, self.h));
+        let reach = self.recorder.control.as_ref().map_or(reach, |control| control.reach(t, reach));
         let sparse = rows.filter(|rows| {
             self.solver.stepper().ends_on_sparse_rows() && rows.next > t && rows.next - rows.last >= reach
         });
@@ -308,6 +377,25 @@ impl Driver {
             Some(signal::Stop { after: Some(after), .. }) => Behind::Kink(after),
         };
         Target { from: t, to, size, behind }
+    }
+
+    /// Where a step from t must end: on what the signals do, and just before samples.
+    fn next_stop(&self, t: f64) -> Option<signal::Stop> {
+        let stop = self.agenda.next_stop(t);
+        let due = self.sampler.as_ref().map_or(f64::INFINITY, |sampler| sampler.next());
+        if due > self.recorder.settings.end {
+            return stop;
+        }
+        let near = ONE_STOP * due;
+        let sample = signal::Stop { before: due.next_down(), after: Some(due) };
+        match stop {
+            Some(stop) if stop.before < due - near => Some(stop),
+            Some(stop) if stop.before <= due + near => Some(signal::Stop {
+                before: stop.before.min(sample.before),
+                after: Some(stop.after.unwrap_or(stop.before).max(due)),
+            }),
+            _ => Some(sample),
+        }
     }
 
     /// Where the present step of one size ends, if nothing ends it earlier.
@@ -327,6 +415,8 @@ impl Driver {
         row: usize,
         snapshot: &mut Snapshot,
     ) -> Result<Option<f64>, RunError> {
+        let acting = self.acting();
+        let cx = Context { sampled: &acting, ..cx };
         let Some(Target { from, to, behind, .. }) = self.step else {
             self.solver.stepper_mut().complete(cx, &mut self.recorder, 0)?;
             snapshot.evaluation.clone_from(&self.recorder.evaluations[0]);
@@ -349,6 +439,7 @@ impl Driver {
         DriverState {
             system: fingerprint(cx.system, &self.recorder.settings),
             recorder: self.recorder.state(),
+            sampler: self.sampler.as_ref().map(|sampler| sampler.state()),
             solver: self.solver.save(),
             t: self.t,
             h: self.h,
@@ -364,11 +455,21 @@ impl Driver {
     /// # Errors
     /// [`RunError::OtherRun`], and the driver as it was.
     pub(super) fn go_on(&mut self, cx: Context, state: DriverState) -> Result<(), RunError> {
-        let DriverState { system, recorder, solver, t, h, crossing, tick, steps, rejected_steps } = state;
+        let DriverState { system, recorder, sampler, solver, t, h, crossing, tick, steps, rejected_steps } = state;
         let own = fingerprint(cx.system, &self.recorder.settings);
         if system != own || !self.solver.fits(&solver) || !self.recorder.go_on(recorder) {
             return Err(RunError::OtherRun);
         }
+        let samples = match (&mut self.sampler, sampler) {
+            (None, None) => true,
+            (Some(own), Some(state)) => own.go_on(state),
+            _ => false,
+        };
+        if !samples {
+            return Err(RunError::OtherRun);
+        }
+        let acting = self.acting();
+        let cx = Context { sampled: &acting, ..cx };
         self.solver.load(cx, &mut self.recorder, solver)?;
         (self.t, self.h, self.step, self.crossing) = (t, h, None, crossing);
         (self.tick, self.steps, self.rejected_steps) = (tick, steps, rejected_steps);

@@ -1,5 +1,6 @@
 //! The state of a driver, and whose it is.
 
+use super::control::SamplerState;
 use super::recorder::RecorderState;
 use super::row_times::RowTimes;
 use super::settings::Settings;
@@ -13,6 +14,7 @@ use std::fmt::{self, Write as _};
 pub(super) struct DriverState {
     pub(super) system: u64,
     pub(super) recorder: RecorderState,
+    pub(super) sampler: Option<SamplerState>,
     pub(super) solver: SolverState,
     pub(super) t: f64,
     pub(super) h: f64,

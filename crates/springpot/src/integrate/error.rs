@@ -155,6 +155,34 @@ pub enum RunError {
         /// Within this time, s.
         span: f64,
     },
+    /// The reference of a controller jumps.
+    #[error(
+        "t = {t} s: the reference of joint \"{joint}\" jumps by {jump:e}; computed torque and D^mu of an error would answer with an impulse: \
+         write one that is continuous, such as a move"
+    )]
+    ReferenceJump {
+        /// Time, s.
+        t: f64,
+        /// Joint.
+        joint: String,
+        /// Height of the jump, rad or m.
+        jump: f64,
+    },
+    /// Feedback goes to and fro between two branches without getting on.
+    #[error(
+        "t = {t} s: {what} switches again and again without getting on: {count} times within {span:.1e} s; leave a gap between where it \
+         switches on and off, write a smooth function such as tanh(s/s0) in place of sign(s), or sample it"
+    )]
+    ControlChatter {
+        /// Time, s.
+        t: f64,
+        /// What switches.
+        what: String,
+        /// How many times.
+        count: u32,
+        /// Within this time, s.
+        span: f64,
+    },
     /// Which joints hold by friction and which slide has no answer.
     #[error(
         "t = {t} s: no friction between -force and force of joint \"{joint}\" goes with the forces on it; \

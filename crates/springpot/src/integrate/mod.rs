@@ -6,6 +6,7 @@
 //! ([`fixed`]). Rows never change the accuracy. The [`Report`] tells steps, rows, the time reached, and the residual of the energy balance.
 
 mod context;
+mod control;
 mod coulomb;
 mod definite;
 mod driver;

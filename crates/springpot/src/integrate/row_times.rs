@@ -33,9 +33,7 @@ impl RowTimes {
                 if index + 1 == self.count() {
                     return *end;
                 }
-                // Where 1/step is whole, k/(1/step) is the decimal that the user means; k·step may be one bit off.
-                let per_second = (1.0 / step).round();
-                if (per_second * step - 1.0).abs() < 1e-14 { index as f64 / per_second } else { index as f64 * step }
+                multiple(index as u64, *step)
             }
             Self::Times(times) => times[index],
         }
@@ -45,6 +43,12 @@ impl RowTimes {
     pub fn all(&self) -> Vec<f64> {
         (0..self.count()).map(|k| self.at(k)).collect()
     }
+}
+
+/// k·step. Where 1/step is whole, k/(1/step) is the decimal that the user means; k·step may be one bit off.
+pub(super) fn multiple(k: u64, step: f64) -> f64 {
+    let per_second = (1.0 / step).round();
+    if (per_second * step - 1.0).abs() < 1e-14 { k as f64 / per_second } else { k as f64 * step }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Whole runs: rows and a report.
 
-use super::context::Context;
+use super::context::{Context, Held};
 use super::driver::{Driver, RowsAhead};
 use super::error::RunError;
 use super::event::{Next, Watch, WatchState};
@@ -33,7 +33,7 @@ pub fn resume(
 ) -> (Report, Result<(), RunError>) {
     let Checkpoint { driver, written, events } = checkpoint;
     let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
-    let cx = Context { system, held: &events.held };
+    let cx = Context { system, held: &events.held, sampled: Held::NONE };
     let driver = Driver::resume(cx, settings, driver, stop, looked_ahead);
     go(system, driver, rows, (written, events), stop)
 }

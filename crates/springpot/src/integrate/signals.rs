@@ -105,7 +105,9 @@ impl System {
     }
 
     fn signals(&self) -> impl Iterator<Item = &Signal> {
-        let inputs = self.elements.iter().flat_map(|element| &element.inputs);
+        let feedback = self.control.laws().flat_map(|(law, _)| law.parts_of_time());
+        let aims = self.control.controller.iter().flat_map(|controlled| controlled.reference.trajectory().signals());
+        let inputs = self.elements.iter().flat_map(|element| &element.inputs).chain(feedback).chain(aims);
         let motion = match &self.motion {
             Motion::Given(trajectory) => trajectory.signals(),
             Motion::Forward(forward) => forward.signals(),
@@ -146,7 +148,25 @@ impl System {
                 watched.push((name, Watched { slack, ..own(signal) }));
             }
         }
+        watched.extend(self.watched_control());
         watched.retain(|(_, watched): &(String, Watched<'_>)| is_function(watched.signal));
+        watched
+    }
+
+    /// What control follows at every time: parts of expressions that hang on t alone, and references.
+    fn watched_control(&self) -> Vec<(String, Watched<'_>)> {
+        let mut watched = Vec::new();
+        for (law, _) in self.control.laws().filter(|(_, sampling)| sampling.is_none()) {
+            let name = format!("the feedback \"{}\"", law.expression());
+            let parts = law.parts_of_time().iter().map(|signal| Watched { signal, is_position: false, slack: 1.0 });
+            watched.extend(parts.map(|part| (name.clone(), part)));
+        }
+        let continuous = self.control.controller.as_ref().filter(|controlled| controlled.sampling.is_none());
+        if let Some(controlled) = continuous {
+            let signals = controlled.reference.trajectory().named_signals(&self.model).into_iter();
+            let position = |signal| Watched { signal, is_position: true, slack: 1.0 };
+            watched.extend(signals.map(|(name, signal)| (format!("{name} as the reference has it"), position(signal))));
+        }
         watched
     }
 }

@@ -81,7 +81,7 @@ impl Simulation {
     }
 
     fn step_until(&mut self, until: f64) -> Result<bool, RunError> {
-        let cx = Context { system: &self.system, held: &self.held };
+        let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
         let before = self.driver.steps();
         // What changes at the start of a step is crossed first.
         while self.driver.steps() == before {
@@ -172,7 +172,7 @@ impl Simulation {
     /// As there.
     pub fn interpolate_into(&mut self, t: f64, snapshot: &mut Snapshot) -> Result<(), RunError> {
         self.check_time(t, self.t_before(), self.t())?;
-        let cx = Context { system: &self.system, held: &self.held };
+        let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
         while self.driver.is_disturbed() {
             self.driver.settle(cx)?;
         }
@@ -205,7 +205,7 @@ impl Simulation {
             return Err(RunError::NotFinite { t, what, value: torque });
         }
         let nv = model.nv();
-        if (Context { system: &self.system, held: &self.held }).torque(velocity) != torque {
+        if (Context { system: &self.system, held: &self.held, sampled: Held::NONE }).torque(velocity) != torque {
             self.disturb()?;
             self.held.torques_mut(nv)[velocity] = torque;
         }
@@ -223,7 +223,7 @@ impl Simulation {
         let t = self.t();
         let of = &self.system.elements[element];
         let mut values = vec![Default::default(); of.inputs.len()];
-        Context { system: &self.system, held: &held }.inputs_at(element, t, &mut values);
+        Context { system: &self.system, held: &held, sampled: Held::NONE }.inputs_at(element, t, &mut values);
         of.check_inputs(t, &values)?;
         if held != self.held {
             self.disturb()?;
@@ -233,7 +233,7 @@ impl Simulation {
     }
 
     fn disturb(&mut self) -> Result<(), RunError> {
-        let cx = Context { system: &self.system, held: &self.held };
+        let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
         self.driver.disturb(cx)
     }
 
@@ -242,7 +242,7 @@ impl Simulation {
     /// # Errors
     /// [`RunError::Chatter`] where nothing follows.
     pub fn state(&mut self) -> Result<SimulationState, RunError> {
-        let cx = Context { system: &self.system, held: &self.held };
+        let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
         self.driver.close(cx)?;
         Ok(SimulationState { driver: self.driver.state(cx), held: self.held.clone() })
     }
@@ -253,7 +253,7 @@ impl Simulation {
     /// [`RunError::OtherRun`] where it is of another system; nothing is changed then.
     pub fn set_state(&mut self, state: &SimulationState) -> Result<(), RunError> {
         let SimulationState { driver, held } = state.clone();
-        self.driver.go_on(Context { system: &self.system, held: &held }, driver)?;
+        self.driver.go_on(Context { system: &self.system, held: &held, sampled: Held::NONE }, driver)?;
         self.held = held;
         self.sample = 0;
         Ok(())

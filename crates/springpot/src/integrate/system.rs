@@ -1,7 +1,8 @@
 //! What is simulated: a robot with its elements and what moves it.
 
 use super::event::Event;
-use crate::actuation::Forward;
+use crate::actuation::{Drive, Forward};
+use crate::control::Control;
 use crate::elements::Element;
 use crate::model::{Model, Site};
 use crate::motion::Trajectory;
@@ -29,6 +30,8 @@ pub struct System {
     /// What is watched in forward runs, in the order in which it is done where several happen at one time. [`super::run`] watches, a
     /// [`super::Simulation`] leaves that to its owner.
     pub events: Vec<Event>,
+    /// What follows from the state in forward runs.
+    pub control: Arc<Control>,
 }
 
 /// Whether motion or forces are given.
@@ -72,6 +75,7 @@ impl System {
             tells_joint_losses: false,
             tells_leaves: false,
             events: Vec::new(),
+            control: Arc::default(),
         }
     }
 
@@ -79,12 +83,20 @@ impl System {
     pub fn observables(&self) -> Observables {
         let mut observables = Observables::new(&self.model, self.materials());
         if self.gripper.is_some() {
-            observables = observables.with_gripper(self.motion.has_path());
+            let aims = self.motion.has_path() || self.control.controller.is_some();
+            observables = observables.with_gripper(aims);
         }
         if self.tells_joint_losses {
             observables = observables.with_joint_losses();
         }
         if self.tells_leaves { observables.with_leaves() } else { observables }
+    }
+
+    /// The velocities that forces drive; none where the motion is given in advance.
+    pub(super) fn driven_velocities(&self) -> Vec<usize> {
+        let Motion::Forward(forward) = &self.motion else { return Vec::new() };
+        let drives = self.model.own_joints().zip(&forward.drives);
+        drives.filter(|(_, drive)| matches!(drive, Drive::Force(_))).flat_map(|(j, _)| self.model.v_range(j)).collect()
     }
 
     /// Whether somebody asks for the leaves of the elements' laws.

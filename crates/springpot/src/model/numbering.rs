@@ -16,6 +16,7 @@ pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), 
     for (kind, leader) in model.kinds.iter().zip(&leaders) {
         own.push((model.nq, model.nv));
         if leader.is_none() {
+            model.places.extend((0..kind.nv()).map(|_| (kind.nv() == 1).then_some(model.nq)));
             model.nq += kind.nq();
             model.nv += kind.nv();
         }

@@ -26,6 +26,8 @@ pub struct Model {
     pub(super) motions: Vec<JointMotion>,
     pub(super) kinds: Vec<JointKind>,
     pub(super) coordinates: Vec<Coordinates>,
+    /// The coordinate that each velocity moves; none for those of joints of several degrees.
+    pub(super) places: Vec<Option<usize>>,
     pub(super) followed: Vec<Option<usize>>,
     pub(super) limits: Vec<Limits>,
     pub(super) parents: Vec<usize>,
@@ -65,6 +67,7 @@ impl Model {
             motions: Vec::new(),
             kinds: Vec::new(),
             coordinates: Vec::new(),
+            places: Vec::new(),
             followed: Vec::new(),
             limits: Vec::new(),
             parents: Vec::new(),
@@ -108,6 +111,12 @@ impl Model {
     #[inline]
     pub fn nv(&self) -> usize {
         self.nv
+    }
+
+    /// The coordinate whose time derivative velocity `k` is; `None` for a joint of several degrees.
+    #[inline]
+    pub fn coordinate_of(&self, k: usize) -> Option<usize> {
+        self.places[k]
     }
 
     /// Number of moving joints, those that follow another one included; joint j moves link j + 1.

@@ -13,6 +13,7 @@
 //! can be held is at rest at its end, and stays there to the bit. Which of several joints hold is found anew in every iteration.
 
 mod between;
+mod control;
 mod element_step;
 mod elements;
 mod real_time;

@@ -1,5 +1,6 @@
 //! A robot with its elements in a controller's loop.
 
+use super::control::LoopControl;
 use super::step::OneStage;
 use crate::dynamics::{kinetic_energy, potential_energy};
 use crate::elements::{ElementBank, MemoryRange};
@@ -8,6 +9,7 @@ use crate::integrate::context::{Context, Held};
 use crate::integrate::definite::Definite;
 use crate::integrate::error::RunError;
 use crate::integrate::fixed_step::Method;
+use crate::integrate::row_times::multiple;
 use crate::integrate::system::{Motion, System};
 use crate::law::{Course, Point};
 
@@ -44,8 +46,8 @@ pub enum LoopError {
 ///
 /// [`Loop::advance`] does not allocate (unless it fails), and its work is the same in every step: a fixed number of Newton
 /// iterations and a constant number of exponentials; where friction sticks, a few pivots in every iteration. Signals of the motion (actuator forces, prescribed joints) and inputs of
-/// the elements act as the [`System`] says, at the stage of the method; the controller's torques come on top. Kinks of signals and
-/// break points are stepped over.
+/// the elements act as the [`System`] says, at the stage of the method; the torques that are handed over come on top. What controls the system acts
+/// at its samples, or where it has none at the start of every step, and holds in between. Kinks of signals and break points are stepped over.
 ///
 /// ```
 /// use springpot::law::Catalog;
@@ -84,6 +86,7 @@ pub struct Loop<'a> {
     held: Held,
     stage: OneStage,
     bank: ElementBank,
+    control: Option<LoopControl>,
     definite: Option<Definite>,
     step: f64,
     steps: u64,
@@ -101,8 +104,10 @@ impl<'a> Loop<'a> {
         let Motion::Forward(forward) = &system.motion else { return Err(LoopError::MotionGiven) };
         let mut held = Held::default();
         held.torques_mut(system.model.nv());
-        let cx = Context { system, held: &held };
-        let mut stage = OneStage::new(cx, forward, method)?;
+        let mut stage = OneStage::new(Context { system, held: &held, sampled: Held::NONE }, forward, method)?;
+        let mut control = LoopControl::of(system, step, &stage, memory)?;
+        let first = control.as_mut().map(|control| control.first(system, &stage)).transpose()?;
+        let cx = Context { system, held: &held, sampled: first.as_deref().unwrap_or(Held::NONE) };
         system.check_definite(&stage.origin.q)?;
         let laws = system.elements.iter().map(|element| element.law.clone()).collect();
         let mut bank = ElementBank::new(laws, method.nodes(), Form::Strokes);
@@ -123,8 +128,8 @@ impl<'a> Loop<'a> {
             begun.map_err(RunError::of_kernel(&element.name))?;
         }
         // Here and not in the first step, so that none allocates.
-        stage.begin_elements(cx, &mut bank, step, stage.stage_time(time(1, step), step))?;
-        Ok(Self { system, held, stage, bank, definite: Definite::of(&system.model), step, steps: 0 })
+        stage.begin_elements(cx, &mut bank, step, stage.stage_time(multiple(1, step), step))?;
+        Ok(Self { system, held, stage, bank, control, definite: Definite::of(&system.model), step, steps: 0 })
     }
 
     /// Goes one step on. `torque` holds an actuator force for each velocity (nv), N·m or N, held over the step; those of prescribed and
@@ -135,14 +140,21 @@ impl<'a> Loop<'a> {
     /// accepted inertia leaves the mass matrix indefinite, or the step is too long for a finite motion. The robot then stays where it was and may be advanced with another torque. Panics where
     /// `torque` is too short.
     pub fn advance(&mut self, torque: &[f64]) -> Result<(), RunError> {
-        let to = time(self.steps + 1, self.step);
+        let to = multiple(self.steps + 1, self.step);
         let nv = self.system.model.nv();
         self.held.torques_mut(nv).copy_from_slice(&torque[..nv]);
-        let cx = Context { system: self.system, held: &self.held };
+        if let Some(control) = &mut self.control {
+            control.take(self.system, &self.stage, &self.bank)?;
+        }
+        let sampled = self.control.as_ref().map_or(Held::NONE, LoopControl::acting);
+        let cx = Context { system: self.system, held: &self.held, sampled };
         self.stage.attempt(cx, &mut self.bank, to, self.step)?;
         if let Some(definite) = &mut self.definite {
             let (origin, end) = (&self.stage.origin, &self.stage.end);
             definite.check_way(&self.system.model, [origin.t, to], [&origin.q, &end.q])?;
+        }
+        if let Some(control) = &mut self.control {
+            control.commit(self.system, &self.stage)?;
         }
         self.bank.commit();
         self.stage.accept();
@@ -239,10 +251,4 @@ impl<'a> Loop<'a> {
     pub fn step(&self) -> f64 {
         self.step
     }
-}
-
-/// k·step, as the decimal that is meant where 1/step is whole.
-fn time(k: u64, step: f64) -> f64 {
-    let per_second = (1.0 / step).round();
-    if (per_second * step - 1.0).abs() < 1e-14 { k as f64 / per_second } else { k as f64 * step }
 }

@@ -42,11 +42,12 @@ impl Radau {
     ) -> Result<Result<f64, f64>, RunError> {
         let Target { from: t, size: h, .. } = *target;
         self.step.energy = recorder.turned_over();
-        let outcome = self.step.attempt(cx, &mut recorder.bank, h, target.end_inputs())?;
+        let outcome =
+            self.step.attempt(cx, &mut recorder.bank, recorder.control.as_deref_mut(), h, target.end_inputs())?;
         let (mut error, mut worst, iterations) = match outcome {
             Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
             Outcome::Converged { iterations } => {
-                let (error, worst) = self.step.estimate(&recorder.bank, h);
+                let (error, worst) = self.step.estimate(&recorder.bank, recorder.control.as_deref(), h);
                 (error, Worst::Velocity(worst), iterations)
             }
         };

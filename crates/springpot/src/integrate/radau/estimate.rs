@@ -4,6 +4,7 @@ use super::step::RadauStep;
 use crate::collocation::radau::{ESTIMATE, GAMMA, LEFT, RIGHT};
 use crate::collocation::{MAX_NODES, STAGES};
 use crate::elements::ElementBank;
+use crate::integrate::control::ControlRun;
 
 impl RadauStep {
     /// Accelerations without what a singular start adds: a_i − s σ_i with s σ = −M⁻¹ Σ g F_singular.
@@ -27,7 +28,7 @@ impl RadauStep {
 
     /// The estimate, filtered by the linearised equations of motion: rms in units of the tolerance, and the velocity with the
     /// largest share of it.
-    pub(super) fn estimate(&mut self, bank: &ElementBank, h: f64) -> (f64, usize) {
+    pub(super) fn estimate(&mut self, bank: &ElementBank, control: Option<&ControlRun>, h: f64) -> (f64, usize) {
         let (n, count) = (self.model.nv(), self.free.len());
         if count == 0 {
             return (0.0, 0);
@@ -49,16 +50,32 @@ impl RadauStep {
         let (free, slopes) = (&self.free, &self.slopes);
         scratch.stiffness.clear();
         scratch.stiffness.extend((0..count * count).map(|k| slopes.d_q[free[k / count] * n + free[k % count]]));
+        let along = |m: &[[f64; MAX_NODES]; MAX_NODES]| -> f64 {
+            (0..3).map(|i| LEFT[i] * (0..3).map(|j| m[i][j] * RIGHT[j]).sum::<f64>()).sum()
+        };
+        let counts = |k: usize| !control.is_some_and(|control| control.takes_off_elements(k));
         for (e, element) in self.elements.iter().enumerate() {
             let response = bank.response(e);
-            let along = |m: &[[f64; MAX_NODES]; MAX_NODES]| -> f64 {
-                (0..3).map(|i| LEFT[i] * (0..3).map(|j| m[i][j] * RIGHT[j]).sum::<f64>()).sum()
-            };
             let k = along(&response.d_stroke) + along(&response.d_rate) / step;
             let g = &element.gradient;
-            for r in 0..count {
+            for r in (0..count).filter(|r| counts(free[*r])) {
                 for c in 0..count {
                     scratch.stiffness[r * count + c] += k * g[free[r]] * g[free[c]];
+                }
+            }
+        }
+        for (k, response) in control.into_iter().flat_map(ControlRun::responses) {
+            if let Some(r) = free.iter().position(|free| *free == k) {
+                let k = along(&response.d_stroke) + along(&response.d_rate) / step;
+                scratch.stiffness[r * count + r] += k;
+            }
+        }
+        for input in control.map_or(&[][..], ControlRun::inputs) {
+            let ([by_q, by_v], k) = (&input.by_state, along(&input.force));
+            let g = &self.elements[input.element].gradient;
+            for r in (0..count).filter(|r| counts(free[*r])) {
+                for c in 0..count {
+                    scratch.stiffness[r * count + c] += k * g[free[r]] * (by_q[free[c]] + by_v[free[c]] / step);
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! What may happen to a joint or to an element within a step, and what becomes of the step.
 
+use crate::integrate::control::Guard;
 use crate::integrate::kinks::Kink;
 use crate::integrate::stepper::Target;
 
@@ -14,6 +15,8 @@ pub(super) enum Change {
     Reversal,
     /// The force of an element has a kink.
     Kink(Kink),
+    /// Control leaves the branch that it is on.
+    Control(Guard),
 }
 
 /// What is seen of a step.

@@ -88,7 +88,10 @@ impl Radau {
         let (t, bank) = (self.step.origin.t, &mut recorder.bank);
         bank.start(t, 0.0);
         self.step.take_inputs(cx, bank, 0.0, t)?;
-        self.step.linearise(cx, bank)?;
+        self.step.linearise(cx, bank, recorder.control.as_deref_mut())?;
+        if let Some(control) = &recorder.control {
+            control.write_inputs(cx, 0, bank);
+        }
         self.step.sizes.take(&self.step.model, t, &self.step.origin.q, &self.step.origin.v);
         self.step.expect(cx, bank, 1.0 / recorder.settings.end);
         Ok(())
@@ -119,7 +122,8 @@ impl Stepper for Radau {
     fn start(&mut self, cx: Context, recorder: &mut Recorder, agenda: &Agenda) -> Result<f64, RunError> {
         let settings = recorder.settings.clone();
         let forward = self.step.forward.clone();
-        let (origin, elements) = start::origin(cx, &forward, &mut self.step.stick)?;
+        let control = recorder.control.as_deref_mut();
+        let (origin, elements) = start::origin(cx, &forward, &mut self.step.stick, control)?;
         self.step.free = self.step.stick.free();
         let [evaluation, ..] = &mut recorder.evaluations;
         evaluation.q.copy_from_slice(&origin.q);
@@ -127,7 +131,11 @@ impl Stepper for Radau {
         evaluation.a.copy_from_slice(&origin.a);
         drive(cx, &forward, 0.0, evaluation);
         cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
+        recorder.take_inputs_at_start(cx);
         recorder.begin(cx)?;
+        if let (Some(control), [evaluation, ..]) = (&recorder.control, &mut recorder.evaluations) {
+            control.add_torques(cx, 0, evaluation);
+        }
         self.step.origin = origin;
         self.step.is_singular = recorder.bank.has_singular();
         if self.step.is_singular {
@@ -151,12 +159,14 @@ impl Stepper for Radau {
             Settled::Shorter(size) => return Ok(Trial::Rejected { size }),
             Settled::AtStart => {
                 self.stop_sliding(recorder.settings.end)?;
+                recorder.change_branches(false)?;
                 return Ok(Trial::Changes);
             }
             Settled::At(step) => step,
         };
         let jumps = self.is_at_kink && self.kinks.may_jump();
-        let changes = (self.step.stick.changes() || jumps) && step.behind == Behind::Step;
+        let switches = recorder.control.as_ref().is_some_and(|control| control.changes());
+        let changes = (self.step.stick.changes() || jumps || switches) && step.behind == Behind::Step;
         let behind = if changes { Behind::Change } else { step.behind };
         Ok(Trial::Accepted { step: Target { behind, ..step }, next: target.size * factor })
     }
@@ -204,6 +214,13 @@ impl System {
             Drive::Prescribed(_) => true,
             Drive::Locked => false,
         });
-        drives || self.elements.iter().flat_map(|e| &e.inputs).any(|signal| signal.is_constant().is_none())
+        let feedback = self.control.laws().any(|(law, _)| !law.parts_of_time().is_empty());
+        let aims = self.control.controller.as_ref().is_some_and(|controlled| {
+            controlled.reference.trajectory().signals().iter().any(|signal| signal.is_constant().is_none())
+        });
+        drives
+            || feedback
+            || aims
+            || self.elements.iter().flat_map(|e| &e.inputs).any(|signal| signal.is_constant().is_none())
     }
 }

@@ -5,8 +5,10 @@ use crate::collocation::radau::{A, A_SQUARED};
 use crate::collocation::{MAX_NODES, STAGES};
 use crate::elements::{ElementBank, Pull};
 use crate::integrate::context::Context;
+use crate::integrate::control::ControlRun;
 use crate::integrate::error::RunError;
 use crate::integrate::resistance::add_smooth_resistance;
+use crate::law::Response;
 
 /// Newton iterations after which a step is given up.
 const MOST_ITERATIONS: u32 = 10;
@@ -26,34 +28,42 @@ impl RadauStep {
         &mut self,
         cx: Context,
         bank: &mut ElementBank,
+        mut control: Option<&mut ControlRun>,
         h: f64,
         t_end: f64,
     ) -> Result<Outcome, RunError> {
         bank.start(self.origin.t, h);
         self.take_inputs(cx, bank, h, t_end)?;
-        self.linearise(cx, bank)?;
+        self.linearise(cx, bank, control.as_deref_mut())?;
+        if let Some(control) = control.as_deref_mut() {
+            control.start(cx, self.origin.t, h, t_end)?;
+            control.write_inputs(cx, 0, bank);
+        }
         self.choose_forms(cx, bank, h);
         bank.prepare();
         self.predict(h);
         self.take_drives(cx, h, t_end)?;
-        self.allow(cx, bank, h);
+        self.allow(cx, bank, control.as_deref(), h);
         let count = self.free.len();
         let (mut before, mut iterations) = (f64::INFINITY, 0);
         let mut worst = self.free.first().copied().unwrap_or(0);
-        if !self.place_stages(cx, bank, h) {
+        if !self.place_stages(cx, bank, control.as_deref_mut(), h) {
             return Ok(Outcome::Diverged { iterations, worst });
         }
-        respond(bank);
+        respond(bank, control.as_deref_mut());
         if count == 0 {
             self.collect_regular(bank);
             return Ok(Outcome::Converged { iterations });
         }
-        if !self.factor(bank, h) {
+        if let Some(control) = control.as_deref_mut() {
+            control.take_input_forces(bank);
+        }
+        if !self.factor(bank, control.as_deref(), h) {
             return Ok(Outcome::Diverged { iterations, worst });
         }
         loop {
             iterations += 1;
-            self.fill_residual(cx, bank);
+            self.fill_residual(cx, bank, control.as_deref());
             if let Some(k) = self.residual.iter().position(|r| !r.is_finite()) {
                 return Ok(Outcome::Diverged { iterations, worst: self.free[k % count] });
             }
@@ -64,13 +74,13 @@ impl RadauStep {
                 }
             }
             if iterations == 1 && self.allowed.iter().any(|[speed, _]| *speed <= f64::MIN_POSITIVE) {
-                self.allow(cx, bank, h);
+                self.allow(cx, bank, control.as_deref(), h);
             }
             let size;
             (size, worst) = self.velocity_change(h);
-            let placed = size.is_finite() && self.place_stages(cx, bank, h);
+            let placed = size.is_finite() && self.place_stages(cx, bank, control.as_deref_mut(), h);
             if placed {
-                respond(bank);
+                respond(bank, control.as_deref_mut());
             }
             if iterations > 1 {
                 self.contraction = size / before;
@@ -93,7 +103,7 @@ impl RadauStep {
     }
 
     /// RNEA(q_i, v_i, a_i) + resistance − drive, node by node, of the free velocities.
-    fn fill_residual(&mut self, cx: Context, bank: &ElementBank) {
+    fn fill_residual(&mut self, cx: Context, bank: &ElementBank, control: Option<&ControlRun>) {
         self.residual.clear();
         for i in 0..STAGES {
             self.forces.clear();
@@ -107,14 +117,24 @@ impl RadauStep {
             self.stick.add_sliding(&mut self.tau);
             let forces = self.free.iter().zip(&self.drives[i]);
             self.residual.extend(forces.map(|(&k, drive)| self.tau[k] - drive));
+            if let Some(control) = control {
+                let residual = &mut self.residual[i * self.free.len()..];
+                for (residual, &k) in residual.iter_mut().zip(&self.free).filter(|(_, k)| !cx.holds_force(**k)) {
+                    *residual -= control.torque(i + 1)[k];
+                }
+            }
         }
     }
 
     /// I⊗M + hA⊗D + h²A²⊗K + Σ (h² G A² + h P A)⊗ggᵀ over the free velocities.
-    fn factor(&mut self, bank: &ElementBank, h: f64) -> bool {
+    fn factor(&mut self, bank: &ElementBank, control: Option<&ControlRun>, h: f64) -> bool {
         let (n, count, free) = (self.model.nv(), self.free.len(), &self.free);
         let (slopes, elements) = (&self.slopes, &self.elements);
         let size = STAGES * count;
+        let takes_off: Vec<bool> =
+            free.iter().map(|&k| control.is_some_and(|control| control.takes_off_elements(k))).collect();
+        let terms: Vec<(usize, Response)> = control.into_iter().flat_map(ControlRun::responses).collect();
+        let inputs = control.map_or(&[][..], ControlRun::inputs);
         let product = |x: &[[f64; MAX_NODES]; MAX_NODES], y: &[[f64; STAGES]; STAGES], i: usize, j: usize| -> f64 {
             (0..STAGES).map(|m| x[i][m] * y[m][j]).sum()
         };
@@ -137,10 +157,29 @@ impl RadauStep {
                         let factor = h * h * product(&response.d_stroke, &A_SQUARED, i, j)
                             + h * product(&response.d_rate, &A, i, j);
                         let g = &element.gradient;
-                        for (r, &row) in free.iter().enumerate() {
+                        for (r, &row) in free.iter().enumerate().filter(|(r, _)| !takes_off[*r]) {
                             let line = &mut matrix[(i * count + r) * size + j * count..][..count];
                             for (entry, &column) in line.iter_mut().zip(free) {
                                 *entry += factor * g[row] * g[column];
+                            }
+                        }
+                    }
+                    for (k, response) in &terms {
+                        let factor = h * h * product(&response.d_stroke, &A_SQUARED, i, j)
+                            + h * product(&response.d_rate, &A, i, j);
+                        if let Some(r) = free.iter().position(|free| free == k) {
+                            matrix[(i * count + r) * size + j * count + r] += factor;
+                        }
+                    }
+                    for input in inputs {
+                        let [by_q, by_v] = &input.by_state;
+                        let stroke = h * h * product(&input.force, &A_SQUARED, i, j);
+                        let rate = h * product(&input.force, &A, i, j);
+                        let g = &elements[input.element].gradient;
+                        for (r, &row) in free.iter().enumerate().filter(|(r, _)| !takes_off[*r]) {
+                            let line = &mut matrix[(i * count + r) * size + j * count..][..count];
+                            for (entry, &column) in line.iter_mut().zip(free) {
+                                *entry += g[row] * (stroke * by_q[column] + rate * by_v[column]);
                             }
                         }
                     }
@@ -177,7 +216,10 @@ impl RadauStep {
     }
 }
 
-/// The laws' answers to the stages.
-fn respond(bank: &mut ElementBank) {
+/// The laws' answers to the stages, and those of what controls the robot.
+fn respond(bank: &mut ElementBank, control: Option<&mut ControlRun>) {
     (0..bank.len()).for_each(|e| bank.evaluate_element(e));
+    if let Some(control) = control {
+        control.answer(bank);
+    }
 }

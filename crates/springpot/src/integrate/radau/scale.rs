@@ -3,13 +3,17 @@
 use super::step::RadauStep;
 use crate::elements::ElementBank;
 use crate::integrate::context::Context;
+use crate::integrate::control::ControlRun;
 
 /// Share of the speed that all the energy turned over would give a joint alone: slower joints are not looked at more closely.
 const ENERGY_FLOOR: f64 = 1e-6;
 
+/// How much more rounding there is where laws of control hold a robot: their inverse dynamics round otherwise than those of the step.
+const HELD: f64 = 16.0;
+
 impl RadauStep {
     /// What the errors of velocities and coordinates may be in a step of size `h`, in the order of the free velocities.
-    pub(super) fn allow(&mut self, cx: Context, bank: &ElementBank, h: f64) {
+    pub(super) fn allow(&mut self, cx: Context, bank: &ElementBank, control: Option<&ControlRun>, h: f64) {
         // What a stroke's rounding does to each force; from nothing that a run that goes on does not know.
         self.rounded.clear();
         for (e, element) in cx.system.elements.iter().enumerate() {
@@ -22,7 +26,9 @@ impl RadauStep {
         for (r, &k) in self.free.iter().enumerate() {
             let mass = self.slopes.d_a[k * n + k];
             let of_energy = if mass > 0.0 { ENERGY_FLOOR * (2.0 * self.energy / mass).sqrt() } else { 0.0 };
-            let speed = sizes.speed(k, until).max(self.origin.v[k].abs()).max(of_energy);
+            // Memories of errors begin as steeply as no step resolves: they are measured by what is still missing.
+            let [missing, slip] = control.map_or([0.0; 2], |control| control.missing(k, mass));
+            let speed = sizes.speed(k, until).max(self.origin.v[k].abs()).max(of_energy).max(slip);
             // A joint that no force moved yet is measured by what this very step does.
             let own = || self.stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
             let speed = if speed > 0.0 { speed } else { own() };
@@ -33,12 +39,20 @@ impl RadauStep {
             });
             let square = stops.sum::<f64>() / mass;
             let taken_up = if square > 0.0 { speed / square.sqrt() } else { f64::INFINITY };
-            let travel = sizes.travel(k, until).min(taken_up).max(h * speed);
+            let travel = sizes.travel(k, until).min(taken_up).max(h * speed).max(missing);
             // Strokes are differences of lengths: what they lose to rounding pushes the joints, and so does that of the drives.
             let strokes: f64 = self.elements.iter().zip(&self.rounded).map(|(e, s)| e.gradient[k].abs() * s).sum();
             let drives = self.drives.iter().fold(0.0, |largest: f64, drives| largest.max(drives[r].abs()));
-            let noise = if mass > 0.0 { h * (strokes + 4.0 * f64::EPSILON * drives) / mass } else { 0.0 };
-            let place = self.coordinates[k].map_or(1.0, |c| self.origin.q[c]);
+            // What rounds where a large force is held against another reaches the joints that are coupled to it.
+            let held = |own: &usize| {
+                let share = (self.slopes.d_a[k * n + own] / self.slopes.d_a[own * n + own]).abs();
+                let largest = control.map_or(0.0, |control| control.largest(*own));
+                if share.is_finite() { share * largest } else { 0.0 }
+            };
+            let drives = self.free.iter().map(held).fold(drives, f64::max);
+            let rounding = if control.is_some() { HELD } else { 1.0 } * 4.0 * f64::EPSILON * drives;
+            let noise = if mass > 0.0 { h * (strokes + rounding) / mass } else { 0.0 };
+            let place = self.model.coordinate_of(k).map_or(1.0, |c| self.origin.q[c]);
             let rounding = 4.0 * f64::EPSILON * place.abs();
             self.allowed.push([
                 (tolerance.of(speed) + noise).max(f64::MIN_POSITIVE),

@@ -18,7 +18,8 @@ impl Radau {
     /// The step is solved anew to where its own interpolation sees the change, until the change is at its end to a thousandth
     /// of the tolerance.
     pub(super) fn settle(&mut self, cx: Context, recorder: &mut Recorder, solved: Target) -> Result<Settled, RunError> {
-        if self.step.stick.is_idle() && self.kinks.is_idle() {
+        let is_smooth = recorder.control.as_ref().is_none_or(|control| control.is_smooth());
+        if self.step.stick.is_idle() && self.kinks.is_idle() && is_smooth {
             return Ok(Settled::At(solved));
         }
         let mut step = solved;
@@ -38,19 +39,19 @@ impl Radau {
                     end + 0.001 * size * at_end / (before - at_end)
                 }
                 (Look::Within(0.0, change), _) => {
-                    self.note(change);
+                    self.note(recorder, change);
                     return Ok(Settled::AtStart);
                 }
                 (Look::Within(theta, change), _) => {
                     (high, wanted) = (end, Some(change));
-                    from_behind += u32::from(matches!(change, Change::Kink(_)));
+                    from_behind += u32::from(matches!(change, Change::Kink(_) | Change::Control(_)));
                     // Where the time is too short to tell, a few bits on.
                     (t + theta * size).max(t + 4.0 * f64::EPSILON * t)
                 }
             };
             let Some(change) = wanted else { return Ok(Settled::At(step)) };
             if high - low <= 4.0 * f64::EPSILON * high {
-                self.note(change);
+                self.note(recorder, change);
                 return Ok(Settled::At(step));
             }
             // Behind a kink a guard may hardly move, and tells little of where it is.
@@ -64,7 +65,7 @@ impl Radau {
     }
 
     /// Notes a change that is here, whatever its value says.
-    fn note(&mut self, change: Change) {
+    fn note(&mut self, recorder: &mut Recorder, change: Change) {
         let stick = &mut self.step.stick;
         match change {
             Change::Stop { k, .. } => {
@@ -74,6 +75,11 @@ impl Radau {
             Change::BreakAway { .. } => stick.breaks_away = true,
             Change::Reversal => {}
             Change::Kink(_) => self.is_at_kink = true,
+            Change::Control(guard) => {
+                if let Some(control) = &mut recorder.control {
+                    control.note(guard);
+                }
+            }
         }
     }
 

@@ -1,13 +1,14 @@
 //! The stages of a step: where they are, what drives them, and the linearisation at its start.
 
 use super::drives::{force_at, take_path};
-use super::step::{RadauStep, may_yield};
+use super::step::{Origin, RadauStep, Stage, may_yield};
 use crate::actuation::Drive;
 use crate::collocation::radau::{A_SQUARED, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES};
 use crate::elements::{ElementBank, Pull};
 use crate::fractional::Form;
 use crate::integrate::context::Context;
+use crate::integrate::control::{ControlRun, Eye};
 use crate::integrate::error::RunError;
 use crate::integrate::resistance::add_tangents;
 
@@ -19,7 +20,12 @@ const MOST_TURNS: usize = 30;
 
 impl RadauStep {
     /// Mass, damping and stiffness at the start of the step, and the elements there.
-    pub(super) fn linearise(&mut self, cx: Context, bank: &mut ElementBank) -> Result<(), RunError> {
+    pub(super) fn linearise(
+        &mut self,
+        cx: Context,
+        bank: &mut ElementBank,
+        control: Option<&mut ControlRun>,
+    ) -> Result<(), RunError> {
         if self.linearised {
             return Ok(());
         }
@@ -39,6 +45,16 @@ impl RadauStep {
             element.check_direction(t, reading)?;
             bank.set_stroke(e, 0, element.stroke(reading.coordinate), reading.rate);
             bank.set_resolution(e, element.resolution(reading.coordinate));
+        }
+        if let Some(control) = control {
+            let read = |e: usize| {
+                let [reading, ..] = &self.elements[e].readings;
+                [reading.coordinate, reading.rate]
+            };
+            let Origin { q, v, .. } = &self.origin;
+            let eye = Eye { system: cx.system, t, q, v, kinematics: &self.start, element: &read };
+            control.see_start(&eye)?;
+            control.linearise(&eye, &mut self.slopes);
         }
         if self.is_singular || self.may_yield {
             self.share_forces();
@@ -159,7 +175,13 @@ impl RadauStep {
 
     /// Positions and velocities of the stages from their accelerations, and the elements there; `false` where a floating joint
     /// turns too far in the step.
-    pub(super) fn place_stages(&mut self, cx: Context, bank: &mut ElementBank, h: f64) -> bool {
+    pub(super) fn place_stages(
+        &mut self,
+        cx: Context,
+        bank: &mut ElementBank,
+        mut control: Option<&mut ControlRun>,
+        h: f64,
+    ) -> bool {
         for i in 0..STAGES {
             for &k in &self.free {
                 let push = self.collocate(i, |stage| stage.a[k]);
@@ -181,6 +203,18 @@ impl RadauStep {
                 let reading = &mut step.readings[i + 1];
                 element.measure.read_into(&self.model, &stage.kinematics, &mut self.tau, reading);
                 bank.set_stroke(e, i + 1, element.stroke(reading.coordinate), reading.rate);
+                if let Some(control) = control.as_deref_mut() {
+                    control.keep_gradient(i + 1, e, &self.tau);
+                }
+            }
+            if let Some(control) = control.as_deref_mut() {
+                let read = |e: usize| {
+                    let reading = &self.elements[e].readings[i + 1];
+                    [reading.coordinate, reading.rate]
+                };
+                let (system, Stage { q, v, kinematics, .. }) = (cx.system, &*stage);
+                control.see(i + 1, &Eye { system, t: control.time(i + 1), q, v, kinematics, element: &read });
+                control.write_inputs(cx, i + 1, bank);
             }
         }
         true
@@ -195,7 +229,7 @@ impl RadauStep {
         }
         if self.model.is_one_degree() {
             for &k in &self.free {
-                let index = self.coordinates[k].expect("a joint of one degree");
+                let index = self.model.coordinate_of(k).expect("a joint of one degree");
                 stage.q[index] = self.origin.q[index] + stage.xi[k];
             }
             return;

@@ -9,10 +9,11 @@ use crate::actuation::{Drive, Forward};
 use crate::dynamics::{Kinematics, crba};
 use crate::elements::{ElementBank, Forces, Pull};
 use crate::integrate::context::Context;
+use crate::integrate::control::{ControlRun, Eye};
 use crate::integrate::error::RunError;
 use crate::integrate::jump::refuse_jumps;
 use crate::integrate::resistance::add_smooth_resistance;
-use crate::law::{Derivative, Point, State, Term};
+use crate::law::{Derivative, InputValue, Point, State, Term};
 use crate::linalg::Lu;
 
 /// When the force of a singular start is looked at, s.
@@ -31,6 +32,7 @@ pub(super) fn origin(
     cx: Context,
     forward: &Forward,
     stick: &mut Stick,
+    mut control: Option<&mut ControlRun>,
 ) -> Result<(Origin, Vec<ElementStart>), RunError> {
     let (system, model) = (cx.system, &cx.system.model);
     let mut origin = Origin::new(system, forward);
@@ -39,7 +41,7 @@ pub(super) fn origin(
             origin.v[model.v_range(j)].fill(0.0);
         }
     }
-    decide(cx, forward, stick, &mut origin, |e, point, coordinate| {
+    decide(cx, forward, stick, &mut origin, control.as_deref_mut(), |e, point, coordinate| {
         let (element, law) = (&system.elements[e], begin(cx, e, point, coordinate)?);
         let mut force = element.law.now(point, &law).regular;
         // Infinite at t = 0: as it is soon after.
@@ -47,7 +49,7 @@ pub(super) fn origin(
         element.law.for_each_singularity(point.inputs, &law, &mut add);
         Ok(force)
     })?;
-    let elements = accelerate(cx, forward, stick, &mut origin, |e, point, coordinate| {
+    let elements = accelerate(cx, forward, stick, &mut origin, control, |e, point, coordinate| {
         Ok(system.elements[e].law.now(point, &begin(cx, e, point, coordinate)?).regular)
     })?;
     Ok((origin, elements))
@@ -70,13 +72,14 @@ pub(super) fn decide(
     forward: &Forward,
     stick: &mut Stick,
     origin: &mut Origin,
+    control: Option<&mut ControlRun>,
     force: impl Fn(usize, &Point, f64) -> Result<f64, RunError>,
 ) -> Result<(), RunError> {
     if stick.rubbing().next().is_none() {
         return Ok(());
     }
     let model = &cx.system.model;
-    let Balance { kinematics, elements, residual, drives, .. } = balance(cx, forward, origin, force)?;
+    let Balance { kinematics, elements, residual, drives, .. } = balance(cx, forward, origin, control, force)?;
     let sizes: Vec<f64> = (0..model.nv())
         .map(|k| {
             let pull = elements.iter().zip(&origin.forces).map(|(element, force)| (element.gradient[k] * force).abs());
@@ -94,9 +97,10 @@ pub(super) fn accelerate(
     forward: &Forward,
     stick: &Stick,
     origin: &mut Origin,
+    control: Option<&mut ControlRun>,
     force: impl Fn(usize, &Point, f64) -> Result<f64, RunError>,
 ) -> Result<Vec<ElementStart>, RunError> {
-    let Balance { kinematics, elements, mut residual, .. } = balance(cx, forward, origin, force)?;
+    let Balance { kinematics, elements, mut residual, .. } = balance(cx, forward, origin, control, force)?;
     stick.add_sliding(&mut residual);
     let free = stick.free();
     let mut change: Vec<f64> = free.iter().map(|&k| -residual[k]).collect();
@@ -122,6 +126,7 @@ fn balance(
     cx: Context,
     forward: &Forward,
     origin: &mut Origin,
+    mut control: Option<&mut ControlRun>,
     force: impl Fn(usize, &Point, f64) -> Result<f64, RunError>,
 ) -> Result<Balance, RunError> {
     let (system, model) = (cx.system, &cx.system.model);
@@ -134,13 +139,34 @@ fn balance(
         }
     }
     let kinematics = Kinematics::at_velocity(model, q, v);
-    let (mut elements, mut pulls) = (Vec::new(), Forces::default());
-    for (e, (element, known)) in system.elements.iter().zip(forces).enumerate() {
-        let (reading, gradient) = element.measure.read(model, &kinematics);
-        element.check_direction(t, &reading)?;
-        let mut inputs = vec![Default::default(); element.inputs.len()];
+    let readings: Vec<_> = system.elements.iter().map(|element| element.measure.read(model, &kinematics)).collect();
+    for (element, (reading, _)) in system.elements.iter().zip(&readings) {
+        element.check_direction(t, reading)?;
+    }
+    let inputs = |e: usize, control: Option<&ControlRun>| -> Result<Vec<InputValue>, RunError> {
+        let element = &system.elements[e];
+        let mut inputs = vec![InputValue::default(); element.inputs.len()];
         cx.inputs_at(e, t, &mut inputs);
-        element.check_inputs(t, &inputs)?;
+        if let Some(control) = control {
+            control.inputs_at_start(cx, e, &mut inputs);
+        }
+        element.check_inputs(t, &inputs).map(|()| inputs)
+    };
+    if let Some(control) = control.as_deref_mut() {
+        let read = |e: usize| [readings[e].0.coordinate, readings[e].0.rate];
+        control.find_branches(&Eye { system, t, q, v, kinematics: &kinematics, element: &read }, &mut |own, sum| {
+            for (e, (reading, gradient)) in readings.iter().enumerate() {
+                let stroke = system.elements[e].stroke(reading.coordinate);
+                let Ok(inputs) = inputs(e, Some(own)) else { continue };
+                let point = Point { t, stroke, rate: reading.rate, inputs: &inputs };
+                let pull = force(e, &point, reading.coordinate).unwrap_or(f64::NAN);
+                sum.iter_mut().zip(gradient).for_each(|(sum, slope)| *sum += pull * slope);
+            }
+        })?;
+    }
+    let (mut elements, mut pulls) = (Vec::new(), Forces::default());
+    for (e, ((element, known), (reading, gradient))) in system.elements.iter().zip(forces).zip(readings).enumerate() {
+        let inputs = inputs(e, control.as_deref())?;
         let stroke = element.stroke(reading.coordinate);
         let point = Point { t, stroke, rate: reading.rate, inputs: &inputs };
         let jump = element.jump(reading.coordinate);
@@ -156,6 +182,9 @@ fn balance(
         if let Drive::Force(signals) = drive {
             for (k, signal) in model.v_range(j).zip(signals) {
                 drives[k] = force_at(cx, k, signal, t)?;
+                if let Some(control) = control.as_deref().filter(|_| !cx.holds_force(k)) {
+                    drives[k] += control.torque(0)[k];
+                }
                 residual[k] -= drives[k];
             }
         }

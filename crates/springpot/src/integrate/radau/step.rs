@@ -12,7 +12,7 @@ use crate::integrate::kinks::Kinks;
 use crate::integrate::system::System;
 use crate::law::{InputValue, Point};
 use crate::linalg::Lu;
-use crate::model::{JointKind, Model};
+use crate::model::Model;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -97,8 +97,6 @@ pub(super) struct RadauStep {
     pub(super) stick: Stick,
     /// Velocities that no signal prescribes and no friction holds.
     pub(super) free: Vec<usize>,
-    /// The coordinate that each velocity moves; none for those of floating joints.
-    pub(super) coordinates: Vec<Option<usize>>,
     pub(super) origin: Origin,
     pub(super) stages: [Stage; STAGES],
     pub(super) elements: Vec<ElementStage>,
@@ -178,7 +176,6 @@ impl RadauStep {
             stops: Kinks::of(system).elements().to_vec(),
             stick: Stick::new(model, forward),
             free: forward.free_velocities(model),
-            coordinates: coordinates(model),
             origin: Origin::new(system, forward),
             stages: std::array::from_fn(|_| stage.clone()),
             elements: elements.collect(),
@@ -285,15 +282,6 @@ impl RadauStep {
         self.linearised = false;
         self.elements.iter_mut().for_each(|element| element.singular_before = 0.0);
     }
-}
-
-/// The coordinate that each velocity moves; none for those of floating joints.
-fn coordinates(model: &Model) -> Vec<Option<usize>> {
-    let mut coordinates = vec![None; model.nv()];
-    for j in model.own_joints().filter(|&j| model.joint_kind(j) != JointKind::Floating) {
-        coordinates[model.v_range(j).start] = Some(model.q_range(j).start);
-    }
-    coordinates
 }
 
 /// Whether a springpot of the element can be unstable where it is stiff.

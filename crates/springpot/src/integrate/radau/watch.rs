@@ -5,6 +5,7 @@ use super::method::Radau;
 use crate::actuation::Drive;
 use crate::collocation::{STAGES, lagrange_row};
 use crate::integrate::context::Context;
+use crate::integrate::control::ControlSeen;
 use crate::integrate::error::RunError;
 use crate::integrate::evaluate::{ElementEvaluation, Evaluation};
 use crate::integrate::kinks::Seen;
@@ -92,9 +93,17 @@ impl Radau {
             Seen::Within(theta, kink) => note(theta, Change::Kink(kink)),
             Seen::AtEnd => self.is_at_kink = true,
         }
+        let mut switches = false;
+        if let Some(control) = &mut recorder.control {
+            match control.look() {
+                ControlSeen::Nothing => {}
+                ControlSeen::Within(theta, guard) => note(theta, Change::Control(guard)),
+                ControlSeen::AtEnd => switches = true,
+            }
+        }
         Ok(match first {
             Some((theta, change)) => Look::Within(theta, change),
-            None if self.step.stick.changes() || self.is_at_kink => Look::AtEnd,
+            None if self.step.stick.changes() || self.is_at_kink || switches => Look::AtEnd,
             None => Look::Nothing,
         })
     }
@@ -106,6 +115,7 @@ impl Radau {
             Change::BreakAway { k, direction } => self.holding(recorder, k).margin(direction, theta),
             Change::Reversal => 0.0,
             Change::Kink(kink) => self.kinks.value(&recorder.bank, kink, theta),
+            Change::Control(guard) => recorder.control.as_ref().map_or(0.0, |control| control.guard_at(guard, theta)),
         }
     }
 
@@ -167,6 +177,7 @@ impl Radau {
             let at = (step.from + theta * step.size).min(step.to);
             self.dense(cx, recorder, step.size).place(at, theta, &mut evaluation);
             cx.fill(at, at, None, &mut recorder.scratch, &mut evaluation)?;
+            recorder.control(cx, Some(theta), &mut evaluation)?;
             let pull = |(e, element): (usize, &ElementEvaluation)| recorder.bank.at(e, theta, &element.point(at));
             let pulls = evaluation.elements.iter().enumerate().map(pull);
             let pulls: Vec<f64> = pulls.map(|seen| seen.map_or(0.0, |observation| observation.force())).collect();

@@ -7,6 +7,7 @@ mod balance;
 mod check;
 
 use super::context::Context;
+use super::control::{ControlRun, ControlState};
 use super::error::RunError;
 use super::evaluate::{Evaluation, Scratch};
 use super::ledger::{NodePower, Turnover};
@@ -38,6 +39,8 @@ pub(super) struct Recorder {
     /// Whether those at the start and at the end have all that a row asks for.
     pub(super) is_whole: [bool; 2],
     pub(super) bank: ElementBank,
+    /// What follows from the state, where anything does.
+    pub(super) control: Option<Box<ControlRun>>,
     pub(super) powers: StepPowers,
     /// Whether actuators move the elements, as along kinematics given in advance.
     pub(super) takes_elements_work: bool,
@@ -65,6 +68,7 @@ pub(super) struct RecorderState {
     /// Where the next step starts.
     pub(super) evaluation: Evaluation,
     is_whole: bool,
+    control: Option<ControlState>,
     ledger: Ledger,
 }
 
@@ -82,11 +86,55 @@ impl Recorder {
             evaluations: std::array::from_fn(|_| evaluation.clone()),
             is_whole: [true; 2],
             bank,
+            control: ControlRun::of(cx.system, settings.fixed_step.is_some()),
             powers: StepPowers::default(),
             takes_elements_work: true,
             grid: vec![None; cx.system.elements.len()],
             ledger: Ledger::default(),
         }
+    }
+
+    /// Begins what is kept of the errors of a controller, where the motion starts.
+    ///
+    /// # Errors
+    /// Where the reference cannot be followed, or a memory cannot be.
+    pub(super) fn begin_control(&mut self, cx: Context) -> Result<(), RunError> {
+        let Some(control) = &mut self.control else { return Ok(()) };
+        let start = cx.system.state(0.0)?;
+        control.begin(cx.system, &start.q, &start.v, self.settings.end)
+    }
+
+    /// Gives the first evaluation the inputs that follow from the state.
+    pub(super) fn take_inputs_at_start(&mut self, cx: Context) {
+        if let (Some(control), [evaluation, ..]) = (&self.control, &mut self.evaluations) {
+            let elements = evaluation.elements.iter_mut().enumerate();
+            elements.for_each(|(e, element)| control.inputs_at_start(cx, e, &mut element.inputs));
+        }
+    }
+
+    /// Completes an evaluation by what follows from the state: at θ of the step at hand, or between two steps.
+    ///
+    /// # Errors
+    /// Where an input breaks a rule of its law, or the reference cannot be followed.
+    pub(super) fn control(
+        &mut self,
+        cx: Context,
+        theta: Option<f64>,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError> {
+        match &mut self.control {
+            Some(control) => control.fill(cx, theta, &self.bank, evaluation),
+            None => Ok(()),
+        }
+    }
+
+    /// Goes onto the branches of control behind the changes that were seen, at the end of the step or at its start.
+    ///
+    /// # Errors
+    /// [`RunError::ControlChatter`].
+    pub(super) fn change_branches(&mut self, is_end: bool) -> Result<(), RunError> {
+        let end = self.settings.end;
+        self.control.as_mut().map_or(Ok(()), |control| control.change(is_end, end))
     }
 
     /// Begins the laws at the first evaluation, `evaluations[0]`, their memories without kernels.
@@ -107,6 +155,9 @@ impl Recorder {
         for (e, element) in cx.system.elements.iter().enumerate() {
             let opened = self.bank.open_element(e, MemoryRange { tolerance, shortest: first, horizon });
             opened.map_err(RunError::of_kernel(&element.name))?;
+        }
+        if let Some(control) = &mut self.control {
+            control.open(tolerance, first, horizon)?;
         }
         self.ledger.potential_origin = self.evaluations[0].potential;
         let mut start = Snapshot::new(cx.system);
@@ -140,7 +191,15 @@ impl Recorder {
     }
 
     /// Takes the step that was worked out into the past.
-    pub(super) fn commit(&mut self) {
+    ///
+    /// # Errors
+    /// [`RunError::ControlChatter`]; where the reference of a controller cannot be followed.
+    pub(super) fn commit(&mut self, cx: Context) -> Result<(), RunError> {
+        self.change_branches(true)?;
+        if let Some(control) = &mut self.control {
+            let ends = [0, STAGES].map(|k| &self.evaluations[k]).map(|end| (end.t, &end.q[..], &end.v[..]));
+            control.commit(cx.system, ends)?;
+        }
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[STAGES];
         let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);
@@ -157,6 +216,7 @@ impl Recorder {
         self.bank.commit_account();
         self.evaluations.swap(0, STAGES);
         self.is_whole.swap(0, 1);
+        Ok(())
     }
 
     /// Goes on from the far side of a kink, `right`, and records what jumps there.
@@ -178,13 +238,17 @@ impl Recorder {
 
     /// Fills the elements and the balance of a snapshot whose evaluation is there: at θ of the step that was accounted, or between two steps
     /// (`None`), at the first evaluation. `row` is that of named schemes.
+    ///
+    /// # Errors
+    /// What a row there may show.
     pub(super) fn read(
-        &self,
+        &mut self,
         cx: Context,
         theta: Option<f64>,
         row: usize,
         snapshot: &mut Snapshot,
     ) -> Result<(), RunError> {
+        self.control(cx, theta, &mut snapshot.evaluation)?;
         let Snapshot { evaluation, elements, .. } = snapshot;
         elements.clear();
         for e in 0..self.bank.len() {
@@ -221,13 +285,19 @@ impl Recorder {
     /// What outlasts the steps.
     pub(super) fn state(&self) -> RecorderState {
         let (elements, evaluation) = (self.bank.kept(), self.evaluations[0].clone());
-        RecorderState { elements, evaluation, is_whole: self.is_whole[0], ledger: self.ledger }
+        let control = self.control.as_ref().map(|control| control.state());
+        RecorderState { elements, evaluation, is_whole: self.is_whole[0], control, ledger: self.ledger }
     }
 
     /// Goes on from a state of the same system; `false`, and nothing changed, where it is of another one.
     pub(super) fn go_on(&mut self, state: RecorderState) -> bool {
-        let RecorderState { elements, evaluation, is_whole, ledger } = state;
-        if !evaluation.has_shape_of(&self.evaluations[0]) || !self.bank.go_on(elements) {
+        let RecorderState { elements, evaluation, is_whole, control, ledger } = state;
+        let controls = match (&mut self.control, control) {
+            (None, None) => true,
+            (Some(own), Some(state)) => own.go_on(state),
+            _ => false,
+        };
+        if !controls || !evaluation.has_shape_of(&self.evaluations[0]) || !self.bank.go_on(elements) {
             return false;
         }
         self.evaluations[0] = evaluation;

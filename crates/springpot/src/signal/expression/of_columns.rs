@@ -78,9 +78,9 @@ impl ColumnExpression {
         trace.branch
     }
 
-    /// Whether its value jumps at a kink.
-    pub(crate) fn may_jump(&self) -> bool {
-        self.program.iter().any(|op| matches!(op, Op::Sign | Op::Step | Op::Atan2))
+    /// Whether it has kinks.
+    pub(crate) fn has_kinks(&self) -> bool {
+        self.program.iter().any(|op| op.has_kink())
     }
 
     /// Hands over the bit and the argument of each kink that hangs on a column: it is positive on the side of `branch` and passes zero at the kink.

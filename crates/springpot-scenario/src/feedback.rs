@@ -1,0 +1,227 @@
+//! Feedback: torques and inputs as expressions of the state.
+//!
+//! Signals are read before all elements are known, so that an expression that names what is seen of the state is kept as it is written
+//! ([`read`]) and read when the plan is whole ([`settle`]).
+
+use super::document::{Node, Value, shorten};
+use super::keys::SIGNAL;
+use super::names;
+use super::plan::{Plan, SignalPlan};
+use super::reader::{Context, Field, Read, Refused, all};
+use super::refusal::RefusalKind;
+use super::signals::{self, Wanted};
+use springpot::control::{Control, Feedback, InputFeedback, Sampling, Sense, TorqueFeedback};
+use springpot::law::Range;
+use springpot::observe::Axis;
+use springpot::signal::expression::ExpressionError;
+use springpot::signal::{ColumnExpression, Signal};
+
+/// Feedback as it is written.
+#[derive(Debug, Clone)]
+pub(crate) struct FeedbackText {
+    /// The text of the expression.
+    node: Node,
+    /// What it is, for messages.
+    owner: String,
+    /// What makes it SI.
+    scale: f64,
+    offset: f64,
+    /// Time between two samples, s.
+    sample: Option<f64>,
+}
+
+/// What follows the name of an element or of the gripper in what feedback may see.
+const OF_ELEMENT: [&str; 3] = ["length", "stroke", "rate"];
+const OF_FORCES: [&str; 2] = ["force", "derivative"];
+const OF_GRIPPER: [(&str, Sense); 6] = [
+    ("x", Sense::Gripper(Axis::X)),
+    ("y", Sense::Gripper(Axis::Y)),
+    ("z", Sense::Gripper(Axis::Z)),
+    ("vx", Sense::GripperVelocity(Axis::X)),
+    ("vy", Sense::GripperVelocity(Axis::Y)),
+    ("vz", Sense::GripperVelocity(Axis::Z)),
+];
+
+/// A signal, or feedback in its place.
+pub(crate) fn read(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
+    match &field.node.value {
+        Value::Text(text) if names_state(text) => {
+            let text = FeedbackText {
+                node: field.node.clone(),
+                owner: field.to_string(),
+                scale: 1.0,
+                offset: 0.0,
+                sample: None,
+            };
+            Ok(in_place_of_signal(field, wanted.range, text))
+        }
+        Value::Table(_) if field.node.get("expression").is_some() => {
+            let sampled = field.node.get("sample").is_some();
+            let text = field.node.get("expression").and_then(|node| node.text());
+            if sampled || text.is_some_and(names_state) { table(field, wanted) } else { signals::read(field, wanted) }
+        }
+        _ => signals::read(field, wanted),
+    }
+}
+
+fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
+    let table = field.table(&SIGNAL)?;
+    let of_csv = ["csv", "column", "time", "time_unit", "separator", "outside"];
+    if let Some(field) = of_csv.into_iter().find_map(|key| table.get(key)) {
+        return Err(field.refuse(RefusalKind::UnknownKey, "stands beside feedback, which is an expression", None));
+    }
+    let expression = table.require("expression")?;
+    expression.text()?;
+    let unit = table.get("unit");
+    let unit = unit.map(|unit| signals::in_unit(&unit, Signal::constant(1.0), wanted.unit).map(|one| (unit, one)));
+    let (scale, offset) = match unit.transpose()? {
+        None => (1.0, 0.0),
+        Some((unit, one)) => {
+            let zero = signals::in_unit(&unit, Signal::constant(0.0), wanted.unit)?.value(0.0);
+            (one.value(0.0) - zero, zero)
+        }
+    };
+    let sample = table.get("sample").map(|field| field.quantity()).transpose()?;
+    let text = FeedbackText { node: expression.node.clone(), owner: field.to_string(), scale, offset, sample };
+    Ok(in_place_of_signal(field, wanted.range, text))
+}
+
+/// The signal counts for nothing, but must be one that its place takes.
+fn in_place_of_signal(field: &Field<'_>, range: Range, text: FeedbackText) -> SignalPlan {
+    SignalPlan {
+        signal: Signal::constant(0.0f64.clamp(range.low, range.high)),
+        constant: None,
+        written: field.node.place.text().to_owned(),
+        place: field.node.place.clone(),
+        feedback: Some(text.into()),
+    }
+}
+
+/// Whether a text has a name with a dot in it, which only what is seen of the state has.
+fn names_state(text: &str) -> bool {
+    let bytes = text.as_bytes();
+    let is_part = |c: u8| c.is_ascii_alphanumeric() || c == b'_' || c >= 0x80;
+    text.match_indices('.').any(|(at, _)| {
+        let follows = bytes.get(at + 1).is_some_and(|c| c.is_ascii_alphabetic() || *c == b'_' || *c >= 0x80);
+        let start = bytes[..at].iter().rposition(|c| !is_part(*c)).map_or(0, |before| before + 1);
+        let after = &text[at + 1..];
+        let word = &after[..after.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(after.len())];
+        let is_number = bytes.get(start).is_none_or(|c| c.is_ascii_digit()) || start == at;
+        follows && (!is_number || OF_ELEMENT.contains(&word) || OF_FORCES.contains(&word))
+    })
+}
+
+/// Everything that feedback may see of a plan, by name.
+fn senses(plan: &Plan) -> Vec<(String, Sense)> {
+    let mut senses = Vec::new();
+    let model = &plan.model;
+    for j in model.own_joints() {
+        let (velocity, name) = (model.v_range(j).start, &model.joint_names()[j]);
+        let Some(place) = model.coordinate_of(velocity).filter(|_| model.v_range(j).len() == 1) else { continue };
+        senses.push((format!("q.{name}"), Sense::Coordinate { place, velocity }));
+        senses.push((format!("v.{name}"), Sense::Velocity(velocity)));
+        senses.push((format!("a.{name}"), Sense::Acceleration(velocity)));
+    }
+    for (e, plan) in plan.elements.iter().enumerate() {
+        let made = [Sense::Length(e), Sense::Stroke(e), Sense::Rate(e), Sense::Force(e), Sense::Derivative(e)];
+        let words = OF_ELEMENT.into_iter().chain(OF_FORCES);
+        senses.extend(words.zip(made).map(|(word, sense)| (format!("{}.{word}", plan.element.name), sense)));
+    }
+    if plan.gripper.is_some() {
+        senses.extend(OF_GRIPPER.into_iter().map(|(word, sense)| (format!("gripper.{word}"), sense)));
+    }
+    senses
+}
+
+/// Reads all feedback of a plan that has all else.
+pub(crate) fn settle(ctx: &Context<'_>, plan: &Plan) -> Read<Control> {
+    let inputs = plan.elements.iter().enumerate().flat_map(|(element, plan)| {
+        let inputs = plan.inputs.iter().enumerate();
+        inputs.filter_map(move |(input, plan)| Some(((element, input), plan.feedback.as_deref()?)))
+    });
+    let inputs: Vec<_> = inputs.collect();
+    let torques = plan.motion.feedback();
+    if inputs.is_empty() && torques.is_empty() {
+        return Ok(Control::default());
+    }
+    if let (false, Some((_, text))) = (plan.motion.is_forward(), inputs.first()) {
+        let message = format!("{} follows from the state, but the motion is given in advance", text.owner);
+        let help = "write a signal, or motion.kind = \"forward\": where the motion follows from forces, these may follow from it";
+        return Err(ctx.refuse(text.node.place.refuse(RefusalKind::Rule, message).help(help)));
+    }
+    let senses = senses(plan);
+    let inputs = all(inputs.into_iter().map(|((element, input), text)| {
+        let (law, sampling) = text.made(ctx, &senses)?;
+        Ok(InputFeedback { element, input, law, sampling })
+    }));
+    let torques = all(torques.iter().map(|(velocity, text)| {
+        let (law, sampling) = text.made(ctx, &senses)?;
+        Ok(TorqueFeedback { velocity: *velocity, law, sampling })
+    }));
+    Ok(Control { torques: torques?, inputs: inputs?, controller: None })
+}
+
+impl FeedbackText {
+    fn made(&self, ctx: &Context<'_>, senses: &[(String, Sense)]) -> Read<(Feedback, Option<Sampling>)> {
+        let text = self.node.text().unwrap_or_default();
+        let names: Vec<&str> = senses.iter().map(|(name, _)| name.as_str()).collect();
+        let expression = ColumnExpression::parse(text, &ctx.constants(), &names).map_err(|error| {
+            let help = match &error {
+                ExpressionError::UnknownName { name, suggestion: None, .. } => self.of_unknown(name, &names),
+                ExpressionError::UnknownName { .. } => {
+                    "feedback may name q.JOINT, v.JOINT, ELEMENT.length, .stroke, .rate and gripper.x, .vx".to_owned()
+                }
+                _ => "write an expression of t and of the state, such as \"-5*v.q1\"".to_owned(),
+            };
+            let place = self.node.place_in_text(error.span());
+            ctx.refuse(place.refuse(RefusalKind::BadQuantity, format!("{}: {error}", self.owner)).help(help))
+        })?;
+        let seen: Vec<Sense> = expression.columns().iter().map(|&k| senses[k].1).collect();
+        if self.sample.is_none()
+            && let Some(k) = seen.iter().position(|sense| sense.follows_from_forces())
+        {
+            return Err(self.not_known_yet(ctx, names[expression.columns()[k]]));
+        }
+        let law = Feedback::new(expression, seen).scaled(self.scale, self.offset);
+        Ok((law, self.sample.map(|period| Sampling { period, delay: 0 })))
+    }
+
+    fn of_unknown(&self, name: &str, names: &[&str]) -> String {
+        if name.starts_with("tau.") || name.starts_with("energy.") {
+            return format!("{name} is no part of the state; feedback may name {}", names::list(names.iter().copied()));
+        }
+        names::suggest(name, names.iter().copied())
+    }
+
+    /// An algebraic loop: what the expression says would be a part of what it sees.
+    fn not_known_yet(&self, ctx: &Context<'_>, name: &str) -> Refused {
+        let text = self.node.text().unwrap_or_default();
+        let at = text.find(name).map(|start| start..start + name.len());
+        let message = format!("{}: {name} follows from the forces, of which this is one", self.owner);
+        let help = format!(
+            "sample it: {{ expression = \"{}\", unit = \"…\", sample = \"1 ms\" }} sees what was just before",
+            shorten(text)
+        );
+        ctx.refuse(self.node.place_in_text(at).refuse(RefusalKind::Rule, message).help(help))
+    }
+}
+
+/// The torques of a motion that are feedback, by velocity.
+pub(crate) type TorqueTexts = Vec<(usize, std::sync::Arc<FeedbackText>)>;
+
+#[cfg(test)]
+mod tests {
+    use super::names_state;
+
+    #[test]
+    fn names_with_dots_are_of_the_state() {
+        for text in
+            ["q.q1", "2*strut.rate", "-gripper.vx*3", "strut-2.force", "1.5*a_b.stroke", "strut.rat", "x+µ.rate"]
+        {
+            assert!(names_state(text), "{text}");
+        }
+        for text in ["1.5*t", "sin(2.*t)", "1.e5", "t-1.e5", ".5", "t*.5", "3.", "0.1*sin(8*t)"] {
+            assert!(!names_state(text), "{text}");
+        }
+    }
+}

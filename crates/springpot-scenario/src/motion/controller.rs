@@ -1,0 +1,410 @@
+//! `[motion.controller]`: what drives the joints of a robot that moves by itself.
+
+use super::gripper_path;
+use super::joints::open_joints;
+use crate::document::shorten;
+use crate::keys::{self, CONTROLLER, REFERENCE};
+use crate::names;
+use crate::reader::{Field, Read, Table, all};
+use crate::refusal::RefusalKind;
+use crate::robot::{OwnJoint, Robot};
+use crate::signals::{self, Wanted};
+use serde_json::{Map, Value, json};
+use springpot::control::{
+    AntiWindup, ComputedTorque, Controlled, Controller, Impedance, Limit, PdGravity, Pid, Profile, Reference, Sampling,
+};
+use springpot::law::Range;
+use springpot::model::{JointKind, Model};
+use springpot::motion::gripper_path::Course;
+use springpot::motion::{JointPath, Trajectory};
+use springpot::signal::Signal;
+use std::sync::Arc;
+
+/// Shares of a period by which a delay may miss a multiple of it.
+const WHOLE: f64 = 1e-9;
+
+/// A controller as it was read.
+#[derive(Debug, Clone)]
+pub(super) struct ControllerPlan {
+    controlled: Controlled,
+    /// In place of the reference, where it has to be solved for.
+    path: Option<Arc<gripper_path::Path>>,
+    /// As the record of a run has it.
+    pub(super) record: Value,
+}
+
+impl ControllerPlan {
+    pub(super) fn made(&self, model: &Model, course: &Course<'_>) -> Controlled {
+        let mut controlled = self.controlled.clone();
+        if let Some(path) = &self.path {
+            controlled.reference = Reference::new(path.trajectory(model, course));
+        }
+        controlled
+    }
+}
+
+/// The joints of a robot, where they start, and which of them forces drive.
+struct Joints<'r> {
+    robot: &'r Robot,
+    start: &'r [f64],
+    is_driven: &'r dyn Fn(&str) -> bool,
+}
+
+impl<'r> Joints<'r> {
+    /// The joints that a controller drives, each with its place in v.
+    fn driven(&self) -> impl Iterator<Item = (usize, OwnJoint<'r>)> {
+        let model = self.robot.model();
+        let joints = model.own_joints().zip(self.robot.own_joints());
+        let driven = joints.filter(|(_, joint)| joint.kind.nv() == 1 && (self.is_driven)(joint.name));
+        driven.map(|(j, joint)| (model.v_range(j).start, joint))
+    }
+
+    /// Opens a table by joints that a controller drives.
+    fn open<'a>(&self, field: &Field<'a>) -> Read<Table<'a>> {
+        let names: Vec<&str> = self.driven().map(|(_, joint)| joint.name).collect();
+        let reason = |key: &str| {
+            if let Some(why) = self.robot.why_no_coordinate(key) {
+                return Some((RefusalKind::Rule, why));
+            }
+            let own = self.robot.own_joints().find(|joint| joint.name == key)?;
+            let why = if own.kind.nv() == 1 { "no force drives it" } else { "it has several degrees of freedom" };
+            Some((RefusalKind::Rule, format!("joint {key:?} is none that the controller drives: {why}")))
+        };
+        Table::open_with(field.ctx, field.node, field.to_string(), &names, reason)
+    }
+}
+
+/// Reads the controller of a robot that starts at `q`; `is_driven` says which joints forces drive.
+pub(super) fn read(
+    field: &Field<'_>,
+    robot: &Robot,
+    (q, is_driven): (&[f64], &dyn Fn(&str) -> bool),
+    end: Option<f64>,
+) -> Read<ControllerPlan> {
+    let joints = Joints { robot, start: q, is_driven };
+    let kind = kind_of(field, &CONTROLLER, "kind of controller")?;
+    let table = Table::of_kind(field.ctx, field.node, "[motion.controller]", (&CONTROLLER, kind), |key| {
+        let row = CONTROLLER.get(key)?;
+        let kinds = names::either(row.only.iter().map(|kind| format!("{kind:?}")));
+        Some((RefusalKind::Rule, format!("`{key}` of [motion.controller] belongs to kind = {kinds}")))
+    })?;
+    let mut record = Map::new();
+    record.insert("kind".to_owned(), json!(kind));
+    let law = law(&table, kind, &joints, &mut record);
+    let reference = table.require("reference").and_then(|field| reference(&field, &joints, end));
+    let limits = limits(&table, &joints, &mut record);
+    let anti_windup = match table.get("anti_windup").map(|field| field.word("rule")).transpose()? {
+        Some(keys::NONE) => AntiWindup::None,
+        _ => AntiWindup::Conditional,
+    };
+    let sampling = sampling(&table, &mut record);
+    let (law, (reference, path, referred), limits, sampling) = (law?, reference?, limits?, sampling?);
+    if kind == keys::PID || kind == keys::FRACTIONAL_PID {
+        let word = if anti_windup == AntiWindup::None { keys::NONE } else { keys::CONDITIONAL };
+        record.insert("anti_windup".to_owned(), json!(word));
+    }
+    record.insert("reference".to_owned(), referred);
+    let controlled = Controlled { law, reference, limits, anti_windup, sampling };
+    Ok(ControllerPlan { controlled, path, record: record.into() })
+}
+
+/// The word under `kind` of a table.
+fn kind_of<'a>(field: &Field<'a>, keys: &'static keys::Keys, what: &str) -> Read<&'a str> {
+    if field.node.entries().is_none() {
+        return Err(field.wrong_type("a table with a `kind`"));
+    }
+    let row = keys.get("kind");
+    let Some(node) = field.node.get("kind") else {
+        let refusal = field.node.place.refuse(RefusalKind::Missing, format!("{field} has no `kind`"));
+        return Err(field
+            .ctx
+            .refuse(refusal.help(format!("write {}", row.map(|row| row.right()).unwrap_or_default()))));
+    };
+    Field { key: "kind", row, node, owner: field.to_string().into(), ctx: field.ctx }.word(what)
+}
+
+fn law(
+    table: &Table<'_>,
+    kind: &str,
+    joints: &Joints<'_>,
+    record: &mut Map<String, Value>,
+) -> Read<Arc<dyn Controller>> {
+    let no_order = |_: usize| 1.0;
+    let [turns, slides] = units(kind);
+    if kind == keys::IMPEDANCE {
+        if joints.robot.gripper.is_none() {
+            let message = "kind = \"impedance\" needs a gripper, but the robot has none";
+            let refusal = table.node.place.refuse(RefusalKind::Missing, message);
+            return Err(table
+                .ctx
+                .refuse(refusal.help("write [robot.gripper] with body = \"NAME\" and point = [x, y, z]")));
+        }
+        let gain = |key: &'static str, unit: &str| match table.get(key) {
+            None => table.number(key),
+            Some(field) if field.node.entries().is_some() && !crate::constants::is_expression(field.node) => {
+                let message = "is a table by joints, but impedance acts at the gripper";
+                Err(field.refuse(RefusalKind::WrongType, message, Some(format!("write a number (in {unit})"))))
+            }
+            Some(field) => not_negative(&field, unit, &no_order, 0),
+        };
+        if table.get("kp").is_none() {
+            return Err(table.lacks("kp"));
+        }
+        let (kp, kd) = (gain("kp", "N/m")?, gain("kd", "N*s/m")?);
+        record.extend([("kp".to_owned(), json!(kp)), ("kd".to_owned(), json!(kd))]);
+        return Ok(Arc::new(Impedance { kp, kd }));
+    }
+    if table.get("kp").is_none() {
+        return Err(table.lacks("kp"));
+    }
+    if kind == keys::COMPUTED_TORQUE
+        && let Some(joint) = joints.robot.own_joints().find(|joint| joint.kind.nv() != 1)
+    {
+        let message =
+            format!("kind = \"computed-torque\" drives joints of one degree, but joint {:?} is floating", joint.name);
+        return Err(table.ctx.refuse(table.node.place.refuse(RefusalKind::Rule, message)));
+    }
+    let order = |key: &'static str| -> Read<Vec<f64>> {
+        if kind != keys::FRACTIONAL_PID {
+            return Ok(vec![1.0; joints.robot.model().nv()]);
+        }
+        by_joint(table, key, joints, 1.0, &|field, _, _| {
+            let value = field.number("")?;
+            if value > 0.0 && value <= 1.0 {
+                return Ok(value);
+            }
+            let message = format!("is {value}, but an order is above 0 and at most 1");
+            Err(field.refuse(RefusalKind::OutOfRange, message, Some("write 0.5, or 1 for the whole order".to_owned())))
+        })
+    };
+    let (lambda, mu) = (order("lambda")?, order("mu")?);
+    let gain = |key: &'static str, which: usize| {
+        by_joint(table, key, joints, 0.0, &|field, joint, velocity| {
+            let unit = if joint.kind == JointKind::Prismatic { slides[which] } else { turns[which] };
+            let exponent = |k: usize| if which == 2 { lambda[k] } else { mu[k] };
+            not_negative(field, unit, &exponent, velocity)
+        })
+    };
+    let (kp, kd) = (gain("kp", 0)?, gain("kd", 1)?);
+    let listed = |values: &[f64]| -> Value {
+        joints.driven().map(|(k, joint)| (joint.name.to_owned(), json!(values[k]))).collect::<Map<_, _>>().into()
+    };
+    record.extend([("kp".to_owned(), listed(&kp)), ("kd".to_owned(), listed(&kd))]);
+    Ok(match kind {
+        keys::PD_GRAVITY => Arc::new(PdGravity { kp, kd }),
+        keys::COMPUTED_TORQUE => {
+            let compensate_elements = table.flag("compensate_elements")?;
+            record.insert("compensate_elements".to_owned(), json!(compensate_elements));
+            Arc::new(ComputedTorque { kp, kd, compensate_elements })
+        }
+        _ => {
+            let ki = gain("ki", 2)?;
+            record.insert("ki".to_owned(), listed(&ki));
+            if kind == keys::FRACTIONAL_PID {
+                record.extend([("lambda".to_owned(), listed(&lambda)), ("mu".to_owned(), listed(&mu))]);
+            }
+            Arc::new(Pid { kp, ki, kd, lambda, mu })
+        }
+    })
+}
+
+/// Units of kp, kd and ki of joints that turn and that slide.
+fn units(kind: &str) -> [[&'static str; 3]; 2] {
+    match kind {
+        keys::COMPUTED_TORQUE => [["1/s^2", "1/s", ""]; 2],
+        keys::FRACTIONAL_PID => {
+            [["N*m/rad", "N*m*s^order/rad", "N*m/(rad*s^order)"], ["N/m", "N*s^order/m", "N/(m*s^order)"]]
+        }
+        _ => [["N*m/rad", "N*m*s/rad", "N*m/(rad*s)"], ["N/m", "N*s/m", "N/(m*s)"]],
+    }
+}
+
+/// A gain; `order` is that of the velocity, by which its unit may have an exponent.
+fn not_negative(field: &Field<'_>, unit: &str, order: &dyn Fn(usize) -> f64, velocity: usize) -> Read<f64> {
+    let value = field.number_with(unit, &|name| matches!(name, "order" | "lambda" | "mu").then(|| order(velocity)))?;
+    if value >= 0.0 {
+        return Ok(value);
+    }
+    let message = format!("is {}, but a gain is not negative", field.node.label());
+    Err(field.refuse(
+        RefusalKind::OutOfRange,
+        message,
+        Some("e = q_d − q already has the sign of what is missing".to_owned()),
+    ))
+}
+
+/// A value for each velocity (nv): one for all joints that are driven, or by joint; `left_out` where there is none.
+fn by_joint(
+    table: &Table<'_>,
+    key: &'static str,
+    joints: &Joints<'_>,
+    left_out: f64,
+    read: &dyn Fn(&Field<'_>, &OwnJoint<'_>, usize) -> Read<f64>,
+) -> Read<Vec<f64>> {
+    let mut values = vec![left_out; joints.robot.model().nv()];
+    let Some(field) = table.get(key) else { return Ok(values) };
+    let is_table = field.node.entries().is_some() && !crate::constants::is_expression(field.node);
+    let given = if is_table { Some(joints.open(&field)?) } else { None };
+    let driven: Vec<_> = joints.driven().collect();
+    for (velocity, joint) in &driven {
+        let own = match &given {
+            None => Some(field.clone()),
+            Some(given) => given.get(joint.name),
+        };
+        if let Some(own) = own {
+            values[*velocity] = read(&own, joint, *velocity)?;
+        }
+    }
+    Ok(values)
+}
+
+fn limits(table: &Table<'_>, joints: &Joints<'_>, record: &mut Map<String, Value>) -> Read<Vec<Limit>> {
+    let mut limits = vec![Limit::default(); joints.robot.model().nv()];
+    for (key, per) in [("limits", ""), ("rate_limits", "/s")] {
+        let Some(field) = table.get(key) else { continue };
+        let given = joints.open(&field)?;
+        let driven: Vec<_> = joints.driven().collect();
+        let read = all(driven.iter().filter_map(|(k, joint)| Some((k, joint, given.get(joint.name)?))).map(
+            |(k, joint, field)| {
+                let value = field.number(&format!("{}{per}", joint.units().force))?;
+                if value > 0.0 {
+                    return Ok((*k, joint.name, value));
+                }
+                let message =
+                    format!("is {}, but a limit is positive: it bounds the size of the force", field.node.label());
+                Err(field.refuse(RefusalKind::OutOfRange, message, Some("write the largest size".to_owned())))
+            },
+        ))?;
+        let mut listed = Map::new();
+        for (k, name, value) in read {
+            *(if per.is_empty() { &mut limits[k].torque } else { &mut limits[k].rate }) = value;
+            listed.insert(name.to_owned(), json!(value));
+        }
+        record.insert(key.to_owned(), listed.into());
+    }
+    Ok(limits)
+}
+
+fn sampling(table: &Table<'_>, record: &mut Map<String, Value>) -> Read<Option<Sampling>> {
+    let sample = table.get("sample").map(|field| field.quantity()).transpose()?;
+    let delay = table.get("delay");
+    let Some(period) = sample else {
+        return match delay {
+            Some(field) if field.quantity()? != 0.0 => {
+                let message = "needs a `sample`, of which it is a multiple";
+                Err(field.refuse(RefusalKind::Rule, message, Some("write sample = \"1 ms\"".to_owned())))
+            }
+            _ => Ok(None),
+        };
+    };
+    let mut periods = 0;
+    if let Some(field) = delay {
+        let value = field.quantity()?;
+        let whole = (value / period).round();
+        if value < 0.0 || (value / period - whole).abs() > WHOLE * whole.max(1.0) || whole > 1e6 {
+            let message = format!("is {}, which is no multiple of `sample`, {period} s", field.node.label());
+            let near = whole.max(0.0) * period;
+            return Err(field.refuse(RefusalKind::Rule, message, Some(format!("write {near} (s), or another sample"))));
+        }
+        periods = whole as usize;
+    }
+    record.insert("sample".to_owned(), json!(period));
+    record.insert("delay".to_owned(), json!(periods as f64 * period));
+    Ok(Some(Sampling { period, delay: periods }))
+}
+
+type Referred = (Reference, Option<Arc<gripper_path::Path>>, Value);
+
+fn reference(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> Read<Referred> {
+    let kind = kind_of(field, &REFERENCE, "kind of reference")?;
+    let wrong = |key: &str| -> Option<(RefusalKind, String)> {
+        if let Some(row) = REFERENCE.get(key).filter(|row| !row.only.is_empty()) {
+            let kinds = names::either(row.only.iter().map(|kind| format!("{kind:?}")));
+            return Some((RefusalKind::Rule, format!("`{key}` of {field} belongs to kind = {kinds}")));
+        }
+        joints.robot.why_no_coordinate(key).map(|why| (RefusalKind::Rule, why))
+    };
+    if kind == keys::GRIPPER_PATH {
+        let table = Table::of_kind(field.ctx, field.node, field.to_string(), (&REFERENCE, kind), wrong)?;
+        let guess = table.get("guess").is_some();
+        let (mut record, mut path) = gripper_path::path(&table, joints.robot, end)?;
+        if !guess {
+            path.start_from(joints.start);
+        }
+        record.insert("kind".to_owned(), json!(kind));
+        return Ok((still(joints), Some(Arc::new(path)), record.into()));
+    }
+    if kind == keys::MOVE {
+        let table = Table::of_kind(field.ctx, field.node, field.to_string(), (&REFERENCE, kind), wrong)?;
+        return to_a_point(&table, joints);
+    }
+    let names: Vec<&str> = std::iter::once("kind").chain(joints.robot.own_joints().map(|joint| joint.name)).collect();
+    let table = Table::open_with(field.ctx, field.node, field.to_string(), &names, wrong)?;
+    let driven: Vec<&str> = joints.driven().map(|(_, joint)| joint.name).collect();
+    let missing: Vec<&str> = driven.iter().copied().filter(|name| table.get(name).is_none()).collect();
+    if !missing.is_empty() {
+        let message = format!("{field} has no signal for {}", names::list(missing.iter().copied()));
+        let refusal = field.node.place.refuse(RefusalKind::Missing, message).label("missing joints");
+        return Err(field.ctx.refuse(refusal.help("write a signal for every joint that the controller drives")));
+    }
+    let mut record = Map::new();
+    record.insert("kind".to_owned(), json!(kind));
+    let model = joints.robot.model();
+    let paths = all(model.own_joints().zip(joints.robot.own_joints()).map(|(j, joint)| {
+        let start = Signal::constant(joints.start[model.q_range(j).start]);
+        let Some(field) = table.get(joint.name).filter(|_| joint.kind.nv() == 1) else { return Ok((start, None)) };
+        let wanted = Wanted { unit: joint.unit(), range: Range::ANY, smooth: true, end };
+        let plan = signals::read(&field, wanted)?;
+        Ok((plan.signal.clone(), Some((joint.name.to_owned(), plan.record()))))
+    }))?;
+    let (signals, records): (Vec<Signal>, Vec<_>) = paths.into_iter().unzip();
+    record.extend(records.into_iter().flatten());
+    Ok((of_signals(joints, signals), None, record.into()))
+}
+
+/// A reference that stays where the robot starts.
+fn still(joints: &Joints<'_>) -> Reference {
+    let model = joints.robot.model();
+    let places = model.own_joints().map(|j| Signal::constant(joints.start[model.q_range(j).start]));
+    of_signals(joints, places.collect())
+}
+
+/// A reference by signals of all joints with coordinates of their own; joints of several degrees stay where they are.
+fn of_signals(joints: &Joints<'_>, signals: Vec<Signal>) -> Reference {
+    let own = joints.robot.own_joints().zip(signals);
+    let paths = own.map(|(joint, signal)| match joint.kind {
+        JointKind::Floating => JointPath::Pose(Box::new(springpot::motion::PosePath {
+            position: std::array::from_fn(|_| Signal::constant(0.0)),
+            rpy: std::array::from_fn(|_| Signal::constant(0.0)),
+        })),
+        _ => JointPath::Coordinate(signal),
+    });
+    Reference::new(Trajectory::Prescribed(paths.collect()))
+}
+
+/// A move from where the robot starts.
+fn to_a_point(table: &Table<'_>, joints: &Joints<'_>) -> Read<Referred> {
+    let to = table.require("to").and_then(|field| open_joints(&field, joints.robot));
+    let duration = table.require("duration").and_then(|field| field.quantity());
+    let profile = table.word("profile", "profile").map(|word| (word, profile(word)));
+    let (to, duration, (word, profile)) = (to?, duration?, profile?);
+    let model = joints.robot.model();
+    let mut targets = Map::new();
+    let signals = all(model.own_joints().zip(joints.robot.own_joints()).map(|(j, joint)| {
+        let start = joints.start[model.q_range(j).start];
+        let Some(field) = to.get(joint.name) else { return Ok(Signal::constant(start)) };
+        if joint.kind.nv() != 1 || !(joints.is_driven)(joint.name) {
+            let message = format!("names joint {:?}, which the controller does not drive", shorten(joint.name));
+            return Err(field.refuse(RefusalKind::Rule, message, Some("leave it out".to_owned())));
+        }
+        let end = field.number(joint.unit())?;
+        targets.insert(joint.name.to_owned(), json!(end));
+        Ok(profile.signal(start, end, duration))
+    }))?;
+    let record = json!({ "kind": keys::MOVE, "to": targets, "duration": duration, "profile": word });
+    Ok((of_signals(joints, signals), None, record))
+}
+
+fn profile(word: &str) -> Profile {
+    if word == keys::TRAPEZOID { Profile::Trapezoid } else { Profile::Quintic }
+}

@@ -1,0 +1,99 @@
+//! Feedback: actuator forces and inputs of elements that follow from the state of the robot, by expressions or by laws of control.
+//!
+//! [`Feedback`] is an expression of what is seen of the state, a [`Controller`] a law with a [`Reference`]. Both are functions at one time, besides
+//! the integrals and fractional derivatives of errors that a controller asks for; whoever takes steps keeps those, evaluates continuous laws at
+//! the nodes of its steps, and sampled ones where they are due.
+
+mod computed_torque;
+mod controller;
+mod feedback;
+mod impedance;
+mod limits;
+mod pd_gravity;
+mod pid;
+mod reference;
+mod sense;
+
+pub use computed_torque::ComputedTorque;
+pub use controller::{Aim, At, Controller, ErrorTerm, Scratch, TorqueSlopes};
+pub use feedback::Feedback;
+pub use impedance::Impedance;
+pub use limits::{AntiWindup, Limit};
+pub use pd_gravity::PdGravity;
+pub use pid::Pid;
+pub use reference::{Profile, Reference};
+pub use sense::Sense;
+
+use std::sync::Arc;
+
+/// All that controls a system; the default controls nothing.
+#[derive(Debug, Clone, Default)]
+pub struct Control {
+    /// Actuator forces by feedback.
+    pub torques: Vec<TorqueFeedback>,
+    /// Inputs of elements by feedback.
+    pub inputs: Vec<InputFeedback>,
+    /// A controller.
+    pub controller: Option<Controlled>,
+}
+
+/// An actuator force that follows from the state.
+#[derive(Debug, Clone)]
+pub struct TorqueFeedback {
+    /// The velocity that it acts on, which no other signal drives.
+    pub velocity: usize,
+    /// The force, N·m or N.
+    pub law: Feedback,
+    /// When it is taken; `None`: at every time.
+    pub sampling: Option<Sampling>,
+}
+
+/// An input of an element that follows from the state, in place of its signal.
+#[derive(Debug, Clone)]
+pub struct InputFeedback {
+    /// The element.
+    pub element: usize,
+    /// Which of its inputs.
+    pub input: usize,
+    /// The input, SI.
+    pub law: Feedback,
+    /// When it is taken; `None`: at every time.
+    pub sampling: Option<Sampling>,
+}
+
+/// A controller of the robot.
+#[derive(Debug, Clone)]
+pub struct Controlled {
+    /// The law.
+    pub law: Arc<dyn Controller>,
+    /// What it aims at.
+    pub reference: Reference,
+    /// Bounds of its actuator forces, for each velocity.
+    pub limits: Vec<Limit>,
+    /// What integrals do while a force is at its bound.
+    pub anti_windup: AntiWindup,
+    /// When it acts; `None`: at every time.
+    pub sampling: Option<Sampling>,
+}
+
+/// When a sampled law is evaluated: at k·period, k = 0, 1, …, from the state just before. Its value holds from `delay` periods later on; before the first one it is 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    /// Between two samples, s.
+    pub period: f64,
+    /// Periods from a sample to when it acts.
+    pub delay: usize,
+}
+
+impl Control {
+    /// Whether it controls nothing.
+    pub fn is_empty(&self) -> bool {
+        self.torques.is_empty() && self.inputs.is_empty() && self.controller.is_none()
+    }
+
+    /// All expressions with their sampling.
+    pub(crate) fn laws(&self) -> impl Iterator<Item = (&Feedback, Option<Sampling>)> {
+        let torques = self.torques.iter().map(|torque| (&torque.law, torque.sampling));
+        torques.chain(self.inputs.iter().map(|input| (&input.law, input.sampling)))
+    }
+}

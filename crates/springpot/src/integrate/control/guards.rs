@@ -1,0 +1,417 @@
+//! Where a branch is left, and onto which one.
+
+use super::ControlRun;
+use super::eye::Eye;
+use super::mode::{Bound, Guard, Slew};
+use super::term::Integrand;
+use crate::collocation::{RADAU_NODES, STAGES, lagrange_row};
+use crate::control::Aim;
+use crate::integrate::error::RunError;
+use crate::integrate::zero::first_zero;
+
+/// Where a step is first looked at that starts where a branch begins.
+const EARLY: f64 = 1.0 / 64.0;
+
+/// How far behind its change a step may end, in units of what the guard goes over in it.
+const SHARE: f64 = 1e-8;
+
+/// What of a guard is rounding, in units of its largest value.
+const ROUNDING: f64 = 1e-12;
+
+/// Share of a coordinate that is no jump of its reference.
+const STILL: f64 = 1e-9;
+
+/// Branches that one jump may leave.
+const MOST_AT_ONCE: usize = 64;
+
+/// So many changes within this share of the run get nowhere.
+const CHATTER: f64 = 1e-9;
+const MOST_CHANGES: u32 = 1000;
+
+/// What is seen of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::integrate) enum ControlSeen {
+    Nothing,
+    /// The first change is at θ; at 0 the step starts on the wrong branch.
+    Within(f64, Guard),
+    /// It is at the end, and noted.
+    AtEnd,
+}
+
+type Values = [f64; STAGES + 1];
+
+/// Value of the cubic through values at the start and at the nodes.
+fn cubic(values: &Values, theta: f64) -> f64 {
+    if theta == 1.0 {
+        return values[STAGES];
+    }
+    let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
+    (0..4).rev().fold(0.0, |sum, p| sum * theta + (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>())
+}
+
+/// Derivative of the same by θ.
+fn slope(values: &Values, theta: f64) -> f64 {
+    let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
+    let coefficient = |p: usize| (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>();
+    (1..4).rev().fold(0.0, |sum, p| sum * theta + p as f64 * coefficient(p))
+}
+
+impl ControlRun {
+    /// Whether no branch is ever left.
+    pub(in crate::integrate) fn is_smooth(&self) -> bool {
+        let has_limits = |joint: &super::JointRun| joint.limit.torque.is_finite() || joint.limit.rate.is_finite();
+        let integrates = self.is_continuous || self.joints.iter().any(|joint| joint.integral.is_some());
+        !(integrates && self.joints.iter().any(has_limits)) && self.laws.iter().all(|law| !law.law.has_kinks())
+    }
+
+    /// The guards of the present branch.
+    fn guards(&self) -> Vec<Guard> {
+        let mut guards = Vec::new();
+        for law in 0..self.laws.len() {
+            self.branch_guards(law, 0, &mut |bit, _| guards.push(Guard::Branch { law, bit }));
+        }
+        if !self.is_continuous {
+            // Of a sampled controller only what its integrals take can change between samples.
+            let at_limit = |own: &super::JointRun| own.mode.bound != Bound::Free;
+            let joints = self.joints.iter().enumerate().filter(|(_, own)| at_limit(own));
+            guards.extend(joints.map(|(joint, _)| Guard::Turns { joint }));
+            return guards;
+        }
+        for (joint, own) in self.joints.iter().enumerate() {
+            let mode = own.mode;
+            if own.limit.rate.is_finite() {
+                match mode.slew {
+                    Slew::Follows => guards.extend([1, -1].map(|sign| Guard::Outruns { joint, sign })),
+                    Slew::Goes { .. } => guards.push(Guard::Catches { joint }),
+                }
+            }
+            match (mode.bound, mode.integrand) {
+                (Bound::Free, _) if own.limit.torque.is_finite() => {
+                    guards.extend([1, -1].map(|sign| Guard::Reaches { joint, sign }));
+                }
+                (Bound::At(_), Integrand::Slides) => {
+                    guards.extend([Guard::Empties { joint }, Guard::Fills { joint }]);
+                }
+                (Bound::At(_), _) => {
+                    guards.push(Guard::Returns { joint });
+                    if own.integral.is_some() && self.stops_windup() {
+                        guards.push(Guard::Turns { joint });
+                    }
+                }
+                (Bound::Free, _) => {}
+            }
+        }
+        guards
+    }
+
+    fn branch_guards(&self, law: usize, node: usize, take: &mut dyn FnMut(u32, f64)) {
+        let node = &self.nodes[node];
+        let before: usize = self.laws[..law].iter().map(|law| law.law.senses().len()).sum();
+        let own = &self.laws[law];
+        let seen = &node.seen[before..][..own.law.senses().len()];
+        own.law.expression().guards(own.branch, node.t, seen, take);
+    }
+
+    /// The values of a guard at the start and at the nodes of the step.
+    fn values(&self, guard: Guard) -> Values {
+        std::array::from_fn(|node| self.value(guard, node))
+    }
+
+    /// The value of a guard at the start (0) or at a node of the step.
+    fn value(&self, guard: Guard, node: usize) -> f64 {
+        let at = &self.nodes[node];
+        let sign_of = |joint: usize| match self.joints[joint].mode.bound {
+            Bound::At(sign) => f64::from(sign),
+            Bound::Free => 0.0,
+        };
+        match guard {
+            Guard::Branch { law, bit } => {
+                let mut value = f64::NAN;
+                self.branch_guards(law, node, &mut |own, argument| {
+                    if own == bit {
+                        value = argument;
+                    }
+                });
+                value
+            }
+            Guard::Reaches { joint, sign } => self.joints[joint].limit.torque - f64::from(sign) * at.shaped[joint],
+            Guard::Returns { joint } => sign_of(joint) * at.shaped[joint] - self.joints[joint].limit.torque,
+            Guard::Turns { joint } => {
+                // Frozen while the error pushes outwards.
+                let inwards = if self.joints[joint].mode.integrand == Integrand::Frozen { 1.0 } else { -1.0 };
+                inwards * sign_of(joint) * at.errors[joint][0]
+            }
+            Guard::Empties { joint } => sign_of(joint) * self.taken(joint)[node],
+            Guard::Fills { joint } => sign_of(joint) * (at.errors[joint][0] - self.taken(joint)[node]),
+            Guard::Outruns { joint, sign } => {
+                let theta = if node == 0 { 0.0 } else { RADAU_NODES[node - 1] };
+                self.joints[joint].limit.rate - f64::from(sign) * self.drift(joint, theta)
+            }
+            Guard::Catches { joint } => match self.joints[joint].mode.slew {
+                Slew::Goes { sign, .. } => f64::from(sign) * (at.wanted[joint] - at.shaped[joint]),
+                Slew::Follows => 0.0,
+            },
+        }
+    }
+
+    /// What the integral of a joint takes at the start and at the nodes.
+    fn taken(&self, joint: usize) -> Values {
+        self.joints[joint].integral.map_or([0.0; STAGES + 1], |m| self.terms[m].integrand())
+    }
+
+    /// dτ/dt of the force that is wanted of a joint, at θ of the step.
+    fn drift(&self, joint: usize, theta: f64) -> f64 {
+        let values = std::array::from_fn(|node| self.nodes[node].wanted[joint]);
+        let h = self.nodes[STAGES].t - self.nodes[0].t;
+        slope(&values, theta) / h
+    }
+
+    /// The first change in the step that was solved.
+    pub(in crate::integrate) fn look(&mut self) -> ControlSeen {
+        self.changes.clear();
+        if !self.slide() {
+            return ControlSeen::Nothing;
+        }
+        let (mut first, mut at_end): (Option<(f64, Guard)>, Vec<Guard>) = (None, Vec::new());
+        for guard in self.guards() {
+            let values = self.values(guard);
+            let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            if !values.iter().all(|value| value.is_finite()) || largest == 0.0 {
+                continue;
+            }
+            let noise = ROUNDING * largest.max(self.size(guard));
+            let on_it = values[0] <= noise;
+            if values[0] < -noise || (on_it && cubic(&values, EARLY) < -noise) {
+                return ControlSeen::Within(0.0, guard);
+            }
+            let found = first_zero(|theta| cubic(&values, if on_it { theta.max(EARLY) } else { theta }));
+            let Some(theta) = found.filter(|theta| *theta > 0.0) else { continue };
+            let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
+            let behind = -values[STAGES];
+            if (0.0..=(SHARE * moved).max(noise)).contains(&behind) && theta > 0.9 {
+                at_end.push(guard);
+            } else if first.is_none_or(|(earliest, _)| theta < earliest) {
+                first = Some((theta, guard));
+            }
+        }
+        match first {
+            Some((theta, guard)) => ControlSeen::Within(theta, guard),
+            None if at_end.is_empty() => ControlSeen::Nothing,
+            None => {
+                self.changes = at_end;
+                ControlSeen::AtEnd
+            }
+        }
+    }
+
+    /// What the values of a guard are differences of.
+    fn size(&self, guard: Guard) -> f64 {
+        match guard {
+            Guard::Reaches { joint, .. } | Guard::Returns { joint } => self.joints[joint].limit.torque,
+            Guard::Outruns { joint, .. } => self.joints[joint].limit.rate,
+            Guard::Catches { joint } => self.nodes.iter().fold(0.0, |m, node| f64::max(m, node.wanted[joint].abs())),
+            Guard::Empties { joint } | Guard::Fills { joint } => {
+                self.nodes.iter().fold(0.0, |m, node| f64::max(m, 1e3 * node.errors[joint][0].abs()))
+            }
+            Guard::Branch { .. } | Guard::Turns { .. } => 0.0,
+        }
+    }
+
+    /// How far a change is away at θ; negative behind it.
+    pub(in crate::integrate) fn guard_at(&self, guard: Guard, theta: f64) -> f64 {
+        cubic(&self.values(guard), theta)
+    }
+
+    /// Notes a change that is here.
+    pub(in crate::integrate) fn note(&mut self, guard: Guard) {
+        if !self.changes.contains(&guard) {
+            self.changes.push(guard);
+        }
+    }
+
+    /// Whether the branch is left at the end of the step, or at its start.
+    pub(in crate::integrate) fn changes(&self) -> bool {
+        !self.changes.is_empty()
+    }
+
+    /// Goes onto the branches behind the changes that were noted: at the end of the step, or at its start.
+    ///
+    /// # Errors
+    /// [`RunError::ControlChatter`] where branches are left again and again at one time.
+    pub(in crate::integrate) fn change(&mut self, is_end: bool, end: f64) -> Result<(), RunError> {
+        let (theta, node) = if is_end { (1.0, STAGES) } else { (0.0, 0) };
+        let changes = std::mem::take(&mut self.changes);
+        let Some(&last) = changes.last() else { return Ok(()) };
+        for guard in changes {
+            let drift = match guard {
+                Guard::Reaches { joint, .. } | Guard::Returns { joint } | Guard::Catches { joint } => {
+                    Some(self.drift(joint, theta))
+                }
+                _ => None,
+            };
+            self.leave(guard, node, drift);
+        }
+        let (t, span) = (self.nodes[node].t, CHATTER * end);
+        let (first, count) = &mut self.together;
+        (*first, *count) = if t - *first <= span && *count > 0 { (*first, *count + 1) } else { (t, 1) };
+        let count = *count;
+        if count <= MOST_CHANGES {
+            return Ok(());
+        }
+        Err(RunError::ControlChatter { t, what: self.named(last), count, span })
+    }
+
+    /// Goes onto the branch behind a guard; `drift` is dτ/dt of the wanted force before, where it is known.
+    fn leave(&mut self, guard: Guard, node: usize, drift: Option<f64>) {
+        let stops_windup = self.stops_windup();
+        let nodes = &self.nodes[node];
+        let outward = |terms: &[super::Term], own: &super::JointRun, joint: usize, sign: i8| {
+            let m = own.integral.filter(|_| stops_windup)?;
+            let push = f64::from(sign) * nodes.errors[joint][0];
+            (push > 0.0).then(|| (terms[m].law, terms[m].law.gain * push))
+        };
+        match guard {
+            Guard::Branch { law, bit } => self.laws[law].branch ^= 1 << bit,
+            Guard::Reaches { joint, sign } => {
+                let own = &self.joints[joint];
+                let integrand = match outward(&self.terms, own, joint, sign) {
+                    None => Integrand::Runs,
+                    Some(_) if own.mode.slew != Slew::Follows => Integrand::Frozen,
+                    // Without the integral the force comes back at once, with it it goes on: it stays where it is.
+                    Some((law, push)) => match drift {
+                        Some(drift) if law.order > -1.0 || f64::from(sign) * drift - push < 0.0 => Integrand::Slides,
+                        _ => Integrand::Frozen,
+                    },
+                };
+                let mode = &mut self.joints[joint].mode;
+                (mode.bound, mode.integrand) = (Bound::At(sign), integrand);
+            }
+            Guard::Returns { joint } => {
+                let own = &self.joints[joint];
+                let Bound::At(sign) = own.mode.bound else { return };
+                let slides = own.mode.integrand == Integrand::Frozen
+                    && own.mode.slew == Slew::Follows
+                    && outward(&self.terms, own, joint, sign).is_some_and(|(law, push)| {
+                        law.order > -1.0 || drift.is_some_and(|drift| f64::from(sign) * drift + push > 0.0)
+                    });
+                let mode = &mut self.joints[joint].mode;
+                if slides {
+                    mode.integrand = Integrand::Slides;
+                } else {
+                    (mode.bound, mode.integrand) = (Bound::Free, Integrand::Runs);
+                }
+            }
+            Guard::Turns { joint } => {
+                let mode = &mut self.joints[joint].mode;
+                let was_frozen = mode.integrand == Integrand::Frozen;
+                mode.integrand = if was_frozen { Integrand::Runs } else { Integrand::Frozen };
+            }
+            Guard::Empties { joint } => self.joints[joint].mode.integrand = Integrand::Frozen,
+            Guard::Fills { joint } => {
+                let mode = &mut self.joints[joint].mode;
+                (mode.bound, mode.integrand) = (Bound::Free, Integrand::Runs);
+            }
+            Guard::Outruns { joint, sign } => {
+                let (from, since) = (nodes.wanted[joint], nodes.t);
+                self.joints[joint].mode.slew = Slew::Goes { sign, from, since };
+            }
+            Guard::Catches { joint } => {
+                let (from, since, rate) = (nodes.shaped[joint], nodes.t, self.joints[joint].limit.rate);
+                self.joints[joint].mode.slew = match drift {
+                    Some(drift) if drift.abs() > rate => {
+                        Slew::Goes { sign: if drift > 0.0 { 1 } else { -1 }, from, since }
+                    }
+                    _ => Slew::Follows,
+                };
+            }
+        }
+    }
+
+    /// Looks at a start, where something may have jumped, finds the branches and works out what acts there; `pull` adds Σ F·∂y/∂q of the elements.
+    ///
+    /// # Errors
+    /// Where the reference cannot be followed.
+    pub(in crate::integrate) fn find_branches(
+        &mut self,
+        eye: &Eye,
+        pull: &mut dyn FnMut(&Self, &mut [f64]),
+    ) -> Result<(), RunError> {
+        if !self.acts_continuously() {
+            return Ok(());
+        }
+        self.changes.clear();
+        let before = self.has_branches.then(|| self.nodes[0].shaped.clone());
+        let (from, aimed) = (self.nodes[0].t, self.has_branches.then(|| self.nodes[0].aim.clone()));
+        self.see_start(eye)?;
+        if let Some(aimed) = aimed {
+            self.refuse_jump(eye, from, &aimed)?;
+        }
+        let answer = &mut |run: &mut Self| run.answer_at_start(pull);
+        if !self.has_branches {
+            self.has_branches = true;
+            let still = vec![0.0; eye.v.len()];
+            for k in 0..self.laws.len() {
+                let jets: Vec<_> = self.laws[k].law.senses().iter().map(|sense| eye.jet(*sense, &still)).collect();
+                self.laws[k].branch = self.laws[k].law.expression().branch(eye.t, &jets);
+            }
+        }
+        answer(self);
+        let Some(before) = before.filter(|before| self.is_continuous && before.len() == self.joints.len()) else {
+            self.leave_wrong(answer);
+            return Ok(());
+        };
+        for joint in 0..self.joints.len() {
+            let (rate, wanted, last) = (self.joints[joint].limit.rate, self.nodes[0].wanted[joint], before[joint]);
+            let jump = wanted - last;
+            if rate.is_finite() && jump.abs() > 1e-9 * (wanted.abs() + last.abs()) {
+                let sign = if jump > 0.0 { 1 } else { -1 };
+                self.joints[joint].mode.slew = Slew::Goes { sign, from: last, since: self.nodes[0].t };
+            }
+        }
+        answer(self);
+        self.leave_wrong(answer);
+        Ok(())
+    }
+
+    /// Refuses a reference that jumps, where the law would answer with an impulse.
+    fn refuse_jump(&self, eye: &Eye, from: f64, before: &Aim) -> Result<(), RunError> {
+        let Some(controlled) = self.controlled() else { return Ok(()) };
+        let (model, aim) = (&eye.system.model, &self.nodes[0].aim);
+        for joint in &self.joints {
+            let k = joint.velocity;
+            let derives = self.terms.iter().any(|term| term.law.velocity == k && term.law.order > 0.0);
+            let Some(place) = model.coordinate_of(k).filter(|_| derives || controlled.law.follows_accelerations())
+            else {
+                continue;
+            };
+            let jump = aim.q[place] - before.q[place];
+            let reach = 2.0 * (eye.t - from).abs() * (aim.v[k].abs() + before.v[k].abs());
+            if jump.abs() > reach + STILL * (aim.q[place].abs() + before.q[place].abs()) {
+                let joint = model.v_labels()[k].name.clone();
+                return Err(RunError::ReferenceJump { t: eye.t, joint, jump });
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves branches whose guards say so at the start, until none does.
+    fn leave_wrong(&mut self, answer: &mut dyn FnMut(&mut Self)) {
+        for _ in 0..MOST_AT_ONCE {
+            let at_start = |guard: &Guard| match guard {
+                Guard::Outruns { .. } | Guard::Empties { .. } | Guard::Fills { .. } => false,
+                _ => self.value(*guard, 0) < -ROUNDING * self.size(*guard),
+            };
+            let Some(guard) = self.guards().into_iter().find(at_start) else { return };
+            self.leave(guard, 0, None);
+            answer(self);
+        }
+    }
+
+    /// What a guard belongs to, for messages.
+    fn named(&self, guard: Guard) -> String {
+        match guard {
+            Guard::Branch { law, .. } => format!("the expression \"{}\"", self.laws[law].law.expression()),
+            _ => "the controller".to_owned(),
+        }
+    }
+}

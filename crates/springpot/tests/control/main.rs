@@ -1,0 +1,8 @@
+//! Control: expressions of the state, controllers, their limits, samples and delays, against other programs and closed forms.
+
+mod arm;
+mod closed;
+mod feedback;
+mod order;
+#[path = "../support/mod.rs"]
+mod support;
