@@ -32,6 +32,7 @@ pub mod state;
 pub mod step;
 pub mod tangent;
 
+mod damper;
 mod kelvin_voigt;
 mod magnetorheological;
 mod named;

@@ -332,15 +332,7 @@ impl Network {
 
     fn guards_part(&self, step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
         match self {
-            Self::Leaf(leaf) => {
-                state.take(leaf.size());
-                let first = guards.len();
-                leaf.guards(&step.point(0), &mut |value| guards.push([value; MAX_NODES + 1]));
-                for k in 1..=step.nodes.count() {
-                    let mut own = guards[first..].iter_mut();
-                    leaf.guards(&step.point(k), &mut |value| own.next().into_iter().for_each(|guard| guard[k] = value));
-                }
-            }
+            Self::Leaf(leaf) => leaf.guards_in(step, state.take(leaf.size()), guards),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.guards_part(step, state, guards)),
             Self::Series(parts) => series::guards(parts, step, state, guards),
         }

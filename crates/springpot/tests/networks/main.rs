@@ -2,6 +2,7 @@
 
 mod bouc_wen;
 mod convergence;
+mod dampers;
 mod named;
 mod nonlinear;
 mod orders;
