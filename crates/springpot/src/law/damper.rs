@@ -2,7 +2,7 @@
 //!
 //! Coefficients are a + b·w. The driver follows the command u with a lag, w' = −eta·(w − u), w(0) = u(0).
 
-use super::catalog::{Entry, Input, Param, Range, alpha};
+use super::catalog::{Entry, Input, Param, Range, alpha, at_least_one_positive};
 use super::leaf::{
     BoucWen, Coefficient, Friction, Hysteresis, Lagged, Preload, Spencer, Springpot, Viscous, hysteresis,
 };
@@ -13,6 +13,9 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 const LAG: &str = "w' = −eta·(w − u)";
+
+/// The equation of z.
+const HYSTERESIS: &str = "z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n";
 
 /// F = c_1·y' + k_1·(x − x_0) and its inner equations ([`Spencer`]).
 pub(super) fn spencer() -> Entry {
@@ -31,7 +34,7 @@ pub(super) fn spencer() -> Entry {
         name: "spencer".into(),
         equation: format!(
             "F = c_1·y' + k_1·(x − x_0), y' = (alpha·z + c_0·x' + k_0·(x − y))/(c_0 + c_1), z' = A·ν − gamma·|ν|·z·|z|^(n−1) − \
-             beta·ν·|z|^n, ν = x' − y'; alpha, c_0, c_1 = a + b·w, {LAG}"
+             beta·ν·|z|^n, ν = x' − y', c_0 = c_0a + c_0b·w, c_1 = c_1a + c_1b·w, alpha = alpha_a + alpha_b·w, {LAG}"
         )
         .into(),
         params: params.concat(),
@@ -41,6 +44,7 @@ pub(super) fn spencer() -> Entry {
             let &[c_0a, c_0b, c_1a, c_1b, k_0, k_1, x_0, alpha_a, alpha_b, a, beta, gamma, n, eta] = values else {
                 unreachable!("values follow params")
             };
+            at_least_one_positive(&[("c_1a", c_1a), ("c_1b", c_1b), ("k_1", k_1)])?;
             let leaf = Spencer {
                 fast: coefficient([c_0a, c_0b], "c_0a + u·c_0b ≥ 0", "c_0b")?,
                 slow: coefficient([c_1a, c_1b], "c_1a + u·c_1b ≥ 0", "c_1b")?,
@@ -60,26 +64,27 @@ pub(super) fn bouc_wen_damper() -> Entry {
     let params = [pair("c_0", "N*s/m", "viscosity"), around_hysteresis()];
     Entry {
         name: "bouc-wen-damper".into(),
-        equation: format!("F = c_0·x' + k_0·(x − x_0) + alpha·z(A, beta, gamma, n); alpha, c_0 = a + b·w, {LAG}")
+        equation: format!("F = (c_0a + c_0b·w)·x' + k_0·(x − x_0) + (alpha_a + alpha_b·w)·z, {HYSTERESIS}, {LAG}")
             .into(),
         params: params.concat(),
         inputs: inputs(),
         source: "Spencer, Dyke, Sain & Carlson 1997; Bouc 1967, Wen 1976".into(),
         build: Arc::new(|values, _| {
             let &[c_0a, c_0b, ref rest @ ..] = values else { unreachable!("values follow params") };
+            some_of(c_0a, c_0b, rest)?;
             let viscosity = coefficient([c_0a, c_0b], "c_0a + u·c_0b ≥ 0", "c_0b")?;
             Ok(Network::parallel([Network::leaf(Lagged::new(Viscous { viscosity }, rest[8])?), beside_it(rest)?]))
         }),
     }
 }
 
-/// F = c_0·D^order x + k_0·(x − x_0) + alpha·z.
+/// F = c_0·D^alpha x + k_0·(x − x_0) + alpha·z.
 pub(super) fn fractional_bouc_wen_damper() -> Entry {
     let params = [springpot("c_0"), around_hysteresis()];
     Entry {
         name: "fractional-bouc-wen-damper".into(),
         equation: format!(
-            "F = c_0·D^alpha x + k_0·(x − x_0) + alpha_h·z(A, beta, gamma, n), alpha_h = alpha_a + alpha_b·w, c_0 = a + b·w, {LAG}"
+            "F = (c_0a + c_0b·w)·D^alpha x + k_0·(x − x_0) + (alpha_a + alpha_b·w)·z, {HYSTERESIS}, {LAG}"
         )
         .into(),
         params: params.concat(),
@@ -87,6 +92,7 @@ pub(super) fn fractional_bouc_wen_damper() -> Entry {
         source: "that of `bouc-wen-damper` with a springpot in place of its dashpot".into(),
         build: Arc::new(|values, derivative| {
             let &[c_0a, c_0b, order, ref rest @ ..] = values else { unreachable!("values follow params") };
+            some_of(c_0a, c_0b, rest)?;
             let coefficient = coefficient([c_0a, c_0b], "c_0a + u·c_0b ≥ 0", "c_0b")?;
             Ok(Network::parallel([lagged_springpot(coefficient, order, derivative, rest[8])?, beside_it(rest)?]))
         }),
@@ -98,12 +104,13 @@ pub(super) fn bingham() -> Entry {
     let params = [yielding(), pair("c_", "N*s/m", "viscosity"), vec![offset(), eta()]];
     Entry {
         name: "bingham".into(),
-        equation: format!("F = F_y·tanh(x'/v_0) + c·x' + F_0; F_y, c = a + b·w, {LAG}").into(),
+        equation: format!("F = (F_ya + F_yb·w)·tanh(x'/v_0) + (c_a + c_b·w)·x' + F_0, {LAG}").into(),
         params: params.concat(),
         inputs: inputs(),
         source: "Bingham 1922; Stanway, Sproston & Stevens 1987, its sign smoothed".into(),
         build: Arc::new(|values, _| {
             let &[f_ya, f_yb, v_0, c_a, c_b, f_0, eta] = values else { unreachable!("values follow params") };
+            at_least_one_positive(&[("F_ya", f_ya), ("F_yb", f_yb), ("c_a", c_a), ("c_b", c_b)])?;
             let viscosity = coefficient([c_a, c_b], "c_a + u·c_b ≥ 0", "c_b")?;
             let viscous = Network::leaf(Lagged::new(Viscous { viscosity }, eta)?);
             Ok(Network::parallel([yields([f_ya, f_yb, v_0], eta)?, viscous, Network::leaf(Preload { force: f_0 })]))
@@ -116,12 +123,13 @@ pub(super) fn fractional_bingham() -> Entry {
     let params = [yielding(), springpot("c_"), vec![offset(), eta()]];
     Entry {
         name: "fractional-bingham".into(),
-        equation: format!("F = F_y·tanh(x'/v_0) + c·D^alpha x + F_0; F_y, c = a + b·w, {LAG}").into(),
+        equation: format!("F = (F_ya + F_yb·w)·tanh(x'/v_0) + (c_a + c_b·w)·D^alpha x + F_0, {LAG}").into(),
         params: params.concat(),
         inputs: inputs(),
         source: "that of `bingham` with a springpot in place of its dashpot".into(),
         build: Arc::new(|values, derivative| {
             let &[f_ya, f_yb, v_0, c_a, c_b, order, f_0, eta] = values else { unreachable!("values follow params") };
+            at_least_one_positive(&[("F_ya", f_ya), ("F_yb", f_yb), ("c_a", c_a), ("c_b", c_b)])?;
             let coefficient = coefficient([c_a, c_b], "c_a + u·c_b ≥ 0", "c_b")?;
             let springpot = lagged_springpot(coefficient, order, derivative, eta)?;
             Ok(Network::parallel([yields([f_ya, f_yb, v_0], eta)?, springpot, Network::leaf(Preload { force: f_0 })]))
@@ -188,6 +196,11 @@ fn hysteretic() -> Vec<Param> {
 
 fn around_hysteresis() -> Vec<Param> {
     [vec![stiffness("k_0", "stiffness"), free_stroke()], hysteretic(), vec![eta()]].concat()
+}
+
+fn some_of(c_0a: f64, c_0b: f64, rest: &[f64]) -> Result<(), RuleError> {
+    let &[k_0, _, alpha_a, alpha_b, ..] = rest else { unreachable!("values follow params") };
+    at_least_one_positive(&[("c_0a", c_0a), ("c_0b", c_0b), ("k_0", k_0), ("alpha_a", alpha_a), ("alpha_b", alpha_b)])
 }
 
 /// A coefficient a + b·w that is not negative whatever the command may be.

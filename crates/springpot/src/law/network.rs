@@ -4,11 +4,13 @@ mod series;
 
 pub(super) use series::Ready;
 
-use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
+use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot, When};
 use super::past::Periodic;
 use super::rule::RuleError;
 use super::state::{State, StateMut, StateRef, StateSize};
-use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use super::step::{
+    Electric, InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term,
+};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{KernelError, Memory, RatePolynomial};
@@ -384,6 +386,31 @@ impl Network {
             Self::Leaf(leaf) => Reported::leaf(&**leaf, at, leaf.now(at, state.take(leaf.size())), take),
             Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.now_part(at, state, take))),
             Self::Series(parts) => series::now(parts, at, state, take),
+        }
+    }
+
+    /// The electrical side of the law: that of its first leaf that has one and is in no series. Pure.
+    pub fn electric(&self, when: When, at: &Point, state: &State) -> Option<Electric> {
+        self.electric_part(when, at, &mut state.view())
+    }
+
+    fn electric_part(&self, when: When, at: &Point, state: &mut StateRef) -> Option<Electric> {
+        match self {
+            Self::Leaf(leaf) => leaf.electric(when, at, state.take(leaf.size())),
+            Self::Parallel(parts) => parts.iter().find_map(|part| part.electric_part(when, at, state)),
+            Self::Series(_) => {
+                self.pass(state);
+                None
+            }
+        }
+    }
+
+    /// Whether it has an electrical side to tell.
+    pub fn is_electric(&self) -> bool {
+        match self {
+            Self::Leaf(leaf) => leaf.is_electric(),
+            Self::Parallel(parts) => parts.iter().any(Self::is_electric),
+            Self::Series(_) => false,
         }
     }
 

@@ -7,6 +7,7 @@ mod named;
 mod nonlinear;
 mod orders;
 mod pasts;
+mod piezo;
 mod series;
 #[path = "../support/mod.rs"]
 mod support;

@@ -5,8 +5,17 @@ use crate::fractional::KernelError;
 use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::step::{Electric, InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{LeafAtRest, Tangent};
+
+/// Which time a leaf is asked about.
+#[derive(Debug, Clone, Copy)]
+pub enum When<'a> {
+    /// t_n + theta·h of a step, 0 < theta ≤ 1.
+    Within(&'a Step<'a>, f64),
+    /// Between two steps.
+    Between,
+}
 
 /// A part of a law that gives a force by itself: linear or not, with or without memories and inner variables.
 ///
@@ -60,6 +69,16 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
 
     /// The leaf between two steps, under the kinematics and inputs of `at`, which may have jumped since the last one.
     fn now(&self, at: &Point, state: StateRef) -> Observation;
+
+    /// Its electrical side, where [`Leaf::is_electric`].
+    fn electric(&self, _when: When, _at: &Point, _state: StateRef) -> Option<Electric> {
+        None
+    }
+
+    /// Whether it has an electrical side.
+    fn is_electric(&self) -> bool {
+        false
+    }
 
     /// What it is like under small and fast strokes about `at`.
     fn linearised(&self, at: &Point) -> Term;

@@ -15,7 +15,7 @@ use crate::law::tangent::{LeafAtRest, Tangent};
 /// w is one inner variable, collocated at the nodes of the step. It stays among the values that u has had, so that rules over u hold for w.
 /// It is meant for leaves whose force does not follow the input at rest.
 #[derive(Debug, Clone)]
-pub struct Lagged<L> {
+pub(in crate::law) struct Lagged<L> {
     leaf: L,
     rate: f64,
 }
