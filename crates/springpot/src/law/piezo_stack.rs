@@ -34,7 +34,7 @@ pub(super) fn piezo_stack_bouc_wen() -> Entry {
     let more = [alpha_h].into_iter().chain(hysteresis::params("1/V^n"));
     Entry {
         name: "piezo-stack-bouc-wen".into(),
-        equation: equation("R·q' + V + alpha_h·z(A, beta, gamma, n) = U, z moved by q/(C + T²/k)").into(),
+        equation: equation("R·q' + V + alpha_h·z(A, beta, gamma, n) = U, z of e = q/(C + T²/k)").into(),
         params: common().into_iter().chain(more).collect(),
         inputs: vec![voltage()],
         source: "Goldfarb & Celanovic 1997; Bouc 1967, Wen 1976".into(),
@@ -52,8 +52,7 @@ pub(super) fn piezo_stack_bouc_wen() -> Entry {
 pub(super) fn piezo_stack_prandtl_ishlinskii() -> Entry {
     Entry {
         name: "piezo-stack-prandtl-ishlinskii".into(),
-        equation: equation("R·q' + V + Σ b_i·stop_i = U, stops of q/(C + T²/k), the inverse of plays a_i, r_i of U")
-            .into(),
+        equation: equation("R·q' + V + Σ b_i·stop_i(e) = U, e = q/(C + T²/k), the inverse of plays a_i, r_i").into(),
         params: with_plays(),
         inputs: vec![voltage()],
         source: "Goldfarb & Celanovic 1997; Kuhnen 2003".into(),
@@ -67,7 +66,7 @@ pub(super) fn piezo_stack_feed_forward() -> Entry {
     Entry {
         name: "piezo-stack-feed-forward".into(),
         equation: equation(
-            "R·q' + V + Σ b_i·stop_i = U + Σ b_i·(stop_i of U), stops of q/(C + T²/k), the inverse of plays a_i, r_i",
+            "R·q' + V + Σ b_i·stop_i(e) = U + Σ b_i·stop_i(U), e = q/(C + T²/k), the inverse of plays a_i, r_i",
         )
         .into(),
         params: with_plays(),
@@ -79,8 +78,8 @@ pub(super) fn piezo_stack_feed_forward() -> Entry {
 
 fn equation(circuit: &str) -> String {
     format!(
-        "F = k·(x − x_c) + c·D^alpha x − T·V, k = F_block/x_0, T = F_block/V_max, q = C·V + T·x, {circuit}, V_min ≤ U ≤ V_max, creep of x_c by a \
-         springpot of the order alpha_creep"
+        "F = k·(x − x_c) + c·D^alpha x − T·V, k = F_block/x_0, T = F_block/V_max, q = C·V + T·x, {circuit}, V_min ≤ U ≤ V_max; creep x_c of the \
+         order alpha_creep"
     )
 }
 
