@@ -57,7 +57,7 @@ pub struct ElementTerm {
     pub stroke: f64,
     /// x', m/s.
     pub rate: f64,
-    /// D^alpha x, m/s^alpha.
+    /// D^alpha x, m/s^alpha; NaN at a singular start, and of a law that has none to tell.
     pub derivative: f64,
     /// F, N, positive in tension.
     pub force: f64,
