@@ -78,12 +78,18 @@ pub(super) fn json(law: &Entry) -> Value {
 fn example(law: &Entry) -> String {
     let value = |param: &Param| match (usual(&param.unit, param.range), param.is_list) {
         (value, false) => value,
-        (value, true) => format!("[{value}, {value}]"),
+        (value, true) => format!("[{value}, {}]", twice(&value)),
     };
     let params: Vec<String> = law.params.iter().map(|param| format!("{} = {}", param.name, value(param))).collect();
     let inputs: Vec<String> =
         law.inputs.iter().map(|input| format!("{} = {}", input.name, usual(&input.unit, input.range))).collect();
     element(&law.name, &params, &inputs)
+}
+
+/// A quantity twice as large, so that lists rise; a pure number as it is.
+fn twice(value: &str) -> String {
+    let Some((number, unit)) = value.trim_matches('"').split_once(' ') else { return value.to_owned() };
+    number.parse::<f64>().map_or_else(|_| value.to_owned(), |number| format!("\"{} {unit}\"", 2.0 * number))
 }
 
 /// Tables that make a longer line are written with a line for each value.
@@ -132,7 +138,14 @@ fn usual(unit: &str, range: Range) -> String {
         "m/K" => "0.7 mm/degC",
         "K" => "25 degC",
         "m/V" => "10 um/V",
+        "V" if range.high <= 0.0 => "0 V",
         "V" => "5 V",
+        "N" => "100 N",
+        "m" => "10 mm",
+        "m/s" => "10 mm/s",
+        "F" => "1 uF",
+        "ohm" => "50 ohm",
+        "1/s" => "100 1/s",
         other => return format!("\"1 {other}\""),
     };
     format!("\"{written}\"")

@@ -48,7 +48,9 @@ fn every_page_says_all_and_its_example_runs() {
             let found = page.lines().find(|line| line.starts_with(&format!("  {} ", param.name))).unwrap();
             assert!(found.contains(if param.unit.is_empty() { " 1 " } else { &param.unit }), "{found}");
         }
-        assert!(page.contains(&*law.equation) && page.contains("source  "), "{page}");
+        // Long equations are broken.
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words(&page).contains(&words(&law.equation)) && page.contains("source  "), "{page}");
         admissible(element(&page));
 
         let one: Value = serde_json::from_str(&place.done(&["laws", &law.name, "--json"]).stdout).unwrap();

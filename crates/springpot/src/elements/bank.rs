@@ -4,8 +4,8 @@ use crate::collocation::Nodes;
 use crate::collocation::{MAX_NODES, STAGES};
 use crate::fractional::{Form, KernelError};
 use crate::law::{
-    Course, Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Start,
-    State, Step, Term,
+    Course, Electric, Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response,
+    Start, State, Step, Term, When,
 };
 use serde::{Deserialize, Serialize};
 
@@ -384,6 +384,16 @@ impl ElementBank {
         match theta {
             Some(theta) => law.leaves_at(&told.step(self.step), theta, at, &kept.state, leaves),
             None => law.leaves_now(at, &kept.state, leaves),
+        }
+    }
+
+    /// The electrical side of element `e`: at θ of the step that was begun, or between two steps; none where it takes no part.
+    pub(crate) fn electric(&self, e: usize, theta: Option<f64>, at: &Point) -> Option<Electric> {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        let state = &kept.as_ref()?.state;
+        match theta {
+            Some(theta) => law.electric(When::Within(&told.step(self.step), theta), at, state),
+            None => law.electric(When::Between, at, state),
         }
     }
 

@@ -57,7 +57,7 @@ pub struct ElementTerm {
     pub stroke: f64,
     /// x', m/s.
     pub rate: f64,
-    /// D^alpha x, m/s^alpha.
+    /// D^alpha x, m/s^alpha; NaN at a singular start, and of a law that has none to tell.
     pub derivative: f64,
     /// F, N, positive in tension.
     pub force: f64,
@@ -121,7 +121,8 @@ impl System {
                 length: of(ElementQuantity::Length),
                 stroke: of(ElementQuantity::Stroke),
                 rate: of(ElementQuantity::Rate),
-                derivative: of(ElementQuantity::Derivative),
+                // Laws with several springpots, and those that are not linear, have none to tell.
+                derivative: table.value(0, Quantity::Element(e, ElementQuantity::Derivative)).unwrap_or(f64::NAN),
                 force: of(ElementQuantity::Force),
                 q_force: (0..n).map(ElementQuantity::GeneralizedForce).map(of).collect(),
                 inputs: (0..element.entry.inputs.len()).map(ElementQuantity::InputValue).map(of).collect(),

@@ -32,10 +32,13 @@ pub mod state;
 pub mod step;
 pub mod tangent;
 
+mod damper;
 mod kelvin_voigt;
 mod magnetorheological;
 mod named;
 mod piezo;
+mod piezo_stack;
+mod prandtl_ishlinskii;
 mod rule;
 mod standard;
 mod thermoviscoelastic;
@@ -43,13 +46,14 @@ mod written;
 
 pub use crate::fractional::Kind as Derivative;
 pub use catalog::{Build, Built, Catalog, Entry, Input, Param, Range};
-pub use leaf::{Elastic, Leaf, LeafBuild, LeafKind, Table, TableError};
+pub use leaf::{Elastic, Leaf, LeafBuild, LeafKind, Table, TableError, When};
 pub use network::{Guard, Holds, LeafPart, Network};
 pub use past::{Past, Periodic};
+pub use prandtl_ishlinskii::{PrandtlIshlinskii, Stop};
 pub use rule::RuleError;
 pub use state::{State, StateMut, StateRef, StateSize};
 pub use step::{
-    Course, InputValue, LeafState, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term,
+    Course, Electric, InputValue, LeafState, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term,
 };
 pub use tangent::{AtRest, LeafAtRest, Tangent};
 pub use written::{NetworkText, NetworkTextError};

@@ -4,11 +4,13 @@ mod series;
 
 pub(super) use series::Ready;
 
-use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
+use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot, When};
 use super::past::Periodic;
 use super::rule::RuleError;
 use super::state::{State, StateMut, StateRef, StateSize};
-use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use super::step::{
+    Electric, InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term,
+};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{KernelError, Memory, RatePolynomial};
@@ -332,15 +334,7 @@ impl Network {
 
     fn guards_part(&self, step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
         match self {
-            Self::Leaf(leaf) => {
-                state.take(leaf.size());
-                let first = guards.len();
-                leaf.guards(&step.point(0), &mut |value| guards.push([value; MAX_NODES + 1]));
-                for k in 1..=step.nodes.count() {
-                    let mut own = guards[first..].iter_mut();
-                    leaf.guards(&step.point(k), &mut |value| own.next().into_iter().for_each(|guard| guard[k] = value));
-                }
-            }
+            Self::Leaf(leaf) => leaf.guards_in(step, state.take(leaf.size()), guards),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.guards_part(step, state, guards)),
             Self::Series(parts) => series::guards(parts, step, state, guards),
         }
@@ -392,6 +386,31 @@ impl Network {
             Self::Leaf(leaf) => Reported::leaf(&**leaf, at, leaf.now(at, state.take(leaf.size())), take),
             Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.now_part(at, state, take))),
             Self::Series(parts) => series::now(parts, at, state, take),
+        }
+    }
+
+    /// The electrical side of the law: that of its first leaf that has one and is in no series. Pure.
+    pub fn electric(&self, when: When, at: &Point, state: &State) -> Option<Electric> {
+        self.electric_part(when, at, &mut state.view())
+    }
+
+    fn electric_part(&self, when: When, at: &Point, state: &mut StateRef) -> Option<Electric> {
+        match self {
+            Self::Leaf(leaf) => leaf.electric(when, at, state.take(leaf.size())),
+            Self::Parallel(parts) => parts.iter().find_map(|part| part.electric_part(when, at, state)),
+            Self::Series(_) => {
+                self.pass(state);
+                None
+            }
+        }
+    }
+
+    /// Whether it has an electrical side to tell.
+    pub fn is_electric(&self) -> bool {
+        match self {
+            Self::Leaf(leaf) => leaf.is_electric(),
+            Self::Parallel(parts) => parts.iter().any(Self::is_electric),
+            Self::Series(_) => false,
         }
     }
 

@@ -1,7 +1,7 @@
 //! The laws that come with Springpot.
 
 use super::catalog::Catalog;
-use super::{kelvin_voigt, magnetorheological, named, piezo, thermoviscoelastic};
+use super::{damper, kelvin_voigt, magnetorheological, named, piezo, piezo_stack, thermoviscoelastic};
 use std::sync::Arc;
 
 impl Catalog {
@@ -17,6 +17,15 @@ impl Catalog {
             piezo::piezo_kelvin_voigt(),
             magnetorheological::magnetorheological(),
             magnetorheological::magnetorheological_bouc_wen(),
+            piezo_stack::piezo_stack(),
+            piezo_stack::piezo_stack_bouc_wen(),
+            piezo_stack::piezo_stack_prandtl_ishlinskii(),
+            piezo_stack::piezo_stack_feed_forward(),
+            damper::spencer(),
+            damper::bouc_wen_damper(),
+            damper::fractional_bouc_wen_damper(),
+            damper::bingham(),
+            damper::fractional_bingham(),
         ];
         Self { entries: entries.into_iter().chain(named::entries()).map(Arc::new).collect() }
     }

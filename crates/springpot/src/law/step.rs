@@ -123,6 +123,17 @@ pub struct LeafState {
     pub derivative: f64,
 }
 
+/// The electrical side of a law at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Electric {
+    /// Voltage across its terminals, V.
+    pub voltage: f64,
+    /// Charge on them, C.
+    pub charge: f64,
+    /// Current into them, A.
+    pub current: f64,
+}
+
 /// c·D^order x: what a law is like under small and fast strokes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {

@@ -42,6 +42,8 @@ pub struct AtRest {
 pub enum Tangent {
     /// c·s^order, and an input with ∂F of it.
     Leaf(Term, Option<(usize, f64)>),
+    /// A leaf that answers as these parts do.
+    Whole(Box<Tangent>),
     /// One stroke, forces add.
     Parallel(Vec<Tangent>),
     /// One force, strokes add.
@@ -68,6 +70,9 @@ impl Network {
         match self {
             Self::Leaf(leaf) => {
                 let LeafAtRest { force, stiffness, term, input, damping } = leaf.at_rest(at, held);
+                if let Some(tangent) = leaf.tangent(at) {
+                    return Some(AtRest { force, stiffness, tangent: Tangent::Whole(Box::new(tangent)) });
+                }
                 let tangent = Tangent::Leaf(term, input);
                 if damping == 0.0 {
                     return Some(AtRest { force, stiffness, tangent });
@@ -147,6 +152,7 @@ impl Tangent {
     pub fn modulus(&self, s: Complex64) -> Complex64 {
         match self {
             Self::Leaf(term, _) => term.coefficient * power(s, term.order),
+            Self::Whole(parts) => parts.modulus(s),
             Self::Parallel(parts) => parts.iter().map(|part| part.modulus(s)).sum(),
             Self::Series(parts) => {
                 let moduli: Vec<Complex64> = parts.iter().map(|part| part.modulus(s)).collect();
@@ -168,6 +174,7 @@ impl Tangent {
                     0.0
                 }
             }
+            Self::Whole(parts) => parts.relaxed(),
             Self::Parallel(parts) => parts.iter().map(Self::relaxed).sum(),
             Self::Series(parts) => {
                 let each = || parts.iter().map(Self::relaxed);
@@ -195,6 +202,11 @@ impl Tangent {
                 let commanded = source.filter(|(i, _)| Some(*i) == input).map_or(0.0, |(_, gain)| gain);
                 let force = term.coefficient * derivative + commanded;
                 take(LeafAnswer { stroke, force, derivative, order: term.order });
+                force
+            }
+            Self::Whole(parts) => {
+                let force = parts.answer(s, stroke, input, &mut |_| ());
+                take(LeafAnswer { stroke, force, derivative: stroke, order: 0.0 });
                 force
             }
             Self::Parallel(parts) => parts.iter().map(|part| part.answer(s, stroke, input, take)).sum(),
@@ -227,6 +239,7 @@ impl Tangent {
     pub fn is_smooth(&self) -> bool {
         match self {
             Self::Leaf(term, _) => term.order < 1.0 || term.coefficient == 0.0,
+            Self::Whole(parts) => parts.is_smooth(),
             Self::Parallel(parts) | Self::Series(parts) => parts.iter().all(Self::is_smooth),
         }
     }
@@ -235,6 +248,7 @@ impl Tangent {
     pub fn reduced(&self) -> Self {
         let (parts, is_series) = match self {
             Self::Leaf(term, _) => return Self::Leaf(*term, None),
+            Self::Whole(parts) => return parts.reduced(),
             Self::Parallel(parts) => (parts, false),
             Self::Series(parts) => (parts, true),
         };

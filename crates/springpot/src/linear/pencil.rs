@@ -75,6 +75,7 @@ impl Pencil {
                     row.iter_mut().zip(b).for_each(|(entry, c)| *entry += term.coefficient * r * c);
                 }
             }
+            Tangent::Whole(parts) => self.add(parts, b, next),
             Tangent::Parallel(parts) => parts.iter().for_each(|part| self.add(part, b, next)),
             Tangent::Series(parts) => {
                 let Some((last, others)) = parts.split_last() else { return };
@@ -193,6 +194,7 @@ impl Pencil {
 fn inner(tangent: &Tangent) -> usize {
     match tangent {
         Tangent::Leaf(..) => 0,
+        Tangent::Whole(parts) => inner(parts),
         Tangent::Parallel(parts) => parts.iter().map(inner).sum(),
         Tangent::Series(parts) => parts.len().saturating_sub(1) + parts.iter().map(inner).sum::<usize>(),
     }

@@ -143,7 +143,10 @@ impl Linearisation {
                             LeafQuantity::Derivative => leaf.derivative,
                         }
                     }
-                    ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input => return None,
+                    ElementQuantity::Electric(_)
+                    | ElementQuantity::Stored
+                    | ElementQuantity::Dissipated
+                    | ElementQuantity::Input => return None,
                 })
             }
             Quantity::Time | Quantity::GripperError | Quantity::Energy(_) => None,

@@ -4,7 +4,7 @@ use super::evaluation::{ElementEvaluation, ElementRow};
 use super::subscript::at_joint;
 use super::units::ObservedElement;
 use crate::elements::MeasureKind;
-use crate::law::LeafState;
+use crate::law::{Electric, LeafState};
 use crate::model::Label;
 use std::fmt;
 
@@ -30,10 +30,61 @@ pub enum ElementQuantity<Id = usize> {
     Dissipated,
     /// Energy supplied by the inputs since t = 0, J.
     Input,
+    /// Something of the electrical side of its law, where it has one.
+    Electric(ElectricQuantity),
     /// Value of an input, in the order of its law.
     InputValue(Id),
     /// Something of a leaf of its law.
     Leaf(Id, LeafQuantity),
+}
+
+/// A number of the electrical side of an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ElectricQuantity {
+    /// Voltage across its terminals, V.
+    Voltage,
+    /// Charge on them, C.
+    Charge,
+    /// Current into them, A.
+    Current,
+}
+
+impl ElectricQuantity {
+    /// All of them, in the order of the columns.
+    pub const ALL: [Self; 3] = [Self::Voltage, Self::Charge, Self::Current];
+
+    /// What follows the element's name in the column.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Voltage => "voltage",
+            Self::Charge => "charge",
+            Self::Current => "current",
+        }
+    }
+
+    const fn unit(self) -> &'static str {
+        match self {
+            Self::Voltage => "V",
+            Self::Charge => "C",
+            Self::Current => "A",
+        }
+    }
+
+    fn meaning(self, element: &str) -> String {
+        match self {
+            Self::Voltage => format!("voltage across {element}"),
+            Self::Charge => format!("charge on {element}"),
+            Self::Current => format!("current into {element}"),
+        }
+    }
+
+    fn value(self, electric: &Electric) -> f64 {
+        match self {
+            Self::Voltage => electric.voltage,
+            Self::Charge => electric.charge,
+            Self::Current => electric.current,
+        }
+    }
 }
 
 /// A number of a leaf.
@@ -93,7 +144,7 @@ impl<Id> ElementQuantity<Id> {
 impl ElementQuantity {
     /// Its value in a row, NaN where unknown.
     pub(super) fn value(self, row: &ElementRow, state: &ElementEvaluation) -> f64 {
-        let ElementRow { observation, leaves, dissipated, input } = row;
+        let ElementRow { observation, electric, leaves, dissipated, input } = row;
         match self {
             Self::Length => state.reading.coordinate,
             Self::Stroke => state.stroke,
@@ -104,6 +155,7 @@ impl ElementQuantity {
             Self::Stored => observation.stored.unwrap_or(f64::NAN),
             Self::Dissipated => observation.stored.map_or(f64::NAN, |_| *dissipated),
             Self::Input => *input,
+            Self::Electric(quantity) => electric.as_ref().map_or(f64::NAN, |electric| quantity.value(electric)),
             Self::InputValue(i) => state.inputs.get(i).map_or(f64::NAN, |input| input.value),
             Self::Leaf(i, quantity) => leaves.get(i).map_or(f64::NAN, |leaf| quantity.value(leaf)),
         }
@@ -123,6 +175,7 @@ impl ElementQuantity {
             Self::Force | Self::Leaf(_, LeafQuantity::Force) => of_element(["N*m", "N"]),
             Self::GeneralizedForce(k) => velocities[k].dimension.units().force,
             Self::Stored | Self::Dissipated | Self::Input => "J",
+            Self::Electric(quantity) => quantity.unit(),
             Self::InputValue(i) => &element.entry.inputs[i].unit,
         }
     }
@@ -139,6 +192,7 @@ impl ElementQuantity {
             Self::Stored => ElementQuantity::Stored,
             Self::Dissipated => ElementQuantity::Dissipated,
             Self::Input => ElementQuantity::Input,
+            Self::Electric(quantity) => ElementQuantity::Electric(quantity),
             Self::InputValue(i) => ElementQuantity::InputValue(&element.entry.inputs[i].name),
             Self::Leaf(i, quantity) => ElementQuantity::Leaf(&element.leaves[i].0, quantity),
         }
@@ -155,7 +209,10 @@ impl<'a> ElementQuantity<&'a str> {
                 .find(|quantity| quantity.key() == key)
                 .map(|quantity| Self::Leaf(leaf, quantity)),
             None => {
-                let mut known = Self::BEFORE_FORCES.into_iter().chain(Self::BEFORE_INPUTS);
+                let mut known = Self::BEFORE_FORCES
+                    .into_iter()
+                    .chain(Self::BEFORE_INPUTS)
+                    .chain(ElectricQuantity::ALL.map(Self::Electric));
                 Some(known.find(|quantity| quantity.to_string() == key).unwrap_or(Self::InputValue(key)))
             }
         }
@@ -173,6 +230,7 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Stored => format!("energy stored in {element}"),
             Self::Dissipated => format!("energy dissipated in {element} since t = 0"),
             Self::Input => format!("energy supplied by the inputs of {element} since t = 0"),
+            Self::Electric(quantity) => quantity.meaning(element),
             Self::InputValue(input) => format!("{input} of {element}"),
             Self::Leaf(leaf, quantity) => format!("{} of {leaf} in {element}", quantity.words()),
         }
@@ -206,6 +264,7 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Stored => format!("energy stored in {element}"),
             Self::Dissipated => format!("energy dissipated in {element}"),
             Self::Input => format!("energy supplied to {element}"),
+            Self::Electric(quantity) => quantity.meaning(element),
             Self::InputValue(input) => format!("{input} of {element}"),
             Self::Leaf(leaf, LeafQuantity::Stroke) => format!("stroke x of {leaf} in {element}"),
             Self::Leaf(leaf, LeafQuantity::Rate) => format!("stroke rate of {leaf} in {element}"),
@@ -228,6 +287,7 @@ impl fmt::Display for ElementQuantity<&str> {
             Self::Stored => "stored",
             Self::Dissipated => "dissipated",
             Self::Input => "input",
+            Self::Electric(quantity) => quantity.key(),
             Self::InputValue(input) => input,
             Self::Leaf(leaf, quantity) => return write!(f, "{leaf}.{}", quantity.key()),
         })

@@ -1,7 +1,7 @@
 //! Robot and elements evaluated at one time.
 
 use crate::elements::Reading;
-use crate::law::{InputValue, LeafState, Observation};
+use crate::law::{Electric, InputValue, LeafState, Observation};
 use serde::{Deserialize, Serialize};
 
 /// State of one element at one time, before its law is asked.
@@ -40,6 +40,8 @@ pub(crate) struct Evaluation {
 #[derive(Debug, Clone)]
 pub(crate) struct ElementRow {
     pub(crate) observation: Observation,
+    /// Its electrical side, where it has one.
+    pub(crate) electric: Option<Electric>,
     /// Its leaves, where rows tell them.
     pub(crate) leaves: Vec<LeafState>,
     /// Dissipated and supplied since t = 0, J; NaN where unknown.

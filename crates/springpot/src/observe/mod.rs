@@ -13,7 +13,7 @@ pub mod symbol;
 mod table;
 mod units;
 
-pub use element::{ElementQuantity, LeafQuantity};
+pub use element::{ElectricQuantity, ElementQuantity, LeafQuantity};
 pub use observables::Observables;
 pub use quantity::{Axis, EnergyQuantity, Quantity};
 pub use snapshot::Snapshot;

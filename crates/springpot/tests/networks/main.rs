@@ -2,10 +2,12 @@
 
 mod bouc_wen;
 mod convergence;
+mod dampers;
 mod named;
 mod nonlinear;
 mod orders;
 mod pasts;
+mod piezo;
 mod series;
 #[path = "../support/mod.rs"]
 mod support;

@@ -57,7 +57,11 @@ fn check(what: &str, cases: &Cases, case: usize) -> usize {
         let row = table.row(written.iter().position(|at| *at == t).unwrap());
         let equation = system.equation(&settings, t).unwrap();
         for (name, value) in told(&equation, &labels, &q_labels) {
-            let expected = row[columns.iter().position(|column| *column == name).unwrap()];
+            let Some(column) = columns.iter().position(|column| *column == name) else {
+                assert!(name.ends_with(".derivative") && value.is_nan(), "{what} case {case}: no column {name}");
+                continue;
+            };
+            let expected = row[column];
             assert_eq!(value.to_bits(), expected.to_bits(), "{what} case {case}, {name} at {t}: {value} {expected}");
             compared += 1;
         }

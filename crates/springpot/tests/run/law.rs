@@ -335,6 +335,15 @@ fn the_catalog_is_complete_and_in_order() {
             "piezo-kelvin-voigt",
             "magnetorheological",
             "magnetorheological-bouc-wen",
+            "piezo-stack",
+            "piezo-stack-bouc-wen",
+            "piezo-stack-prandtl-ishlinskii",
+            "piezo-stack-feed-forward",
+            "spencer",
+            "bouc-wen-damper",
+            "fractional-bouc-wen-damper",
+            "bingham",
+            "fractional-bingham",
             "maxwell",
             "fractional-maxwell",
             "zener",
@@ -379,7 +388,9 @@ fn the_catalog_is_complete_and_in_order() {
 
 #[test]
 fn a_law_without_any_coefficient_is_refused() {
-    for (k, entry) in Catalog::standard().entries().iter().enumerate() {
+    // A piezo stack is stiff whatever its parameters, all of which are positive.
+    let is_stack = |entry: &Arc<Entry>| entry.name.starts_with("piezo-stack");
+    for (k, entry) in Catalog::standard().entries().iter().enumerate().filter(|(_, entry)| !is_stack(entry)) {
         let zeros: Vec<f64> =
             entry.params.iter().map(|p| if p.name == "alpha" { 0.5 } else { 0.0f64.max(p.range.low) }).collect();
         let broken = (entry.build)(&zeros, Derivative::Caputo).expect_err(&entry.name);

@@ -265,7 +265,8 @@ impl Recorder {
             if cx.system.needs_leaves() {
                 self.bank.leaves(e, theta, &point, &mut leaves);
             }
-            elements.push(ElementRow { observation, leaves, dissipated, input });
+            let electric = self.bank.electric(e, theta, &point);
+            elements.push(ElementRow { observation, electric, leaves, dissipated, input });
         }
         let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
         let balance = self.balance(snapshot, actuators, joints);

@@ -1,35 +1,25 @@
 //! Hysteresis after Bouc and Wen.
 
 use super::contract::Leaf;
+use super::hysteresis::{self, Hysteresis, Matrix, Values};
 use super::kind::{LeafBuild, LeafKind};
+use super::springpot::Coefficient;
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-
-/// Iterations for z at the nodes.
-const MOST_ITERATIONS: usize = 60;
-
-/// Change of z, in units of the largest, at which they end; they converge quadratically.
-const ENOUGH: f64 = 1e-12;
-
-type Values = [f64; MAX_NODES + 1];
-type Matrix = [[f64; MAX_NODES]; MAX_NODES];
+use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 
 /// F = alpha_h·z, z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n, z(0) = 0 (Bouc 1967, Wen 1976).
 ///
-/// Stores alpha_h·z²/(2A), dissipates (alpha_h/A)·|z|^(n+1)·(gamma·|x'| + beta·x'·sgn z). z is one inner variable, collocated at the nodes of
-/// the step; where the stroke turns round z' has a kink.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Stores alpha_h·z²/(2A), dissipates (alpha_h/A)·|z|^(n+1)·(gamma·|x'| + beta·x'·sgn z); an alpha_h that follows an input is supplied with
+/// ∫ alpha_h'·z²/(2A) dt by it. z is one inner variable, collocated at the nodes of the step; where the stroke turns round z' has a kink.
+#[derive(Debug, Clone, PartialEq)]
 pub struct BoucWen {
-    alpha_h: f64,
-    a: f64,
-    beta: f64,
-    gamma: f64,
-    n: f64,
+    alpha_h: Coefficient,
+    hysteresis: Hysteresis,
 }
 
 impl BoucWen {
@@ -39,96 +29,27 @@ impl BoucWen {
     /// [`RuleError`]: alpha_h ≥ 0, A > 0, n ≥ 1, gamma ≥ |beta| so that it dissipates, gamma + beta > 0 so that z is bounded.
     pub fn new(alpha_h: f64, a: f64, beta: f64, gamma: f64, n: f64) -> Result<Self, RuleError> {
         RuleError::unless(alpha_h >= 0.0, "alpha_h ≥ 0", "alpha_h")?;
-        RuleError::unless(a > 0.0, "A > 0", "A")?;
-        RuleError::unless(n >= 1.0, "n ≥ 1", "n")?;
-        RuleError::unless(gamma >= beta.abs(), "gamma ≥ |beta|", "gamma")?;
-        RuleError::unless(gamma + beta > 0.0, "gamma + beta > 0", "beta")?;
-        Ok(Self { alpha_h, a, beta, gamma, n })
+        Ok(Self { alpha_h: Coefficient::constant(alpha_h), hysteresis: Hysteresis::new(a, beta, gamma, n)? })
     }
 
-    fn slope(&self, z: f64, v: f64) -> f64 {
-        self.a * v - z.abs().powf(self.n) * (self.gamma * v.abs() * sign(z) + self.beta * v)
+    /// With a coefficient that may follow an input.
+    pub fn varying(alpha_h: Coefficient, hysteresis: Hysteresis) -> Self {
+        Self { alpha_h, hysteresis }
     }
 
-    /// ∂z'/∂z and ∂z'/∂v.
-    fn slopes(&self, z: f64, v: f64) -> [f64; 2] {
-        let power = z.abs().powf(self.n);
-        let by_z = -self.n * z.abs().powf(self.n - 1.0) * (self.gamma * v.abs() + self.beta * v * sign(z));
-        [by_z, self.a - power * (self.gamma * sign(v) * sign(z) + self.beta)]
-    }
-
-    /// The largest |z| that strokes lead to.
-    fn largest(&self) -> f64 {
-        (self.a / (self.gamma + self.beta)).powf(self.n.recip())
-    }
-
-    /// z at the start and at the nodes, and ∂z_i/∂v_j: z_i = z_0 + h Σ_j A_ij z'_j by Newton's method; NaN where that finds none.
     fn solve(&self, step: &Step, start: f64) -> (Values, Matrix) {
-        let (count, matrix) = (step.nodes.count(), step.nodes.matrix());
-        // Beyond what it can be the powers would throw the iteration far off.
-        let bound = 2.0 * self.largest().max(start.abs());
-        let mut z = [start; MAX_NODES + 1];
-        let mut tangent = Matrix::default();
-        for _ in 0..MOST_ITERATIONS {
-            // (I − h A diag(∂z'/∂z)) against h A diag(∂z'/∂v) and against the residual.
-            let mut system = [[0.0; 2 * MAX_NODES + 1]; MAX_NODES];
-            for i in 0..count {
-                system[i][i] = 1.0;
-                let mut residual = start - z[i + 1];
-                for j in 0..count {
-                    let (weight, at) = (step.h * matrix[i][j], (z[j + 1], step.rate[j + 1]));
-                    let [by_z, by_v] = self.slopes(at.0, at.1);
-                    system[i][j] -= weight * by_z;
-                    system[i][MAX_NODES + j] = weight * by_v;
-                    residual += weight * self.slope(at.0, at.1);
-                }
-                system[i][2 * MAX_NODES] = residual;
-            }
-            eliminate(&mut system, count);
-            let (mut change, mut size) = (0.0f64, f64::MIN_POSITIVE);
-            for i in 0..count {
-                let next = (z[i + 1] + system[i][2 * MAX_NODES]).clamp(-bound, bound);
-                // Not `max`, which would pass over what is no number.
-                let moved = (next - z[i + 1]).abs();
-                change = if moved > change || moved.is_nan() { moved } else { change };
-                z[i + 1] = next;
-                size = size.max(next.abs());
-                tangent[i] = std::array::from_fn(|j| system[i][MAX_NODES + j]);
-            }
-            if change <= ENOUGH * size {
-                return (z, tangent);
-            }
-        }
-        ([f64::NAN; MAX_NODES + 1], [[f64::NAN; MAX_NODES]; MAX_NODES])
+        self.hysteresis.solve(step.nodes, step.h, step.rate, None, start)
     }
 
     fn rates(&self, step: &Step, z: &Values) -> Values {
         let last = step.nodes.count();
-        std::array::from_fn(|k| if k > last { 0.0 } else { self.slope(z[k], step.rate[k]) })
+        std::array::from_fn(|k| if k > last { 0.0 } else { self.hysteresis.rate(z[k], step.rate[k]) })
     }
 
     fn observation(&self, at: &Point, z: f64) -> Observation {
-        let stored = Some(0.5 * self.alpha_h * z * z / self.a);
-        Observation { derivative: at.stroke, regular: self.alpha_h * z, singular: 0.0, stored }
-    }
-}
-
-/// −1, 0 or 1.
-fn sign(x: f64) -> f64 {
-    if x == 0.0 { 0.0 } else { x.signum() }
-}
-
-/// Solves the leading `count` rows for their right sides.
-fn eliminate<const WIDTH: usize>(system: &mut [[f64; WIDTH]; MAX_NODES], count: usize) {
-    for k in 0..count {
-        let pivot = (k..count).max_by(|&a, &b| system[a][k].abs().total_cmp(&system[b][k].abs())).unwrap_or(k);
-        system.swap(k, pivot);
-        let scale = system[k][k];
-        system[k].iter_mut().for_each(|entry| *entry /= scale);
-        for i in (0..count).filter(|&i| i != k) {
-            let (factor, row) = (system[i][k], system[k]);
-            system[i].iter_mut().zip(row).for_each(|(entry, other)| *entry -= factor * other);
-        }
+        let alpha_h = self.alpha_h.at(at.inputs).value;
+        let stored = Some(0.5 * alpha_h * z * z / self.hysteresis.slope_at_rest());
+        Observation { derivative: at.stroke, regular: alpha_h * z, singular: 0.0, stored }
     }
 }
 
@@ -149,10 +70,18 @@ impl Leaf for BoucWen {
     fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response) {
         let (z, tangent) = self.solve(step, state.variables[0]);
         for i in 0..step.nodes.count() {
-            response.force[i] += self.alpha_h * z[i + 1];
+            let alpha_h = self.alpha_h.at(step.point(i + 1).inputs).value;
+            response.force[i] += alpha_h * z[i + 1];
             for j in 0..step.nodes.count() {
-                response.d_rate[i][j] += self.alpha_h * tangent[i][j];
+                response.d_rate[i][j] += alpha_h * tangent[i][j];
             }
+        }
+    }
+
+    fn by_input(&self, step: &Step, state: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
+        if self.alpha_h.input == Some(input) {
+            let (z, _) = self.solve(step, state.variables[0]);
+            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.alpha_h.slope * z[i + 1]);
         }
     }
 
@@ -166,16 +95,17 @@ impl Leaf for BoucWen {
         let (z, _) = self.solve(step, state.variables[0]);
         let defect = step.h * quadrature_defect(step.nodes, &self.rates(step, &z));
         // What rounding leaves of a stroke is no error of z.
-        let error = if defect <= self.a * step.resolution { 0.0 } else { defect };
+        let error = if defect <= self.hysteresis.slope_at_rest() * step.resolution { 0.0 } else { defect };
         errors.push(LocalError { error, value: z[step.nodes.count()], order: 0.0, sharpness: 1.0 });
     }
 
     fn powers(&self, step: &Step, state: StateRef, powers: &mut Powers) {
         let (z, _) = self.solve(step, state.variables[0]);
+        let a = self.hysteresis.slope_at_rest();
         for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            let (z, v) = (z[k], step.rate[k]);
-            let lost = z.abs().powf(self.n + 1.0) * (self.gamma * v.abs() + self.beta * v * sign(z));
-            power.dissipation += self.alpha_h / self.a * lost;
+            let alpha_h = self.alpha_h.at(step.point(k).inputs);
+            power.dissipation += alpha_h.value / a * self.hysteresis.lost(z[k], step.rate[k]);
+            power.input += 0.5 * alpha_h.rate * z[k] * z[k] / a;
         }
     }
 
@@ -191,8 +121,8 @@ impl Leaf for BoucWen {
     }
 
     /// About z = 0, so that at rest it gives no force and small motions meet the spring alpha_h·A.
-    fn linearised(&self, _: &Point) -> Term {
-        Term { coefficient: self.alpha_h * self.a, order: 0.0 }
+    fn linearised(&self, at: &Point) -> Term {
+        Term { coefficient: self.alpha_h.at(at.inputs).value * self.hysteresis.slope_at_rest(), order: 0.0 }
     }
 
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
@@ -201,19 +131,18 @@ impl Leaf for BoucWen {
 
     fn holds(&self) -> Holds {
         // At its largest z it yields.
-        if self.alpha_h == 0.0 { Holds::Never } else { Holds::AtTimes }
+        if self.alpha_h.is_none() { Holds::Never } else { Holds::AtTimes }
+    }
+
+    fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
+        self.alpha_h.check(inputs, "z")
     }
 }
 
 /// Its parameters, in the order of its arguments.
 pub(in crate::law) fn params() -> Vec<Param> {
-    vec![
-        Param::new("alpha_h", "N/m", "force per unit of the hysteretic variable z", Range::NOT_NEGATIVE),
-        Param::new("A", "", "rate of z per unit of x' where z = 0", Range { low: f64::MIN_POSITIVE, high: f64::MAX }),
-        Param::new("beta", "1/m^n", "shape of the loops", Range::ANY),
-        Param::new("gamma", "1/m^n", "shape of the loops, |beta| or more", Range::NOT_NEGATIVE),
-        Param::new("n", "", "how sharply it yields", Range { low: 1.0, high: f64::MAX }),
-    ]
+    let alpha_h = Param::new("alpha_h", "N/m", "force per unit of the hysteretic variable z", Range::NOT_NEGATIVE);
+    [alpha_h].into_iter().chain(hysteresis::params("1/m^n")).collect()
 }
 
 /// What networks know of it.

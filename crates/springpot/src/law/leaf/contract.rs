@@ -2,11 +2,20 @@
 
 use crate::collocation::MAX_NODES;
 use crate::fractional::KernelError;
-use crate::law::network::Holds;
+use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-use crate::law::tangent::LeafAtRest;
+use crate::law::step::{Electric, InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::tangent::{LeafAtRest, Tangent};
+
+/// Which time a leaf is asked about.
+#[derive(Debug, Clone, Copy)]
+pub enum When<'a> {
+    /// t_n + theta·h of a step, 0 < theta ≤ 1.
+    Within(&'a Step<'a>, f64),
+    /// Between two steps.
+    Between,
+}
 
 /// A part of a law that gives a force by itself: linear or not, with or without memories and inner variables.
 ///
@@ -61,6 +70,16 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// The leaf between two steps, under the kinematics and inputs of `at`, which may have jumped since the last one.
     fn now(&self, at: &Point, state: StateRef) -> Observation;
 
+    /// Its electrical side, where [`Leaf::is_electric`].
+    fn electric(&self, _when: When, _at: &Point, _state: StateRef) -> Option<Electric> {
+        None
+    }
+
+    /// Whether it has an electrical side.
+    fn is_electric(&self) -> bool {
+        false
+    }
+
     /// What it is like under small and fast strokes about `at`.
     fn linearised(&self, at: &Point) -> Term;
 
@@ -77,6 +96,12 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         }
     }
 
+    /// How it answers to small motions about rest where one term, an input and a dashpot do not say it: then [`Leaf::at_rest`] tells force
+    /// and slope alone.
+    fn tangent(&self, _at: &Point) -> Option<Tangent> {
+        None
+    }
+
     /// Whether it gives a force that grows with its stroke, or the rate of it, wherever it is: what may stand in a series by itself.
     fn holds(&self) -> Holds {
         let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
@@ -86,6 +111,16 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// Hands over functions whose zeros are kinks of its force, such as how far a stop is away, always as many in one order: steps
     /// end on them.
     fn guards(&self, _at: &Point, _take: &mut dyn FnMut(f64)) {}
+
+    /// [`Leaf::guards`] at the start and at the nodes of a step: of a leaf whose kinks depend on its inner variables what they are there.
+    fn guards_in(&self, step: &Step, _state: StateRef, guards: &mut Vec<Guard>) {
+        let first = guards.len();
+        self.guards(&step.point(0), &mut |value| guards.push([value; MAX_NODES + 1]));
+        for k in 1..=step.nodes.count() {
+            let mut own = guards[first..].iter_mut();
+            self.guards(&step.point(k), &mut |value| own.next().into_iter().for_each(|guard| guard[k] = value));
+        }
+    }
 
     /// F is an affine function of strokes and rates of a step.
     fn is_linear(&self) -> bool {

@@ -2,17 +2,19 @@
 
 use super::contract::Leaf;
 use super::kind::{LeafBuild, LeafKind};
+use super::springpot::Coefficient;
+use crate::collocation::MAX_NODES;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
-use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
+use crate::law::step::{InputValue, Observation, Point, Powers, Response, Step, Term};
 
-/// F = f·tanh(x'/v0). Dissipates F·x'; creeps where it should stick, at rates of the order of v0.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// F = f·tanh(x'/v0). Dissipates F·x'; creeps where it should stick, at rates of the order of v0. f may follow an input.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Friction {
     /// Force at speed f ≥ 0, N.
-    pub force: f64,
+    pub force: Coefficient,
     /// Rate v0 > 0 about which it turns over, m/s.
     pub rate: f64,
 }
@@ -25,15 +27,15 @@ impl Friction {
     pub fn new(force: f64, rate: f64) -> Result<Self, RuleError> {
         RuleError::unless(force >= 0.0, "f ≥ 0", "f")?;
         RuleError::unless(rate > 0.0, "v0 > 0", "v0")?;
-        Ok(Self { force, rate })
+        Ok(Self { force: Coefficient::constant(force), rate })
     }
 
-    fn at_rate(&self, rate: f64) -> f64 {
-        self.force * (rate / self.rate).tanh()
+    fn at(&self, at: &Point) -> f64 {
+        self.force.at(at.inputs).value * (at.rate / self.rate).tanh()
     }
 
-    fn slope(&self, rate: f64) -> f64 {
-        self.force / self.rate * (rate / self.rate).cosh().powi(-2)
+    fn slope(&self, at: &Point) -> f64 {
+        self.force.at(at.inputs).value / self.rate * (at.rate / self.rate).cosh().powi(-2)
     }
 }
 
@@ -44,28 +46,41 @@ impl Leaf for Friction {
 
     fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
         for i in 0..step.nodes.count() {
-            response.force[i] += self.at_rate(step.rate[i + 1]);
-            response.d_rate[i][i] += self.slope(step.rate[i + 1]);
+            let at = step.point(i + 1);
+            response.force[i] += self.at(&at);
+            response.d_rate[i][i] += self.slope(&at);
+        }
+    }
+
+    fn by_input(&self, step: &Step, _: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
+        if self.force.input == Some(input) {
+            let turned = |i: usize| (step.rate[i + 1] / self.rate).tanh();
+            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.force.slope * turned(i));
         }
     }
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
-        for (power, rate) in powers.iter_mut().zip(step.rate) {
-            power.dissipation += self.at_rate(*rate) * rate;
+        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
+            let at = step.point(k);
+            power.dissipation += self.at(&at) * at.rate;
         }
     }
 
     fn now(&self, at: &Point, _: StateRef) -> Observation {
-        Observation { derivative: at.rate, regular: self.at_rate(at.rate), singular: 0.0, stored: Some(0.0) }
+        Observation { derivative: at.rate, regular: self.at(at), singular: 0.0, stored: Some(0.0) }
     }
 
     fn linearised(&self, at: &Point) -> Term {
-        Term { coefficient: self.slope(at.rate), order: 1.0 }
+        Term { coefficient: self.slope(at), order: 1.0 }
     }
 
     fn holds(&self) -> Holds {
         // Above some 20·v0 its force is f to the last bit, whatever the rate.
-        if self.force == 0.0 { Holds::Never } else { Holds::AtTimes }
+        if self.force.is_none() { Holds::Never } else { Holds::AtTimes }
+    }
+
+    fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
+        self.force.check(inputs, "tanh(x'/v0)")
     }
 }
 

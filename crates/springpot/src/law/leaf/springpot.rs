@@ -50,6 +50,29 @@ impl Coefficient {
         Self { constant: value, slope: 0.0, input: None, rule: "c ≥ 0".into(), parameter: "c".into() }
     }
 
+    /// constant + slope·input of the input counted from 0, never below 0.
+    pub(in crate::law) fn following([constant, slope]: [f64; 2], rule: &'static str, parameter: &'static str) -> Self {
+        Self { constant, slope, input: Some(0), rule: rule.into(), parameter: parameter.into() }
+    }
+
+    /// Whether it is 0 whatever the inputs.
+    pub(super) fn is_none(&self) -> bool {
+        self.constant == 0.0 && (self.slope == 0.0 || self.input.is_none())
+    }
+
+    /// Whether it is 0 or more under the inputs, as the coefficient of `what`.
+    ///
+    /// # Errors
+    /// [`RuleError`] with its rule and its parameter.
+    pub(super) fn check(&self, inputs: &[InputValue], what: &str) -> Result<(), RuleError> {
+        let c = self.at(inputs).value;
+        if c >= 0.0 {
+            return Ok(());
+        }
+        let rule = format!("{} is broken: the coefficient of {what} is {c}", self.rule);
+        Err(RuleError { rule, parameter: self.parameter.clone() })
+    }
+
     /// Value and rate under the inputs.
     pub fn at(&self, inputs: &[InputValue]) -> InputValue {
         match self.input {
@@ -234,12 +257,7 @@ impl Leaf for Springpot {
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
-        let c = self.coefficient.at(inputs).value;
-        if c >= 0.0 {
-            return Ok(());
-        }
-        let rule = format!("{} is broken: the coefficient of D^alpha x is {c}", self.coefficient.rule);
-        Err(RuleError { rule, parameter: self.coefficient.parameter.clone() })
+        self.coefficient.check(inputs, "D^alpha x")
     }
 }
 

@@ -1,0 +1,162 @@
+//! The hysteretic variable of Bouc and Wen, whatever moves it.
+
+use crate::collocation::{MAX_NODES, Nodes};
+use crate::law::catalog::{Param, Range};
+use crate::law::rule::RuleError;
+
+/// Iterations for z at the nodes.
+const MOST_ITERATIONS: usize = 60;
+
+/// Change of z, in units of the largest, at which they end; they converge quadratically.
+const ENOUGH: f64 = 1e-12;
+
+/// What is known at the start of a step and at its nodes.
+pub(super) type Values = [f64; MAX_NODES + 1];
+
+/// How what is known at the nodes follows something there.
+pub(super) type Matrix = [[f64; MAX_NODES]; MAX_NODES];
+
+/// z' = A·v − gamma·|v|·z·|z|^(n−1) − beta·v·|z|^n (Bouc 1967, Wen 1976), v the rate of a stroke, of a part of it, or of a charge.
+///
+/// A force alpha·z along v stores alpha·z²/(2A) and dissipates (alpha/A)·|z|^(n+1)·(gamma·|v| + beta·v·sgn z) ≥ 0. z' has a kink where v
+/// turns round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hysteresis {
+    a: f64,
+    beta: f64,
+    gamma: f64,
+    n: f64,
+}
+
+impl Hysteresis {
+    /// A without unit, beta and gamma in 1/mⁿ.
+    ///
+    /// # Errors
+    /// [`RuleError`]: A > 0, n ≥ 1, gamma ≥ |beta| so that it dissipates, gamma + beta > 0 so that z is bounded.
+    pub fn new(a: f64, beta: f64, gamma: f64, n: f64) -> Result<Self, RuleError> {
+        RuleError::unless(a > 0.0, "A > 0", "A")?;
+        RuleError::unless(n >= 1.0, "n ≥ 1", "n")?;
+        RuleError::unless(gamma >= beta.abs(), "gamma ≥ |beta|", "gamma")?;
+        RuleError::unless(gamma + beta > 0.0, "gamma + beta > 0", "beta")?;
+        Ok(Self { a, beta, gamma, n })
+    }
+
+    /// A: z' per unit of v where z = 0.
+    pub fn slope_at_rest(&self) -> f64 {
+        self.a
+    }
+
+    /// z'.
+    pub fn rate(&self, z: f64, v: f64) -> f64 {
+        self.a * v - z.abs().powf(self.n) * (self.gamma * v.abs() * sign(z) + self.beta * v)
+    }
+
+    /// ∂z'/∂z and ∂z'/∂v.
+    fn slopes(&self, z: f64, v: f64) -> [f64; 2] {
+        let power = z.abs().powf(self.n);
+        let by_z = -self.n * z.abs().powf(self.n - 1.0) * (self.gamma * v.abs() + self.beta * v * sign(z));
+        [by_z, self.a - power * (self.gamma * sign(v) * sign(z) + self.beta)]
+    }
+
+    /// |z|^(n+1)·(gamma·|v| + beta·v·sgn z) ≥ 0: what it dissipates under a force A·z.
+    pub fn lost(&self, z: f64, v: f64) -> f64 {
+        z.abs().powf(self.n + 1.0) * (self.gamma * v.abs() + self.beta * v * sign(z))
+    }
+
+    /// The largest |z| that strokes lead to.
+    fn largest(&self) -> f64 {
+        (self.a / (self.gamma + self.beta)).powf(self.n.recip())
+    }
+
+    /// z at the start and at the nodes of a step of size h, and ∂z_i/∂v_j: z_i = z_0 + h Σ_j A_ij z'_j by Newton's method; NaN where that
+    /// finds none.
+    ///
+    /// `rate` is v at the start and at the nodes. Where z itself holds v back, v_j = rate_j − Σ_k `back`_jk z_k, and derivatives are those by
+    /// `rate`.
+    pub fn solve(&self, nodes: Nodes, h: f64, rate: &[f64], back: Option<&Matrix>, start: f64) -> (Values, Matrix) {
+        let (count, matrix) = (nodes.count(), nodes.matrix());
+        // Beyond what it can be the powers would throw the iteration far off.
+        let bound = 2.0 * self.largest().max(start.abs());
+        let mut z = [start; MAX_NODES + 1];
+        let mut tangent = Matrix::default();
+        for _ in 0..MOST_ITERATIONS {
+            // (I − h A diag(∂z'/∂z)) against h A diag(∂z'/∂v) and against the residual.
+            let mut system = [[0.0; 2 * MAX_NODES + 1]; MAX_NODES];
+            for i in 0..count {
+                system[i][i] = 1.0;
+                let mut residual = start - z[i + 1];
+                for j in 0..count {
+                    let held = back.map_or(0.0, |back| (0..count).map(|k| back[j][k] * z[k + 1]).sum());
+                    let (weight, at) = (h * matrix[i][j], (z[j + 1], rate[j + 1] - held));
+                    let [by_z, by_v] = self.slopes(at.0, at.1);
+                    system[i][j] -= weight * by_z;
+                    if let Some(back) = back {
+                        (0..count).for_each(|k| system[i][k] += weight * by_v * back[j][k]);
+                    }
+                    system[i][MAX_NODES + j] = weight * by_v;
+                    residual += weight * self.rate(at.0, at.1);
+                }
+                system[i][2 * MAX_NODES] = residual;
+            }
+            eliminate(&mut system, count);
+            let (mut change, mut size) = (0.0f64, f64::MIN_POSITIVE);
+            for i in 0..count {
+                let next = (z[i + 1] + system[i][2 * MAX_NODES]).clamp(-bound, bound);
+                // Not `max`, which would pass over what is no number.
+                let moved = (next - z[i + 1]).abs();
+                change = if moved > change || moved.is_nan() { moved } else { change };
+                z[i + 1] = next;
+                size = size.max(next.abs());
+                tangent[i] = std::array::from_fn(|j| system[i][MAX_NODES + j]);
+            }
+            if change <= ENOUGH * size {
+                return (z, tangent);
+            }
+        }
+        ([f64::NAN; MAX_NODES + 1], [[f64::NAN; MAX_NODES]; MAX_NODES])
+    }
+}
+
+/// −1, 0 or 1.
+fn sign(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
+}
+
+/// Solves the leading `count` rows for their right sides.
+pub(super) fn eliminate<const WIDTH: usize>(system: &mut [[f64; WIDTH]; MAX_NODES], count: usize) {
+    for k in 0..count {
+        let pivot = (k..count).max_by(|&a, &b| system[a][k].abs().total_cmp(&system[b][k].abs())).unwrap_or(k);
+        system.swap(k, pivot);
+        let scale = system[k][k];
+        system[k].iter_mut().for_each(|entry| *entry /= scale);
+        for i in (0..count).filter(|&i| i != k) {
+            let (factor, row) = (system[i][k], system[k]);
+            system[i].iter_mut().zip(row).for_each(|(entry, other)| *entry -= factor * other);
+        }
+    }
+}
+
+/// The inverse of diag(`own`) + `share`·A: what maps drives to rates where each rate r_i meets own_i·r_i and share·h times what it has become.
+pub(super) fn resolvent(nodes: Nodes, own: &[f64], share: f64) -> Matrix {
+    let (count, matrix) = (nodes.count(), nodes.matrix());
+    let mut system = [[0.0; 2 * MAX_NODES]; MAX_NODES];
+    for i in 0..count {
+        (0..count).for_each(|j| system[i][j] = share * matrix[i][j]);
+        system[i][i] += own[i];
+        system[i][MAX_NODES + i] = 1.0;
+    }
+    eliminate(&mut system, count);
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| if i < count && j < count { system[i][MAX_NODES + j] } else { 0.0 })
+    })
+}
+
+/// A, beta, gamma and n, in the order of [`Hysteresis::new`]; beta and gamma by the unit of z.
+pub(in crate::law) fn params(per: &'static str) -> [Param; 4] {
+    [
+        Param::new("A", "", "rate of z per unit of x' where z = 0", Range { low: f64::MIN_POSITIVE, high: f64::MAX }),
+        Param::new("beta", per, "shape of the loops", Range::ANY),
+        Param::new("gamma", per, "shape of the loops, |beta| or more", Range::NOT_NEGATIVE),
+        Param::new("n", "", "how sharply it yields", Range { low: 1.0, high: f64::MAX }),
+    ]
+}

@@ -1,0 +1,268 @@
+//! The magnetorheological damper of Spencer, Dyke, Sain and Carlson.
+
+use super::contract::Leaf;
+use super::hysteresis::{Hysteresis, Matrix, Values, resolvent};
+use super::springpot::Coefficient;
+use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
+use crate::fractional::KernelError;
+use crate::law::network::{Guard, Holds};
+use crate::law::rule::RuleError;
+use crate::law::state::{State, StateMut, StateRef, StateSize};
+use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::tangent::{LeafAtRest, Tangent};
+
+/// F = c_1·y' + k_1·(x − x_0), y' = (alpha·z + c_0·x' + k_0·(x − y))/(c_0 + c_1), y(0) = x(0), and z of [`Hysteresis`] moved by x' − y',
+/// z(0) = 0 (Spencer, Dyke, Sain & Carlson 1997).
+///
+/// It is a spring k_1 beside a dashpot c_1 that is in series with a dashpot c_0, a spring k_0 and a Bouc–Wen element alpha side by side; c_0, c_1
+/// and alpha may follow its input. Stores ½k_1(x − x_0)² + ½k_0(x − y)² + alpha·z²/(2A), dissipates c_1·y'² + c_0·(x' − y')² and what z
+/// loses; a varying alpha is supplied with ∫ alpha'·z²/(2A) dt. y and z are inner variables, collocated at the nodes; its kinks are where
+/// x' − y' changes sign.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spencer {
+    /// Viscosity c_0 ≥ 0 at large velocities, N·s/m.
+    pub fast: Coefficient,
+    /// Viscosity c_1 ≥ 0, by which the force rolls off at small velocities, N·s/m.
+    pub slow: Coefficient,
+    /// k_0 ≥ 0, N/m.
+    pub inner_stiffness: f64,
+    /// k_1 ≥ 0 of the accumulator, N/m.
+    pub stiffness: f64,
+    /// x_0, the stroke at which it gives no force, m.
+    pub rest: f64,
+    /// alpha ≥ 0, N/m.
+    pub alpha: Coefficient,
+    /// z.
+    pub hysteresis: Hysteresis,
+}
+
+/// Its coefficients at one time.
+#[derive(Debug, Clone, Copy, Default)]
+struct Now {
+    fast: f64,
+    slow: f64,
+    alpha: InputValue,
+}
+
+/// A step worked out.
+struct Solved {
+    now: [Now; MAX_NODES + 1],
+    /// z, y, z' and y' at the start and at the nodes.
+    z: Values,
+    y: Values,
+    z_rate: Values,
+    y_rate: Values,
+    /// y'_i by what drives it: of the drive c_0·x' + k_0·x directly, and through z as well.
+    by_drive: Matrix,
+    /// y'_i by x'_j − y'_j at z as it is.
+    by_slip: Matrix,
+}
+
+impl Spencer {
+    /// The coefficients that must not be negative.
+    fn coefficients(&self) -> [(&Coefficient, &'static str); 3] {
+        [(&self.fast, "c_0"), (&self.slow, "c_1"), (&self.alpha, "alpha")]
+    }
+
+    fn coefficients_at(&self, inputs: &[InputValue]) -> Now {
+        let [fast, slow] = [&self.fast, &self.slow].map(|c| c.at(inputs).value);
+        Now { fast, slow, alpha: self.alpha.at(inputs) }
+    }
+
+    /// y' where y and z are known.
+    fn y_rate(&self, now: &Now, at: &Point, y: f64, z: f64) -> f64 {
+        let drive = now.alpha.value * z + now.fast * at.rate + self.inner_stiffness * (at.stroke - y);
+        drive / (now.fast + now.slow)
+    }
+
+    fn solve(&self, step: &Step, [y, z]: [f64; 2]) -> Solved {
+        let (nodes, count, h) = (step.nodes, step.nodes.count(), step.h);
+        let mut now = [Now::default(); MAX_NODES + 1];
+        (0..=count).for_each(|k| now[k] = self.coefficients_at(step.point(k).inputs));
+        let both: Values = std::array::from_fn(|k| now[k].fast + now[k].slow);
+        // (c_0 + c_1)_i y'_i + k_0 h Σ_j A_ij y'_j = alpha_i z_i + c_0 x'_i + k_0 (x_i − y_0).
+        let by_drive = resolvent(nodes, &both[1..=count], self.inner_stiffness * h);
+        let drive: [f64; MAX_NODES] = std::array::from_fn(|i| match i < count {
+            true => now[i + 1].fast * step.rate[i + 1] + self.inner_stiffness * (step.stroke[i + 1] - y),
+            false => 0.0,
+        });
+        let mut free = Values::default();
+        let mut back = Matrix::default();
+        for i in 0..count {
+            free[i + 1] = step.rate[i + 1] - (0..count).map(|j| by_drive[i][j] * drive[j]).sum::<f64>();
+            (0..count).for_each(|j| back[i][j] = by_drive[i][j] * now[j + 1].alpha.value);
+        }
+        let (z, tangent) = self.hysteresis.solve(nodes, h, &free, Some(&back), z);
+        let (mut y, mut y_rate) = ([y; MAX_NODES + 1], Values::default());
+        y_rate[0] = self.y_rate(&now[0], &step.point(0), y[0], z[0]);
+        for i in 0..count {
+            y_rate[i + 1] = (0..count).map(|j| by_drive[i][j] * drive[j] + back[i][j] * z[j + 1]).sum();
+        }
+        for (i, row) in nodes.matrix().iter().enumerate().take(count) {
+            y[i + 1] += h * (0..count).map(|j| row[j] * y_rate[j + 1]).sum::<f64>();
+        }
+        let z_rate = std::array::from_fn(|k| match k <= count {
+            true => self.hysteresis.rate(z[k], step.rate[k] - y_rate[k]),
+            false => 0.0,
+        });
+        let by_slip =
+            std::array::from_fn(|i| std::array::from_fn(|j| (0..count).map(|k| back[i][k] * tangent[k][j]).sum()));
+        Solved { now, z, y, z_rate, y_rate, by_drive, by_slip }
+    }
+
+    fn observation(&self, now: &Now, at: &Point, y: f64, z: f64) -> Observation {
+        let (outer, inner) = (at.stroke - self.rest, at.stroke - y);
+        let springs = self.stiffness * outer * outer + self.inner_stiffness * inner * inner;
+        let stored = 0.5 * (springs + now.alpha.value * z * z / self.hysteresis.slope_at_rest());
+        let force = now.slow * self.y_rate(now, at, y, z) + self.stiffness * outer;
+        Observation { derivative: at.stroke, regular: force, singular: 0.0, stored: Some(stored) }
+    }
+
+    fn start(state: StateRef) -> [f64; 2] {
+        [state.variables[0], state.variables[1]]
+    }
+}
+
+impl Leaf for Spencer {
+    fn name(&self) -> &'static str {
+        "spencer"
+    }
+
+    /// y and z.
+    fn size(&self) -> StateSize {
+        StateSize { memories: 0, variables: 2 }
+    }
+
+    fn begin(&self, start: &Start, state: &mut State) -> Result<(), KernelError> {
+        state.push_variable(start.stroke);
+        state.push_variable(0.0);
+        Ok(())
+    }
+
+    fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response) {
+        let Solved { now, y_rate, by_drive, by_slip, .. } = self.solve(step, Self::start(state));
+        let count = step.nodes.count();
+        for i in 0..count {
+            let slow = now[i + 1].slow;
+            response.force[i] += slow * y_rate[i + 1] + self.stiffness * (step.stroke[i + 1] - self.rest);
+            response.d_stroke[i][i] += self.stiffness;
+            for j in 0..count {
+                // y' follows the drive of node j, and z, which slips at x' − y'.
+                let through: f64 = (0..count).map(|k| by_slip[i][k] * by_drive[k][j]).sum();
+                let by_drive = by_drive[i][j] - through;
+                response.d_stroke[i][j] += slow * by_drive * self.inner_stiffness;
+                response.d_rate[i][j] += slow * (by_drive * now[j + 1].fast + by_slip[i][j]);
+            }
+        }
+    }
+
+    fn by_input(&self, step: &Step, state: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
+        let slope = |c: &Coefficient| if c.input == Some(input) { c.slope } else { 0.0 };
+        let [fast, slow, alpha] = [&self.fast, &self.slow, &self.alpha].map(slope);
+        let Solved { now, z, y_rate, by_drive, by_slip, .. } = self.solve(step, Self::start(state));
+        let count = step.nodes.count();
+        for j in 0..count {
+            let drive = alpha * z[j + 1] + fast * step.rate[j + 1] - (fast + slow) * y_rate[j + 1];
+            for i in 0..count {
+                let through: f64 = (0..count).map(|k| by_slip[i][k] * by_drive[k][j]).sum();
+                slopes[i][j] += now[i + 1].slow * (by_drive[i][j] - through) * drive;
+            }
+            slopes[j][j] += slow * y_rate[j + 1];
+        }
+    }
+
+    fn commit(&self, step: &Step, state: StateMut) {
+        let last = step.nodes.count();
+        let Solved { y, z, .. } = self.solve(step, Self::start(state.view()));
+        for (variable, values) in state.variables.iter_mut().zip([y, z]) {
+            *variable = if step.nodes == Nodes::Midpoint { 2.0 * values[last] - *variable } else { values[last] };
+        }
+    }
+
+    fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
+        let Solved { y, z, y_rate, z_rate, .. } = self.solve(step, Self::start(state));
+        let last = step.nodes.count();
+        for (values, rates, slope) in [(y, y_rate, 1.0), (z, z_rate, self.hysteresis.slope_at_rest())] {
+            let defect = step.h * quadrature_defect(step.nodes, &rates);
+            // What rounding leaves of a stroke is no error of them.
+            let error = if defect <= slope * step.resolution { 0.0 } else { defect };
+            errors.push(LocalError { error, value: values[last], order: 0.0, sharpness: 1.0 });
+        }
+    }
+
+    fn powers(&self, step: &Step, state: StateRef, powers: &mut Powers) {
+        let Solved { now, z, y_rate, .. } = self.solve(step, Self::start(state));
+        let a = self.hysteresis.slope_at_rest();
+        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
+            let (Now { fast, slow, alpha }, slip) = (now[k], step.rate[k] - y_rate[k]);
+            let lost = alpha.value / a * self.hysteresis.lost(z[k], slip);
+            power.dissipation += slow * y_rate[k] * y_rate[k] + fast * slip * slip + lost;
+            power.input += 0.5 * alpha.rate * z[k] * z[k] / a;
+        }
+    }
+
+    fn at(&self, step: &Step, theta: f64, at: &Point, state: StateRef) -> Observation {
+        let Solved { y, z, y_rate, z_rate, .. } = self.solve(step, Self::start(state));
+        let weights = quadrature(step.nodes, theta);
+        let until = |start: f64, rates: Values| {
+            start + step.h * weights.iter().zip(rates).map(|(weight, rate)| weight * rate).sum::<f64>()
+        };
+        self.observation(&self.coefficients_at(at.inputs), at, until(y[0], y_rate), until(z[0], z_rate))
+    }
+
+    fn now(&self, at: &Point, state: StateRef) -> Observation {
+        let [y, z] = Self::start(state);
+        self.observation(&self.coefficients_at(at.inputs), at, y, z)
+    }
+
+    /// The two dashpots in series; without one of them what is left beside the other.
+    fn linearised(&self, at: &Point) -> Term {
+        let Now { fast, slow, alpha } = self.coefficients_at(at.inputs);
+        if fast > 0.0 && slow > 0.0 {
+            return Term { coefficient: fast * slow / (fast + slow), order: 1.0 };
+        }
+        let inner = self.inner_stiffness + alpha.value * self.hysteresis.slope_at_rest();
+        Term { coefficient: self.stiffness + if slow > 0.0 { inner } else { 0.0 }, order: 0.0 }
+    }
+
+    /// y has caught up with x and z is 0: the accumulator alone remains.
+    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
+        let force = self.stiffness * (at.stroke - self.rest);
+        let term = Term { coefficient: self.stiffness, order: 0.0 };
+        LeafAtRest { force, stiffness: Some(self.stiffness), term, input: None, damping: 0.0 }
+    }
+
+    /// About z = 0, where the hysteresis is the spring alpha·A.
+    fn tangent(&self, at: &Point) -> Option<Tangent> {
+        let Now { fast, slow, alpha } = self.coefficients_at(at.inputs);
+        let leaf = |coefficient: f64, order: f64| Tangent::Leaf(Term { coefficient, order }, None);
+        let elastic = self.inner_stiffness + alpha.value * self.hysteresis.slope_at_rest();
+        let inner = Tangent::Parallel(vec![leaf(elastic, 0.0), leaf(fast, 1.0)]);
+        Some(Tangent::Parallel(vec![leaf(self.stiffness, 0.0), Tangent::Series(vec![leaf(slow, 1.0), inner])]))
+    }
+
+    fn holds(&self) -> Holds {
+        // Without c_0 and k_1 it yields at its largest z.
+        if self.fast.is_none() && self.stiffness == 0.0 { Holds::AtTimes } else { Holds::Always }
+    }
+
+    /// As many as [`Leaf::guards_in`] has: where y rests, the rate itself.
+    fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
+        take(at.rate);
+    }
+
+    fn guards_in(&self, step: &Step, state: StateRef, guards: &mut Vec<Guard>) {
+        let Solved { y_rate, .. } = self.solve(step, Self::start(state));
+        let last = step.nodes.count();
+        guards.push(std::array::from_fn(|k| if k <= last { step.rate[k] - y_rate[k] } else { 0.0 }));
+    }
+
+    fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
+        self.coefficients().into_iter().try_for_each(|(coefficient, name)| coefficient.check(inputs, name))?;
+        let Now { fast, slow, .. } = self.coefficients_at(inputs);
+        if fast + slow > 0.0 {
+            return Ok(());
+        }
+        Err(RuleError { rule: "c_0 + c_1 > 0 is broken: both are 0".into(), parameter: self.slow.parameter.clone() })
+    }
+}

@@ -1,0 +1,67 @@
+//! A dashpot whose viscosity follows an input.
+
+use super::contract::Leaf;
+use super::springpot::Coefficient;
+use crate::collocation::MAX_NODES;
+use crate::law::network::Holds;
+use crate::law::rule::RuleError;
+use crate::law::state::StateRef;
+use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Step, Term};
+
+/// F = c·x', c following an input. Dissipates c·x'².
+#[derive(Debug, Clone, PartialEq)]
+pub struct Viscous {
+    /// Viscosity c ≥ 0, N·s/m.
+    pub viscosity: Coefficient,
+}
+
+impl Leaf for Viscous {
+    fn name(&self) -> &'static str {
+        "dashpot"
+    }
+
+    fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
+        for i in 0..step.nodes.count() {
+            let c = self.viscosity.at(step.point(i + 1).inputs).value;
+            response.force[i] += c * step.rate[i + 1];
+            response.d_rate[i][i] += c;
+        }
+    }
+
+    fn by_input(&self, step: &Step, _: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
+        if self.viscosity.input == Some(input) {
+            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.viscosity.slope * step.rate[i + 1]);
+        }
+    }
+
+    fn local_errors(&self, step: &Step, _: StateRef, errors: &mut Vec<LocalError>) {
+        errors.push(LocalError { error: 0.0, value: step.rate[step.nodes.count()], order: 1.0, sharpness: 1.0 });
+    }
+
+    fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
+        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
+            power.dissipation += self.viscosity.at(step.point(k).inputs).value * step.rate[k] * step.rate[k];
+        }
+    }
+
+    fn now(&self, at: &Point, _: StateRef) -> Observation {
+        let force = self.viscosity.at(at.inputs).value * at.rate;
+        Observation { derivative: at.rate, regular: force, singular: 0.0, stored: Some(0.0) }
+    }
+
+    fn linearised(&self, at: &Point) -> Term {
+        Term { coefficient: self.viscosity.at(at.inputs).value, order: 1.0 }
+    }
+
+    fn holds(&self) -> Holds {
+        if self.viscosity.is_none() { Holds::Never } else { Holds::Always }
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
+        self.viscosity.check(inputs, "x'")
+    }
+}
