@@ -43,6 +43,7 @@ mod document;
 mod elements;
 mod events;
 mod figures;
+mod heat;
 mod inputs;
 mod keys;
 mod material;

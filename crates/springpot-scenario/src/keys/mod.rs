@@ -6,6 +6,7 @@
 mod constants;
 mod element;
 mod event;
+mod heat;
 mod motion;
 mod output;
 mod robot;
@@ -19,6 +20,7 @@ pub(crate) use element::{
     BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, END, HELD, ON_JOINT, PASTS, RESERVED_NAMES,
     START as AT_START,
 };
+pub(crate) use heat::{ARRHENIUS, EXPANSION, SHIFT, THERMAL};
 pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
 pub(crate) use motion::{
     FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,

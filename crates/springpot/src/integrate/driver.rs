@@ -199,6 +199,7 @@ impl Driver {
     pub(super) fn close(&mut self, cx: Context) -> Result<(), RunError> {
         let Some(step) = self.step.take() else { return Ok(()) };
         self.recorder.commit();
+        self.recorder.check_warmth(cx, step.to)?;
         self.t = step.to;
         self.crossing = step.crossing();
         self.solver.stepper_mut().accept(cx, &self.recorder, &step)

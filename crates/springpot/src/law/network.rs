@@ -1,9 +1,12 @@
 //! A law as a network of leaves, and how it is asked.
 
+mod heated;
 mod series;
 
+pub use heated::{Heated, Warmth};
 pub(super) use series::Ready;
 
+use super::heat::Heat;
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot};
 use super::past::Periodic;
 use super::rule::RuleError;
@@ -35,7 +38,7 @@ const MOST_IN_SERIES: usize = 8;
 /// // x = t²/10 over one step of 10 ms that is asked at its end.
 /// let (stroke, rate) = ([0.0, 1e-5], [0.0, 2e-3]);
 /// let step = Step {
-///     t: 0.0, h: 0.01, nodes: Nodes::One, form: Form::Strokes, stroke: &stroke, rate: &rate, inputs: &[],
+///     t: 0.0, h: 0.01, nodes: Nodes::One, places: None, form: Form::Strokes, stroke: &stroke, rate: &rate, inputs: &[],
 ///     resolution: 0.0, course: Course::Given,
 /// };
 /// let force = law.evaluate(&step, &state).force[0];
@@ -50,6 +53,8 @@ pub enum Network {
     Parallel(Vec<Network>),
     /// One force, strokes add.
     Series(Vec<Network>),
+    /// A whole law and what temperature does to it.
+    Heated(Box<Heated>),
 }
 
 /// A leaf in its place in a network.
@@ -128,6 +133,7 @@ impl Network {
         match self {
             Self::Leaf(part) => take(part),
             Self::Parallel(parts) | Self::Series(parts) => parts.iter().for_each(|part| part.for_each_leaf(take)),
+            Self::Heated(heated) => heated.law().for_each_leaf(take),
         }
     }
 
@@ -137,6 +143,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.holds(),
             Self::Parallel(parts) => parts.iter().map(Self::holds).max().unwrap_or(Holds::Never),
             Self::Series(parts) => parts.iter().map(Self::holds).min().unwrap_or(Holds::Always),
+            Self::Heated(heated) => heated.law().holds(),
         }
     }
 
@@ -171,8 +178,12 @@ impl Network {
     }
 
     /// Parts one behind the other: one force, strokes add. None: rigid, which no element may be.
+    ///
+    /// # Panics
+    /// Where a part is a law under heat, which is always a whole one.
     pub fn series(parts: impl IntoIterator<Item = Self>) -> Self {
         let mut parts: Vec<Self> = parts.into_iter().collect();
+        assert!(parts.iter().all(|part| part.as_heated().is_none()), "a law under heat is a whole one");
         while parts.len() > MOST_IN_SERIES {
             let nested = parts.drain(..MOST_IN_SERIES).collect();
             parts.push(Self::Series(nested));
@@ -180,10 +191,34 @@ impl Network {
         Self::Series(parts)
     }
 
+    /// A law under `heat`, of so many `inputs`, of which `takes` is the temperature.
+    pub(super) fn heated(law: Self, heat: Heat, inputs: usize, takes: Option<usize>) -> Self {
+        Self::Heated(Box::new(Heated::new(law, heat, inputs, takes)))
+    }
+
+    /// What temperature does to it, where it does anything.
+    pub fn as_heated(&self) -> Option<&Heated> {
+        match self {
+            Self::Heated(heated) => Some(heated),
+            _ => None,
+        }
+    }
+
+    /// Whether it keeps a temperature of its own.
+    pub fn is_thermal(&self) -> bool {
+        self.as_heated().is_some_and(|heated| heated.heat().thermal.is_some())
+    }
+
+    /// Temperature and heat of a law that keeps a temperature: at θ of a step, or between two steps.
+    pub fn warmth(&self, within: Option<(&Step, f64)>, state: &State) -> Option<Warmth> {
+        self.as_heated()?.warmth(within, state.view())
+    }
+
     /// What of a state belongs to this part.
     fn size(&self) -> StateSize {
         let (parts, own) = match self {
             Self::Leaf(leaf) => return leaf.size(),
+            Self::Heated(heated) => return heated.size(),
             Self::Parallel(parts) => (parts, 0),
             Self::Series(parts) => (parts, parts.len()),
         };
@@ -211,6 +246,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.begin(start, state),
             Self::Parallel(parts) => parts.iter().try_for_each(|part| part.begin_part(start, state)),
             Self::Series(parts) => series::begin(parts, start, state),
+            Self::Heated(heated) => heated.begin(start, state),
         }
     }
 
@@ -231,6 +267,7 @@ impl Network {
             Self::Leaf(_) => 0,
             Self::Parallel(parts) => parts.iter().map(Self::series_count).sum(),
             Self::Series(parts) => 1 + parts.iter().map(Self::series_count).sum::<usize>(),
+            Self::Heated(heated) => heated.law().series_count(),
         }
     }
 
@@ -244,6 +281,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.prepare(step, state.take(leaf.size())),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.prepare_part(step, state)),
             Self::Series(parts) => series::prepare(parts, step, state),
+            Self::Heated(heated) => heated.prepare(step, state),
         }
     }
 
@@ -259,6 +297,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.evaluate(step, state.take(leaf.size()), response),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.evaluate_part(step, state, response)),
             Self::Series(parts) => series::evaluate(parts, step, state, response),
+            Self::Heated(heated) => heated.evaluate(step, state, response),
         }
     }
 
@@ -294,6 +333,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.commit(step, state.take(leaf.size())),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.commit_part(step, state)),
             Self::Series(parts) => series::commit(parts, step, state),
+            Self::Heated(heated) => heated.commit(step, state),
         }
     }
 
@@ -307,6 +347,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.local_errors(step, state.take(leaf.size()), errors),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.local_errors_part(step, state, errors)),
             Self::Series(parts) => series::local_errors(parts, step, state, errors),
+            Self::Heated(heated) => heated.local_errors(step, state, errors),
         }
     }
 
@@ -322,6 +363,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.powers(step, state.take(leaf.size()), powers),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.powers_part(step, state, powers)),
             Self::Series(parts) => series::powers(parts, step, state, powers),
+            Self::Heated(heated) => heated.powers(step, state, powers),
         }
     }
 
@@ -343,11 +385,15 @@ impl Network {
             }
             Self::Parallel(parts) => parts.iter().for_each(|part| part.guards_part(step, state, guards)),
             Self::Series(parts) => series::guards(parts, step, state, guards),
+            Self::Heated(heated) => heated.guards(step, state, guards),
         }
     }
 
     /// Whether its force may have kinks that steps are to end on.
     pub fn has_guards(&self, at: &Point) -> bool {
+        if let Self::Heated(heated) = self {
+            return heated.has_guards(at);
+        }
         let mut found = false;
         self.for_each_leaf(&mut |leaf| leaf.guards(at, &mut |_| found = true));
         found
@@ -373,6 +419,7 @@ impl Network {
                 Reported::sum(at, parts.iter().map(|part| part.at_part(step, theta, at, state, take)))
             }
             Self::Series(parts) => series::at(parts, step, theta, at, state, take),
+            Self::Heated(heated) => heated.at(step, theta, at, state, take),
         }
     }
 
@@ -392,6 +439,7 @@ impl Network {
             Self::Leaf(leaf) => Reported::leaf(&**leaf, at, leaf.now(at, state.take(leaf.size())), take),
             Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.now_part(at, state, take))),
             Self::Series(parts) => series::now(parts, at, state, take),
+            Self::Heated(heated) => heated.now(at, state, take),
         }
     }
 
@@ -401,6 +449,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.linearised(at).stiffness(omega),
             Self::Parallel(parts) => parts.iter().map(|part| part.stiffness(at, omega)).sum(),
             Self::Series(parts) => parts.iter().map(|part| part.stiffness(at, omega).recip()).sum::<f64>().recip(),
+            Self::Heated(heated) => heated.stiffness(at, omega),
         }
     }
 
@@ -423,6 +472,7 @@ impl Network {
                 self.pass(state);
                 self.stiffness(at, omega) * at.stroke
             }
+            Self::Heated(heated) => heated.estimate(at, state, omega),
         }
     }
 
@@ -438,6 +488,7 @@ impl Network {
                     take(term);
                 }
             }
+            Self::Heated(heated) => heated.for_each_springpot(at, take),
         }
     }
 
@@ -457,6 +508,7 @@ impl Network {
             }
             Self::Parallel(parts) => parts.iter().for_each(|part| part.singularities(inputs, state, take)),
             Self::Series(_) => self.pass(state),
+            Self::Heated(heated) => heated.singularities(inputs, state, take),
         }
     }
 
@@ -468,6 +520,7 @@ impl Network {
         match self {
             Self::Leaf(leaf) => leaf.check_inputs(inputs),
             Self::Parallel(parts) | Self::Series(parts) => parts.iter().try_for_each(|part| part.check_inputs(inputs)),
+            Self::Heated(heated) => heated.check_inputs(inputs),
         }
     }
 
@@ -483,6 +536,7 @@ impl Network {
                 let reports = parts.iter().map(|part| part.report(at));
                 reports.fold((0, 0.0), |first, next| if next.0 > first.0 { next } else { first })
             }
+            Self::Heated(heated) => heated.report(at),
         }
     }
 
@@ -499,6 +553,7 @@ impl Network {
             Self::Leaf(_) => false,
             Self::Parallel(parts) => parts.iter().any(Self::has_series),
             Self::Series(_) => true,
+            Self::Heated(heated) => heated.law().has_series(),
         }
     }
 
@@ -517,6 +572,7 @@ impl Network {
             Self::Leaf(leaf) => state.take(leaf.size()).memories.iter_mut().for_each(|memory| recall(memory, stroke)),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.recall_part(stroke, at, state)),
             Self::Series(parts) => series::recall(parts, stroke, at, state),
+            Self::Heated(heated) => heated.recall(stroke, at, state),
         }
     }
 
@@ -529,6 +585,7 @@ impl Network {
             }
             Self::Parallel(parts) => parts.iter().map(|part| part.modulus(at, s)).sum(),
             Self::Series(parts) => parts.iter().map(|part| part.modulus(at, s).inv()).sum::<Complex64>().inv(),
+            Self::Heated(heated) => heated.modulus(at, s),
         }
     }
 
@@ -543,6 +600,7 @@ impl Network {
         match self {
             Self::Leaf(leaf) => leaf.is_linear(),
             Self::Parallel(parts) | Self::Series(parts) => parts.iter().all(Self::is_linear),
+            Self::Heated(heated) => heated.law().is_linear(),
         }
     }
 
@@ -550,6 +608,7 @@ impl Network {
     fn asymptote(&self, at: &Point, onset: Onset) -> Term {
         let (parts, adds) = match self {
             Self::Leaf(leaf) => return leaf.linearised(at),
+            Self::Heated(heated) => return heated.asymptote(at, onset),
             Self::Parallel(parts) => (parts, true),
             Self::Series(parts) => (parts, false),
         };
@@ -608,6 +667,12 @@ impl Reported {
         let Point { stroke, rate, .. } = *at;
         take(LeafState { stroke, rate, force: observation.force(), derivative: observation.derivative });
         Self { observation, rank: report(leaf, at).0 }
+    }
+
+    /// That of a step in which no force is found.
+    fn unknown() -> Self {
+        let observation = Observation { derivative: f64::NAN, regular: f64::NAN, singular: 0.0, stored: None };
+        Self { observation, rank: 0 }
     }
 
     fn sum(at: &Point, parts: impl Iterator<Item = Self>) -> Self {

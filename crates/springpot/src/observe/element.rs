@@ -30,6 +30,10 @@ pub enum ElementQuantity<Id = usize> {
     Dissipated,
     /// Energy supplied by the inputs since t = 0, J.
     Input,
+    /// T of an element that warms itself, K.
+    Temperature,
+    /// Heat lost to the surroundings since t = 0, J, of such an element.
+    Heat,
     /// Value of an input, in the order of its law.
     InputValue(Id),
     /// Something of a leaf of its law.
@@ -88,12 +92,14 @@ impl<Id> ElementQuantity<Id> {
     pub(super) const BEFORE_FORCES: [Self; 5] = [Self::Length, Self::Stroke, Self::Rate, Self::Derivative, Self::Force];
     /// Those that come between the generalized forces and the inputs.
     pub(super) const BEFORE_INPUTS: [Self; 3] = [Self::Stored, Self::Dissipated, Self::Input];
+    /// Those that follow where the element warms itself.
+    pub(super) const OF_HEAT: [Self; 2] = [Self::Temperature, Self::Heat];
 }
 
 impl ElementQuantity {
     /// Its value in a row, NaN where unknown.
     pub(super) fn value(self, row: &ElementRow, state: &ElementEvaluation) -> f64 {
-        let ElementRow { observation, leaves, dissipated, input } = row;
+        let ElementRow { observation, leaves, dissipated, input, warmth } = row;
         match self {
             Self::Length => state.reading.coordinate,
             Self::Stroke => state.stroke,
@@ -104,6 +110,8 @@ impl ElementQuantity {
             Self::Stored => observation.stored.unwrap_or(f64::NAN),
             Self::Dissipated => observation.stored.map_or(f64::NAN, |_| *dissipated),
             Self::Input => *input,
+            Self::Temperature => warmth.map_or(f64::NAN, |warmth| warmth.temperature),
+            Self::Heat => warmth.map_or(f64::NAN, |warmth| warmth.lost),
             Self::InputValue(i) => state.inputs.get(i).map_or(f64::NAN, |input| input.value),
             Self::Leaf(i, quantity) => leaves.get(i).map_or(f64::NAN, |leaf| quantity.value(leaf)),
         }
@@ -122,7 +130,8 @@ impl ElementQuantity {
             Self::Derivative => element.derivative_unit,
             Self::Force | Self::Leaf(_, LeafQuantity::Force) => of_element(["N*m", "N"]),
             Self::GeneralizedForce(k) => velocities[k].dimension.units().force,
-            Self::Stored | Self::Dissipated | Self::Input => "J",
+            Self::Stored | Self::Dissipated | Self::Input | Self::Heat => "J",
+            Self::Temperature => "K",
             Self::InputValue(i) => &element.entry.inputs[i].unit,
         }
     }
@@ -139,6 +148,8 @@ impl ElementQuantity {
             Self::Stored => ElementQuantity::Stored,
             Self::Dissipated => ElementQuantity::Dissipated,
             Self::Input => ElementQuantity::Input,
+            Self::Temperature => ElementQuantity::Temperature,
+            Self::Heat => ElementQuantity::Heat,
             Self::InputValue(i) => ElementQuantity::InputValue(&element.entry.inputs[i].name),
             Self::Leaf(i, quantity) => ElementQuantity::Leaf(&element.leaves[i].0, quantity),
         }
@@ -155,7 +166,8 @@ impl<'a> ElementQuantity<&'a str> {
                 .find(|quantity| quantity.key() == key)
                 .map(|quantity| Self::Leaf(leaf, quantity)),
             None => {
-                let mut known = Self::BEFORE_FORCES.into_iter().chain(Self::BEFORE_INPUTS);
+                let known = Self::BEFORE_FORCES.into_iter().chain(Self::BEFORE_INPUTS);
+                let mut known = known.chain([Self::Heat]);
                 Some(known.find(|quantity| quantity.to_string() == key).unwrap_or(Self::InputValue(key)))
             }
         }
@@ -173,6 +185,8 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Stored => format!("energy stored in {element}"),
             Self::Dissipated => format!("energy dissipated in {element} since t = 0"),
             Self::Input => format!("energy supplied by the inputs of {element} since t = 0"),
+            Self::Temperature => format!("temperature of {element}"),
+            Self::Heat => format!("heat lost by {element} to its surroundings since t = 0"),
             Self::InputValue(input) => format!("{input} of {element}"),
             Self::Leaf(leaf, quantity) => format!("{} of {leaf} in {element}", quantity.words()),
         }
@@ -206,6 +220,8 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Stored => format!("energy stored in {element}"),
             Self::Dissipated => format!("energy dissipated in {element}"),
             Self::Input => format!("energy supplied to {element}"),
+            Self::Temperature => format!("T of {element}"),
+            Self::Heat => format!("heat lost by {element}"),
             Self::InputValue(input) => format!("{input} of {element}"),
             Self::Leaf(leaf, LeafQuantity::Stroke) => format!("stroke x of {leaf} in {element}"),
             Self::Leaf(leaf, LeafQuantity::Rate) => format!("stroke rate of {leaf} in {element}"),
@@ -228,6 +244,8 @@ impl fmt::Display for ElementQuantity<&str> {
             Self::Stored => "stored",
             Self::Dissipated => "dissipated",
             Self::Input => "input",
+            Self::Temperature => "T",
+            Self::Heat => "heat",
             Self::InputValue(input) => input,
             Self::Leaf(leaf, quantity) => return write!(f, "{leaf}.{}", quantity.key()),
         })

@@ -30,6 +30,8 @@ struct ElementShape {
     pub(crate) leaves: usize,
     /// Whether its law has one derivative to tell.
     pub(crate) derivative: bool,
+    /// Whether it warms itself.
+    pub(crate) thermal: bool,
 }
 
 impl Shape {
@@ -41,15 +43,16 @@ impl Shape {
         (0..nv).map(Quantity::Velocity).for_each(&mut *visit);
         (0..nv).map(Quantity::Acceleration).for_each(&mut *visit);
         (0..nv).map(Quantity::Torque).for_each(&mut *visit);
-        for (e, ElementShape { inputs, leaves, derivative }) in elements.into_iter().enumerate() {
+        for (e, ElementShape { inputs, leaves, derivative, thermal }) in elements.into_iter().enumerate() {
             let told = |quantity: &ElementQuantity| *quantity != ElementQuantity::Derivative || derivative;
             let before = ElementQuantity::BEFORE_FORCES.into_iter().filter(told);
             let forces = (0..nv).map(ElementQuantity::GeneralizedForce);
+            let heat = ElementQuantity::OF_HEAT.into_iter().filter(|_| thermal);
             let inputs = (0..inputs).map(ElementQuantity::InputValue);
             let leaves = 0..if tells_leaves { leaves } else { 0 };
             let leaves =
                 leaves.flat_map(|leaf| LeafQuantity::ALL.map(|quantity| ElementQuantity::Leaf(leaf, quantity)));
-            let all = before.chain(forces).chain(ElementQuantity::BEFORE_INPUTS).chain(inputs).chain(leaves);
+            let all = before.chain(forces).chain(ElementQuantity::BEFORE_INPUTS).chain(heat).chain(inputs).chain(leaves);
             all.map(|quantity| Quantity::Element(e, quantity)).for_each(&mut *visit);
         }
         if gripper {
@@ -81,6 +84,7 @@ impl Observables {
             is_rotation: element.measure.is_rotation(),
             derivative_unit: derivative_unit(element),
             tells_derivative: element.law.tells_derivative(),
+            is_thermal: element.law.is_thermal(),
             leaves: element.law.leaf_names().into_iter().zip(leaf_units(element)).collect(),
             entry: element.entry.clone(),
         };
@@ -135,6 +139,7 @@ impl Observables {
             inputs: element.entry.inputs.len(),
             leaves: element.leaves.len(),
             derivative: element.tells_derivative,
+            thermal: element.is_thermal,
         })
     }
 

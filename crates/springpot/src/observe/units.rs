@@ -13,6 +13,8 @@ pub(super) struct ObservedElement {
     pub(super) derivative_unit: &'static str,
     /// Whether its law has one derivative to tell.
     pub(super) tells_derivative: bool,
+    /// Whether it warms itself.
+    pub(super) is_thermal: bool,
     /// Names of its leaves, and units of their derivatives.
     pub(super) leaves: Vec<(String, &'static str)>,
     pub(super) entry: Arc<Entry>,

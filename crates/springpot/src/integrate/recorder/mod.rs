@@ -16,6 +16,7 @@ use crate::collocation::Nodes;
 use crate::collocation::STAGES;
 use crate::elements::{ElementBank, Kept, MemoryRange};
 use crate::fractional::Form;
+use crate::law::heat::TEMPERATURE;
 use crate::law::{Observation, Point};
 use crate::observe::Snapshot;
 use crate::observe::evaluation::ElementRow;
@@ -43,6 +44,8 @@ pub(super) struct Recorder {
     pub(super) takes_elements_work: bool,
     /// Of elements with named schemes.
     pub(super) grid: GridDerivatives,
+    /// Elements that warm themselves.
+    thermal: Vec<usize>,
     ledger: Ledger,
 }
 
@@ -85,6 +88,7 @@ impl Recorder {
             powers: StepPowers::default(),
             takes_elements_work: true,
             grid: vec![None; cx.system.elements.len()],
+            thermal: (0..cx.system.elements.len()).filter(|&e| cx.system.elements[e].law.is_thermal()).collect(),
             ledger: Ledger::default(),
         }
     }
@@ -96,6 +100,7 @@ impl Recorder {
             let Settings { memory_rtol: tolerance, end: horizon, .. } = self.settings;
             let begun = element.begin_within(at.reading.coordinate, &at.inputs, tolerance, horizon);
             let state = begun.map_err(RunError::of_kernel(&element.name))?;
+            element.check_start(&state)?;
             self.bank.begin_from(e, &element.start(at.reading.coordinate, &at.inputs), state);
         }
         Ok(())
@@ -105,7 +110,9 @@ impl Recorder {
     pub(super) fn open(&mut self, cx: Context, first: f64) -> Result<(), RunError> {
         let Settings { memory_rtol: tolerance, end: horizon, .. } = self.settings;
         for (e, element) in cx.system.elements.iter().enumerate() {
-            let opened = self.bank.open_element(e, MemoryRange { tolerance, shortest: first, horizon });
+            let range = MemoryRange { tolerance, shortest: first, horizon };
+            let range = element.memory_range(range, &self.evaluations[0].elements[e].inputs);
+            let opened = self.bank.open_element(e, range);
             opened.map_err(RunError::of_kernel(&element.name))?;
         }
         self.ledger.potential_origin = self.evaluations[0].potential;
@@ -159,6 +166,20 @@ impl Recorder {
         self.is_whole.swap(0, 1);
     }
 
+    /// # Errors
+    /// [`RunError::RunAway`] where an element is too hot after the last step.
+    pub(super) fn check_warmth(&self, cx: Context, t: f64) -> Result<(), RunError> {
+        for &e in &self.thermal {
+            let temperature = self.bank.warmth(e, None).map_or(0.0, |warmth| warmth.temperature);
+            let highest = TEMPERATURE.high;
+            if temperature > highest {
+                let element = cx.system.elements[e].name.clone();
+                return Err(RunError::RunAway { t, element, temperature, highest });
+            }
+        }
+        Ok(())
+    }
+
     /// Goes on from the far side of a kink, `right`, and records what jumps there.
     pub(super) fn jump(&mut self, right: Evaluation) {
         let left = std::mem::replace(&mut self.evaluations[0], right);
@@ -201,7 +222,8 @@ impl Recorder {
             if cx.system.needs_leaves() {
                 self.bank.leaves(e, theta, &point, &mut leaves);
             }
-            elements.push(ElementRow { observation, leaves, dissipated, input });
+            let warmth = self.bank.warmth(e, theta);
+            elements.push(ElementRow { observation, leaves, dissipated, input, warmth });
         }
         let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
         let balance = self.balance(snapshot, actuators, joints);

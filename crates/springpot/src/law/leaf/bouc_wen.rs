@@ -2,7 +2,7 @@
 
 use super::contract::Leaf;
 use super::kind::{LeafBuild, LeafKind};
-use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
+use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
@@ -64,7 +64,7 @@ impl BoucWen {
 
     /// z at the start and at the nodes, and ∂z_i/∂v_j: z_i = z_0 + h Σ_j A_ij z'_j by Newton's method; NaN where that finds none.
     fn solve(&self, step: &Step, start: f64) -> (Values, Matrix) {
-        let (count, matrix) = (step.nodes.count(), step.nodes.matrix());
+        let (count, matrix) = (step.nodes.count(), step.matrix());
         // Beyond what it can be the powers would throw the iteration far off.
         let bound = 2.0 * self.largest().max(start.abs());
         let mut z = [start; MAX_NODES + 1];
@@ -164,7 +164,7 @@ impl Leaf for BoucWen {
 
     fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
         let (z, _) = self.solve(step, state.variables[0]);
-        let defect = step.h * quadrature_defect(step.nodes, &self.rates(step, &z));
+        let defect = step.h * step.quadrature_defect(&self.rates(step, &z));
         // What rounding leaves of a stroke is no error of z.
         let error = if defect <= self.a * step.resolution { 0.0 } else { defect };
         errors.push(LocalError { error, value: z[step.nodes.count()], order: 0.0, sharpness: 1.0 });
@@ -182,7 +182,7 @@ impl Leaf for BoucWen {
     fn at(&self, step: &Step, theta: f64, at: &Point, state: StateRef) -> Observation {
         let (z, _) = self.solve(step, state.variables[0]);
         let rates = self.rates(step, &z);
-        let moved: f64 = quadrature(step.nodes, theta).iter().zip(rates).map(|(weight, rate)| weight * rate).sum();
+        let moved: f64 = step.quadrature(theta).iter().zip(rates).map(|(weight, rate)| weight * rate).sum();
         self.observation(at, state.variables[0] + step.h * moved)
     }
 

@@ -87,6 +87,11 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// end on them.
     fn guards(&self, _at: &Point, _take: &mut dyn FnMut(f64)) {}
 
+    /// Temperature shifts springpots and dashpots; whether it is something else that follows its rate, by the clock of the wall.
+    fn keeps_the_wall_clock(&self) -> bool {
+        false
+    }
+
     /// F is an affine function of strokes and rates of a step.
     fn is_linear(&self) -> bool {
         false

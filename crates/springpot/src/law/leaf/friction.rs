@@ -63,6 +63,10 @@ impl Leaf for Friction {
         Term { coefficient: self.slope(at.rate), order: 1.0 }
     }
 
+    fn keeps_the_wall_clock(&self) -> bool {
+        true
+    }
+
     fn holds(&self) -> Holds {
         // Above some 20·v0 its force is f to the last bit, whatever the rate.
         if self.force == 0.0 { Holds::Never } else { Holds::AtTimes }

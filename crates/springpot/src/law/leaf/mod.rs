@@ -14,6 +14,7 @@ mod spring;
 mod springpot;
 mod stop;
 mod table;
+mod unshifted;
 
 pub use bouc_wen::BoucWen;
 pub use contract::Leaf;
@@ -29,3 +30,4 @@ pub use spring::Spring;
 pub use springpot::{Coefficient, Springpot};
 pub use stop::Stop;
 pub use table::{Table, TableError};
+pub(super) use unshifted::Unshifted;
