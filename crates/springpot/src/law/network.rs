@@ -562,6 +562,15 @@ impl Network {
         self.size().variables > 0
     }
 
+    /// How many of its local errors, the first of them, are those of what no stroke shows: all of them where it keeps inner strokes.
+    pub fn hidden_errors(&self) -> usize {
+        match self {
+            Self::Heated(heated) => heated.hidden_errors(),
+            _ if self.has_inner_variables() => usize::MAX,
+            _ => 0,
+        }
+    }
+
     /// Puts a periodic stroke since ever into the state of a law that is linear, its memories opened.
     pub(super) fn recall(&self, stroke: &Periodic, at: &Point, state: &mut State) {
         self.recall_part(stroke, at, &mut state.view_mut());

@@ -70,6 +70,7 @@ struct Inside {
     stroke: Values,
     rate: Values,
     inputs: Vec<InputValue>,
+    resolution: f64,
 }
 
 impl Inside {
@@ -82,6 +83,7 @@ impl Inside {
             stroke: &self.stroke[..count],
             rate: &self.rate[..count],
             inputs: &self.inputs,
+            resolution: self.resolution,
             ..*outer
         }
     }
@@ -247,7 +249,10 @@ impl Heated {
             rate[k] = clock.factor[k] * (told + self.heat.stroke_by_temperature() * temperature.rate);
             self.hand_on(step.point(k).inputs, temperature, clock.factor[k], &mut inputs);
         }
-        Inside { clock, t: own.xi, stroke, rate, inputs }
+        // Strokes are known no better than what heat adds to them.
+        let stretch = self.heat.stroke_by_temperature().abs() * course.temperature[0];
+        let resolution = step.resolution + 8.0 * f64::EPSILON * stretch;
+        Inside { clock, t: own.xi, stroke, rate, inputs, resolution }
     }
 
     /// The temperatures of the step and the step under them; `None` where no temperature goes with the losses. Leaves the state at the law's share.
@@ -355,23 +360,32 @@ impl Heated {
     }
 
     pub(super) fn local_errors(&self, step: &Step, state: &mut StateRef, errors: &mut Vec<LocalError>) {
+        let order = |error, value| LocalError { error, value, order: 0.0, sharpness: SHARPNESS };
         let Some((own, course, inside)) = self.look(step, state) else {
-            errors.push(LocalError { error: f64::NAN, value: 1.0, order: 0.0, sharpness: 1.0 });
+            errors.extend([order(f64::NAN, 1.0); 2].into_iter().take(self.own_errors()));
             return self.law.pass(state);
         };
-        self.law.local_errors_part(&inside.step(step), state, errors);
-        let order = |error, value| LocalError { error, value, order: 0.0, sharpness: SHARPNESS };
-        if inside.clock.places.is_some() {
-            let pace = inside.clock.factor.map(f64::recip);
-            let mean = inside.clock.h / step.h;
-            errors.push(order(step.quadrature_defect(&pace[..=step.nodes.count()]) / mean, 1.0));
+        let known = ..=step.nodes.count();
+        if self.heat.shift.is_some() {
+            let (pace, mean) = (inside.clock.factor.map(f64::recip), inside.clock.h / step.h);
+            errors.push(order(step.quadrature_defect(&pace[known]) / mean, 1.0));
         }
         if self.heat.thermal.is_some() {
             // The temperature counts by what it does to the clock.
             let scale = self.heat.shift.map_or(1.0, |shift| shift.slope(own.temperature).abs().max(1.0).recip());
-            let warming = &course.warming[..=step.nodes.count()];
-            errors.push(order(step.h * step.quadrature_defect(warming), scale));
+            errors.push(order(step.h * step.quadrature_defect(&course.warming[known]), scale));
         }
+        self.law.local_errors_part(&inside.step(step), state, errors);
+    }
+
+    /// How many of the local errors, the first of them, are those of the clock and of the temperature.
+    fn own_errors(&self) -> usize {
+        usize::from(self.heat.shift.is_some()) + usize::from(self.heat.thermal.is_some())
+    }
+
+    /// How many of the local errors, the first of them, no motion shows.
+    pub(super) fn hidden_errors(&self) -> usize {
+        if self.law.has_inner_variables() { usize::MAX } else { self.own_errors() }
     }
 
     pub(super) fn powers(&self, step: &Step, state: &mut StateRef, powers: &mut Powers) {
