@@ -90,8 +90,8 @@ pub(crate) fn record(heat: &Heat) -> Map<String, Value> {
     let thermal = thermal.map(|Thermal { capacity, conductance, ambient, start }| {
         json!({ "capacity": capacity, "conductance": conductance, "ambient": ambient, "start": start })
     });
-    let expansion = expansion
-        .map(|Expansion { coefficient, reference }| json!({ "coefficient": coefficient, "T_ref": reference }));
+    let expansion =
+        expansion.map(|Expansion { coefficient, reference }| json!({ "coefficient": coefficient, "T_ref": reference }));
     let tables = KEYS.into_iter().zip([shift, thermal, expansion]);
     tables.filter_map(|(key, table)| Some((key.to_owned(), table?))).collect()
 }

@@ -332,18 +332,18 @@ fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f6
 }
 
 /// Inputs in the order of the catalog.
-fn inputs<'a>(
-    table: &Table<'a>,
-    law: &'a Entry,
-    heat: &Heat,
-    time: Option<&Duration>,
-) -> Read<Vec<SignalPlan>> {
+fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
     let names: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
     let field = table.get("inputs");
     let open = field.as_ref().map(|field| {
         let what = format!("`inputs` of {} (law {:?})", table.what, law.name);
         let beside_thermal = |key: &str| {
-            let why = || (RefusalKind::Rule, format!("`{TEMPERATURE}` in {what} stands beside `thermal`, which makes it a state"));
+            let why = || {
+                (
+                    RefusalKind::Rule,
+                    format!("`{TEMPERATURE}` in {what} stands beside `thermal`, which makes it a state"),
+                )
+            };
             (key == TEMPERATURE && heat.thermal.is_some()).then(why)
         };
         Table::open_with(field.ctx, field.node, &*what, &names, beside_thermal)
@@ -357,7 +357,8 @@ fn inputs<'a>(
         let right: Vec<String> =
             missing.iter().map(|input| describe(&input.name, &input.unit, &input.meaning)).collect();
         let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
-        let message = format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold.iter().copied()));
+        let message =
+            format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold.iter().copied()));
         let refusal = place.refuse(RefusalKind::Missing, message).label("missing inputs");
         let mut help = right.join("; ");
         if !heat.is_none() && untold.contains(&TEMPERATURE) {

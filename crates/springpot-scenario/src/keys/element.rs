@@ -67,12 +67,8 @@ const THERMAL_KEY: Key = key(
     Need::Optional,
     "The temperature as a state in place of an input: losses raise it, the surroundings take the heat.",
 );
-const EXPANSION_KEY: Key = key(
-    "expansion",
-    Shape::Table(&EXPANSION),
-    Need::Optional,
-    "How the stress-free length follows the temperature.",
-);
+const EXPANSION_KEY: Key =
+    key("expansion", Shape::Table(&EXPANSION), Need::Optional, "How the stress-free length follows the temperature.");
 const REST: Key = key(
     "rest",
     Shape::JointNumberOrWord(["rad", "m"], Bound::Any, START),

@@ -2,6 +2,7 @@
 
 mod friction;
 mod fuzz;
+mod heat;
 mod joints;
 mod limits;
 mod plan;

@@ -521,13 +521,7 @@ impl Memory {
     }
 
     /// As [`Self::commit_rates`] of a step with three nodes at `places`.
-    pub fn commit_rates_at(
-        &mut self,
-        step: &RatePolynomial,
-        places: Option<&Places>,
-        stroke: f64,
-        resolution: f64,
-    ) {
+    pub fn commit_rates_at(&mut self, step: &RatePolynomial, places: Option<&Places>, stroke: f64, resolution: f64) {
         let Some(past) = &self.past else { return };
         let owed = (stroke - self.origin) - (self.travelled + step.travel());
         let mut paid = *step;

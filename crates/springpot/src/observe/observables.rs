@@ -52,7 +52,8 @@ impl Shape {
             let leaves = 0..if tells_leaves { leaves } else { 0 };
             let leaves =
                 leaves.flat_map(|leaf| LeafQuantity::ALL.map(|quantity| ElementQuantity::Leaf(leaf, quantity)));
-            let all = before.chain(forces).chain(ElementQuantity::BEFORE_INPUTS).chain(heat).chain(inputs).chain(leaves);
+            let all =
+                before.chain(forces).chain(ElementQuantity::BEFORE_INPUTS).chain(heat).chain(inputs).chain(leaves);
             all.map(|quantity| Quantity::Element(e, quantity)).for_each(&mut *visit);
         }
         if gripper {

@@ -38,14 +38,17 @@ pub(crate) fn departure(a: &[f64], b: &[f64]) -> f64 {
 pub(crate) const LAWS: [(&str, &str); 6] = [
     ("springpot", "law = \"springpot\"\nparameters = { c = 50, alpha = 0.4 }"),
     ("zener", "law = \"fractional-zener\"\nparameters = { k_e = 20, k_m = 100, c = 30, alpha = 0.5 }"),
-    ("burgers", "law = \"fractional-burgers\"\nparameters = { k_1 = 90, c_1 = 40, alpha_1 = 0.9, k_2 = 50, c_2 = 20, alpha_2 = 0.4 }"),
+    (
+        "burgers",
+        "law = \"fractional-burgers\"\nparameters = { k_1 = 90, c_1 = 40, alpha_1 = 0.9, k_2 = 50, c_2 = 20, alpha_2 = 0.4 }",
+    ),
     ("maxwell", "law = \"maxwell\"\nparameters = { k = 30, c = 6 }"),
     ("kelvin-voigt", "law = \"kelvin-voigt\"\nparameters = { k = 30, c = 6 }"),
     (
         "mixed",
         "network = \"parallel(polynomial(k, z, k3), series(spring(ks), springpot(d, alpha)), bouc-wen(ah, A, b, g, n), \
-         dashpot(c), springpot(d, beta))\"\n\
-         parameters = { k = 3, z = 0, k3 = 40, ks = 40, d = 8, alpha = 0.6, beta = 0.2, ah = 30, A = 1, b = 20, g = 60, n = 1.5, c = 1 }",
+         dashpot(c), springpot(f, beta))\"\n\
+         parameters = { k = 3, z = 0, k3 = 40, ks = 40, d = 8, alpha = 0.6, f = 6, beta = 0.2, ah = 30, A = 1, b = 20, g = 60, n = 1.5, c = 1 }",
     ),
 ];
 

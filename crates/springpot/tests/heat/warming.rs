@@ -26,7 +26,13 @@ fn a_dashpot_warms_itself_as_in_closed_form() {
         ambient + 7.0 * decay + mean / conductance * (1.0 - decay) + mean / capacity * wave
     };
     for rtol in [1e-6, 1e-9] {
-        let run = run(&slider(&element, &along(&format!("{amplitude}*sin({omega}*t)")), 20.0, 100, &format!("rtol = {rtol:e}")));
+        let run = run(&slider(
+            &element,
+            &along(&format!("{amplitude}*sin({omega}*t)")),
+            20.0,
+            100,
+            &format!("rtol = {rtol:e}"),
+        ));
         let above = |values: Vec<f64>| values.into_iter().map(|t| t - ambient).collect::<Vec<f64>>();
         let wanted = above(run.t().into_iter().map(exact).collect());
         let error = departure(&above(run.column("e.T")), &wanted);
@@ -90,7 +96,9 @@ fn running_away_is_told_with_its_time() {
     // At constant rate of loss per cycle a Maxwell element far above its peak loses more as it warms: here it is frozen at first.
     let element = "law = \"springpot\"\nparameters = { c = 2000, alpha = 1 }\n\
                    thermal = { capacity = \"1 J/K\", conductance = \"0.01 W/K\", ambient = 293 }";
-    for motion in [along("0.3*sin(20*t)"), format!("{}\nprescribed = {{ q = \"0.3*sin(20*t)\" }}", "kind = \"forward\"")] {
+    for motion in
+        [along("0.3*sin(20*t)"), format!("{}\nprescribed = {{ q = \"0.3*sin(20*t)\" }}", "kind = \"forward\"")]
+    {
         let run = try_run(&slider(element, &motion, 10.0, 1000, "rtol = 1e-6"));
         let error = run.error.expect("1500 K after 0.034 s").to_string();
         assert!(error.starts_with("t = 0.0") && error.contains("\"e\" runs away"), "{error}");
@@ -113,7 +121,8 @@ fn banks_carry_heat() {
     let thermal = Some(Thermal { capacity: 0.2, conductance: 0.05, ambient: 293.0, start: 300.0 });
     let catalog = Catalog::standard();
     let zener = catalog.get("fractional-zener").unwrap();
-    let law = |heat: Heat| (zener.with_heat(heat).unwrap().build)(&[20.0, 100.0, 30.0, 0.5], Derivative::Caputo).unwrap();
+    let law =
+        |heat: Heat| (zener.with_heat(heat).unwrap().build)(&[20.0, 100.0, 30.0, 0.5], Derivative::Caputo).unwrap();
     let laws = [Heat { shift, thermal, expansion: None }, Heat { shift, ..Heat::default() }].map(law);
     let inputs = |t: f64| [InputValue { value: 300.0 + 5.0 * t, rate: 5.0 }];
     let begun = || {

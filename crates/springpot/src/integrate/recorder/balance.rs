@@ -137,7 +137,7 @@ impl Recorder {
     /// Estimate of what the step just worked out adds to the error of the ledger, in units of its tolerance; `floor` is a lower bound
     /// of the energy turned over.
     pub(in crate::integrate) fn energy_error(&self, h: f64, floor: f64) -> f64 {
-        let turned_over = floor.max(self.turned_over());
+        let turned_over = floor.max(self.turned_over()).max(self.ledger.stretching);
         // Of denormal energies no share can be told.
         if self.actuators_unknown() || turned_over < TINY_ENERGY || h <= SHORTEST_LEDGER_STEP * self.settings.end {
             return 0.0;

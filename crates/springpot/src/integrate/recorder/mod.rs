@@ -8,13 +8,13 @@ mod check;
 
 use super::context::Context;
 use super::error::RunError;
-use super::evaluate::{Evaluation, Scratch};
+use super::evaluate::{ElementEvaluation, Evaluation, Scratch};
 use super::ledger::{NodePower, Turnover};
 use super::on_grid::{GridDerivatives, on_grid_observation};
 use super::settings::Settings;
 use crate::collocation::Nodes;
 use crate::collocation::STAGES;
-use crate::elements::{ElementBank, Kept, MemoryRange};
+use crate::elements::{Element, ElementBank, Kept, MemoryRange};
 use crate::fractional::Form;
 use crate::law::heat::TEMPERATURE;
 use crate::law::{Observation, Point};
@@ -55,6 +55,8 @@ struct Ledger {
     actuators: f64,
     joints: f64,
     potential_origin: f64,
+    /// What stretching all elements that expand by a kelvin stores: of energies far below that rounding leaves nothing.
+    stretching: f64,
     /// Balance at t = 0.
     origin: f64,
     turnover: Turnover,
@@ -115,6 +117,11 @@ impl Recorder {
             let opened = self.bank.open_element(e, range);
             opened.map_err(RunError::of_kernel(&element.name))?;
         }
+        let at_start = cx.system.elements.iter().zip(&self.evaluations[0].elements);
+        let stretching = |(element, at): (&Element, &ElementEvaluation)| {
+            element.law.as_heated().map_or(0.0, |heated| heated.stretching(&at.point(0.0), 1.0 / horizon))
+        };
+        self.ledger.stretching = at_start.map(stretching).sum();
         self.ledger.potential_origin = self.evaluations[0].potential;
         let mut start = Snapshot::new(cx.system);
         start.evaluation.clone_from(&self.evaluations[0]);

@@ -466,7 +466,8 @@ impl Heated {
             return Some(Warmth { temperature: f64::NAN, lost: f64::NAN });
         };
         let temperature = self.within(step, theta, &own, &course).value;
-        let flows: f64 = step.quadrature(theta).iter().zip(course.flows(thermal)).map(|(weight, flow)| weight * flow).sum();
+        let flows: f64 =
+            step.quadrature(theta).iter().zip(course.flows(thermal)).map(|(weight, flow)| weight * flow).sum();
         Some(Warmth { temperature, lost: own.lost + step.h * flows })
     }
 
@@ -555,6 +556,14 @@ impl Heated {
         };
         let tangent = rest.tangent.shifted(place.factor, &outside);
         Some(AtRest { tangent, ..rest })
+    }
+
+    /// What a stretch by a kelvin at the rate `omega`, rad/s, stores, J.
+    pub(crate) fn stretching(&self, at: &Point, omega: f64) -> f64 {
+        match self.heat.expansion {
+            Some(_) => 0.5 * self.stiffness(at, omega) * self.heat.stroke_by_temperature().powi(2),
+            None => 0.0,
+        }
     }
 
     /// The input that stretches the law, and by how much per unit of it, m/K.

@@ -143,7 +143,16 @@ impl Asked {
     pub(super) fn step<'a>(&'a self, outer: &Step<'a>) -> Step<'a> {
         let Self { nodes, h, ref stroke, ref inputs, .. } = *self;
         let inputs = inputs.as_deref().unwrap_or(outer.inputs);
-        Step { h, nodes, places: None, form: Form::Strokes, stroke: &stroke[..=nodes.count()], rate: &[], inputs, ..*outer }
+        Step {
+            h,
+            nodes,
+            places: None,
+            form: Form::Strokes,
+            stroke: &stroke[..=nodes.count()],
+            rate: &[],
+            inputs,
+            ..*outer
+        }
     }
 
     /// Adds forces and tangents at the nodes of the parts, as they are at those of the whole.
