@@ -209,6 +209,17 @@ impl Network {
         self.as_heated().is_some_and(|heated| heated.heat().thermal.is_some())
     }
 
+    /// Whether a temperature from outside stretches it.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.as_heated().is_some_and(|heated| heated.stretch().is_some())
+    }
+
+    /// The temperature that inputs from outside say, K; NaN where they say none.
+    pub(crate) fn temperature(&self, inputs: &[InputValue]) -> f64 {
+        let input = self.as_heated().and_then(Heated::input).and_then(|input| inputs.get(input));
+        input.map_or(f64::NAN, |input| input.value)
+    }
+
     /// Temperature and heat of a law that keeps a temperature: at θ of a step, or between two steps.
     pub fn warmth(&self, within: Option<(&Step, f64)>, state: &State) -> Option<Warmth> {
         self.as_heated()?.warmth(within, state.view())

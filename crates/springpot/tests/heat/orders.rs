@@ -16,7 +16,7 @@ const EXPANSION: Expansion = Expansion { coefficient: 1e-3, reference: 300.0 };
 
 /// A force, or a rate, that begins as smoothly as no order can tell.
 fn push(t: f64) -> f64 {
-    2000.0 * t.powi(7) * (-3.0 * t).exp()
+    400.0 * t.powi(7) * (-3.0 * t).exp()
 }
 
 /// A stroke that begins as smoothly, and its rate.
@@ -172,7 +172,7 @@ fn forward_motions_have_order_five() {
         for (name, law) in laws(of) {
             let (order, error) = order(|h, count| moved(&law, h, count));
             println!("{heat}, {name}: order {order:.2}, {error:.1e}");
-            assert!(order >= 4.5 || error < 1e-12, "{heat}, {name}: {order}");
+            assert!(order >= 4.5, "{heat}, {name}: {order}");
         }
     }
 }
@@ -183,7 +183,8 @@ fn motions_given_keep_theirs() {
         for (name, law) in laws(of) {
             let (order, error) = order(|h, count| followed(&law, h, count));
             println!("{heat}, {name}: order {order:.2}, {error:.1e}");
-            assert!(order >= 4.0 || error < 1e-12, "{heat}, {name}: {order}");
+            // The losses that make a temperature are known to what their exponentials hold, some 1e-10.
+            assert!(order >= 4.1 || (law.is_thermal() && error < 2e-9), "{heat}, {name}: {order} {error:e}");
         }
     }
 }

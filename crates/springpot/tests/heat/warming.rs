@@ -156,3 +156,34 @@ fn banks_carry_heat() {
     let warmth = bank.warmth(0, None).unwrap();
     assert!(warmth.temperature > 300.0 && warmth.lost > 0.0 && bank.warmth(1, None).is_none(), "{warmth:?}");
 }
+
+/// A temperature is a column like any other: it stops a run.
+#[test]
+fn events_watch_temperatures() {
+    let element = format!("law = \"dashpot\"\nparameters = {{ c = 20 }}\n{THERMAL}");
+    let event = "[[event]]\nname = \"warm\"\nwhen = \"e.T - 305\"\naction = \"stop\"\n";
+    let driven = "kind = \"forward\"\nprescribed = { q = \"0.2*sin(5*t)\" }";
+    let run = run(&(slider(&element, driven, 5.0, 50, "rtol = 1e-8") + event));
+    let temperature = run.column("e.T");
+    assert!(run.rows.len() < 51 && temperature.iter().all(|t| *t < 305.0 + 1e-6), "{temperature:?}");
+    assert!(temperature.last().is_some_and(|t| *t > 303.0), "{temperature:?}");
+}
+
+/// What expands cannot jump.
+#[test]
+fn a_jump_of_the_temperature_does_not_stretch() {
+    for (expansion, is_refused) in [(EXPANSION, true), ("", false)] {
+        let element = format!("{}\n{SHIFT}\n{expansion}\ninputs = {{ T = \"300 + 5*step(t - 1)\" }}", LAWS[1].1);
+        for motion in [along("0.1*sin(3*t)"), forward(0.1, "0")] {
+            let run = try_run(&slider(&element, &motion, 2.0, 20, "rtol = 1e-6"));
+            match run.error {
+                Some(error) if is_refused => {
+                    let error = error.to_string();
+                    assert!(error.starts_with("t = 1 s") && error.contains("does not jump"), "{error}");
+                }
+                None if !is_refused => assert!(run.residual() < 1e-5, "{:e}", run.residual()),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+}

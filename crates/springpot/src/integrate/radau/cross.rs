@@ -95,7 +95,7 @@ impl Radau {
         right.v.copy_from_slice(&step.origin.v);
         drive(cx, &forward, to, &mut right);
         cx.fill(to, to, None, &mut recorder.scratch, &mut right)?;
-        recorder.jump(right);
+        recorder.jump(cx, right)?;
         self.expect(cx, recorder)
     }
 }

@@ -22,6 +22,9 @@ use crate::observe::Snapshot;
 use crate::observe::evaluation::ElementRow;
 use serde::{Deserialize, Serialize};
 
+/// What a temperature may move across a kink, in units of it: one bit of time further it is another one.
+const SAME_TEMPERATURE: f64 = 1e-9;
+
 /// Powers of the step that belong to no element.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct StepPowers {
@@ -188,7 +191,20 @@ impl Recorder {
     }
 
     /// Goes on from the far side of a kink, `right`, and records what jumps there.
-    pub(super) fn jump(&mut self, right: Evaluation) {
+    ///
+    /// # Errors
+    /// [`RunError::Rule`] where a temperature jumps that stretches an element.
+    pub(super) fn jump(&mut self, cx: Context, right: Evaluation) -> Result<(), RunError> {
+        for (e, element) in cx.system.elements.iter().enumerate().filter(|(_, element)| element.law.is_stretched()) {
+            let [before, after] =
+                [&self.evaluations[0], &right].map(|of| element.law.temperature(&of.elements[e].inputs));
+            if (after - before).abs() > SAME_TEMPERATURE * before {
+                let rule = format!(
+                    "it expands by a temperature that does not jump, here from {before} to {after} K: give it a ramp"
+                );
+                return Err(RunError::Rule { t: right.t, element: element.name.clone(), rule });
+            }
+        }
         let left = std::mem::replace(&mut self.evaluations[0], right);
         let right = &self.evaluations[0];
         self.is_whole[0] = true;
@@ -202,6 +218,7 @@ impl Recorder {
                 self.bank.add_supplied(e, is - was);
             }
         }
+        Ok(())
     }
 
     /// Fills the elements and the balance of a snapshot whose evaluation is there: at θ of the step that was accounted, or between two steps
