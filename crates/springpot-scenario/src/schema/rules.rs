@@ -63,8 +63,8 @@ fn of_networks() -> Value {
 
 /// A temperature of its own is no input.
 fn of_temperature() -> Value {
-    let not_told = json!({ "properties": { "inputs": { "not": { "required": [INPUT] } } } });
-    json!({ "if": { "required": ["thermal"] }, "then": not_told })
+    let told = json!({ "required": ["thermal", "inputs"], "properties": { "inputs": { "required": [INPUT] } } });
+    json!({ "if": told, "then": false })
 }
 
 /// The input that an element under heat has.
