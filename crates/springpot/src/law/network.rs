@@ -331,6 +331,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.by_input(step, state.take(leaf.size()), input, slopes),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.by_input_part(step, state, input, slopes)),
             Self::Series(_) => self.pass(state),
+            Self::Heated(heated) => heated.by_input(step, state, input, slopes),
         }
     }
 

@@ -124,7 +124,7 @@ impl Leaf for Springpot {
         if self.coefficient.input != Some(input) || self.coefficient.slope == 0.0 {
             return;
         }
-        let affine = state.memories[0].respond(&step.start(), step.nodes, step.form);
+        let affine = state.memories[0].respond_at(&step.start(), step.nodes, step.places, step.form);
         let count = step.nodes.count();
         for i in 0..count {
             let own = |j: usize| {

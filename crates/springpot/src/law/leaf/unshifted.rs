@@ -104,6 +104,10 @@ impl Leaf for Unshifted {
         self.leaf.now(&self.point(at), state)
     }
 
+    fn by_input(&self, step: &Step, state: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
+        self.leaf.by_input(&Self::step(step, &self.rates(step)), state, input, slopes);
+    }
+
     fn linearised(&self, at: &Point) -> Term {
         self.reduced(self.leaf.linearised(&self.point(at)), at)
     }

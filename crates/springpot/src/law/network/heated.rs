@@ -342,6 +342,34 @@ impl Heated {
         }
     }
 
+    /// Of the temperature what sources and the expansion make of it; what it does to the clock is left out.
+    pub(super) fn by_input(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        input: usize,
+        slopes: &mut [[f64; MAX_NODES]; MAX_NODES],
+    ) {
+        let Some((_, _, inside)) = self.look(step, state) else { return self.law.pass(state) };
+        let inner = match (self.input() == Some(input), self.takes) {
+            (true, takes) => takes,
+            (false, Some(own)) if self.heat.thermal.is_some() && input >= own => Some(input + 1),
+            (false, _) => Some(input),
+        };
+        let mut behind = *state;
+        match inner {
+            Some(inner) => self.law.by_input_part(&inside.step(step), state, inner, slopes),
+            None => self.law.pass(state),
+        }
+        if self.input() == Some(input) && self.heat.expansion.is_some() {
+            let (mut own, stretch) = (Response::default(), self.heat.stroke_by_temperature());
+            self.law.evaluate_part(&inside.step(step), &mut behind, &mut own);
+            for (row, own) in slopes.iter_mut().zip(own.d_stroke) {
+                row.iter_mut().zip(own).for_each(|(slope, by_stroke)| *slope += stretch * by_stroke);
+            }
+        }
+    }
+
     pub(super) fn commit(&self, step: &Step, state: &mut StateMut) {
         let size = self.own_size();
         let looked = self.look(step, &mut state.view());
