@@ -32,7 +32,7 @@ impl MemoryRange {
         let now = heated.input().and_then(|input| inputs.get(input)).map(|input| input.value);
         let fastest = heated.fastest(hottest.or(now));
         // Shorter lags than are planned cost nothing until they come.
-        Self { tolerance, shortest: shortest * heated.pace(inputs).min(1.0), horizon: horizon * fastest }
+        Self { tolerance, shortest: shortest * heated.pace(inputs), horizon: horizon * fastest }
     }
 }
 

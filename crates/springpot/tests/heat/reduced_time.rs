@@ -24,6 +24,7 @@ fn a_constant_shift_is_another_clock() {
             let plain = run(&slider(&format!("{law}\n{derivative}"), &motion(3.0 * a), 4.0 / a, 40, "rtol = 1e-10"));
             for column in ["e.force", "e.stored", "e.dissipated"] {
                 let error = departure(&shifted.column(column), &plain.column(column));
+                println!("{name} {column}: {error:.1e}");
                 assert!(error < 1e-10, "{name} {column}: {error:e}");
             }
             assert!(shifted.effort() <= plain.effort() + plain.effort() / 4, "{name}: {}", shifted.effort());
@@ -124,6 +125,7 @@ fn a_clamped_bar_relaxes_its_thermal_force() {
     };
     let wanted: Vec<f64> = plain.t().iter().map(|t| exact(*t)).collect();
     let error = departure(&plain.column("e.force"), &wanted);
+    println!("{error:.1e}");
     assert!(error < 1e-9, "{error:e}");
     assert!(plain.residual() < 1e-8, "{:e}", plain.residual());
     let shifted = run(&slider(&format!("{bar}\n{SHIFT}"), &along("0"), 6.0, 60, "rtol = 1e-9"));
