@@ -5,7 +5,7 @@ use crate::numbers::{count, short};
 use crate::{Ending, diagnostic, failures, plain, printed, starts, terminal};
 use springpot::elements::Element;
 use springpot::integrate::{ElementStart, RowTimes, Stop};
-use springpot::law::{Catalog, Entry};
+use springpot::law::{Catalog, Entry, Expansion, Heat, Shift, Thermal};
 use springpot_run::sweep::Layout;
 use springpot_run::{Depth, Survey, Trouble};
 use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, ShapePlan, SignalPlan, json_schema};
@@ -107,6 +107,9 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
         line("element", &format!("{}: {law}{along}, {past}", element.name));
         line("", &element.entry.equation);
         line("", &parameters(plan_of));
+        if let Some(heated) = element.law.as_heated() {
+            line("", &heat(heated.heat(), survey.elements[e].unit));
+        }
         let Some(start) = survey.first.as_ref().map(|starts| &starts[e]) else { continue };
         let (length, stroke) = (survey.elements[e].lengths(), survey.elements[e].strokes());
         let unit = survey.elements[e].unit;
@@ -117,6 +120,26 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
         line("", &format!("d{y}/dq = {}", gradient(plan, start)));
     }
     text
+}
+
+/// What temperature does to an element whose lengths are in `unit`.
+fn heat(heat: &Heat, unit: &str) -> String {
+    let shift = heat.shift.map(|shift| match shift {
+        Shift::Wlf { c1, c2, reference } => {
+            format!("shifts by WLF, C1 = {}, C2 = {} K, T_ref = {} K", short(c1), short(c2), short(reference))
+        }
+        Shift::Arrhenius { energy, reference } => {
+            format!("shifts by Arrhenius, {} J/mol, T_ref = {} K", short(energy), short(reference))
+        }
+    });
+    let thermal = heat.thermal.map(|Thermal { capacity, conductance, ambient, start }| {
+        let (capacity, conductance) = (short(capacity), short(conductance));
+        format!("warms itself from {} K, {capacity} J/K, {conductance} W/K to {} K", short(start), short(ambient))
+    });
+    let expansion = heat.expansion.map(|Expansion { coefficient, reference }| {
+        format!("expands by {} {unit}/K from {} K", short(coefficient), short(reference))
+    });
+    [shift, thermal, expansion].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 /// Where the robot comes from, its bodies and its joints.

@@ -55,9 +55,10 @@ fn kind(name: &str) -> Option<String> {
         Quantity::Gripper(_) => "position of the gripper".into(),
         Quantity::Energy(_) => "energy".into(),
         Quantity::Element(_, ElementQuantity::GeneralizedForce(_)) => "generalized force Q".into(),
-        Quantity::Element(_, ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input) => {
-            "energy".into()
-        }
+        Quantity::Element(
+            _,
+            ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input | ElementQuantity::Heat,
+        ) => "energy".into(),
         Quantity::Time | Quantity::GripperError | Quantity::Element(..) => {
             let symbol = quantity.symbol();
             symbol.split_once(" of ").map_or(symbol.clone(), |(kind, _)| kind.into())

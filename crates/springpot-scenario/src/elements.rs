@@ -223,6 +223,10 @@ fn refuse_scheme(table: &Table<'_>, element: &Element, past: &PastPlan) -> Read<
         let help = "leave the scheme out, or write past = \"held\" or \"unloaded\"";
         return refuse("past", "a named scheme, which knows nothing before t = 0", help);
     }
+    if element.law.as_heated().is_some() {
+        let why = "a temperature, of which no named scheme knows";
+        return refuse("scheme", why, "leave the scheme out: the exact memory takes every law");
+    }
     if element.law.has_inner_variables() {
         let why = "a law with strokes of its own inside, which no named scheme knows";
         return refuse("scheme", why, "leave the scheme out: the exact memory takes every law");

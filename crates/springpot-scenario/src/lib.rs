@@ -44,6 +44,7 @@ mod elements;
 mod events;
 mod feedback;
 mod figures;
+mod heat;
 mod inputs;
 mod keys;
 mod material;

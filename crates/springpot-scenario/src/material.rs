@@ -3,13 +3,15 @@
 use super::csv;
 use super::document::{Node, shorten};
 use super::feedback;
+use super::heat;
 use super::names;
 use super::plan::SignalPlan;
 use super::reader::{Context, Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::signals::{Wanted, celsius, how_outside, interval};
 use super::time::Duration;
-use springpot::law::{Entry, NetworkText, NetworkTextError, Param, Table as LawTable};
+use springpot::law::heat::{INPUT as TEMPERATURE, TEMPERATURE as RANGE};
+use springpot::law::{Entry, Heat, Input, NetworkText, NetworkTextError, Param, Table as LawTable};
 use std::sync::Arc;
 
 /// Most values of a list of parameters.
@@ -49,7 +51,11 @@ pub(crate) fn read(table: &Table<'_>, is_rotation: bool, time: Option<&Duration>
     let lists = Lists::read(table, &law)?;
     let law = if law.has_lists() { Arc::new(law.with_lists(lists.length)) } else { law };
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    let (parameters, inputs) = (parameters(table, &law, &lists, &names), inputs(table, &law, time));
+    // What the parameters lack is told beside what is wrong with the heat.
+    let parameters = parameters(table, &law, &lists, &names);
+    let heat = heat::read(table, is_rotation)?;
+    let law = if heat.is_none() { law } else { Arc::new(law.with_heat(heat).map_err(|_| Refused)?) };
+    let inputs = inputs(table, &law, &heat, time);
     Ok(Material { law, is_network: table.get("network").is_some(), files, parameters, inputs })
 }
 
@@ -93,11 +99,24 @@ fn unit_on_rotation(unit: &str) -> String {
 
 /// The law of an element that says one; nothing where it is none.
 pub(crate) fn law_of(ctx: &Context<'_>, element: &Node) -> Option<Arc<Entry>> {
-    match (element.get("law"), element.get("network")) {
-        (Some(law), None) => ctx.catalog.get(law.text()?).cloned(),
-        (None, Some(network)) => Some(Arc::new(NetworkText::parse(network.text()?).ok()?.entry())),
-        _ => None,
+    let law = match (element.get("law"), element.get("network")) {
+        (Some(law), None) => ctx.catalog.get(law.text()?).cloned()?,
+        (None, Some(network)) => Arc::new(NetworkText::parse(network.text()?).ok()?.entry()),
+        _ => return None,
+    };
+    let takes = law.inputs.iter().any(|input| input.name == TEMPERATURE);
+    let is_thermal = element.get("thermal").is_some();
+    let is_heated = heat::KEYS.iter().any(|key| element.get(key).is_some());
+    if !is_heated || takes != is_thermal {
+        return Some(law);
     }
+    // The temperature is an input, or no longer one.
+    let mut heated = Entry::clone(&law);
+    match is_thermal {
+        true => heated.inputs.retain(|input| input.name != TEMPERATURE),
+        false => heated.inputs.push(Input::new(TEMPERATURE, "K", "temperature", RANGE)),
+    }
+    Some(Arc::new(heated))
 }
 
 fn by_name(field: &Field<'_>) -> Read<Arc<Entry>> {
@@ -314,12 +333,21 @@ fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f6
 }
 
 /// Inputs in the order of the catalog.
-fn inputs<'a>(table: &Table<'a>, law: &'a Entry, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
+fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
     let names: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
     let field = table.get("inputs");
     let open = field.as_ref().map(|field| {
         let what = format!("`inputs` of {} (law {:?})", table.what, law.name);
-        Table::open(field.ctx, field.node, what, &names)
+        let beside_thermal = |key: &str| {
+            let why = || {
+                (
+                    RefusalKind::Rule,
+                    format!("`{TEMPERATURE}` in {what} stands beside `thermal`, which makes it a state"),
+                )
+            };
+            (key == TEMPERATURE && heat.thermal.is_some()).then(why)
+        };
+        Table::open_with(field.ctx, field.node, &*what, &names, beside_thermal)
     });
     let given = open.transpose()?;
     let missing: Vec<_> =
@@ -330,14 +358,26 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, time: Option<&Duration>) -> Rea
         let right: Vec<String> =
             missing.iter().map(|input| describe(&input.name, &input.unit, &input.meaning)).collect();
         let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
-        let message = format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold));
+        let message =
+            format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold.iter().copied()));
         let refusal = place.refuse(RefusalKind::Missing, message).label("missing inputs");
-        table.ctx.refuse(refusal.help(right.join("; ")));
+        let mut help = right.join("; ");
+        if !heat.is_none() && untold.contains(&TEMPERATURE) {
+            help.push_str("; or a table `thermal`, which makes it a state");
+        }
+        table.ctx.refuse(refusal.help(help));
     }
     all(law.inputs.iter().map(|input| {
         let field = given.as_ref().and_then(|given| given.get(&input.name)).ok_or(Refused)?;
         let end = time.map(|time| time.end);
-        feedback::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })
+        let signal = feedback::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })?;
+        let shift = heat.shift.filter(|_| input.name == TEMPERATURE);
+        if let Some((shift, temperature)) = shift.zip(signal.constant)
+            && let Err(broken) = shift.check(temperature)
+        {
+            return Err(field.refuse(RefusalKind::Rule, format!("breaks a rule of `shift`: {broken}"), None));
+        }
+        Ok(signal)
     }))
 }
 

@@ -1,6 +1,7 @@
 //! The plan as JSON, for the record of a run.
 
 use super::figures::FigurePlan;
+use super::heat;
 use super::keys::solver::ADAPTIVE;
 use super::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
 use super::plan::{ElementPlan, EndStops, FramePlan, Plan, ShapePlan, SignalPlan, UrdfPlan};
@@ -143,6 +144,7 @@ impl Plan {
         if let (Value::Object(value), Value::Object(others)) = (&mut value, others) {
             value.extend(others);
             value.extend(plan.past.record().map(|past| ("past".to_owned(), past)));
+            value.extend(element.law.as_heated().map(|heated| heat::record(heated.heat())).unwrap_or_default());
         }
         value
     }

@@ -214,6 +214,7 @@ fn part(network: &Network, law: &Entry, trials: &[Trial]) -> Part {
     match network {
         Network::Parallel(parts) => Part::Parallel(all(parts)),
         Network::Series(parts) => Part::Series(all(parts)),
+        Network::Heated(heated) => part(heated.law(), law, trials),
         Network::Leaf(leaf) => {
             let of = |value: f64| {
                 let inputs = vec![InputValue { value, rate: 0.0 }; law.inputs.len()];

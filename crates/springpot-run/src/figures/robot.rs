@@ -108,6 +108,7 @@ fn sign(law: &Network, at: &Point<'_>) -> ElementSign {
         },
         Network::Parallel(parts) => ElementSign::Parallel(all(parts)),
         Network::Series(parts) => ElementSign::Series(all(parts)),
+        Network::Heated(heated) => sign(heated.law(), &Point { inputs: &heated.inputs_of_law(at.inputs), ..*at }),
     }
 }
 

@@ -1,5 +1,6 @@
 //! `[[element]]`.
 
+use super::heat::{EXPANSION, SHIFT, THERMAL};
 use super::robot::NAME;
 use super::{ANCHOR, Bound, Field, Key, Keys, Need, Shape, Slot, key};
 use springpot::elements::Element;
@@ -54,6 +55,20 @@ const PERIOD: Key = key(
 );
 const SCHEME: Key =
     key("scheme", Shape::Scheme, Need::Word("exact"), "The exact memory, or a named scheme on the grid of the rows.");
+const SHIFT_KEY: Key = key(
+    "shift",
+    Shape::Table(&SHIFT),
+    Need::Optional,
+    "How temperature shifts the rates of springpots and dashpots: a temperature input `T`, or `thermal`, says it.",
+);
+const THERMAL_KEY: Key = key(
+    "thermal",
+    Shape::Table(&THERMAL),
+    Need::Optional,
+    "The temperature as a state in place of an input: losses raise it, the surroundings take the heat.",
+);
+const EXPANSION_KEY: Key =
+    key("expansion", Shape::Table(&EXPANSION), Need::Optional, "How the stress-free length follows the temperature.");
 const REST: Key = key(
     "rest",
     Shape::JointNumberOrWord(["rad", "m"], Bound::Any, START),
@@ -118,6 +133,9 @@ pub(crate) static ELEMENT: Keys = Keys {
         PAST.only(OF_MATERIALS),
         PERIOD.only(OF_MATERIALS),
         SCHEME.only(OF_MATERIALS),
+        SHIFT_KEY.only(OF_MATERIALS),
+        THERMAL_KEY.only(OF_MATERIALS),
+        EXPANSION_KEY.only(OF_MATERIALS),
     ],
 };
 
@@ -166,7 +184,20 @@ pub(crate) static COMPONENTS: Keys = Keys {
 
 pub(crate) static COMPONENT: Keys = Keys {
     words: "The material of one relative coordinate.",
-    keys: &[REST, LAW, NETWORK, PARAMETERS, INPUTS, DERIVATIVE, PAST, PERIOD, SCHEME],
+    keys: &[
+        REST,
+        LAW,
+        NETWORK,
+        PARAMETERS,
+        INPUTS,
+        DERIVATIVE,
+        PAST,
+        PERIOD,
+        SCHEME,
+        SHIFT_KEY,
+        THERMAL_KEY,
+        EXPANSION_KEY,
+    ],
 };
 
 /// Its keys that are numbers of an element between points.

@@ -7,6 +7,7 @@ mod constants;
 mod controller;
 mod element;
 mod event;
+mod heat;
 mod motion;
 mod output;
 mod robot;
@@ -25,6 +26,7 @@ pub(crate) use element::{
     START as AT_START,
 };
 pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
+pub(crate) use heat::{ARRHENIUS, EXPANSION, SHIFT, THERMAL};
 pub(crate) use motion::{
     FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,
 };

@@ -145,6 +145,7 @@ fn the_document_has_the_same_keys() {
         ("### Bodies", vec![all(&BODY), all(&JOINT), all(&FRICTION)]),
         ("## [[element]]", vec![all(&ELEMENT)]),
         ("### Past", vec![all(&HELD)]),
+        ("### Heat", vec![all(&SHIFT), all(&THERMAL), all(&EXPANSION)]),
         ("## [motion]", with_tables.map(|kind| of_motion(kind.name())).collect()),
         ("### Controllers", vec![all(&CONTROLLER)]),
         ("## [[event]]", vec![all(&EVENT)]),

@@ -5,6 +5,7 @@ use super::super::motion::MOTION;
 use super::super::root::SCENARIO;
 use super::rules::{alternatives, joints, of_elements, required_of, where_kind};
 use serde_json::{Map, Value, json};
+use springpot::law::heat::INPUT;
 use springpot::law::{Catalog, Entry};
 
 /// Required keys alone; types stand elsewhere.
@@ -57,7 +58,7 @@ fn of(keys: &'static Keys, catalog: &Catalog) -> Option<Value> {
             }
             rule
         };
-        let laws = catalog.entries().iter().filter_map(|law| of_law(law));
+        let laws = catalog.entries().iter().flat_map(|law| of_law(law));
         schema.insert("allOf".to_owned(), laws.chain([of_elements(of_kind)]).collect());
     } else if let Value::Object(one) = any_of(keys) {
         schema.extend(one);
@@ -80,19 +81,32 @@ fn any_of(keys: &'static Keys) -> Value {
 }
 
 /// The parameters and inputs that a law cannot do without.
-fn of_law(law: &Entry) -> Option<Value> {
+fn of_law(law: &Entry) -> Vec<Value> {
+    let takes = law.inputs.iter().any(|input| input.name == INPUT);
+    // A temperature of its own is no input.
+    let kinds: &[bool] = if takes { &[false, true] } else { &[false] };
+    kinds.iter().filter_map(|is_thermal| needed_by(law, takes, *is_thermal)).collect()
+}
+
+fn needed_by(law: &Entry, takes: bool, is_thermal: bool) -> Option<Value> {
     let params: Vec<&str> =
         law.params.iter().filter(|p| p.default.is_none() && !p.is_list).map(|param| &*param.name).collect();
-    let inputs: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
+    let inputs = law.inputs.iter().map(|input| &*input.name).filter(|name| !is_thermal || *name != INPUT);
+    let inputs: Vec<&str> = inputs.collect();
     let tables = [("parameters", params), ("inputs", inputs)];
     let needed: Vec<_> = tables.into_iter().filter(|(_, names)| !names.is_empty()).collect();
     let sections: Vec<&str> = needed.iter().map(|(section, _)| *section).collect();
     let within: Map<String, Value> =
         needed.iter().map(|(section, names)| ((*section).to_owned(), json!({ "required": names }))).collect();
     (!sections.is_empty()).then(|| {
-        json!({
+        let mut rule = json!({
             "if": { "properties": { "law": { "const": law.name } }, "required": ["law"] },
             "then": { "required": sections, "properties": within },
-        })
+        });
+        let thermal = json!({ "required": ["thermal"] });
+        if takes {
+            rule["if"]["allOf"] = json!([if is_thermal { thermal } else { json!({ "not": thermal }) }]);
+        }
+        rule
     })
 }

@@ -2,12 +2,14 @@
 
 use super::super::figures::FIGURE;
 use super::super::keys::{
-    BETWEEN, BUSHING, COMPONENT, ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ON_JOINT, ROBOT, SIGNAL, TIME, keys_of,
+    BETWEEN, BUSHING, COMPONENT, ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ON_JOINT, ROBOT, SHIFT, SIGNAL, TIME,
+    keys_of,
 };
 use super::super::material::TABLE;
 use super::super::motion::MOTION;
 use super::shapes::{quantity, signal};
 use serde_json::{Map, Value, json};
+use springpot::law::heat::INPUT;
 use springpot::law::{Catalog, Entry, Input, Param, Range};
 use springpot::model::JointKind;
 
@@ -34,6 +36,8 @@ pub(super) fn add(schema: &mut Value, keys: &Keys, catalog: &Catalog) {
         })
     } else if is(&FIGURE) {
         by_kind(&FIGURE)
+    } else if is(&SHIFT) {
+        by_kind(&SHIFT)
     } else {
         return;
     };
@@ -44,7 +48,28 @@ pub(super) fn add(schema: &mut Value, keys: &Keys, catalog: &Catalog) {
 
 /// The parameters and inputs of every law.
 fn laws(catalog: &Catalog) -> impl Iterator<Item = Value> {
-    catalog.entries().iter().map(|law| of_law(law))
+    catalog.entries().iter().map(|law| of_law(law)).chain([of_networks(), of_temperature()])
+}
+
+/// Networks have no input but the temperature.
+fn of_networks() -> Value {
+    let inputs = json!({
+        "description": "Inputs of a network: the temperature, under heat.",
+        "properties": { INPUT: temperature() },
+        "additionalProperties": false,
+    });
+    json!({ "if": { "required": ["network"] }, "then": { "properties": { "inputs": inputs } } })
+}
+
+/// A temperature of its own is no input.
+fn of_temperature() -> Value {
+    let told = json!({ "required": ["thermal", "inputs"], "properties": { "inputs": { "required": [INPUT] } } });
+    json!({ "if": told, "then": false })
+}
+
+/// The input that an element under heat has.
+fn temperature() -> Value {
+    signal("K", "Temperature.")
 }
 
 /// What holds for each kind of element.
@@ -147,12 +172,18 @@ fn of_law(law: &Entry) -> Value {
         let schema = signal(unit, &format!("{}.", capitalised(meaning)));
         (name.to_string(), schema)
     });
+    let inputs: Map<String, Value> = inputs.collect();
+    let mut told = inputs.clone();
+    told.entry(INPUT.to_owned()).or_insert_with(temperature);
+    let with = |inputs| json!({ "properties": { "inputs": table("Inputs", inputs) } });
     json!({
         "if": { "properties": { "law": { "const": law.name } }, "required": ["law"] },
-        "then": { "properties": {
-            "parameters": table("Parameters", params.collect()),
-            "inputs": table("Inputs", inputs.collect()),
-        } },
+        "then": {
+            "properties": { "parameters": table("Parameters", params.collect()) },
+            "if": { "anyOf": [{ "required": ["shift"] }, { "required": ["expansion"] }] },
+            "then": with(told),
+            "else": with(inputs),
+        },
     })
 }
 

@@ -3,6 +3,7 @@
 mod control;
 mod friction;
 mod fuzz;
+mod heat;
 mod joints;
 mod limits;
 mod plan;

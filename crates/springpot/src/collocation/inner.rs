@@ -2,13 +2,21 @@
 //!
 //! The strokes inside a series bend more than the stroke of the whole: with one node more than the step they are known one order better.
 
-use super::{RADAU_NODES, STAGES, TABLEAU, integral, lagrange_coefficients};
+use super::{Places, RADAU_NODES, STAGES, TABLEAU, integral, lagrange_coefficients, slope, value};
 use std::sync::LazyLock;
 
 /// The roots of 35θ³ − 45θ² + 15θ − 1, and 1.
 pub(crate) const NODES: [f64; 4] = [0.088_587_959_512_703_95, 0.409_466_864_440_734_7, 0.787_659_461_760_847, 1.0];
 
 const COUNT: usize = NODES.len();
+
+/// The Lagrange polynomials of 0 and three nodes.
+type Lagrange = [[f64; STAGES + 1]; STAGES + 1];
+
+/// The polynomial through the values at the nodes, at θ: their weights.
+pub(crate) fn outer_row(theta: f64) -> [f64; COUNT] {
+    std::array::from_fn(|j| value(&TABLEAU_OF_FOUR.rates, j, theta))
+}
 
 /// What a step with three stages knows, brought to a place in it: weights of x at 0 and at the three nodes, and of h·x'.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,22 +67,48 @@ pub(crate) static TABLEAU_OF_FOUR: LazyLock<Tableau> = LazyLock::new(|| {
 impl Weights {
     /// Of the cubic through the strokes.
     pub(crate) fn by_strokes(theta: f64) -> Self {
-        let stroke = std::array::from_fn(|k| value(&TABLEAU.rates, k, theta));
-        Self { stroke, rate: [0.0; STAGES + 1] }
+        Self::strokes_at(&TABLEAU.rates, theta)
     }
 
     /// Of the polynomial of degree 4 whose rates are the cubic through the rates.
     pub(crate) fn by_rates(theta: f64) -> Self {
-        let rate = std::array::from_fn(|k| integral(&TABLEAU.rates, k, theta));
-        Self { stroke: [1.0, 0.0, 0.0, 0.0], rate }
+        Self::rates_at(&TABLEAU.rates, theta)
     }
 
     /// Of the polynomial of degree 7 that has both.
     pub(crate) fn by_both(theta: f64) -> Self {
-        let points = [0.0, RADAU_NODES[0], RADAU_NODES[1], RADAU_NODES[2]];
+        Self::both_at(&TABLEAU.rates, &RADAU_NODES, theta)
+    }
+
+    /// As [`Self::by_strokes`] of a step with three nodes at `places`.
+    pub(crate) fn by_strokes_at(places: &Places, theta: f64) -> Self {
+        Self::strokes_at(&places.values, theta)
+    }
+
+    /// As [`Self::by_rates`] of a step with three nodes at `places`.
+    pub(crate) fn by_rates_at(places: &Places, theta: f64) -> Self {
+        Self::rates_at(&places.values, theta)
+    }
+
+    /// As [`Self::by_both`] of a step with three nodes at `places`.
+    pub(crate) fn by_both_at(places: &Places, theta: f64) -> Self {
+        Self::both_at(&places.values, places.positions(), theta)
+    }
+
+    fn strokes_at(lagrange: &Lagrange, theta: f64) -> Self {
+        Self { stroke: std::array::from_fn(|k| value(lagrange, k, theta)), rate: [0.0; STAGES + 1] }
+    }
+
+    fn rates_at(lagrange: &Lagrange, theta: f64) -> Self {
+        let rate = std::array::from_fn(|k| integral(lagrange, k, theta));
+        Self { stroke: [1.0, 0.0, 0.0, 0.0], rate }
+    }
+
+    fn both_at(lagrange: &Lagrange, nodes: &[f64; STAGES], theta: f64) -> Self {
+        let points = [0.0, nodes[0], nodes[1], nodes[2]];
         let of = |k: usize| {
-            let (apart, square) = (theta - points[k], value(&TABLEAU.rates, k, theta).powi(2));
-            [(1.0 - 2.0 * apart * slope(&TABLEAU.rates, k, points[k])) * square, apart * square]
+            let (apart, square) = (theta - points[k], value(lagrange, k, theta).powi(2));
+            [(1.0 - 2.0 * apart * slope(lagrange, k, points[k])) * square, apart * square]
         };
         Self { stroke: std::array::from_fn(|k| of(k)[0]), rate: std::array::from_fn(|k| of(k)[1]) }
     }
@@ -85,16 +119,6 @@ impl Weights {
         let moved: f64 = (1..=STAGES).map(|k| self.stroke[k] * (stroke(k) - stroke(0))).sum();
         stroke(0) + moved + (0..=STAGES).map(|k| self.rate[k] * rate(k)).sum::<f64>()
     }
-}
-
-/// The Lagrange polynomial of node `k` at θ.
-fn value<const N: usize>(lagrange: &[[f64; N]; N], k: usize, theta: f64) -> f64 {
-    (0..N).rev().fold(0.0, |sum, p| sum * theta + lagrange[p][k])
-}
-
-/// Its derivative.
-fn slope<const N: usize>(lagrange: &[[f64; N]; N], k: usize, theta: f64) -> f64 {
-    (1..N).rev().fold(0.0, |sum, p| sum * theta + p as f64 * lagrange[p][k])
 }
 
 #[cfg(test)]

@@ -3,7 +3,10 @@
 //! With θ = (t − t_n)/h the nodes are 0 < c_1 < … < c_s ≤ 1. A function over the step is known by its values at the start and at the nodes.
 
 pub(crate) mod inner;
+mod places;
 pub(crate) mod radau;
+
+pub use places::Places;
 
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
@@ -98,6 +101,16 @@ pub fn quadrature(nodes: Nodes, theta: f64) -> [f64; MAX_NODES + 1] {
 /// ∫₀^θ of the polynomial with the coefficients `lagrange`[p][k], p = 0, 1, …
 fn integral<const N: usize>(lagrange: &[[f64; N]; N], k: usize, theta: f64) -> f64 {
     (0..N).rev().fold(0.0, |sum, p| sum * theta + lagrange[p][k] / (p + 1) as f64) * theta
+}
+
+/// The Lagrange polynomial of node `k` at θ.
+fn value<const N: usize>(lagrange: &[[f64; N]; N], k: usize, theta: f64) -> f64 {
+    (0..N).rev().fold(0.0, |sum, p| sum * theta + lagrange[p][k])
+}
+
+/// Its derivative.
+fn slope<const N: usize>(lagrange: &[[f64; N]; N], k: usize, theta: f64) -> f64 {
+    (1..N).rev().fold(0.0, |sum, p| sum * theta + p as f64 * lagrange[p][k])
 }
 
 /// Coefficients of θ^p, p = 0…3, of the Lagrange polynomial of point `k` of (0, c_1, c_2, 1).

@@ -5,7 +5,7 @@ use crate::collocation::{MAX_NODES, STAGES};
 use crate::fractional::{Form, KernelError};
 use crate::law::{
     Course, Electric, Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response,
-    Start, State, Step, Term, When,
+    Start, State, Step, Term, Warmth, When,
 };
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +18,22 @@ pub struct MemoryRange {
     pub shortest: f64,
     /// The longest past that is remembered to that tolerance, s.
     pub horizon: f64,
+}
+
+impl MemoryRange {
+    /// The range in the time of a law's memories, which temperature may shift: `inputs` are those at t = 0, `hottest` is how hot its input T gets, K.
+    ///
+    /// Where that is not known, it counts as 25 K above what it is at t = 0; a temperature that is a state as 150 K above where it starts and
+    /// what surrounds it. What gets hotter is remembered less well than `tolerance`.
+    #[must_use]
+    pub fn reduced(self, law: &Network, inputs: &[InputValue], hottest: Option<f64>) -> Self {
+        let Some(heated) = law.as_heated() else { return self };
+        let Self { tolerance, shortest, horizon } = self;
+        let now = heated.input().and_then(|input| inputs.get(input)).map(|input| input.value);
+        let fastest = heated.fastest(hottest.or(now));
+        // Shorter lags than are planned cost nothing until they come.
+        Self { tolerance, shortest: shortest * heated.pace(inputs), horizon: horizon * fastest }
+    }
 }
 
 /// Laws with their states, driven by anybody who knows strokes and rates: a time loop, another engine, measured data.
@@ -114,6 +130,7 @@ impl Told {
             t,
             h,
             nodes,
+            places: None,
             form: self.form,
             stroke: &self.stroke[..count],
             rate: &self.rate[..count],
@@ -175,6 +192,7 @@ impl ElementBank {
         assert_eq!(starts.len(), self.elements.len(), "a start for each element");
         for (e, start) in starts.iter().enumerate() {
             self.begin_element(e, start)?;
+            let memory = memory.reduced(&self.elements[e].law, start.inputs, None);
             self.open_element(e, memory)?;
         }
         (self.step.t, self.step.h) = (0.0, 0.0);
@@ -198,7 +216,7 @@ impl ElementBank {
         element.response = Response::default();
     }
 
-    /// Builds the kernels of an element that has begun.
+    /// Builds the kernels of an element that has begun, whose range is that of its law's own time ([`MemoryRange::reduced`]).
     pub(crate) fn open_element(&mut self, e: usize, memory: MemoryRange) -> Result<(), KernelError> {
         let MemoryRange { tolerance, shortest, horizon } = memory;
         let kept = self.elements[e].kept.as_mut();
@@ -375,6 +393,22 @@ impl ElementBank {
     pub(crate) fn now(&self, e: usize, at: &Point) -> Option<Observation> {
         let Banked { law, kept, .. } = &self.elements[e];
         kept.as_ref().map(|kept| law.now(at, &kept.state))
+    }
+
+    /// Temperature and heat of element `e`, where its law keeps a temperature: at θ of the step that was begun, or between two steps.
+    pub fn warmth(&self, e: usize, theta: Option<f64>) -> Option<Warmth> {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        law.as_heated()?;
+        let step = told.step(self.step);
+        law.warmth(theta.map(|theta| (&step, theta)), &kept.as_ref()?.state)
+    }
+
+    /// By how much the time of the memories of element `e` runs faster than t, at the end of the step.
+    pub(crate) fn pace(&self, e: usize) -> f64 {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        let Some((heated, kept)) = law.as_heated().zip(kept.as_ref()) else { return 1.0 };
+        let step = told.step(self.step);
+        heated.pace_at(&step, kept.state.view())
     }
 
     /// The leaves of element `e`: at θ of the step that was begun, or between two steps; none where it takes no part.

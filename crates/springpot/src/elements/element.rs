@@ -1,11 +1,15 @@
 //! A material: measure + law + inputs. The only place where bodies and laws meet.
 
+use super::bank::MemoryRange;
 use super::measure::Measure;
 use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
 use crate::law::{Derivative, Entry, InputValue, Network, Past, RuleError, Start, State};
 use crate::signal::Signal;
 use std::sync::Arc;
+
+/// How many times an input T is looked at for how hot it gets.
+const LOOKS: usize = 512;
 
 /// Relative error of kernels where nobody says one.
 const KERNEL: f64 = 1e-12;
@@ -73,7 +77,10 @@ impl Element {
             if !self.law.is_linear() {
                 return refuse("to be linear where its past is steady");
             }
-            if self.law.has_inner_variables() && !self.entry.inputs.is_empty() {
+            // A temperature from outside was always that at t = 0.
+            let (law, inputs) =
+                self.law.as_heated().map_or((&self.law, self.entry.inputs.len()), |h| (h.law(), h.inputs()));
+            if law.has_inner_variables() && inputs > 0 {
                 return refuse("to have no inputs where its past is steady and parts stand in series");
             }
         }
@@ -113,7 +120,21 @@ impl Element {
         tolerance: f64,
         horizon: f64,
     ) -> Result<State, KernelError> {
+        // Other pasts alone ask for the longest lag here.
+        let horizon = match self.past.is_of_derivative() {
+            true => horizon,
+            false => self.memory_range(MemoryRange { tolerance, shortest: 0.0, horizon }, inputs).horizon,
+        };
         self.past.state(&self.law, &self.start(coordinate, inputs), tolerance, horizon)
+    }
+
+    /// The range of its memories in their own time, under the inputs at t = 0 and what its signals say of the rest of the run.
+    pub fn memory_range(&self, range: MemoryRange, inputs: &[InputValue]) -> MemoryRange {
+        let Some(heated) = self.law.as_heated() else { return range };
+        let signal = heated.input().and_then(|input| self.inputs.get(input));
+        let at = |signal: &Signal, k: usize| signal.at(range.horizon * k as f64 / LOOKS as f64).value;
+        let hottest = signal.map(|signal| (0..=LOOKS).map(|k| at(signal, k)).fold(f64::NEG_INFINITY, f64::max));
+        range.reduced(&self.law, inputs, hottest)
     }
 
     /// x = y − y0, m or rad.

@@ -2,7 +2,7 @@
 
 use super::step::{RatePolynomial, local_factors};
 use crate::collocation::inner;
-use crate::collocation::{MAX_NODES, Nodes, RADAU_NODES, TABLEAU};
+use crate::collocation::{MAX_NODES, Nodes, Places, RADAU_NODES, TABLEAU};
 use serde::{Deserialize, Serialize};
 
 /// What the order says of every step, and h^{1−alpha} of the last one.
@@ -93,6 +93,24 @@ impl Local {
         };
         let scale = self.power(h) / h;
         row.map(|factor| scale * factor)
+    }
+
+    /// As [`Self::rate_row`] of a step with three nodes at `places`.
+    pub(super) fn rate_row_at(&self, h: f64, i: usize, places: &Places) -> [f64; MAX_NODES + 1] {
+        let theta = places.positions()[i];
+        let scale = self.power(theta * h);
+        let term = |p: usize, k: usize| self.factors[p] * places.values[p][k];
+        let factor = |k: usize| (0..4).rev().fold(0.0, |sum, p| sum * theta + term(p, k));
+        std::array::from_fn(|k| if k < 4 { scale * factor(k) } else { 0.0 })
+    }
+
+    /// As [`Self::stroke_row`] of a step with three nodes at `places`.
+    pub(super) fn stroke_row_at(&self, h: f64, i: usize, places: &Places) -> [f64; MAX_NODES] {
+        let theta = places.positions()[i];
+        let scale = self.power(theta * h) / h;
+        let term = |p: usize, j: usize| self.factors[p] * (p + 1) as f64 * places.values[p + 1][j + 1];
+        let factor = |j: usize| (0..3).rev().fold(0.0, |sum, p| sum * theta + term(p, j));
+        std::array::from_fn(|j| if j < 3 { scale * factor(j) } else { 0.0 })
     }
 
     /// 1/Γ(3−alpha): the mean over a step of h = 1 of D^alpha x under the rate 1.

@@ -42,7 +42,7 @@ use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
 use super::local::Local;
 use super::step::{Form, NODE_POLYNOMIAL, RatePolynomial};
-use crate::collocation::{MAX_NODES, Nodes};
+use crate::collocation::{MAX_NODES, Nodes, Places};
 use serde::{Deserialize, Serialize};
 
 /// Square of what the polynomial with its zeros at the nodes of a step has next to them; between them it is 0.003 to 0.018.
@@ -115,8 +115,15 @@ pub struct Memory {
 struct Prepared {
     start: StepStart,
     nodes: Nodes,
+    places: Option<Places>,
     form: Form,
     affine: Affine,
+}
+
+impl Prepared {
+    fn is_for(&self, start: &StepStart, nodes: Nodes, places: Option<&Places>, form: Form) -> bool {
+        self.start == *start && self.nodes == nodes && self.form == form && self.places.as_ref() == places
+    }
 }
 
 impl Memory {
@@ -221,6 +228,11 @@ impl Memory {
     ///
     /// Collocation that takes the point values instead loses its order at a singular start; far from the start both agree.
     pub fn singular_moments(&self, start: &StepStart, nodes: Nodes) -> [f64; MAX_NODES] {
+        self.singular_moments_at(start, nodes, None)
+    }
+
+    /// As [`Self::singular_moments`], the nodes of a step with three being at `places`.
+    pub fn singular_moments_at(&self, start: &StepStart, nodes: Nodes, places: Option<&Places>) -> [f64; MAX_NODES] {
         if self.jump == 0.0 {
             return [0.0; MAX_NODES];
         }
@@ -234,6 +246,10 @@ impl Memory {
             };
             self.jump * self.singular_factor / power * grown / start.h
         };
+        if let Some(places) = places {
+            let impulses = places.positions().map(impulse);
+            return places.inverse().map(|row| row.iter().zip(impulses).map(|(a, i)| a * i).sum());
+        }
         match nodes {
             Nodes::One | Nodes::Midpoint => [impulse(1.0), 0.0, 0.0, 0.0],
             Nodes::Radau | Nodes::Inner => {
@@ -251,10 +267,48 @@ impl Memory {
     /// of straight pieces, whose errors do not add up: a force that errs by h^{2−alpha} in every step leaves the motion of order 2. The
     /// work h Σ F u is that of D^alpha x on this stroke, never negative in all, so that no step size makes energy.
     pub fn respond(&self, start: &StepStart, nodes: Nodes, form: Form) -> Affine {
+        self.respond_at(start, nodes, None, form)
+    }
+
+    /// As [`Self::respond`], the nodes of a step with three being at `places`.
+    pub fn respond_at(&self, start: &StepStart, nodes: Nodes, places: Option<&Places>, form: Form) -> Affine {
         match &self.prepared {
-            Some(ready) if ready.start == *start && ready.nodes == nodes && ready.form == form => ready.affine,
-            _ => self.affine(start, nodes, form),
+            Some(ready) if ready.is_for(start, nodes, places, form) => ready.affine,
+            _ => match places {
+                None => self.affine(start, nodes, form),
+                Some(places) => self.affine_at(start, places, form),
+            },
         }
+    }
+
+    /// [`Self::affine`] of three nodes at `places`.
+    fn affine_at(&self, start: &StepStart, places: &Places, form: Form) -> Affine {
+        let mut affine = Affine::default();
+        for (i, &theta) in places.positions().iter().enumerate() {
+            if self.alpha == 0.0 {
+                affine.stroke[i][i] = 1.0;
+                affine.history[i] = start.stroke - self.held();
+                continue;
+            }
+            let strokes = || self.local.stroke_row_at(start.h, i, places);
+            let Some(past) = &self.past else {
+                match form {
+                    Form::Rates => affine.rate[i][i] = 1.0,
+                    Form::Strokes => affine.stroke[i] = strokes(),
+                }
+                continue;
+            };
+            affine.history[i] = past.at(theta * start.h) + self.singular_part(start.t + theta * start.h);
+            match form {
+                Form::Strokes => affine.stroke[i] = strokes(),
+                Form::Rates => {
+                    let row = self.local.rate_row_at(start.h, i, places);
+                    affine.history[i] += row[0] * start.rate;
+                    affine.rate[i].copy_from_slice(&row[1..]);
+                }
+            }
+        }
+        affine
     }
 
     fn affine(&self, start: &StepStart, nodes: Nodes, form: Form) -> Affine {
@@ -291,12 +345,23 @@ impl Memory {
 
     /// Makes ready what a step will ask for, which then costs nothing however often it is asked; no answer changes.
     pub fn prepare(&mut self, start: &StepStart, nodes: Nodes, form: Form) {
-        let is_same = |ready: &Prepared| ready.start == *start && ready.nodes == nodes && ready.form == form;
-        if self.prepared.as_ref().is_some_and(is_same) {
+        self.prepare_at(start, nodes, None, form);
+    }
+
+    /// As [`Self::prepare`], the nodes of a step with three being at `places`.
+    pub fn prepare_at(&mut self, start: &StepStart, nodes: Nodes, places: Option<&Places>, form: Form) {
+        if self.prepared.as_ref().is_some_and(|ready| ready.is_for(start, nodes, places, form)) {
             return;
         }
-        self.prepare_lags(start.h, nodes);
-        self.prepared = Some(Prepared { start: *start, nodes, form, affine: self.affine(start, nodes, form) });
+        let affine = match places {
+            None => {
+                self.prepare_lags(start.h, nodes);
+                self.affine(start, nodes, form)
+            }
+            // Such lags are those of no other step: tables of them would be filled for one use.
+            Some(places) => self.affine_at(start, places, form),
+        };
+        self.prepared = Some(Prepared { start: *start, nodes, places: places.copied(), form, affine });
     }
 
     fn prepare_lags(&mut self, h: f64, nodes: Nodes) {
@@ -347,15 +412,27 @@ impl Memory {
     /// As [`Self::regular_derivative`] for a step of rates at the Radau nodes, with the exact x' at θ as one point more: between the
     /// nodes this is as accurate as the end of the step.
     pub fn derivative_between(&self, step: &RatePolynomial, theta: f64, stroke: f64, rate: f64) -> f64 {
+        self.derivative_between_at(step, &NODE_POLYNOMIAL, theta, stroke, rate)
+    }
+
+    /// As [`Self::derivative_between`]; `nodes` are the coefficients of the polynomial that vanishes at 0 and at the nodes.
+    pub(crate) fn derivative_between_at(
+        &self,
+        step: &RatePolynomial,
+        nodes: &[f64; 5],
+        theta: f64,
+        stroke: f64,
+        rate: f64,
+    ) -> f64 {
         let value = self.regular_derivative(step, theta, stroke, rate);
         let at = |coefficients: &[f64; 5]| coefficients.iter().rev().fold(0.0, |sum, c| sum * theta + c);
-        let node_polynomial = at(&NODE_POLYNOMIAL);
+        let node_polynomial = at(nodes);
         if self.past.is_none() {
             return value;
         }
         // Next to a node the point says nothing that the cubic does not know, and what it errs would weigh too much.
         let miss = (rate - step.rate(theta)) * node_polynomial / (node_polynomial * node_polynomial + NEXT_TO_NODE);
-        let moments: [f64; 5] = std::array::from_fn(|p| NODE_POLYNOMIAL[p] * self.local.factors[p]);
+        let moments: [f64; 5] = std::array::from_fn(|p| nodes[p] * self.local.factors[p]);
         value + miss * self.local.power(theta * step.h) * at(&moments)
     }
 
@@ -407,23 +484,29 @@ impl Memory {
 
     /// Takes an accepted step into the past: z_k ← e^{−λ_k h} z_k + ∫ e^{−λ_k(h−s)} x'(s) ds, exact for the polynomial.
     pub fn commit(&mut self, step: &RatePolynomial) {
-        self.take(step, step);
+        self.take(step, step, None);
+    }
+
+    /// As [`Self::commit`] of a step with three nodes at `places`.
+    pub fn commit_at(&mut self, step: &RatePolynomial, places: Option<&Places>) {
+        self.take(step, step, places);
     }
 
     /// Takes `step` into the past, D^alpha x at its end being that of `as_found`.
-    fn take(&mut self, step: &RatePolynomial, as_found: &RatePolynomial) {
-        // Whoever does not prepare steps asks for the next one with the same lags.
-        let nodes = match self.prepared.take() {
-            Some(prepared) => prepared.nodes,
-            None => {
+    fn take(&mut self, step: &RatePolynomial, as_found: &RatePolynomial, places: Option<&Places>) {
+        let first = match (self.prepared.take(), places) {
+            (_, Some(places)) => places.positions()[0],
+            (Some(prepared), None) => prepared.nodes.positions()[0],
+            // Whoever does not prepare steps asks for the next one with the same lags.
+            (None, None) => {
                 self.prepare_lags(step.h, Nodes::Radau);
-                Nodes::Radau
+                Nodes::Radau.positions()[0]
             }
         };
         let local = self.local.part(as_found, 1.0);
         let Some(past) = &mut self.past else { return };
         self.travelled += step.travel();
-        let shortest = Nodes::Radau.positions()[0].min(nodes.positions()[0]) * step.h;
+        let shortest = Nodes::Radau.positions()[0].min(first) * step.h;
         past.extend(shortest);
         self.now = local + past.advance(step.h, &step.u, 0.0);
         past.drop_surplus(shortest);
@@ -434,6 +517,11 @@ impl Memory {
     /// Integrals of rates drift from the strokes, in a step by less than any tolerance; over 10⁵ steps the slowest modes, which
     /// are D^alpha x at small alpha, would be off by 10⁻⁷. What is owed is paid back as a rate, the faster the more it is.
     pub fn commit_rates(&mut self, step: &RatePolynomial, stroke: f64, resolution: f64) {
+        self.commit_rates_at(step, None, stroke, resolution);
+    }
+
+    /// As [`Self::commit_rates`] of a step with three nodes at `places`.
+    pub fn commit_rates_at(&mut self, step: &RatePolynomial, places: Option<&Places>, stroke: f64, resolution: f64) {
         let Some(past) = &self.past else { return };
         let owed = (stroke - self.origin) - (self.travelled + step.travel());
         let mut paid = *step;
@@ -443,7 +531,7 @@ impl Memory {
             let bearable = 10.0 * past.kernel().tolerance * (owed.abs() / resolution) * largest;
             paid.u[0] += (owed.abs() / step.h).min(bearable).copysign(owed);
         }
-        self.take(&paid, step);
+        self.take(&paid, step, places);
     }
 
     /// Puts a past before the first step: the modes as a function of their λ, x' just before t = 0, D^alpha x at t = 0, and the mean of

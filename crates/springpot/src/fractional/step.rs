@@ -5,7 +5,7 @@
 
 use super::gamma::gamma;
 use crate::collocation::inner;
-use crate::collocation::{Nodes, RADAU_NODES, TABLEAU};
+use crate::collocation::{Nodes, Places, RADAU_NODES, TABLEAU};
 use serde::{Deserialize, Serialize};
 
 /// Which data of the step determine the polynomial of x'.
@@ -65,6 +65,21 @@ impl RatePolynomial {
                     u[p] = (p + 1) as f64 * coefficient / h;
                 }
             }
+        }
+        Self { h, u }
+    }
+
+    /// As [`Self::through_rates`] of a step with three nodes at `places`.
+    pub fn through_rates_at(h: f64, places: &Places, rate: &[f64]) -> Self {
+        Self { h, u: places.values.map(|row| row.iter().zip(rate).map(|(weight, rate)| weight * rate).sum()) }
+    }
+
+    /// As [`Self::through_strokes`] of a step with three nodes at `places`.
+    pub fn through_strokes_at(h: f64, places: &Places, stroke: &[f64]) -> Self {
+        let mut u = [0.0; 4];
+        for p in 0..3 {
+            let coefficient: f64 = (1..4).map(|j| places.values[p + 1][j] * (stroke[j] - stroke[0])).sum();
+            u[p] = (p + 1) as f64 * coefficient / h;
         }
         Self { h, u }
     }

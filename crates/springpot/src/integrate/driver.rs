@@ -262,6 +262,7 @@ impl Driver {
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
         self.recorder.commit(cx)?;
+        self.recorder.check_warmth(cx, step.to)?;
         self.t = step.to;
         self.crossing = step.crossing();
         self.solver.stepper_mut().accept(cx, &self.recorder, &step)

@@ -79,6 +79,21 @@ pub enum RunError {
         /// Largest admissible value.
         high: f64,
     },
+    /// An element warmed itself beyond what materials are known at.
+    #[error(
+        "t = {t} s: element \"{element}\" runs away: it has warmed itself to {temperature:.1} K, above {highest} K: it loses more than its \
+         surroundings take"
+    )]
+    RunAway {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Its temperature, K.
+        temperature: f64,
+        /// The highest that is admissible, K.
+        highest: f64,
+    },
     /// A coordinate jumps.
     #[error("t = {t} s: joint \"{joint}\" jumps by {jump:e}; a motion must be continuous")]
     Jump {

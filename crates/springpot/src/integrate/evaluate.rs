@@ -6,7 +6,7 @@ use super::resistance::{add_resistance, joint_loss};
 use super::system::System;
 use crate::dynamics::{CoincidentAnchors, Kinematics, Workspace, kinetic_energy, potential_energy, rnea_at_into};
 use crate::elements::{Element, NoDirection, Reading};
-use crate::law::{InputValue, Point};
+use crate::law::{InputValue, Point, State};
 use crate::model::Model;
 use crate::motion::{Trajectory, Wanted};
 use crate::observe::Snapshot;
@@ -190,6 +190,17 @@ impl Element {
             NoDirection::Segment { segment, length } => RunError::SegmentLength { t, element, segment, length },
             NoDirection::HalfTurn { angle } => RunError::HalfTurn { t, element, angle },
         }
+    }
+
+    /// # Errors
+    /// [`RunError::Rule`] where it warms itself by what nobody knows: a start that takes infinite work, or begins as steeply.
+    pub(super) fn check_start(&self, state: &State) -> Result<(), RunError> {
+        if !self.law.is_thermal() || state.is_accounted() {
+            return Ok(());
+        }
+        let rule = "a temperature of its own needs to know what is lost, and a jump to the stroke at t = 0 does not \
+                    tell: write past = \"held\", or begin at a stroke of 0";
+        Err(RunError::Rule { t: 0.0, element: self.name.clone(), rule: rule.to_owned() })
     }
 
     pub(super) fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {

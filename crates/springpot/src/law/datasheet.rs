@@ -216,7 +216,7 @@ fn sum(network: &Network) -> Option<Vec<Term>> {
     match network {
         Network::Leaf(leaf) if leaf.is_linear() && leaf.size().variables == 0 => Some(vec![leaf.linearised(&at)]),
         Network::Parallel(parts) => parts.iter().map(sum).collect::<Option<Vec<_>>>().map(|terms| terms.concat()),
-        Network::Leaf(_) | Network::Series(_) => None,
+        Network::Leaf(_) | Network::Series(_) | Network::Heated(_) => None,
     }
 }
 

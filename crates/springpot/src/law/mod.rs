@@ -25,6 +25,7 @@
 
 pub mod catalog;
 pub mod datasheet;
+pub mod heat;
 pub mod leaf;
 pub mod network;
 pub mod past;
@@ -46,8 +47,9 @@ mod written;
 
 pub use crate::fractional::Kind as Derivative;
 pub use catalog::{Build, Built, Catalog, Entry, Input, Param, Range};
+pub use heat::{Expansion, Heat, Shift, Thermal};
 pub use leaf::{Elastic, Leaf, LeafBuild, LeafKind, Table, TableError, When};
-pub use network::{Guard, Holds, LeafPart, Network};
+pub use network::{Guard, Heated, Holds, LeafPart, Network, Warmth};
 pub use past::{Past, Periodic};
 pub use prandtl_ishlinskii::{PrandtlIshlinskii, Stop};
 pub use rule::RuleError;

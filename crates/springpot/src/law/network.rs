@@ -1,9 +1,12 @@
 //! A law as a network of leaves, and how it is asked.
 
+mod heated;
 mod series;
 
+pub use heated::{Heated, Warmth};
 pub(super) use series::Ready;
 
+use super::heat::Heat;
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot, When};
 use super::past::Periodic;
 use super::rule::RuleError;
@@ -37,7 +40,7 @@ const MOST_IN_SERIES: usize = 8;
 /// // x = t²/10 over one step of 10 ms that is asked at its end.
 /// let (stroke, rate) = ([0.0, 1e-5], [0.0, 2e-3]);
 /// let step = Step {
-///     t: 0.0, h: 0.01, nodes: Nodes::One, form: Form::Strokes, stroke: &stroke, rate: &rate, inputs: &[],
+///     t: 0.0, h: 0.01, nodes: Nodes::One, places: None, form: Form::Strokes, stroke: &stroke, rate: &rate, inputs: &[],
 ///     resolution: 0.0, course: Course::Given,
 /// };
 /// let force = law.evaluate(&step, &state).force[0];
@@ -52,6 +55,8 @@ pub enum Network {
     Parallel(Vec<Network>),
     /// One force, strokes add.
     Series(Vec<Network>),
+    /// A whole law and what temperature does to it.
+    Heated(Box<Heated>),
 }
 
 /// A leaf in its place in a network.
@@ -130,6 +135,7 @@ impl Network {
         match self {
             Self::Leaf(part) => take(part),
             Self::Parallel(parts) | Self::Series(parts) => parts.iter().for_each(|part| part.for_each_leaf(take)),
+            Self::Heated(heated) => heated.law().for_each_leaf(take),
         }
     }
 
@@ -139,6 +145,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.holds(),
             Self::Parallel(parts) => parts.iter().map(Self::holds).max().unwrap_or(Holds::Never),
             Self::Series(parts) => parts.iter().map(Self::holds).min().unwrap_or(Holds::Always),
+            Self::Heated(heated) => heated.law().holds(),
         }
     }
 
@@ -173,8 +180,12 @@ impl Network {
     }
 
     /// Parts one behind the other: one force, strokes add. None: rigid, which no element may be.
+    ///
+    /// # Panics
+    /// Where a part is a law under heat, which is always a whole one.
     pub fn series(parts: impl IntoIterator<Item = Self>) -> Self {
         let mut parts: Vec<Self> = parts.into_iter().collect();
+        assert!(parts.iter().all(|part| part.as_heated().is_none()), "a law under heat is a whole one");
         while parts.len() > MOST_IN_SERIES {
             let nested = parts.drain(..MOST_IN_SERIES).collect();
             parts.push(Self::Series(nested));
@@ -182,10 +193,45 @@ impl Network {
         Self::Series(parts)
     }
 
+    /// A law under `heat`, of so many `inputs`, of which `takes` is the temperature.
+    pub(super) fn heated(law: Self, heat: Heat, inputs: usize, takes: Option<usize>) -> Self {
+        Self::Heated(Box::new(Heated::new(law, heat, inputs, takes)))
+    }
+
+    /// What temperature does to it, where it does anything.
+    pub fn as_heated(&self) -> Option<&Heated> {
+        match self {
+            Self::Heated(heated) => Some(heated),
+            _ => None,
+        }
+    }
+
+    /// Whether it keeps a temperature of its own.
+    pub fn is_thermal(&self) -> bool {
+        self.as_heated().is_some_and(|heated| heated.heat().thermal.is_some())
+    }
+
+    /// Whether a temperature from outside stretches it.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.as_heated().is_some_and(|heated| heated.stretch().is_some())
+    }
+
+    /// The temperature that inputs from outside say, K; NaN where they say none.
+    pub(crate) fn temperature(&self, inputs: &[InputValue]) -> f64 {
+        let input = self.as_heated().and_then(Heated::input).and_then(|input| inputs.get(input));
+        input.map_or(f64::NAN, |input| input.value)
+    }
+
+    /// Temperature and heat of a law that keeps a temperature: at θ of a step, or between two steps.
+    pub fn warmth(&self, within: Option<(&Step, f64)>, state: &State) -> Option<Warmth> {
+        self.as_heated()?.warmth(within, state.view())
+    }
+
     /// What of a state belongs to this part.
     fn size(&self) -> StateSize {
         let (parts, own) = match self {
             Self::Leaf(leaf) => return leaf.size(),
+            Self::Heated(heated) => return heated.size(),
             Self::Parallel(parts) => (parts, 0),
             Self::Series(parts) => (parts, parts.len()),
         };
@@ -213,6 +259,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.begin(start, state),
             Self::Parallel(parts) => parts.iter().try_for_each(|part| part.begin_part(start, state)),
             Self::Series(parts) => series::begin(parts, start, state),
+            Self::Heated(heated) => heated.begin(start, state),
         }
     }
 
@@ -233,6 +280,7 @@ impl Network {
             Self::Leaf(_) => 0,
             Self::Parallel(parts) => parts.iter().map(Self::series_count).sum(),
             Self::Series(parts) => 1 + parts.iter().map(Self::series_count).sum::<usize>(),
+            Self::Heated(heated) => heated.law().series_count(),
         }
     }
 
@@ -246,6 +294,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.prepare(step, state.take(leaf.size())),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.prepare_part(step, state)),
             Self::Series(parts) => series::prepare(parts, step, state),
+            Self::Heated(heated) => heated.prepare(step, state),
         }
     }
 
@@ -261,6 +310,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.evaluate(step, state.take(leaf.size()), response),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.evaluate_part(step, state, response)),
             Self::Series(parts) => series::evaluate(parts, step, state, response),
+            Self::Heated(heated) => heated.evaluate(step, state, response),
         }
     }
 
@@ -283,6 +333,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.by_input(step, state.take(leaf.size()), input, slopes),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.by_input_part(step, state, input, slopes)),
             Self::Series(_) => self.pass(state),
+            Self::Heated(heated) => heated.by_input(step, state, input, slopes),
         }
     }
 
@@ -296,6 +347,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.commit(step, state.take(leaf.size())),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.commit_part(step, state)),
             Self::Series(parts) => series::commit(parts, step, state),
+            Self::Heated(heated) => heated.commit(step, state),
         }
     }
 
@@ -309,6 +361,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.local_errors(step, state.take(leaf.size()), errors),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.local_errors_part(step, state, errors)),
             Self::Series(parts) => series::local_errors(parts, step, state, errors),
+            Self::Heated(heated) => heated.local_errors(step, state, errors),
         }
     }
 
@@ -324,6 +377,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.powers(step, state.take(leaf.size()), powers),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.powers_part(step, state, powers)),
             Self::Series(parts) => series::powers(parts, step, state, powers),
+            Self::Heated(heated) => heated.powers(step, state, powers),
         }
     }
 
@@ -337,11 +391,15 @@ impl Network {
             Self::Leaf(leaf) => leaf.guards_in(step, state.take(leaf.size()), guards),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.guards_part(step, state, guards)),
             Self::Series(parts) => series::guards(parts, step, state, guards),
+            Self::Heated(heated) => heated.guards(step, state, guards),
         }
     }
 
     /// Whether its force may have kinks that steps are to end on.
     pub fn has_guards(&self, at: &Point) -> bool {
+        if let Self::Heated(heated) = self {
+            return heated.has_guards(at);
+        }
         let mut found = false;
         self.for_each_leaf(&mut |leaf| leaf.guards(at, &mut |_| found = true));
         found
@@ -367,6 +425,7 @@ impl Network {
                 Reported::sum(at, parts.iter().map(|part| part.at_part(step, theta, at, state, take)))
             }
             Self::Series(parts) => series::at(parts, step, theta, at, state, take),
+            Self::Heated(heated) => heated.at(step, theta, at, state, take),
         }
     }
 
@@ -386,6 +445,7 @@ impl Network {
             Self::Leaf(leaf) => Reported::leaf(&**leaf, at, leaf.now(at, state.take(leaf.size())), take),
             Self::Parallel(parts) => Reported::sum(at, parts.iter().map(|part| part.now_part(at, state, take))),
             Self::Series(parts) => series::now(parts, at, state, take),
+            Self::Heated(heated) => heated.now(at, state, take),
         }
     }
 
@@ -398,11 +458,18 @@ impl Network {
         match self {
             Self::Leaf(leaf) => leaf.electric(when, at, state.take(leaf.size())),
             Self::Parallel(parts) => parts.iter().find_map(|part| part.electric_part(when, at, state)),
-            Self::Series(_) => {
+            Self::Series(_) | Self::Heated(_) => {
                 self.pass(state);
                 None
             }
         }
+    }
+
+    /// Whether something in it goes on by itself with time ([`Leaf::has_clock`]).
+    pub(super) fn has_clock(&self) -> bool {
+        let mut found = false;
+        self.for_each_leaf(&mut |leaf| found |= leaf.has_clock());
+        found
     }
 
     /// Whether it has an electrical side to tell.
@@ -410,7 +477,7 @@ impl Network {
         match self {
             Self::Leaf(leaf) => leaf.is_electric(),
             Self::Parallel(parts) => parts.iter().any(Self::is_electric),
-            Self::Series(_) => false,
+            Self::Series(_) | Self::Heated(_) => false,
         }
     }
 
@@ -420,6 +487,7 @@ impl Network {
             Self::Leaf(leaf) => leaf.linearised(at).stiffness(omega),
             Self::Parallel(parts) => parts.iter().map(|part| part.stiffness(at, omega)).sum(),
             Self::Series(parts) => parts.iter().map(|part| part.stiffness(at, omega).recip()).sum::<f64>().recip(),
+            Self::Heated(heated) => heated.stiffness(at, omega),
         }
     }
 
@@ -442,6 +510,7 @@ impl Network {
                 self.pass(state);
                 self.stiffness(at, omega) * at.stroke
             }
+            Self::Heated(heated) => heated.estimate(at, state, omega),
         }
     }
 
@@ -457,6 +526,7 @@ impl Network {
                     take(term);
                 }
             }
+            Self::Heated(heated) => heated.for_each_springpot(at, take),
         }
     }
 
@@ -476,6 +546,7 @@ impl Network {
             }
             Self::Parallel(parts) => parts.iter().for_each(|part| part.singularities(inputs, state, take)),
             Self::Series(_) => self.pass(state),
+            Self::Heated(heated) => heated.singularities(inputs, state, take),
         }
     }
 
@@ -487,6 +558,7 @@ impl Network {
         match self {
             Self::Leaf(leaf) => leaf.check_inputs(inputs),
             Self::Parallel(parts) | Self::Series(parts) => parts.iter().try_for_each(|part| part.check_inputs(inputs)),
+            Self::Heated(heated) => heated.check_inputs(inputs),
         }
     }
 
@@ -502,6 +574,7 @@ impl Network {
                 let reports = parts.iter().map(|part| part.report(at));
                 reports.fold((0, 0.0), |first, next| if next.0 > first.0 { next } else { first })
             }
+            Self::Heated(heated) => heated.report(at),
         }
     }
 
@@ -518,12 +591,22 @@ impl Network {
             Self::Leaf(_) => false,
             Self::Parallel(parts) => parts.iter().any(Self::has_series),
             Self::Series(_) => true,
+            Self::Heated(heated) => heated.law().has_series(),
         }
     }
 
     /// Whether it keeps inner strokes or inner variables, whose errors no stroke shows.
     pub fn has_inner_variables(&self) -> bool {
         self.size().variables > 0
+    }
+
+    /// How many of its local errors, the first of them, are those of what no stroke shows: all of them where it keeps inner strokes.
+    pub fn hidden_errors(&self) -> usize {
+        match self {
+            Self::Heated(heated) => heated.hidden_errors(),
+            _ if self.has_inner_variables() => usize::MAX,
+            _ => 0,
+        }
     }
 
     /// Puts a periodic stroke since ever into the state of a law that is linear, its memories opened.
@@ -536,6 +619,7 @@ impl Network {
             Self::Leaf(leaf) => state.take(leaf.size()).memories.iter_mut().for_each(|memory| recall(memory, stroke)),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.recall_part(stroke, at, state)),
             Self::Series(parts) => series::recall(parts, stroke, at, state),
+            Self::Heated(heated) => heated.recall(stroke, at, state),
         }
     }
 
@@ -548,6 +632,7 @@ impl Network {
             }
             Self::Parallel(parts) => parts.iter().map(|part| part.modulus(at, s)).sum(),
             Self::Series(parts) => parts.iter().map(|part| part.modulus(at, s).inv()).sum::<Complex64>().inv(),
+            Self::Heated(heated) => heated.modulus(at, s),
         }
     }
 
@@ -562,6 +647,7 @@ impl Network {
         match self {
             Self::Leaf(leaf) => leaf.is_linear(),
             Self::Parallel(parts) | Self::Series(parts) => parts.iter().all(Self::is_linear),
+            Self::Heated(heated) => heated.law().is_linear(),
         }
     }
 
@@ -569,6 +655,7 @@ impl Network {
     fn asymptote(&self, at: &Point, onset: Onset) -> Term {
         let (parts, adds) = match self {
             Self::Leaf(leaf) => return leaf.linearised(at),
+            Self::Heated(heated) => return heated.asymptote(at, onset),
             Self::Parallel(parts) => (parts, true),
             Self::Series(parts) => (parts, false),
         };
@@ -627,6 +714,12 @@ impl Reported {
         let Point { stroke, rate, .. } = *at;
         take(LeafState { stroke, rate, force: observation.force(), derivative: observation.derivative });
         Self { observation, rank: report(leaf, at).0 }
+    }
+
+    /// That of a step in which no force is found.
+    fn unknown() -> Self {
+        let observation = Observation { derivative: f64::NAN, regular: f64::NAN, singular: 0.0, stored: None };
+        Self { observation, rank: 0 }
     }
 
     fn sum(at: &Point, parts: impl Iterator<Item = Self>) -> Self {

@@ -68,6 +68,13 @@ impl Periodic {
         Self { spectrum: spectrum.into(), ..*self }
     }
 
+    /// The same in reduced time ([`Past::reduced`]).
+    pub(super) fn reduced(&self, factor: f64, longer: f64) -> Self {
+        let mut spectrum = self.spectrum.to_vec();
+        spectrum.iter_mut().take(1).for_each(|mean| *mean += longer);
+        Self { period: self.period / factor, spectrum: spectrum.into() }
+    }
+
     /// The stroke at time t.
     pub fn stroke(&self, t: f64) -> f64 {
         self.mean() + self.sum(|s| Complex64::cis(s.im * t))
@@ -106,8 +113,17 @@ impl Past {
         *self == Self::OfDerivative
     }
 
+    /// The same in reduced time, at times longer by a_T = `factor`, of a law whose strokes are longer by `longer`.
+    pub(super) fn reduced(&self, factor: f64, longer: f64) -> Self {
+        match self {
+            Self::OfDerivative => Self::OfDerivative,
+            Self::Held(age) => Self::Held(age / factor),
+            Self::Periodic(past) => Self::Periodic(past.reduced(factor, longer)),
+        }
+    }
+
     /// The state of a law at t = 0, where its stroke is that of `start`. Kernels, but of [`Past::OfDerivative`], are made with this relative
-    /// error, for lags up to `horizon`, s, after t = 0.
+    /// error, for lags up to `horizon`, s, after t = 0, of a law that temperature shifts in its own time ([`crate::law::Heat`]).
     ///
     /// # Errors
     /// [`KernelError`] where a memory cannot be.
@@ -117,6 +133,7 @@ impl Past {
     pub fn state(&self, law: &Network, start: &Start, tolerance: f64, horizon: f64) -> Result<State, KernelError> {
         match self {
             Self::OfDerivative => law.begin(start),
+            _ if let Network::Heated(heated) = law => heated.recalled(self, start, tolerance, horizon),
             Self::Held(age) => {
                 let mut state = law.begin(&Start { jump: start.stroke, ..*start })?;
                 state.open(tolerance, SHORTEST * age, age + horizon)?;
@@ -151,6 +168,7 @@ fn relax(law: &Network, start: &Start, age: f64, state: &mut State) {
             t,
             h,
             nodes,
+            places: None,
             form: Form::Strokes,
             stroke: &strokes,
             rate: &rates,

@@ -93,6 +93,12 @@ impl State {
         StateSize { memories: self.memories.len(), variables: self.variables.len() }
     }
 
+    /// Adds the state of a part that begins.
+    pub(super) fn append(&mut self, other: Self) {
+        self.memories.extend(other.memories);
+        self.variables.extend(other.variables);
+    }
+
     /// All of it.
     pub fn view(&self) -> StateRef<'_> {
         StateRef { memories: &self.memories, variables: &self.variables, ready: &self.ready }

@@ -1,8 +1,7 @@
 //! What laws are asked, and what they answer.
 
-use crate::collocation::Nodes;
-use crate::collocation::{MAX_NODES, quadrature};
-use crate::fractional::{Form, StepStart};
+use crate::collocation::{MAX_NODES, Nodes, Places, quadrature, quadrature_defect};
+use crate::fractional::{Form, RatePolynomial, StepStart};
 use serde::{Deserialize, Serialize};
 
 /// Value and rate of one input at one time, SI.
@@ -36,6 +35,8 @@ pub struct Step<'a> {
     pub h: f64,
     /// Where the step is evaluated.
     pub nodes: Nodes,
+    /// Where three nodes lie on a clock that does not run evenly; `None`: where [`Self::nodes`] has them.
+    pub places: Option<&'a Places>,
     /// Which data make the memory's polynomial.
     pub form: Form,
     /// x, s + 1 values, m.
@@ -159,13 +160,46 @@ pub struct LocalError {
 impl<'a> Step<'a> {
     /// The step's data at its start (0) or at node `index`.
     pub fn point(&self, index: usize) -> Point<'a> {
-        let theta = if index == 0 { 0.0 } else { self.nodes.positions()[index - 1] };
+        let theta = if index == 0 { 0.0 } else { self.positions()[index - 1] };
         let count = self.inputs.len() / self.stroke.len();
         Point {
             t: self.t + theta * self.h,
             stroke: self.stroke[index],
             rate: self.rate[index],
             inputs: &self.inputs[index * count..(index + 1) * count],
+        }
+    }
+
+    /// The nodes.
+    pub fn positions(&self) -> &[f64] {
+        match self.places {
+            None => self.nodes.positions(),
+            Some(places) => places.positions(),
+        }
+    }
+
+    /// The collocation matrix of its nodes ([`Nodes::matrix`]).
+    pub fn matrix(&self) -> [[f64; MAX_NODES]; MAX_NODES] {
+        self.places.map_or_else(|| *self.nodes.matrix(), Places::matrix)
+    }
+
+    /// Weights of ∫₀^θ f dθ ([`quadrature`]).
+    pub fn quadrature(&self, theta: f64) -> [f64; MAX_NODES + 1] {
+        self.places.map_or_else(|| quadrature(self.nodes, theta), |places| places.quadrature(theta))
+    }
+
+    /// The estimate of a quadrature's error in units of h ([`quadrature_defect`]).
+    pub fn quadrature_defect(&self, values: &[f64]) -> f64 {
+        self.places.map_or_else(|| quadrature_defect(self.nodes, values), |places| places.quadrature_defect(values))
+    }
+
+    /// The polynomial of x', as the form says.
+    pub fn polynomial(&self) -> RatePolynomial {
+        match (self.form, self.places) {
+            (Form::Rates, None) => RatePolynomial::through_rates(self.h, self.nodes, self.rate),
+            (Form::Strokes, None) => RatePolynomial::through_strokes(self.h, self.nodes, self.stroke),
+            (Form::Rates, Some(places)) => RatePolynomial::through_rates_at(self.h, places, self.rate),
+            (Form::Strokes, Some(places)) => RatePolynomial::through_strokes_at(self.h, places, self.stroke),
         }
     }
 

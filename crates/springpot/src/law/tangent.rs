@@ -93,6 +93,7 @@ impl Network {
                 Some(sum)
             }
             Self::Series(parts) => series(parts, at),
+            Self::Heated(heated) => heated.at_rest(at, held),
         }
     }
 }

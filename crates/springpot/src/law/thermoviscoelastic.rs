@@ -1,10 +1,9 @@
 //! Fractional Kelvin–Voigt element that expands with temperature.
 
 use super::catalog::{Entry, Input, Param, Range, alpha, at_least_one_positive, carrier, damping};
+use super::heat::TEMPERATURE;
 use super::network::Network;
 use std::sync::Arc;
-
-const TEMPERATURE: Range = Range { low: 150.0, high: 1500.0 };
 
 /// F = (E_c + E_kv)·x + E_d·D^alpha x − a_kv·E_kv·(T − T_ref): the tension falls as the element warms.
 ///

@@ -4,7 +4,7 @@ use super::error::LinearError;
 use super::statics::ElementAtRest;
 use crate::dynamics::point_jacobian;
 use crate::integrate::System;
-use crate::law::Tangent;
+use crate::law::{Heated, Tangent};
 use crate::model::{FrictionLaw, Model};
 use std::sync::Arc;
 
@@ -48,6 +48,8 @@ pub struct LinearElement {
     pub gradient: Vec<f64>,
     /// Its law under small motions.
     pub tangent: Tangent,
+    /// An input that stretches it, and by how much per unit of it.
+    pub(super) stretch: Option<(usize, f64)>,
     /// ∂²y/∂q_a∂q_b, nv × nv.
     pub(super) hessian: Vec<f64>,
 }
@@ -81,6 +83,7 @@ impl System {
             force: at.law.force,
             gradient: at.gradient,
             tangent: at.law.tangent,
+            stretch: element.law.as_heated().and_then(Heated::stretch),
             hessian: element.measure.hessian(model, &statics.kinematics),
         };
         let elements = self.elements.iter().zip(statics.elements).map(linear).collect();

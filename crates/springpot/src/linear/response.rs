@@ -1,6 +1,6 @@
 //! How columns answer to sines.
 
-use super::linearisation::Linearisation;
+use super::linearisation::{LinearElement, Linearisation};
 use crate::linalg::ComplexLu;
 use crate::observe::{Axis, ElementQuantity, LeafQuantity, Quantity};
 use num_complex::Complex64;
@@ -56,7 +56,7 @@ impl Linearisation {
         let mut asked = vec![Complex64::ZERO; n];
         for (e, element) in self.elements.iter().enumerate() {
             if let Some(i) = input(e) {
-                let gain = element.tangent.gain(s, i);
+                let gain = element.tangent.gain(s, i) + element.stretched_by(i) * element.tangent.modulus(s);
                 asked.iter_mut().zip(&element.gradient).for_each(|(asked, g)| *asked += gain * g);
             }
         }
@@ -117,7 +117,8 @@ impl Linearisation {
                 let element = self.elements.get(e)?;
                 let stroke = along(&element.gradient);
                 let mut leaves = Vec::new();
-                let force = element.tangent.answer(s, stroke, input(e), &mut |leaf| leaves.push(leaf));
+                let own = stroke + input(e).map_or(0.0, |i| element.stretched_by(i));
+                let force = element.tangent.answer(s, own, input(e), &mut |leaf| leaves.push(leaf));
                 Some(match quantity {
                     ElementQuantity::Length | ElementQuantity::Stroke => stroke,
                     ElementQuantity::Rate => s * stroke,
@@ -146,11 +147,20 @@ impl Linearisation {
                     ElementQuantity::Electric(_)
                     | ElementQuantity::Stored
                     | ElementQuantity::Dissipated
-                    | ElementQuantity::Input => return None,
+                    | ElementQuantity::Input
+                    | ElementQuantity::Temperature
+                    | ElementQuantity::Heat => return None,
                 })
             }
             Quantity::Time | Quantity::GripperError | Quantity::Energy(_) => None,
         }
+    }
+}
+
+impl LinearElement {
+    /// By how much a unit of an input makes its stroke longer.
+    fn stretched_by(&self, input: usize) -> f64 {
+        self.stretch.filter(|(own, _)| *own == input).map_or(0.0, |(_, stretch)| stretch)
     }
 }
 
@@ -159,9 +169,14 @@ impl Linearisation {
 fn check(of: Quantity) -> Result<(), NoResponse> {
     match of {
         Quantity::Energy(_)
-        | Quantity::Element(_, ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input) => {
-            Err(NoResponse::Energy)
-        }
+        | Quantity::Element(
+            _,
+            ElementQuantity::Stored
+            | ElementQuantity::Dissipated
+            | ElementQuantity::Input
+            | ElementQuantity::Temperature
+            | ElementQuantity::Heat,
+        ) => Err(NoResponse::Energy),
         Quantity::Time | Quantity::GripperError => Err(NoResponse::NotLinear),
         _ => Ok(()),
     }

@@ -32,6 +32,10 @@ pub enum ElementQuantity<Id = usize> {
     Input,
     /// Something of the electrical side of its law, where it has one.
     Electric(ElectricQuantity),
+    /// T of an element that warms itself, K.
+    Temperature,
+    /// Heat lost to the surroundings since t = 0, J, of such an element.
+    Heat,
     /// Value of an input, in the order of its law.
     InputValue(Id),
     /// Something of a leaf of its law.
@@ -139,12 +143,14 @@ impl<Id> ElementQuantity<Id> {
     pub(super) const BEFORE_FORCES: [Self; 5] = [Self::Length, Self::Stroke, Self::Rate, Self::Derivative, Self::Force];
     /// Those that come between the generalized forces and the inputs.
     pub(super) const BEFORE_INPUTS: [Self; 3] = [Self::Stored, Self::Dissipated, Self::Input];
+    /// Those that follow where the element warms itself.
+    pub(super) const OF_HEAT: [Self; 2] = [Self::Temperature, Self::Heat];
 }
 
 impl ElementQuantity {
     /// Its value in a row, NaN where unknown.
     pub(super) fn value(self, row: &ElementRow, state: &ElementEvaluation) -> f64 {
-        let ElementRow { observation, electric, leaves, dissipated, input } = row;
+        let ElementRow { observation, electric, leaves, dissipated, input, warmth } = row;
         match self {
             Self::Length => state.reading.coordinate,
             Self::Stroke => state.stroke,
@@ -156,6 +162,8 @@ impl ElementQuantity {
             Self::Dissipated => observation.stored.map_or(f64::NAN, |_| *dissipated),
             Self::Input => *input,
             Self::Electric(quantity) => electric.as_ref().map_or(f64::NAN, |electric| quantity.value(electric)),
+            Self::Temperature => warmth.map_or(f64::NAN, |warmth| warmth.temperature),
+            Self::Heat => warmth.map_or(f64::NAN, |warmth| warmth.lost),
             Self::InputValue(i) => state.inputs.get(i).map_or(f64::NAN, |input| input.value),
             Self::Leaf(i, quantity) => leaves.get(i).map_or(f64::NAN, |leaf| quantity.value(leaf)),
         }
@@ -174,7 +182,8 @@ impl ElementQuantity {
             Self::Derivative => element.derivative_unit,
             Self::Force | Self::Leaf(_, LeafQuantity::Force) => of_element(["N*m", "N"]),
             Self::GeneralizedForce(k) => velocities[k].dimension.units().force,
-            Self::Stored | Self::Dissipated | Self::Input => "J",
+            Self::Stored | Self::Dissipated | Self::Input | Self::Heat => "J",
+            Self::Temperature => "K",
             Self::Electric(quantity) => quantity.unit(),
             Self::InputValue(i) => &element.entry.inputs[i].unit,
         }
@@ -193,6 +202,8 @@ impl ElementQuantity {
             Self::Dissipated => ElementQuantity::Dissipated,
             Self::Input => ElementQuantity::Input,
             Self::Electric(quantity) => ElementQuantity::Electric(quantity),
+            Self::Temperature => ElementQuantity::Temperature,
+            Self::Heat => ElementQuantity::Heat,
             Self::InputValue(i) => ElementQuantity::InputValue(&element.entry.inputs[i].name),
             Self::Leaf(i, quantity) => ElementQuantity::Leaf(&element.leaves[i].0, quantity),
         }
@@ -212,7 +223,8 @@ impl<'a> ElementQuantity<&'a str> {
                 let mut known = Self::BEFORE_FORCES
                     .into_iter()
                     .chain(Self::BEFORE_INPUTS)
-                    .chain(ElectricQuantity::ALL.map(Self::Electric));
+                    .chain(ElectricQuantity::ALL.map(Self::Electric))
+                    .chain([Self::Heat]);
                 Some(known.find(|quantity| quantity.to_string() == key).unwrap_or(Self::InputValue(key)))
             }
         }
@@ -231,6 +243,8 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Dissipated => format!("energy dissipated in {element} since t = 0"),
             Self::Input => format!("energy supplied by the inputs of {element} since t = 0"),
             Self::Electric(quantity) => quantity.meaning(element),
+            Self::Temperature => format!("temperature of {element}"),
+            Self::Heat => format!("heat lost by {element} to its surroundings since t = 0"),
             Self::InputValue(input) => format!("{input} of {element}"),
             Self::Leaf(leaf, quantity) => format!("{} of {leaf} in {element}", quantity.words()),
         }
@@ -265,6 +279,8 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Dissipated => format!("energy dissipated in {element}"),
             Self::Input => format!("energy supplied to {element}"),
             Self::Electric(quantity) => quantity.meaning(element),
+            Self::Temperature => format!("T of {element}"),
+            Self::Heat => format!("heat lost by {element}"),
             Self::InputValue(input) => format!("{input} of {element}"),
             Self::Leaf(leaf, LeafQuantity::Stroke) => format!("stroke x of {leaf} in {element}"),
             Self::Leaf(leaf, LeafQuantity::Rate) => format!("stroke rate of {leaf} in {element}"),
@@ -288,6 +304,8 @@ impl fmt::Display for ElementQuantity<&str> {
             Self::Dissipated => "dissipated",
             Self::Input => "input",
             Self::Electric(quantity) => quantity.key(),
+            Self::Temperature => "T",
+            Self::Heat => "heat",
             Self::InputValue(input) => input,
             Self::Leaf(leaf, quantity) => return write!(f, "{leaf}.{}", quantity.key()),
         })

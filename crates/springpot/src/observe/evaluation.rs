@@ -1,7 +1,7 @@
 //! Robot and elements evaluated at one time.
 
 use crate::elements::Reading;
-use crate::law::{Electric, InputValue, LeafState, Observation};
+use crate::law::{Electric, InputValue, LeafState, Observation, Warmth};
 use serde::{Deserialize, Serialize};
 
 /// State of one element at one time, before its law is asked.
@@ -47,6 +47,8 @@ pub(crate) struct ElementRow {
     /// Dissipated and supplied since t = 0, J; NaN where unknown.
     pub(crate) dissipated: f64,
     pub(crate) input: f64,
+    /// Its temperature and the heat lost, where it keeps a temperature.
+    pub(crate) warmth: Option<Warmth>,
 }
 
 impl ElementRow {

@@ -32,6 +32,8 @@ struct ElementShape {
     pub(crate) derivative: bool,
     /// Whether its law has an electrical side.
     pub(crate) electric: bool,
+    /// Whether it warms itself.
+    pub(crate) thermal: bool,
 }
 
 impl Shape {
@@ -43,18 +45,24 @@ impl Shape {
         (0..nv).map(Quantity::Velocity).for_each(&mut *visit);
         (0..nv).map(Quantity::Acceleration).for_each(&mut *visit);
         (0..nv).map(Quantity::Torque).for_each(&mut *visit);
-        for (e, ElementShape { inputs, leaves, derivative, electric }) in elements.into_iter().enumerate() {
+        for (e, ElementShape { inputs, leaves, derivative, electric, thermal }) in elements.into_iter().enumerate() {
             let told = |quantity: &ElementQuantity| *quantity != ElementQuantity::Derivative || derivative;
             let before = ElementQuantity::BEFORE_FORCES.into_iter().filter(told);
             let electric = if electric { &ElectricQuantity::ALL[..] } else { &[] };
             let electric = electric.iter().map(|quantity| ElementQuantity::Electric(*quantity));
             let forces = (0..nv).map(ElementQuantity::GeneralizedForce);
+            let heat = ElementQuantity::OF_HEAT.into_iter().filter(|_| thermal);
             let inputs = (0..inputs).map(ElementQuantity::InputValue);
             let leaves = 0..if tells_leaves { leaves } else { 0 };
             let leaves =
                 leaves.flat_map(|leaf| LeafQuantity::ALL.map(|quantity| ElementQuantity::Leaf(leaf, quantity)));
-            let all =
-                before.chain(forces).chain(ElementQuantity::BEFORE_INPUTS).chain(electric).chain(inputs).chain(leaves);
+            let all = before
+                .chain(forces)
+                .chain(ElementQuantity::BEFORE_INPUTS)
+                .chain(electric)
+                .chain(heat)
+                .chain(inputs)
+                .chain(leaves);
             all.map(|quantity| Quantity::Element(e, quantity)).for_each(&mut *visit);
         }
         if gripper {
@@ -87,6 +95,7 @@ impl Observables {
             derivative_unit: derivative_unit(element),
             tells_derivative: element.law.tells_derivative(),
             is_electric: element.law.is_electric(),
+            is_thermal: element.law.is_thermal(),
             leaves: element.law.leaf_names().into_iter().zip(leaf_units(element)).collect(),
             entry: element.entry.clone(),
         };
@@ -142,6 +151,7 @@ impl Observables {
             leaves: element.leaves.len(),
             derivative: element.tells_derivative,
             electric: element.is_electric,
+            thermal: element.is_thermal,
         })
     }
 

@@ -15,6 +15,8 @@ pub(super) struct ObservedElement {
     pub(super) tells_derivative: bool,
     /// Whether its law has an electrical side.
     pub(super) is_electric: bool,
+    /// Whether it warms itself.
+    pub(super) is_thermal: bool,
     /// Names of its leaves, and units of their derivatives.
     pub(super) leaves: Vec<(String, &'static str)>,
     pub(super) entry: Arc<Entry>,

@@ -113,6 +113,7 @@ impl Told {
             t: 0.0,
             h: 0.04,
             nodes: self.nodes,
+            places: None,
             form: Form::Rates,
             stroke: &self.data[0],
             rate: &self.data[1],

@@ -99,6 +99,26 @@ fn robots_that_move_by_themselves() {
 }
 
 #[test]
+fn materials_that_warm_themselves() {
+    let law = "law = \"fractional-zener\"\nparameters = { k_e = 30, k_m = 200, c = 50, alpha = 0.5 }\n\
+               shift = { kind = \"wlf\", C1 = 17.44, C2 = 51.6, T_ref = 290 }\nexpansion = { coefficient = 1e-4, T_ref = 290 }";
+    let [own, told] =
+        ["thermal = { capacity = 0.1, conductance = 0.02, ambient = 295 }", "inputs = { T = \"295 + 3*sin(4*t)\" }"]
+            .map(|heat| strut(&format!("{law}\n{heat}")));
+    let mut states = 0;
+    for element in [&own, &told] {
+        let falling = forward("start = { q = { q2 = 0.1 } }\nlocked = [\"q1\"]");
+        states += goes_on(&cases(&format!("{ARM}{element}{falling}{}", every(0.4, 0.017))), 5);
+        let swing = prescribed("0.1*abs(sin(8*t))", "0.1*t");
+        states += goes_on(&cases(&format!("{ARM}{element}{swing}{}", every(0.4, 0.017))), 5);
+        let solver = "[solver]\nmethod = \"midpoint\"\nstep = \"3 ms\"\n";
+        let motion = "\n[motion]\nkind = \"forward\"\nstart = { q = { q2 = 0.1 } }\n";
+        states += goes_on(&cases(&format!("{ARM}{element}{motion}{}{solver}", every(0.3, 0.017))), 7);
+    }
+    assert!(states > 300, "{states} states");
+}
+
+#[test]
 fn joints_that_stick() {
     let arm = ARM
         .replacen("kind = \"revolute\"", "friction = { force = 3, stick = true }, kind = \"revolute\"", 1)

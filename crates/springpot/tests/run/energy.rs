@@ -343,6 +343,7 @@ fn work_less_ledger(alpha: f64, at: usize, edit: &dyn Fn(&mut Value)) -> f64 {
             t: w[0],
             h,
             nodes: Nodes::Radau,
+            places: None,
             form: Form::Rates,
             stroke: &stroke,
             rate: &rate,

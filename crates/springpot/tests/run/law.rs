@@ -66,6 +66,7 @@ impl Samples {
             t: self.t,
             h: self.h,
             nodes: self.nodes,
+            places: None,
             form: self.form,
             stroke: &self.stroke,
             rate: &self.rate,

@@ -11,7 +11,7 @@ use springpot::Simulation;
 use springpot::integrate::{FixedStep, Settings, System, fixed::Method};
 use springpot::observe::Snapshot;
 use support::forward::{every, falling};
-use support::robots::{ARM, PATH, magnetorheological, prescribed, springpot, thermoviscoelastic};
+use support::robots::{ARM, PATH, magnetorheological, prescribed, springpot, strut, thermoviscoelastic};
 use support::{cases, run_system};
 
 /// Systems of every kind of motion with their settings: along signals, along a path, forward, forward from a singular start beside a locked and a
@@ -27,10 +27,21 @@ fn systems() -> Vec<(&'static str, System, Settings)> {
         falling(0.5, 40.0, "riemann-liouville", "prescribed = { q1 = \"0.3*t^2\" }\nlocked = [\"q3\"]") + &time;
     let rough = ARM.replace("name = \"q3\",", "name = \"q3\", friction = { force = 0.4, stick = true },");
     let rough = format!("{rough}{}\n[motion]\nkind = \"forward\"\n{torque}\n{time}", springpot(0.5, "caputo"));
+    let warm = strut(
+        "law = \"fractional-zener\"\nparameters = { k_e = 30, k_m = 200, c = 50, alpha = 0.5 }\n\
+         shift = { kind = \"wlf\", C1 = 17.44, C2 = 51.6, T_ref = 290 }\n\
+         thermal = { capacity = 0.1, conductance = 0.02, ambient = 295 }",
+    );
+    let warm = format!("{ARM}{warm}\n[motion]\nkind = \"forward\"\n{torque}\n{time}");
     let mut systems = Vec::new();
-    for (name, text) in
-        [("signals", given), ("path", path), ("forward", forward), ("singular", singular), ("rough", rough)]
-    {
+    for (name, text) in [
+        ("signals", given),
+        ("path", path),
+        ("forward", forward),
+        ("singular", singular),
+        ("rough", rough),
+        ("warm", warm),
+    ] {
         let plan = cases(&text).plan(0).expect("a valid plan");
         systems.push((name, plan.system(), plan.settings.clone()));
         if name == "forward" {

@@ -121,11 +121,14 @@ impl<'a> Loop<'a> {
             cx.inputs_at(e, 0.0, &mut inputs);
             element.check_inputs(0.0, &inputs)?;
             let coordinate = at.ends[0].coordinate;
+            let mut is_known = Ok(());
             let begun = element.begin_within(coordinate, &inputs, memory.tolerance, memory.horizon).and_then(|state| {
+                is_known = element.check_start(&state);
                 bank.begin_from(e, &element.start(coordinate, &inputs), state);
-                bank.open_element(e, range)
+                bank.open_element(e, element.memory_range(range, &inputs))
             });
             begun.map_err(RunError::of_kernel(&element.name))?;
+            is_known?;
         }
         // Here and not in the first step, so that none allocates.
         stage.begin_elements(cx, &mut bank, step, stage.stage_time(multiple(1, step), step))?;

@@ -221,7 +221,7 @@ impl Stepper for Fixed {
     fn cross(&mut self, cx: Context, recorder: &mut Recorder, to: f64) -> Result<(), RunError> {
         let mut right = recorder.evaluations[0].clone();
         cx.fill(to, to, None, &mut recorder.scratch, &mut right)?;
-        recorder.jump(right);
+        recorder.jump(cx, right)?;
         // Its accelerations are worked out where a row asks for them.
         recorder.is_whole[0] = false;
         Ok(())

@@ -353,7 +353,7 @@ impl Stepper for Prescribed {
             Some(right) if right.t == after => right,
             _ => self.look_across(cx, recorder, 0, after)?,
         };
-        recorder.jump(right);
+        recorder.jump(cx, right)?;
         Ok(())
     }
 }

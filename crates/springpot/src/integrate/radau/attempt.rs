@@ -108,15 +108,17 @@ impl Radau {
         (mut error, mut worst): (f64, Worst),
     ) -> (f64, Worst) {
         // Beside a singular start there is no ledger, and what the actuators do against it is integrated by its moments.
-        let energy = if self.step.is_singular { 0.0 } else { recorder.energy_error(h, 0.0) };
+        let counts = !self.step.is_singular && (whole || self.has_inner_strokes);
+        let energy = if counts { recorder.energy_error(h, 0.0) } else { 0.0 };
         if energy > error {
             (error, worst) = (energy, Worst::Energy);
         }
         for (e, element) in cx.system.elements.iter().enumerate() {
-            if !whole && !element.law.has_inner_variables() {
+            let errors = if whole { usize::MAX } else { element.law.hidden_errors() };
+            if errors == 0 {
                 continue;
             }
-            let (share, order) = recorder.memory_error(e);
+            let (share, order) = recorder.memory_error_of(e, errors);
             let memory = share.powf(1.0 / (EXPONENT * (4.0 - order)));
             if memory > error {
                 (error, worst) = (memory, Worst::Element(e));

@@ -137,7 +137,7 @@ impl Radau {
         drive(cx, &forward, to, &mut right);
         cx.fill(to, to, None, &mut recorder.scratch, &mut right)?;
         recorder.control(cx, None, &mut right)?;
-        recorder.jump(right);
+        recorder.jump(cx, right)?;
         self.expect(cx, recorder)
     }
 }

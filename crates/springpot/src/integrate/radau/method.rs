@@ -37,6 +37,8 @@ pub(in crate::integrate) struct Radau {
     pub(super) last: Option<(f64, f64)>,
     /// Whether a law has inner variables, of which the motion may show nothing.
     pub(super) has_inner_variables: bool,
+    /// Whether a law keeps inner strokes, whose energies no stroke shows either.
+    pub(super) has_inner_strokes: bool,
     pub(super) newton_iterations: u64,
     /// Kinks of forces, and whether the step ends on one.
     pub(super) kinks: Kinks,
@@ -62,7 +64,8 @@ impl Radau {
             step: RadauStep::new(cx, forward, tolerance, rtol),
             has_paths: forward.has_paths(),
             last: None,
-            has_inner_variables: cx.system.elements.iter().any(|element| element.law.has_inner_variables()),
+            has_inner_variables: cx.system.elements.iter().any(|element| element.law.hidden_errors() > 0),
+            has_inner_strokes: cx.system.elements.iter().any(|element| element.law.hidden_errors() == usize::MAX),
             newton_iterations: 0,
             kinks: Kinks::of(cx.system),
             is_at_kink: false,

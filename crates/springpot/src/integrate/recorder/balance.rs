@@ -115,9 +115,14 @@ impl Recorder {
 
     /// The largest of the local errors of element `e` in units of their tolerances, and its order.
     pub(in crate::integrate) fn memory_error(&self, e: usize) -> (f64, f64) {
+        self.memory_error_of(e, usize::MAX)
+    }
+
+    /// As [`Self::memory_error`], of so many of them, the first ones.
+    pub(in crate::integrate) fn memory_error_of(&self, e: usize, first: usize) -> (f64, f64) {
         let settings = &self.settings;
         let mut worst = (0.0, 0.0);
-        for (m, error) in self.bank.errors(e).iter().enumerate() {
+        for (m, error) in self.bank.errors(e).iter().enumerate().take(first) {
             let scale = self.bank.scale(e, m);
             let allowed = settings.atol.unwrap_or(0.0).max(settings.rtol * scale);
             let share = error.share(scale, allowed);
@@ -132,7 +137,7 @@ impl Recorder {
     /// Estimate of what the step just worked out adds to the error of the ledger, in units of its tolerance; `floor` is a lower bound
     /// of the energy turned over.
     pub(in crate::integrate) fn energy_error(&self, h: f64, floor: f64) -> f64 {
-        let turned_over = floor.max(self.turned_over());
+        let turned_over = floor.max(self.turned_over()).max(self.ledger.stretching);
         // Of denormal energies no share can be told.
         if self.actuators_unknown() || turned_over < TINY_ENERGY || h <= SHORTEST_LEDGER_STEP * self.settings.end {
             return 0.0;

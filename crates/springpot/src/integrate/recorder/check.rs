@@ -30,10 +30,12 @@ impl Recorder {
             let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
             let is = snapshot.evaluation.elements[e].reading.rate;
             let derivative = snapshot.elements[e].observation.derivative.abs();
+            // D^alpha x and its share of a step are those of the time of the memories.
+            let pace = self.bank.pace(e);
             for (m, error) in self.bank.errors(e).iter().enumerate().filter(|(_, error)| error.order > 0.0) {
-                let departure = (is - told).abs() * h.powf(1.0 - error.order);
+                let departure = (is - told).abs() * h * (h * pace).powf(-error.order);
                 let scale = self.bank.scale(e, m).max(if derivative.is_finite() { derivative } else { 0.0 });
-                let resolution = 8.0 * self.bank.resolution(e) * h.powf(-error.order);
+                let resolution = 8.0 * self.bank.resolution(e) * (h * pace).powf(-error.order);
                 let floor = self.settings.atol.unwrap_or(0.0) + resolution;
                 if departure > allowed * scale + floor {
                     return Some((e, departure / scale));

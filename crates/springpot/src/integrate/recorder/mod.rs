@@ -9,18 +9,22 @@ mod check;
 use super::context::Context;
 use super::control::{ControlRun, ControlState};
 use super::error::RunError;
-use super::evaluate::{Evaluation, Scratch};
+use super::evaluate::{ElementEvaluation, Evaluation, Scratch};
 use super::ledger::{NodePower, Turnover};
 use super::on_grid::{GridDerivatives, on_grid_observation};
 use super::settings::Settings;
 use crate::collocation::Nodes;
 use crate::collocation::STAGES;
-use crate::elements::{ElementBank, Kept, MemoryRange};
+use crate::elements::{Element, ElementBank, Kept, MemoryRange};
 use crate::fractional::Form;
+use crate::law::heat::TEMPERATURE;
 use crate::law::{Observation, Point};
 use crate::observe::Snapshot;
 use crate::observe::evaluation::ElementRow;
 use serde::{Deserialize, Serialize};
+
+/// What a temperature may move across a kink, in units of it: one bit of time further it is another one.
+const SAME_TEMPERATURE: f64 = 1e-9;
 
 /// Powers of the step that belong to no element.
 #[derive(Debug, Clone, Copy, Default)]
@@ -46,6 +50,8 @@ pub(super) struct Recorder {
     pub(super) takes_elements_work: bool,
     /// Of elements with named schemes.
     pub(super) grid: GridDerivatives,
+    /// Elements that warm themselves.
+    thermal: Vec<usize>,
     ledger: Ledger,
 }
 
@@ -55,6 +61,8 @@ struct Ledger {
     actuators: f64,
     joints: f64,
     potential_origin: f64,
+    /// What stretching all elements that expand by a kelvin stores: of energies far below that rounding leaves nothing.
+    stretching: f64,
     /// Balance at t = 0.
     origin: f64,
     turnover: Turnover,
@@ -90,6 +98,7 @@ impl Recorder {
             powers: StepPowers::default(),
             takes_elements_work: true,
             grid: vec![None; cx.system.elements.len()],
+            thermal: (0..cx.system.elements.len()).filter(|&e| cx.system.elements[e].law.is_thermal()).collect(),
             ledger: Ledger::default(),
         }
     }
@@ -144,6 +153,7 @@ impl Recorder {
             let Settings { memory_rtol: tolerance, end: horizon, .. } = self.settings;
             let begun = element.begin_within(at.reading.coordinate, &at.inputs, tolerance, horizon);
             let state = begun.map_err(RunError::of_kernel(&element.name))?;
+            element.check_start(&state)?;
             self.bank.begin_from(e, &element.start(at.reading.coordinate, &at.inputs), state);
         }
         Ok(())
@@ -153,12 +163,19 @@ impl Recorder {
     pub(super) fn open(&mut self, cx: Context, first: f64) -> Result<(), RunError> {
         let Settings { memory_rtol: tolerance, end: horizon, .. } = self.settings;
         for (e, element) in cx.system.elements.iter().enumerate() {
-            let opened = self.bank.open_element(e, MemoryRange { tolerance, shortest: first, horizon });
+            let range = MemoryRange { tolerance, shortest: first, horizon };
+            let range = element.memory_range(range, &self.evaluations[0].elements[e].inputs);
+            let opened = self.bank.open_element(e, range);
             opened.map_err(RunError::of_kernel(&element.name))?;
         }
         if let Some(control) = &mut self.control {
             control.open(tolerance, first, horizon)?;
         }
+        let at_start = cx.system.elements.iter().zip(&self.evaluations[0].elements);
+        let stretching = |(element, at): (&Element, &ElementEvaluation)| {
+            element.law.as_heated().map_or(0.0, |heated| heated.stretching(&at.point(0.0), 1.0 / horizon))
+        };
+        self.ledger.stretching = at_start.map(stretching).sum();
         self.ledger.potential_origin = self.evaluations[0].potential;
         let mut start = Snapshot::new(cx.system);
         start.evaluation.clone_from(&self.evaluations[0]);
@@ -219,8 +236,35 @@ impl Recorder {
         Ok(())
     }
 
+    /// # Errors
+    /// [`RunError::RunAway`] where an element is too hot after the last step.
+    pub(super) fn check_warmth(&self, cx: Context, t: f64) -> Result<(), RunError> {
+        for &e in &self.thermal {
+            let temperature = self.bank.warmth(e, None).map_or(0.0, |warmth| warmth.temperature);
+            let highest = TEMPERATURE.high;
+            if temperature > highest {
+                let element = cx.system.elements[e].name.clone();
+                return Err(RunError::RunAway { t, element, temperature, highest });
+            }
+        }
+        Ok(())
+    }
+
     /// Goes on from the far side of a kink, `right`, and records what jumps there.
-    pub(super) fn jump(&mut self, right: Evaluation) {
+    ///
+    /// # Errors
+    /// [`RunError::Rule`] where a temperature jumps that stretches an element.
+    pub(super) fn jump(&mut self, cx: Context, right: Evaluation) -> Result<(), RunError> {
+        for (e, element) in cx.system.elements.iter().enumerate().filter(|(_, element)| element.law.is_stretched()) {
+            let [before, after] =
+                [&self.evaluations[0], &right].map(|of| element.law.temperature(&of.elements[e].inputs));
+            if (after - before).abs() > SAME_TEMPERATURE * before {
+                let rule = format!(
+                    "it expands by a temperature that does not jump, here from {before} to {after} K: give it a ramp"
+                );
+                return Err(RunError::Rule { t: right.t, element: element.name.clone(), rule });
+            }
+        }
         let left = std::mem::replace(&mut self.evaluations[0], right);
         let right = &self.evaluations[0];
         self.is_whole[0] = true;
@@ -234,6 +278,7 @@ impl Recorder {
                 self.bank.add_supplied(e, is - was);
             }
         }
+        Ok(())
     }
 
     /// Fills the elements and the balance of a snapshot whose evaluation is there: at θ of the step that was accounted, or between two steps
@@ -266,7 +311,8 @@ impl Recorder {
                 self.bank.leaves(e, theta, &point, &mut leaves);
             }
             let electric = self.bank.electric(e, theta, &point);
-            elements.push(ElementRow { observation, electric, leaves, dissipated, input });
+            let warmth = self.bank.warmth(e, theta);
+            elements.push(ElementRow { observation, electric, leaves, dissipated, input, warmth });
         }
         let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
         let balance = self.balance(snapshot, actuators, joints);

@@ -4,7 +4,7 @@ use super::contract::Leaf;
 use super::hysteresis::{self, Hysteresis, Matrix, Values};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
-use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
+use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
@@ -38,7 +38,7 @@ impl BoucWen {
     }
 
     fn solve(&self, step: &Step, start: f64) -> (Values, Matrix) {
-        self.hysteresis.solve(step.nodes, step.h, step.rate, None, start)
+        self.hysteresis.solve((step.nodes.count(), &step.matrix()), step.h, step.rate, None, start)
     }
 
     fn rates(&self, step: &Step, z: &Values) -> Values {
@@ -93,7 +93,7 @@ impl Leaf for BoucWen {
 
     fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
         let (z, _) = self.solve(step, state.variables[0]);
-        let defect = step.h * quadrature_defect(step.nodes, &self.rates(step, &z));
+        let defect = step.h * step.quadrature_defect(&self.rates(step, &z));
         // What rounding leaves of a stroke is no error of z.
         let error = if defect <= self.hysteresis.slope_at_rest() * step.resolution { 0.0 } else { defect };
         errors.push(LocalError { error, value: z[step.nodes.count()], order: 0.0, sharpness: 1.0 });
@@ -112,7 +112,7 @@ impl Leaf for BoucWen {
     fn at(&self, step: &Step, theta: f64, at: &Point, state: StateRef) -> Observation {
         let (z, _) = self.solve(step, state.variables[0]);
         let rates = self.rates(step, &z);
-        let moved: f64 = quadrature(step.nodes, theta).iter().zip(rates).map(|(weight, rate)| weight * rate).sum();
+        let moved: f64 = step.quadrature(theta).iter().zip(rates).map(|(weight, rate)| weight * rate).sum();
         self.observation(at, state.variables[0] + step.h * moved)
     }
 

@@ -122,6 +122,16 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         }
     }
 
+    /// Temperature shifts springpots and dashpots; whether it is something else that follows its rate, by the clock of the wall.
+    fn keeps_the_wall_clock(&self) -> bool {
+        false
+    }
+
+    /// Whether something in it goes on by itself with time, such as the driver of a coil: no temperature shifts a law with that.
+    fn has_clock(&self) -> bool {
+        false
+    }
+
     /// F is an affine function of strokes and rates of a step.
     fn is_linear(&self) -> bool {
         false

@@ -94,6 +94,10 @@ impl Leaf for EndStop {
         LeafAtRest { force, stiffness: Some(slope), term, input: None, damping }
     }
 
+    fn keeps_the_wall_clock(&self) -> bool {
+        true
+    }
+
     fn holds(&self) -> Holds {
         Holds::AtTimes
     }

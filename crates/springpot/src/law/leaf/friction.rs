@@ -74,6 +74,10 @@ impl Leaf for Friction {
         Term { coefficient: self.slope(at), order: 1.0 }
     }
 
+    fn keeps_the_wall_clock(&self) -> bool {
+        true
+    }
+
     fn holds(&self) -> Holds {
         // Above some 20·v0 its force is f to the last bit, whatever the rate.
         if self.force.is_none() { Holds::Never } else { Holds::AtTimes }

@@ -71,10 +71,16 @@ impl Hysteresis {
     /// z at the start and at the nodes of a step of size h, and ∂z_i/∂v_j: z_i = z_0 + h Σ_j A_ij z'_j by Newton's method; NaN where that
     /// finds none.
     ///
-    /// `rate` is v at the start and at the nodes. Where z itself holds v back, v_j = rate_j − Σ_k `back`_jk z_k, and derivatives are those by
+    /// `matrix` is A of so many nodes, `rate` v at the start and at the nodes. Where z itself holds v back, v_j = rate_j − Σ_k `back`_jk z_k, and derivatives are those by
     /// `rate`.
-    pub fn solve(&self, nodes: Nodes, h: f64, rate: &[f64], back: Option<&Matrix>, start: f64) -> (Values, Matrix) {
-        let (count, matrix) = (nodes.count(), nodes.matrix());
+    pub fn solve(
+        &self,
+        (count, matrix): (usize, &Matrix),
+        h: f64,
+        rate: &[f64],
+        back: Option<&Matrix>,
+        start: f64,
+    ) -> (Values, Matrix) {
         // Beyond what it can be the powers would throw the iteration far off.
         let bound = 2.0 * self.largest().max(start.abs());
         let mut z = [start; MAX_NODES + 1];

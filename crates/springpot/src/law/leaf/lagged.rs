@@ -164,6 +164,10 @@ impl<L: Leaf> Leaf for Lagged<L> {
         self.leaf.tangent(&Point { inputs: &Self::settled(at), ..*at })
     }
 
+    fn has_clock(&self) -> bool {
+        true
+    }
+
     fn holds(&self) -> Holds {
         self.leaf.holds()
     }

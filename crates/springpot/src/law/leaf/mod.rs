@@ -18,6 +18,7 @@ mod springpot;
 mod stack;
 mod stop;
 mod table;
+mod unshifted;
 mod viscous;
 
 pub use bouc_wen::BoucWen;
@@ -38,4 +39,5 @@ pub use springpot::{Coefficient, Springpot};
 pub use stack::{Stack, VoltageDrop};
 pub use stop::Stop;
 pub use table::{Table, TableError};
+pub(super) use unshifted::Unshifted;
 pub use viscous::Viscous;

@@ -92,7 +92,7 @@ impl Spencer {
             free[i + 1] = step.rate[i + 1] - (0..count).map(|j| by_drive[i][j] * drive[j]).sum::<f64>();
             (0..count).for_each(|j| back[i][j] = by_drive[i][j] * now[j + 1].alpha.value);
         }
-        let (z, tangent) = self.hysteresis.solve(nodes, h, &free, Some(&back), z);
+        let (z, tangent) = self.hysteresis.solve((nodes.count(), nodes.matrix()), h, &free, Some(&back), z);
         let (mut y, mut y_rate) = ([y; MAX_NODES + 1], Values::default());
         y_rate[0] = self.y_rate(&now[0], &step.point(0), y[0], z[0]);
         for i in 0..count {
@@ -239,6 +239,10 @@ impl Leaf for Spencer {
         let elastic = self.inner_stiffness + alpha.value * self.hysteresis.slope_at_rest();
         let inner = Tangent::Parallel(vec![leaf(elastic, 0.0), leaf(fast, 1.0)]);
         Some(Tangent::Parallel(vec![leaf(self.stiffness, 0.0), Tangent::Series(vec![leaf(slow, 1.0), inner])]))
+    }
+
+    fn has_clock(&self) -> bool {
+        true
     }
 
     fn holds(&self) -> Holds {

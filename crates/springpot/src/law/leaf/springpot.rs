@@ -5,7 +5,7 @@ use super::kind::{LeafBuild, LeafKind};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::fractional::Kind as Derivative;
-use crate::fractional::{Form, KernelError, Memory, RatePolynomial};
+use crate::fractional::{Form, KernelError, Memory};
 use crate::law::catalog::{Param, Range, alpha};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
@@ -84,13 +84,6 @@ impl Coefficient {
     }
 }
 
-fn polynomial(step: &Step) -> RatePolynomial {
-    match step.form {
-        Form::Rates => RatePolynomial::through_rates(step.h, step.nodes, step.rate),
-        Form::Strokes => RatePolynomial::through_strokes(step.h, step.nodes, step.stroke),
-    }
-}
-
 impl Springpot {
     /// F from the regular D^alpha x.
     fn observation(&self, memory: &Memory, at: &Point, derivative: f64, energy: impl FnOnce() -> f64) -> Observation {
@@ -119,15 +112,15 @@ impl Leaf for Springpot {
     }
 
     fn prepare(&self, step: &Step, state: StateMut) {
-        state.memories[0].prepare(&step.start(), step.nodes, step.form);
+        state.memories[0].prepare_at(&step.start(), step.nodes, step.places, step.form);
     }
 
     fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response) {
         let memory = &state.memories[0];
         let start = step.start();
-        let affine = memory.respond(&start, step.nodes, step.form);
+        let affine = memory.respond_at(&start, step.nodes, step.places, step.form);
         let moments = match step.course {
-            Course::Sought if memory.is_singular() => memory.singular_moments(&start, step.nodes),
+            Course::Sought if memory.is_singular() => memory.singular_moments_at(&start, step.nodes, step.places),
             _ => [0.0; MAX_NODES],
         };
         let count = step.nodes.count();
@@ -135,7 +128,7 @@ impl Leaf for Springpot {
             let c = self.coefficient.at(step.point(i + 1).inputs).value;
             let mut derivative = affine.history[i];
             if memory.is_singular() {
-                let value = memory.singular_part(step.t + step.nodes.positions()[i] * step.h);
+                let value = memory.singular_part(step.t + step.positions()[i] * step.h);
                 let share = if step.course == Course::Sought { moments[i] } else { value };
                 derivative += share - value;
                 response.singular[i] += c * share;
@@ -154,7 +147,7 @@ impl Leaf for Springpot {
         if self.coefficient.input != Some(input) || self.coefficient.slope == 0.0 {
             return;
         }
-        let affine = state.memories[0].respond(&step.start(), step.nodes, step.form);
+        let affine = state.memories[0].respond_at(&step.start(), step.nodes, step.places, step.form);
         let count = step.nodes.count();
         for i in 0..count {
             let own = |j: usize| {
@@ -166,17 +159,20 @@ impl Leaf for Springpot {
     }
 
     fn commit(&self, step: &Step, state: StateMut) {
-        let polynomial = polynomial(step);
+        let polynomial = step.polynomial();
         let memory = &mut state.memories[0];
         match step.form {
-            Form::Rates => memory.commit_rates(&polynomial, step.stroke[step.nodes.count()], step.resolution),
-            Form::Strokes => memory.commit(&polynomial),
+            Form::Rates => {
+                let end = step.stroke[step.nodes.count()];
+                memory.commit_rates_at(&polynomial, step.places, end, step.resolution);
+            }
+            Form::Strokes => memory.commit_at(&polynomial, step.places),
         }
     }
 
     fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
         let memory = &state.memories[0];
-        let (last, polynomial) = (step.nodes.count(), polynomial(step));
+        let (last, polynomial) = (step.nodes.count(), step.polynomial());
         let [stroke, rate] = [step.stroke, step.rate].map(|values| [values[0], values[last]]);
         errors.push(LocalError {
             error: memory.defect(&polynomial, stroke, rate, step.resolution),
@@ -188,7 +184,7 @@ impl Leaf for Springpot {
 
     fn powers(&self, step: &Step, state: StateRef, powers: &mut Powers) {
         let memory = &state.memories[0];
-        let polynomial = polynomial(step);
+        let polynomial = step.polynomial();
         for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
             let at = step.point(k);
             let c = self.coefficient.at(at.inputs);
@@ -197,7 +193,7 @@ impl Leaf for Springpot {
                 power.input += if c.rate == 0.0 { 0.0 } else { f64::NAN };
                 continue;
             }
-            let theta = if k == 0 { 0.0 } else { step.nodes.positions()[k - 1] };
+            let theta = if k == 0 { 0.0 } else { step.positions()[k - 1] };
             let energy = memory.energy(&polynomial, theta, at.stroke, at.rate);
             power.dissipation += c.value * energy.dissipation;
             power.input += c.rate * energy.stored;
@@ -206,9 +202,15 @@ impl Leaf for Springpot {
 
     fn at(&self, step: &Step, theta: f64, at: &Point, state: StateRef) -> Observation {
         let memory = &state.memories[0];
-        let polynomial = polynomial(step);
+        let polynomial = step.polynomial();
         let derivative = if step.form == Form::Rates && step.nodes == Nodes::Radau && theta < 1.0 {
-            memory.derivative_between(&polynomial, theta, at.stroke, at.rate)
+            match step.places {
+                None => memory.derivative_between(&polynomial, theta, at.stroke, at.rate),
+                Some(places) => {
+                    let nodes = places.node_polynomial();
+                    memory.derivative_between_at(&polynomial, &nodes, theta, at.stroke, at.rate)
+                }
+            }
         } else {
             memory.regular_derivative(&polynomial, theta, at.stroke, at.rate)
         };

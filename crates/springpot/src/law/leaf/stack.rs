@@ -194,7 +194,7 @@ impl Stack {
         let moves = self.free_capacitance().recip();
         let free = current(&Values::default()).map(|current| moves * current);
         let back = own.map(|row| row.map(|entry| moves * alpha_h * entry));
-        let (z, tangent) = hysteresis.solve(nodes, h, &free, Some(&back), start);
+        let (z, tangent) = hysteresis.solve((nodes.count(), nodes.matrix()), h, &free, Some(&back), start);
         solved.z = z;
         solved.drop = z.map(|z| alpha_h * z);
         solved.current = current(&solved.drop);
@@ -484,6 +484,10 @@ impl Leaf for Stack {
         let inner =
             vec![leaf(square * self.resistance, 1.0), leaf(square * elastic / self.free_capacitance(), 0.0), source];
         Some(Tangent::Series(vec![leaf(square / self.capacitance, 0.0), Tangent::Parallel(inner)]))
+    }
+
+    fn has_clock(&self) -> bool {
+        true
     }
 
     fn holds(&self) -> Holds {

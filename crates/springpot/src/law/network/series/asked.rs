@@ -1,8 +1,8 @@
 //! What the parts of a series are asked: at nodes of their own, under the stroke of the whole.
 
 use super::Values;
-use crate::collocation::inner::{TABLEAU_OF_FOUR, Weights};
-use crate::collocation::{MAX_NODES, Nodes, RADAU_NODES, STAGES};
+use crate::collocation::inner::{self, TABLEAU_OF_FOUR, Weights};
+use crate::collocation::{MAX_NODES, Nodes, Places, RADAU_NODES, STAGES};
 use crate::fractional::{Form, RatePolynomial};
 use crate::law::step::{Course, InputValue, Point, Response, Step};
 
@@ -12,11 +12,19 @@ const NEXT_TO_NODE: f64 = 1e-8;
 /// The stroke of a whole series over a step, or the first share of it, at the nodes of its parts.
 pub(super) struct Asked {
     way: Way,
+    /// Where the nodes of the step are not where its clock would have them.
+    bent: Option<Bent>,
     pub(super) nodes: Nodes,
     pub(super) h: f64,
     pub(super) stroke: Values,
     /// None where they are those of the step.
     inputs: Option<Vec<InputValue>>,
+}
+
+/// What brings the nodes of a step, which lie elsewhere, to those of the parts and back.
+struct Bent {
+    weights: [Weights; MAX_NODES],
+    outer: [[f64; MAX_NODES]; STAGES],
 }
 
 /// How the stroke between the nodes of a step follows from what is known at them.
@@ -51,16 +59,26 @@ impl Way {
         }
     }
 
+    /// Those of nodes at `places`.
+    fn weights_at(self, places: &Places, theta: f64) -> Weights {
+        match self {
+            Self::Same | Self::Strokes => Weights::by_strokes_at(places, theta),
+            Self::Rates => Weights::by_rates_at(places, theta),
+            Self::Both => Weights::by_both_at(places, theta),
+        }
+    }
+
     /// The stroke at θ.
     fn stroke(self, step: &Step, theta: f64) -> f64 {
-        let weights = match self {
-            Self::Same => {
+        let weights = match (self, step.places) {
+            (Self::Same, _) => {
                 let polynomial = RatePolynomial::through_strokes(step.h, step.nodes, step.stroke);
                 return step.stroke[0] + polynomial.travel_until(theta);
             }
-            Self::Strokes => Weights::by_strokes(theta),
-            Self::Rates => Weights::by_rates(theta),
-            Self::Both => Weights::by_both(theta),
+            (_, Some(places)) => self.weights_at(places, theta),
+            (Self::Strokes, None) => Weights::by_strokes(theta),
+            (Self::Rates, None) => Weights::by_rates(theta),
+            (Self::Both, None) => Weights::by_both(theta),
         };
         weights.apply(|k| step.stroke[k], |k| step.h * step.rate[k])
     }
@@ -73,14 +91,19 @@ impl Asked {
         let mut stroke = Values::default();
         if way == Way::Same {
             stroke[..step.stroke.len()].copy_from_slice(step.stroke);
-            return Self { way, nodes: step.nodes, h: step.h, stroke, inputs: None };
+            return Self { way, bent: None, nodes: step.nodes, h: step.h, stroke, inputs: None };
         }
         stroke[0] = step.stroke[0];
-        for (stroke, weights) in stroke[1..].iter_mut().zip(way.weights()) {
+        let bent = step.places.map(|places| Bent {
+            weights: inner::NODES.map(|theta| way.weights_at(places, theta)),
+            outer: places.positions().map(inner::outer_row),
+        });
+        let weights = bent.as_ref().map_or(way.weights(), |bent| &bent.weights);
+        for (stroke, weights) in stroke[1..].iter_mut().zip(weights) {
             *stroke = weights.apply(|k| step.stroke[k], |k| step.h * step.rate[k]);
         }
         let inputs = (!step.inputs.is_empty()).then(|| inputs(step));
-        Self { way, nodes: Nodes::Inner, h: step.h, stroke, inputs }
+        Self { way, bent, nodes: Nodes::Inner, h: step.h, stroke, inputs }
     }
 
     /// The step up to `theta`, where the kinematics are those of `at`.
@@ -90,7 +113,8 @@ impl Asked {
         let mut stroke = Values::default();
         stroke[0] = step.stroke[0];
         // The cubic through the strokes misses what the step's own motion is at θ, and elsewhere by as much as the nodes are away.
-        let away = |at: f64| at * RADAU_NODES.iter().map(|c| at - c).product::<f64>();
+        let points = step.places.map_or(&RADAU_NODES, Places::positions);
+        let away = |at: f64| at * points.iter().map(|c| at - c).product::<f64>();
         let miss = match way {
             Way::Strokes => (at.stroke - way.stroke(step, theta)) * away(theta) / (away(theta).powi(2) + NEXT_TO_NODE),
             Way::Same | Way::Rates | Way::Both => 0.0,
@@ -112,14 +136,23 @@ impl Asked {
                     .map(|(from, to)| InputValue { value: from.value + c * (to.value - from.value), rate: to.rate }),
             );
         }
-        Self { way, nodes, h: theta * step.h, stroke, inputs: Some(inputs) }
+        Self { way, bent: None, nodes, h: theta * step.h, stroke, inputs: Some(inputs) }
     }
 
     /// The step as the parts see it, but for strokes and rates, which are not theirs.
     pub(super) fn step<'a>(&'a self, outer: &Step<'a>) -> Step<'a> {
         let Self { nodes, h, ref stroke, ref inputs, .. } = *self;
         let inputs = inputs.as_deref().unwrap_or(outer.inputs);
-        Step { h, nodes, form: Form::Strokes, stroke: &stroke[..=nodes.count()], rate: &[], inputs, ..*outer }
+        Step {
+            h,
+            nodes,
+            places: None,
+            form: Form::Strokes,
+            stroke: &stroke[..=nodes.count()],
+            rate: &[],
+            inputs,
+            ..*outer
+        }
     }
 
     /// Adds forces and tangents at the nodes of the parts, as they are at those of the whole.
@@ -131,9 +164,10 @@ impl Asked {
             }
             return;
         }
-        for (i, row) in TABLEAU_OF_FOUR.outer.iter().enumerate() {
+        let weights = self.bent.as_ref().map_or(self.way.weights(), |bent| &bent.weights);
+        for (i, row) in self.rows().iter().enumerate() {
             response.force[i] += outer(row, force);
-            for (k, weights) in self.way.weights().iter().enumerate() {
+            for (k, weights) in weights.iter().enumerate() {
                 let along: f64 = (0..MAX_NODES).map(|m| row[m] * tangent[m][k]).sum();
                 for j in 0..STAGES {
                     response.d_stroke[i][j] += along * weights.stroke[j + 1];
@@ -143,12 +177,18 @@ impl Asked {
         }
     }
 
+    /// The polynomials through the values at the nodes of the parts, at the nodes of the whole.
+    fn rows(&self) -> &[[f64; MAX_NODES]; STAGES] {
+        self.bent.as_ref().map_or(&TABLEAU_OF_FOUR.outer, |bent| &bent.outer)
+    }
+
     /// What is known at the start and at the nodes of the parts, at those of the whole.
     pub(super) fn outer(&self, values: &Values) -> Values {
         match self.way {
             Way::Same => *values,
             _ => {
-                let at = |i: usize| outer(&TABLEAU_OF_FOUR.outer[i], &[values[1], values[2], values[3], values[4]]);
+                let rows = self.rows();
+                let at = |i: usize| outer(&rows[i], &[values[1], values[2], values[3], values[4]]);
                 [values[0], at(0), at(1), at(2), values[0]]
             }
         }
@@ -163,8 +203,14 @@ fn outer(row: &[f64; MAX_NODES], values: &[f64; MAX_NODES]) -> f64 {
 fn inputs(step: &Step) -> Vec<InputValue> {
     let start = step.point(0).inputs;
     let mut inputs = start.to_vec();
-    let places = TABLEAU_OF_FOUR.by_both.iter().zip(&TABLEAU_OF_FOUR.by_strokes);
-    inputs.extend(places.flat_map(|(both, plain)| {
+    let bent = step.places.map(|places| {
+        inner::NODES.map(|theta| [Weights::by_both_at(places, theta), Weights::by_strokes_at(places, theta)])
+    });
+    let places = (0..MAX_NODES).map(|m| match &bent {
+        None => [&TABLEAU_OF_FOUR.by_both[m], &TABLEAU_OF_FOUR.by_strokes[m]],
+        Some(bent) => [&bent[m][0], &bent[m][1]],
+    });
+    inputs.extend(places.flat_map(|[both, plain]| {
         (0..start.len()).map(|i| {
             let known = |k: usize| step.point(k).inputs[i];
             InputValue {
