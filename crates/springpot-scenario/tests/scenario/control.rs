@@ -73,7 +73,7 @@ fn feedback_sees_what_is_known() {
                 "must be positive",
             ),
             (
-                &[("torque = { q1 = 0 }", "torque = { q1 = { expression = \"-v.q1\", ‸column = \"x\" } }")],
+                &[("torque = { q1 = 0 }", "torque = { q1 = { expression = \"-v.q1\", column = ‸\"x\" } }")],
                 UnknownKey,
                 "stands beside feedback",
             ),
@@ -105,9 +105,9 @@ fn controllers_have_their_keys_and_joints() {
                 Rule,
                 "`ki` of [motion.controller] belongs to kind = \"pid\" or \"fractional-pid\"",
             ),
-            (&[("kp = 10", "kp = ‸\"10 N/m\"")], BadQuantity, "N*m/rad"),
+            (&[("kp = 10", "kp = \"10 ‸N/m\"")], BadQuantity, "N*m/rad"),
             (&[("kd = 1", "kd = 1\nlimits = { q1 = ‸-5 }")], OutOfRange, "a limit is positive"),
-            (&[("kd = 1", "kd = 1\nlimits = { q1 = ‸\"5 N\" }")], BadQuantity, "N*m"),
+            (&[("kd = 1", "kd = 1\nlimits = { q1 = \"5 ‸N\" }")], BadQuantity, "N*m"),
             (&[("kd = 1", "kd = 1\nrate_limits = { q2 = ‸0 }")], OutOfRange, "a limit is positive"),
             (&[("kd = 1", "kd = 1\nsample = 0.01\ndelay = ‸0.015")], Rule, "is no multiple of `sample`"),
             (&[("kd = 1", "kd = 1\ndelay = ‸0.01")], Rule, "needs a `sample`"),
@@ -145,8 +145,8 @@ fn controllers_have_their_keys_and_joints() {
     );
     let gripperless = impedance.replace("[robot.gripper]\nbody = \"arm\"\npoint = [0.3, 0, 0]\n", "");
     assert_all_refused(
-        &gripperless.replace("[motion.controller]", "[‸motion.controller]"),
-        &[(&[("[‸motion", "[‸motion")], Missing, "needs a gripper")],
+        &gripperless.replace("[motion.controller]", "‸[motion.controller]"),
+        &[(&[("‸[motion", "‸[motion")], Missing, "needs a gripper")],
     );
 }
 

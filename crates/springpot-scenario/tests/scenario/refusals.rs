@@ -542,7 +542,7 @@ fn a_robot_that_moves_by_itself_takes_other_keys() {
         &(
             &[("kind = \"prescribed\"\njoints", "kind = \"forward\"\n‸joints")],
             UnknownKey,
-            "there is kind, start, torque, prescribed and locked",
+            "there is kind, start, torque, prescribed, locked and controller",
         ),
     );
 }

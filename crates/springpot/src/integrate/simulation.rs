@@ -90,6 +90,10 @@ impl Simulation {
                 return Ok(false);
             }
             let t = self.driver.reached();
+            // What was crossed may have been the way that was left.
+            if t >= until {
+                return Ok(true);
+            }
             let sample = self.samples.as_ref().and_then(|times| {
                 while self.sample < times.count() && times.at(self.sample) <= t {
                     self.sample += 1;

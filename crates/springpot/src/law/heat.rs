@@ -262,7 +262,7 @@ mod tests {
         assert_eq!(of(Shift::Arrhenius { energy: f64::NAN, reference: 300.0 }), Err("energy".into()));
         assert_eq!(of(Shift::Arrhenius { energy: 1.0, reference: 20.0 }), Err("T_ref".into()));
         assert_eq!(of(wlf(17.44, 51.6)), Ok(()));
-        let pole = wlf(17.44, 51.6).check(248.4).unwrap_err();
+        let pole = wlf(17.44, 51.6).check(248.3).unwrap_err();
         assert!(pole.rule.contains("pole"), "{pole}");
         assert!(wlf(17.44, 51.6).check(248.5).is_err() && wlf(17.44, 51.6).check(270.0).is_ok());
         let warm = Thermal { capacity: 1.0, conductance: 0.0, ambient: 300.0, start: 300.0 };

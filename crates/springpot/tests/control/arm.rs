@@ -9,7 +9,7 @@ const KP: &str = "{ q1 = 200, q2 = 300, q3 = 120 }";
 const KD: &str = "{ q1 = 20, q2 = 30, q3 = 8 }";
 
 /// The arm with its spring and dashpot, moving from point to point; `controller` is the rest of that table.
-fn scenario(controller: &str, output_step: f64) -> String {
+pub(super) fn scenario(controller: &str, output_step: f64) -> String {
     let strut = strut("law = \"kelvin-voigt\"\nparameters = { k = 400, c = 15 }");
     format!(
         "{ARM}{strut}\n[motion]\nkind = \"forward\"\nstart = {{ q = {{ q2 = 0.1, q3 = 0.2 }} }}\n[motion.controller]\n{controller}\n\

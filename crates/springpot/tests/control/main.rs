@@ -3,6 +3,7 @@
 mod arm;
 mod closed;
 mod feedback;
+mod going_on;
 mod order;
 #[path = "../support/mod.rs"]
 mod support;

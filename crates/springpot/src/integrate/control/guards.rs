@@ -341,7 +341,7 @@ impl ControlRun {
         }
         self.changes.clear();
         let before = self.has_branches.then(|| self.nodes[0].shaped.clone());
-        let (from, aimed) = (self.nodes[0].t, self.has_branches.then(|| self.nodes[0].aim.clone()));
+        let (from, aimed) = (self.nodes[0].t, self.has_aim.then(|| self.nodes[0].aim.clone()));
         self.see_start(eye)?;
         if let Some(aimed) = aimed {
             self.refuse_jump(eye, from, &aimed)?;

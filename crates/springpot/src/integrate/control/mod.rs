@@ -59,6 +59,8 @@ pub(super) struct ControlRun {
     knows_nodes: bool,
     /// Whether its branches are those of a start that was looked at.
     has_branches: bool,
+    /// Whether the reference was looked at where the step starts.
+    has_aim: bool,
     /// Where the reference is and how the links are, at the time of a row.
     row_aim: Aim,
     row_kinematics: Kinematics,
@@ -179,6 +181,7 @@ impl ControlRun {
             ends: Default::default(),
             knows_nodes: !has_fixed_steps,
             has_branches: false,
+            has_aim: false,
             row_aim: Aim::default(),
             row_kinematics: Kinematics::new(model),
             control,
@@ -206,7 +209,7 @@ impl ControlRun {
     pub(super) fn begin(&mut self, system: &System, q: &[f64], v: &[f64], end: f64) -> Result<(), RunError> {
         self.terms.clear();
         self.changes.clear();
-        self.has_branches = false;
+        (self.has_branches, self.has_aim) = (false, false);
         let Some(controlled) = self.control.controller.clone() else { return Ok(()) };
         for k in (0..=LOOKS).rev() {
             // Where a path cannot be followed so far, the run says when it comes there.
@@ -277,7 +280,7 @@ impl ControlRun {
         self.terms.iter_mut().zip(terms).for_each(|(term, kept)| term.kept = kept);
         let start = &mut self.nodes[0];
         (start.wanted, start.shaped, start.torque) = (wanted, shaped, torque);
-        (self.together, self.has_branches) = (together, true);
+        (self.together, self.has_branches, self.has_aim) = (together, true, false);
         true
     }
 

@@ -46,7 +46,7 @@ impl ControlRun {
     /// Where the reference cannot be followed.
     pub(in crate::integrate) fn see_start(&mut self, eye: &Eye) -> Result<(), RunError> {
         self.aim_at(eye.system, eye.t, 0)?;
-        self.nodes[0].t = eye.t;
+        (self.nodes[0].t, self.has_aim) = (eye.t, true);
         self.see(0, eye);
         Ok(())
     }
@@ -281,9 +281,9 @@ impl ControlRun {
         if omega > 0.0 { [error.max(rate / omega), rate.max(omega * error)] } else { [0.0; 2] }
     }
 
-    /// The largest force on velocity `k` at the start and at the nodes.
+    /// The size of the force on velocity `k` at the start: of the nodes a run that goes on knows nothing yet.
     pub(in crate::integrate) fn largest(&self, k: usize) -> f64 {
-        self.nodes.iter().fold(0.0, |largest, node| largest.max(node.torque[k].abs()))
+        self.nodes[0].torque[k].abs()
     }
 
     /// The terms of the force on velocity `k` between two steps, where its error and the rate of that are these.
