@@ -35,7 +35,7 @@ Examples:
   springpot run arm.toml --checkpoint-every '10 s'
   springpot run --resume results/arm
 
-Writes results.csv (or .parquet, .npz), summary.csv, figures/ and run.json. \
+Writes results.csv (or .parquet, .npz), summary.csv, metrics.csv, figures/ and run.json. \
 They take the place of the last run's files when the run ends, all or none, \
 and of nothing else; one run at a time writes to a folder. \
 Ctrl-C ends a run early; the rows so far are kept, all of them complete. With --checkpoint-every a run that was interrupted or \
@@ -164,6 +164,20 @@ Several results are drawn in one figure, whose legend names their folders.
 
 Exit codes: 0 done, 1 the figure cannot be drawn or written, 2 the results, a column or a value is not there.")]
     Plot(Box<PlotOptions>),
+    /// Work out metrics of a finished run from its rows.
+    #[command(after_help = "\
+Examples:
+  springpot metrics results/arm
+  springpot metrics results/arm --metric 'rms(strut.force)'
+  springpot metrics results/arm --metric 'peak = max(v.q1), window = [1, 2]'
+  springpot metrics arm --metric 'settling-time(gripper.error), band = \"1 mm\"'
+
+Prints what the run wrote into metrics.csv, or other metrics: [NAME =] KIND(COLUMN), and behind commas window, band and target as \
+[[metric]] of a scenario has them. Kinds: min, max, final, peak-to-peak, mean, rms, settling-time, overshoot, frequency, \
+log-decrement, residual-vibration. Reads results.csv, .parquet and .npz; where metrics.csv of the run is missing it is written again.
+
+Exit codes: 0 done, 1 a file cannot be written, 2 the results, a metric or a column is not there.")]
+    Metrics(MetricsOptions),
     /// Write a commented scenario to start from.
     #[command(after_help = "\
 Examples:
@@ -241,6 +255,19 @@ pub(crate) struct PlotOptions {
     pub(crate) title: Option<String>,
     #[command(flatten)]
     pub(crate) look: LookOptions,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MetricsOptions {
+    /// Folder of the results of a run, or its file of rows
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    /// A metric in place of those of the run: [NAME =] KIND(COLUMN), KEY = VALUE, ...; may be given several times
+    #[arg(long = "metric", value_name = "METRIC")]
+    pub(crate) metrics: Vec<String>,
+    /// Write a file instead of the standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -36,6 +36,7 @@ mod info;
 mod init;
 mod laws;
 mod manual;
+mod metrics;
 mod mistakes;
 mod modes;
 mod modulus;
@@ -136,6 +137,7 @@ pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item
         Command::Derivative(options) => derivative::derivative(&options),
         Command::Laws(options) => laws::laws(&options, catalog),
         Command::Plot(options) => plot::plot(&options),
+        Command::Metrics(options) => metrics::metrics(&options, disk),
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),

@@ -21,6 +21,8 @@ pub struct Finished {
     pub folder: Folder,
     /// Names of its events.
     pub events: Vec<String>,
+    /// Names of its metrics, and the units of their values.
+    pub metrics: Vec<[String; 2]>,
     /// Rows written, over all cases.
     pub rows: u64,
     /// End of the first case, s.
@@ -54,7 +56,7 @@ impl Prepared {
     pub fn finish(self, outcome: Outcome, progress: &Progress, warn: Warn<'_>) -> Result<Finished, FolderError> {
         let Self { cases, plan, system, layout, mut folder, checkpoints, figures, format, .. } = self;
         let (rows, end) = (progress.rows.load(Ordering::Relaxed), plan.settings.end);
-        let events = layout.events().to_vec();
+        let (events, metrics) = (layout.events().to_vec(), layout.metric_units());
         let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
         let is_put = match outcome.status {
             Status::Done => true,
@@ -67,7 +69,7 @@ impl Prepared {
             if !goes_on {
                 folder.discard()?;
             }
-            return Ok(Finished { cases, outcome, folder, events, rows, end, is_put });
+            return Ok(Finished { cases, outcome, folder, events, metrics, rows, end, is_put });
         }
         if figures && outcome.status != Status::Interrupted {
             figures::draw(&cases, &system, &plan, &layout, &outcome, &mut folder)?
@@ -79,6 +81,6 @@ impl Prepared {
         let written = if goes_on { Format::Csv } else { format };
         folder.convert_rows(written, layout.written(), layout.swept())?;
         folder.put(|files| outcome.record(&cases, &plan, &layout, written, files), goes_on)?;
-        Ok(Finished { cases, outcome, folder, events, rows, end, is_put })
+        Ok(Finished { cases, outcome, folder, events, metrics, rows, end, is_put })
     }
 }

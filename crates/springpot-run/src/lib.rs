@@ -9,6 +9,7 @@
 //! | [`sweep`] | all cases on all cores: columns, rows, curves that are kept, checkpoints, run.json |
 //! | [`table`] | results as files: numbers as text, formats, statistics, the folder that holds them |
 //! | [`figures`] | figures from the curves that a run kept, or from any others |
+//! | [`metrics`] | numbers that say how good a run is, at its end and from its results |
 //! | [`labels`] | names of columns as a reader of a figure wants them |
 //!
 //! ```no_run
@@ -31,6 +32,7 @@
 pub mod figures;
 mod finish;
 pub mod labels;
+pub mod metrics;
 mod prepare;
 mod survey;
 pub mod sweep;

@@ -3,6 +3,7 @@
 use super::document::Node;
 use super::figures::{self, ColumnGlob, FigurePlan};
 use super::keys::OUTPUT;
+use super::metrics::{self, MetricPlan};
 use super::path;
 use super::plan::Plan;
 use super::reader::{Context, Read, Table};
@@ -45,6 +46,8 @@ pub struct Cases {
     numbers: Vec<Vec<Vec<Option<f64>>>>,
     figures: Arc<[FigurePlan]>,
     columns: Option<Arc<[ColumnGlob]>>,
+    /// Those of the first case.
+    metrics: Vec<MetricPlan>,
     parameters: Vec<String>,
     /// Units of the swept parameters; empty where they are no numbers, or pure ones.
     units: Vec<String>,
@@ -85,6 +88,7 @@ impl Cases {
             numbers: Vec::new(),
             figures: Arc::new([]),
             columns: None,
+            metrics: Vec::new(),
             parameters: Vec::new(),
             units: Vec::new(),
             tell_joint_losses: false,
@@ -202,6 +206,11 @@ impl Cases {
         &self.figures
     }
 
+    /// The metrics of the first case; others may have other windows, bands and targets.
+    pub fn metrics(&self) -> &[MetricPlan] {
+        &self.metrics
+    }
+
     /// Plans case `i`.
     ///
     /// # Errors
@@ -317,14 +326,17 @@ impl Cases {
                 let ctx = self.context();
                 let read = read_plan(&ctx, &self.document_at(&position)).and_then(|plan| {
                     losses.set(losses.get() || has_joint_losses(&plan));
-                    if columns_of(&plan) == columns {
+                    let (message, help) = if columns_of(&plan) != columns {
+                        ("columns", "all cases of a sweep need the same elements, inputs and joints")
+                    } else if !are_alike(&plan.metrics, &first.metrics) {
+                        ("metrics", "all cases of a sweep need metrics of the same columns and kinds")
+                    } else {
                         return Ok(());
-                    }
+                    };
                     let place: Place = values.node(k, 0, 0).place;
                     let what = values.targets.first().map_or("", |target| target.written.as_str());
                     let message =
-                        format!("{what} = {}: the case has other columns than the first one", values.label(k));
-                    let help = "all cases of a sweep need the same elements, inputs and joints";
+                        format!("{what} = {}: the case has other {message} than the first one", values.label(k));
                     Err(ctx.refuse(place.refuse(RefusalKind::Rule, message).help(help)))
                 });
                 if k < TRIED {
@@ -342,6 +354,7 @@ impl Cases {
         }
         self.numbers = numbers;
         self.units = units;
+        self.metrics = first.metrics;
         self.tell_joint_losses = losses.get();
         Ok(())
     }
@@ -387,6 +400,13 @@ fn has_joint_losses(plan: &Plan) -> bool {
 fn columns_of(plan: &Plan) -> Vec<String> {
     let observables = plan.observables();
     observables.quantities().into_iter().map(|quantity| observables.named(quantity).to_string()).collect()
+}
+
+/// Whether metrics are of the same columns and kinds.
+fn are_alike(some: &[MetricPlan], others: &[MetricPlan]) -> bool {
+    let pairs = || some.iter().map(|plan| &plan.metric).zip(others.iter().map(|plan| &plan.metric));
+    some.len() == others.len()
+        && pairs().all(|(one, other)| (&one.name, &one.of, one.kind) == (&other.name, &other.of, other.kind))
 }
 
 /// The whole scenario, its constants known to the context.
@@ -436,6 +456,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         motion: motion?,
         feedback: Control::default(),
         events: Vec::new(),
+        metrics: Vec::new(),
         tells_joint_losses: false,
         tells_leaves: tells_leaves?,
         warnings: ctx.warnings(),
@@ -447,5 +468,6 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     past::settle(ctx, &mut plan)?;
     plan.feedback = feedback::settle(ctx, &plan)?;
     plan.events = events::read(&root, &plan)?;
+    plan.metrics = metrics::read(&root, &plan)?;
     Ok(plan)
 }

@@ -48,6 +48,7 @@ mod heat;
 mod inputs;
 mod keys;
 mod material;
+mod metrics;
 mod mistaken;
 mod motion;
 mod names;
@@ -76,6 +77,7 @@ pub use figures::{
     Selection, Statistic, Summarised, SweptAxis,
 };
 pub use keys::MAX_CASES;
+pub use metrics::{Band, Metric, MetricKind, MetricPlan};
 pub use motion::MotionPlan;
 pub use names::{list, suggest};
 pub use past::PastPlan;

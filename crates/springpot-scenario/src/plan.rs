@@ -3,6 +3,7 @@
 use super::events::EventPlan;
 use super::feedback::FeedbackText;
 use super::figures::{ColumnGlob, FigurePlan};
+use super::metrics::MetricPlan;
 use super::motion::MotionPlan;
 use super::past::PastPlan;
 use super::refusal::Place;
@@ -41,6 +42,8 @@ pub struct Plan {
     pub(crate) feedback: Control,
     /// What is watched in forward runs.
     pub events: Vec<EventPlan>,
+    /// What says how good it is.
+    pub metrics: Vec<MetricPlan>,
     /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
     /// lost there.
     pub tells_joint_losses: bool,

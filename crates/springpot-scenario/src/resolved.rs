@@ -42,6 +42,9 @@ impl Plan {
         if !self.events.is_empty() {
             resolved["events"] = self.events.iter().map(|plan| plan.record.clone()).collect();
         }
+        if !self.metrics.is_empty() {
+            resolved["metrics"] = self.metrics.iter().map(|plan| json!(plan.metric)).collect();
+        }
         resolved
     }
 

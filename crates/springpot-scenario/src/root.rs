@@ -1,7 +1,7 @@
 //! The keys of a whole scenario, above the tables that it holds.
 
 use super::figures::FIGURE;
-use super::keys::{ELEMENT, EVENT, Keys, MAX_BLOCKS, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
+use super::keys::{ELEMENT, EVENT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
 use super::motion::MOTION;
 
 /// The whole scenario.
@@ -24,6 +24,7 @@ pub(crate) static SCENARIO: Keys = Keys {
             Need::Optional,
             "What is watched in forward runs, and what happens then.",
         ),
+        key("metric", Shape::Tables(&METRIC, None), Need::Optional, "Numbers that say how good the run is."),
         key(
             "time",
             Shape::Table(&TIME),

@@ -9,6 +9,8 @@ use std::time::Duration;
 
 /// So many events are counted on the terminal.
 const NAMED_EVENTS: usize = 12;
+/// So many metrics of a single case are told on the terminal.
+const NAMED_METRICS: usize = 12;
 
 /// What is said of it.
 pub(super) struct Said(pub(super) Finished);
@@ -103,6 +105,7 @@ impl Said {
         if !cases_events.is_empty() {
             lines.push_str(&terminal::hanging("events   ", &self.events(cases_events), width));
         }
+        lines.push_str(&self.metrics(width));
         let endings = ["svg", "png", "pdf"];
         let drawn = |name: &String| {
             name.rsplit_once('.').filter(|(_, ending)| endings.contains(ending)).map(|(figure, _)| figure.to_owned())
@@ -114,7 +117,8 @@ impl Said {
         let rows =
             folder.files().iter().find(|name| name.starts_with("results.")).map_or("results.csv", String::as_str);
         let happened = if cases_events.is_empty() { "" } else { "events.csv, " };
-        let mut files = format!("{rows}, {happened}summary.csv, run.json");
+        let measured = if self.0.metrics.is_empty() { "" } else { "metrics.csv, " };
+        let mut files = format!("{rows}, {happened}{measured}summary.csv, run.json");
         if figures > 0 {
             let figures = count(figures, "figure", "figures").replace(' ', terminal::NO_BREAK);
             files.push_str(&format!(", {figures} ({})", formats.join(" and ")));
@@ -152,6 +156,30 @@ impl Said {
             _ => said.push_str(&format!("; {} ended by one", count(stopped().count(), "case was", "cases were"))),
         }
         said
+    }
+
+    /// The metrics, a line each where they are few and the run is one case.
+    fn metrics(&self, width: Option<usize>) -> String {
+        let Finished { cases, outcome, metrics, .. } = &self.0;
+        let told = outcome.cases.first().filter(|_| cases.len() == 1 && metrics.len() <= NAMED_METRICS);
+        let names = metrics.iter().map(|[name, _]| name.chars().count()).max();
+        match (told, names) {
+            (_, None) => String::new(),
+            (Some(case), Some(longest)) => {
+                let units = metrics.iter().zip(&case.metrics.values).enumerate();
+                let line = |(k, ([name, unit], value)): (usize, (&[String; 2], &f64))| {
+                    let value = if value.is_finite() { format!("{} {unit}", short(*value)) } else { "none".to_owned() };
+                    let before = if k == 0 { "metrics  " } else { "         " };
+                    format!("{before}{name:longest$}  {}\n", value.trim_end())
+                };
+                units.map(line).collect()
+            }
+            (None, Some(_)) => {
+                let each = if cases.len() == 1 { "" } else { " per case" };
+                let said = format!("{}{each}, in metrics.csv", metrics.len());
+                terminal::hanging("metrics  ", &said, width)
+            }
+        }
     }
 
     /// What robots that move by themselves took: work, wall time, how much faster than life, and how well the energy balance closes.

@@ -24,6 +24,7 @@ mod looks;
 mod manual;
 mod measured;
 mod messages;
+mod metrics;
 mod modes;
 mod modulus;
 mod networks;

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// Longest wait for a program.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A pendulum on a thermoviscoelastic strut under a torque with kinks, and a figure of what results.csv does not hold.
+/// A pendulum on a thermoviscoelastic strut under a torque with kinks, and a figure and a metric of what results.csv does not hold.
 const FALLING: &str = r#"
 [[robot.body]]
 name = "arm"
@@ -38,6 +38,15 @@ rtol = 1e-7
 columns = ["t", "q.*", "strut.stored", "energy.*"]
 [[figure]]
 y = "strut.force"
+[[metric]]
+name = "swing"
+of = "strut.rate"
+kind = "residual-vibration"
+[[metric]]
+name = "settle"
+of = "q.q1"
+kind = "settling-time"
+window = ["1 s", "15 s"]
 "#;
 
 /// The same pendulum, with limits that it passes and something that nobody uses.

@@ -2,7 +2,7 @@
 
 use super::panels::{Curves, DrawnCase, FigureColumn};
 use crate::labels;
-use crate::sweep::{CaseCurves, CaseResult, FigureCurve, FigureData, KeptCurve, Outcome};
+use crate::sweep::{CaseResult, FigureCurve, FigureData, KeptCurve, Outcome};
 use springpot::integrate::System;
 use springpot_report::Plot;
 use springpot_scenario::{Cases, FigurePlan, Plan};
@@ -49,9 +49,9 @@ impl<'a> Source<'a> {
         cases.binary_search_by_key(&index, |case| case.index).ok().map(|found| &cases[found])
     }
 
-    /// What a case that came to its end has kept.
-    pub(super) fn ended(&self, index: usize) -> Option<&'a CaseCurves> {
-        self.case(index).filter(|case| case.error.is_none())?.curves.as_ref()
+    /// A case that came to its end.
+    pub(super) fn ended(&self, index: usize) -> Option<&'a CaseResult> {
+        self.case(index).filter(|case| case.error.is_none())
     }
 }
 

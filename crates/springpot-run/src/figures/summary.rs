@@ -1,10 +1,9 @@
-//! Statistics of columns over a swept parameter.
+//! Statistics of columns, and metrics, over a swept parameter.
 
 use super::panels::{Curves, DrawnCase, FigureColumn};
 use super::source::{FreeSweeps, Source};
 use crate::labels;
-use crate::sweep::{Abscissa, FigureData, FigureTotal, Wanted};
-use crate::table::Totals;
+use crate::sweep::{Abscissa, CaseResult, FigureData, Summed, Total, Wanted};
 use springpot::table::Column;
 use springpot_report::Rendered;
 use springpot_scenario::units::Unit;
@@ -20,9 +19,19 @@ pub(super) fn data(
 ) -> Result<FigureData, Refusals> {
     let mut totals = Vec::new();
     for summarised in y {
-        for column in wanted.found(&summarised.columns)? {
-            if !totals.contains(&(summarised.statistic, column)) {
-                totals.push((summarised.statistic, column));
+        let found: Vec<Summed> = match summarised {
+            Summarised::Columns { statistic, columns } => {
+                wanted.found(columns)?.into_iter().map(|column| Summed::Column(*statistic, column)).collect()
+            }
+            // The scenario was refused where there is none.
+            Summarised::Metric(name) => {
+                let place = cases.metrics().iter().position(|plan| plan.metric.name == *name);
+                place.into_iter().map(Summed::Metric).collect()
+            }
+        };
+        for one in found {
+            if !totals.contains(&one) {
+                totals.push(one);
             }
         }
     }
@@ -60,7 +69,7 @@ fn abscissa(cases: &Cases, figure: &FigurePlan, x: &SweptAxis) -> Result<Absciss
 }
 
 /// Cases that differ in the abscissa alone: values of the other sweeps, and of each statistic the points.
-struct Summed {
+struct Drawn {
     values: Vec<(String, String)>,
     points: Vec<Vec<[f64; 2]>>,
 }
@@ -69,18 +78,17 @@ pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
     let data = source.drawn()?;
     let over = data.over.as_ref().ok_or("it has no abscissa")?;
     let sweeps = FreeSweeps::of(source, Some(over.axis));
-    let mut curves: Vec<Summed> = Vec::new();
+    let mut curves: Vec<Drawn> = Vec::new();
     for &index in &data.cases {
         let values = sweeps.values(source.cases, index);
         let at = curves.iter().position(|other| other.values == values).unwrap_or_else(|| {
-            curves.push(Summed { values, points: vec![Vec::new(); data.totals.len()] });
+            curves.push(Drawn { values, points: vec![Vec::new(); data.totals.len()] });
             curves.len() - 1
         });
         let x = over.values[source.cases.position(index)[over.axis]];
-        let kept = source.ended(index);
+        let ended = source.ended(index);
         for (total, points) in data.totals.iter().zip(&mut curves[at].points) {
-            let y = kept.and_then(|kept| kept.totals.get(&total.index)).map_or(f64::NAN, |totals| value(total, totals));
-            points.push([x, y]);
+            points.push([x, ended.and_then(|case| value(total.what, case)).unwrap_or(f64::NAN)]);
         }
     }
     for points in curves.iter_mut().flat_map(|curve| &mut curve.points) {
@@ -88,7 +96,7 @@ pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
     }
     let y: Vec<FigureColumn> = data.totals.iter().map(|total| total.y.clone()).collect();
     let title = source.figure.title.as_deref();
-    let drawn = curves.iter().map(|Summed { values, points }| DrawnCase {
+    let drawn = curves.iter().map(|Drawn { values, points }| DrawnCase {
         source: None,
         values: values.clone(),
         points: points.iter().map(Vec::as_slice).collect(),
@@ -97,12 +105,17 @@ pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
     what.plot(drawn).render().map_err(|error| error.to_string())
 }
 
-fn value(total: &FigureTotal, totals: &Totals) -> f64 {
-    match total.statistic {
+fn value(what: Total, case: &CaseResult) -> Option<f64> {
+    let (index, statistic) = match what {
+        Total::Metric(k) => return case.metrics.values.get(k).copied(),
+        Total::Statistic { index, statistic } => (index, statistic),
+    };
+    let totals = case.curves.as_ref()?.totals.get(&index)?;
+    Some(match statistic {
         Statistic::Min => totals.statistics.min,
         Statistic::Max => totals.statistics.max,
         Statistic::Rms => totals.statistics.rms(),
         Statistic::Mean => totals.mean(),
         Statistic::Final => totals.last(),
-    }
+    })
 }

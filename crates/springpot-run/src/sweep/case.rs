@@ -4,6 +4,7 @@ use super::Sweep;
 use super::checkpoint::CaseDone;
 use super::events::Happened;
 use super::kept::{CaseCurves, Kept};
+use super::metrics::CaseMetrics;
 use super::output::{self, CaseRows, Output};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
@@ -34,9 +35,11 @@ pub struct CaseResult {
     pub limits: Vec<PassedLimit>,
     /// What figures draw of it, where they do.
     pub curves: Option<CaseCurves>,
+    /// What its metrics are.
+    pub metrics: CaseMetrics,
 }
 
-/// The rows, the statistics and the events of one case, in the files that all cases share.
+/// The rows, the statistics, the events and the metrics of one case, in the files that all cases share.
 #[derive(Debug)]
 pub(super) struct Sections<'a> {
     rows: Section<'a, DiskFile>,
@@ -48,6 +51,7 @@ pub(super) struct Sections<'a> {
 struct Rest<'a> {
     summary: Section<'a, DiskFile>,
     events: Option<Section<'a, DiskFile>>,
+    metrics: Option<Section<'a, DiskFile>>,
 }
 
 impl<'a> Sections<'a> {
@@ -59,7 +63,7 @@ impl<'a> Sections<'a> {
     /// Leaves them empty.
     pub(super) fn finish(self) -> io::Result<()> {
         self.rows.finish()?;
-        self.rest.write("", "")
+        self.rest.write("", "", "")
     }
 }
 
@@ -68,12 +72,14 @@ impl<'a> Rest<'a> {
         Self {
             summary: sweep.summary.section(index),
             events: sweep.events.as_ref().map(|events| events.section(index)),
+            metrics: sweep.metrics.as_ref().map(|metrics| metrics.section(index)),
         }
     }
 
-    fn write(self, summary: &str, events: &str) -> io::Result<()> {
+    fn write(self, summary: &str, events: &str, metrics: &str) -> io::Result<()> {
         let events = self.events.map(|section| (section, events));
-        for (section, text) in [(self.summary, summary)].into_iter().chain(events) {
+        let metrics = self.metrics.map(|section| (section, metrics));
+        for (section, text) in [(self.summary, summary)].into_iter().chain(events).chain(metrics) {
             section.write(text.as_bytes())?;
             section.finish()?;
         }
@@ -93,11 +99,11 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
     let Sections { rows, rest } = sections;
     let state = checkpoints.and_then(|checkpoints| checkpoints.take_state(index));
     let mut output = Output::open(sweep, index, rows, state.as_ref())?;
-    let (report, no_ledger, limits, outcome) = match sweep.cases.plan(index) {
+    let (report, no_ledger, limits, metrics, outcome) = match sweep.cases.plan(index) {
         Err(refusals) => {
             let why = Some("no row was written".into());
             let trouble = Trouble { message: refusals.to_string(), ..Trouble::default() };
-            (Report::default(), why, Vec::new(), Err((trouble, None)))
+            (Report::default(), why, Vec::new(), CaseMetrics::default(), Err((trouble, None)))
         }
         Ok(plan) => {
             let stop = sweep.options.stop;
@@ -111,10 +117,12 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
                     integrate::resume(&system, &settings, state.run, &mut rows, stop)
                 }
             };
+            let passed = rows.watch.passed();
             (
                 report,
                 why_no_ledger(&system, &report),
-                rows.watch.passed(),
+                passed,
+                output.metrics(&plan.metrics),
                 outcome.map_err(|error| (Trouble::of(&error, &plan), Some(error))),
             )
         }
@@ -130,13 +138,13 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
         if interrupted || output.files.is_none() {
             return Ok(());
         }
-        let (error, no_ledger, limits) = (error.clone(), no_ledger.clone(), limits.clone());
-        let done = CaseDone { index, written: output.written(), report, error, no_ledger, limits };
+        let (error, no_ledger, limits, metrics) = (error.clone(), no_ledger.clone(), limits.clone(), metrics.clone());
+        let done = CaseDone { index, written: output.written(), report, error, no_ledger, limits, metrics };
         output.files.take().map_or(Ok(()), |files| files.end(&done, || sweep.sync()))
     })?;
-    rest.write(&output::summary(sweep, index, &statistics), &events.lines)?;
+    rest.write(&output::summary(sweep, index, &statistics), &events.lines, &metrics.lines)?;
     let events = events.happened;
-    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, events, limits, curves })
+    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, events, limits, curves, metrics })
 }
 
 /// A case that an earlier run brought to its end, and whose rows stand where they belong.
@@ -160,16 +168,16 @@ fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<Ca
         }
         None => Rest::of(sweep, done.index),
     };
-    rest.write(&lines, &done.written.events.lines)?;
-    let mut kept = Kept::of(sweep.layout, done.index);
+    rest.write(&lines, &done.written.events.lines, &done.metrics.lines)?;
+    let mut kept = Kept::of(sweep.layout, done.index).map(Kept::without_metrics);
     if let Some(kept) = &mut kept {
         checkpoints.kept(done.index, done.written.kept, kept.width(), &mut |values| kept.again(values))?;
     }
-    let curves = kept.map(Kept::into_curves);
-    let CaseDone { index, written, report, error, no_ledger, limits } = done;
+    let curves = kept.and_then(Kept::into_curves);
+    let CaseDone { index, written, report, error, no_ledger, limits, metrics } = done;
     sweep.options.progress.rows.fetch_add(report.rows, Ordering::Relaxed);
     let (wall, events) = (written.wall, written.events.happened);
-    Ok(CaseResult { index, report, error, interrupted: false, wall, no_ledger, events, limits, curves })
+    Ok(CaseResult { index, report, error, interrupted: false, wall, no_ledger, events, limits, curves, metrics })
 }
 
 /// Why a case does not know its energies; `None` where it does.

@@ -1,9 +1,11 @@
-//! What one case keeps for figures.
+//! What one case keeps for figures and metrics.
 
 use super::Layout;
 use super::curve::KeptCurve;
+use super::metrics::{CaseMetrics, Watched};
 use super::wanted::Window;
 use crate::table::Totals;
+use springpot_scenario::MetricPlan;
 use std::collections::BTreeMap;
 
 /// What figures draw of a case.
@@ -15,7 +17,7 @@ pub struct CaseCurves {
     pub totals: BTreeMap<usize, Totals>,
 }
 
-/// The curves and statistics of a case that figures draw.
+/// The curves and statistics of a case that figures draw, and the columns that its metrics are taken from.
 #[derive(Debug)]
 pub(super) struct Kept<'a> {
     /// Indices in a row of the columns that they need.
@@ -24,12 +26,16 @@ pub(super) struct Kept<'a> {
     curves: BTreeMap<usize, ([usize; 2], Option<Window>, KeptCurve)>,
     /// By index, each with the place of its column.
     totals: BTreeMap<usize, (usize, Option<Window>, Totals)>,
+    /// Where there are metrics.
+    watched: Option<Watched>,
+    /// Whether a figure draws it.
+    is_drawn: bool,
     /// The values of the row at hand.
     values: Vec<f64>,
 }
 
 impl<'a> Kept<'a> {
-    /// Of case `index`; `None` where no figure draws it.
+    /// Of case `index`; `None` where no figure draws it and there are no metrics.
     pub(super) fn of(layout: &'a Layout, index: usize) -> Option<Self> {
         let columns = layout.kept(index)?;
         let most = layout.most_points();
@@ -41,11 +47,19 @@ impl<'a> Kept<'a> {
             columns,
             curves: curves.collect(),
             totals: totals.collect(),
+            watched: Watched::of(layout),
+            is_drawn: layout.draws(index),
             values: Vec::with_capacity(columns.len()),
         })
     }
 
-    /// Takes a row; returns its values for figures.
+    /// Of a case that has ended and whose metrics are known: for figures alone.
+    pub(super) fn without_metrics(mut self) -> Self {
+        self.watched = None;
+        self
+    }
+
+    /// Takes a row; returns its values that are kept.
     pub(super) fn row(&mut self, row: &[f64]) -> &[f64] {
         self.values.clear();
         self.values.extend(self.columns.iter().map(|&k| row[k]));
@@ -73,6 +87,14 @@ impl<'a> Kept<'a> {
                 totals.add(values[*column]);
             }
         }
+        if let Some(watched) = &mut self.watched {
+            watched.add(values);
+        }
+    }
+
+    /// The metrics `plans` of the case whose swept values are `lead`.
+    pub(super) fn metrics(&self, layout: &Layout, plans: &[MetricPlan], lead: &str) -> CaseMetrics {
+        self.watched.as_ref().map_or_else(CaseMetrics::default, |watched| watched.metrics(layout, plans, lead))
     }
 
     /// Values of one row.
@@ -80,9 +102,13 @@ impl<'a> Kept<'a> {
         self.columns.len()
     }
 
-    /// What it has kept.
-    pub(super) fn into_curves(self) -> CaseCurves {
+    /// What it has kept for figures; `None` where none draws it.
+    pub(super) fn into_curves(self) -> Option<CaseCurves> {
+        if !self.is_drawn {
+            return None;
+        }
         let curves = self.curves.into_iter().map(|(index, (.., curve))| (index, curve)).collect();
-        CaseCurves { curves, totals: self.totals.into_iter().map(|(index, (.., totals))| (index, totals)).collect() }
+        let totals = self.totals.into_iter().map(|(index, (.., totals))| (index, totals)).collect();
+        Some(CaseCurves { curves, totals })
     }
 }

@@ -1,8 +1,8 @@
-//! Which columns are written, and which are kept in memory for the figures.
+//! Which columns are written, and which are kept in memory for figures and metrics.
 
 use super::curve::most_points;
-use super::wanted::{FigureData, Wanted, WantedCurve, WantedTotal};
-use crate::figures;
+use super::wanted::{FigureData, Total, Wanted, WantedCurve, WantedMetric, WantedTotal};
+use crate::{figures, metrics};
 use springpot::integrate::System;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Refusals};
@@ -20,13 +20,14 @@ pub struct Layout {
     figures: Vec<FigureData>,
     /// The names of the events.
     events: Vec<String>,
+    metrics: Vec<WantedMetric>,
 }
 
 impl Layout {
     /// Lays out the columns of a sweep whose first case is `system`.
     ///
     /// # Errors
-    /// Globs that match no column, units that do not fit their column.
+    /// Globs that match no column, units that do not fit their column, metrics of columns that no case has.
     pub fn new(cases: &Cases, system: &System) -> Result<Self, Refusals> {
         let mut wanted = Wanted::new(system.observables().columns());
         let swept = cases.parameters().len();
@@ -47,8 +48,9 @@ impl Layout {
         let written = parameters.chain(selected.iter().map(|&k| wanted.columns()[k].clone())).collect();
         let figures =
             cases.figures().iter().map(|figure| figures::data(cases, figure, &mut wanted)).collect::<Result<_, _>>()?;
+        let metrics = cases.metrics().iter().map(|plan| wanted.metric(plan)).collect::<Result<_, _>>()?;
         let events = system.events.iter().map(|event| event.name.clone()).collect();
-        Ok(Self { written, swept, selected, wanted, figures, events })
+        Ok(Self { written, swept, selected, wanted, figures, events, metrics })
     }
 
     /// Columns of results.csv.
@@ -73,6 +75,28 @@ impl Layout {
         &self.events
     }
 
+    /// The metrics of the first case, and where their columns are kept.
+    pub(super) fn metrics(&self) -> &[WantedMetric] {
+        &self.metrics
+    }
+
+    /// Names of the metrics, and the units of their values.
+    pub fn metric_units(&self) -> Vec<[String; 2]> {
+        let unit = |wanted: &WantedMetric| wanted.first.kind.unit(&wanted.column.unit).to_owned();
+        self.metrics.iter().map(|wanted| [wanted.first.name.clone(), unit(wanted)]).collect()
+    }
+
+    /// Where t stands among the kept columns, where there are metrics.
+    pub(super) fn kept_time(&self) -> Option<usize> {
+        self.metrics.first().map(|metric| metric.t)
+    }
+
+    /// Columns of metrics.csv.
+    pub(super) fn metric_columns(&self) -> Vec<Column> {
+        let swept = self.written[..self.swept].iter().cloned();
+        swept.chain(metrics::COLUMNS.map(|name| Column::new(name, "", ""))).collect()
+    }
+
     /// Columns of events.csv: all of the run.
     pub(super) fn event_columns(&self) -> Vec<Column> {
         let (time, others) = self.wanted.columns().split_first().expect("a run has a time");
@@ -88,9 +112,14 @@ impl Layout {
         self.selected.iter().map(|&k| (k, &self.wanted.columns()[k]))
     }
 
-    /// Indices in a row of the columns that `case` keeps for figures; `None` where it draws none.
+    /// Whether a figure draws `case`.
+    pub(super) fn draws(&self, case: usize) -> bool {
+        self.drawing(case).next().is_some()
+    }
+
+    /// Indices in a row of the columns that `case` keeps for figures and metrics; `None` where there are none.
     pub(super) fn kept(&self, case: usize) -> Option<&[usize]> {
-        self.figures.iter().any(|figure| figure.cases.binary_search(&case).is_ok()).then_some(self.wanted.kept())
+        (self.draws(case) || !self.metrics.is_empty()).then_some(self.wanted.kept())
     }
 
     /// The curves that figures draw of `case`, with their indices.
@@ -100,7 +129,11 @@ impl Layout {
 
     /// The statistics that figures draw of `case`, with their indices.
     pub(super) fn summed(&self, case: usize) -> impl Iterator<Item = (usize, WantedTotal)> {
-        self.drawing(case).flat_map(|figure| &figure.totals).map(|total| (total.index, self.wanted.total(total.index)))
+        let totals = self.drawing(case).flat_map(|figure| &figure.totals);
+        totals.filter_map(|total| match total.what {
+            Total::Statistic { index, .. } => Some((index, self.wanted.total(index))),
+            Total::Metric(_) => None,
+        })
     }
 
     /// The figures that draw `case`.

@@ -7,6 +7,7 @@ mod events;
 mod kept;
 mod layout;
 mod limits;
+mod metrics;
 mod output;
 mod record;
 mod wanted;
@@ -18,8 +19,9 @@ pub use events::Happened;
 pub use kept::CaseCurves;
 pub use layout::Layout;
 pub use limits::{CasesPassing, LimitTally};
-pub(crate) use wanted::Wanted;
-pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, is_within};
+pub use metrics::CaseMetrics;
+pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, Total, is_within};
+pub(crate) use wanted::{Summed, Wanted};
 
 use crate::table::disk::DiskFile;
 use crate::table::folder::Folder;
@@ -217,6 +219,8 @@ struct Sweep<'a> {
     summary: Ordered<DiskFile>,
     /// Where there are events.
     events: Option<Ordered<DiskFile>>,
+    /// Where there are metrics.
+    metrics: Option<Ordered<DiskFile>>,
     /// The file of `rows`, to wait for the disk without keeping others from writing.
     file: DiskFile,
     /// The first case that has not ended.
@@ -244,6 +248,13 @@ impl<'a> Sweep<'a> {
             events.write_all(header(&layout.event_columns()).as_bytes())?;
             Some(Ordered::new(events, usize::MAX))
         };
+        let metrics = if layout.metrics().is_empty() {
+            None
+        } else {
+            let mut metrics = folder.create_metrics()?;
+            metrics.write_all(header(&layout.metric_columns()).as_bytes())?;
+            Some(Ordered::new(metrics, usize::MAX))
+        };
         let rows = if first.is_some() {
             let mut rows = folder.reopen_rows()?;
             rows.seek(SeekFrom::End(0))?;
@@ -267,6 +278,7 @@ impl<'a> Sweep<'a> {
             // It begins with the cases that have ended.
             summary: Ordered::new(summary, usize::MAX),
             events,
+            metrics,
             first,
             begun,
             earlier_wall: options.checkpoints.map_or(Duration::ZERO, Checkpoints::earlier_wall),

@@ -4,11 +4,12 @@ use super::Sweep;
 use super::checkpoint::{CaseFiles, CaseState, Written};
 use super::events::CaseEvents;
 use super::kept::{CaseCurves, Kept};
+use super::metrics::CaseMetrics;
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_number, push_text};
 use springpot::integrate::{Checkpoint, LimitWatch, Rows, System};
-use springpot_scenario::{Plan, SweptValue};
+use springpot_scenario::{MetricPlan, Plan, SweptValue};
 use std::io;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -118,6 +119,12 @@ impl<'a> Output<'a> {
         }
     }
 
+    /// What the metrics are of the rows so far.
+    pub(super) fn metrics(&self, plans: &[MetricPlan]) -> CaseMetrics {
+        let kept = self.kept.as_ref();
+        kept.map_or_else(CaseMetrics::default, |kept| kept.metrics(self.sweep.layout, plans, &self.lead))
+    }
+
     /// Wall time of the case.
     pub(super) fn wall(&self) -> Duration {
         self.earlier_wall + self.begun.elapsed()
@@ -128,7 +135,7 @@ impl<'a> Output<'a> {
         self.hand_over()?;
         end(&mut self)?;
         self.rows.finish()?;
-        Ok(self.kept.map(Kept::into_curves))
+        Ok(self.kept.and_then(Kept::into_curves))
     }
 }
 

@@ -117,6 +117,9 @@ fn one(cases: &Cases, layout: &Layout, case: &CaseResult) -> Value {
             let stopped_by = case.events.stopped_by.map(|event| &layout.events()[event]);
             record.insert("stopped_by".to_owned(), json!(stopped_by));
         }
+        if let Some(own) = &case.metrics.own {
+            record.insert("metrics".to_owned(), serde_json::from_str(own).unwrap_or_default());
+        }
         // What does not belong to a way of running says nothing: Newton iterations, switches and resolution.
         let silent = |key: &str| ["newton_iterations", "switches", "resolution"].contains(&key);
         record.extend(report.into_iter().filter(|(key, value)| !(value.is_null() && silent(key))));

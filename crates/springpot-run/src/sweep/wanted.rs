@@ -5,7 +5,7 @@ use crate::figures::{FigureColumn, Look};
 use crate::table::matches;
 use springpot::table::Column;
 use springpot_scenario::units::Unit;
-use springpot_scenario::{Cases, ColumnGlob, FigurePlan, RefusalKind, Refusals, Statistic};
+use springpot_scenario::{Cases, ColumnGlob, FigurePlan, Metric, MetricPlan, RefusalKind, Refusals, Statistic};
 
 /// Most curves of one figure; a figure of more is left out with a word.
 pub const MAX_CURVES: usize = 64;
@@ -41,15 +41,36 @@ pub struct FigureCurve {
     pub y: FigureColumn,
 }
 
-/// A statistic of every case that a figure draws.
+/// A number of every case that a figure draws.
 #[derive(Debug, Clone)]
 pub struct FigureTotal {
-    /// Its index in [`super::CaseResult`].
-    pub index: usize,
-    /// Which it is.
-    pub statistic: Statistic,
+    /// What it is.
+    pub what: Total,
     /// Its column.
     pub y: FigureColumn,
+}
+
+/// A number of a case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Total {
+    /// A statistic of a column.
+    Statistic {
+        /// Its index in [`super::CaseCurves`].
+        index: usize,
+        /// Which it is.
+        statistic: Statistic,
+    },
+    /// A metric, by its place in the scenario.
+    Metric(usize),
+}
+
+/// What a figure sums a case up by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Summed {
+    /// A statistic of the column with this index.
+    Column(Statistic, usize),
+    /// A metric, by its place in the scenario.
+    Metric(usize),
 }
 
 /// A swept parameter as an abscissa.
@@ -97,6 +118,16 @@ pub(super) struct WantedCurve {
 pub(super) struct WantedTotal {
     pub(super) place: usize,
     pub(super) window: Option<Window>,
+}
+
+/// A metric, where t and its column stand among the kept ones, and what the column is.
+#[derive(Debug, Clone)]
+pub(super) struct WantedMetric {
+    /// Of the first case.
+    pub(super) first: Metric,
+    pub(super) t: usize,
+    pub(super) place: usize,
+    pub(super) column: Column,
 }
 
 /// Why a figure is not drawn.
@@ -171,6 +202,23 @@ impl Wanted {
         Some(Window { t: place(&mut self.kept, t), from, to })
     }
 
+    /// Keeps the column of a metric, and the times.
+    ///
+    /// # Errors
+    /// There is no such column.
+    pub(super) fn metric(&mut self, plan: &MetricPlan) -> Result<WantedMetric, Refusals> {
+        let found = |name: &str| self.columns.iter().position(|column| column.name == name);
+        let (Some(t), Some(at)) = (found("t"), found(&plan.metric.of)) else {
+            let message = format!("metric {:?}: this run has no column {:?}", plan.metric.name, plan.metric.of);
+            let names = self.columns.iter().map(|column| column.name.as_str());
+            let help = springpot_scenario::suggest(&plan.metric.of, names);
+            return Err(plan.of.refuse(RefusalKind::UnknownName, message).help(help).into());
+        };
+        let column = self.columns[at].clone();
+        let (t, place) = (place(&mut self.kept, t), place(&mut self.kept, at));
+        Ok(WantedMetric { first: plan.metric.clone(), t, place, column })
+    }
+
     /// A column as a figure draws it.
     ///
     /// # Errors
@@ -179,10 +227,12 @@ impl Wanted {
         figure_column(figure, &self.columns[column])
     }
 
-    /// Refuses units and labels that match no column.
-    fn check_names(&self, figure: &FigurePlan) -> Result<(), Refusals> {
+    /// Refuses units and labels that match no column, `others` included.
+    fn check_names(&self, figure: &FigurePlan, others: &[Column]) -> Result<(), Refusals> {
         let labels = figure.look.labels.iter().map(|label| &label.column);
-        figure.units.iter().map(|unit| &unit.column).chain(labels).try_for_each(|glob| self.found(glob).map(drop))
+        let names = figure.units.iter().map(|unit| &unit.column).chain(labels);
+        let mut names = names.filter(|glob| !others.iter().any(|column| matches(&glob.text, &column.name)));
+        names.try_for_each(|glob| self.found(glob).map(drop))
     }
 
     /// Indices of the columns that a glob matches; at least one.
@@ -211,7 +261,7 @@ impl Wanted {
         figure: &FigurePlan,
         curves: &[[usize; 2]],
     ) -> Result<FigureData, Refusals> {
-        self.check_names(figure)?;
+        self.check_names(figure, &[])?;
         let column = |k: usize| self.drawn(figure, k);
         let columns =
             curves.iter().map(|[x, y]| Ok((column(*x)?, column(*y)?))).collect::<Result<Vec<_>, Refusals>>()?;
@@ -239,7 +289,7 @@ impl Wanted {
         Ok(FigureData { curves, cases, look, ..FigureData::default() })
     }
 
-    /// Keeps, of every case that `figure` selects, these statistics of columns, over a swept parameter.
+    /// Keeps, of every case that `figure` selects, these numbers, over a swept parameter.
     ///
     /// # Errors
     /// As [`Self::curves`].
@@ -248,14 +298,25 @@ impl Wanted {
         cases: &Cases,
         figure: &FigurePlan,
         over: Abscissa,
-        totals: &[(Statistic, usize)],
+        totals: &[Summed],
     ) -> Result<FigureData, Refusals> {
-        self.check_names(figure)?;
-        let column = |(statistic, k): &(Statistic, usize)| {
-            let column = self.drawn(figure, *k)?;
-            let name = column.name();
-            let label = column.label.clone().unwrap_or_else(|| format!("{} of {name}", statistic.name()));
-            Ok(FigureColumn { label: Some(label), ..column })
+        let metrics = totals.iter().filter_map(|total| match total {
+            Summed::Column(..) => None,
+            Summed::Metric(k) => Some(self.metric_column(&cases.metrics()[*k].metric)),
+        });
+        self.check_names(figure, &metrics.collect::<Vec<_>>())?;
+        let column = |total: &Summed| match *total {
+            Summed::Column(statistic, k) => {
+                let column = self.drawn(figure, k)?;
+                let name = column.name();
+                let label = column.label.clone().unwrap_or_else(|| format!("{} of {name}", statistic.name()));
+                Ok(FigureColumn { label: Some(label), ..column })
+            }
+            Summed::Metric(k) => {
+                let metric = &cases.metrics()[k].metric;
+                let column = figure_column(figure, &self.metric_column(metric))?;
+                Ok(FigureColumn { label: Some(column.label.clone().unwrap_or(metric.name.clone())), ..column })
+            }
         };
         let columns = totals.iter().map(column).collect::<Result<Vec<_>, Refusals>>()?;
         let look = Look::of(figure, &over.column, &columns)?;
@@ -268,12 +329,25 @@ impl Wanted {
             return Ok(FigureData { left_out: Some(left_out), ..FigureData::default() });
         }
         let window = self.window(figure);
-        let totals = totals.iter().zip(columns).map(|((statistic, k), y)| {
-            let wanted = WantedTotal { place: place(&mut self.kept, *k), window };
-            FigureTotal { index: place(&mut self.totals, wanted), statistic: *statistic, y }
+        let totals = totals.iter().zip(columns).map(|(total, y)| {
+            let what = match *total {
+                Summed::Column(statistic, k) => {
+                    let wanted = WantedTotal { place: place(&mut self.kept, k), window };
+                    Total::Statistic { index: place(&mut self.totals, wanted), statistic }
+                }
+                Summed::Metric(k) => Total::Metric(k),
+            };
+            FigureTotal { what, y }
         });
         let (totals, cases) = (totals.collect(), selected_cases(cases, &fixed));
         Ok(FigureData { totals, cases, look, over: Some(over), ..FigureData::default() })
+    }
+
+    /// A metric as a figure draws it.
+    fn metric_column(&self, metric: &Metric) -> Column {
+        let of = self.columns.iter().find(|column| column.name == metric.of);
+        let unit = metric.kind.unit(of.map_or("", |column| &column.unit));
+        Column::new(format!("metric({})", metric.name), unit, "")
     }
 
     /// Counts the curves of one more figure, or says why there are too many.

@@ -12,7 +12,7 @@ pub(crate) use owned::{CASE, HEAD, JOURNAL, checkpoint_folder};
 use super::disk::{Disk, DiskFile, Entry};
 use super::format::{self, Format};
 use lock::{Lock, Taken};
-use owned::{Checkpoint, Claims, EVENTS, FIGURES, FIXED, PART, RESULTS, RUN, SUMMARY, UNFINISHED};
+use owned::{Checkpoint, Claims, EVENTS, FIGURES, FIXED, METRICS, PART, RESULTS, RUN, SUMMARY, UNFINISHED};
 use settle::{Commit, waiting};
 use springpot::table::Column;
 use std::io::{self, Read as _, Seek as _, Write as _};
@@ -276,6 +276,11 @@ impl Folder {
     /// Makes the file of the events.
     pub(crate) fn create_events(&mut self) -> io::Result<DiskFile> {
         self.create(EVENTS)
+    }
+
+    /// Makes the file of the metrics.
+    pub(crate) fn create_metrics(&mut self) -> io::Result<DiskFile> {
+        self.create(METRICS)
     }
 
     /// Writes a figure's file for `figures/`.

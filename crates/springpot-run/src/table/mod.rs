@@ -9,6 +9,7 @@ pub mod ordered;
 mod parquet;
 pub(crate) mod sealed;
 pub mod statistics;
+pub(crate) mod stored;
 pub mod text;
 
 pub use format::Format;

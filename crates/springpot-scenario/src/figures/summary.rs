@@ -43,14 +43,22 @@ impl Statistic {
     }
 }
 
-/// A statistic of columns.
+/// What stands at y.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Summarised {
-    /// What of them.
-    pub statistic: Statistic,
-    /// The columns.
-    pub columns: ColumnGlob,
+pub enum Summarised {
+    /// A statistic of columns.
+    Columns {
+        /// What of them.
+        statistic: Statistic,
+        /// The columns.
+        columns: ColumnGlob,
+    },
+    /// The metric of this name.
+    Metric(String),
 }
+
+/// What stands before the parenthesis of a metric.
+const METRIC: &str = "metric";
 
 /// The sweep whose values are the abscissae.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +79,7 @@ pub(super) fn read(reading: &Reading<'_>) -> Read<FigureKind> {
     let table = reading.table;
     let right = "x = \"element.NAME.PARAMETER\": a swept path";
     let x = table.require_with("x", right).and_then(|field| swept(reading, &field));
-    let y = table.require_with("y", "y = \"max(strut.force)\"").and_then(|field| summarised(&field));
+    let y = table.require_with("y", "y = \"max(strut.force)\"").and_then(|field| summarised(reading, &field));
     Ok(FigureKind::Summary { x: x?, y: y? })
 }
 
@@ -94,19 +102,19 @@ fn swept(reading: &Reading<'_>, field: &Field<'_>) -> Read<SweptAxis> {
     Err(field.refuse(RefusalKind::UnknownName, message, Some(help)))
 }
 
-fn summarised(field: &Field<'_>) -> Read<Vec<Summarised>> {
+fn summarised(reading: &Reading<'_>, field: &Field<'_>) -> Read<Vec<Summarised>> {
     if field.node.text().is_some() {
-        return one(field).map(|one| vec![one]);
+        return one(reading, field).map(|one| vec![one]);
     }
     let items = field.items("a statistic such as \"max(strut.force)\" or an array of them")?;
     if items.is_empty() {
         let help = "write statistics, as in [\"max(strut.force)\"]".to_owned();
         return Err(field.refuse(RefusalKind::Missing, "is empty", Some(help)));
     }
-    all(items.iter().map(one))
+    all(items.iter().map(|item| one(reading, item)))
 }
 
-fn one(field: &Field<'_>) -> Read<Summarised> {
+fn one(reading: &Reading<'_>, field: &Field<'_>) -> Read<Summarised> {
     let text = field.text()?.trim();
     let choices = Statistic::ALL.map(Statistic::name);
     let Some((name, column)) = text.strip_suffix(')').and_then(|text| text.split_once('(')) else {
@@ -116,26 +124,51 @@ fn one(field: &Field<'_>) -> Read<Summarised> {
         return Err(field.refuse(RefusalKind::BadName, message, Some(help)));
     };
     let (name, column) = (name.trim(), column.trim());
-    if name == "metric" {
-        let help = format!(
-            "metrics are not there yet: write {} of a column",
-            names::either(choices.into_iter().map(str::to_owned))
-        );
-        return Err(field.refuse(RefusalKind::Rule, format!("is {text:?}, a metric"), Some(help)));
+    if name == METRIC {
+        return metric(reading, field, column).map(Summarised::Metric);
     }
     let Some(statistic) = Statistic::ALL.into_iter().find(|statistic| statistic.name() == name) else {
         let message = format!("is {text:?}: {name:?} is no statistic");
-        return Err(field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, choices))));
+        return Err(field.refuse(
+            RefusalKind::UnknownName,
+            message,
+            Some(names::suggest(name, choices.into_iter().chain([METRIC]))),
+        ));
     };
     if column.is_empty() {
         let help = format!("write the name of a column, as in \"{name}(strut.force)\"");
         return Err(field.refuse(RefusalKind::Missing, format!("is {text:?}: there is no column"), Some(help)));
     }
-    Ok(Summarised { statistic, columns: ColumnGlob { text: column.to_owned(), place: field.node.place.clone() } })
+    Ok(Summarised::Columns {
+        statistic,
+        columns: ColumnGlob { text: column.to_owned(), place: field.node.place.clone() },
+    })
+}
+
+/// The name of a metric, which there is.
+fn metric(reading: &Reading<'_>, field: &Field<'_>, name: &str) -> Read<String> {
+    let metrics = reading.root.node.get("metric").and_then(|metrics| metrics.items()).unwrap_or_default();
+    let names = || metrics.iter().filter_map(|metric| metric.get("name")?.text());
+    if names().any(|known| known == name) {
+        return Ok(name.to_owned());
+    }
+    let help = match names().next() {
+        None => "there is none yet: write a [[metric]] with this name".to_owned(),
+        Some(_) => names::suggest(name, names()),
+    };
+    Err(field.refuse(
+        RefusalKind::UnknownName,
+        format!("is {:?}: no metric has this name", field.node.label()),
+        Some(help),
+    ))
 }
 
 /// What run.json says of it.
 pub(super) fn record(x: &SweptAxis, y: &[Summarised]) -> Map<String, Value> {
-    let y: Value = y.iter().map(|y| format!("{}({})", y.statistic.name(), y.columns.text)).collect();
+    let one = |y: &Summarised| match y {
+        Summarised::Columns { statistic, columns } => format!("{}({})", statistic.name(), columns.text),
+        Summarised::Metric(name) => format!("{METRIC}({name})"),
+    };
+    let y: Value = y.iter().map(one).collect();
     Map::from_iter([("x".to_owned(), json!(x.path)), ("y".to_owned(), y)])
 }

@@ -8,6 +8,7 @@ mod controller;
 mod element;
 mod event;
 mod heat;
+mod metric;
 mod motion;
 mod output;
 mod robot;
@@ -27,6 +28,7 @@ pub(crate) use element::{
 };
 pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
 pub(crate) use heat::{ARRHENIUS, EXPANSION, SHIFT, THERMAL};
+pub(crate) use metric::METRIC;
 pub(crate) use motion::{
     FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,
 };
@@ -96,6 +98,8 @@ pub(crate) enum Shape {
     Numbers(&'static str),
     /// An end of a span: a number in the unit of what is swept.
     SweptNumber,
+    /// A number in the unit of a column.
+    OfColumn,
     /// A function of time in a unit.
     Signal(&'static str),
     /// Three functions of time in a unit.

@@ -149,6 +149,7 @@ fn the_document_has_the_same_keys() {
         ("## [motion]", with_tables.map(|kind| of_motion(kind.name())).collect()),
         ("### Controllers", vec![all(&CONTROLLER)]),
         ("## [[event]]", vec![all(&EVENT)]),
+        ("## [[metric]]", vec![all(&METRIC)]),
         ("## [time]", vec![all(&TIME)]),
         ("## [solver]", vec![all(&SOLVER)]),
         ("## [[sweep]]", vec![all(&SWEEP)]),

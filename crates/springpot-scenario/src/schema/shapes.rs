@@ -77,6 +77,7 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             "description": words,
         }),
         Shape::SweptNumber => quantity("the unit of the parameter", &words),
+        Shape::OfColumn => quantity("the unit of the column", &words),
         Shape::Signal(unit) => signal(unit, &words),
         Shape::Signals(unit) => {
             let items = signal(unit, "A component.");

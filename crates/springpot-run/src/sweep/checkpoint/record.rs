@@ -1,6 +1,7 @@
 //! What a checkpoint holds, as it is written.
 
 use crate::sweep::events::CaseEvents;
+use crate::sweep::metrics::CaseMetrics;
 use crate::table::sealed::SealError;
 use crate::table::{Format, Statistics};
 use crate::trouble::Trouble;
@@ -98,6 +99,7 @@ pub(in crate::sweep) struct CaseDone {
     pub(in crate::sweep) error: Option<Trouble>,
     pub(in crate::sweep) no_ledger: Option<String>,
     pub(in crate::sweep) limits: Vec<PassedLimit>,
+    pub(in crate::sweep) metrics: CaseMetrics,
 }
 
 impl Origin {

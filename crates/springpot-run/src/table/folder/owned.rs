@@ -13,13 +13,15 @@ pub(super) const RESULTS: &str = "results.csv";
 pub(super) const SUMMARY: &str = "summary.csv";
 /// Rows at events of forward runs.
 pub(super) const EVENTS: &str = "events.csv";
+/// Metrics per case.
+pub(super) const METRICS: &str = "metrics.csv";
 /// What was run and how it went.
 pub(super) const RUN: &str = "run.json";
 /// The folder of the figures, and what their names end with.
 pub(super) const FIGURES: &str = "figures";
 const FIGURE_ENDINGS: [&str; 3] = ["svg", "png", "pdf"];
 /// Every other file that a run puts in place.
-pub(super) const FIXED: [&str; 6] = [RESULTS, "results.parquet", "results.npz", SUMMARY, EVENTS, RUN];
+pub(super) const FIXED: [&str; 7] = [RESULTS, "results.parquet", "results.npz", SUMMARY, EVENTS, METRICS, RUN];
 
 /// The folder of what is not yet in its place, and the file in it that says what else belongs to the run.
 pub(super) const UNFINISHED: &str = ".unfinished";

@@ -1,0 +1,226 @@
+//! Metrics of a run that has ended, from its results.
+
+use super::{COLUMNS, push_line, value};
+use crate::table::disk::Disk;
+use crate::table::push_text;
+use crate::table::stored::Stored;
+use serde::Deserialize;
+use springpot::table::Column;
+use springpot_scenario::{Metric, Refusals, suggest};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why there are no metrics.
+#[derive(Debug, thiserror::Error)]
+pub enum LaterError {
+    /// There are no results, or none that can be read.
+    #[error("{}: {error}", file.display())]
+    File {
+        /// What was to be read.
+        file: PathBuf,
+        /// Why it cannot be.
+        error: io::Error,
+    },
+    /// There is no run.json beside the rows that says which metrics the run has.
+    #[error("{} has no run.json that says what its columns are", .0.display())]
+    NoRecord(PathBuf),
+    /// The run has none, and none were asked for.
+    #[error("the run in {} has no metrics", .0.display())]
+    NoMetrics(PathBuf),
+    /// A metric of the run is of a column that its file does not hold.
+    #[error("metric {name:?} is of {column}, which is not among the columns of {}", file.display())]
+    LeftOut {
+        /// The metric.
+        name: String,
+        /// Its column.
+        column: String,
+        /// The file.
+        file: PathBuf,
+        /// Columns of a similar name.
+        help: String,
+    },
+    /// The record lists fewer cases than there are, and metrics differ from case to case.
+    #[error("the metrics of {} are swept, and run.json does not list all of its cases", .0.display())]
+    Unlisted(PathBuf),
+    /// What was asked for is refused.
+    #[error(transparent)]
+    Refused(#[from] Refusals),
+}
+
+/// The results of a run.
+#[derive(Debug)]
+pub struct Source {
+    rows: Stored,
+    folder: PathBuf,
+    record: Record,
+    columns: Vec<Column>,
+    swept: usize,
+}
+
+/// What run.json says of it.
+#[derive(Debug, Default, Deserialize)]
+struct Record {
+    #[serde(default)]
+    columns: Vec<Described>,
+    #[serde(default)]
+    sweeps: Vec<Sweep>,
+    #[serde(default)]
+    cases: Vec<Case>,
+    #[serde(default)]
+    cases_done: usize,
+    #[serde(default)]
+    cases_failed: usize,
+    #[serde(default)]
+    plan: Plan,
+    #[serde(default)]
+    format: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Described {
+    name: String,
+    #[serde(default)]
+    unit: String,
+}
+
+#[derive(Debug, Deserialize)]
+struct Sweep {
+    parameters: Vec<String>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Case {
+    #[serde(default)]
+    rows: u64,
+    /// Where they are not those of the first case.
+    metrics: Option<Vec<Metric>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+struct Plan {
+    #[serde(default)]
+    metrics: Vec<Metric>,
+}
+
+/// What metrics came to.
+#[derive(Debug)]
+pub struct Recomputed {
+    /// The text of metrics.csv.
+    pub text: String,
+    /// Whether these are the metrics of the run itself.
+    pub is_own: bool,
+}
+
+impl Source {
+    /// Opens the results in a folder, or a file of rows with run.json beside it.
+    ///
+    /// # Errors
+    /// There are none.
+    pub fn open(disk: &Disk, results: &Path) -> Result<Self, LaterError> {
+        let is_folder = disk.is_folder(results);
+        let folder = if is_folder { results } else { results.parent().unwrap_or(Path::new("")) };
+        let record =
+            disk.read(&folder.join("run.json")).ok().and_then(|bytes| serde_json::from_slice::<Record>(&bytes).ok());
+        let record = record.ok_or_else(|| LaterError::NoRecord(folder.to_owned()))?;
+        let file = match &record.format {
+            _ if !is_folder => results.to_owned(),
+            format => folder.join(format!("results.{}", format.as_deref().unwrap_or("csv"))),
+        };
+        let rows = Stored::open(disk, &file).map_err(|error| LaterError::File { file: file.clone(), error })?;
+        let unit =
+            |name: &str| record.columns.iter().find(|column| column.name == name).map_or("", |column| &column.unit);
+        let columns = rows.columns().iter().map(|name| Column::new(name.as_str(), unit(name), "")).collect();
+        let swept = record.sweeps.iter().map(|sweep| sweep.parameters.len()).sum::<usize>().min(rows.columns().len());
+        Ok(Self { rows, folder: folder.to_owned(), record, columns, swept })
+    }
+
+    /// The columns of the run, swept parameters aside.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns[self.swept..]
+    }
+
+    /// The metrics of the run or, where there are some, `asked`; as metrics.csv has them.
+    ///
+    /// # Errors
+    /// The file lacks a column, or cannot be read.
+    pub fn metrics(&self, asked: &[Metric]) -> Result<Recomputed, LaterError> {
+        let is_own = asked.is_empty();
+        let metrics = if is_own { &self.record.plan.metrics } else { asked };
+        if metrics.is_empty() {
+            return Err(LaterError::NoMetrics(self.folder.clone()));
+        }
+        let own = if is_own { self.own()? } else { None };
+        let t = self.place("t", &metrics[0])?;
+        let mut places = vec![t];
+        let of = metrics.iter().map(|metric| {
+            let at = self.place(&metric.of, metric)?;
+            Ok(places.iter().position(|place| *place == at).unwrap_or_else(|| {
+                places.push(at);
+                places.len() - 1
+            }))
+        });
+        let of = of.collect::<Result<Vec<_>, LaterError>>()?;
+        let mut text = String::new();
+        for name in self.columns[..self.swept].iter().map(|column| &*column.name).chain(COLUMNS) {
+            push_text(&mut text, name);
+            text.push(if name == COLUMNS[3] { '\n' } else { ',' });
+        }
+        let mut own = own.into_iter().flatten();
+        let mut end = |case: &mut Rows| {
+            if case.columns[0].is_empty() {
+                return;
+            }
+            let own = own.next();
+            for (k, (metric, &at)) in metrics.iter().zip(&of).enumerate() {
+                let metric = own.flatten().and_then(|own| own.get(k)).unwrap_or(metric);
+                let value = value(metric, &case.columns[0], &case.columns[at]);
+                push_line(&mut text, &case.lead, metric, &self.columns[places[at]], value);
+            }
+            case.columns.iter_mut().for_each(Vec::clear);
+        };
+        let mut case = Rows { lead: String::new(), columns: vec![Vec::new(); places.len()] };
+        let mut take = |lead: &str, numbers: &[f64]| {
+            // Times rise within a case.
+            if lead != case.lead || case.columns[0].last().is_some_and(|last| numbers[0] <= *last) {
+                end(&mut case);
+                lead.clone_into(&mut case.lead);
+            }
+            case.columns.iter_mut().zip(numbers).for_each(|(column, number)| column.push(*number));
+            Ok(())
+        };
+        let read = self.rows.visit(self.swept, &places, &mut take);
+        read.map_err(|error| LaterError::File { file: self.rows.file().to_owned(), error })?;
+        end(&mut case);
+        Ok(Recomputed { text, is_own })
+    }
+
+    /// Where a column stands that `metric` needs.
+    fn place(&self, name: &str, metric: &Metric) -> Result<usize, LaterError> {
+        let found = self.columns().iter().position(|column| column.name == name);
+        found.map(|at| at + self.swept).ok_or_else(|| LaterError::LeftOut {
+            name: metric.name.clone(),
+            column: name.to_owned(),
+            file: self.rows.file().to_owned(),
+            help: suggest(name, self.columns().iter().map(|column| &*column.name)),
+        })
+    }
+
+    /// By case with rows, the metrics that are not those of the first; `None` where all are.
+    fn own(&self) -> Result<Option<Vec<Option<&[Metric]>>>, LaterError> {
+        let cases = &self.record.cases;
+        if cases.iter().all(|case| case.metrics.is_none()) {
+            return Ok(None);
+        }
+        if cases.len() < self.record.cases_done + self.record.cases_failed {
+            return Err(LaterError::Unlisted(self.folder.clone()));
+        }
+        Ok(Some(cases.iter().filter(|case| case.rows > 0).map(|case| case.metrics.as_deref()).collect()))
+    }
+}
+
+/// The rows of a case under way.
+struct Rows {
+    lead: String,
+    /// t, then the columns that metrics are of.
+    columns: Vec<Vec<f64>>,
+}
