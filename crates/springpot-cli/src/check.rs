@@ -77,6 +77,9 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
         line("", &joint);
     }
     line("motion", &format!("{}, 0 to {} s", plan.motion.kind(), short(plan.settings.end)));
+    if let Some(control) = plan.motion.controller_words() {
+        line("control", &control);
+    }
     if switches > 0 {
         line("signals", &format!("{}, each of which ends a step", count(switches, "kink or jump", "kinks and jumps")));
     }

@@ -8,7 +8,8 @@ mod prescribed;
 
 use super::feedback::TorqueTexts;
 use super::keys::{
-    CONTROLLER, Each, FORWARD_RUNS, Key, Keys, Need, OUTSIDE, SEPARATOR, START, Shape, TIME_COLUMN, TIME_UNIT, key,
+    CONTROLLER, Each, FORWARD_RUNS, Keys, Need, OUTSIDE, SEPARATOR, START, Shape, TIME_COLUMN, TIME_UNIT, key,
+    of_gripper,
 };
 use super::names;
 use super::reader::{Field, Read, Table};
@@ -100,9 +101,9 @@ pub(crate) static MOTION: Keys = Keys {
         TIME_UNIT.only(PRESCRIBED),
         SEPARATOR.only(PRESCRIBED),
         OUTSIDE.only(PRESCRIBED),
-        coordinate("x").only(GRIPPER_PATH),
-        coordinate("y").only(GRIPPER_PATH),
-        coordinate("z").only(GRIPPER_PATH),
+        of_gripper("x", GRIPPER_PATH),
+        of_gripper("y", GRIPPER_PATH),
+        of_gripper("z", GRIPPER_PATH),
         key(
             "rpy",
             Shape::Signals("rad"),
@@ -142,15 +143,6 @@ pub(crate) static MOTION: Keys = Keys {
         .only(FORWARD),
     ],
 };
-
-const fn coordinate(name: &'static str) -> Key {
-    key(
-        name,
-        Shape::Signal("m"),
-        Need::Required("a signal for each of x, y and z (in m)"),
-        "Coordinate of the gripper in the world.",
-    )
-}
 
 /// What moves the robot.
 #[derive(Debug, Clone)]
@@ -228,6 +220,11 @@ impl MotionPlan {
     /// Whether a controller drives it, which says where the gripper should be.
     pub(crate) fn has_controller(&self) -> bool {
         self.controller.is_some()
+    }
+
+    /// The controller in words: its kind, what it follows, when it acts.
+    pub fn controller_words(&self) -> Option<String> {
+        self.controller.as_ref().map(ControllerPlan::words)
     }
 
     /// The controller of `model`, its reference solved along `course`.

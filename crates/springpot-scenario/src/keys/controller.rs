@@ -1,6 +1,7 @@
 //! `[motion.controller]`.
 
-use super::{Bound, Each, Key, Keys, Need, Shape, key};
+use super::motion::of_gripper;
+use super::{Bound, Each, Keys, Need, Shape, key};
 
 /// The kinds of controller.
 pub(crate) const PD_GRAVITY: &str = "pd-gravity";
@@ -91,24 +92,14 @@ fn references() -> Vec<(&'static str, &'static str)> {
     vec![(JOINTS, "Signals of joints"), (GRIPPER_PATH, "a path of the gripper"), (MOVE, "a move from point to point")]
 }
 
-const fn coordinate(name: &'static str) -> Key {
-    key(
-        name,
-        Shape::Signal("m"),
-        Need::Required("a signal for each of x, y and z (in m)"),
-        "Coordinate of the gripper in the world.",
-    )
-    .only(&[GRIPPER_PATH])
-}
-
 /// What a controller follows; of signals of joints, these stand beside `kind` by name.
 pub(crate) static REFERENCE: Keys = Keys {
     words: "What a controller follows.",
     keys: &[
         key("kind", Shape::Kinds(references), Need::Kind, ""),
-        coordinate("x"),
-        coordinate("y"),
-        coordinate("z"),
+        of_gripper("x", &[GRIPPER_PATH]),
+        of_gripper("y", &[GRIPPER_PATH]),
+        of_gripper("z", &[GRIPPER_PATH]),
         key(
             "rpy",
             Shape::Signals("rad"),

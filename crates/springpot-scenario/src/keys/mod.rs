@@ -30,7 +30,7 @@ pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
 pub(crate) use heat::{ARRHENIUS, EXPANSION, SHIFT, THERMAL};
 pub(crate) use metric::METRIC;
 pub(crate) use motion::{
-    FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT,
+    FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT, of_gripper,
 };
 pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, END_STOPS, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, keys_of};

@@ -44,6 +44,17 @@ pub(crate) const OUTSIDE: Key = key(
     "Before the first row and behind the last: refused, or the nearest value holds.",
 );
 
+/// A coordinate of a path of the gripper, of the kinds `only`.
+pub(crate) const fn of_gripper(name: &'static str, only: &'static [&'static str]) -> Key {
+    key(
+        name,
+        Shape::Signal("m"),
+        Need::Required("a signal for each of x, y and z (in m)"),
+        "Coordinate of the gripper in the world.",
+    )
+    .only(only)
+}
+
 const OF_FRAME: &str = "Coordinate of the joint's frame.";
 const NO_TURN: &str = "Roll, pitch, yaw.";
 

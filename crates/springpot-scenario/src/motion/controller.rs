@@ -34,6 +34,24 @@ pub(super) struct ControllerPlan {
 }
 
 impl ControllerPlan {
+    /// Its kind, what it follows, when it acts.
+    pub(super) fn words(&self) -> String {
+        let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        let mut words = format!("{}, follows {}", word(&self.record["kind"]), word(&self.record["reference"]["kind"]));
+        for (key, said) in [("limits", "torques limited"), ("rate_limits", "rates limited")] {
+            if self.record.get(key).is_some() {
+                words += &format!(", {said}");
+            }
+        }
+        match self.controlled.sampling {
+            None => words,
+            Some(Sampling { period, delay: 0 }) => format!("{words}, every {period} s"),
+            Some(Sampling { period, delay }) => {
+                format!("{words}, every {period} s, {} s late", period * delay as f64)
+            }
+        }
+    }
+
     pub(super) fn made(&self, model: &Model, course: &Course<'_>) -> Controlled {
         let mut controlled = self.controlled.clone();
         if let Some(path) = &self.path {

@@ -1,8 +1,8 @@
 //! Kinks of the elements' forces within a step, such as the engagement of a stop: steps end on them.
 
 use super::system::System;
-use super::zero::first_zero;
-use crate::collocation::{STAGES, lagrange_row};
+use super::zero::{cubic, first_zero};
+use crate::collocation::STAGES;
 use crate::elements::{Element, ElementBank};
 use crate::law::{Guard, InputValue, Point};
 
@@ -85,8 +85,8 @@ impl Kinks {
                     continue;
                 }
                 let on_it = values[0].abs() <= noise;
-                let sign = if on_it { at(values, EARLY) } else { values[0] }.signum();
-                let found = first_zero(|theta| sign * at(values, if on_it { theta.max(EARLY) } else { theta }));
+                let sign = if on_it { cubic(values, EARLY) } else { values[0] }.signum();
+                let found = first_zero(|theta| sign * cubic(values, if on_it { theta.max(EARLY) } else { theta }));
                 let Some(theta) = found.filter(|theta| *theta > 0.0) else { continue };
                 let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
                 let behind = -sign * values[STAGES];
@@ -108,15 +108,6 @@ impl Kinks {
     pub(super) fn value(&mut self, bank: &ElementBank, kink: Kink, theta: f64) -> f64 {
         self.guards.clear();
         bank.guards(kink.element, &mut self.guards);
-        kink.sign * at(&self.guards[kink.guard], theta)
+        kink.sign * cubic(&self.guards[kink.guard], theta)
     }
-}
-
-/// The cubic through the values at θ.
-fn at(values: &Guard, theta: f64) -> f64 {
-    if theta == 1.0 {
-        return values[STAGES];
-    }
-    let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
-    (0..4).rev().fold(0.0, |sum, p| sum * theta + (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>())
 }

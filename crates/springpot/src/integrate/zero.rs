@@ -1,5 +1,16 @@
 //! Zeros of functions on a step, θ from 0 to 1.
 
+use crate::collocation::{STAGES, lagrange_row};
+
+/// The cubic at θ through values at the start and at the nodes of a step.
+pub(super) fn cubic(values: &[f64], theta: f64) -> f64 {
+    if theta == 1.0 {
+        return values[STAGES];
+    }
+    let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
+    (0..4).rev().fold(0.0, |sum, p| sum * theta + (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>())
+}
+
 /// Places at which a step is looked at.
 pub(super) const SAMPLES: usize = 16;
 

@@ -7,7 +7,7 @@ use super::term::Integrand;
 use crate::collocation::{RADAU_NODES, STAGES, lagrange_row};
 use crate::control::Aim;
 use crate::integrate::error::RunError;
-use crate::integrate::zero::first_zero;
+use crate::integrate::zero::{cubic, first_zero};
 
 /// Where a step is first looked at that starts where a branch begins.
 const EARLY: f64 = 1.0 / 64.0;
@@ -40,16 +40,7 @@ pub(in crate::integrate) enum ControlSeen {
 
 type Values = [f64; STAGES + 1];
 
-/// Value of the cubic through values at the start and at the nodes.
-fn cubic(values: &Values, theta: f64) -> f64 {
-    if theta == 1.0 {
-        return values[STAGES];
-    }
-    let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
-    (0..4).rev().fold(0.0, |sum, p| sum * theta + (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>())
-}
-
-/// Derivative of the same by θ.
+/// Derivative by θ of the cubic through values at the start and at the nodes.
 fn slope(values: &Values, theta: f64) -> f64 {
     let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
     let coefficient = |p: usize| (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>();

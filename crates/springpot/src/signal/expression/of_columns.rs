@@ -85,10 +85,8 @@ impl ColumnExpression {
 
     /// Hands over the bit and the argument of each kink that hangs on a column: it is positive on the side of `branch` and passes zero at the kink.
     pub(crate) fn guards(&self, branch: u64, t: f64, values: &[f64], take: &mut dyn FnMut(u32, f64)) {
-        let mut bit = 0;
-        for (at, op) in self.program.iter().enumerate().filter(|(_, op)| op.has_kink()) {
-            let own = bit;
-            bit += 1;
+        let kinks = self.program.iter().enumerate().filter(|(_, op)| op.has_kink());
+        for (own, (at, op)) in (0..).zip(kinks) {
             if !self.depends_on_columns(at) {
                 continue;
             }
