@@ -148,3 +148,28 @@ fn steady_swings_are_seen_at_a_glance() {
     }
     assert!(begun.elapsed().as_secs_f64() < 5.0);
 }
+
+#[test]
+fn every_step_of_a_long_staircase_is_found() {
+    // Uneven, and written in no order.
+    let times: Vec<f64> = (0..1000).map(|k| 0.001 + 0.01 * f64::from(k) + 0.003 * f64::from(k).sin()).collect();
+    let mixed = (0..1000).map(|k| times[(k * 617) % 1000]);
+    let stairs: String =
+        mixed.enumerate().map(|(k, t)| format!(" + {}*step(t - {t:?})", 0.1 + 0.01 * (k % 7) as f64)).collect();
+    has_kinks(&format!("sin(3*t){stairs}"), 10.0, &times);
+    // Ramps of two kinks each, and pulses as products.
+    let ramps: String = (0..200).map(|k| format!(" + max(0, min(1, 100*(t - {})))", f64::from(k) * 0.02)).collect();
+    let even =
+        |count: i32, step: f64, from: f64| -> Vec<f64> { (0..count).map(|k| from + step * f64::from(k)).collect() };
+    let ends: Vec<f64> = (1..400).map(|k| f64::from(k) * 0.01).collect();
+    has_kinks(&format!("0{ramps}"), 4.5, &ends);
+    let pulses: String =
+        (0..150).map(|k| format!(" - step(t - {0})*step({0} + 0.01 - t)", f64::from(k) * 0.02 + 0.005)).collect();
+    has_kinks(&format!("2{pulses}"), 3.5, &even(300, 0.01, 0.005));
+    // Kinks that stay where they are cost nothing, however many.
+    let still: String = (0..300).map(|k| format!(" + sqrt({k} + 1 + t^2) + abs(t + 1 + {k})")).collect();
+    has_kinks(&format!("t{still}"), 10.0, &[]);
+    // Of waves all kinks are left.
+    let waves: String = (0..70).map(|k| format!(" + abs(sin(pi*(t + {})))", f64::from(k) / 70.0)).collect();
+    has_kinks(&format!("0{waves}"), 1.005, &even(70, 1.0 / 70.0, 1.0 / 70.0));
+}

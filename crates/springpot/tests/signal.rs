@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 use springpot::signal::expression::{MAX_DEPTH, MAX_KINKS, MAX_LENGTH};
-use springpot::signal::{Expression, ExpressionError, Jet, SampleError, Signal};
+use springpot::signal::{ColumnExpression, Expression, ExpressionError, Jet, SampleError, Signal};
 use std::f64::consts::{E, PI};
 
 fn config(cases: u32) -> ProptestConfig {
@@ -152,7 +152,7 @@ mod expressions {
             }
         }
         assert!(!expression("sin(t)").has_kinks());
-        assert_eq!(expression("sin(t)").branch(1.0), 0);
+        assert_eq!(expression("sin(t)").branch(1.0), Default::default());
     }
 
     #[test]
@@ -204,10 +204,19 @@ mod expressions {
         assert!(matches!(parse("-".repeat(MAX_LENGTH)), Err(ExpressionError::TooDeep { .. })));
         assert!(matches!(parse("t^".repeat(100) + "t"), Err(ExpressionError::TooDeep { .. })));
         assert!(matches!(parse("t+(".repeat(40) + "t" + &")".repeat(40)), Err(ExpressionError::TooDeep { .. })));
-        assert!(parse("t+".repeat(2000) + "t").is_ok());
-        assert!(matches!(parse("t+".repeat(2100) + "t"), Err(ExpressionError::TooLong { limit: MAX_LENGTH, .. })));
-        assert!(parse("abs(t)+".repeat(MAX_KINKS) + "t").is_ok());
-        assert!(matches!(parse("abs(t)+".repeat(MAX_KINKS + 1) + "t"), Err(ExpressionError::TooManyKinks { .. })));
+        let half = MAX_LENGTH / 2;
+        assert!(parse("t+".repeat(half - 1) + "t").is_ok());
+        assert!(matches!(parse("t+".repeat(half) + "t"), Err(ExpressionError::TooLong { limit: MAX_LENGTH, .. })));
+        // A name that fills the whole text is shown in part.
+        let unknown = parse("x".repeat(MAX_LENGTH)).unwrap_err();
+        assert!(matches!(unknown, ExpressionError::UnknownName { ref at, .. } if *at == (0..MAX_LENGTH)));
+        assert!(unknown.to_string().len() < 5000);
+        // Of time there may be any number of kinks; of columns as many as fit into one word.
+        let many = parse("abs(t)+".repeat(10 * MAX_KINKS) + "t").unwrap();
+        assert_eq!((many.branch(-1.0).below().count(), many.branch(1.0).below().count()), (10 * MAX_KINKS, 0));
+        let of_columns = |count| ColumnExpression::parse(&("abs(q.x)+".repeat(count) + "t"), &[], &["t", "q.x"]);
+        assert!(of_columns(MAX_KINKS).is_ok());
+        assert!(matches!(of_columns(MAX_KINKS + 1), Err(ExpressionError::TooManyKinks { .. })));
     }
 
     /// Well-formed expressions, with every function and operator.

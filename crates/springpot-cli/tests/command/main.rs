@@ -37,6 +37,7 @@ mod results;
 mod resume;
 mod robots;
 mod shapes;
+mod staircases;
 mod studies;
 mod support;
 #[cfg(target_os = "linux")]

@@ -6,9 +6,10 @@
 //! No pulse is too narrow to be found, down to [`FINEST`] of the run. The outcome is a list of *stops*, where steps end, and of
 //! *windows* that bound the steps in them.
 
-use super::expression::Expression;
+use super::expression::{Branch, Expression};
 use super::function::{Kind, Signal};
 use super::series::Series;
+use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Cells into which a run is divided at first, and how many times shorter steps are nothing to speak of.
@@ -30,6 +31,12 @@ const CELLS_PER_KINK: u64 = 64;
 /// A settled cell that asks for more steps than this is tried for evenness, and where in it.
 const MANY: f64 = 0.5;
 const PROBES: [f64; 5] = [0.13, 0.37, 0.61, 0.83, 0.97];
+
+/// Expressions with more kinks than this are looked at cell by cell as far as each cell sees them, down to so many kinks that take no time; and so many
+/// kinks of one cell are located in it.
+const MANY_KINKS: usize = 64;
+const FEW_KINKS: usize = 8;
+const FEW_CROSSING: usize = 3;
 
 /// Cells between two looks at the flag that interrupts.
 const PATIENCE: u64 = 1 << 12;
@@ -238,6 +245,8 @@ impl Scale {
 /// The look through one expression.
 struct Scan<'a> {
     expression: &'a Expression,
+    /// The same, where it has many kinks.
+    many: Option<Rc<Expression>>,
     signal: &'a Signal,
     is_position: bool,
     end: f64,
@@ -254,11 +263,28 @@ struct Scan<'a> {
 }
 
 /// Times from `a` to `b`, and the branches of the expression there.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Cell {
     a: f64,
     b: f64,
-    sides: [u64; 2],
+    sides: [Branch; 2],
+    /// Of an expression of many kinks what is seen of it here.
+    part: Option<Rc<Expression>>,
+}
+
+impl Cell {
+    /// Of an expression; where that has many kinks, what is seen of them in `part`, which holds the cell.
+    fn new(
+        whole: &Expression,
+        part: Option<&Rc<Expression>>,
+        [a, b]: [f64; 2],
+        sides: impl FnOnce(&Expression) -> [Branch; 2],
+    ) -> Self {
+        let Some(part) = part else { return Self { a, b, sides: sides(whole), part: None } };
+        let ends = |part: &Expression| [a, b].map(|t| part.branch(t));
+        let part = if part.kink_count() > FEW_KINKS { Rc::new(part.within(a, b, &ends(part))) } else { part.clone() };
+        Self { a, b, sides: ends(&part), part: Some(part) }
+    }
 }
 
 impl<'a> Scan<'a> {
@@ -271,6 +297,7 @@ impl<'a> Scan<'a> {
     ) -> Self {
         Self {
             expression,
+            many: (expression.kink_count() > MANY_KINKS).then(|| Rc::new(expression.clone())),
             signal: watched.signal,
             is_position: watched.is_position,
             end,
@@ -334,7 +361,8 @@ impl<'a> Scan<'a> {
         for k in 0..CELLS {
             let (a, b) = (k as f64 * width, if k + 1 == CELLS { self.end } else { (k + 1) as f64 * width });
             let right = self.expression.branch(b);
-            open.push(Cell { a, b, sides: [left, right] });
+            let sides = |_: &Expression| [left, right.clone()];
+            open.push(Cell::new(self.expression, self.many.as_ref(), [a, b], sides));
             left = right;
             while let Some(cell) = open.pop() {
                 self.cells += 1;
@@ -352,41 +380,47 @@ impl<'a> Scan<'a> {
 
     /// Settles a cell, or leaves its parts open, the earlier one on top.
     fn look_at(&mut self, cell: Cell, open: &mut Vec<Cell>) {
-        let Cell { a, b, sides: [left, right] } = cell;
+        let whole = self.expression;
+        let expression = cell.part.as_deref().unwrap_or(whole);
+        let Cell { a, b, sides: [left, right], part } = &cell;
+        let (a, b, part) = (*a, *b, part.as_ref());
         let width = b - a;
-        let look = self.expression.look(a, b, cell.sides);
-        if look.crossing != 0 {
-            let bits = (0..u64::BITS).map(|k| 1u64 << k).filter(|bit| look.crossing & bit != 0);
-            let (before, after) =
-                bits.map(|bit| self.locate(cell, bit)).min_by(|x, y| x.1.total_cmp(&y.1)).expect("a bit");
-            self.kinks.push(after);
-            if after < b {
-                open.push(Cell { a: after, b, sides: [self.expression.branch(after), right] });
-            }
-            if a < before {
-                open.push(Cell { a, b: before, sides: [left, self.expression.branch(before)] });
-            }
-            return;
-        }
+        let look = expression.look(a, b, &cell.sides);
         let middle = a + 0.5 * width;
         let end = self.end;
         let halve = |finest: f64| width > finest * end && a < middle && middle < b;
-        if look.is_unsettled && !halve(FINEST_KINK) {
+        // Where many switch they are told apart first: to locate each of them here would take as often as there are others.
+        let is_crowded = part.is_some() && look.crossing.below().nth(FEW_CROSSING).is_some() && halve(FINEST_KINK);
+        if !look.crossing.is_empty() && !is_crowded {
+            let kinks = look.crossing.below().map(|kink| self.locate(&cell, kink));
+            let (before, after) = kinks.min_by(|x, y| x.1.total_cmp(&y.1)).expect("a kink");
+            self.kinks.push(after);
+            if after < b {
+                open.push(Cell::new(whole, part, [after, b], |whole| [whole.branch(after), right.clone()]));
+            }
+            if a < before {
+                open.push(Cell::new(whole, part, [a, before], |whole| [left.clone(), whole.branch(before)]));
+            }
+            return;
+        }
+        if look.is_unsettled && !is_crowded && !halve(FINEST_KINK) {
             // A kink that turns back at once, or several at the same time.
             self.kinks.push(b);
             return self.close(a, f64::INFINITY);
         }
         let series = look.series.scaled(self.signal.scale, self.signal.offset);
         // What is no number stops the run; nothing is to be seen there.
-        let room = match look.is_unsettled {
+        let value = || part.map_or_else(|| self.signal.value(middle), |part| part.value(middle));
+        let room = match look.is_unsettled || is_crowded {
             true => 0.0,
-            false if !self.signal.value(middle).is_finite() => f64::INFINITY,
+            false if !value().is_finite() => f64::INFINITY,
             false => self.room(&series, width),
         };
-        if look.is_unsettled || (room < 1.0 && halve(FINEST) && !self.is_even(cell, room)) {
-            let branch = if self.expression.has_kinks() { self.expression.branch(middle) } else { 0 };
-            open.push(Cell { a: middle, b, sides: [branch, right] });
-            open.push(Cell { a, b: middle, sides: [left, branch] });
+        if look.is_unsettled || is_crowded || (room < 1.0 && halve(FINEST) && !self.is_even(&cell, room)) {
+            let branch = if whole.has_kinks() && part.is_none() { whole.branch(middle) } else { Branch::default() };
+            let sides = |_: &Expression| [branch.clone(), right.clone()];
+            open.push(Cell::new(whole, part, [middle, b], sides));
+            open.push(Cell::new(whole, part, [a, middle], |_| [left.clone(), branch.clone()]));
             return;
         }
         let [value, rate] = series.middle();
@@ -423,15 +457,16 @@ impl<'a> Scan<'a> {
 
     /// Whether the signal needs steps of about `room` of a settled cell nearly everywhere in it, as a steady swing does: then it need
     /// not be looked at swing by swing.
-    fn is_even(&self, Cell { a, b, .. }: Cell, room: f64) -> bool {
+    fn is_even(&self, Cell { a, b, part, .. }: &Cell, room: f64) -> bool {
+        let (a, b, expression) = (*a, *b, part.as_deref().unwrap_or(self.expression));
         if room > MANY || room == 0.0 {
             return false;
         }
         let step = (b - a) * room;
         let needs = PROBES.into_iter().filter(|share| {
             let from = a + share * (b - a - step);
-            let sides = [from, from + step].map(|t| self.expression.branch(t));
-            let look = self.expression.look(from, from + step, sides);
+            let sides = [from, from + step].map(|t| expression.branch(t));
+            let look = expression.look(from, from + step, &sides);
             let series = look.series.scaled(self.signal.scale, self.signal.offset);
             self.room(&series, step) <= 3.0
         });
@@ -449,9 +484,10 @@ impl<'a> Scan<'a> {
     }
 
     /// The neighbouring times between which a kink that switches once in the cell does so.
-    fn locate(&self, cell: Cell, bit: u64) -> (f64, f64) {
-        let side = |t: f64| self.expression.branch(t) & bit;
-        let from = cell.sides[0] & bit;
+    fn locate(&self, cell: &Cell, kink: usize) -> (f64, f64) {
+        let expression = cell.part.as_deref().unwrap_or(self.expression);
+        let side = |t: f64| expression.branch(t).is_below(kink);
+        let from = cell.sides[0].is_below(kink);
         let (mut low, mut high) = (cell.a, cell.b);
         let take = |t: f64, low: &mut f64, high: &mut f64| {
             if *low < t && t < *high {
@@ -462,7 +498,7 @@ impl<'a> Scan<'a> {
         let mut t = low + 0.5 * (high - low);
         for _ in 0..6 {
             take(t, &mut low, &mut high);
-            let (value, slope) = self.expression.kink_argument(bit, t);
+            let (value, slope) = expression.kink_argument(kink, t);
             let next = t - value / slope;
             let near = (next - t).abs();
             t = next;

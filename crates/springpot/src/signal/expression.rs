@@ -9,13 +9,16 @@
 //! `log` is the natural logarithm, `step(x)` is 0 for x < 0 and 1 for x ≥ 0, `sign(0)` is 0, 0^0 is 1. Numbers may have an
 //! exponent (`1e-3`). A product is always written out.
 
+mod branch;
 mod error;
 mod formula;
 mod look;
 mod of_columns;
 mod parse;
 mod program;
+mod within;
 
+pub use branch::Branch;
 pub use error::ExpressionError;
 pub use formula::Expression;
 pub use of_columns::ColumnExpression;

@@ -1,6 +1,6 @@
 //! A function of time, whatever it is made of.
 
-use super::expression::Expression;
+use super::expression::{Branch, Expression};
 use super::jet::Jet;
 use super::sampled::{SampleError, Samples};
 use std::sync::Arc;
@@ -92,11 +92,11 @@ impl Signal {
         self.scale * value + self.offset
     }
 
-    /// A number that changes where the expression has a kink or jump ([`Expression::branch`]); always 0 for other signals.
-    pub fn branch(&self, t: f64) -> u64 {
+    /// What changes where the expression has a kink or jump ([`Expression::branch`]); always the same for other signals.
+    pub fn branch(&self, t: f64) -> Branch {
         match &self.kind {
             Kind::Expression(expression) => expression.branch(t),
-            Kind::Constant(_) | Kind::Samples(_) => 0,
+            Kind::Constant(_) | Kind::Samples(_) => Branch::default(),
         }
     }
 

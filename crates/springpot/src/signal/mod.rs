@@ -14,7 +14,7 @@ mod sampled;
 mod series;
 
 pub use agenda::{Agenda, AgendaError, Stop, Watched};
-pub use expression::{ColumnExpression, Expression, ExpressionError};
+pub use expression::{Branch, ColumnExpression, Expression, ExpressionError};
 pub use function::Signal;
 pub use jet::Jet;
 pub use sampled::SampleError;

@@ -1,8 +1,9 @@
 //! An expression as a function of time.
 
+use super::branch::Branch;
 use super::error::ExpressionError;
 use super::parse;
-use super::program::{MAX_KINKS, Op, Trace, run};
+use super::program::{Op, Trace, run};
 use crate::signal::jet::Jet;
 use std::fmt;
 use std::str::FromStr;
@@ -27,7 +28,7 @@ impl Expression {
     /// Reads an expression.
     ///
     /// # Errors
-    /// What stands there in place of an expression, and what is too long, too deep or has too many kinks.
+    /// What stands there in place of an expression, and what is too long or too deep.
     pub fn parse(source: &str) -> Result<Self, ExpressionError> {
         Self::parse_with(source, &[])
     }
@@ -46,9 +47,6 @@ impl Expression {
     pub fn parse_with(source: &str, constants: &[(String, f64)]) -> Result<Self, ExpressionError> {
         let program = parse::program(source, constants)?;
         let kinks = program.iter().filter(|op| op.has_kink()).count();
-        if kinks > MAX_KINKS {
-            return Err(ExpressionError::TooManyKinks { given: kinks, limit: MAX_KINKS });
-        }
         Ok(Self { source: source.to_owned(), program, kinks })
     }
 
@@ -67,20 +65,22 @@ impl Expression {
         run(&self.program, Jet::time(t), &mut Trace::default())
     }
 
-    /// One bit for each abs, sign, step (argument below zero), min, max (first argument below the second), atan2 (below
-    /// the cut along the negative x axis), sqrt, asin, acos (argument falling) and triangle wave (falling), just after `t`:
-    /// between two times with the same number none of them has switched an odd number of times; kinks and jumps lie where it changes.
-    pub fn branch(&self, t: f64) -> u64 {
-        self.trace(t).branch
+    /// The side of each abs, sign, step (below: the argument is below zero), min, max (the first argument is below the second), atan2 (below
+    /// the cut along the negative x axis), sqrt, asin, acos (the argument falls) and triangle wave (falls), just after `t`:
+    /// between two times with the same sides none of them has switched an odd number of times; kinks and jumps lie where they change.
+    pub fn branch(&self, t: f64) -> Branch {
+        let mut rest = Vec::new();
+        let first = self.trace(t, Some(&mut rest)).branch;
+        Branch { first, rest }
     }
 
     /// Whether a sign, a step or an atan2 jumps at `t` itself, so that its value there is not that just after `t`.
     pub fn turns_at(&self, t: f64) -> bool {
-        self.trace(t).turns
+        self.trace(t, None).turns
     }
 
-    fn trace(&self, t: f64) -> Trace {
-        let mut trace = Trace::default();
+    fn trace<'b>(&self, t: f64, beyond: Option<&'b mut Vec<u64>>) -> Trace<'b> {
+        let mut trace = Trace { beyond, ..Trace::default() };
         if self.has_kinks() {
             run(&self.program, Jet::time(t), &mut trace);
         }
@@ -90,6 +90,11 @@ impl Expression {
     /// Whether [`branch`](Self::branch) can change.
     pub fn has_kinks(&self) -> bool {
         self.kinks > 0
+    }
+
+    /// How many functions it has that may have a kink.
+    pub(in crate::signal) fn kink_count(&self) -> usize {
+        self.kinks
     }
 
     /// The value, if `t` does not occur.

@@ -1,6 +1,7 @@
 //! What an expression does in a cell of time, without asking at single times: bounds of its derivatives, and whether any of its
 //! kinks lies there.
 
+use super::branch::Branch;
 use super::formula::Expression;
 use super::program::{MAX_STACK, Op, Trace, stack_after, triangle};
 use crate::signal::jet::Jet;
@@ -9,33 +10,39 @@ use crate::signal::series::Series;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// An expression seen over a whole cell.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(in crate::signal) struct Look {
     /// Bounds of the expression; in a cell with a kink they are those of all its branches.
     pub(in crate::signal) series: Series,
-    /// Bits of the kinks that switch in the cell.
-    pub(in crate::signal) crossing: u64,
+    /// The kinks that switch in the cell.
+    pub(in crate::signal) crossing: Branch,
     /// Whether a kink may switch several times, as far as bounds over the whole cell can tell.
     pub(in crate::signal) is_unsettled: bool,
 }
 
 /// What a kink does in a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Verdict {
+pub(super) enum Verdict {
     /// It stays on this side: true is below.
     Stays(bool),
     Unknown,
 }
 
-struct Judge {
-    /// Bits just after the start of the cell, and at its end.
-    sides: [u64; 2],
-    count: u32,
-    crossing: u64,
+pub(super) struct Judge<'s> {
+    /// Sides just after the start of the cell, and at its end.
+    sides: &'s [Branch; 2],
+    count: usize,
+    crossing: Branch,
     is_unsettled: bool,
+    /// Of the last kink.
+    pub(super) last: Verdict,
 }
 
-impl Judge {
+impl<'s> Judge<'s> {
+    pub(super) fn new(sides: &'s [Branch; 2]) -> Self {
+        Self { sides, count: 0, crossing: Branch::default(), is_unsettled: false, last: Verdict::Unknown }
+    }
+
     /// The next kink, whose argument is `u`.
     fn side(&mut self, u: &Series) -> Verdict {
         let value = u.value();
@@ -51,8 +58,9 @@ impl Judge {
 
     /// The next kink, where it need not be looked at: whatever its argument does, nothing turns.
     fn pass(&mut self) -> Verdict {
-        self.count = (self.count + 1) % u64::BITS;
-        Verdict::Stays(false)
+        self.count += 1;
+        self.last = Verdict::Stays(false);
+        self.last
     }
 
     /// The next kink of a function whose domain ends where `is_inside` does not hold; it turns where u' changes its sign.
@@ -65,11 +73,11 @@ impl Judge {
     }
 
     fn settle(&mut self, known: Option<bool>, once: bool) -> Verdict {
-        let bit = 1u64 << self.count;
-        self.count = (self.count + 1) % u64::BITS;
-        let [before, after] = self.sides.map(|side| side & bit != 0);
-        if before != after {
-            self.crossing |= bit;
+        let kink = self.count;
+        self.count += 1;
+        let [before, after] = [0, 1].map(|end| self.sides[end].is_below(kink));
+        self.last = if before != after {
+            self.crossing.set(kink);
             Verdict::Unknown
         } else if known.is_some() || once {
             // Beside a kink bounds may be on its other side, by rounding.
@@ -77,24 +85,22 @@ impl Judge {
         } else {
             self.is_unsettled = true;
             Verdict::Unknown
-        }
+        };
+        self.last
     }
 }
 
 impl Expression {
     /// The cell from `a` to `b`, `sides` being [`branch`](Self::branch) at its ends.
-    pub(in crate::signal) fn look(&self, a: f64, b: f64, sides: [u64; 2]) -> Look {
-        let mut judge = Judge { sides, count: 0, crossing: 0, is_unsettled: false };
+    pub(in crate::signal) fn look(&self, a: f64, b: f64, sides: &[Branch; 2]) -> Look {
+        let mut judge = Judge::new(sides);
         let time = Series::time(a, b);
         let mut stack = [time; MAX_STACK];
         let mut top = 0;
         for &op in &self.program {
             top -= op.operands();
             stack[top] = match op.operands() {
-                0 => match op {
-                    Op::Number(value) => time.constant(value),
-                    _ => time,
-                },
+                0 => operand(op, &time),
                 1 => unary(op, &stack[top], &mut judge),
                 _ => binary(op, &stack[top], &stack[top + 1], &mut judge),
             };
@@ -103,10 +109,9 @@ impl Expression {
         Look { series: stack[0], crossing: judge.crossing, is_unsettled: judge.is_unsettled }
     }
 
-    /// The argument at `t` whose sign is that of the kink with this bit; it and its slope.
-    pub(in crate::signal) fn kink_argument(&self, bit: u64, t: f64) -> (f64, f64) {
+    /// The argument at `t` whose sign is that of this kink; it and its slope.
+    pub(in crate::signal) fn kink_argument(&self, wanted: usize, t: f64) -> (f64, f64) {
         // The argument is what stands on the stack when the kink's turn comes: the program up to there leaves it on top.
-        let wanted = bit.trailing_zeros() as usize;
         let mut kinks = self.program.iter().enumerate().filter(|(_, op)| op.has_kink());
         let Some((at, &op)) = kinks.nth(wanted) else { return (f64::NAN, f64::NAN) };
         let (stack, top) = stack_after::<Jet, MAX_STACK>(
@@ -127,7 +132,23 @@ impl Expression {
     }
 }
 
-fn unary(op: Op, u: &Series, judge: &mut Judge) -> Series {
+/// What an instruction leaves of these operands, as many of them as it takes.
+pub(super) fn result(op: Op, time: &Series, operands: &[Series; 2], judge: &mut Judge<'_>) -> Series {
+    match op.operands() {
+        0 => operand(op, time),
+        1 => unary(op, &operands[0], judge),
+        _ => binary(op, &operands[0], &operands[1], judge),
+    }
+}
+
+fn operand(op: Op, time: &Series) -> Series {
+    match op {
+        Op::Number(value) => time.constant(value),
+        _ => *time,
+    }
+}
+
+fn unary(op: Op, u: &Series, judge: &mut Judge<'_>) -> Series {
     match op {
         Op::Smooth(function) => {
             let value = u.value();
@@ -138,6 +159,7 @@ fn unary(op: Op, u: &Series, judge: &mut Judge) -> Series {
             }
             function.bound(u)
         }
+        Op::Untouched(function) => function.bound(u),
         Op::Negate => u.neg(),
         Op::AsinSin => fold(u, judge.side(&Smooth::Cos.bound(u)), -FRAC_PI_2, triangle),
         Op::AcosCos => fold(u, judge.side(&Smooth::Sin.bound(u)), 0.0, |x| (x - TAU * (x / TAU).round()).abs()),
@@ -170,7 +192,7 @@ fn fold(u: &Series, verdict: Verdict, low: f64, value: impl Fn(f64) -> f64) -> S
     }
 }
 
-fn binary(op: Op, first: &Series, second: &Series, judge: &mut Judge) -> Series {
+fn binary(op: Op, first: &Series, second: &Series, judge: &mut Judge<'_>) -> Series {
     match op {
         Op::Add => first.add(second),
         Op::Subtract => first.sub(second),

@@ -132,7 +132,7 @@ impl Parser<'_> {
         self.at = at.end;
         match rest[..length].parse::<f64>() {
             Ok(value) if value.is_finite() => self.emit(Op::Number(value)),
-            _ => Err(ExpressionError::NotFinite { number: rest[..length].to_owned(), at }),
+            _ => Err(ExpressionError::NotFinite { number: shown(&rest[..length]), at }),
         }
     }
 
@@ -163,11 +163,11 @@ impl Parser<'_> {
                     let near = nearest_column(name, self.columns).map(str::to_owned);
                     let suggestion = near.or_else(|| suggest(name, self.constants));
                     let at = at.start..at.start + name.len();
-                    Err(ExpressionError::UnknownName { name: name.to_owned(), suggestion, at })
+                    Err(ExpressionError::UnknownName { name: shown(name), suggestion, at })
                 }
                 None => {
                     let suggestion = suggest(name, self.constants);
-                    Err(ExpressionError::UnknownName { name: name.to_owned(), suggestion, at })
+                    Err(ExpressionError::UnknownName { name: shown(name), suggestion, at })
                 }
             },
         }
@@ -310,6 +310,13 @@ impl Parser<'_> {
             found => ExpressionError::Unexpected { found: found.to_owned(), wanted, at },
         }
     }
+}
+
+/// A name or number as messages show it: of one that fills pages the beginning.
+fn shown(text: &str) -> String {
+    const MOST: usize = 4096;
+    let end = text.char_indices().nth(MOST).map_or(text.len(), |(end, _)| end);
+    if end == text.len() { text.to_owned() } else { format!("{}…", &text[..end]) }
 }
 
 /// Spellings that people try, and ours.

@@ -4,10 +4,10 @@ use crate::signal::jet::{Smooth, Value};
 use std::f64::consts::{PI, TAU};
 
 /// Longest text of an expression, in bytes.
-pub const MAX_LENGTH: usize = 4096;
+pub const MAX_LENGTH: usize = 1 << 20;
 /// Deepest nesting of an expression.
 pub const MAX_DEPTH: usize = 64;
-/// Most functions that may have a kink (abs, sign, step, min, max, atan2, sqrt, asin, acos) in one expression.
+/// Most functions that may have a kink (abs, sign, step, min, max, atan2, sqrt, asin, acos) in one expression of columns; of time there may be any number.
 pub const MAX_KINKS: usize = 64;
 /// Most intermediate results at a time, and those of most expressions.
 pub(super) const MAX_STACK: usize = 32;
@@ -27,6 +27,8 @@ pub(super) enum Op {
     Divide,
     Power,
     Smooth(Smooth),
+    /// The same, where it stays away from the end of its domain.
+    Untouched(Smooth),
     Abs,
     Sign,
     Step,
@@ -43,7 +45,8 @@ impl Op {
     pub(super) fn operands(self) -> usize {
         match self {
             Self::Number(_) | Self::Time | Self::Column(_) => 0,
-            Self::Negate | Self::Smooth(_) | Self::Abs | Self::Sign | Self::Step | Self::AsinSin | Self::AcosCos => 1,
+            Self::Negate | Self::Smooth(_) | Self::Untouched(_) | Self::Abs | Self::Sign | Self::Step => 1,
+            Self::AsinSin | Self::AcosCos => 1,
             Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Power => 2,
             Self::Min | Self::Max | Self::Atan2 => 2,
         }
@@ -101,38 +104,56 @@ pub fn is_name(name: &str) -> bool {
 }
 
 /// What kinks did while a program ran.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Trace {
+#[derive(Debug, Default)]
+pub(super) struct Trace<'b> {
+    /// The sides of the first 64.
     pub(super) branch: u64,
-    /// Bits in `branch`.
+    /// Where those of the others are wanted: these, 64 at a time.
+    pub(super) beyond: Option<&'b mut Vec<u64>>,
+    /// Kinks so far.
     pub(super) count: u32,
     /// Whether the value is that of this instant alone.
     pub(super) turns: bool,
-    /// The sides to be taken, in place of those where the arguments are.
+    /// The sides to be taken, in place of those where the arguments are; of 64 kinks at most.
     pub(super) held: Option<u64>,
 }
 
-impl Trace {
+impl Trace<'_> {
     /// On the sides of this branch, whatever the arguments are.
     pub(super) fn held(branch: u64) -> Self {
         Self { held: Some(branch), ..Self::default() }
     }
 
     pub(super) fn take(&mut self, below: bool) -> bool {
-        let below = self.held.map_or(below, |branch| branch >> self.count & 1 == 1);
-        self.branch |= u64::from(below) << self.count;
-        self.count = (self.count + 1) % u64::BITS;
+        let count = self.count;
+        self.count += 1;
+        if count >= u64::BITS {
+            self.take_beyond(count, below);
+            return below;
+        }
+        let below = self.held.map_or(below, |branch| branch >> count & 1 == 1);
+        self.branch |= u64::from(below) << count;
         below
+    }
+
+    #[cold]
+    fn take_beyond(&mut self, count: u32, below: bool) {
+        let Some(beyond) = &mut self.beyond else { return };
+        let (at, bit) = ((count / u64::BITS - 1) as usize, count % u64::BITS);
+        if at == beyond.len() {
+            beyond.push(0);
+        }
+        beyond[at] |= u64::from(below) << bit;
     }
 }
 
 /// Runs a program that `parse` has checked: operands present, at most `MAX_STACK` of them.
-pub(super) fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace) -> V {
+pub(super) fn run<V: Value>(program: &[Op], time: V, trace: &mut Trace<'_>) -> V {
     run_on(program, time, &|_| unreachable!("a program without columns"), trace)
 }
 
 /// As [`run`], where the program names columns.
-pub(super) fn run_on<V: Value>(program: &[Op], time: V, columns: &dyn Fn(usize) -> V, trace: &mut Trace) -> V {
+pub(super) fn run_on<V: Value>(program: &[Op], time: V, columns: &dyn Fn(usize) -> V, trace: &mut Trace<'_>) -> V {
     // A stack of n takes 2n − 1 instructions at least.
     if program.len() < 2 * SMALL_STACK {
         stack_after::<V, SMALL_STACK>(program, time, columns, trace).0[0]
@@ -146,7 +167,7 @@ pub(super) fn stack_after<V: Value, const STACK: usize>(
     program: &[Op],
     time: V,
     columns: &dyn Fn(usize) -> V,
-    trace: &mut Trace,
+    trace: &mut Trace<'_>,
 ) -> ([V; STACK], usize) {
     let mut stack = [time; STACK];
     let mut top = 0;
@@ -172,7 +193,7 @@ pub(super) fn stack_after<V: Value, const STACK: usize>(
     (stack, top)
 }
 
-fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace) -> V {
+fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace<'_>) -> V {
     let u = argument.value();
     match op {
         Op::Smooth(function) => {
@@ -181,6 +202,7 @@ fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace) -> V {
             }
             function.apply(argument)
         }
+        Op::Untouched(function) => function.apply(argument),
         Op::Negate => argument.neg(),
         Op::AsinSin | Op::AcosCos => {
             let (wave, value) = match op {
@@ -220,7 +242,7 @@ pub(super) fn triangle(u: f64) -> f64 {
     if turns % 2.0 == 0.0 { rest } else { -rest }
 }
 
-fn binary<V: Value>(op: Op, first: V, second: V, trace: &mut Trace) -> V {
+fn binary<V: Value>(op: Op, first: V, second: V, trace: &mut Trace<'_>) -> V {
     match op {
         Op::Add => first.add(second),
         Op::Subtract => first.sub(second),
