@@ -62,10 +62,11 @@ impl ControllerPlan {
 }
 
 /// The joints of a robot, where they start, and which of them forces drive.
-struct Joints<'r> {
-    robot: &'r Robot,
-    start: &'r [f64],
-    is_driven: &'r dyn Fn(&str) -> bool,
+pub(super) struct Joints<'r> {
+    pub(super) robot: &'r Robot,
+    /// q(0).
+    pub(super) start: &'r [f64],
+    pub(super) is_driven: &'r dyn Fn(&str) -> bool,
 }
 
 impl<'r> Joints<'r> {
@@ -92,14 +93,8 @@ impl<'r> Joints<'r> {
     }
 }
 
-/// Reads the controller of a robot that starts at `q`; `is_driven` says which joints forces drive.
-pub(super) fn read(
-    field: &Field<'_>,
-    robot: &Robot,
-    (q, is_driven): (&[f64], &dyn Fn(&str) -> bool),
-    end: Option<f64>,
-) -> Read<ControllerPlan> {
-    let joints = Joints { robot, start: q, is_driven };
+/// Reads the controller of these joints.
+pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> Read<ControllerPlan> {
     let kind = kind_of(field, &CONTROLLER, "kind of controller")?;
     let table = Table::of_kind(field.ctx, field.node, "[motion.controller]", (&CONTROLLER, kind), |key| {
         let row = CONTROLLER.get(key)?;
@@ -108,9 +103,9 @@ pub(super) fn read(
     })?;
     let mut record = Map::new();
     record.insert("kind".to_owned(), json!(kind));
-    let law = law(&table, kind, &joints, &mut record);
-    let reference = table.require("reference").and_then(|field| reference(&field, &joints, end));
-    let limits = limits(&table, &joints, &mut record);
+    let law = law(&table, kind, joints, &mut record);
+    let reference = table.require("reference").and_then(|field| reference(&field, joints, end));
+    let limits = limits(&table, joints, &mut record);
     let anti_windup = match table.get("anti_windup").map(|field| field.word("rule")).transpose()? {
         Some(keys::NONE) => AntiWindup::None,
         _ => AntiWindup::Conditional,

@@ -1,6 +1,6 @@
 //! Forward dynamics: where the robot starts and what drives its joints.
 
-use super::controller::{self, ControllerPlan};
+use super::controller::{self, ControllerPlan, Joints};
 use super::joints::{open_joints, path_of_joint, signal, zero};
 use super::{Made, ready};
 use crate::document::shorten;
@@ -65,7 +65,8 @@ pub(super) fn read(
         let is_moved = prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
         !is_moved && !locked.contains(joint)
     };
-    let controller = controller.map(|field| controller::read(&field, robot, (&q, &is_forced), end)).transpose();
+    let joints = Joints { robot, start: &q, is_driven: &is_forced };
+    let controller = controller.map(|field| controller::read(&field, &joints, end)).transpose();
     let (drives, records): (Vec<Drive>, Vec<Value>) = drives?.into_iter().unzip();
     let records: Map<String, Value> = robot.own_joints().map(|joint| joint.name.to_owned()).zip(records).collect();
     let controller = controller?;
