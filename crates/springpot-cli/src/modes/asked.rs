@@ -49,6 +49,10 @@ impl Asked {
                 format!("the robot does not stay where it is: {} {unit} are missing on {joint}", short(torque));
             diagnostic::warning(message, Some("--equilibrium goes to where it rests".to_owned()));
         }
+        if !self.system.control.is_empty() {
+            let message = "what follows from the state, by feedback or a controller, is left out: these are the modes of the robot alone";
+            diagnostic::warning(message.to_owned(), None);
+        }
         for joint in &self.linear.sticking {
             let message = format!("the friction of {joint} sticks, which is not linear: it is left out");
             diagnostic::warning(message, Some("friction_speed makes it smooth; locked holds the joint".to_owned()));

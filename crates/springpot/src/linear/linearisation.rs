@@ -59,6 +59,7 @@ impl System {
     ///
     /// Forces that remain are those after endless rest: springpots and dashpots carry nothing. Where kinematics are given all joints are
     /// free and the actuators hold the configuration with constant forces; of forward dynamics, prescribed and locked joints stand still.
+    /// What follows from the state ([`System::control`]) is left out.
     ///
     /// # Errors
     /// [`LinearError`].

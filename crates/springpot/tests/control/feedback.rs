@@ -181,3 +181,18 @@ fn sampled_forces_of_elements_are_those_just_before() {
     }
     assert!(run.residual() < 1e-8, "{}", run.residual());
 }
+
+/// A base that floats is moved by the arm on it alone: what both have of momentum stays nothing.
+#[test]
+fn a_floating_base_follows_its_arm() {
+    let text = "[robot]\ngravity = [0, 0, 0]\n[[robot.body]]\nname = \"base\"\njoint = { name = \"free\", kind = \"floating\" }\nmass = 10\n\
+                inertia = { xx = 1, yy = 1, zz = 1 }\n[[robot.body]]\nname = \"arm\"\n\
+                joint = { name = \"q1\", kind = \"prismatic\", axis = [1, 0, 0] }\nmass = 2\n[motion]\nkind = \"forward\"\n\
+                [motion.controller]\nkind = \"pd-gravity\"\nkp = 40\nkd = 12\n\
+                reference = { kind = \"move\", to = { q1 = 1 }, duration = 1 }\n";
+    let run = run(&format!("{text}{}", every(6.0, 0.1, 1e-9)));
+    let (base, arm) = (run.column("q.free.x"), run.column("q.q1"));
+    assert!((arm.last().unwrap() - 1.0).abs() < 1e-3);
+    let off = largest(base.iter().zip(&arm).map(|(base, arm)| 12.0 * base + 2.0 * arm));
+    assert!(off < 1e-9, "{off:e}");
+}

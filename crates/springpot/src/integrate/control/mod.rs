@@ -18,7 +18,7 @@ pub(super) use sampler::{Sampler, SamplerState, Shown};
 
 use super::error::RunError;
 use super::system::System;
-use crate::collocation::{MAX_NODES, STAGES};
+use crate::collocation::STAGES;
 use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, TorqueSlopes};
 use crate::dynamics::Kinematics;
 use crate::law::{InputValue, Response};
@@ -322,6 +322,3 @@ fn at<'a>(eye: &Eye<'a>, aim: &'a Aim) -> At<'a> {
 fn input(value: f64, rate: f64) -> InputValue {
     InputValue { value, rate }
 }
-
-/// As many as nodes of a step in a response.
-const _: () = assert!(STAGES <= MAX_NODES);

@@ -264,14 +264,13 @@ impl ControlRun {
         true
     }
 
-    /// How far and how fast velocity `k` of this mass is to go: with its reference, and for a memory of its error, which begins like no power of t.
-    pub(in crate::integrate) fn missing(&self, k: usize, mass: f64) -> [f64; 2] {
-        let [far, fast] = self.joints.iter().find(|joint| joint.velocity == k).map_or([0.0; 2], |joint| joint.going);
-        let [missing, slip] = self.missing_of_terms(k, mass);
-        [far.max(missing), fast.max(slip)]
+    /// How far and how fast each velocity that a controller drives is to go with its reference.
+    pub(in crate::integrate) fn going(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        self.joints.iter().map(|joint| (joint.velocity, joint.going))
     }
 
-    fn missing_of_terms(&self, k: usize, mass: f64) -> [f64; 2] {
+    /// How far and how fast velocity `k` of this mass still has to go for a memory of its error that begins like no power of t; zeros without one.
+    pub(in crate::integrate) fn missing(&self, k: usize, mass: f64) -> [f64; 2] {
         let steep = self.terms.iter().find(|term| term.law.velocity == k && term.law.order > -1.0);
         let place = self.joints.iter().position(|joint| joint.velocity == k);
         let (Some(term), Some(place), true) = (steep, place, mass > 0.0) else { return [0.0; 2] };

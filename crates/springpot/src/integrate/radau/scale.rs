@@ -27,7 +27,14 @@ impl RadauStep {
             let mass = self.slopes.d_a[k * n + k];
             let of_energy = if mass > 0.0 { ENERGY_FLOOR * (2.0 * self.energy / mass).sqrt() } else { 0.0 };
             // Memories of errors begin as steeply as no step resolves: they are measured by what is still missing.
-            let [missing, slip] = control.map_or([0.0; 2], |control| control.missing(k, mass));
+            let [mut missing, mut slip] = control.map_or([0.0; 2], |control| control.missing(k, mass));
+            // Joints that nothing drives are moved by those that are.
+            for (own, [far, fast]) in control.into_iter().flat_map(ControlRun::going) {
+                let share = (self.slopes.d_a[k * n + own] / mass).abs();
+                if share.is_finite() {
+                    (missing, slip) = (missing.max(share * far), slip.max(share * fast));
+                }
+            }
             let speed = sizes.speed(k, until).max(self.origin.v[k].abs()).max(of_energy).max(slip);
             // A joint that no force moved yet is measured by what this very step does.
             let own = || self.stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
