@@ -54,5 +54,5 @@ fn parts_of_scenarios() {
         let text: String = missing.map(|(_, section)| *section).chain([part.as_str()]).collect();
         check("docs/SCENARIO.md", &text);
     }
-    assert_eq!(blocks.len(), 19);
+    assert_eq!(blocks.len(), 20);
 }

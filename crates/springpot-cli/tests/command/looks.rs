@@ -241,7 +241,7 @@ fn looks_that_make_no_sense_are_refused() {
         ("kind = \"robot\"\nx_range = [0, 1]", &["no meaning where kind = \"robot\""]),
         (
             "kind = \"summary\"\nx = \"element.damper.alpha\"\ny = \"metric(peak)\"",
-            &["a metric", "metrics are not there yet"],
+            &["no metric has this name", "there is none yet"],
         ),
         (
             "kind = \"summary\"\nx = \"element.damper.alpha\"\ny = \"damper.force\"",
