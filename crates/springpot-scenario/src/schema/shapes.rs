@@ -130,6 +130,13 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         Shape::TableWithJoints(keys) => {
             let mut schema = object(&words, keys, catalog);
             schema["additionalProperties"] = json!({ "$ref": "#/definitions/path" });
+            // Kinds with keys of their own have no joints beside them.
+            let kinds = keys.get("kind").map(Key::choices).unwrap_or_default().into_iter();
+            let with_keys = kinds.filter(|kind| keys.keys.iter().any(|key| key.only.contains(kind)));
+            let rules = with_keys.map(|kind| {
+                super::rules::where_kind(&[kind], json!({ "propertyNames": { "enum": keys.names_for(kind) } }))
+            });
+            schema["allOf"] = rules.collect();
             schema
         }
         Shape::Scalars => {
