@@ -153,7 +153,8 @@ mod tests {
             ("(t - 1)*step(t - 1) + (t - 2)*step(t - 2)*step(5 - t)", 1.1, 1.9, 0),
             ("abs(sin(9*t))", 0.0, 3.0, 1),
             ("step(t - 1)/step(t)", 0.5, 2.0, 1),
-            ("atan2(sin(t), -1) + asin(sin(t))", 0.1, 0.9, 1),
+            // Angles and waves have no simpler form on one side.
+            ("atan2(sin(t), -1) + asin(sin(t))", 0.1, 0.9, 2),
             ("sign(0*t) + t", 0.1, 0.9, 0),
         ] {
             let narrow = within(text, a, b);
