@@ -190,9 +190,12 @@ impl Goal {
 /// A new file in the folder of `target`, with a name that no other has. Ctrl-C takes it away.
 fn beside(target: &Path) -> io::Result<(File, TempPath)> {
     let open = |path: &Path| File::options().write(true).create_new(true).open(path);
+    clean_up_on_interrupt();
+    // Held until the file's name is known: an interrupt in between waits for it.
+    let mut known = unfinished();
     let made = tempfile::Builder::new().prefix(".springpot-").suffix(".part").make_in(folder_of(target), open)?;
     let (file, path) = made.into_parts();
-    take_away_on_interrupt(&path);
+    *known = Some(path.to_path_buf());
     Ok((file, path))
 }
 
@@ -225,10 +228,9 @@ fn unfinished() -> std::sync::MutexGuard<'static, Option<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From here on Ctrl-C takes `file` away before it ends the process.
-fn take_away_on_interrupt(file: &Path) {
+/// From here on Ctrl-C takes the file that is not finished away before it ends the process.
+fn clean_up_on_interrupt() {
     static INSTALLED: OnceLock<()> = OnceLock::new();
-    *unfinished() = Some(file.to_owned());
     INSTALLED.get_or_init(|| {
         signals::before_the_end(|| {
             if let Some(file) = unfinished().take() {
