@@ -3,6 +3,7 @@
 use crate::plot::LookOptions;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use springpot::fractional::{Definition, Method};
+use springpot_run::sweep::Shard;
 use std::path::PathBuf;
 
 /// Robots whose bodies are joined by real materials: exact forces, motion, energy and figures from one scenario file.
@@ -34,6 +35,7 @@ Examples:
   springpot run arm.toml --format parquet
   springpot run arm.toml --checkpoint-every '10 s'
   springpot run --resume results/arm
+  springpot run grid.toml --shard 3/16
 
 Writes results.csv (or .parquet, .npz), summary.csv, metrics.csv, figures/ and run.json. \
 They take the place of the last run's files when the run ends, all or none, \
@@ -41,6 +43,16 @@ and of nothing else; one run at a time writes to a folder. \
 Ctrl-C ends a run early; the rows so far are kept, all of them complete. With --checkpoint-every a run that was interrupted or \
 killed goes on with --resume, and its results are those of an uninterrupted run.")]
     Run(RunOptions),
+    /// Put the parts of a run together that several machines have run.
+    #[command(after_help = "\
+Examples:
+  springpot run grid.toml --shard 1/2 --out part-1
+  springpot run grid.toml --shard 2/2 --out part-2
+  springpot merge part-1 part-2 --out results/grid
+
+The results are those of the whole run on one machine, to the bit, with its figures; parts may be named in any order and stay as they are. \
+A part that was interrupted or killed goes on with `springpot run --resume PART`.")]
+    Merge(MergeOptions),
     /// Read and check a scenario without running it.
     #[command(after_help = "\
 Examples:
@@ -330,9 +342,31 @@ pub(crate) struct RunOptions {
     /// Go on with the run whose results are in this folder
     #[arg(long, value_name = "DIR", conflicts_with = "file")]
     pub(crate) resume: Option<PathBuf>,
+    /// Run one part of the cases, such as 3/16 on the third of 16 machines; `merge` puts the parts together
+    #[arg(long, value_name = "K/N", conflicts_with = "resume")]
+    pub(crate) shard: Option<Shard>,
     /// Cases at a time [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     pub(crate) jobs: Option<u16>,
+    /// Write no figures
+    #[arg(long)]
+    pub(crate) no_figures: bool,
+    /// Print nothing but warnings and errors
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeOptions {
+    /// Folders of the parts
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) parts: Vec<PathBuf>,
+    /// Folder of the results [default: results/<file stem>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Format of the rows: csv, parquet or npz (NumPy) [default: that of the parts]
+    #[arg(long, value_name = "FORMAT", value_parser = ["csv", "parquet", "npz"], hide_possible_values = true)]
+    pub(crate) format: Option<String>,
     /// Write no figures
     #[arg(long)]
     pub(crate) no_figures: bool,

@@ -131,6 +131,7 @@ pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item
     };
     let ending = match arguments.command {
         Command::Run(options) => run::run(&with_fewer_jobs(options), catalog, disk),
+        Command::Merge(options) => run::merge(&options, catalog, disk),
         Command::Check(options) => check::check(&options, catalog),
         Command::Info(options) => info::info(&options, catalog),
         Command::Dynamics(options) => dynamics::dynamics(&options, catalog),

@@ -1,11 +1,11 @@
-//! `springpot run`.
+//! `springpot run`, and `springpot merge`, which ends as a run does.
 
 mod finished;
 mod prepare;
 
 use self::finished::Said;
 use self::prepare::{Unprepared, prepare};
-use crate::arguments::RunOptions;
+use crate::arguments::{MergeOptions, RunOptions};
 use crate::numbers::count;
 use crate::{Ending, diagnostic, failures, progress, signals, starts, terminal};
 use springpot::law::Catalog;
@@ -30,8 +30,20 @@ enum Stopped {
 }
 
 pub(crate) fn run(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> Ending {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = options.jobs.map_or(cores, usize::from);
+    carry_out(jobs, options.quiet, || prepare(options, catalog, disk))
+}
+
+/// `springpot merge`.
+pub(crate) fn merge(options: &MergeOptions, catalog: &Catalog, disk: &Disk) -> Ending {
+    // One job reads the parts in order.
+    carry_out(1, options.quiet, || prepare::merge(options, catalog, disk))
+}
+
+fn carry_out(jobs: usize, quiet: bool, prepare: impl FnOnce() -> Result<Prepared, Unprepared>) -> Ending {
     let begun = Instant::now();
-    let prepared = match prepare(options, catalog, disk) {
+    let prepared = match prepare() {
         Ok(prepared) => prepared,
         Err(Unprepared::Refused(refused)) => {
             diagnostic::refused(&refused);
@@ -48,10 +60,10 @@ pub(crate) fn run(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> Endin
         Err(Unprepared::Folder(out, error)) => return no_results(&out, error, None),
     };
     if let Some(survey) = &prepared.survey {
-        starts::warn(survey, &prepared.cases);
+        starts::warn(survey, &prepared.planned.cases);
     }
     let (out, goes_on) = (prepared.folder.path().to_owned(), prepared.checkpoints.is_some());
-    match execute(options, prepared) {
+    match execute(jobs, quiet, prepared) {
         Ok(finished) => {
             let status = finished.outcome.status;
             let finished = Said(finished);
@@ -60,7 +72,7 @@ pub(crate) fn run(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> Endin
             if goes_on && status == Status::Interrupted {
                 terminal::print_error(&format!("to go on: {}\n", to_go_on(&out)));
             }
-            if !options.quiet {
+            if !quiet {
                 terminal::print(&finished.summary(begun.elapsed()));
             }
             match status {
@@ -121,13 +133,11 @@ fn to_go_on(out: &Path) -> String {
 }
 
 /// Runs all cases, draws the figures, writes the record, and puts all of it in place.
-fn execute(options: &RunOptions, mut prepared: Prepared) -> Result<Finished, Stopped> {
+fn execute(jobs: usize, quiet: bool, mut prepared: Prepared) -> Result<Finished, Stopped> {
     let done = Progress::default();
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let jobs = options.jobs.map_or(cores, usize::from);
-    let (wanted, end) = (prepared.rows_wanted(), prepared.plan.settings.end);
+    let (wanted, end) = (prepared.rows_wanted(), prepared.planned.plan.settings.end);
     let outcome =
-        progress::show_while(wanted, end, &done, options.quiet, || prepared.sweep(jobs, signals::stop(), &done))?;
+        progress::show_while(wanted, end, &done, quiet, || prepared.sweep(jobs, signals::stop(), &done))?;
     Ok(prepared.finish(outcome, &done, &mut diagnostic::warn)?)
 }
 

@@ -1,5 +1,6 @@
 //! From what was prepared to results that are in place.
 
+use crate::asked::Planned;
 use crate::figures;
 use crate::prepare::Prepared;
 use crate::sweep::{self, Options, Outcome, Progress, Status, SweepError};
@@ -32,9 +33,11 @@ pub struct Finished {
 }
 
 impl Prepared {
-    /// Rows of all cases, where each has as many as the first.
+    /// Rows of all cases that are run, where each has as many as the first.
     pub fn rows_wanted(&self) -> u64 {
-        (self.cases.len() as u64).saturating_mul(self.plan.settings.rows.count() as u64)
+        let Planned { cases, plan, .. } = &self.planned;
+        let run = self.shard.map_or(cases.len(), |shard| shard.cases(cases.len()).len());
+        (run as u64).saturating_mul(plan.settings.rows.count() as u64)
     }
 
     /// Runs all cases, `jobs` at a time, until `stop` is set; `progress` can be watched meanwhile.
@@ -42,8 +45,9 @@ impl Prepared {
     /// # Errors
     /// As [`sweep::run`].
     pub fn sweep(&mut self, jobs: usize, stop: &Stop, progress: &Progress) -> Result<Outcome, SweepError> {
-        let options = Options { jobs, stop, progress, checkpoints: self.checkpoints.as_ref() };
-        sweep::run(&self.cases, &self.layout, &mut self.folder, options)
+        let (checkpoints, source) = (self.checkpoints.as_ref(), self.source.as_deref());
+        let options = Options { jobs, stop, progress, checkpoints, source, shard: self.shard };
+        sweep::run(&self.planned.cases, &self.planned.layout, &mut self.folder, options)
     }
 
     /// Draws the figures, writes run.json, and puts all of it in place; `progress` is that of the sweep. Figures that cannot be
@@ -54,10 +58,12 @@ impl Prepared {
     /// # Errors
     /// The folder cannot be written.
     pub fn finish(self, outcome: Outcome, progress: &Progress, warn: Warn<'_>) -> Result<Finished, FolderError> {
-        let Self { cases, plan, system, layout, mut folder, checkpoints, figures, format, .. } = self;
+        let Self { planned, mut folder, checkpoints, shard, figures, format, .. } = self;
+        let Planned { cases, plan, system, layout } = planned;
         let (rows, end) = (progress.rows.load(Ordering::Relaxed), plan.settings.end);
         let (events, metrics) = (layout.events().to_vec(), layout.metric_units());
-        let goes_on = checkpoints.is_some() && outcome.status == Status::Interrupted;
+        // A part goes on where the parts are put together.
+        let goes_on = checkpoints.is_some() && (outcome.status == Status::Interrupted || shard.is_some());
         let is_put = match outcome.status {
             Status::Done => true,
             Status::Failed => rows > 0,
@@ -66,7 +72,7 @@ impl Prepared {
         };
         if !is_put {
             // What a checkpoint goes on with stays beside the earlier results.
-            if !goes_on {
+            if !(goes_on && outcome.status == Status::Interrupted) {
                 folder.discard()?;
             }
             return Ok(Finished { cases, outcome, folder, events, metrics, rows, end, is_put });

@@ -1,6 +1,6 @@
 //! Whole runs of scenarios, as every face of Springpot shares them: the command, and programs that are no command.
 //!
-//! [`Prepared::begin`] reads a scenario, or [`Prepared::resume`] a checkpoint, and opens the folder of the results;
+//! [`Prepared::begin`] reads a scenario, [`Prepared::resume`] a checkpoint, or [`Prepared::merge`] the parts of a run, and opens the folder of the results;
 //! [`Prepared::sweep`] runs all cases on all cores; [`Prepared::finish`] draws the figures, writes run.json and puts everything in place.
 //! Nothing here prints: warnings are handed over as they come, errors are returned.
 //!
@@ -17,18 +17,19 @@
 //! use springpot::integrate::Stop;
 //! use springpot_run::sweep::{Progress, Status};
 //! use springpot_run::table::disk::Disk;
-//! use springpot_run::{NewRun, Prepared, Surroundings, Warning};
+//! use springpot_run::{Asked, NewRun, Prepared, Surroundings, Warning};
 //!
 //! let (catalog, disk, stop, progress) = (Catalog::standard(), Disk::default(), Stop::new(false), Progress::default());
 //! let surroundings = Surroundings { catalog: &catalog, disk: &disk, stop: &stop, holder: "an example" };
 //! let mut warn = |warning: Warning| eprintln!("{warning}");
-//! let mut run = Prepared::begin(NewRun::of("scenarios/piezo_order.toml"), surroundings, &mut warn)?;
+//! let mut run = Prepared::begin(NewRun::of(Asked::read("scenarios/piezo_order.toml".as_ref())?), surroundings, &mut warn)?;
 //! let outcome = run.sweep(4, &stop, &progress)?;
 //! let finished = run.finish(outcome, &progress, &mut warn)?;
 //! assert_eq!(finished.outcome.status, Status::Done);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod asked;
 pub mod figures;
 mod finish;
 pub mod labels;
@@ -40,6 +41,7 @@ pub mod table;
 mod trouble;
 mod warning;
 
+pub use asked::{Asked, Planned};
 pub use finish::Finished;
 pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
 pub use survey::{Depth, ElementSurvey, Found, Survey};

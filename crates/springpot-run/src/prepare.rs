@@ -1,28 +1,26 @@
 //! What must be right before anything is run, whether a run begins or goes on.
 
+use crate::asked::{Asked, Planned};
 use crate::figures;
 use crate::survey::{Depth, Survey};
-use crate::sweep::{CheckpointError, Checkpoints, Layout, Origin, Unfinished};
+use crate::sweep::{CheckpointError, Checkpoints, MergeError, Origin, Shard, Shards, Source, Unfinished};
 use crate::table::Format;
 use crate::table::disk::Disk;
 use crate::table::folder::{Folder, FolderError, Targets};
-use crate::warning::{Warn, robot_warnings};
-use springpot::integrate::{Stop, System};
+use crate::warning::Warn;
+use springpot::integrate::Stop;
 use springpot::law::Catalog;
-use springpot_scenario::{Cases, FigurePlan, Plan, Refusals, Scenario};
+use springpot_scenario::{Cases, FigurePlan, Refusals, Scenario};
 use std::cell::OnceCell;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// What is asked of a new run.
 #[derive(Debug, Clone)]
 pub struct NewRun {
-    /// The scenario's file.
-    pub file: PathBuf,
-    /// Values that are set, `PATH=VALUE`.
-    pub overrides: Vec<String>,
-    /// Parameters that are swept, `PATH=v1,v2,…` ([`Scenario::sweep`]).
-    pub sweeps: Vec<String>,
-    /// The folder of the results; `None`: `results/<file stem>` in the current folder.
+    /// The scenario, and what is set and swept.
+    pub asked: Asked,
+    /// The folder of the results; `None`: `results/<file stem>` in the current folder, with the shard behind it.
     pub out: Option<PathBuf>,
     /// The format of the rows at the end.
     pub format: Format,
@@ -30,14 +28,15 @@ pub struct NewRun {
     pub figures: bool,
     /// Simulated time from one checkpoint to the next, s; `None`: there are none.
     pub checkpoint_every: Option<f64>,
+    /// The part of the cases that is run; `None`: all. A part draws no figures, and keeps its checkpoint for [`Prepared::merge`].
+    pub shard: Option<Shard>,
 }
 
 impl NewRun {
-    /// A run of a scenario's file with nothing changed.
-    pub fn of(file: impl Into<PathBuf>) -> Self {
+    /// A run with nothing special.
+    pub fn of(asked: Asked) -> Self {
         let format = Format::default();
-        let (overrides, sweeps) = (Vec::new(), Vec::new());
-        Self { file: file.into(), overrides, sweeps, out: None, format, figures: true, checkpoint_every: None }
+        Self { asked, out: None, format, figures: true, checkpoint_every: None, shard: None }
     }
 }
 
@@ -55,26 +54,30 @@ pub struct Surroundings<'a> {
 }
 
 /// All that a run needs, checked.
-#[derive(Debug)]
 pub struct Prepared {
-    /// The cases.
-    pub cases: Cases,
-    /// The first of them.
-    pub plan: Plan,
-    /// Its system.
-    pub system: System,
-    /// The columns.
-    pub layout: Layout,
+    /// What is run.
+    pub planned: Planned,
     /// The folder of the results.
     pub folder: Folder,
     /// What it takes to go on later, where that is kept.
     pub checkpoints: Option<Checkpoints>,
+    /// Has cases that came to their end elsewhere.
+    pub source: Option<Box<dyn Source>>,
+    /// The part of the cases that is run; `None`: all.
+    pub shard: Option<Shard>,
     /// Whether figures are drawn.
     pub figures: bool,
     /// The format of the rows at the end.
     pub format: Format,
     /// What was seen before the run; `None` where one goes on.
     pub survey: Option<Survey>,
+}
+
+impl fmt::Debug for Prepared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { planned, folder, shard, .. } = self;
+        f.debug_struct("Prepared").field("planned", planned).field("folder", folder).field("shard", shard).finish()
+    }
 }
 
 /// Why a new run cannot begin.
@@ -101,52 +104,33 @@ pub enum BeginError {
     },
 }
 
-/// What a scenario says, its first case, and its columns.
-struct Read {
-    cases: Cases,
-    plan: Plan,
-    system: System,
-    layout: Layout,
-}
-
-fn read(scenario: &Scenario, with: Surroundings<'_>, warn: Warn<'_>) -> Result<Read, Refusals> {
-    let cases = scenario.cases(with.catalog)?;
-    let plan = cases.plan(0)?;
-    let system = plan.system_unless(with.stop);
-    robot_warnings(&cases).into_iter().for_each(warn);
-    let layout = Layout::new(&cases, &system)?;
-    Ok(Read { cases, plan, system, layout })
-}
-
 impl Prepared {
     /// Reads everything, and opens the folder of the results for a new run.
     ///
     /// # Errors
     /// The scenario is refused, or the folder takes no results of it.
-    pub fn begin(asked: NewRun, with: Surroundings<'_>, warn: Warn<'_>) -> Result<Self, BeginError> {
-        let NewRun { file, overrides, sweeps, out, format, figures, checkpoint_every: every } = asked;
-        let out = out.unwrap_or_else(|| default_folder(&file));
-        let mut scenario = Scenario::read(&file)?;
-        overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
-        sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
-        let Read { cases, plan, system, layout } = read(&scenario, with, warn)?;
-        let survey = Survey::of(&cases, &plan, &system, Depth::Starts, with.stop)?;
-        if survey.is_hopeless(&cases) {
-            return Err(BeginError::Hopeless { cases: cases.into(), survey: survey.into() });
+    pub fn begin(new: NewRun, with: Surroundings<'_>, warn: Warn<'_>) -> Result<Self, BeginError> {
+        let NewRun { asked, out, format, figures, checkpoint_every: every, shard } = new;
+        let out = out.unwrap_or_else(|| default_folder(&asked, shard));
+        let scenario = asked.scenario()?;
+        let planned = Planned::of(&scenario, with.catalog, with.stop, warn)?;
+        let Planned { cases, plan, system, .. } = &planned;
+        let survey = Survey::of(cases, plan, system, Depth::Starts, with.stop)?;
+        if survey.is_hopeless(cases) {
+            return Err(BeginError::Hopeless { cases: planned.cases.into(), survey: survey.into() });
         }
+        let figures = figures && shard.is_none();
+        // The journal of a part is what it is merged from.
+        let every = every.or(shard.map(|_| f64::INFINITY));
         let no_results = |error| BeginError::Folder { folder: out.clone(), error };
-        let mut folder = Folder::open(&out, with.disk.clone(), with.holder).map_err(no_results)?;
-        warn_of_no_lock(&folder, warn);
-        let inputs = Inputs::of(&scenario, &file);
-        let (names, is_input) = (figure_files(&cases, figures), |file: &Path| inputs.holds(file));
-        let targets = Targets { figures: &names, checkpoints: every.is_some(), is_input: &is_input };
-        folder.begin(targets).map_err(no_results)?;
+        let folder = open(&out, (&scenario, &asked), (cases, figures, every.is_some()), with, warn);
+        let folder = folder.map_err(no_results)?;
         let checkpoints = every.map(|every| {
-            let origin = Origin::of(&file, &scenario, figures, every)?;
-            Checkpoints::begin(&folder, Origin { format, overrides, sweeps, ..origin }, &cases, &plan, &system)
+            let origin = Origin { asked, figures, every, format, shard };
+            Checkpoints::begin(&folder, origin, cases, plan, system)
         });
         let checkpoints = checkpoints.transpose().map_err(|error| no_results(error.into()))?;
-        Ok(Self { cases, plan, system, layout, folder, checkpoints, figures, format, survey: Some(survey) })
+        Ok(Self { planned, folder, checkpoints, source: None, shard, figures, format, survey: Some(survey) })
     }
 
     /// Goes on with the run whose checkpoint is in `folder`. With `every`, s, checkpoints are written at other times from now on;
@@ -163,18 +147,71 @@ impl Prepared {
     ) -> Result<Self, CheckpointError> {
         let unfinished = Unfinished::read(folder, with.disk.clone(), with.holder)?;
         warn_of_no_lock(unfinished.folder(), warn);
-        let origin = unfinished.origin().clone();
-        let changed = || CheckpointError::OtherScenario { what: origin.typed.clone() };
-        let scenario = origin.scenario()?.ok_or_else(changed)?;
-        let Read { cases, plan, system, layout } = read(&scenario, with, warn)?;
-        let figures = origin.figures && figures;
-        let inputs = Inputs::of(&scenario, &origin.file);
-        let (names, is_input) = (figure_files(&cases, figures), |file: &Path| inputs.holds(file));
+        let Origin { asked, figures: drawn, format, shard, .. } = unfinished.origin().clone();
+        if asked.has_changed() {
+            return Err(CheckpointError::OtherScenario { what: asked.name });
+        }
+        let scenario = asked.scenario()?;
+        let planned = Planned::of(&scenario, with.catalog, with.stop, warn)?;
+        let figures = drawn && figures;
+        let Planned { cases, plan, system, layout } = &planned;
+        let inputs = Inputs::of(&scenario, &asked);
+        let (names, is_input) = (figure_files(cases, figures), |file: &Path| inputs.holds(file));
         let targets = Targets { figures: &names, checkpoints: true, is_input: &is_input };
-        let (checkpoints, folder) = unfinished.take_up(&cases, (&plan, &system), &layout, every, targets)?;
-        let (checkpoints, format) = (Some(checkpoints), origin.format);
-        Ok(Self { cases, plan, system, layout, folder, checkpoints, figures, format, survey: None })
+        let (checkpoints, folder) = unfinished.take_up(cases, (plan, system), layout, every, targets)?;
+        let checkpoints = Some(checkpoints);
+        Ok(Self { planned, folder, checkpoints, source: None, shard, figures, format, survey: None })
     }
+
+    /// Puts the parts of one run together that stand in `parts`, in any order: what is then swept comes from them, and nothing is run. The
+    /// results are those of the whole run on one machine; without `out` they go to `results/<file stem>`, without `format` they have that of
+    /// the parts.
+    ///
+    /// # Errors
+    /// A part is missing, not at its end, damaged, or of another run.
+    pub fn merge(
+        parts: &[PathBuf],
+        out: Option<PathBuf>,
+        (format, figures): (Option<Format>, bool),
+        with: Surroundings<'_>,
+        warn: Warn<'_>,
+    ) -> Result<Self, MergeError> {
+        let shards = Shards::read(parts, with.disk, with.holder)?;
+        let origin = shards.origin().clone();
+        // The files that it names may have changed; the parts know what they were computed from.
+        let scenario = origin.asked.scenario()?;
+        let planned = Planned::of(&scenario, with.catalog, with.stop, warn)?;
+        let Planned { cases, plan, system, layout } = &planned;
+        let shards = shards.of_run(cases, (plan, system), layout)?;
+        let out = out.unwrap_or_else(|| default_folder(&origin.asked, None));
+        if let Some(part) = shards.folders().find(|part| is_same(part, &out)) {
+            return Err(MergeError::IntoPart(part.to_owned()));
+        }
+        let folder = open(&out, (&scenario, &origin.asked), (cases, figures, false), with, warn)
+            .map_err(|error| MergeError::Folder { folder: out.clone(), error })?;
+        let (source, format) = (Some(Box::new(shards) as Box<dyn Source>), format.unwrap_or(origin.format));
+        Ok(Self { planned, folder, checkpoints: None, source, shard: None, figures, format, survey: None })
+    }
+}
+
+/// Opens the folder of the results of a new run.
+fn open(
+    out: &Path,
+    (scenario, asked): (&Scenario, &Asked),
+    (cases, figures, checkpoints): (&Cases, bool, bool),
+    with: Surroundings<'_>,
+    warn: Warn<'_>,
+) -> Result<Folder, FolderError> {
+    let mut folder = Folder::open(out, with.disk.clone(), with.holder)?;
+    warn_of_no_lock(&folder, warn);
+    let inputs = Inputs::of(scenario, asked);
+    let (names, is_input) = (figure_files(cases, figures), |file: &Path| inputs.holds(file));
+    folder.begin(Targets { figures: &names, checkpoints, is_input: &is_input })?;
+    Ok(folder)
+}
+
+fn is_same(a: &Path, b: &Path) -> bool {
+    a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b)
 }
 
 /// The names of the files that the figures are drawn into.
@@ -189,18 +226,18 @@ fn figure_files(cases: &Cases, drawn: bool) -> Vec<String> {
 /// The files that a scenario reads, itself included; found when they are first asked for.
 struct Inputs<'a> {
     scenario: &'a Scenario,
-    file: &'a Path,
+    asked: &'a Asked,
     found: OnceCell<Vec<PathBuf>>,
 }
 
 impl<'a> Inputs<'a> {
-    fn of(scenario: &'a Scenario, file: &'a Path) -> Self {
-        Self { scenario, file, found: OnceCell::new() }
+    fn of(scenario: &'a Scenario, asked: &'a Asked) -> Self {
+        Self { scenario, asked, found: OnceCell::new() }
     }
 
     fn holds(&self, file: &Path) -> bool {
         let found = self.found.get_or_init(|| {
-            let own = self.file.canonicalize().ok();
+            let own = self.asked.file.as_ref().and_then(|file| file.canonicalize().ok());
             self.scenario.named_files().into_iter().chain(own).collect()
         });
         file.canonicalize().is_ok_and(|file| found.contains(&file))
@@ -213,7 +250,11 @@ fn warn_of_no_lock(folder: &Folder, warn: Warn<'_>) {
     }
 }
 
-/// `results/<file stem>` in the current folder.
-fn default_folder(file: &Path) -> PathBuf {
-    Path::new("results").join(file.file_stem().unwrap_or("run".as_ref()))
+/// `results/<file stem>` in the current folder, with the shard behind it.
+fn default_folder(asked: &Asked, shard: Option<Shard>) -> PathBuf {
+    let mut name = Path::new(&asked.name).file_stem().unwrap_or("run".as_ref()).to_owned();
+    if let Some(shard) = shard {
+        name.push(format!("-{}-of-{}", shard.number(), shard.count()));
+    }
+    Path::new("results").join(name)
 }

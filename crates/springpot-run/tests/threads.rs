@@ -32,7 +32,7 @@ fn a_sweep_gives_the_same_bytes_for_any_number_of_threads() {
                 &cases,
                 &layout,
                 &mut folder,
-                Options { jobs, stop: &stop, progress: &progress, checkpoints: None },
+                Options { jobs, stop: &stop, progress: &progress, checkpoints: None, source: None, shard: None },
             )
             .unwrap();
             assert_eq!(outcome.done, 18);

@@ -67,14 +67,15 @@ impl Said {
             t if t < 0.0 => "before the first row".to_owned(),
             t => format!("after the row at t = {} s", short(t)),
         };
-        if cases.len() == 1 {
+        let all = outcome.shard.map_or(cases.len(), |shard| shard.cases(cases.len()).len());
+        if all == 1 {
             return match outcome.cases.len() {
                 0 => " before anything was run".to_owned(),
                 _ => format!(" {rows} of {} s; all rows are complete", short(*end)),
             };
         }
         let interrupted = stopped.filter(|case| case.interrupted).count();
-        let mut parts = vec![format!("{} of {} done", outcome.done, count(cases.len(), "case", "cases"))];
+        let mut parts = vec![format!("{} of {} done", outcome.done, count(all, "case", "cases"))];
         if outcome.failed > 0 {
             parts.push(format!("{} failed", outcome.failed));
         }

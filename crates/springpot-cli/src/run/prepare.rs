@@ -1,13 +1,13 @@
 //! What must be right before anything is run, whether a run begins or goes on.
 
-use crate::arguments::RunOptions;
+use crate::arguments::{MergeOptions, RunOptions};
 use crate::{diagnostic, signals, terminal};
 use springpot::law::Catalog;
-use springpot_run::sweep::CheckpointError;
+use springpot_run::sweep::{CheckpointError, MergeError};
 use springpot_run::table::Format;
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::FolderError;
-use springpot_run::{BeginError, NewRun, Prepared, Surroundings, Survey};
+use springpot_run::{Asked, BeginError, NewRun, Prepared, Surroundings, Survey};
 use springpot_scenario::units::parse_quantity;
 use springpot_scenario::{Cases, Refusals};
 use std::path::{Path, PathBuf};
@@ -24,6 +24,12 @@ pub(super) enum Unprepared {
     Folder(PathBuf, FolderError),
     /// The results of an earlier run were put in their place, and nothing is left to do; how it ended.
     Settled(String),
+}
+
+impl From<Refusals> for Unprepared {
+    fn from(refusals: Refusals) -> Self {
+        Self::Refused(refusals)
+    }
 }
 
 impl From<BeginError> for Unprepared {
@@ -51,19 +57,46 @@ pub(super) fn prepare(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> R
         (None, Some(file)) => {
             let holder = format!("springpot run {}", file.display());
             let with = Surroundings { catalog, disk, stop, holder: &holder };
-            let asked = NewRun {
-                file: file.clone(),
-                overrides: options.overrides.clone(),
-                sweeps: options.sweeps.clone(),
+            let (overrides, sweeps) = (options.overrides.clone(), options.sweeps.clone());
+            let asked = Asked { overrides, sweeps, ..Asked::read(file)? };
+            let new = NewRun {
+                asked,
                 out: options.out.clone(),
                 format: Format::named(&options.format).unwrap_or_default(),
                 figures,
                 checkpoint_every: every,
+                shard: options.shard,
             };
-            Ok(Prepared::begin(asked, with, &mut warn)?)
+            Ok(Prepared::begin(new, with, &mut warn)?)
         }
         (None, None) => unreachable!("one of them is required"),
     }
+}
+
+/// Opens the parts of a run and the folder of the whole.
+pub(super) fn merge(options: &MergeOptions, catalog: &Catalog, disk: &Disk) -> Result<Prepared, Unprepared> {
+    let with = Surroundings { catalog, disk, stop: signals::stop(), holder: "springpot merge" };
+    let format = options.format.as_deref().and_then(Format::named);
+    let (out, figures) = (options.out.clone(), !options.no_figures);
+    let merged = Prepared::merge(&options.parts, out, (format, figures), with, &mut diagnostic::warn);
+    merged.map_err(|error| {
+        let message = error.to_string();
+        let help = match error {
+            MergeError::Folder { folder, error } => return Unprepared::Folder(folder, error),
+            MergeError::Refused(refusals) => return Unprepared::Refused(refusals),
+            MergeError::Part(CheckpointError::Folder(error)) => return Unprepared::Folder(PathBuf::new(), error),
+            MergeError::Part(error) => return show(Path::new(""), error),
+            MergeError::NoPart(_) => "name the folders of all parts, and nothing else".to_owned(),
+            MergeError::Different { .. } => "name the parts of one run".to_owned(),
+            MergeError::Missing { unfinished: Some(part), .. } => {
+                format!("one part has not come to its end: springpot run --resume {}", part.display())
+            }
+            MergeError::Missing { .. } => "name the folders of all parts".to_owned(),
+            MergeError::IntoPart(_) => "name another folder with --out".to_owned(),
+        };
+        diagnostic::error_with_help(message, help);
+        Unprepared::Shown
+    })
 }
 
 /// Says why a run cannot go on, and what can be done.

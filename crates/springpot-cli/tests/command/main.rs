@@ -37,6 +37,7 @@ mod results;
 mod resume;
 mod robots;
 mod shapes;
+mod shards;
 mod staircases;
 mod studies;
 mod support;

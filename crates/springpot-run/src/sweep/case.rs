@@ -1,15 +1,18 @@
 //! One case of a sweep.
 
-use super::Sweep;
-use super::checkpoint::CaseDone;
+use super::checkpoint::{CaseDone, CaseFiles, CaseState};
 use super::events::Happened;
 use super::kept::{CaseCurves, Kept};
 use super::metrics::CaseMetrics;
-use super::output::{self, CaseRows, Output};
+use super::output::{self, Output};
+use super::parcel::Parcel;
+use super::simulate::{Ran, Resumed, simulate};
+use super::taken::{Taken, lead};
+use super::{Options, Sweep};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::trouble::Trouble;
-use springpot::integrate::{self, LimitWatch, PassedLimit, Report, RunError, System};
+use springpot::integrate::{PassedLimit, Report};
 use std::io;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -87,64 +90,67 @@ impl<'a> Rest<'a> {
     }
 }
 
-/// Runs case `index`, or goes on with it.
+/// Runs case `index`, or goes on with it, or takes what an earlier run or another process has of it.
 ///
 /// # Errors
 /// What keeps rows from being written; that of the case itself is in the result.
 pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>) -> io::Result<CaseResult> {
-    let checkpoints = sweep.options.checkpoints;
+    let Options { checkpoints, source, stop, progress, .. } = sweep.options;
     if let Some(done) = checkpoints.map(|checkpoints| checkpoints.done(index)).transpose()?.flatten() {
         return again(sweep, done, Some(sections));
     }
-    let Sections { rows, rest } = sections;
     let state = checkpoints.and_then(|checkpoints| checkpoints.take_state(index));
+    if state.is_none()
+        && let Some(parcel) = source.map(|source| source.case(index)).transpose()?.flatten()
+    {
+        return delivered(sweep, parcel, sections);
+    }
+    let Sections { rows, rest } = sections;
     let mut output = Output::open(sweep, index, rows, state.as_ref())?;
-    let (report, no_ledger, limits, metrics, outcome) = match sweep.cases.plan(index) {
-        Err(refusals) => {
-            let why = Some("no row was written".into());
-            let trouble = Trouble { message: refusals.to_string(), ..Trouble::default() };
-            (Report::default(), why, Vec::new(), CaseMetrics::default(), Err((trouble, None)))
-        }
-        Ok(plan) => {
-            let stop = sweep.options.stop;
-            let (system, settings) = (plan.system_unless(stop), plan.settings.clone());
-            let watch = LimitWatch::new(&system);
-            let mut rows = CaseRows { output: &mut output, watch, plan: &plan, system: &system };
-            let (report, outcome) = match state {
-                None => integrate::run(&system, &settings, &mut rows, stop),
-                Some(state) => {
-                    rows.watch.go_on(state.watch);
-                    integrate::resume(&system, &settings, state.run, &mut rows, stop)
-                }
-            };
-            let passed = rows.watch.passed();
-            (
-                report,
-                why_no_ledger(&system, &report),
-                passed,
-                output.metrics(&plan.metrics),
-                outcome.map_err(|error| (Trouble::of(&error, &plan), Some(error))),
-            )
-        }
-    };
-    let (error, interrupted) = match outcome {
-        Ok(()) => (None, false),
-        // What was kept last is what can be gone on from.
-        Err((_, Some(RunError::Output(error)))) => return Err(error),
-        Err((trouble, error)) => (Some(trouble), matches!(error, Some(RunError::Interrupted { .. }))),
-    };
-    let (wall, statistics, events) = (output.wall(), output.statistics.clone(), output.events.clone());
-    let curves = output.close(|output| {
-        if interrupted || output.files.is_none() {
+    let resumed = state.map(|CaseState { run, watch, .. }| Resumed { run, watch });
+    let ran = simulate(sweep.cases, index, (stop, progress), resumed, &mut output)?;
+    let wall = output.wall();
+    let taken = output.close(|output| {
+        if ran.interrupted || output.files.is_none() {
             return Ok(());
         }
-        let (error, no_ledger, limits, metrics) = (error.clone(), no_ledger.clone(), limits.clone(), metrics.clone());
+        let Ran { report, error, no_ledger, limits, metrics, .. } = ran.clone();
         let done = CaseDone { index, written: output.written(), report, error, no_ledger, limits, metrics };
         output.files.take().map_or(Ok(()), |files| files.end(&done, || sweep.sync()))
     })?;
-    rest.write(&output::summary(sweep, index, &statistics), &events.lines, &metrics.lines)?;
-    let events = events.happened;
+    let Taken { statistics, events, kept, .. } = taken;
+    rest.write(&output::summary(sweep, index, &statistics), &events.lines, &ran.metrics.lines)?;
+    let (curves, events) = (kept.and_then(Kept::into_curves), events.happened);
+    let Ran { report, error, interrupted, no_ledger, limits, metrics } = ran;
     Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, events, limits, curves, metrics })
+}
+
+/// Writes a case that came to its end elsewhere.
+fn delivered(sweep: &Sweep, parcel: Parcel, Sections { rows, rest }: Sections) -> io::Result<CaseResult> {
+    let index = parcel.index();
+    let aside = sweep.rows.turn() != index;
+    let files = sweep.options.checkpoints.map(|checkpoints| CaseFiles::begin(checkpoints, index, aside));
+    let mut files = files.transpose()?;
+    let mut kept = Kept::of(sweep.layout, index).map(Kept::without_metrics);
+    let width = kept.as_ref().map_or(0, Kept::width);
+    parcel.hand_over(&lead(sweep.cases, index), width, &mut |text, values| {
+        if let Some(files) = &mut files {
+            files.take(text)?;
+            files.take_kept(values)?;
+        }
+        rows.write(text)
+    })?;
+    if let Some(kept) = &mut kept {
+        parcel.kept(width).for_each(|values| kept.again(values));
+    }
+    let mut done = parcel.done;
+    if let Some(files) = files {
+        (done.written.rows, done.written.kept) = files.written();
+        (done.written.aside, done.written.wall_of_run) = (files.is_aside(), sweep.wall());
+        files.end(&done, || sweep.sync())?;
+    }
+    rows.finish()?;
+    settled(sweep, done, rest, kept)
 }
 
 /// A case that an earlier run brought to its end, and whose rows stand where they belong.
@@ -158,7 +164,6 @@ pub(super) fn ended(sweep: &Sweep, index: usize) -> io::Result<CaseResult> {
 
 /// Writes what an earlier run has of a case that it brought to its end.
 fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<CaseResult> {
-    let lines = output::summary(sweep, done.index, &done.written.statistics);
     let checkpoints = sweep.options.checkpoints.expect("it has the record");
     let rest = match rows {
         Some(Sections { rows, rest }) => {
@@ -168,32 +173,20 @@ fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<Ca
         }
         None => Rest::of(sweep, done.index),
     };
-    rest.write(&lines, &done.written.events.lines, &done.metrics.lines)?;
     let mut kept = Kept::of(sweep.layout, done.index).map(Kept::without_metrics);
     if let Some(kept) = &mut kept {
         checkpoints.kept(done.index, done.written.kept, kept.width(), &mut |values| kept.again(values))?;
     }
+    settled(sweep, done, rest, kept)
+}
+
+/// Writes the lines of a case whose rows are written.
+fn settled(sweep: &Sweep, done: CaseDone, rest: Rest, kept: Option<Kept>) -> io::Result<CaseResult> {
+    let lines = output::summary(sweep, done.index, &done.written.statistics);
+    rest.write(&lines, &done.written.events.lines, &done.metrics.lines)?;
     let curves = kept.and_then(Kept::into_curves);
     let CaseDone { index, written, report, error, no_ledger, limits, metrics } = done;
     sweep.options.progress.rows.fetch_add(report.rows, Ordering::Relaxed);
     let (wall, events) = (written.wall, written.events.happened);
     Ok(CaseResult { index, report, error, interrupted: false, wall, no_ledger, events, limits, curves, metrics })
-}
-
-/// Why a case does not know its energies; `None` where it does.
-fn why_no_ledger(system: &System, report: &Report) -> Option<String> {
-    if report.energy_residual.is_some() {
-        return None;
-    }
-    if report.rows == 0 {
-        return Some("no row was written".into());
-    }
-    if let Some(element) = system.elements.iter().find(|element| element.scheme.is_some()) {
-        return Some(format!("element \"{}\" has a named scheme, which keeps no account of energy", element.name));
-    }
-    let starts = system.element_starts().unwrap_or_default();
-    let singular = system.elements.iter().zip(&starts).find(|(_, start)| start.singular);
-    Some(singular.map_or("an energy is not finite".into(), |(element, _)| {
-        format!("element \"{}\" starts with x(0) != 0 and the Riemann-Liouville derivative", element.name)
-    }))
 }

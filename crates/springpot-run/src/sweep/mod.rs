@@ -9,17 +9,23 @@ mod layout;
 mod limits;
 mod metrics;
 mod output;
+mod parcel;
 mod record;
+mod shard;
+mod simulate;
+mod taken;
 mod wanted;
 
 pub use case::CaseResult;
-pub use checkpoint::{CheckpointError, Checkpoints, Origin, Unfinished};
+pub use checkpoint::{CheckpointError, Checkpoints, MergeError, Origin, Shards, Unfinished};
 pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
 pub use events::Happened;
 pub use kept::CaseCurves;
 pub use layout::Layout;
 pub use limits::{CasesPassing, LimitTally};
 pub use metrics::CaseMetrics;
+pub use parcel::{Parcel, ParcelError, Source};
+pub use shard::Shard;
 pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, Total, is_within};
 pub(crate) use wanted::{Summed, Wanted};
 
@@ -31,14 +37,16 @@ use case::Sections;
 use springpot::integrate::Stop;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Refusals};
+use std::fmt;
 use std::io::{self, Seek as _, SeekFrom, Write as _};
+use std::ops::Range;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How a sweep is carried out.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct Options<'a> {
     /// Cases at a time.
     pub jobs: usize,
@@ -48,6 +56,17 @@ pub struct Options<'a> {
     pub progress: &'a Progress,
     /// Keeps what it takes to go on later, or goes on.
     pub checkpoints: Option<&'a Checkpoints>,
+    /// Has cases that came to their end elsewhere.
+    pub source: Option<&'a dyn Source>,
+    /// The part of the cases that is run; `None`: all.
+    pub shard: Option<Shard>,
+}
+
+impl fmt::Debug for Options<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { jobs, checkpoints, shard, .. } = self;
+        f.debug_struct("Options").field("jobs", jobs).field("checkpoints", checkpoints).field("shard", shard).finish()
+    }
 }
 
 /// How far a run has come, for others to watch.
@@ -115,6 +134,8 @@ pub struct Outcome {
     pub limits: Vec<CasesPassing>,
     /// Number of cases that do not know their ledger, and why the first of them does not.
     pub no_ledger: Option<(usize, String)>,
+    /// The part of the cases that was run; `None`: all.
+    pub shard: Option<Shard>,
     /// Wall time.
     pub wall: Duration,
 }
@@ -141,10 +162,11 @@ pub enum SweepError {
 /// # Errors
 /// [`SweepError::Output`] where the folder cannot be written; the complete rows that were written stay in `results.csv.part`.
 pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options) -> Result<Outcome, SweepError> {
-    let jobs = options.jobs.clamp(1, cases.len().max(1));
-    let sweep = Sweep::open(cases, layout, folder, options, jobs)?;
+    let Range { start, end } = options.shard.map_or(0..cases.len(), |shard| shard.cases(cases.len()));
+    let jobs = options.jobs.clamp(1, (end - start).max(1));
+    let sweep = Sweep::open(cases, layout, folder, options, (start, jobs))?;
     let mut tally = Tally::default();
-    for index in 0..sweep.first {
+    for index in start..sweep.first {
         tally.take(case::ended(&sweep, index)?);
     }
 
@@ -154,7 +176,7 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
     let work = || -> io::Result<()> {
         while !stopped() {
             let index = next.fetch_add(1, Ordering::Relaxed);
-            if index >= cases.len() {
+            if index >= end {
                 break;
             }
             let sections = Sections::of(&sweep, index);
@@ -184,7 +206,7 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
 
     let mut tally = tally.into_inner().unwrap_or_else(PoisonError::into_inner);
     tally.cases.sort_by_key(|case| case.index);
-    let status = if stopped() && tally.done + tally.failed < cases.len() {
+    let status = if stopped() && tally.done + tally.failed < end - start {
         Status::Interrupted
     } else if tally.failed > 0 {
         Status::Failed
@@ -205,6 +227,7 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         events: tally.events,
         limits: tally.limits.passing(),
         no_ledger: tally.no_ledger.map(|(count, _, why)| (count, why)),
+        shard: options.shard,
         wall: sweep.wall(),
     })
 }
@@ -235,7 +258,7 @@ impl<'a> Sweep<'a> {
         layout: &'a Layout,
         folder: &mut Folder,
         options: Options<'a>,
-        jobs: usize,
+        (start, jobs): (usize, usize),
     ) -> io::Result<Self> {
         let begun = Instant::now();
         let first = options.checkpoints.and_then(Checkpoints::first);
@@ -246,14 +269,14 @@ impl<'a> Sweep<'a> {
         } else {
             let mut events = folder.create_events()?;
             events.write_all(header(&layout.event_columns()).as_bytes())?;
-            Some(Ordered::new(events, usize::MAX))
+            Some(Ordered::new(events, usize::MAX).from_case(start))
         };
         let metrics = if layout.metrics().is_empty() {
             None
         } else {
             let mut metrics = folder.create_metrics()?;
             metrics.write_all(header(&layout.metric_columns()).as_bytes())?;
-            Some(Ordered::new(metrics, usize::MAX))
+            Some(Ordered::new(metrics, usize::MAX).from_case(start))
         };
         let rows = if first.is_some() {
             let mut rows = folder.reopen_rows()?;
@@ -268,7 +291,7 @@ impl<'a> Sweep<'a> {
             }
             rows
         };
-        let first = first.unwrap_or(0);
+        let first = first.unwrap_or(start);
         Ok(Self {
             cases,
             layout,
@@ -276,12 +299,13 @@ impl<'a> Sweep<'a> {
             file: rows.try_clone()?,
             rows: Ordered::new(rows, 4 * jobs + 16).from_case(first),
             // It begins with the cases that have ended.
-            summary: Ordered::new(summary, usize::MAX),
+            summary: Ordered::new(summary, usize::MAX).from_case(start),
             events,
             metrics,
             first,
             begun,
-            earlier_wall: options.checkpoints.map_or(Duration::ZERO, Checkpoints::earlier_wall),
+            earlier_wall: options.checkpoints.map_or(Duration::ZERO, Checkpoints::earlier_wall)
+                + options.source.map_or(Duration::ZERO, Source::wall),
         })
     }
 

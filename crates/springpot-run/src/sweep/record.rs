@@ -5,6 +5,7 @@ use super::{CaseResult, Happened, MAX_LISTED, Outcome};
 use crate::table::Format;
 use serde_json::{Map, Value, json};
 use springpot_scenario::{Cases, Plan, SweptValue};
+use std::ops::Range;
 
 impl Outcome {
     /// run.json: how it ended, what was run (the first case, as resolved), what the columns are, what every case did, the format of
@@ -49,6 +50,11 @@ impl Outcome {
             Value::Object(mut map) => {
                 if !layout.events().is_empty() {
                     map.insert("events".to_owned(), counts(layout, &self.events));
+                }
+                if let Some(shard) = self.shard {
+                    let Range { start, end } = shard.cases(cases.len());
+                    let part = json!({ "number": shard.number(), "count": shard.count(), "cases": [start, end] });
+                    map.insert("shard".to_owned(), part);
                 }
                 if let Some(iterations) = self.newton_iterations {
                     map.insert("newton_iterations".to_owned(), iterations.into());

@@ -186,12 +186,17 @@ impl Journal {
 
     /// The record at a place that [`Recorded::read`] told.
     pub(crate) fn record(&self, at: u64) -> Result<Vec<u8>, SealError> {
-        let mut file = self.disk.open(&self.path)?;
-        file.seek(SeekFrom::Start(at))?;
-        match take_record(&mut file)? {
-            Taken::Record(record) => Ok(record),
-            _ => Err(SealError::Damaged),
-        }
+        record(&self.disk, &self.path, at)
+    }
+}
+
+/// The record of a journal at a place that [`Recorded::read`] told.
+pub(crate) fn record(disk: &Disk, path: &Path, at: u64) -> Result<Vec<u8>, SealError> {
+    let mut file = disk.open(path)?;
+    file.seek(SeekFrom::Start(at))?;
+    match take_record(&mut file)? {
+        Taken::Record(record) => Ok(record),
+        _ => Err(SealError::Damaged),
     }
 }
 

@@ -152,21 +152,32 @@ impl Checkpoints {
         columns: usize,
         take: &mut dyn FnMut(&[f64]),
     ) -> io::Result<()> {
-        let rows = if columns == 0 { 0 } else { kept.bytes / (8 * columns as u64) };
-        if rows == 0 {
-            return Ok(());
-        }
-        let mut file = io::BufReader::new(self.disk.open(&self.file(case, ".kept"))?);
-        let (mut bytes, mut values) = (vec![0; 8 * columns], vec![0.0; columns]);
-        for _ in 0..rows {
-            file.read_exact(&mut bytes)?;
-            for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
-                *value = f64::from_le_bytes(*bytes);
-            }
-            take(&values);
-        }
-        Ok(())
+        read_kept(&self.disk, &self.file(case, ".kept"), kept, columns, take)
     }
+}
+
+/// Hands over the values at the beginning of a file of kept ones, `columns` of each row, row by row.
+pub(super) fn read_kept(
+    disk: &Disk,
+    file: &Path,
+    kept: Stretch,
+    columns: usize,
+    take: &mut dyn FnMut(&[f64]),
+) -> io::Result<()> {
+    let rows = if columns == 0 { 0 } else { kept.bytes / (8 * columns as u64) };
+    if rows == 0 {
+        return Ok(());
+    }
+    let mut file = io::BufReader::new(disk.open(file)?);
+    let (mut bytes, mut values) = (vec![0; 8 * columns], vec![0.0; columns]);
+    for _ in 0..rows {
+        file.read_exact(&mut bytes)?;
+        for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
+            *value = f64::from_le_bytes(*bytes);
+        }
+        take(&values);
+    }
+    Ok(())
 }
 
 /// A file that is to grow from its first `bytes` on.

@@ -8,21 +8,23 @@
 
 mod error;
 mod files;
+mod merge;
 mod record;
 mod rows;
 
 pub use error::CheckpointError;
+pub use merge::{MergeError, Shards};
 pub use record::Origin;
 
 pub(super) use files::CaseFiles;
-pub(super) use record::{CaseDone, CaseState, Written};
+pub(super) use record::{CaseDone, CaseState, Stretch, Written, bytes, value};
 
 use super::layout::Layout;
 use crate::table::disk::Disk;
 use crate::table::folder::{CASE, Folder, HEAD, JOURNAL, Targets, checkpoint_folder};
 use crate::table::sealed::{self, CHECKPOINT, Journal, Recorded, SealError};
 use error::at;
-use record::{Head, Stretch, bytes, digest, digest_of, value};
+use record::{Head, digest, digest_of};
 use springpot::integrate::System;
 use springpot_scenario::{Cases, Plan};
 use std::collections::BTreeMap;
@@ -62,6 +64,22 @@ struct Earlier {
     first: Option<usize>,
     done: BTreeMap<usize, Ended>,
     wall: Duration,
+}
+
+impl Earlier {
+    /// Reads the journal of the cases that have ended.
+    fn read(disk: &Disk, results: &Path) -> Result<(Self, Recorded), CheckpointError> {
+        let (mut earlier, file) = (Self::default(), checkpoint_folder(results).join(JOURNAL));
+        let journal = Recorded::read(disk, &file, &mut |at, record| {
+            let CaseDone { index, written, .. } = value(record)?;
+            earlier.wall = earlier.wall.max(written.wall_of_run);
+            let Written { rows, aside, kept, .. } = written;
+            earlier.done.insert(index, Ended { at, rows, aside, kept });
+            Ok(())
+        });
+        let journal = journal.map_err(|error| CheckpointError::of(&file, error))?;
+        Ok((earlier, journal))
+    }
 }
 
 /// Where to find the record of a case, and how far it has written.
@@ -133,18 +151,11 @@ impl Unfinished {
         if head.cases != cases.len() || head.digest != digest(plan, system) {
             return Err(changed(&head));
         }
-        let mut earlier = Earlier::default();
+        let (mut earlier, journal) = Earlier::read(&disk, &results)?;
         let file = checkpoint_folder(&results).join(JOURNAL);
-        let journal = Recorded::read(&disk, &file, &mut |at, record| {
-            let CaseDone { index, written, .. } = value(record)?;
-            earlier.wall = earlier.wall.max(written.wall_of_run);
-            let Written { rows, aside, kept, .. } = written;
-            earlier.done.insert(index, Ended { at, rows, aside, kept });
-            Ok(())
-        });
-        let journal = journal.map_err(|error| CheckpointError::of(&file, error))?;
         let (mut states, outdated) = under_way(&disk, &results, &head, cases, &mut earlier)?;
-        let sound = rows::survey(&folder, &mut earlier, &mut states, layout)?;
+        let start = head.origin.cases(cases.len()).start;
+        let sound = rows::survey(&folder, &mut earlier, &mut states, (start, layout))?;
 
         folder.go_on(targets)?;
         rows::restore(&folder, &sound, layout).map_err(at(&results))?;
@@ -198,7 +209,7 @@ fn under_way(
 }
 
 fn changed(head: &Head) -> CheckpointError {
-    CheckpointError::OtherScenario { what: format!("a file that {} names", head.origin.typed) }
+    CheckpointError::OtherScenario { what: format!("a file that {} names", head.origin.asked.name) }
 }
 
 impl Checkpoints {

@@ -1,38 +1,41 @@
 //! What a checkpoint holds, as it is written.
 
+use crate::asked::Asked;
 use crate::sweep::events::CaseEvents;
 use crate::sweep::metrics::CaseMetrics;
+use crate::sweep::shard::Shard;
 use crate::table::sealed::SealError;
 use crate::table::{Format, Statistics};
 use crate::trouble::Trouble;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use springpot::integrate::{Checkpoint, PassedLimit, Report, Stop, System, Watch};
-use springpot_scenario::{Cases, Plan, RefusalKind, Scenario};
+use springpot_scenario::{Cases, Plan};
 use std::fmt::{self, Write as _};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::ops::Range;
 use std::time::Duration;
 
 /// Where a run comes from: all that its command said.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
-    /// The scenario's file as it was typed.
-    pub typed: String,
-    /// The same from the root of the file system.
-    pub file: PathBuf,
-    /// Its text.
-    pub text: String,
-    /// The values that were set, `PATH=VALUE`.
-    pub overrides: Vec<String>,
-    /// The parameters that were swept, `PATH=v1,v2,…`.
-    pub sweeps: Vec<String>,
+    /// The scenario, and what was set and swept.
+    pub asked: Asked,
     /// Whether figures are drawn.
     pub figures: bool,
-    /// Simulated time from one checkpoint to the next, s.
+    /// Simulated time from one checkpoint to the next, s; infinite where a case has none before its end.
     pub every: f64,
     /// The format of the rows at the end.
     pub format: Format,
+    /// The part of the cases that is run; `None`: all.
+    pub shard: Option<Shard>,
+}
+
+impl Origin {
+    /// The cases that are run, of `all`.
+    pub fn cases(&self, all: usize) -> Range<usize> {
+        self.shard.map_or(0..all, |shard| shard.cases(all))
+    }
 }
 
 /// What all cases share.
@@ -102,45 +105,6 @@ pub(in crate::sweep) struct CaseDone {
     pub(in crate::sweep) metrics: CaseMetrics,
 }
 
-impl Origin {
-    /// The origin of a run of `scenario`, read from `file`, with nothing set or swept.
-    ///
-    /// # Errors
-    /// The file system's, where the file is gone.
-    pub fn of(file: &Path, scenario: &Scenario, figures: bool, every: f64) -> io::Result<Self> {
-        Ok(Self {
-            typed: file.display().to_string(),
-            file: file.canonicalize()?,
-            text: scenario.source().text.to_string(),
-            overrides: Vec::new(),
-            sweeps: Vec::new(),
-            figures,
-            every,
-            format: Format::Csv,
-        })
-    }
-
-    /// The scenario; `None` where its file says something else by now. A file that is gone does not matter.
-    ///
-    /// # Errors
-    /// As [`Scenario::parse`] and [`Scenario::set`].
-    pub fn scenario(&self) -> Result<Option<Scenario>, springpot_scenario::Refusals> {
-        match Scenario::read(&self.file) {
-            Ok(now) if *now.source().text != *self.text => return Ok(None),
-            Err(refusals) if refusals.iter().any(|refusal| refusal.kind != RefusalKind::File) => return Ok(None),
-            _ => {}
-        }
-        // As typed, where that still leads there: messages then name files as those of the first command did.
-        let typed = Path::new(&self.typed);
-        let same = typed.canonicalize().is_ok_and(|file| file == self.file);
-        let folder = if same { typed } else { &self.file }.parent().unwrap_or(Path::new(""));
-        let mut scenario = Scenario::parse(&self.text, &*self.typed, folder)?;
-        self.overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
-        self.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
-        Ok(Some(scenario))
-    }
-}
-
 /// CRC-32 of formatted text.
 struct TextSum(crc32fast::Hasher);
 
@@ -168,12 +132,12 @@ pub(super) fn digest_of(cases: &Cases, index: usize) -> Option<u32> {
 }
 
 /// Bytes that hold every number to the bit.
-pub(super) fn bytes(value: &impl Serialize) -> io::Result<Vec<u8>> {
+pub(in crate::sweep) fn bytes(value: &impl Serialize) -> io::Result<Vec<u8>> {
     postcard::to_stdvec(value).map_err(io::Error::other)
 }
 
 /// What [`bytes`] were made from.
-pub(super) fn value<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, SealError> {
+pub(in crate::sweep) fn value<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, SealError> {
     match postcard::take_from_bytes(bytes) {
         Ok((value, [])) => Ok(value),
         _ => Err(SealError::Damaged),

@@ -14,16 +14,16 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(super) struct Sound {
     /// The file that holds them; `None` where there is none.
-    file: Option<PathBuf>,
+    pub(super) file: Option<PathBuf>,
     /// The first case that has not ended.
-    first: usize,
+    pub(super) first: usize,
     /// Bytes of the file that are sound, its header included.
     bytes: u64,
     /// Cases that are to follow from what was kept aside.
-    missing: Vec<(usize, Stretch)>,
+    pub(super) missing: Vec<(usize, Stretch)>,
 }
 
-/// Looks for the cases that have ended, up to the first that has not, and for the rows of that one; what else was known of later cases and
+/// Looks for the cases from `start` that have ended, up to the first that has not, and for the rows of that one; what else was known of later cases and
 /// is no longer whole is forgotten, so that they run again.
 ///
 /// The rows of a run are always the same, and are written in the order of the cases: what the file holds is their beginning,
@@ -34,7 +34,7 @@ pub(super) fn survey(
     folder: &Folder,
     earlier: &mut Earlier,
     states: &mut BTreeMap<usize, CaseState>,
-    layout: &Layout,
+    (start, layout): (usize, &Layout),
 ) -> Result<Sound, CheckpointError> {
     let (disk, results) = (folder.disk(), folder.path());
     let header = crate::sweep::header(layout.written());
@@ -48,7 +48,7 @@ pub(super) fn survey(
     let candidates = there.iter().cloned().map(Some).chain(there.is_empty().then_some(None));
     for file in candidates {
         let shown = file.clone().unwrap_or(results.to_owned());
-        let found = in_file(disk, results, file, header.as_bytes(), earlier, states).map_err(at(&shown))?;
+        let found = in_file((disk, results), file, (start, header.as_bytes()), earlier, states).map_err(at(&shown))?;
         let better = |found: &Sound, best: &Sound| (found.first, found.bytes) > (best.first, best.bytes);
         if let Some(found) = found
             && best.as_ref().is_none_or(|best| better(&found, best))
@@ -93,10 +93,9 @@ pub(super) fn survey(
 
 /// What is sound in one file; `None` where its rows are not those of the checkpoint.
 fn in_file(
-    disk: &Disk,
-    results: &Path,
+    (disk, results): (&Disk, &Path),
     file: Option<PathBuf>,
-    header: &[u8],
+    (start, header): (usize, &[u8]),
     earlier: &Earlier,
     states: &BTreeMap<usize, CaseState>,
 ) -> io::Result<Option<Sound>> {
@@ -115,14 +114,14 @@ fn in_file(
         rows = Box::new(io::empty());
     }
     let is_aside = |case: usize, stretch: Stretch| holds(disk, &file_of(results, case, ".rows"), stretch);
-    let mut sound = Sound { file, first: 0, bytes: header.len() as u64, missing: Vec::new() };
+    let mut sound = Sound { file, first: start, bytes: header.len() as u64, missing: Vec::new() };
     while let Some(ended) = earlier.done.get(&sound.first) {
         let found = if sound.missing.is_empty() { compare(&mut rows, ended.rows)? } else { Found::Torn };
         if found == Found::Same {
             sound.bytes += ended.rows.bytes;
         } else if ended.aside && is_aside(sound.first, ended.rows)? {
             sound.missing.push((sound.first, ended.rows));
-        } else if found == Found::Other && sound.first == 0 {
+        } else if found == Found::Other && sound.first == start {
             return Ok(None);
         } else {
             break;
@@ -236,7 +235,7 @@ pub(super) fn copy_aside(
     copy(disk.open(file)?, stretch.bytes, take)
 }
 
-fn copy(from: DiskFile, bytes: u64, take: &mut dyn FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
+pub(super) fn copy(from: DiskFile, bytes: u64, take: &mut dyn FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
     let (mut from, mut piece) = (from.take(bytes), vec![0; 1 << 16]);
     while from.limit() > 0 {
         match from.read(&mut piece) {

@@ -1,0 +1,233 @@
+//! A case that has come to its end, whole: what another process hands over, and what a run in memory keeps.
+
+use super::checkpoint::{CaseDone, Stretch, Written, bytes, value};
+use super::layout::Layout;
+use super::metrics::CaseMetrics;
+use super::simulate::{Ran, Sink, simulate};
+use super::taken::{Taken, push_row};
+use super::{Progress, events::Happened};
+use crate::table::Statistics;
+use crate::table::sealed::{CHECKPOINT, SealError};
+use crate::trouble::Trouble;
+use serde::{Deserialize, Serialize};
+use springpot::integrate::{Checkpoint, PassedLimit, Report, Stop, System, Watch};
+use springpot_scenario::{Cases, MetricPlan, Plan};
+use std::io;
+use std::time::{Duration, Instant};
+
+/// Text is handed over at about this size.
+const CHUNK: usize = 1 << 16;
+
+/// A case that has come to its end, with all that a run writes of it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Parcel {
+    pub(super) done: CaseDone,
+    rows: ParcelRows,
+    /// Its values that are kept for figures, row by row.
+    kept: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+enum ParcelRows {
+    /// As they stand in the file.
+    Text(Vec<u8>),
+    /// One for each selected column; NaN where a cell is empty.
+    Columns(Vec<Vec<f64>>),
+}
+
+/// Where cases are found that have come to their end elsewhere.
+pub trait Source: Sync {
+    /// Case `index`; `None` where it is to be run here. Each case is asked for once, in order where one job runs.
+    ///
+    /// # Errors
+    /// What keeps the whole run from going on.
+    fn case(&self, index: usize) -> io::Result<Option<Parcel>>;
+
+    /// Wall time that was spent elsewhere.
+    fn wall(&self) -> Duration {
+        Duration::ZERO
+    }
+}
+
+/// Why bytes are no parcel.
+#[derive(Debug, thiserror::Error)]
+pub enum ParcelError {
+    /// Another version or build of Springpot wrote them.
+    #[error("a case was computed by {theirs:?}, this is {ours:?}: all processes must run the same build")]
+    OtherBuild {
+        /// Who wrote it.
+        theirs: String,
+        /// Who reads it.
+        ours: String,
+    },
+    /// They are damaged.
+    #[error("a case that was handed over is damaged")]
+    Damaged,
+}
+
+impl Parcel {
+    /// Runs case `index` of `cases` into memory; `None` where it was interrupted.
+    ///
+    /// A case that fails is a parcel too: with its rows up to there, and [`Self::error`].
+    ///
+    /// # Panics
+    /// Never: memory takes all rows.
+    pub fn run(cases: &Cases, layout: &Layout, index: usize, stop: &Stop, progress: &Progress) -> Option<Self> {
+        let begun = Instant::now();
+        let taken = Taken::of(cases, layout, index);
+        let columns = vec![Vec::new(); taken.selected.len()];
+        let mut sink = Memory { taken, columns, kept: Vec::new() };
+        let ran = simulate(cases, index, (stop, progress), None, &mut sink).expect("memory takes all rows");
+        if ran.interrupted {
+            return None;
+        }
+        let Ran { report, error, no_ledger, limits, metrics, .. } = ran;
+        let Memory { taken: Taken { statistics, events, .. }, columns, kept } = sink;
+        let (rows, wall) = (Stretch::default(), begun.elapsed());
+        let written = Written { rows, aside: false, kept: rows, statistics, events, wall, wall_of_run: wall };
+        let done = CaseDone { index, written, report, error, no_ledger, limits, metrics };
+        Some(Self { done, rows: ParcelRows::Columns(columns), kept })
+    }
+
+    /// A case whose rows are known as text.
+    pub(super) fn of_text(done: CaseDone, rows: Vec<u8>, kept: Vec<f64>) -> Self {
+        Self { done, rows: ParcelRows::Text(rows), kept }
+    }
+
+    /// Bytes that hold every number to the bit.
+    ///
+    /// # Errors
+    /// More than memory holds.
+    pub fn to_bytes(&self) -> io::Result<Vec<u8>> {
+        Ok([CHECKPOINT.as_bytes(), &bytes(self)?].concat())
+    }
+
+    /// What [`Self::to_bytes`] made, in this process or in another one of the same build.
+    ///
+    /// # Errors
+    /// [`ParcelError`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ParcelError> {
+        let Some(rest) = bytes.strip_prefix(CHECKPOINT.as_bytes()) else {
+            let theirs = crate::table::sealed::first_line(bytes).ok_or(ParcelError::Damaged)?.to_owned();
+            return Err(ParcelError::OtherBuild { theirs, ours: CHECKPOINT.trim_end().to_owned() });
+        };
+        value(rest).map_err(|_: SealError| ParcelError::Damaged)
+    }
+
+    /// Index in the grid.
+    pub fn index(&self) -> usize {
+        self.done.index
+    }
+
+    /// Steps, rows, energy.
+    pub fn report(&self) -> &Report {
+        &self.done.report
+    }
+
+    /// Why it stopped early.
+    pub fn error(&self) -> Option<&Trouble> {
+        self.done.error.as_ref()
+    }
+
+    /// Why its energy ledger is not known; `None` where it is.
+    pub fn no_ledger(&self) -> Option<&str> {
+        self.done.no_ledger.as_deref()
+    }
+
+    /// The limits of joints that it passes.
+    pub fn limits(&self) -> &[PassedLimit] {
+        &self.done.limits
+    }
+
+    /// What its metrics are.
+    pub fn metrics(&self) -> &CaseMetrics {
+        &self.done.metrics
+    }
+
+    /// Its lines in events.csv, and how often each event happened.
+    pub fn events(&self) -> (&str, &Happened) {
+        (&self.done.written.events.lines, &self.done.written.events.happened)
+    }
+
+    /// Statistics of the selected columns.
+    pub fn statistics(&self) -> &[Statistics] {
+        &self.done.written.statistics
+    }
+
+    /// Wall time.
+    pub fn wall(&self) -> Duration {
+        self.done.written.wall
+    }
+
+    /// Its rows, column by column as [`Layout::written`] has them behind the swept parameters; NaN where a cell is empty. `None` where they are known as text.
+    pub fn columns(&self) -> Option<&[Vec<f64>]> {
+        match &self.rows {
+            ParcelRows::Columns(columns) => Some(columns),
+            ParcelRows::Text(_) => None,
+        }
+    }
+
+    /// Hands over its rows as they stand in results.csv, and with each piece the values kept for figures that belong to it or to an earlier one.
+    pub(super) fn hand_over(
+        &self,
+        lead: &str,
+        width: usize,
+        take: &mut dyn FnMut(&[u8], &[f64]) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let columns = match &self.rows {
+            ParcelRows::Text(text) => return take(text, &self.kept),
+            ParcelRows::Columns(columns) => columns,
+        };
+        let (mut text, mut from) = (String::with_capacity(2 * CHUNK), 0);
+        let rows = columns.first().map_or(0, Vec::len);
+        for row in 0..rows {
+            push_row(&mut text, lead, columns.iter().map(|column| column[row]));
+            if text.len() >= CHUNK || row + 1 == rows {
+                let kept = if width == 0 { &[][..] } else { &self.kept[from * width..(row + 1) * width] };
+                take(text.as_bytes(), kept)?;
+                text.clear();
+                from = row + 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// The values that it keeps for figures, `width` of each row.
+    pub(super) fn kept(&self, width: usize) -> impl Iterator<Item = &[f64]> {
+        self.kept.chunks_exact(width.max(1))
+    }
+}
+
+/// Rows that stay in memory.
+struct Memory<'a> {
+    taken: Taken<'a>,
+    columns: Vec<Vec<f64>>,
+    kept: Vec<f64>,
+}
+
+impl Sink for Memory<'_> {
+    fn row(&mut self, row: &[f64]) -> io::Result<()> {
+        for (column, &k) in self.columns.iter_mut().zip(&self.taken.selected) {
+            // As a file has it: an infinity is an empty cell.
+            column.push(if row[k].is_finite() { row[k] } else { f64::NAN });
+        }
+        self.kept.extend_from_slice(self.taken.row(row));
+        Ok(())
+    }
+
+    fn event(&mut self, system: &System, event: usize, row: &[f64]) {
+        self.taken.event(system, event, row);
+    }
+
+    fn is_due(&self, _t: f64, _last: bool) -> bool {
+        false
+    }
+
+    fn keep(&mut self, _plan: &Plan, _system: &System, _watch: Watch, _run: Checkpoint) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn metrics(&self, plans: &[MetricPlan]) -> CaseMetrics {
+        self.taken.metrics(plans)
+    }
+}

@@ -1,0 +1,142 @@
+//! The run of one case, wherever its rows go.
+
+use super::Progress;
+use super::metrics::CaseMetrics;
+use crate::trouble::Trouble;
+use springpot::integrate::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, RunError, Stop, System, Watch};
+use springpot_scenario::{Cases, MetricPlan, Plan};
+use std::io;
+use std::sync::atomic::Ordering;
+
+/// Takes the rows of a case.
+pub(super) trait Sink {
+    fn row(&mut self, row: &[f64]) -> io::Result<()>;
+
+    /// Takes the row of an event.
+    fn event(&mut self, system: &System, event: usize, row: &[f64]);
+
+    /// Whether a checkpoint is wanted at t, which is the last one or not.
+    fn is_due(&self, t: f64, last: bool) -> bool;
+
+    /// Keeps what it takes to go on.
+    fn keep(&mut self, plan: &Plan, system: &System, watch: Watch, run: Checkpoint) -> io::Result<()>;
+
+    /// What the metrics are of the rows so far.
+    fn metrics(&self, plans: &[MetricPlan]) -> CaseMetrics;
+}
+
+/// Where an earlier run left a case.
+pub(super) struct Resumed {
+    pub(super) run: Checkpoint,
+    pub(super) watch: Watch,
+}
+
+/// What a case did, but for its rows.
+#[derive(Debug, Clone)]
+pub(super) struct Ran {
+    pub(super) report: Report,
+    pub(super) error: Option<Trouble>,
+    pub(super) interrupted: bool,
+    pub(super) no_ledger: Option<String>,
+    pub(super) limits: Vec<PassedLimit>,
+    pub(super) metrics: CaseMetrics,
+}
+
+/// Runs case `index`, or goes on with it.
+///
+/// # Errors
+/// What keeps rows from being taken; that of the case itself is in the result.
+pub(super) fn simulate(
+    cases: &Cases,
+    index: usize,
+    (stop, progress): (&Stop, &Progress),
+    resumed: Option<Resumed>,
+    sink: &mut dyn Sink,
+) -> io::Result<Ran> {
+    let plan = match cases.plan(index) {
+        Ok(plan) => plan,
+        Err(refusals) => {
+            let error = Some(Trouble { message: refusals.to_string(), ..Trouble::default() });
+            return Ok(Ran {
+                report: Report::default(),
+                error,
+                interrupted: false,
+                no_ledger: Some("no row was written".into()),
+                limits: Vec::new(),
+                metrics: CaseMetrics::default(),
+            });
+        }
+    };
+    let (system, settings) = (plan.system_unless(stop), plan.settings.clone());
+    let watch = LimitWatch::new(&system);
+    let mut rows = CaseRows { sink, progress, watch, plan: &plan, system: &system };
+    let (report, outcome) = match resumed {
+        None => integrate::run(&system, &settings, &mut rows, stop),
+        Some(Resumed { run, watch }) => {
+            rows.watch.go_on(watch);
+            integrate::resume(&system, &settings, run, &mut rows, stop)
+        }
+    };
+    let limits = rows.watch.passed();
+    let (error, interrupted) = match outcome {
+        Ok(()) => (None, false),
+        // What was kept last is what can be gone on from.
+        Err(RunError::Output(error)) => return Err(error),
+        Err(error) => (Some(Trouble::of(&error, &plan)), matches!(error, RunError::Interrupted { .. })),
+    };
+    let (no_ledger, metrics) = (why_no_ledger(&system, &report), sink.metrics(&plan.metrics));
+    Ok(Ran { report, error, interrupted, no_ledger, limits, metrics })
+}
+
+/// The rows of a case whose plan is known.
+struct CaseRows<'a> {
+    sink: &'a mut dyn Sink,
+    progress: &'a Progress,
+    watch: LimitWatch,
+    plan: &'a Plan,
+    system: &'a System,
+}
+
+impl Rows for CaseRows<'_> {
+    fn row(&mut self, row: &[f64]) -> io::Result<()> {
+        self.watch.see(row);
+        self.progress.rows.fetch_add(1, Ordering::Relaxed);
+        self.sink.row(row)
+    }
+
+    fn event(&mut self, event: usize, row: &[f64]) -> io::Result<()> {
+        self.sink.event(self.system, event, row);
+        Ok(())
+    }
+
+    fn looked_ahead(&mut self, switches: u64) {
+        self.progress.switches.fetch_max(switches, Ordering::Relaxed);
+    }
+
+    fn wants_checkpoint(&mut self, t: f64, last: bool) -> bool {
+        self.progress.reach(t);
+        self.sink.is_due(t, last)
+    }
+
+    fn checkpoint(&mut self, run: Checkpoint) -> io::Result<()> {
+        self.sink.keep(self.plan, self.system, self.watch.seen(), run)
+    }
+}
+
+/// Why a case does not know its energies; `None` where it does.
+fn why_no_ledger(system: &System, report: &Report) -> Option<String> {
+    if report.energy_residual.is_some() {
+        return None;
+    }
+    if report.rows == 0 {
+        return Some("no row was written".into());
+    }
+    if let Some(element) = system.elements.iter().find(|element| element.scheme.is_some()) {
+        return Some(format!("element \"{}\" has a named scheme, which keeps no account of energy", element.name));
+    }
+    let starts = system.element_starts().unwrap_or_default();
+    let singular = system.elements.iter().zip(&starts).find(|(_, start)| start.singular);
+    Some(singular.map_or("an energy is not finite".into(), |(element, _)| {
+        format!("element \"{}\" starts with x(0) != 0 and the Riemann-Liouville derivative", element.name)
+    }))
+}

@@ -1,0 +1,76 @@
+//! What is taken of the rows of a case, wherever they go.
+
+use super::Layout;
+use super::events::CaseEvents;
+use super::kept::Kept;
+use super::metrics::CaseMetrics;
+use crate::table::{Statistics, push_fields, push_number, push_text};
+use springpot::integrate::System;
+use springpot_scenario::{Cases, MetricPlan, SweptValue};
+
+/// Statistics, events, and what figures and metrics keep of a case.
+#[derive(Debug)]
+pub(super) struct Taken<'a> {
+    layout: &'a Layout,
+    /// The swept values, which begin every row.
+    pub(super) lead: String,
+    pub(super) selected: Vec<usize>,
+    pub(super) statistics: Vec<Statistics>,
+    pub(super) events: CaseEvents,
+    pub(super) kept: Option<Kept<'a>>,
+}
+
+impl<'a> Taken<'a> {
+    /// Nothing yet of case `index`.
+    pub(super) fn of(cases: &Cases, layout: &'a Layout, index: usize) -> Self {
+        let selected: Vec<usize> = layout.selected().map(|(k, _)| k).collect();
+        Self {
+            layout,
+            lead: lead(cases, index),
+            statistics: vec![Statistics::default(); selected.len()],
+            events: CaseEvents::default(),
+            selected,
+            kept: Kept::of(layout, index),
+        }
+    }
+
+    /// Takes a row; returns its values that figures and metrics keep.
+    pub(super) fn row(&mut self, row: &[f64]) -> &[f64] {
+        for (statistics, &k) in self.statistics.iter_mut().zip(&self.selected) {
+            statistics.add(row[k]);
+        }
+        self.kept.as_mut().map_or(&[], |kept| kept.row(row))
+    }
+
+    /// Takes the row of an event.
+    pub(super) fn event(&mut self, system: &System, event: usize, row: &[f64]) {
+        self.events.take(system, &self.lead, event, row);
+    }
+
+    /// What the metrics are of the rows so far.
+    pub(super) fn metrics(&self, plans: &[MetricPlan]) -> CaseMetrics {
+        let kept = self.kept.as_ref();
+        kept.map_or_else(CaseMetrics::default, |kept| kept.metrics(self.layout, plans, &self.lead))
+    }
+}
+
+/// The swept values of a case, each with its comma.
+pub(super) fn lead(cases: &Cases, index: usize) -> String {
+    let mut lead = String::new();
+    for value in cases.values(index) {
+        match value {
+            SweptValue::Number(number) => push_number(&mut lead, number),
+            SweptValue::Text(text) => push_text(&mut lead, &text),
+        }
+        lead.push(',');
+    }
+    lead
+}
+
+/// One row of results.csv: the swept values, then the others.
+pub(super) fn push_row(text: &mut String, lead: &str, mut values: impl Iterator<Item = f64>) {
+    text.push_str(lead);
+    push_number(text, values.next().unwrap_or(f64::NAN));
+    push_fields(text, values);
+    text.push('\n');
+}
