@@ -8,9 +8,10 @@ use super::keys::SIGNAL;
 use super::names;
 use super::plan::{Plan, SignalPlan};
 use super::reader::{Context, Field, Read, Refused, all};
-use super::refusal::RefusalKind;
+use super::refusal::{Place, RefusalKind};
 use super::signals::{self, Wanted};
 use springpot::control::{Control, Feedback, InputFeedback, Sampling, Sense, TorqueFeedback};
+use springpot::integrate::Settings;
 use springpot::law::Range;
 use springpot::observe::Axis;
 use springpot::signal::expression::ExpressionError;
@@ -86,10 +87,14 @@ fn table(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
     Ok(in_place_of_signal(field, wanted.range, text))
 }
 
-/// The signal counts for nothing, but must be one that its place takes.
+/// What a temperature is before the first sample, K: its range has no 0.
+const ROOM: f64 = 293.15;
+
+/// The signal counts for nothing, but before the first sample; it must be one that its place takes.
 fn in_place_of_signal(field: &Field<'_>, range: Range, text: FeedbackText) -> SignalPlan {
+    let before = if range.low > 0.0 { ROOM } else { 0.0 };
     SignalPlan {
-        signal: Signal::constant(0.0f64.clamp(range.low, range.high)),
+        signal: Signal::constant(before.clamp(range.low, range.high)),
         constant: None,
         written: field.node.place.text().to_owned(),
         place: field.node.place.clone(),
@@ -141,6 +146,9 @@ pub(crate) fn settle(ctx: &Context<'_>, plan: &Plan) -> Read<Control> {
     });
     let inputs: Vec<_> = inputs.collect();
     let torques = plan.motion.feedback();
+    if let Some((place, period)) = plan.motion.controller_sample() {
+        check_sample(ctx, place, "[motion.controller]", period, &plan.settings)?;
+    }
     if inputs.is_empty() && torques.is_empty() {
         return Ok(Control::default());
     }
@@ -152,13 +160,48 @@ pub(crate) fn settle(ctx: &Context<'_>, plan: &Plan) -> Read<Control> {
     let senses = senses(plan);
     let inputs = all(inputs.into_iter().map(|((element, input), text)| {
         let (law, sampling) = text.made(ctx, &senses)?;
+        if plan.elements[element].element.law.stretched_by() == Some(input) {
+            text.check_stretch(ctx, &law, &plan.settings)?;
+        }
         Ok(InputFeedback { element, input, law, sampling })
     }));
     let torques = all(torques.iter().map(|(velocity, text)| {
         let (law, sampling) = text.made(ctx, &senses)?;
         Ok(TorqueFeedback { velocity: *velocity, law, sampling })
     }));
-    Ok(Control { torques: torques?, inputs: inputs?, controller: None })
+    let (torques, inputs) = (torques?, inputs?);
+    let texts = plan.elements.iter().flat_map(|plan| &plan.inputs).filter_map(|input| input.feedback.as_deref());
+    for text in texts.chain(plan.motion.feedback().iter().map(|(_, text)| &**text)) {
+        if let Some(period) = text.sample {
+            check_sample(ctx, &text.node.place, &text.owner, period, &plan.settings)?;
+        }
+    }
+    Ok(Control { torques, inputs, controller: None })
+}
+
+/// Refuses samples that are due inside steps of one size, and more of them than a run may take steps.
+fn check_sample(ctx: &Context<'_>, place: &Place, what: &str, period: f64, settings: &Settings) -> Read<()> {
+    let times = settings.end / period;
+    let limit = settings.max_steps.unwrap_or(Settings::MOST_STEPS);
+    let (message, help) = match settings.fixed_step {
+        _ if times > limit as f64 => (
+            format!(
+                "{what} is sampled every {period:e} s: {times:.1e} times until time.end, and a run takes at most {limit} steps"
+            ),
+            "write a longer `sample`, or raise solver.max_steps".to_owned(),
+        ),
+        Some(fixed) if !is_whole(period / fixed.step) => (
+            format!("{what} is sampled every {period} s, which is no whole number of steps of {} s", fixed.step),
+            "steps of one size know the state at their ends alone: make `sample` a multiple of solver.step".to_owned(),
+        ),
+        _ => return Ok(()),
+    };
+    Err(ctx.refuse(place.refuse(RefusalKind::Rule, message).help(help)))
+}
+
+fn is_whole(ratio: f64) -> bool {
+    let count = ratio.round();
+    count >= 1.0 && (ratio - count).abs() <= 1e-9 * count
 }
 
 impl FeedbackText {
@@ -184,6 +227,28 @@ impl FeedbackText {
         }
         let law = Feedback::new(expression, seen).scaled(self.scale, self.offset);
         Ok((law, self.sample.map(|period| Sampling { period, delay: 0 })))
+    }
+
+    /// A temperature that stretches an element is felt by how fast it changes, which must be known, and never jumps.
+    fn check_stretch(&self, ctx: &Context<'_>, law: &Feedback, settings: &Settings) -> Read<()> {
+        let unknown = law.senses().iter().any(|sense| !sense.is_place());
+        let (why, help) = if self.sample.is_some() {
+            ("a sampled temperature jumps", "write it without `sample`, or the element without `expansion`")
+        } else if settings.fixed_step.is_some() {
+            (
+                "steps of one size hold it over each step, so that it jumps",
+                "leave solver.method out, or the element's `expansion`",
+            )
+        } else if unknown {
+            (
+                "where it follows from velocities, how fast it changes follows from the forces, of which the element's is one",
+                "let it follow from places (q.JOINT, ELEMENT.stroke, ELEMENT.length, gripper.x) and t alone",
+            )
+        } else {
+            return Ok(());
+        };
+        let message = format!("{} stretches its element by `expansion`: {why}", self.owner);
+        Err(ctx.refuse(self.node.place.refuse(RefusalKind::Rule, message).help(help)))
     }
 
     fn of_unknown(&self, name: &str, names: &[&str]) -> String {

@@ -192,6 +192,11 @@ fn ready<const N: usize>(fields: [(&str, Value); N], motion: impl Into<Motion>) 
 }
 
 impl MotionPlan {
+    /// Where the time between two samples of its controller stands, and what it is, s.
+    pub(crate) fn controller_sample(&self) -> Option<(&Place, f64)> {
+        self.controller.as_ref()?.sample()
+    }
+
     /// Its kind as the scenario names it.
     pub fn kind(&self) -> &'static str {
         self.kind.name()

@@ -206,6 +206,9 @@ impl Said {
     fn balance(&self) -> String {
         let outcome = &self.0.outcome;
         let known = match outcome.energy_residual {
+            Some((_, turned_over)) if turned_over > 0.0 && outcome.is_rounding => {
+                format!("balance closes to rounding, {} J turned over", rough(turned_over))
+            }
             Some((residual, turned_over)) if turned_over > 0.0 => {
                 format!("balance closes to {} of {} J turned over", rough(residual / turned_over), rough(turned_over))
             }

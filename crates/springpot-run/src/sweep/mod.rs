@@ -128,6 +128,8 @@ pub struct Outcome {
     /// The energy residual of the case in which it is largest beside the energy turned over, and that energy, J; `None`
     /// where no case knows its ledger.
     pub energy_residual: Option<(f64, f64)>,
+    /// Whether that is no more than rounding makes of it.
+    pub is_rounding: bool,
     /// How often each event happened over all cases.
     pub events: Happened,
     /// The limits of joints that cases pass.
@@ -223,7 +225,8 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         newton_iterations: tally.newton_iterations,
         simulated: tally.simulated,
         t_reached: tally.t_reached.flatten(),
-        energy_residual: tally.energy_residual,
+        energy_residual: tally.energy_residual.map(|(_, [residual, turned_over])| (residual, turned_over)),
+        is_rounding: tally.energy_residual.is_some_and(|(share, _)| share == 0.0),
         events: tally.events,
         limits: tally.limits.passing(),
         no_ledger: tally.no_ledger.map(|(count, _, why)| (count, why)),
@@ -341,7 +344,8 @@ struct Tally {
     simulated: f64,
     /// `None` before the first case.
     t_reached: Option<Option<f64>>,
-    energy_residual: Option<(f64, f64)>,
+    /// The largest share of the energy turned over by which a balance departs, and the residual and the energy of that case.
+    energy_residual: Option<(f64, [f64; 2])>,
     events: Happened,
     limits: LimitTally,
     /// How many, index of the first, and its reason.
@@ -368,11 +372,11 @@ impl Tally {
             Some(smallest) => smallest.zip(reached).map(|(a, b)| a.min(b)),
         });
         if let Some((residual, turned_over)) = case.report.energy_residual.zip(case.report.energy_turned_over) {
-            let share =
-                |(residual, turned_over): (f64, f64)| if residual == 0.0 { 0.0 } else { residual / turned_over };
-            let new = (residual, turned_over);
-            if self.energy_residual.is_none_or(|old| share(new) > share(old)) {
-                self.energy_residual = Some(new);
+            let rounding = case.report.energy_rounding.unwrap_or(0.0);
+            // What rounding alone may do is no departure.
+            let share = if residual <= rounding { 0.0 } else { residual / turned_over };
+            if self.energy_residual.is_none_or(|(old, _)| share > old) {
+                self.energy_residual = Some((share, [residual, turned_over]));
             }
         }
         self.events.add(&case.events);

@@ -6,7 +6,7 @@ use crate::document::shorten;
 use crate::keys::{self, CONTROLLER, REFERENCE};
 use crate::names;
 use crate::reader::{Field, Read, Table, all};
-use crate::refusal::RefusalKind;
+use crate::refusal::{Place, RefusalKind};
 use crate::robot::{OwnJoint, Robot};
 use crate::signals::{self, Wanted};
 use serde_json::{Map, Value, json};
@@ -15,7 +15,7 @@ use springpot::control::{
 };
 use springpot::law::Range;
 use springpot::model::{JointKind, Model};
-use springpot::motion::gripper_path::Course;
+use springpot::motion::gripper_path::{Course, GripperPoint};
 use springpot::motion::{JointPath, Trajectory};
 use springpot::signal::Signal;
 use std::sync::Arc;
@@ -27,6 +27,8 @@ const WHOLE: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(super) struct ControllerPlan {
     controlled: Controlled,
+    /// Where the time between its samples stands.
+    sample: Option<Place>,
     /// In place of the reference, where it has to be solved for.
     path: Option<Arc<gripper_path::Path>>,
     /// As the record of a run has it.
@@ -34,6 +36,11 @@ pub(super) struct ControllerPlan {
 }
 
 impl ControllerPlan {
+    /// Where the time between two samples stands, and what it is, s.
+    pub(super) fn sample(&self) -> Option<(&Place, f64)> {
+        self.sample.as_ref().zip(self.controlled.sampling.map(|sampling| sampling.period))
+    }
+
     /// Its kind, what it follows, when it acts.
     pub(super) fn words(&self) -> String {
         let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
@@ -67,6 +74,8 @@ pub(super) struct Joints<'r> {
     /// q(0).
     pub(super) start: &'r [f64],
     pub(super) is_driven: &'r dyn Fn(&str) -> bool,
+    /// How a joint moves whose motion is prescribed.
+    pub(super) moved: &'r dyn Fn(&str) -> Option<JointPath>,
 }
 
 impl<'r> Joints<'r> {
@@ -104,7 +113,7 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
     let mut record = Map::new();
     record.insert("kind".to_owned(), json!(kind));
     let law = law(&table, kind, joints, &mut record);
-    let reference = table.require("reference").and_then(|field| reference(&field, joints, end));
+    let reference = table.require("reference").and_then(|field| reference(&field, kind, joints, end));
     let limits = limits(&table, joints, &mut record);
     let anti_windup = match table.get("anti_windup").map(|field| field.word("rule")).transpose()? {
         Some(keys::NONE) => AntiWindup::None,
@@ -118,7 +127,8 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
     }
     record.insert("reference".to_owned(), referred);
     let controlled = Controlled { law, reference, limits, anti_windup, sampling };
-    Ok(ControllerPlan { controlled, path, record: record.into() })
+    let sample = table.get("sample").map(|field| field.node.place.clone());
+    Ok(ControllerPlan { controlled, sample, path, record: record.into() })
 }
 
 /// The word under `kind` of a table.
@@ -328,7 +338,8 @@ fn sampling(table: &Table<'_>, record: &mut Map<String, Value>) -> Read<Option<S
 
 type Referred = (Reference, Option<Arc<gripper_path::Path>>, Value);
 
-fn reference(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> Read<Referred> {
+/// What a law of the kind `law` aims at.
+fn reference(field: &Field<'_>, law: &str, joints: &Joints<'_>, end: Option<f64>) -> Read<Referred> {
     let kind = kind_of(field, &REFERENCE, "kind of reference")?;
     let wrong = |key: &str| -> Option<(RefusalKind, String)> {
         if let Some(row) = REFERENCE.get(key).filter(|row| !row.only.is_empty()) {
@@ -345,6 +356,11 @@ fn reference(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> Read<R
             path.start_from(joints.start);
         }
         record.insert("kind".to_owned(), json!(kind));
+        if law == keys::IMPEDANCE {
+            // It asks where the gripper is to be, and for no joints.
+            let point = Trajectory::source(GripperPoint(path.position().clone()));
+            return Ok((Reference::new(point), None, record.into()));
+        }
         return Ok((still(joints), Some(Arc::new(path)), record.into()));
     }
     if kind == keys::MOVE {
@@ -382,10 +398,12 @@ fn still(joints: &Joints<'_>) -> Reference {
     of_signals(joints, places.collect())
 }
 
-/// A reference by signals of all joints with coordinates of their own; joints of several degrees stay where they are.
+/// A reference by signals of all joints with coordinates of their own; joints that are prescribed follow themselves, others of several degrees stay
+/// where they are.
 fn of_signals(joints: &Joints<'_>, signals: Vec<Signal>) -> Reference {
     let own = joints.robot.own_joints().zip(signals);
     let paths = own.map(|(joint, signal)| match joint.kind {
+        _ if let Some(path) = (joints.moved)(joint.name) => path,
         JointKind::Floating => JointPath::Pose(Box::new(springpot::motion::PosePath {
             position: std::array::from_fn(|_| Signal::constant(0.0)),
             rpy: std::array::from_fn(|_| Signal::constant(0.0)),

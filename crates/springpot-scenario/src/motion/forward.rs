@@ -65,9 +65,13 @@ pub(super) fn read(
         let is_moved = prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
         !is_moved && !locked.contains(joint)
     };
-    let joints = Joints { robot, start: &q, is_driven: &is_forced };
-    let controller = controller.map(|field| controller::read(&field, &joints, end)).transpose();
     let (drives, records): (Vec<Drive>, Vec<Value>) = drives?.into_iter().unzip();
+    let moved = |joint: &str| match &drives[index_of(robot, joint)] {
+        Drive::Prescribed(path) => Some(path.clone()),
+        _ => None,
+    };
+    let joints = Joints { robot, start: &q, is_driven: &is_forced, moved: &moved };
+    let controller = controller.map(|field| controller::read(&field, &joints, end)).transpose();
     let records: Map<String, Value> = robot.own_joints().map(|joint| joint.name.to_owned()).zip(records).collect();
     let controller = controller?;
     let mut made = ready([("start", json!({ "q": q, "v": v })), ("joints", records.into())], Forward { q, v, drives });

@@ -23,6 +23,11 @@ pub(super) struct Path {
 }
 
 impl Path {
+    /// Where the gripper should be: world x, y, z, m.
+    pub(super) fn position(&self) -> &[springpot::signal::Signal; 3] {
+        &self.task.position
+    }
+
     /// Near these coordinates, in place of a guess.
     pub(super) fn start_from(&mut self, q: &[f64]) {
         self.guess.copy_from_slice(q);

@@ -72,10 +72,14 @@ impl Reference {
         v.resize(model.nv(), 0.0);
         a.resize(model.nv(), 0.0);
         let point = self.trajectory.at(model, t, q, v, a)?;
-        let Some(site) = gripper else { return Ok(()) };
-        kinematics.update_velocity(model, q, v);
-        let position = point.map_or_else(|| kinematics.position(site).0, |point| point.position);
-        *wanted = [position, kinematics.velocity(site).0];
+        *wanted = match (point, gripper) {
+            (Some(point), _) => [point.position, point.velocity],
+            (None, Some(site)) => {
+                kinematics.update_velocity(model, q, v);
+                [kinematics.position(site).0, kinematics.velocity(site).0]
+            }
+            (None, None) => return Ok(()),
+        };
         Ok(())
     }
 }

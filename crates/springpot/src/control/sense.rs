@@ -37,4 +37,9 @@ impl Sense {
     pub fn follows_from_forces(self) -> bool {
         matches!(self, Self::Acceleration(_) | Self::Force(_) | Self::Derivative(_))
     }
+
+    /// Whether it is a place: how fast it changes hangs on no acceleration.
+    pub fn is_place(self) -> bool {
+        matches!(self, Self::Coordinate { .. } | Self::Length(_) | Self::Stroke(_) | Self::Gripper(_))
+    }
 }

@@ -151,9 +151,13 @@ impl Driver {
         let longest_step = solver.stepper().longest_step(cx, settings);
         let agenda = match solver.stepper().fixed_step() {
             None => cx.system.agenda(settings, longest_step, stop)?,
-            Some(_) => Agenda::default(),
+            Some(_) => {
+                // What such steps pass over without a trace.
+                cx.system.look_for_jumps(settings, stop)?;
+                Agenda::default()
+            }
         };
-        let sampler = Sampler::of(cx.system, solver.stepper().fixed_step());
+        let sampler = Sampler::of(cx.system, solver.stepper().fixed_step())?;
         Self::with(cx, settings, sampler, agenda)
     }
 
@@ -234,8 +238,9 @@ impl Driver {
     /// What must not jump.
     pub(super) fn settle(&mut self, cx: Context) -> Result<bool, RunError> {
         self.close(cx)?;
-        let Some(after) = self.crossing.take().or_else(|| self.kink_at_hand(cx)) else { return Ok(false) };
-        if self.sampler.as_ref().is_some_and(|sampler| sampler.is_due(after)) && !self.has_fixed_steps() {
+        let sampled = Some(self.t).filter(|t| self.has_fixed_steps() && self.samples_at(*t));
+        let Some(after) = self.crossing.take().or(sampled).or_else(|| self.kink_at_hand(cx)) else { return Ok(false) };
+        if self.samples_at(after) {
             self.sample(cx, after)?;
         }
         let acting = self.acting();
@@ -243,9 +248,21 @@ impl Driver {
         self.solver.stepper_mut().cross(cx, &mut self.recorder, after)?;
         self.t = after;
         // A little further, since a sign is 0 while it turns.
-        let past = cx.system.past_turns(after);
+        let past = if self.has_fixed_steps() { after } else { cx.system.past_turns(after) };
         self.crossing = (past != after).then_some(past);
         Ok(true)
+    }
+
+    /// Whether a sample is due at t.
+    fn samples_at(&self, t: f64) -> bool {
+        self.sampler.as_ref().is_some_and(|sampler| sampler.is_due(t))
+    }
+
+    /// Whether a row at t can be read now: what is sampled at the end of a step of one size acts there already.
+    pub(super) fn shows(&self, t: f64) -> bool {
+        let reached = self.reached();
+        let is_end = || t >= reached * (1.0 - TICK) && self.step.is_some();
+        t <= reached && !(self.has_fixed_steps() && is_end() && self.samples_at(reached))
     }
 
     /// Whether something is to be crossed at the present time before anything else, as after [`Self::disturb`].
@@ -296,9 +313,6 @@ impl Driver {
     /// Where no step leads on, or no more are allowed.
     pub(super) fn advance(&mut self, cx: Context, until: f64, rows: Option<RowsAhead>) -> Result<(), RunError> {
         let limit = self.recorder.settings.step_limit(self.agenda.switches());
-        if self.has_fixed_steps() && self.sampler.as_ref().is_some_and(|sampler| sampler.is_due(self.t)) {
-            self.sample(cx, self.t)?;
-        }
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
         loop {

@@ -172,16 +172,28 @@ pub enum RunError {
     },
     /// The reference of a controller jumps.
     #[error(
-        "t = {t} s: the reference of joint \"{joint}\" jumps by {jump:e}; computed torque and D^mu of an error would answer with an impulse: \
+        "t = {t} s: the reference of {what} jumps by {jump:e}; computed torque and D^mu of an error would answer with an impulse: \
          write one that is continuous, such as a move"
     )]
     ReferenceJump {
         /// Time, s.
         t: f64,
-        /// Joint.
-        joint: String,
+        /// The joint, or the gripper's path.
+        what: String,
         /// Height of the jump, rad or m.
         jump: f64,
+    },
+    /// A law is sampled between the steps of one size.
+    #[error(
+        "{what} is sampled every {period} s, which is no whole number of steps of {step} s: steps of one size know the state at their ends alone"
+    )]
+    SampleBetweenSteps {
+        /// What is sampled.
+        what: String,
+        /// Time between two samples, s.
+        period: f64,
+        /// Size of the steps, s.
+        step: f64,
     },
     /// Feedback goes to and fro between two branches without getting on.
     #[error(
@@ -339,6 +351,13 @@ impl RunError {
     /// That of an element whose memory cannot be built.
     pub(super) fn of_kernel(element: &str) -> impl Fn(KernelError) -> Self + '_ {
         move |source| Self::Kernel { element: element.to_owned(), source }
+    }
+
+    /// That of an element whose temperature, which stretches it, jumps.
+    pub(super) fn heat_jump(t: f64, element: &str, before: f64, after: f64) -> Self {
+        let rule =
+            format!("it expands by a temperature that does not jump, here from {before} to {after} K: give it a ramp");
+        Self::Rule { t, element: element.to_owned(), rule }
     }
 }
 

@@ -133,7 +133,7 @@ impl Context<'_> {
         }
         if let Some(site) = &self.system.gripper {
             evaluation.gripper = kinematics.position(site).0;
-            evaluation.gripper_error = wanted.map(|Wanted { position }| {
+            evaluation.gripper_error = wanted.map(|Wanted { position, .. }| {
                 let square = |k: usize| (evaluation.gripper[k] - position[k]).powi(2);
                 (square(0) + square(1) + square(2)).sqrt()
             });

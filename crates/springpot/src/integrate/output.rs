@@ -36,7 +36,7 @@ impl<'a> Output<'a> {
 
     /// Writes the rows of what the driver just did.
     pub(super) fn emit(&mut self, cx: Context, driver: &mut Driver) -> Result<(), RunError> {
-        while let Some(at) = self.next(&driver.recorder.settings).filter(|at| *at <= driver.reached()) {
+        while let Some(at) = self.next(&driver.recorder.settings).filter(|at| driver.shows(*at)) {
             let theta = driver.read(cx, at, self.written.rows, &mut self.snapshot)?;
             if let Some(theta) = theta
                 && self.written.departure.is_none()
@@ -128,6 +128,7 @@ impl<'a> Output<'a> {
             t_reached: last,
             energy_residual: known.then_some(residual),
             energy_turned_over: known.then(|| driver.recorder.turned_over()),
+            energy_rounding: known.then_some(self.written.rounding),
             ..driver.report()
         }
     }
@@ -136,7 +137,9 @@ impl<'a> Output<'a> {
 impl Report {
     /// Whether the energies of the run balance as far as a figure can show; `true` where they are not known.
     pub fn is_balanced(&self) -> bool {
-        let known = self.energy_residual.zip(self.energy_turned_over);
-        known.is_none_or(|(residual, turned_over)| residual <= LEAST_IMBALANCE * turned_over)
+        let Self { energy_residual, energy_turned_over, energy_rounding, .. } = self;
+        let known = energy_residual.zip(*energy_turned_over);
+        let rounding = energy_rounding.unwrap_or(0.0);
+        known.is_none_or(|(residual, turned_over)| residual <= LEAST_IMBALANCE * turned_over + rounding)
     }
 }

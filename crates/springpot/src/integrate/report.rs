@@ -17,6 +17,8 @@ pub struct Report {
     pub energy_residual: Option<f64>,
     /// The energy turned over: largest kinetic, potential (above the start), stored, dissipated, supplied energies, summed, J.
     pub energy_turned_over: Option<f64>,
+    /// What rounding alone may do to the balance, J: of heights above the world's origin, and of strokes, which are differences of lengths.
+    pub energy_rounding: Option<f64>,
     /// Exponentials of the memories at the end.
     pub modes: usize,
     /// Kinks and jumps of the signals, each of which ends a step; `None` for steps of one size, which do not look ahead.

@@ -16,12 +16,14 @@ const UNSEEN_BOUNDS: [f64; 2] = [1e-6, 1e-2];
 /// How many times more an input may hide from which no motion follows.
 const INPUT_SLACK: f64 = 1e3;
 
-/// Steps that a run may take where nothing else is said, and how many more for every switch of its signals.
-const MAX_STEPS: u64 = 10_000_000;
+/// How many more steps a run may take for every switch of its signals.
 const STEPS_PER_SWITCH: u64 = 100;
 
 /// Neighbouring times at which rounding may leave the argument of a sign 0.
 const MOST_TURNING: usize = 256;
+
+/// Values that differ by less than this share of them are one.
+const STILL: f64 = 1e-9;
 
 /// Kinks and jumps that are looked at before a run.
 const MOST_LOOKED_AT: usize = 10_000;
@@ -42,11 +44,26 @@ impl System {
                 RunError::TooBusy { what: named[signal].0.clone(), times: cells as f64, limit: settings.step_limit(0) }
             }
         })?;
+        self.check_samples(settings)?;
         let (least, limit) = (agenda.least_steps(settings.end, longest), settings.step_limit(agenda.switches()));
         if least > limit as f64 {
             return Err(RunError::TooBusy { what: "the motion".to_owned(), times: least, limit });
         }
         Ok(agenda)
+    }
+
+    /// Refuses laws that are sampled more often than the run may take steps.
+    fn check_samples(&self, settings: &Settings) -> Result<(), RunError> {
+        let laws = self.control.laws().map(|(law, sampling)| (format!("the feedback \"{}\"", law.expression()), sampling));
+        let controller = self.control.controller.as_ref().map(|own| ("the controller".to_owned(), own.sampling));
+        let limit = settings.step_limit(0);
+        for (what, sampling) in laws.chain(controller) {
+            let times = sampling.map_or(0.0, |sampling| settings.end / sampling.period);
+            if times > limit as f64 {
+                return Err(RunError::TooBusy { what, times, limit });
+            }
+        }
+        Ok(())
     }
 
     /// How often the signals of a run that chooses its steps switch, as [`super::run`] finds out before its first row; `stop` interrupts.
@@ -57,12 +74,14 @@ impl System {
         Ok(self.agenda(settings, settings.end, stop)?.switches())
     }
 
-    /// Looks at the kinks and jumps of the signals, up to a number of them, for coordinates that jump there; on gripper paths a run looks for
-    /// itself.
+    /// Looks at the kinks and jumps of the signals, up to a number of them, for coordinates that jump there, for references that a controller answers
+    /// with an impulse, and for temperatures that stretch an element at once; on gripper paths a run looks for itself.
     ///
     /// # Errors
-    /// [`RunError::Jump`], and as [`Self::switches`].
+    /// [`RunError::Jump`], [`RunError::ReferenceJump`], [`RunError::Rule`], and as [`Self::switches`].
     pub fn look_for_jumps(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
+        self.look_for_jumps_of_references(settings, stop)?;
+        self.look_for_jumps_of_heat(settings, stop)?;
         if self.motion.has_path() || settings.fixed_step.is_some() {
             return Ok(());
         }
@@ -82,6 +101,33 @@ impl System {
                 Ok(())
             })?;
             t = after;
+        }
+        Ok(())
+    }
+
+    /// The reference of a controller that follows accelerations, or has D^mu of its error, must not jump, sampled or not.
+    fn look_for_jumps_of_references(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
+        let Some(controlled) = &self.control.controller else { return Ok(()) };
+        let derives = || controlled.law.error_terms().iter().any(|term| term.order > 0.0);
+        if !controlled.law.follows_accelerations() && !derives() {
+            return Ok(());
+        }
+        for (what, signal) in controlled.reference.trajectory().named_signals(&self.model) {
+            if let Some((t, [before, after])) = first_jump(signal, settings, stop)? {
+                let what = what.replace("the motion of ", "");
+                return Err(RunError::ReferenceJump { t, what, jump: after - before });
+            }
+        }
+        Ok(())
+    }
+
+    /// A temperature that stretches an element must not jump.
+    fn look_for_jumps_of_heat(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
+        for element in &self.elements {
+            let Some(signal) = element.law.stretched_by().and_then(|input| element.inputs.get(input)) else { continue };
+            if let Some((t, [before, after])) = first_jump(signal, settings, stop)? {
+                return Err(RunError::heat_jump(t, &element.name, before, after));
+            }
         }
         Ok(())
     }
@@ -171,13 +217,43 @@ impl System {
     }
 }
 
+/// When a signal first jumps, and its values on both sides; its first kinks are looked at, up to a number of them.
+fn first_jump(signal: &Signal, settings: &Settings, stop: &AtomicBool) -> Result<Option<(f64, [f64; 2])>, RunError> {
+    if !is_function(signal) {
+        return Ok(None);
+    }
+    let watched = [Watched { signal, is_position: true, slack: 1.0 }];
+    let agenda = Agenda::new(&watched, settings.end, UNSEEN_BOUNDS[1], Some(stop)).map_err(|error| match error {
+        AgendaError::Interrupted => RunError::Interrupted { t: 0.0 },
+        AgendaError::TooBusy { cells, .. } => {
+            RunError::TooBusy { what: "a signal".to_owned(), times: cells as f64, limit: settings.step_limit(0) }
+        }
+    })?;
+    let mut t = 0.0;
+    for _ in 0..MOST_LOOKED_AT {
+        let Some(kink) = agenda.next_stop(t).filter(|stop| stop.before < settings.end) else { break };
+        let after = kink.after.unwrap_or(kink.before).max(t.next_up());
+        let [left, right] = [kink.before, after].map(|at| signal.at(at));
+        let reach = 2.0 * (after - kink.before) * (left.first.abs() + right.first.abs());
+        let rounding = STILL * (left.value.abs() + right.value.abs());
+        if (right.value - left.value).abs() > reach + rounding {
+            return Ok(Some((after, [left.value, right.value])));
+        }
+        t = after;
+    }
+    Ok(None)
+}
+
 fn is_function(signal: &Signal) -> bool {
     signal.is_constant().is_none()
 }
 
 impl Settings {
+    /// Steps that a run may take where nothing else is said and its signals do not switch.
+    pub const MOST_STEPS: u64 = 10_000_000;
+
     /// Inner steps that a run may take whose signals switch that often.
     pub(super) fn step_limit(&self, switches: u64) -> u64 {
-        self.max_steps.unwrap_or_else(|| MAX_STEPS.saturating_add(STEPS_PER_SWITCH.saturating_mul(switches)))
+        self.max_steps.unwrap_or_else(|| Self::MOST_STEPS.saturating_add(STEPS_PER_SWITCH.saturating_mul(switches)))
     }
 }

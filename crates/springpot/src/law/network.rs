@@ -211,9 +211,9 @@ impl Network {
         self.as_heated().is_some_and(|heated| heated.heat().thermal.is_some())
     }
 
-    /// Whether a temperature from outside stretches it.
-    pub(crate) fn is_stretched(&self) -> bool {
-        self.as_heated().is_some_and(|heated| heated.stretch().is_some())
+    /// The input, a temperature, that stretches it.
+    pub fn stretched_by(&self) -> Option<usize> {
+        self.as_heated().and_then(Heated::stretch).map(|(input, _)| input)
     }
 
     /// The temperature that inputs from outside say, K; NaN where they say none.

@@ -11,12 +11,14 @@ mod error;
 mod follow;
 mod hermite;
 mod passage;
+mod point;
 mod solver;
 mod task;
 mod wanted;
 
 pub use course::Course;
 pub use error::PathError;
+pub use point::GripperPoint;
 pub use task::Task;
 pub use wanted::Wanted;
 
@@ -70,7 +72,7 @@ impl Source for GripperPath {
             return Err(failure);
         }
         let target = self.task.target(t);
-        let wanted = Wanted { position: target.position.0 };
+        let wanted = Wanted { position: target.position.0, velocity: target.velocity() };
         let next = self.passages.partition_point(|passage| passage.to < t);
         if let Some(passage) = self.passages.get(next).filter(|passage| passage.from <= t) {
             passage.polynomial.at(t, [q, v, a]);

@@ -378,8 +378,8 @@ impl ControlRun {
             let jump = aim.q[place] - before.q[place];
             let reach = 2.0 * (eye.t - from).abs() * (aim.v[k].abs() + before.v[k].abs());
             if jump.abs() > reach + STILL * (aim.q[place].abs() + before.q[place].abs()) {
-                let joint = model.v_labels()[k].name.clone();
-                return Err(RunError::ReferenceJump { t: eye.t, joint, jump });
+                let what = format!("joint \"{}\"", model.v_labels()[k].name);
+                return Err(RunError::ReferenceJump { t: eye.t, what, jump });
             }
         }
         Ok(())

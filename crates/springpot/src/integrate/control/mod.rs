@@ -71,6 +71,8 @@ pub(super) struct ControlRun {
 struct LawRun {
     law: Feedback,
     target: Target,
+    /// Whether the element feels how fast it changes: a temperature that stretches it.
+    stretches: bool,
     /// A bit for each of its kinks.
     branch: u64,
 }
@@ -105,6 +107,8 @@ struct Node {
     gradients: Vec<f64>,
     /// What every law sees, one after the other.
     seen: Vec<f64>,
+    /// How fast every law changes, where its element feels that.
+    rates: Vec<f64>,
     /// Error and its rate of every joint that the controller drives.
     errors: Vec<[f64; 2]>,
     /// The controller's force without its terms (nv).
@@ -141,11 +145,13 @@ impl ControlRun {
         let torques = control.torques.iter().filter(|own| is_now(&own.sampling)).map(|own| LawRun {
             law: own.law.clone(),
             target: Target::Torque(own.velocity),
+            stretches: false,
             branch: 0,
         });
         let inputs = control.inputs.iter().filter(|own| is_now(&own.sampling)).map(|own| LawRun {
             law: own.law.clone(),
             target: Target::Input(own.element, own.input),
+            stretches: system.elements[own.element].law.stretched_by() == Some(own.input),
             branch: 0,
         });
         let laws: Vec<LawRun> = torques.chain(inputs).collect();

@@ -15,6 +15,9 @@ use std::sync::Arc;
 /// Times that differ by less than this share of them are one.
 const ONE_TIME: f64 = 1e-12;
 
+/// Share of it by which a period may miss a whole number of steps.
+const WHOLE: f64 = 1e-9;
+
 /// What follows from forces, just before a sample.
 pub(in crate::integrate) trait Shown {
     /// Force of an element, N or N·m.
@@ -72,7 +75,7 @@ pub(in crate::integrate) struct SamplerState {
     waiting: Vec<VecDeque<Vec<f64>>>,
     /// What acts; of a run under way it is with the sampler.
     acting: Held,
-    /// What the controller said last (nv), whether it has, and on which side of its limit each force was.
+    /// What the controller said last before its limits (nv), whether it has, and on which side of its limit each force was.
     said: Vec<f64>,
     has_said: bool,
     sides: Vec<i8>,
@@ -80,7 +83,10 @@ pub(in crate::integrate) struct SamplerState {
 
 impl Sampler {
     /// Of a system that has some; steps of one size take what is continuous at the start of each.
-    pub(in crate::integrate) fn of(system: &System, fixed_step: Option<f64>) -> Option<Box<Self>> {
+    ///
+    /// # Errors
+    /// [`RunError::SampleBetweenSteps`] where samples are due inside steps of one size.
+    pub(in crate::integrate) fn of(system: &System, fixed_step: Option<f64>) -> Result<Option<Box<Self>>, RunError> {
         let control = system.control.clone();
         let every = fixed_step.map(|period| Sampling { period, delay: 0 });
         let mut laws: Vec<Law> = Vec::new();
@@ -93,7 +99,14 @@ impl Sampler {
             add(What::Controller, controlled.sampling);
         }
         if laws.is_empty() {
-            return None;
+            return Ok(None);
+        }
+        let period = |law: &Law| law.sampling.period;
+        if let (Some(step), Some(law)) =
+            (fixed_step, laws.iter().find(|law| fixed_step.is_some_and(|step| !is_multiple(period(law), step))))
+        {
+            let what = named(&control, law.what, system);
+            return Err(RunError::SampleBetweenSteps { what, period: period(law), step });
         }
         let nv = system.model.nv();
         let mut held = Held::default();
@@ -101,7 +114,9 @@ impl Sampler {
         for law in &laws {
             if let What::Input(k) = law.what {
                 let own = &control.inputs[k];
-                held.hold_input(system, own.element, own.input, Some(0.0)).expect("an input of the system");
+                // What its place takes where 0 is none, as of a temperature.
+                let before = system.elements[own.element].inputs[own.input].value(0.0);
+                held.hold_input(system, own.element, own.input, Some(before)).expect("an input of the system");
             }
         }
         let state = SamplerState {
@@ -114,7 +129,7 @@ impl Sampler {
         };
         let size = |law: &Law| if matches!(law.what, What::Controller) { nv } else { 1 };
         let driven = system.driven_velocities();
-        Some(Box::new(Self {
+        Ok(Some(Box::new(Self {
             said: laws.iter().map(|law| vec![0.0; size(law)]).collect(),
             due: vec![false; laws.len()],
             driven: driven.into_iter().filter(|&k| system.model.coordinate_of(k).is_some()).collect(),
@@ -125,7 +140,7 @@ impl Sampler {
             aim: Aim::default(),
             scratch: Scratch::new(&system.model),
             seen: Vec::new(),
-        }))
+        })))
     }
 
     /// When the next sample is due, s.
@@ -247,23 +262,16 @@ impl Sampler {
             }
             let is_above = *tau > limit.torque;
             state.sides[k] = if is_above { 1 } else { -i8::from(*tau < -limit.torque) };
-            *tau = tau.clamp(-limit.torque, limit.torque);
+            // Rates are those of the force before its limit, which acts last.
             state.said[k] = *tau;
+            *tau = tau.clamp(-limit.torque, limit.torque);
         }
         state.has_said = true;
         Ok(())
     }
 
     fn named(&self, law: usize, system: &System) -> String {
-        match self.laws[law].what {
-            What::Torque(i) => format!("tau.{}", system.model.v_labels()[self.control.torques[i].velocity].name),
-            What::Input(i) => {
-                let own = &self.control.inputs[i];
-                let element = &system.elements[own.element];
-                format!("{}.{}", element.name, element.entry.inputs[own.input].name)
-            }
-            What::Controller => "the force of the controller".to_owned(),
-        }
+        named(&self.control, self.laws[law].what, system)
     }
 
     /// What outlasts the steps.
@@ -280,6 +288,25 @@ impl Sampler {
         }
         fits
     }
+}
+
+/// What a law says, as a column is called.
+fn named(control: &Control, what: What, system: &System) -> String {
+    match what {
+        What::Torque(i) => format!("tau.{}", system.model.v_labels()[control.torques[i].velocity].name),
+        What::Input(i) => {
+            let own = &control.inputs[i];
+            let element = &system.elements[own.element];
+            format!("{}.{}", element.name, element.entry.inputs[own.input].name)
+        }
+        What::Controller => "the force of the controller".to_owned(),
+    }
+}
+
+/// Whether a period is a whole number of steps, but for rounding.
+fn is_multiple(period: f64, step: f64) -> bool {
+    let count = (period / step).round();
+    count >= 1.0 && (period / step - count).abs() <= WHOLE * count
 }
 
 /// What an expression says of what is shown.

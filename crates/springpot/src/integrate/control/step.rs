@@ -3,7 +3,7 @@
 use super::eye::{Eye, InputSlopes};
 use super::mode::Bound;
 use super::term::Integrand;
-use super::{ControlRun, Target, at, input};
+use super::{ControlRun, LawRun, Target, at, input};
 use crate::collocation::{Nodes, RADAU_NODES, STAGES};
 use crate::control::TorqueSlopes;
 use crate::dynamics::RneaDerivatives;
@@ -59,6 +59,8 @@ impl ControlRun {
         for law in laws.iter() {
             node.seen.extend(law.law.senses().iter().map(|sense| eye.value(*sense)));
         }
+        node.rates.clear();
+        node.rates.extend(laws.iter().map(|law| if law.stretches { law.rate(eye) } else { 0.0 }));
         let Some(controlled) = &control.controller else { return };
         let at = at(eye, &node.aim);
         node.errors.clear();
@@ -76,7 +78,7 @@ impl ControlRun {
     /// Writes the inputs that follow from what was seen at a node, where nobody holds them.
     pub(in crate::integrate) fn write_inputs(&self, cx: Context, node: usize, bank: &mut ElementBank) {
         self.for_each_law(node, |target, value| match target {
-            Target::Input(e, i) if !cx.holds_input(e, i) => bank.inputs_mut(e, node)[i] = input(value, 0.0),
+            Target::Input(e, i) if !cx.holds_input(e, i) => bank.inputs_mut(e, node)[i] = value,
             _ => {}
         });
     }
@@ -90,12 +92,12 @@ impl ControlRun {
         }
     }
 
-    fn for_each_law(&self, node: usize, mut take: impl FnMut(Target, f64)) {
+    fn for_each_law(&self, node: usize, mut take: impl FnMut(Target, InputValue)) {
         let node = &self.nodes[node];
         let mut seen = &node.seen[..];
-        for law in &self.laws {
+        for (law, rate) in self.laws.iter().zip(&node.rates) {
             let (own, rest) = seen.split_at(law.law.senses().len());
-            take(law.target, law.law.value_on(law.branch, node.t, own));
+            take(law.target, input(law.law.value_on(law.branch, node.t, own), *rate));
             seen = rest;
         }
     }
@@ -103,7 +105,7 @@ impl ControlRun {
     /// Writes the inputs of element `element` at the start, where nobody holds them.
     pub(in crate::integrate) fn inputs_at_start(&self, cx: Context, element: usize, inputs: &mut [InputValue]) {
         self.for_each_law(0, |target, value| match target {
-            Target::Input(e, i) if e == element && !cx.holds_input(e, i) => inputs[i] = input(value, 0.0),
+            Target::Input(e, i) if e == element && !cx.holds_input(e, i) => inputs[i] = value,
             _ => {}
         });
     }
@@ -176,7 +178,7 @@ impl ControlRun {
         }
         self.for_each_law(node, |target, value| {
             if let Target::Torque(k) = target {
-                torque[k] += value;
+                torque[k] += value.value;
             }
         });
         self.nodes[node].torque = torque;
@@ -339,5 +341,14 @@ impl ControlRun {
             term.commit_ends(h, errors.each_ref().map(|errors| errors[m]), integrand);
         }
         Ok(())
+    }
+}
+
+impl LawRun {
+    /// How fast it changes, which hangs on no acceleration: of the state it sees places alone.
+    fn rate(&self, eye: &Eye) -> f64 {
+        let still = vec![0.0; eye.v.len()];
+        let jets: Vec<_> = self.law.senses().iter().map(|sense| eye.jet(*sense, &still)).collect();
+        self.law.jet_on(self.branch, eye.t, &jets).first
     }
 }

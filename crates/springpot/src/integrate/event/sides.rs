@@ -117,13 +117,25 @@ impl<'s> Functions<'s> {
                 *sign = now;
             }
         }
-        *values = self.values();
+        *values = self.values()?;
         Ok(passages)
     }
 
     /// The functions of all events there.
-    fn values(&mut self) -> Vec<f64> {
-        (0..self.events.len()).map(|event| self.value(event)).collect()
+    ///
+    /// # Errors
+    /// [`RunError::NotFinite`] of a function whose columns are numbers, but for t = 0.
+    fn values(&mut self) -> Result<Vec<f64>, RunError> {
+        let mut values = Vec::with_capacity(self.events.len());
+        for (k, event) in self.events.iter().enumerate() {
+            let (value, t) = (self.value(k), self.snapshot.t());
+            if !value.is_finite() && t > 0.0 && self.columns.iter().all(|column| column.is_finite()) {
+                let what = format!("`when` of event \"{}\"", event.name);
+                return Err(RunError::NotFinite { t, what, value });
+            }
+            values.push(value);
+        }
+        Ok(values)
     }
 
     /// The passages in the step at hand in the order of their times; the sides are taken to its end.
@@ -145,7 +157,7 @@ impl<'s> Functions<'s> {
         let mut before = [(f64::NAN, vec![f64::NAN; start.len()]), (0.0, std::mem::take(start))];
         for theta in early.into_iter().chain((1..=SAMPLES).map(|i| i as f64 / SAMPLES as f64)) {
             self.go_to(cx, driver, time(step, theta))?;
-            let values = self.values();
+            let values = self.values()?;
             for (event, sign) in signs.iter_mut().enumerate() {
                 if *sign == 0 {
                     self.go_to(cx, driver, time(step, theta))?;

@@ -33,7 +33,7 @@ impl LoopControl {
         stage: &OneStage,
         memory: MemorySettings,
     ) -> Result<Option<Self>, RunError> {
-        let (Some(sampler), Some(mut run)) = (Sampler::of(system, Some(step)), ControlRun::of(system, true)) else {
+        let (Some(sampler), Some(mut run)) = (Sampler::of(system, Some(step))?, ControlRun::of(system, true)) else {
             return Ok(None);
         };
         run.begin(system, &stage.origin.q, &stage.origin.v, memory.horizon)?;

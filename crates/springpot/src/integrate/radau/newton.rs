@@ -22,6 +22,9 @@ pub(super) enum Outcome {
     Diverged { iterations: u32, worst: usize },
 }
 
+/// Share of what rounding is allowed below which increments are rounding: the allowance is a generous one.
+const ROUNDED: f64 = 0.25;
+
 impl RadauStep {
     /// Solves the step of size `h`; nothing but scratch changes. Inputs at the end are taken at `t_end`.
     pub(super) fn attempt(
@@ -212,7 +215,7 @@ impl RadauStep {
         let end = &self.stages[STAGES - 1];
         let moved = |k: usize| end.v[k].abs().max(self.origin.v[k].abs()) + h * end.a[k].abs();
         let largest = self.free.iter().zip(&self.allowed).fold(0.0, |m: f64, (&k, [v, _])| m.max(moved(k) / v));
-        self.rtol.sqrt().min(0.03) + 2e-14 * largest
+        self.rtol.sqrt().min(0.03) + 2e-14 * largest + ROUNDED * self.noisy
     }
 }
 

@@ -22,6 +22,7 @@ impl RadauStep {
         }
         let (n, sizes, tolerance) = (self.model.nv(), &self.sizes, self.tolerance);
         self.allowed.clear();
+        self.noisy = 0.0;
         let until = self.origin.t + h;
         for (r, &k) in self.free.iter().enumerate() {
             let mass = self.slopes.d_a[k * n + k];
@@ -61,8 +62,10 @@ impl RadauStep {
             let noise = if mass > 0.0 { h * (strokes + rounding) / mass } else { 0.0 };
             let place = self.model.coordinate_of(k).map_or(1.0, |c| self.origin.q[c]);
             let rounding = 4.0 * f64::EPSILON * place.abs();
+            let allowed = (tolerance.of(speed) + noise).max(f64::MIN_POSITIVE);
+            self.noisy = self.noisy.max(noise / allowed);
             self.allowed.push([
-                (tolerance.of(speed) + noise).max(f64::MIN_POSITIVE),
+                allowed,
                 (tolerance.of(travel) + rounding + h * noise).max(f64::MIN_POSITIVE),
             ]);
         }

@@ -137,6 +137,8 @@ pub(super) struct RadauStep {
     pub(super) rounded: Vec<f64>,
     /// Errors that are allowed in this step, of each free velocity and of its coordinate.
     pub(super) allowed: Vec<[f64; 2]>,
+    /// The largest share of them that rounding takes up.
+    pub(super) noisy: f64,
     pub(super) scratch: EstimateScratch,
 }
 
@@ -202,6 +204,7 @@ impl RadauStep {
             energy: 0.0,
             rounded: Vec::new(),
             allowed: Vec::new(),
+            noisy: 0.0,
             scratch: EstimateScratch::default(),
         }
     }

@@ -255,14 +255,11 @@ impl Recorder {
     /// # Errors
     /// [`RunError::Rule`] where a temperature jumps that stretches an element.
     pub(super) fn jump(&mut self, cx: Context, right: Evaluation) -> Result<(), RunError> {
-        for (e, element) in cx.system.elements.iter().enumerate().filter(|(_, element)| element.law.is_stretched()) {
+        for (e, element) in cx.system.elements.iter().enumerate().filter(|(_, element)| element.law.stretched_by().is_some()) {
             let [before, after] =
                 [&self.evaluations[0], &right].map(|of| element.law.temperature(&of.elements[e].inputs));
             if (after - before).abs() > SAME_TEMPERATURE * before {
-                let rule = format!(
-                    "it expands by a temperature that does not jump, here from {before} to {after} K: give it a ramp"
-                );
-                return Err(RunError::Rule { t: right.t, element: element.name.clone(), rule });
+                return Err(RunError::heat_jump(right.t, &element.name, before, after));
             }
         }
         let left = std::mem::replace(&mut self.evaluations[0], right);

@@ -437,7 +437,8 @@ impl Heated {
         let start = self.now(&step.point(0), &mut share.clone(), &mut |_| ()).observation.regular;
         let by_temperature = self.heat.stroke_by_temperature();
         for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            let force = if k == 0 { start } else { response.force[k - 1] };
+            // Of a singular start the energies are not known; its share of the force would only make steps short.
+            let force = if k == 0 { start } else { response.force[k - 1] - response.singular[k - 1] };
             power.input += force * by_temperature * course.warming[k];
         }
     }

@@ -46,6 +46,13 @@ pub(super) struct Residual {
     pub(super) angle: f64,
 }
 
+impl Target {
+    /// The derivative of the position, m/s.
+    pub(super) fn velocity(&self) -> [f64; 3] {
+        [self.rate[0], self.rate[1], self.rate[2]]
+    }
+}
+
 impl Task {
     /// Number of task coordinates.
     pub(super) fn size(&self) -> usize {

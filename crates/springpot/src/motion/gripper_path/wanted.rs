@@ -5,4 +5,6 @@
 pub struct Wanted {
     /// World position, m.
     pub position: [f64; 3],
+    /// Its derivative, m/s.
+    pub velocity: [f64; 3],
 }
