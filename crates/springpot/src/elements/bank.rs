@@ -230,6 +230,11 @@ impl ElementBank {
         (self.step.t, self.step.h) = (t, h);
     }
 
+    /// Where the step begins, s.
+    pub fn from(&self) -> f64 {
+        self.step.t
+    }
+
     /// Size of the step, s.
     pub fn size(&self) -> f64 {
         self.step.h

@@ -25,6 +25,9 @@ const COARSE: f64 = (1u64 << 20) as f64;
 /// Times that differ by less than this share of them are one.
 const TICK: f64 = 1e-12;
 
+/// A first step that is shorter than planned by this share has the memories built anew.
+const MUCH_SHORTER: f64 = 0.1;
+
 /// A sample and a kink of a signal that differ by less than this share of their time are crossed together.
 const ONE_STOP: f64 = 1e-12;
 
@@ -59,6 +62,8 @@ pub(super) struct Driver {
     t: f64,
     /// Size of the next step.
     h: f64,
+    /// The shortest step that the memories are built for.
+    planned: f64,
     step: Option<Target>,
     /// The far side of what is to be crossed before the next step.
     crossing: Option<f64>,
@@ -102,7 +107,7 @@ impl Driver {
         let first = self.solver.stepper_mut().start(cx, &mut self.recorder, &self.agenda)?;
         cx.system.check_definite(&self.recorder.evaluations[0].q)?;
         self.recorder.open(cx, first)?;
-        self.h = self.aligned(first);
+        (self.h, self.planned) = (self.aligned(first), first);
         Ok(())
     }
 
@@ -175,6 +180,7 @@ impl Driver {
             longest_step,
             t: 0.0,
             h: 0.0,
+            planned: 0.0,
             step: None,
             crossing: None,
             tick: 1,
@@ -336,6 +342,12 @@ impl Driver {
                 Trial::Rejected { size } => {
                     self.rejected_steps += 1;
                     self.h = self.aligned(size);
+                    if self.t == 0.0 && size < MUCH_SHORTER * self.planned {
+                        // What is faster than the memories are built for has its energies as if nothing changed meanwhile.
+                        self.recorder.begin(cx)?;
+                        self.recorder.open(cx, size)?;
+                        self.planned = size;
+                    }
                 }
                 Trial::Changes => {
                     self.crossing = Some(self.t);
@@ -487,6 +499,7 @@ impl Driver {
         let cx = Context { sampled: &acting, ..cx };
         self.solver.load(cx, &mut self.recorder, solver)?;
         (self.t, self.h, self.step, self.crossing) = (t, h, None, crossing);
+        self.planned = h;
         (self.tick, self.steps, self.rejected_steps) = (tick, steps, rejected_steps);
         Ok(())
     }

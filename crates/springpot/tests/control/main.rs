@@ -5,5 +5,6 @@ mod closed;
 mod feedback;
 mod going_on;
 mod order;
+mod readings;
 #[path = "../support/mod.rs"]
 mod support;

@@ -122,10 +122,15 @@ impl Recorder {
     pub(in crate::integrate) fn memory_error_of(&self, e: usize, first: usize) -> (f64, f64) {
         let settings = &self.settings;
         let mut worst = (0.0, 0.0);
+        // Strokes inside a series may begin like no power of t, alike on every scale of time: the very first steps err by what is soon nothing.
+        let is_onset = self.bank.from() + self.bank.size() <= SHORTEST_LEDGER_STEP * settings.end;
         for (m, error) in self.bank.errors(e).iter().enumerate().take(first) {
             let scale = self.bank.scale(e, m);
             let allowed = settings.atol.unwrap_or(0.0).max(settings.rtol * scale);
-            let share = error.share(scale, allowed);
+            let share = match error.share(scale, allowed) {
+                share if is_onset && share.is_finite() => share.min(1.0),
+                share => share,
+            };
             // What is no number is no step to keep.
             if share > worst.0 || share.is_nan() {
                 worst = (share, error.order);
