@@ -14,6 +14,16 @@ type Any<'py> = Bound<'py, PyAny>;
 
 #[pymethods]
 impl PyModel {
+    /// Inverse dynamics, tau = M(q) a + C(q, v) v + g(q): shape ``(nv,)``, N·m or N.
+    ///
+    /// >>> import springpot as sp
+    /// >>> arm = sp.Model.from_scenario({"robot": {"body": [{"name": "arm", "mass": 2, "com": [0.5, 0, 0],
+    /// ...     "joint": {"name": "q1", "kind": "revolute", "axis": [0, 1, 0]}}]}})
+    /// >>> arm.rnea([0.0], [0.0], [0.0])
+    /// array([-9.81])
+    /// >>> arm.rnea([[0.0], [1.5707963267948966]], [0.0], [1.0]).round(6)
+    /// array([[-9.31],
+    ///        [ 0.5 ]])
     #[pyo3(signature = (q, v, a, out=None))]
     fn rnea<'py>(
         &self,
@@ -30,6 +40,7 @@ impl PyModel {
         Ok(tau)
     }
 
+    /// C(q, v) v + g(q), what the actuators hold without acceleration: shape ``(nv,)``, N·m or N.
     #[pyo3(signature = (q, v, out=None))]
     fn nonlinear_effects<'py>(
         &self,
@@ -45,6 +56,7 @@ impl PyModel {
         Ok(tau)
     }
 
+    /// Forward dynamics, a = M⁻¹(tau − C v − g): shape ``(nv,)``, rad/s² or m/s².
     #[pyo3(signature = (q, v, tau, out=None))]
     fn aba<'py>(
         &self,
@@ -62,6 +74,7 @@ impl PyModel {
         Ok(a)
     }
 
+    /// The mass matrix M(q), the basic metric tensor: shape ``(nv, nv)``.
     #[pyo3(signature = (q, out=None))]
     fn crba<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
@@ -72,6 +85,7 @@ impl PyModel {
         Ok(mass)
     }
 
+    /// M(q)⁻¹: shape ``(nv, nv)``.
     #[pyo3(signature = (q, out=None))]
     fn mass_inverse<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
@@ -82,6 +96,9 @@ impl PyModel {
         Ok(inverse)
     }
 
+    /// The Coriolis matrix C(q, v), with C v the Coriolis and centrifugal forces: shape ``(nv, nv)``.
+    ///
+    /// For joints of one degree it is Γ_ab,c v^a; for floating bases the choice that Pinocchio makes too.
     #[pyo3(signature = (q, v, out=None))]
     fn coriolis<'py>(&self, py: Python<'py>, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v"))]);
@@ -92,6 +109,7 @@ impl PyModel {
         Ok(matrix)
     }
 
+    /// The gravity vector g(q) = ∂V/∂q, the forces that hold the robot: shape ``(nv,)``, N·m or N.
     #[pyo3(signature = (q, out=None))]
     fn gravity<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let [forces] = each(py, &self.core, [(q, Q("q"))], [&[self.nv()]], out, |model, scratch, [q], [forces]| {
@@ -101,6 +119,10 @@ impl PyModel {
         Ok(forces)
     }
 
+    /// Christoffel symbols of the first kind Γ_ab,c, the force index c last: shape ``(nv, nv, nv)``.
+    ///
+    /// Raises:
+    ///     ModelError: where a joint has several degrees of freedom.
     #[pyo3(signature = (q, out=None))]
     fn christoffel<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         if !self.core.model.is_one_degree() {
@@ -115,6 +137,7 @@ impl PyModel {
         Ok(gamma)
     }
 
+    /// ∂tau/∂q and ∂tau/∂v of :meth:`rnea`, each of shape ``(nv, nv)``: row b belongs to tau_b. ∂tau/∂a is :meth:`crba`.
     #[pyo3(signature = (q, v, a, out=None))]
     fn rnea_derivatives<'py>(
         &self,
@@ -134,6 +157,7 @@ impl PyModel {
         })
     }
 
+    /// ∂a/∂q and ∂a/∂v of :meth:`aba`, each of shape ``(nv, nv)``: row b belongs to a_b. ∂a/∂tau is :meth:`mass_inverse`.
     #[pyo3(signature = (q, v, tau, out=None))]
     fn aba_derivatives<'py>(
         &self,
@@ -153,6 +177,7 @@ impl PyModel {
         })
     }
 
+    /// The centre of mass of all that moves: shape ``(3,)``, m.
     #[pyo3(signature = (q, out=None))]
     fn com<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let [centre] = each(py, &self.core, [(q, Q("q"))], [&[3]], out, |model, scratch, [q], [centre]| {
@@ -162,6 +187,7 @@ impl PyModel {
         Ok(centre)
     }
 
+    /// The Jacobian of the centre of mass: shape ``(3, nv)``.
     #[pyo3(signature = (q, out=None))]
     fn com_jacobian<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
@@ -172,6 +198,7 @@ impl PyModel {
         Ok(jacobian)
     }
 
+    /// Kinetic energy, J: a float, or shape ``(N,)``.
     #[pyo3(signature = (q, v, out=None))]
     fn kinetic_energy<'py>(
         &self,
@@ -188,6 +215,7 @@ impl PyModel {
         Ok(energy)
     }
 
+    /// Potential energy in the field of gravity, J, 0 at the world's origin: a float, or shape ``(N,)``.
     #[pyo3(signature = (q, out=None))]
     fn potential_energy<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let [energy] = each(py, &self.core, [(q, Q("q"))], [&[]], out, |model, scratch, [q], [energy]| {
@@ -197,6 +225,7 @@ impl PyModel {
         Ok(energy)
     }
 
+    /// q ⊕ v: the configuration after one second at the constant velocities v: shape ``(nq,)``.
     #[pyo3(signature = (q, v, out=None))]
     fn integrate<'py>(
         &self,
@@ -212,6 +241,7 @@ impl PyModel {
         Ok(moved)
     }
 
+    /// to ⊖ from\_: the velocities that lead from one configuration to the other in one second, the shorter way round: shape ``(nv,)``.
     #[pyo3(signature = (from_, to, out=None))]
     fn difference<'py>(
         &self,
@@ -227,6 +257,7 @@ impl PyModel {
         Ok(v)
     }
 
+    /// q with quaternions of length 1 (qw ≥ 0) and angles of continuous joints in (−π, π]: shape ``(nq,)``.
     #[pyo3(signature = (q, out=None))]
     fn normalise<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let [normal] = each(py, &self.core, [(q, Q("q"))], [&[self.nq()]], out, |model, _, [q], [normal]| {

@@ -23,11 +23,12 @@ impl PyModel {
 
 #[pymethods]
 impl PyModel {
+    /// The configuration in which every joint stands at 0: shape ``(nq,)``.
     fn neutral<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_vec(py, self.core.model.neutral())
     }
 
-    /// One configuration, or `count` of them from consecutive seeds.
+    /// A random configuration within the limits, the same for the same seed: shape ``(nq,)``, or ``(count, nq)`` from consecutive seeds.
     #[pyo3(signature = (seed, count=None))]
     fn random<'py>(&self, py: Python<'py>, seed: u64, count: Option<usize>) -> PyResult<Any<'py>> {
         let model = &self.core.model;
@@ -38,6 +39,7 @@ impl PyModel {
         Ok(matrix.into_any())
     }
 
+    /// Where a frame is: its rotation, shape ``(3, 3)``, which takes its components to those of the world, and its origin, shape ``(3,)``, m.
     #[pyo3(signature = (name, q, out=None))]
     fn frame_placement<'py>(
         &self,
@@ -62,6 +64,9 @@ impl PyModel {
         })
     }
 
+    /// The Jacobian of a frame, (dr/dt, ω) = J v, both in world axes: shape ``(6, nv)``, the linear rows of its origin first.
+    ///
+    /// ``name`` is one of :attr:`frame_names`.
     #[pyo3(signature = (name, q, out=None))]
     fn frame_jacobian<'py>(
         &self,
@@ -78,6 +83,7 @@ impl PyModel {
         Ok(jacobian)
     }
 
+    /// dJ/dt of :meth:`frame_jacobian`, so that (d²r/dt², dω/dt) = J a + (dJ/dt) v: shape ``(6, nv)``.
     #[pyo3(signature = (name, q, v, out=None))]
     fn frame_jacobian_rate<'py>(
         &self,
@@ -95,7 +101,9 @@ impl PyModel {
         Ok(rate)
     }
 
-    /// Length of a line between two points of bodies, and its gradient.
+    /// The distance of two points of bodies, m, and its gradient ∂l/∂q, shape ``(nv,)``.
+    ///
+    /// Each point is a tuple of a body and its place there, m: ``("forearm", [0.1, 0, 0])``. A tension F has the generalized force −F ∂l/∂q.
     #[pyo3(signature = (from_, to, q, out=None))]
     fn pair_length<'py>(
         &self,

@@ -16,7 +16,14 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyModel>()
 }
 
-/// A robot. See `_springpot.pyi`.
+/// A robot: bodies, joints, frames; constant, and shared by threads.
+///
+/// Algorithms take one state or many. ``q`` has shape ``(nq,)`` or ``(N, nq)``; ``v``, ``a``, ``tau`` have ``(nv,)`` or ``(N, nv)``; one of one
+/// dimension goes with every row of the others. Results of many states have N before their shape. Many states are worked out on all cores without
+/// the interpreter's lock: do not write into their arrays meanwhile. ``out`` is a C-contiguous float64 array (a tuple of them where there are
+/// several results) that is written and given back. Numbers are SI, axes those of the world.
+///
+/// Any real dtype and strides are taken; ``ValueError`` for a wrong shape, NaN and infinities, ``TypeError`` for what holds no real numbers.
 #[pyclass(frozen, name = "Model", module = "springpot._springpot")]
 #[derive(Debug)]
 pub(crate) struct PyModel {
