@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, TypeAlias, TypedDict
+from typing import Any, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -76,6 +76,7 @@ def fit_modulus(
 def parse(text: Number, expected: str) -> float: ...
 def parse_unit(text: str) -> tuple[float, float, list[float]]: ...
 
+@final
 class Model:
     @staticmethod
     def from_urdf(
@@ -84,7 +85,7 @@ class Model:
         *,
         ignore_mimic: bool = False,
         accept_inertia: bool = False,
-        package_path: Sequence[str | os.PathLike[str]] = (),
+        package_path: Sequence[str | os.PathLike[str]] = ...,
         gravity: Sequence[float] | None = None,
     ) -> Model: ...
     @staticmethod
@@ -157,6 +158,7 @@ class Model:
     def frame_jacobian_rate(self, name: str, q: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array: ...
     def pair_length(self, from_: Point, to: Point, q: ArrayLike, out: Pair | None = None) -> tuple[Any, Array]: ...
 
+@final
 class Snapshot(Mapping[str, float]):
     @property
     def t(self) -> float: ...
@@ -168,11 +170,12 @@ class Snapshot(Mapping[str, float]):
     def a(self) -> Array: ...
     @property
     def units(self) -> dict[str, str]: ...
-    def __getitem__(self, name: str) -> float: ...
-    def __contains__(self, name: object) -> bool: ...
+    def __getitem__(self, key: str, /) -> float: ...
+    def __contains__(self, key: object, /) -> bool: ...
     def __iter__(self) -> Iterator[str]: ...
     def __len__(self) -> int: ...
 
+@final
 class SimulationState:
     @property
     def t(self) -> float: ...
@@ -180,9 +183,10 @@ class SimulationState:
     @staticmethod
     def from_bytes(bytes: bytes) -> SimulationState: ...
 
+@final
 class Simulation:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         scenario: Scenario,
         *,
         set: Mapping[str, Any] | None = None,
@@ -191,7 +195,7 @@ class Simulation:
         motions: Mapping[str, Motion | tuple[ArrayLike, ArrayLike]] | None = None,
         sample: Number | None = None,
         motion_step: Number | None = None,
-    ) -> None: ...
+    ) -> Simulation: ...
     @property
     def t(self) -> float: ...
     @property
@@ -222,8 +226,9 @@ class Simulation:
     def state(self) -> SimulationState: ...
     def set_state(self, state: SimulationState) -> None: ...
 
+@final
 class Law:
-    def __init__(self, description: Law | Mapping[str, Any]) -> None: ...
+    def __new__(cls, description: Law | Mapping[str, Any]) -> Law: ...
     @property
     def name(self) -> str: ...
     @property
@@ -247,6 +252,7 @@ class Law:
     def modulus(self, omega: ArrayLike, inputs: Mapping[str, Number] | None = None) -> NDArray[np.complex128]: ...
     def relaxation(self, t: ArrayLike) -> Array: ...
 
+@final
 class Prony:
     @property
     def equilibrium(self) -> float: ...
@@ -265,18 +271,19 @@ class Prony:
     def ansys(self, bulk: str = "elastic") -> str: ...
     def __len__(self) -> int: ...
 
+@final
 class Bank:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         elements: Sequence[Law | Mapping[str, Any]],
         *,
         nodes: str = "radau",
         form: str | None = None,
         motion: str = "sought",
         tolerance: float = 1e-8,
-        step: Number = 1e-3,
-        horizon: Number = 100.0,
-    ) -> None: ...
+        step: Number | None = None,
+        horizon: Number | None = None,
+    ) -> Bank: ...
     @property
     def nodes(self) -> Array: ...
     @property

@@ -30,8 +30,8 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 ///     form: what the memory takes x' from between the nodes: ``"rates"`` (for radau) or ``"strokes"`` (else; also where very stiff).
 ///     motion: ``"sought"`` where strokes are found together with the forces, ``"given"`` where they are measured or prescribed.
 ///     tolerance: relative error of the memories, 1e-13 … 0.1.
-///     step: the shortest step that is planned, s; shorter ones may follow.
-///     horizon: the longest past that is remembered to that tolerance, s.
+///     step: the shortest step that is planned, s; shorter ones may follow. 1 ms where left out.
+///     horizon: the longest past that is remembered to that tolerance, s. 100 s where left out.
 ///
 /// What an integrator does for a step from t to t + h:
 ///
@@ -109,7 +109,7 @@ impl PyBank {
 #[pymethods]
 impl PyBank {
     #[new]
-    #[pyo3(signature = (elements, *, nodes="radau", form=None, motion="sought", tolerance=1e-8, step=1e-3.into(), horizon=100.0.into()))]
+    #[pyo3(signature = (elements, *, nodes="radau", form=None, motion="sought", tolerance=1e-8, step=None, horizon=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
         py: Python<'_>,
@@ -118,8 +118,8 @@ impl PyBank {
         form: Option<&str>,
         motion: &str,
         tolerance: f64,
-        step: Quantity<'_>,
-        horizon: Quantity<'_>,
+        step: Option<&Bound<'_, PyAny>>,
+        horizon: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         guarded(py, || {
             let nodes = match nodes {
@@ -143,12 +143,15 @@ impl PyBank {
                 "given" => Course::Given,
                 other => return Err(value_error(format!("motion is \"{other}\"; write \"sought\" or \"given\""))),
             };
-            let positive = |value: Quantity<'_>, name: &str| match value.read(name)? {
-                value if value > 0.0 => Ok(value),
-                value => Err(value_error(format!("{name} is {value} s; it must be positive"))),
+            let time = |said: Option<&Bound<'_, PyAny>>, name: &str, default: f64| match said {
+                None => Ok(default),
+                Some(said) => match number(said, "s", name)? {
+                    seconds if seconds > 0.0 => Ok(seconds),
+                    seconds => Err(value_error(format!("{name} is {seconds} s; it must be positive"))),
+                },
             };
-            let memory =
-                MemoryRange { tolerance, shortest: positive(step, "step")?, horizon: positive(horizon, "horizon")? };
+            let (shortest, horizon) = (time(step, "step", 1e-3)?, time(horizon, "horizon", 100.0)?);
+            let memory = MemoryRange { tolerance, shortest, horizon };
             if !(1e-13..=0.1).contains(&tolerance) {
                 return Err(value_error(format!("tolerance is {tolerance}; it must be between 1e-13 and 0.1")));
             }
@@ -358,37 +361,6 @@ impl PyBank {
             }
             Broken(e, why) => run_error_at(py, format!("t = {t} s: element \"{}\": {why}", self.names[e]), Some(t)),
             Kernel(why) => run_error_at(py, why, Some(0.0)),
-        }
-    }
-}
-
-/// A time: a number of seconds, or a text with a unit.
-struct Quantity<'py>(Time<'py>);
-
-enum Time<'py> {
-    Seconds(f64),
-    Said(Bound<'py, PyAny>),
-}
-
-impl From<f64> for Quantity<'_> {
-    fn from(seconds: f64) -> Self {
-        Self(Time::Seconds(seconds))
-    }
-}
-
-impl<'a, 'py> FromPyObject<'a, 'py> for Quantity<'py> {
-    type Error = PyErr;
-
-    fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        Ok(Self(Time::Said(value.to_owned())))
-    }
-}
-
-impl Quantity<'_> {
-    fn read(&self, name: &str) -> PyResult<f64> {
-        match &self.0 {
-            Time::Seconds(seconds) => Ok(*seconds),
-            Time::Said(value) => number(value, "s", name),
         }
     }
 }

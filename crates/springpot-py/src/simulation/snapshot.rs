@@ -112,7 +112,8 @@ impl PySnapshot {
         PyList::new(py, self.columns.names())?.try_iter()
     }
 
-    #[pyo3(signature = (name, default=None))]
+    /// The value of a column, or ``default``.
+    #[pyo3(signature = (name, default=None, /))]
     fn get<'py>(&self, py: Python<'py>, name: &str, default: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         match self.value(name) {
             Some(value) => Ok(value.into_pyobject(py)?.into_any()),
@@ -120,14 +121,17 @@ impl PySnapshot {
         }
     }
 
+    /// Names of the columns.
     fn keys(&self) -> Vec<String> {
         self.columns.names().map(str::to_owned).collect()
     }
 
+    /// Values in their order.
     fn values(&self) -> Vec<f64> {
         self.values_in_order().collect()
     }
 
+    /// Names and values.
     fn items(&self) -> Vec<(String, f64)> {
         self.columns.names().map(str::to_owned).zip(self.values_in_order()).collect()
     }

@@ -3,16 +3,16 @@
 use super::{Inner, failed};
 use crate::interrupt::PATIENCE;
 use pyo3::prelude::*;
-use springpot::integrate::{RowTimes, RunError};
+use springpot::integrate::RunError;
 use std::time::Instant;
 
 impl Inner {
     /// One step, which ends at the next sample at the latest.
     pub(super) fn step(&mut self, py: Python<'_>) -> PyResult<bool> {
         self.take_samples(py)?;
-        self.end_steps_at(self.next_sample());
+        let until = self.next_sample();
         let simulation = &mut self.simulation;
-        let moved = py.detach(|| simulation.step()).map_err(|error| failed(py, &error))?;
+        let moved = py.detach(|| simulation.step_until(until)).map_err(|error| failed(py, &error))?;
         py.check_signals()?;
         Ok(moved)
     }
@@ -26,7 +26,6 @@ impl Inner {
         while self.simulation.t() < t {
             self.take_samples(py)?;
             let until = self.next_sample().min(t);
-            self.end_steps_at(until);
             self.steps_until(py, until)?;
         }
         Ok(())
@@ -39,7 +38,7 @@ impl Inner {
             let walk = || -> Result<bool, RunError> {
                 let begun = Instant::now();
                 while simulation.t() < until {
-                    if !simulation.step()? {
+                    if !simulation.step_until(until)? {
                         break;
                     }
                     if begun.elapsed() > PATIENCE {
@@ -54,10 +53,5 @@ impl Inner {
                 return Ok(());
             }
         }
-    }
-
-    fn end_steps_at(&mut self, until: f64) {
-        let times = until.is_finite().then(|| RowTimes::Times([until].into()));
-        self.simulation.sample_at(times);
     }
 }
