@@ -69,14 +69,14 @@ enum Ending {
     Interrupted,
 }
 
-impl From<Ending> for ExitCode {
+impl From<Ending> for u8 {
     fn from(ending: Ending) -> Self {
-        Self::from(match ending {
+        match ending {
             Ending::Done => 0,
             Ending::Failed => 1,
             Ending::Refused => 2,
             Ending::Interrupted => 130,
-        })
+        }
     }
 }
 
@@ -116,6 +116,15 @@ pub fn main_from(catalog: &Catalog, arguments: impl IntoIterator<Item = OsString
 
 /// As [`main_from`], with all results of runs on `disk`.
 pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    code(catalog, disk, arguments).into()
+}
+
+/// As [`main_from`], with the exit code as a number: for programs that end by themselves.
+pub fn exit_code_from(catalog: &Catalog, arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    code(catalog, &Disk::default(), arguments)
+}
+
+fn code(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => arguments,

@@ -341,7 +341,7 @@ impl ElementBank {
     }
 
     /// Works out what the step does to the energies of element `e` and how well it knows its memories. `false` where it takes no part.
-    pub(crate) fn account(&mut self, e: usize) -> bool {
+    pub fn account(&mut self, e: usize) -> bool {
         let Banked { law, kept, told, energies, .. } = &mut self.elements[e];
         let Some(Kept { state, .. }) = kept else { return false };
         let step = told.step(self.step);
@@ -437,8 +437,15 @@ impl ElementBank {
     }
 
     /// Energies of element `e` dissipated and supplied by inputs since t = 0, J; unknown where it takes no part.
-    pub(crate) fn energies(&self, e: usize) -> (f64, f64) {
+    pub fn energies(&self, e: usize) -> (f64, f64) {
         self.elements[e].kept.as_ref().map_or((f64::NAN, f64::NAN), |kept| (kept.dissipated, kept.supplied))
+    }
+
+    /// Goes on from other energies ([`Self::energies`]), which [`Self::save`] does not write.
+    pub fn set_energies(&mut self, e: usize, (dissipated, supplied): (f64, f64)) {
+        if let Some(kept) = &mut self.elements[e].kept {
+            (kept.dissipated, kept.supplied) = (dissipated, supplied);
+        }
     }
 
     /// Those until θ of the step that was accounted.
@@ -494,8 +501,8 @@ impl ElementBank {
         }
     }
 
-    /// [`Self::commit`] of a step that was accounted, with its energies.
-    pub(crate) fn commit_account(&mut self) {
+    /// [`Self::commit`] of a step that was accounted ([`Self::account`]) of all elements, with its energies.
+    pub fn commit_account(&mut self) {
         for e in 0..self.elements.len() {
             let (dissipated, supplied) = self.energies_until(e, 1.0);
             let Banked { kept, energies, .. } = &mut self.elements[e];

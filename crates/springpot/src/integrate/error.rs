@@ -348,6 +348,44 @@ pub enum RunError {
 }
 
 impl RunError {
+    /// When it happened, s; `None` where no time is to blame.
+    pub fn time(&self) -> Option<f64> {
+        match self {
+            Self::ZeroLength { t, .. }
+            | Self::SegmentLength { t, .. }
+            | Self::HalfTurn { t, .. }
+            | Self::NotFinite { t, .. }
+            | Self::Rule { t, .. }
+            | Self::InputRange { t, .. }
+            | Self::RunAway { t, .. }
+            | Self::Jump { t, .. }
+            | Self::StepTooSmall { t, .. }
+            | Self::FixedStep { t, .. }
+            | Self::NoConvergence { t, .. }
+            | Self::Chatter { t, .. }
+            | Self::EventChatter { t, .. }
+            | Self::ReferenceJump { t, .. }
+            | Self::ControlChatter { t, .. }
+            | Self::NoHold { t, .. }
+            | Self::IndefiniteMassMatrix { t, .. }
+            | Self::TooManySteps { t, .. }
+            | Self::Missed { t, .. }
+            | Self::Unbalanced { t, .. }
+            | Self::Interrupted { t }
+            | Self::Outside { t, .. } => Some(*t),
+            Self::Kernel { .. } => Some(0.0),
+            Self::TooBusy { .. }
+            | Self::Scheme { .. }
+            | Self::OtherRun
+            | Self::Setting { .. }
+            | Self::NoStepping { .. }
+            | Self::NotDriven { .. }
+            | Self::NoInput { .. }
+            | Self::Path(_)
+            | Self::Output(_) => None,
+        }
+    }
+
     /// That of an element whose memory cannot be built.
     pub(super) fn of_kernel(element: &str) -> impl Fn(KernelError) -> Self + '_ {
         move |source| Self::Kernel { element: element.to_owned(), source }

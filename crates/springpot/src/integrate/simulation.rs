@@ -80,7 +80,11 @@ impl Simulation {
         self.step_until(f64::INFINITY)
     }
 
-    fn step_until(&mut self, until: f64) -> Result<bool, RunError> {
+    /// As [`Self::step`], but the step ends at `until`, s, at the latest; none is taken where that is reached already.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn step_until(&mut self, until: f64) -> Result<bool, RunError> {
         let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
         let before = self.driver.steps();
         // What changes at the start of a step is crossed first.

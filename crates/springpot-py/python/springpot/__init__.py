@@ -1,0 +1,47 @@
+"""Springpot: robots whose bodies are joined by real materials.
+
+Everything is in SI units (m, kg, s, rad, N, K); a number may also be given as a text with its unit, ``"25 degC"``.
+
+>>> import springpot as sp
+>>> arm = sp.Model.from_scenario('''
+... [[robot.body]]
+... name = "arm"
+... joint = { name = "q1", kind = "revolute", axis = [0, 1, 0] }
+... mass = 2
+... com = [0.5, 0, 0]
+... ''')
+>>> arm.gravity([0.0])
+array([-9.81])
+"""
+
+from collections.abc import Mapping as _Mapping
+
+from . import fractional, units
+from ._errors import ModelError, RunError, ScenarioError, SpringpotError
+from ._law import datasheet, fit, law, laws, network, prony
+from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
+
+_Mapping.register(Snapshot)
+
+__all__ = [
+    "Bank",
+    "Law",
+    "Model",
+    "ModelError",
+    "Prony",
+    "RunError",
+    "ScenarioError",
+    "Simulation",
+    "SimulationState",
+    "Snapshot",
+    "SpringpotError",
+    "__version__",
+    "datasheet",
+    "fit",
+    "fractional",
+    "law",
+    "laws",
+    "network",
+    "prony",
+    "units",
+]

@@ -1,0 +1,117 @@
+"""Laws with their parameters, Prony series, data sheets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _springpot
+from ._springpot import Law, Prony
+
+if TYPE_CHECKING:
+    from ._springpot import LawRow
+
+Number: TypeAlias = "float | str"
+
+
+def laws() -> list[LawRow]:
+    """All laws that have a name: rows with ``name``, ``equation``, ``source``, ``parameters`` and ``inputs``.
+
+    >>> import springpot as sp
+    >>> [row["equation"] for row in sp.laws() if row["name"] == "springpot"]
+    ['F = c·D^alpha x']
+    """
+    return _springpot.laws()
+
+
+def law(name: str, *, derivative: str = "caputo", **parameters: Any) -> Law:
+    """A law of the catalog with its parameters, each SI or a text with a unit.
+
+    >>> import springpot as sp
+    >>> rubber = sp.law("fractional-kelvin-voigt", k="2 N/mm", c=50.0, alpha=0.3)
+    >>> rubber.parameters
+    {'k': 2000.0, 'c': 50.0, 'alpha': 0.3}
+    >>> rubber.equation
+    'F = k·x + c·D^alpha x'
+
+    Raises:
+        ValueError: no such law or parameter, a value outside its range, a unit of another dimension.
+    """
+    return Law({"law": name, "parameters": parameters, "derivative": derivative})
+
+
+def network(text: str, *, derivative: str = "caputo", parameters: Mapping[str, Any] | None = None, **more: Any) -> Law:
+    """A network of leaves in ``series(…)`` and ``parallel(…)``; arguments of the leaves are names of parameters.
+
+    A parameter that is the file of a leaf ``table(file)`` is a tuple of strokes, m, and forces, N, here.
+
+    >>> import springpot as sp
+    >>> mount = sp.network("series(spring(k0), parallel(springpot(c, alpha), dashpot(eta)))", k0=9e3, c=40, alpha=0.4, eta=3)
+    >>> mount.leaves
+    ['spring1', 'springpot1', 'dashpot1']
+    """
+    return Law({"network": text, "parameters": {**(parameters or {}), **more}, "derivative": derivative})
+
+
+def prony(
+    law: Law,
+    times: tuple[Number, Number] | None = None,
+    *,
+    band: tuple[Number, Number] | None = None,
+    rtol: float = 1e-4,
+    slowest: str = "relaxes",
+) -> Prony:
+    """The shortest Prony series that stands for a law of springs and springpots, with a verified bound.
+
+    Args:
+        law: linear and without inputs; for a bare springpot ``sp.law("springpot", …)``.
+        times: from and to, s: the bound is on G(t).
+        band: from and to, rad/s or texts such as ``"10 Hz"``: the bound is on G*(ω).
+        rtol: the bound, relative, 1e-11 … 0.1.
+        slowest: what relaxes more slowly than the window sees ``"relaxes"``, or ``"stays"`` as a spring.
+
+    >>> import springpot as sp
+    >>> series = sp.prony(sp.law("springpot", c=50.0, alpha=0.5), times=("1 ms", 10.0), rtol=1e-4)
+    >>> series.error <= 1e-4 and len(series) < 20
+    True
+    """
+    return _springpot.prony(law, times, band=band, rtol=rtol, slowest=slowest)
+
+
+def datasheet(
+    data: Iterable[tuple[str, Number, Number]], law: str | None = None
+) -> tuple[Law, float]:
+    """The law that values of a data sheet determine, and the largest relative deviation from them.
+
+    Args:
+        data: tuples of a name (``tan_delta``, ``stiffness``, ``storage``, ``loss``, ``damping``), its value, and the frequency: rad/s, a text
+            such as ``"10 Hz"``, or 0 for a static value.
+        law: the name of the law; left out: the one of the form that such data determine.
+
+    >>> import springpot as sp
+    >>> rubber, deviation = sp.datasheet([("tan_delta", 0.3, "10 Hz"), ("stiffness", "5 kN/m", "10 Hz")])
+    >>> rubber.name, round(rubber.parameters["alpha"], 4), deviation < 1e-12
+    ('springpot', 0.1855, True)
+    """
+    return _springpot.datasheet(list(data), law)
+
+
+def fit(
+    omega: ArrayLike, modulus: ArrayLike, law: str = "fractional-kelvin-voigt"
+) -> tuple[Law, float, dict[str, float | None]]:
+    """A law fitted to a measured modulus over the frequency.
+
+    Args:
+        omega: rad/s, shape ``(N,)``.
+        modulus: K* = K' + iK'', N/m, complex, shape ``(N,)``.
+        law: its name: a spring, dashpot or springpot, or both side by side.
+
+    Returns:
+        The law, the root mean square of its relative deviations, and one standard deviation of each parameter (``None`` for one at an end of
+        its range).
+    """
+    measured = np.asarray(modulus, dtype=np.complex128)
+    return _springpot.fit_modulus(omega, measured.real, measured.imag, law)

@@ -1,0 +1,17 @@
+//! The command line in process.
+
+use crate::error::guarded;
+use pyo3::prelude::*;
+use springpot::law::Catalog;
+use std::ffi::OsString;
+
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(command_line, module)?)?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))
+}
+
+/// Runs the command `springpot` with these arguments, the program's name first; gives its exit code.
+#[pyfunction]
+fn command_line(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
+    guarded(py, || Ok(py.detach(|| springpot_cli::exit_code_from(&Catalog::standard(), arguments))))
+}

@@ -1,0 +1,30 @@
+//! The Python module `springpot._springpot`: the engine on NumPy arrays.
+//!
+//! What users see stands in `python/springpot`; signatures with shapes and units in `python/springpot/_springpot.pyi`.
+
+mod array;
+mod bank;
+mod command;
+mod error;
+mod fractional;
+mod interrupt;
+mod law;
+mod model;
+mod quantity;
+mod scenario;
+mod simulation;
+
+use pyo3::prelude::*;
+
+/// One line for each module.
+#[pymodule]
+fn _springpot(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    bank::register(module)?;
+    command::register(module)?;
+    fractional::register(module)?;
+    law::register(module)?;
+    model::register(module)?;
+    quantity::register(module)?;
+    simulation::register(module)?;
+    Ok(())
+}

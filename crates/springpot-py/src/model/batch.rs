@@ -1,0 +1,217 @@
+//! One algorithm for one state or for many, these on all cores without the GIL.
+
+#![expect(unsafe_code, reason = "rows of one array are written by several threads")]
+
+use super::core::{Core, Scratch};
+use crate::array::{Rows, Sink, numbers};
+use crate::error::{guarded, type_error, value_error};
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyTuple};
+use springpot::model::{Model, StateError};
+use std::array::from_fn;
+use std::sync::OnceLock;
+
+/// States that are worth a thread.
+const WORTH_A_THREAD: usize = 256;
+/// More states than this are worked out without the GIL.
+const WORTH_RELEASING: usize = 16;
+
+/// What an argument is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Symbol {
+    /// Coordinates, nq.
+    Q(&'static str),
+    /// Velocities, accelerations or forces, nv.
+    V(&'static str),
+}
+
+impl Symbol {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Q(name) | Self::V(name) => name,
+        }
+    }
+
+    fn width(self, model: &Model) -> usize {
+        match self {
+            Self::Q(_) => model.nq(),
+            Self::V(_) => model.nv(),
+        }
+    }
+
+    #[inline]
+    fn check(self, model: &Model, values: &[f64]) -> Result<(), StateError> {
+        match self {
+            Self::Q(_) => model.check_q(values),
+            Self::V(name) => model.check_v(name, values),
+        }
+    }
+}
+
+/// Applies `work` to every state that the arguments hold: one where all have one dimension, else one for each row.
+///
+/// `shapes` are those of the results of one state; results of many have the number of states before them.
+pub(crate) fn each<'py, const I: usize, const O: usize>(
+    py: Python<'py>,
+    core: &Core,
+    inputs: [(&Bound<'py, PyAny>, Symbol); I],
+    shapes: [&[usize]; O],
+    out: Option<&Bound<'py, PyAny>>,
+    work: impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]) + Sync,
+) -> PyResult<[Bound<'py, PyAny>; O]> {
+    guarded(py, || {
+        let model = &*core.model;
+        let symbols = inputs.map(|(_, symbol)| symbol);
+        let arrays = all(inputs.map(|(value, symbol)| numbers(value, symbol.name())))?;
+        let rows = all(from_fn::<_, I, _>(|k| Rows::new(&arrays[k], symbols[k].name(), symbols[k].width(model))))?;
+        let count = common_count(&rows, &symbols)?;
+        let outs = own_outs(out, O)?;
+        let sinks = all(from_fn::<_, O, _>(|k| {
+            let (mut shape, own) = ([0; 4], outs.as_ref().map(|outs| &outs[k]));
+            let used = shapes[k].len() + usize::from(count.is_some());
+            shape[used - shapes[k].len()..used].copy_from_slice(shapes[k]);
+            shape[0] = count.unwrap_or(shape[0]);
+            Sink::new(py, &shape[..used], own)
+        }))?;
+        let targets = from_fn::<_, O, _>(|k| if count.is_none() { sinks[k].0.flat() } else { sinks[k].0 });
+        match count {
+            None => one(core, &symbols, &rows, &targets, 0, &work).map_err(value_error)?,
+            Some(count) => {
+                if targets.iter().any(|target| rows.iter().any(|rows| rows.is_torn_by(target))) {
+                    return Err(value_error("out shares memory with an argument, row by row in another order"));
+                }
+                let run = || many(core, &symbols, &rows, &targets, count, &work);
+                let done = if count < WORTH_RELEASING { run() } else { py.detach(run) };
+                done.map_err(|(row, error)| value_error(format!("row {row}: {error}")))?;
+            }
+        }
+        Ok(from_fn(|k| {
+            let array = sinks[k].1.as_any();
+            match (count, shapes[k]) {
+                // SAFETY: the work is done, and nobody else has the new number.
+                (None, []) => PyFloat::new(py, unsafe { targets[k].row(0) }[0]).into_any(),
+                _ => array.clone(),
+            }
+        }))
+    })
+}
+
+#[inline]
+fn one<const I: usize, const O: usize>(
+    core: &Core,
+    symbols: &[Symbol; I],
+    rows: &[Rows; I],
+    targets: &[Sink; O],
+    row: usize,
+    work: &impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]),
+) -> Result<(), StateError> {
+    let mut scratch = core.scratch();
+    let done = state(&core.model, &mut scratch, symbols, rows, targets, row, work);
+    core.give_back(scratch);
+    done
+}
+
+#[inline]
+fn state<const I: usize, const O: usize>(
+    model: &Model,
+    scratch: &mut Scratch,
+    symbols: &[Symbol; I],
+    rows: &[Rows; I],
+    targets: &[Sink; O],
+    row: usize,
+    work: &impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]),
+) -> Result<(), StateError> {
+    // Taken out for the time of the call: the work has the rest.
+    let mut inputs = std::mem::take(&mut scratch.inputs);
+    let mut done = Ok(());
+    for k in 0..I {
+        let width = symbols[k].width(model);
+        inputs[k].resize(width, 0.0);
+        rows[k].read(row, &mut inputs[k]);
+        done = done.and_then(|()| symbols[k].check(model, &inputs[k]));
+    }
+    if done.is_ok() {
+        // SAFETY: each row is taken once, by one thread.
+        let outs = from_fn(|k| unsafe { targets[k].row(row) });
+        work(model, scratch, from_fn(|k| inputs[k].as_slice()), outs);
+    }
+    scratch.inputs = inputs;
+    done
+}
+
+/// The first row that is no state, where there is one.
+fn many<const I: usize, const O: usize>(
+    core: &Core,
+    symbols: &[Symbol; I],
+    rows: &[Rows; I],
+    targets: &[Sink; O],
+    count: usize,
+    work: &(impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]) + Sync),
+) -> Result<(), (usize, StateError)> {
+    let part = |from: usize, to: usize| {
+        let mut scratch = core.scratch();
+        let done = (from..to).try_for_each(|row| {
+            state(&core.model, &mut scratch, symbols, rows, targets, row, work).map_err(|error| (row, error))
+        });
+        core.give_back(scratch);
+        done
+    };
+    let threads = cores().min(count / WORTH_A_THREAD).max(1);
+    if threads == 1 {
+        return part(0, count);
+    }
+    let bound = |k: usize| count * k / threads;
+    std::thread::scope(|scope| {
+        let part = &part;
+        let others: Vec<_> = (1..threads).map(|k| scope.spawn(move || part(bound(k), bound(k + 1)))).collect();
+        let first = part(0, bound(1));
+        let results = others.into_iter().map(|thread| thread.join());
+        results.fold(first, |done, next| {
+            let next = next.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            done.and(next)
+        })
+    })
+}
+
+fn cores() -> usize {
+    static CORES: OnceLock<usize> = OnceLock::new();
+    *CORES.get_or_init(|| std::thread::available_parallelism().map_or(1, usize::from))
+}
+
+/// How many states there are; `None`: one, without a dimension of its own.
+#[inline]
+fn common_count<const I: usize>(rows: &[Rows; I], symbols: &[Symbol; I]) -> PyResult<Option<usize>> {
+    let mut counts = rows.iter().zip(symbols).filter_map(|(rows, symbol)| Some((rows.count?, symbol)));
+    let Some((count, first)) = counts.next() else { return Ok(None) };
+    match counts.find(|(other, _)| *other != count) {
+        None => Ok(Some(count)),
+        Some((other, symbol)) => {
+            let (first, symbol) = (first.name(), symbol.name());
+            Err(value_error(format!("{first} has {count} rows, and {symbol} has {other}; they must have as many")))
+        }
+    }
+}
+
+/// The arrays that the caller wants written: one, or a tuple of as many as there are results.
+#[inline]
+fn own_outs<'py>(out: Option<&Bound<'py, PyAny>>, wanted: usize) -> PyResult<Option<Vec<Bound<'py, PyAny>>>> {
+    let Some(out) = out.filter(|out| !out.is_none()) else { return Ok(None) };
+    if wanted == 1 {
+        return Ok(Some(vec![out.clone()]));
+    }
+    let tuple = out.cast::<PyTuple>().map_err(|_| type_error(format!("out must be a tuple of {wanted} arrays")))?;
+    match tuple.len() {
+        count if count == wanted => Ok(Some(tuple.iter().collect())),
+        count => Err(value_error(format!("out has {count} arrays; there are {wanted} results"))),
+    }
+}
+
+#[inline]
+fn all<T, const N: usize>(results: [PyResult<T>; N]) -> PyResult<[T; N]> {
+    let mut failed = None;
+    let values = results.map(|result| result.map_err(|error| failed = failed.take().or(Some(error))).ok());
+    match failed {
+        Some(error) => Err(error),
+        None => Ok(values.map(|value| value.expect("none has failed"))),
+    }
+}

@@ -1,0 +1,124 @@
+//! Where frames and points are, and how they move.
+
+use super::PyModel;
+use super::batch::Symbol::{Q, V};
+use super::batch::each;
+use crate::error::{model_error, type_error};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use springpot::dynamics::{frame_jacobian_into, frame_jacobian_rate_into, pair_into};
+use springpot::model::{Anchor, Site};
+
+type Any<'py> = Bound<'py, PyAny>;
+
+impl PyModel {
+    fn site(&self, py: Python<'_>, name: &str, point: [f64; 3]) -> PyResult<Site> {
+        let refuse = |error| model_error(py, error);
+        match self.core.model.find_body(name) {
+            Some(body) => self.core.model.resolve(&Anchor { body, point }).map_err(refuse),
+            None => Err(self.frame(py, name).err().unwrap_or_else(|| type_error("a point belongs to a body"))),
+        }
+    }
+}
+
+#[pymethods]
+impl PyModel {
+    /// The configuration in which every joint stands at 0: shape ``(nq,)``.
+    fn neutral<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.core.model.neutral())
+    }
+
+    /// A random configuration within the limits, the same for the same seed: shape ``(nq,)``, or ``(count, nq)`` from consecutive seeds.
+    #[pyo3(signature = (seed, count=None))]
+    fn random<'py>(&self, py: Python<'py>, seed: u64, count: Option<usize>) -> PyResult<Any<'py>> {
+        let model = &self.core.model;
+        let Some(count) = count else { return Ok(PyArray1::from_vec(py, model.random(seed)).into_any()) };
+        let all = (0..count as u64).flat_map(|k| model.random(seed.wrapping_add(k)));
+        let flat = PyArray1::from_vec(py, all.collect());
+        let matrix: Bound<'py, PyArray2<f64>> = flat.reshape([count, model.nq()])?;
+        Ok(matrix.into_any())
+    }
+
+    /// Where a frame is: its rotation, shape ``(3, 3)``, which takes its components to those of the world, and its origin, shape ``(3,)``, m.
+    #[pyo3(signature = (name, q, out=None))]
+    fn frame_placement<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        q: &Any<'py>,
+        out: Option<&Any<'py>>,
+    ) -> PyResult<[Any<'py>; 2]> {
+        let frame = self.frame(py, name)?;
+        let shapes: [&[usize]; 2] = [&[3, 3], &[3]];
+        each(py, &self.core, [(q, Q("q"))], shapes, out, |model, scratch, [q], [rotation, position]| {
+            scratch.kinematics.update_position(model, q);
+            let placement = scratch.kinematics.frame(&frame);
+            position.copy_from_slice(&placement.translation.0);
+            let turn = &placement.rotation;
+            for column in 0..3 {
+                let mut axis = [0.0; 3];
+                axis[column] = 1.0;
+                let turned = *turn * springpot::spatial::Vec3(axis);
+                (0..3).for_each(|row| rotation[3 * row + column] = turned.0[row]);
+            }
+        })
+    }
+
+    /// The Jacobian of a frame, (dr/dt, ω) = J v, both in world axes: shape ``(6, nv)``, the linear rows of its origin first.
+    ///
+    /// ``name`` is one of :attr:`frame_names`.
+    #[pyo3(signature = (name, q, out=None))]
+    fn frame_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        q: &Any<'py>,
+        out: Option<&Any<'py>>,
+    ) -> PyResult<Any<'py>> {
+        let (frame, n) = (self.frame(py, name)?, self.nv());
+        let [jacobian] = each(py, &self.core, [(q, Q("q"))], [&[6, n]], out, |model, scratch, [q], [jacobian]| {
+            scratch.kinematics.update_position(model, q);
+            frame_jacobian_into(model, &scratch.kinematics, &frame, jacobian);
+        })?;
+        Ok(jacobian)
+    }
+
+    /// dJ/dt of :meth:`frame_jacobian`, so that (d²r/dt², dω/dt) = J a + (dJ/dt) v: shape ``(6, nv)``.
+    #[pyo3(signature = (name, q, v, out=None))]
+    fn frame_jacobian_rate<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        q: &Any<'py>,
+        v: &Any<'py>,
+        out: Option<&Any<'py>>,
+    ) -> PyResult<Any<'py>> {
+        let (frame, n, inputs) = (self.frame(py, name)?, self.nv(), [(q, Q("q")), (v, V("v"))]);
+        let [rate] = each(py, &self.core, inputs, [&[6, n]], out, |model, scratch, [q, v], [rate]| {
+            scratch.kinematics.update_velocity(model, q, v);
+            frame_jacobian_rate_into(model, &scratch.kinematics, &frame, rate);
+        })?;
+        Ok(rate)
+    }
+
+    /// The distance of two points of bodies, m, and its gradient ∂l/∂q, shape ``(nv,)``.
+    ///
+    /// Each point is a tuple of a body and its place there, m: ``("forearm", [0.1, 0, 0])``. A tension F has the generalized force −F ∂l/∂q.
+    #[pyo3(signature = (from_, to, q, out=None))]
+    fn pair_length<'py>(
+        &self,
+        py: Python<'py>,
+        from_: (String, [f64; 3]),
+        to: (String, [f64; 3]),
+        q: &Any<'py>,
+        out: Option<&Any<'py>>,
+    ) -> PyResult<[Any<'py>; 2]> {
+        let (from, to) = (self.site(py, &from_.0, from_.1)?, self.site(py, &to.0, to.1)?);
+        let (n, still) = (self.nv(), vec![0.0; self.nv()]);
+        let shapes: [&[usize]; 2] = [&[], &[n]];
+        each(py, &self.core, [(q, Q("q"))], shapes, out, |model, scratch, [q], [length, gradient]| {
+            scratch.kinematics.update_velocity(model, q, &still);
+            length[0] = pair_into(model, &scratch.kinematics, &from, &to, gradient).length;
+        })
+    }
+}

@@ -1,0 +1,41 @@
+//! Scenarios from a path, a text or a dict.
+
+use crate::error::scenario_error;
+use pyo3::prelude::*;
+use springpot::law::Catalog;
+use springpot_scenario::Scenario;
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+/// The laws that scenarios may name.
+pub(crate) static CATALOG: LazyLock<Catalog> = LazyLock::new(Catalog::standard);
+
+/// What `springpot._scenario.described` makes of a scenario and its overrides.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Described {
+    /// Where it is to be read, unless `text` is given.
+    path: PathBuf,
+    text: Option<String>,
+    /// `PATH=VALUE`.
+    assignments: Vec<String>,
+}
+
+/// Reads the scenario with the values of `set`: a dict of dotted paths.
+///
+/// # Errors
+/// `ScenarioError`, and `TypeError` for what is no scenario.
+pub(crate) fn read(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Scenario> {
+    let py = scenario.py();
+    let described = py.import("springpot._scenario")?.getattr("described")?.call1((scenario, set))?;
+    let Described { path, text, assignments } = described.extract()?;
+    let read = match text {
+        Some(text) => Scenario::parse(&text, path.display().to_string(), ""),
+        None => Scenario::read(path),
+    };
+    let mut scenario = read.map_err(|refusals| scenario_error(py, &refusals))?;
+    for assignment in assignments {
+        scenario.set(&assignment).map_err(|refusals| scenario_error(py, &refusals))?;
+    }
+    Ok(scenario)
+}

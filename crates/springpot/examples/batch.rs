@@ -1,0 +1,39 @@
+//! Inverse dynamics of many states of a robot on all cores, as springpot-py does them: `cargo run --release --example batch -- ROBOT.urdf [N]`.
+
+use springpot::dynamics::{Workspace, rnea_into};
+use springpot::model::urdf::{Urdf, UrdfOptions};
+use std::path::Path;
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().ok_or("which robot?")?;
+    let count: usize = arguments.next().map_or(Ok(100_000), |count| count.parse())?;
+    let model = Urdf::read(Path::new(&path), &UrdfOptions::default())?.model([0.0, 0.0, -9.81])?;
+    let (nq, nv) = (model.nq(), model.nv());
+    let q: Vec<f64> = (0..count as u64).flat_map(|seed| model.random(seed)).collect();
+    let [v, a] = [0.3, 0.7].map(|seed| (0..count * nv).map(|k| (seed + k as f64).sin()).collect::<Vec<_>>());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let rows = count.div_ceil(threads);
+    let mut best = f64::INFINITY;
+    for _ in 0..15 {
+        let begun = Instant::now();
+        let mut tau = vec![0.0; count * nv];
+        std::thread::scope(|scope| {
+            for (part, tau) in tau.chunks_mut(rows * nv).enumerate() {
+                let (model, q, v, a) = (&model, &q, &v, &a);
+                scope.spawn(move || {
+                    let mut workspace = Workspace::new(model);
+                    for (k, tau) in tau.chunks_mut(nv).enumerate() {
+                        let row = part * rows + k;
+                        let [v, a] = [v, a].map(|all| &all[row * nv..(row + 1) * nv]);
+                        rnea_into(model, &q[row * nq..(row + 1) * nq], v, a, &[], &mut workspace, tau);
+                    }
+                });
+            }
+        });
+        best = best.min(begun.elapsed().as_secs_f64());
+    }
+    println!("{:.0} ns a state, {count} states, {threads} threads", best / count as f64 * 1e9);
+    Ok(())
+}
