@@ -11,6 +11,7 @@ mod interrupt;
 mod law;
 mod model;
 mod quantity;
+mod run;
 mod scenario;
 mod simulation;
 
@@ -25,6 +26,7 @@ fn _springpot(module: &Bound<'_, PyModule>) -> PyResult<()> {
     law::register(module)?;
     model::register(module)?;
     quantity::register(module)?;
+    run::register(module)?;
     simulation::register(module)?;
     Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::error::scenario_error;
 use pyo3::prelude::*;
 use springpot::law::Catalog;
+use springpot_run::Asked;
 use springpot_scenario::Scenario;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -38,4 +39,19 @@ pub(crate) fn read(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) 
         scenario.set(&assignment).map_err(|refusals| scenario_error(py, &refusals))?;
     }
     Ok(scenario)
+}
+
+/// The same, to be run: a text or a dict names files from the current folder.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn asked(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Asked> {
+    let py = scenario.py();
+    let described = py.import("springpot._scenario")?.getattr("described")?.call1((scenario, set))?;
+    let Described { path, text, assignments } = described.extract()?;
+    let asked = match text {
+        Some(text) => Asked::text(text, path.display().to_string(), std::env::current_dir()?),
+        None => Asked::read(&path).map_err(|refusals| scenario_error(py, &refusals))?,
+    };
+    Ok(Asked { overrides: assignments, ..asked })
 }

@@ -86,7 +86,8 @@ impl Scenario {
     }
 
     /// Sweeps a parameter: `PATH=v1,v2,…`, `PATH=from:to:count` or `PATH=from:to:count:log`. It takes the place of the file's sweep of that
-    /// path, or stands beside the sweeps of the file and runs fastest. Commas inside brackets or quotes belong to a value.
+    /// path, or stands beside the sweeps of the file and runs fastest. Commas inside brackets or quotes belong to a value. Paths that move together
+    /// are `[PATH, PATH]=[v, w],…`.
     ///
     /// # Errors
     /// As [`Scenario::set`]; an empty value.
@@ -171,27 +172,37 @@ pub(crate) fn apply(ctx: &Context<'_>, scenario: &Scenario, document: &mut Node)
         set.push(target);
     }
     for item in &scenario.sweeps {
-        let target = path::resolve(ctx, document, &item.path, &item.place)?;
-        replace_sweep(ctx, document, &target, item)?;
+        let paths = together(&item.path);
+        for path in &paths {
+            path::resolve(ctx, document, path, &item.place)?;
+        }
+        replace_sweep(ctx, document, &paths, item)?;
     }
     Ok(set)
 }
 
-/// Gives the sweep of `target` other values, or adds one.
-fn replace_sweep(ctx: &Context<'_>, document: &mut Node, target: &Target, item: &Override) -> Read<()> {
+/// The paths that move together, `[PATH, PATH]`, or the one there is.
+fn together(written: &str) -> Vec<&str> {
+    match written.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
+        Some(paths) => split(paths, 0..paths.len(), ',').into_iter().map(|range| &paths[range]).collect(),
+        None => vec![written],
+    }
+}
+
+/// Gives the sweep of these paths other values, or adds one.
+fn replace_sweep(ctx: &Context<'_>, document: &mut Node, wanted: &[&str], item: &Override) -> Read<()> {
+    let wanted_keys: Vec<_> = wanted.iter().map(|path| path::keys(path)).collect();
     let blocks = document.get("sweep").and_then(|sweep| sweep.items()).unwrap_or_default();
     let mut found = None;
     for (at, block) in blocks.iter().enumerate() {
         let Some(parameter) = block.get("parameter") else { continue };
         let paths: Vec<&Node> =
             parameter.items().map_or(vec![parameter], |items| items.iter().map(|item| &**item).collect());
-        let leads_there = |node: &&Node| {
-            let keys = node.text().and_then(path::keys);
-            keys.is_some() && keys == path::keys(&item.path)
-        };
-        if paths.iter().any(leads_there) {
-            if paths.len() > 1 {
-                let message = format!("{} is swept together with others in the file", target.written);
+        let keys: Vec<_> = paths.iter().map(|node| node.text().and_then(path::keys)).collect();
+        if let Some(both) = wanted_keys.iter().position(|wanted| wanted.is_some() && keys.contains(wanted)) {
+            if paths.len() != wanted.len() || !wanted_keys.iter().all(|wanted| keys.contains(wanted)) {
+                let how = if paths.len() > 1 { "together with others" } else { "alone" };
+                let message = format!("{} is swept {how} in the file", wanted[both]);
                 let refusal: Refusal = item.place.refuse(RefusalKind::Rule, message);
                 return Err(ctx.refuse(refusal.help("change its [[sweep]] in the file")));
             }
@@ -201,7 +212,14 @@ fn replace_sweep(ctx: &Context<'_>, document: &mut Node, target: &Target, item: 
     let text = |text: &str| Node { value: Value::Text(text.to_owned()), place: item.place.clone(), tag: None };
     let entry =
         |key: &str, node: Node| Entry { key: key.to_owned(), key_place: item.place.clone(), node: Arc::new(node) };
-    let block = Value::Table(vec![entry("parameter", text(&item.path)), entry("values", item.value.clone())]);
+    let parameter = match wanted {
+        [path] if !item.path.starts_with('[') => text(path),
+        paths => {
+            let nodes = paths.iter().map(|path| Arc::new(text(path))).collect();
+            Node { value: Value::Array(nodes), place: item.place.clone(), tag: None }
+        }
+    };
+    let block = Value::Table(vec![entry("parameter", parameter), entry("values", item.value.clone())]);
     let block = Arc::new(Node { value: block, place: item.place.clone(), tag: None });
     let mut blocks = blocks.to_vec();
     match found {

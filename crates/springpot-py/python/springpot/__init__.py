@@ -18,17 +18,21 @@ from collections.abc import Mapping as _Mapping
 
 from . import fractional, units
 from ._errors import ModelError, RunError, ScenarioError, SpringpotError
+from ._cluster import sweep
 from ._law import datasheet, fit, law, laws, network, prony
+from ._run import Case, Run, run
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
 
 _Mapping.register(Snapshot)
 
 __all__ = [
     "Bank",
+    "Case",
     "Law",
     "Model",
     "ModelError",
     "Prony",
+    "Run",
     "RunError",
     "ScenarioError",
     "Simulation",
@@ -43,5 +47,7 @@ __all__ = [
     "laws",
     "network",
     "prony",
+    "run",
+    "sweep",
     "units",
 ]

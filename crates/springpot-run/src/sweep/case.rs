@@ -103,7 +103,7 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
     if state.is_none()
         && let Some(parcel) = source.map(|source| source.case(index)).transpose()?.flatten()
     {
-        return delivered(sweep, parcel, sections);
+        return delivered(sweep, &parcel, sections);
     }
     let Sections { rows, rest } = sections;
     let mut output = Output::open(sweep, index, rows, state.as_ref())?;
@@ -126,7 +126,7 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
 }
 
 /// Writes a case that came to its end elsewhere.
-fn delivered(sweep: &Sweep, parcel: Parcel, Sections { rows, rest }: Sections) -> io::Result<CaseResult> {
+fn delivered(sweep: &Sweep, parcel: &Parcel, Sections { rows, rest }: Sections) -> io::Result<CaseResult> {
     let index = parcel.index();
     let aside = sweep.rows.turn() != index;
     let files = sweep.options.checkpoints.map(|checkpoints| CaseFiles::begin(checkpoints, index, aside));
@@ -143,7 +143,7 @@ fn delivered(sweep: &Sweep, parcel: Parcel, Sections { rows, rest }: Sections) -
     if let Some(kept) = &mut kept {
         parcel.kept(width).for_each(|values| kept.again(values));
     }
-    let mut done = parcel.done;
+    let mut done = parcel.done.clone();
     if let Some(files) = files {
         (done.written.rows, done.written.kept) = files.written();
         (done.written.aside, done.written.wall_of_run) = (files.is_aside(), sweep.wall());

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use springpot::integrate::{Checkpoint, PassedLimit, Report, Stop, System, Watch};
 use springpot_scenario::{Cases, MetricPlan, Plan};
 use std::io;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Text is handed over at about this size.
@@ -36,12 +37,12 @@ enum ParcelRows {
 }
 
 /// Where cases are found that have come to their end elsewhere.
-pub trait Source: Sync {
+pub trait Source: Send + Sync {
     /// Case `index`; `None` where it is to be run here. Each case is asked for once, in order where one job runs.
     ///
     /// # Errors
     /// What keeps the whole run from going on.
-    fn case(&self, index: usize) -> io::Result<Option<Parcel>>;
+    fn case(&self, index: usize) -> io::Result<Option<Arc<Parcel>>>;
 
     /// Wall time that was spent elsewhere.
     fn wall(&self) -> Duration {
@@ -165,6 +166,27 @@ impl Parcel {
             ParcelRows::Columns(columns) => Some(columns),
             ParcelRows::Text(_) => None,
         }
+    }
+
+    /// The same with its rows as numbers: `swept` fields begin each of them.
+    ///
+    /// # Errors
+    /// [`ParcelError::Damaged`] where they are no rows of so many columns.
+    pub(super) fn with_numbers(self, swept: usize, columns: usize) -> Result<Self, ParcelError> {
+        let ParcelRows::Text(text) = &self.rows else { return Ok(self) };
+        let mut numbers = vec![Vec::new(); columns];
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(&text[..]);
+        let mut row = csv::StringRecord::new();
+        while reader.read_record(&mut row).map_err(|_| ParcelError::Damaged)? {
+            if row.len() != swept + columns {
+                return Err(ParcelError::Damaged);
+            }
+            for (column, field) in numbers.iter_mut().zip(row.iter().skip(swept)) {
+                let value = if field.is_empty() { Ok(f64::NAN) } else { field.parse() };
+                column.push(value.map_err(|_| ParcelError::Damaged)?);
+            }
+        }
+        Ok(Self { rows: ParcelRows::Columns(numbers), ..self })
     }
 
     /// Hands over its rows as they stand in results.csv, and with each piece the values kept for figures that belong to it or to an earlier one.

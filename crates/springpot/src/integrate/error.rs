@@ -375,6 +375,7 @@ impl RunError {
             | Self::Outside { t, .. } => Some(*t),
             Self::Kernel { .. } => Some(0.0),
             Self::TooBusy { .. }
+            | Self::SampleBetweenSteps { .. }
             | Self::Scheme { .. }
             | Self::OtherRun
             | Self::Setting { .. }

@@ -67,7 +67,7 @@ fn a_sampled_temperature_starts_where_the_robot_does() {
     let run = run(&slide(&law, motion));
     let (temperature, q) = (run.column("e.T"), run.column("q.q"));
     assert!((temperature[0] - 294.15).abs() < 1e-12);
-    assert!(temperature.iter().zip(&q).all(|(T, q)| (T - 293.15 - 10.0 * q).abs() < 1e-9));
+    assert!(temperature.iter().zip(&q).all(|(kelvin, q)| (kelvin - 293.15 - 10.0 * q).abs() < 1e-9));
 }
 
 /// After a jump of the thermal stroke at t = 0, D_RL x_s = D_C x_s + x_s(0) t^−alpha/Γ(1 − alpha).

@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Seek as _, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Why the parts of a run cannot be put together.
@@ -122,6 +123,25 @@ impl Shards {
         &self.parts[0].head.origin
     }
 
+    /// The cases that a run under way has brought to their end, up to the first that has not ended, with their rows as numbers.
+    ///
+    /// # Errors
+    /// As [`Unfinished::read`]; damaged rows.
+    pub fn ended(results: &Path, disk: &Disk, holder: &str, layout: &Layout) -> Result<Vec<Parcel>, CheckpointError> {
+        let Unfinished { folder, head } = Unfinished::read(results, disk.clone(), holder)?;
+        let start = head.origin.cases(head.cases).start;
+        let (done, begins, wall) = Default::default();
+        let mut part = Part { folder, head, done, begins, rows: None, wall };
+        let first = part.look(layout, start)?;
+        let (swept, columns) = (layout.swept(), layout.written().len() - layout.swept());
+        let cases = (start..first).map(|case| {
+            let width = layout.kept(case).map_or(0, <[usize]>::len);
+            let numbers = part.parcel(disk, case, width)?.with_numbers(swept, columns);
+            numbers.map_err(|_| CheckpointError::Rows(results.to_owned()))
+        });
+        cases.collect()
+    }
+
     /// The folders of the parts.
     pub fn folders(&self) -> impl Iterator<Item = &Path> {
         self.parts.iter().map(|part| part.folder.path())
@@ -222,10 +242,10 @@ impl Part {
 }
 
 impl Source for Shards {
-    fn case(&self, index: usize) -> io::Result<Option<Parcel>> {
+    fn case(&self, index: usize) -> io::Result<Option<Arc<Parcel>>> {
         let Some(&part) = self.of_case.get(&index) else { return Ok(None) };
         let width = self.widths.get(index).copied().unwrap_or(0);
-        self.parts[part].parcel(&self.disk, index, width).map(Some).map_err(io::Error::other)
+        self.parts[part].parcel(&self.disk, index, width).map(|parcel| Some(Arc::new(parcel))).map_err(io::Error::other)
     }
 
     fn wall(&self) -> Duration {

@@ -1,0 +1,321 @@
+"""Runs of scenarios, their columns and their files."""
+
+from __future__ import annotations
+
+import csv
+import os
+import warnings as _warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import RunError, SpringpotError
+from ._progress import Progress, shown
+from ._scenario import Scenario
+from ._springpot import Study
+from ._springpot import Case as _Case
+from ._sweeps import sweeps_of
+from ._tables import Metrics, Rows
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import pandas
+    import polars
+
+Column: TypeAlias = npt.NDArray[np.float64]
+Sweep: TypeAlias = "Mapping[str | tuple[str, ...], Any]"
+
+
+class Case(Mapping[str, Column]):
+    """One case of a run: its columns as read-only arrays ``(rows,)``, without a copy; NaN where a cell is empty."""
+
+    def __init__(self, study: Study, case: _Case) -> None:
+        self._study, self._case = study, case
+        self._names = [name for name, _, _ in study.columns[len(study.parameters) :]]
+        self._found: dict[str, Column] = {}
+
+    @property
+    def index(self) -> int:
+        """Index in the grid of the sweeps."""
+        return self._case.index
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """The swept values by path: numbers in SI units, or texts."""
+        return dict(zip(self._study.parameters, self._study.values(self.index)))
+
+    @property
+    def error(self) -> RunError | None:
+        """Why it failed; ``None`` where it did not. Its rows go up to there."""
+        if self._case.error is None:
+            return None
+        message, place, help = self._case.error
+        lines = [message, *(f"  {word}" for word in (place, help) if word)]
+        return RunError("\n".join(lines), t=self._case.t_reached)
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """Steps, rows, energies, as in run.json."""
+        return self._case.report
+
+    @property
+    def limits(self) -> list[str]:
+        """The limits of joints that it passes, in words."""
+        return self._case.limits
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of every column."""
+        return {name: unit for name, unit, _ in self._study.columns[len(self._study.parameters) :]}
+
+    def __getitem__(self, column: str) -> Column:
+        found = self._found.get(column)
+        if found is None:
+            if column not in self._names:
+                raise KeyError(_unknown(column, self._names))
+            found = np.asarray(self._case.column(self._names.index(column)))
+            self._found[column] = found
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __repr__(self) -> str:
+        name = self._study.name(self.index)
+        of = f" {name}" if name else ""
+        failed = ", failed" if self._case.error is not None else ""
+        return f"<Case {self.index}{of}: {self._case.rows} rows, {len(self)} columns{failed}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Case, (self._study, self._case)
+
+
+class Run:
+    """What a scenario led to, in memory.
+
+    A column of the only case is ``run["strut.force"]``; those of several cases are ``run.case(k)["strut.force"]``.
+
+    >>> import springpot as sp
+    >>> run = sp.run('''
+    ... robot.body = [{ name = "mass", joint = { name = "x", kind = "prismatic", axis = [1, 0, 0] }, mass = 2 }]
+    ... element = [{ name = "pad", joint = "x", law = "springpot", parameters = { c = 10, alpha = 0.5 } }]
+    ... motion = { kind = "prescribed", joints = { x = "0.01*t" } }
+    ... time = { end = 1, output_step = 0.5 }
+    ... ''')
+    >>> run["pad.force"].round(6)
+    array([0.      , 0.079788, 0.112838])
+    >>> run.units["pad.force"]
+    'N'
+    """
+
+    def __init__(self, study: Study, cases: Sequence[_Case]) -> None:
+        self._study = study
+        self._cases = [Case(study, case) for case in cases]
+
+    @property
+    def title(self) -> str | None:
+        """The title of the scenario."""
+        return self._study.title
+
+    @property
+    def cases(self) -> list[Case]:
+        """All cases, in the order of the grid: the last sweep runs fastest."""
+        return list(self._cases)
+
+    def case(self, k: int) -> Case:
+        """Case number k."""
+        return self._cases[k]
+
+    @property
+    def parameters(self) -> list[str]:
+        """Paths of the swept parameters."""
+        return self._study.parameters
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns, without those of swept parameters."""
+        return [name for name, _, _ in self._study.columns[len(self.parameters) :]]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The SI unit of every column, swept parameters included; empty for a pure number."""
+        return {name: unit for name, unit, _ in self._study.columns}
+
+    @property
+    def meanings(self) -> dict[str, str]:
+        """What every column holds."""
+        return {name: meaning for name, _, meaning in self._study.columns}
+
+    def __getitem__(self, column: str) -> Column:
+        """A column ``(rows,)`` of the only case."""
+        if len(self._cases) != 1:
+            raise SpringpotError(f"the run has {len(self._cases)} cases: run.case(k)[{column!r}] is a column of one of them")
+        return self._cases[0][column]
+
+    def __contains__(self, column: object) -> bool:
+        return column in self.columns
+
+    def __len__(self) -> int:
+        return len(self._cases)
+
+    def __repr__(self) -> str:
+        cases = "1 case" if len(self) == 1 else f"{len(self)} cases"
+        failed = f", {len(self.failures)} failed" if self.failures else ""
+        return f"<Run of {cases}{failed}: {len(self.columns)} columns>"
+
+    @property
+    def failures(self) -> dict[int, RunError]:
+        """Why cases failed, by their index."""
+        return {case.index: case.error for case in self._cases if case.error is not None}
+
+    @property
+    def metrics(self) -> Metrics:
+        """The rows of metrics.csv: a sequence of dicts; ``run.metrics["name"]`` is the value of the only case, else an array ``(cases,)``."""
+        rows: list[dict[str, Any]] = []
+        for case in self._cases:
+            for (name, column, unit), value in zip(self._study.metrics, case._case.metrics):
+                rows.append({**case.parameters, "metric": name, "column": column, "value": value, "unit": unit})
+        return Metrics(rows, len(self._cases))
+
+    @property
+    def events(self) -> Rows:
+        """The rows of events.csv: a sequence of dicts, ``run.events["t"]`` is a column."""
+        names = [*self.parameters, "event", *self._study.event_columns]
+        rows: list[dict[str, Any]] = []
+        for case in self._cases:
+            for cells in csv.reader(case._case.events.splitlines()):
+                row: dict[str, Any] = dict(case.parameters)
+                kept = len(self.parameters)
+                row["event"] = cells[kept]
+                row.update({name: float(cell) if cell else float("nan") for name, cell in zip(names[kept + 1 :], cells[kept + 1 :])})
+                rows.append(row)
+        return Rows(rows)
+
+    @property
+    def summary(self) -> Rows:
+        """The rows of summary.csv: the smallest, largest and root-mean-square value of every column of every case."""
+        rows: list[dict[str, Any]] = []
+        for case in self._cases:
+            for (name, unit, _), (low, high, rms) in zip(self._study.columns[len(self.parameters) :], case._case.statistics):
+                rows.append({**case.parameters, "column": name, "unit": unit, "min": low, "max": high, "rms": rms})
+        return Rows(rows)
+
+    def table(self) -> dict[str, npt.NDArray[Any]]:
+        """All rows of all cases by column, swept parameters first, as results.csv has them."""
+        table: dict[str, npt.NDArray[Any]] = {}
+        for k, parameter in enumerate(self.parameters):
+            values = [self._study.values(case.index)[k] for case in self._cases]
+            table[parameter] = np.repeat(np.asarray(values), [case._case.rows for case in self._cases])
+        for column in self.columns:
+            parts = [case[column] for case in self._cases]
+            table[column] = parts[0] if len(parts) == 1 else np.concatenate(parts)
+        return table
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """All rows as a pandas frame; ``frame.attrs["units"]`` are the units."""
+        import pandas
+
+        frame = pandas.DataFrame(self.table())
+        frame.attrs["units"] = self.units
+        return frame
+
+    def to_polars(self) -> polars.DataFrame:
+        """All rows as a polars frame."""
+        import polars
+
+        return polars.DataFrame(self.table())
+
+    def save(
+        self, out: str | os.PathLike[str], *, format: str = "csv", figures: bool = True
+    ) -> list[str]:
+        """Writes the folder that the command ``springpot run`` writes: rows (``"csv"``, ``"parquet"`` or ``"npz"``), statistics, metrics,
+        events, figures and run.json. Gives the names of the files."""
+        told = self._study.write(os.fspath(out), cases=[case._case for case in self._cases], format=format, figures=figures)
+        _warn(told["warnings"])
+        files: list[str] = told["files"]
+        return files
+
+    def plot(
+        self, y: str | Sequence[str], x: str = "t", *, cases: Sequence[int] | None = None, ax: matplotlib.axes.Axes | None = None
+    ) -> matplotlib.axes.Axes:
+        """Draws columns over another one with matplotlib, in the style of the figures of a scenario: a colour for each case, a dash for each column.
+
+        ``cases``: indices, default all; more than twelve share a colour bar's colours and have no legend."""
+        from ._plot import plot
+
+        return plot(self, [y] if isinstance(y, str) else list(y), x, cases, ax)
+
+
+def run(
+    scenario: Scenario,
+    set: Mapping[str, Any] | None = None,
+    sweep: Sweep | None = None,
+    out: str | os.PathLike[str] | None = None,
+    jobs: int | None = None,
+    progress: Progress = None,
+    *,
+    format: str = "csv",
+    figures: bool = True,
+) -> Run:
+    """Runs a scenario, all cases of its sweeps on all cores, without the GIL.
+
+    Args:
+        scenario: a path, a text (a ``str`` with a line break or ``=``), or a dict.
+        set: values by path, ``{"element.strut.alpha": 0.5, "element.strut.T": "40 degC"}``.
+        sweep: sequences by path, ``{"element.strut.alpha": [0.2, 0.5]}``; several paths make a grid, a tuple of paths moves together:
+            ``{("element.a.k", "element.b.k"): [(1, 2), (3, 4)]}``. It replaces the scenario's sweep of that path or adds one.
+        out: a folder that is written as by ``springpot run``; nothing is written without it.
+        jobs: cases at a time, default all cores.
+        progress: ``True`` for a bar (tqdm where it is installed), or a callable that is told the share that is done, 0 … 1.
+        format: of the rows in ``out``: ``"csv"``, ``"parquet"`` or ``"npz"``.
+        figures: whether the scenario's figures are drawn into ``out``.
+
+    Raises:
+        ScenarioError: the scenario is refused.
+        RunError: its only case fails; in a sweep ``Run.failures`` has them.
+    """
+    study = Study(scenario, set, sweeps_of(sweep))
+    _warn(study.warnings)
+    with shown(progress) as told:
+        if out is None:
+            cases = study.cases(list(range(len(study))), jobs=_jobs(jobs), progress=told)
+        else:
+            answer = study.write(os.fspath(out), jobs=_jobs(jobs), format=format, figures=figures, progress=told)
+            _warn(answer["warnings"])
+            cases = answer["cases"]
+    return checked(Run(study, cases))
+
+
+def checked(run: Run) -> Run:
+    """The run; a failure of its only case is raised."""
+    if len(run) == 1 and (error := run.case(0).error) is not None:
+        raise error
+    return run
+
+
+def _jobs(jobs: int | None) -> int:
+    if jobs is None:
+        return 0
+    if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+        raise ValueError(f"jobs is a number of cases at a time, not {jobs!r}")
+    return jobs
+
+
+def _warn(warnings: Sequence[tuple[str, str | None]]) -> None:
+    for message, help in warnings:
+        _warnings.warn(f"{message}; {help}" if help else message, stacklevel=3)
+
+
+def _unknown(column: str, names: Sequence[str]) -> str:
+    import difflib
+
+    near = difflib.get_close_matches(str(column), names, n=1)
+    return f"no column {column!r}" + (f"; did you mean {near[0]!r}?" if near else "")
+
+
+Reporter: TypeAlias = "Callable[[float], object]"

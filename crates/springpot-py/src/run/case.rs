@@ -1,0 +1,122 @@
+//! A case that was run, and its columns without a copy.
+
+use crate::error::value_error;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use springpot_run::sweep::Parcel;
+use std::sync::Arc;
+
+/// A case that came to its end, or failed on the way; it can be sent to other processes of the same build.
+#[pyclass(frozen, module = "springpot._springpot")]
+pub(crate) struct Case(pub(crate) Arc<Parcel>);
+
+#[pymethods]
+impl Case {
+    /// What `to_bytes` made.
+    #[staticmethod]
+    fn from_bytes(bytes: &[u8]) -> PyResult<Self> {
+        Parcel::from_bytes(bytes).map(|parcel| Self(Arc::new(parcel))).map_err(value_error)
+    }
+
+    /// Bytes that hold every number to the bit.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &py.detach(|| self.0.to_bytes())?))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        Ok((py.get_type::<Self>().getattr("from_bytes")?, (self.to_bytes(py)?,)))
+    }
+
+    /// Index in the grid of the sweeps.
+    #[getter]
+    fn index(&self) -> usize {
+        self.0.index()
+    }
+
+    /// Number of rows.
+    #[getter]
+    fn rows(&self) -> usize {
+        self.0.columns().and_then(<[Vec<f64>]>::first).map_or(0, Vec::len)
+    }
+
+    /// The column number `k`, behind those of swept parameters.
+    fn column(&self, k: usize) -> PyResult<Column> {
+        let count = self.0.columns().map_or(0, <[Vec<f64>]>::len);
+        if k < count { Ok(Column { of: self.0.clone(), k }) } else { Err(value_error(format!("column {k} of {count}"))) }
+    }
+
+    /// Why it failed, and what can be done; `None` where it did not.
+    #[getter]
+    fn error(&self) -> Option<(String, Option<String>, Option<String>)> {
+        self.0.error().map(|trouble| (trouble.message.clone(), trouble.place.clone(), trouble.help.clone()))
+    }
+
+    /// The time of its last row, s; `None` before the first.
+    #[getter]
+    fn t_reached(&self) -> Option<f64> {
+        self.0.report().t_reached
+    }
+
+    /// Steps, rows, energies: as in run.json.
+    #[getter]
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (report, words) = (self.0.report(), PyDict::new(py));
+        words.set_item("steps", report.steps)?;
+        words.set_item("rejected_steps", report.rejected_steps)?;
+        words.set_item("newton_iterations", report.newton_iterations)?;
+        words.set_item("rows", report.rows)?;
+        words.set_item("t_reached", report.t_reached)?;
+        words.set_item("energy_residual", report.energy_residual)?;
+        words.set_item("energy_turned_over", report.energy_turned_over)?;
+        words.set_item("ledger", self.0.no_ledger().map(|why| format!("unknown: {why}")))?;
+        words.set_item("wall_time", self.0.wall().as_secs_f64())?;
+        Ok(words)
+    }
+
+    /// The limits of joints that it passes, in words.
+    #[getter]
+    fn limits(&self) -> Vec<String> {
+        self.0.limits().iter().map(ToString::to_string).collect()
+    }
+
+    /// The values of its metrics in the order of the scenario; NaN where one has none, empty where no row was written.
+    #[getter]
+    fn metrics(&self) -> Vec<f64> {
+        self.0.metrics().values.clone()
+    }
+
+    /// Its lines in events.csv.
+    #[getter]
+    fn events(&self) -> &str {
+        self.0.events().0
+    }
+
+    /// Smallest, largest and root-mean-square value of every column.
+    #[getter]
+    fn statistics(&self) -> Vec<(f64, f64, f64)> {
+        self.0.statistics().iter().map(|column| (column.min, column.max, column.rms())).collect()
+    }
+}
+
+/// A column of a case; NumPy takes its numbers where they are.
+#[pyclass(frozen, module = "springpot._springpot")]
+pub(crate) struct Column {
+    of: Arc<Parcel>,
+    k: usize,
+}
+
+#[pymethods]
+impl Column {
+    /// Where its numbers are, which nobody may write to.
+    #[getter]
+    fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let values = &self.of.columns().unwrap_or_default()[self.k];
+        let words = PyDict::new(py);
+        words.set_item("version", 3)?;
+        words.set_item("shape", (values.len(),))?;
+        words.set_item("typestr", if cfg!(target_endian = "little") { "<f8" } else { ">f8" })?;
+        // NumPy keeps this object, which keeps the numbers.
+        words.set_item("data", (values.as_ptr().addr(), true))?;
+        Ok(words)
+    }
+}

@@ -1,0 +1,15 @@
+//! Runs of scenarios: a study that knows its cases, cases that were run, and results written as the command writes them.
+
+mod case;
+mod source;
+mod study;
+mod watched;
+
+use pyo3::prelude::*;
+
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<case::Case>()?;
+    module.add_class::<case::Column>()?;
+    module.add_class::<study::Study>()?;
+    Ok(())
+}
