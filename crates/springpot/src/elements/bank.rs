@@ -102,6 +102,10 @@ pub(crate) struct Kept {
     scales: Vec<f64>,
 }
 
+/// What of a bank outlasts its steps: states of the laws, and energies since t = 0; see [`ElementBank::state`].
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct BankState(Vec<Option<Kept>>);
+
 /// What an element was told of a step, at its start and at its nodes.
 #[derive(Debug, Clone)]
 struct Told {
@@ -336,7 +340,7 @@ impl ElementBank {
     }
 
     /// Works out what the step does to the energies of element `e` and how well it knows its memories. `false` where it takes no part.
-    pub(crate) fn account(&mut self, e: usize) -> bool {
+    pub fn account(&mut self, e: usize) -> bool {
         let Banked { law, kept, told, energies, .. } = &mut self.elements[e];
         let Some(Kept { state, .. }) = kept else { return false };
         let step = told.step(self.step);
@@ -431,8 +435,8 @@ impl ElementBank {
         }
     }
 
-    /// Energies of element `e` dissipated and supplied by inputs since t = 0, J; unknown where it takes no part.
-    pub(crate) fn energies(&self, e: usize) -> (f64, f64) {
+    /// Energies of element `e` dissipated and supplied by inputs since t = 0, J, of steps that were accounted; unknown where it takes no part.
+    pub fn energies(&self, e: usize) -> (f64, f64) {
         self.elements[e].kept.as_ref().map_or((f64::NAN, f64::NAN), |kept| (kept.dissipated, kept.supplied))
     }
 
@@ -490,7 +494,7 @@ impl ElementBank {
     }
 
     /// [`Self::commit`] of a step that was accounted, with its energies.
-    pub(crate) fn commit_account(&mut self) {
+    pub fn commit_account(&mut self) {
         for e in 0..self.elements.len() {
             let (dissipated, supplied) = self.energies_until(e, 1.0);
             let Banked { kept, energies, .. } = &mut self.elements[e];
@@ -502,6 +506,16 @@ impl ElementBank {
             }
         }
         self.commit();
+    }
+
+    /// What it takes to go on from here to the bit, in this bank or in another one of the same laws.
+    pub fn state(&self) -> BankState {
+        BankState(self.kept())
+    }
+
+    /// Goes on from a state of a bank of the same laws, later or earlier; `false`, and nothing changed, where it is of another one.
+    pub fn set_state(&mut self, state: BankState) -> bool {
+        self.go_on(state.0)
     }
 
     /// What outlasts the steps, element by element.
