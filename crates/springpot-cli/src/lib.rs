@@ -30,6 +30,7 @@ mod drawing;
 mod dynamics;
 mod excerpt;
 mod failures;
+mod fmu;
 mod frequency;
 mod grid;
 mod info;
@@ -138,6 +139,7 @@ pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item
         Command::Laws(options) => laws::laws(&options, catalog),
         Command::Plot(options) => plot::plot(&options),
         Command::Metrics(options) => metrics::metrics(&options, disk),
+        Command::Fmu(options) => fmu::fmu(&options),
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),

@@ -102,7 +102,7 @@ mod tests {
         for (text, wanted) in [
             ("{", "elements: not JSON"),
             ("[1, 2]", "elements: "),
-            ("[null]", "elements: null is no value"),
+            ("[3, null]", "elements: null is no value"),
             ("law = ", "elements:1:"),
             ("", "elements:1:1: there is no element"),
             (r#"{ "law": "sprin", "parameters": { "k": 1 } }"#, "elements: `law` of element \"element1\" is \"sprin\""),

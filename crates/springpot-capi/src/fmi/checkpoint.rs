@@ -5,7 +5,7 @@ use super::instance::Mode;
 use crate::sealed;
 use serde::{Deserialize, Serialize};
 use springpot::integrate::SimulationState;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What the bytes begin with.
 const MARK: &[u8] = b"springpot-fmu-1";
@@ -18,6 +18,7 @@ pub struct Checkpoint {
     pub(super) mode: Mode,
     pub(super) setup: Setup,
     pub(super) torques: BTreeMap<u32, f64>,
+    pub(super) held: BTreeSet<u32>,
     pub(super) has_ended: bool,
     /// None before the start.
     pub(super) simulation: Option<SimulationState>,

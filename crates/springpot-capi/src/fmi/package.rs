@@ -36,6 +36,12 @@ pub enum PackageError {
         /// Its name.
         event: String,
     },
+    /// It has an element with a named scheme.
+    #[error("element {element:?} has a named scheme, which needs the whole motion in advance: leave its `scheme` out")]
+    Scheme {
+        /// Its name.
+        element: String,
+    },
     /// It cannot start.
     #[error("the scenario cannot start: {0}")]
     Start(#[from] RunError),
@@ -73,6 +79,7 @@ pub struct Package {
     resources: Vec<(String, Vec<u8>)>,
     variables: Vec<Variable>,
     guid: String,
+    events: Vec<String>,
 }
 
 impl Package {
@@ -91,6 +98,10 @@ impl Package {
         if let Some(acting) = plan.events.iter().find(acts) {
             return Err(PackageError::Event { event: acting.event.name.clone() });
         }
+        if let Some(planned) = plan.elements.iter().find(|planned| planned.element.scheme.is_some()) {
+            return Err(PackageError::Scheme { element: planned.element.name.clone() });
+        }
+        let events = plan.events.iter().map(|event| event.event.name.clone()).collect();
         let variables = variables_of(scenario, &plan)?;
         let Portable { text, set, files } = scenario.portable();
         let mut resources = vec![
@@ -117,7 +128,7 @@ impl Package {
             tolerance: plan.settings.fixed_step.is_none().then_some(plan.settings.rtol),
         };
         let description = description::xml(&head, &variables);
-        Ok(Self { identifier, description, resources, variables, guid })
+        Ok(Self { identifier, description, resources, variables, guid, events })
     }
 
     /// modelDescription.xml.
@@ -128,6 +139,11 @@ impl Package {
     /// The variables, by value reference.
     pub fn variables(&self) -> &[Variable] {
         &self.variables
+    }
+
+    /// Events of the scenario that are only recorded, and not by an FMU.
+    pub fn silent_events(&self) -> &[String] {
+        &self.events
     }
 
     /// The identity of the FMU.
