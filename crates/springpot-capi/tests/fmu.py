@@ -4,7 +4,6 @@ Run by check.sh, which says where the command is: SPRINGPOT=target/debug/springp
 """
 
 import csv
-import ctypes
 import os
 import pathlib
 import subprocess
@@ -14,6 +13,7 @@ import fmpy.fmi2
 import fmpy.validation
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 
 COMMAND = os.environ["SPRINGPOT"]
 SCENARIOS = pathlib.Path(__file__).parents[3] / "scenarios"
@@ -186,11 +186,11 @@ def test_rollback_serialization_and_reset_give_the_same_bits(damped):
     data = one.fmu.serializeFMUState(state)
     other = Instance(fmu, "other", element__damper__alpha=0.3)
     other.steps(times[:5])
-    other.fmu.setFMUState(other.fmu.deSerializeFMUState(data))
+    other.fmu.setFMUState(other.fmu.deserializeFMUState(data))
     assert np.array_equal(other.all(), there)
     assert np.array_equal(other.steps(times[20:31]), after)
     one.fmu.freeFMUState(state)
-    with pytest.raises(fmpy.fmi2.FMICallException):
+    with pytest.raises(FMICallException):
         one.fmu.setFMUState(state)
 
 
@@ -208,7 +208,7 @@ def test_two_instances_take_turns(damped):
 
 
 def refused(instance, call, words):
-    with pytest.raises(fmpy.fmi2.FMICallException) as told:
+    with pytest.raises(FMICallException) as told:
         call()
     assert told.value.status == ERROR
     assert words in instance.messages[-1], instance.messages[-1]
@@ -230,13 +230,10 @@ def test_bad_input_is_an_error(damped):
     assert np.isfinite(one.get("q.q1")).all()
     refused(one, lambda: one.set("damper.u", 1.0), "the instance is terminated")
     refused(one, step(0.1, 0.1), "the instance is terminated")
-    component = one.fmu.component
-    one.fmu.freeInstance()
     # What was freed is refused, not followed.
-    value = ctypes.c_double()
-    one.fmu.component = component
-    with pytest.raises(fmpy.fmi2.FMICallException):
-        one.fmu.fmi2GetReal(component, (ctypes.c_uint * 1)(0), 1, ctypes.byref(value))
+    one.fmu.fmi2FreeInstance(one.fmu.component)
+    with pytest.raises(FMICallException):
+        one.get("q.q1")
 
 
 def test_files_go_with_the_scenario(tmp_path):
