@@ -236,7 +236,8 @@ impl Instance {
         if !(size > 0.0 && size.is_finite()) {
             return Err(format!("a communication step of {size} s: it must be positive").into());
         }
-        if !((point - t).abs() <= SAME_TIME * (t + size)) {
+        let is_here = (point - t).abs() <= SAME_TIME * (t + size);
+        if !is_here {
             return Err(format!("the communication point is {point} s, but the instance is at {t} s").into());
         }
         let mut target = point + size;

@@ -83,9 +83,11 @@ impl Variable {
 /// A variable that stands for a number of the scenario, if it can be set.
 pub(super) struct Candidate {
     pub(super) variable: Variable,
-    /// Reads the number from a plan.
-    pub(super) read: Box<dyn Fn(&Plan) -> Option<f64>>,
+    pub(super) read: Reading,
 }
+
+/// Reads the number from a plan.
+type Reading = Box<dyn Fn(&Plan) -> Option<f64>>;
 
 /// Time and inputs; the elements' inputs have their values at t = 0 for starts.
 pub(super) fn inputs(plan: &Plan, simulation: &mut Simulation) -> Vec<Variable> {
@@ -116,7 +118,7 @@ pub(super) fn inputs(plan: &Plan, simulation: &mut Simulation) -> Vec<Variable> 
 /// Numbers that may be set before the start: parameters of laws, where a forward motion starts, the tolerance.
 pub(super) fn candidates(plan: &Plan, system: &System) -> Vec<Candidate> {
     let mut candidates = Vec::new();
-    let mut push = |path: String, unit: &str, meaning: String, start: f64, read: Box<dyn Fn(&Plan) -> Option<f64>>| {
+    let mut push = |path: String, unit: &str, meaning: String, start: f64, read: Reading| {
         let role = Role::Parameter { path: path.clone(), start };
         let variable = Variable { name: path, unit: unit.to_owned(), meaning, role };
         candidates.push(Candidate { variable, read });
