@@ -37,6 +37,8 @@ const SAME_TIME: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub struct Bank {
     elements: Vec<LoneElement>,
+    /// Element, and place in its law, of every input.
+    inputs: Vec<(usize, usize)>,
     bank: ElementBank,
     nodes: Nodes,
     /// The text, by which states are told apart.
@@ -89,11 +91,13 @@ impl Bank {
     /// [`Status::Text`].
     pub fn new(text: &str, nodes: Nodes, form: Form) -> Result<Self, Problem> {
         let elements = text::elements(text)?;
+        let all = elements.iter().enumerate();
+        let inputs = all.flat_map(|(e, element)| (0..element.inputs.len()).map(move |i| (e, i))).collect();
         let laws = elements.iter().map(|element| element.plan.element.law.clone()).collect();
         let identity = state::identity(text, nodes, form);
         let energies = vec![[0.0; 3]; elements.len()];
         let bank = ElementBank::new(laws, nodes, form);
-        Ok(Self { elements, bank, nodes, identity, stage: Stage::New, t: 0.0, energies, room: Vec::new() })
+        Ok(Self { elements, inputs, bank, nodes, identity, stage: Stage::New, t: 0.0, energies, room: Vec::new() })
     }
 
     /// Number of elements n.
@@ -108,13 +112,12 @@ impl Bank {
 
     /// Number of inputs of all elements m.
     pub fn inputs(&self) -> usize {
-        self.elements.iter().map(|element| element.inputs.len()).sum()
+        self.inputs.len()
     }
 
     /// Element and place in its law of input `input` of all; `None` where there is none.
     pub fn input(&self, input: usize) -> Option<(usize, usize)> {
-        let all = self.elements.iter().enumerate();
-        all.flat_map(|(e, element)| (0..element.inputs.len()).map(move |i| (e, i))).nth(input)
+        self.inputs.get(input).copied()
     }
 
     /// Name of an element; `None` where there is none.
@@ -271,7 +274,7 @@ impl Bank {
 
     /// The value of an input at t: what is told, else what the text says.
     fn input_at(&self, input: usize, t: f64, told: Option<(f64, f64)>) -> Result<InputValue, Problem> {
-        let (e, i) = self.input(input).expect("an input of the bank");
+        let (e, i) = self.inputs[input];
         let element = &self.elements[e];
         let refuse = |what: String| {
             let name = self.input_name(input).unwrap_or_default();

@@ -117,7 +117,7 @@ impl Package {
         let guid = guid::of(resources.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])));
         let identifier = identifier(name);
         let head = Head {
-            title: plan.title.as_deref().unwrap_or(name),
+            title: plan.title.as_deref().filter(|title| !title.trim().is_empty()).unwrap_or(name),
             identifier: &identifier,
             guid: &guid,
             end: plan.settings.end,
