@@ -1,8 +1,8 @@
 //! Springpot for other engines: the element bank in C ([`c`], `include/springpot.h`), and scenarios as FMI 2.0 co-simulation FMUs
 //! ([`fmi`]).
 //!
-//! The only place beside the dispatch of instruction sets that holds `unsafe`: pointers of other languages become slices in [`c`] and in
-//! [`fmi::functions`], and nowhere else. No panic crosses the border; every function answers with a status, and with a text that says what
+//! The only place beside the dispatch of instruction sets that holds `unsafe`: pointers of other languages become slices in `border`, for [`c`] and
+//! [`fmi::functions`], and loggers of FMUs are called. No panic crosses the border; every function answers with a status, and with a text that says what
 //! was wrong.
 //!
 //! | module | holds |
