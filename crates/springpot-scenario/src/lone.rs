@@ -180,7 +180,7 @@ mod tests {
             ("element = []", "bank:1:1: there is no element"),
             ("law = \"sprung\"\nparameters = { k = 1 }", "bank:1:7: `law` of element \"element1\" is \"sprung\""),
             ("law = \"spring\"\nrest_length = 1\nparameters = { k = 1 }", "bank:2:1: `rest_length` is no key"),
-            ("law = \"spring\"\nparameters = { k = \"1 N\" }", "bank:2:20:"),
+            ("law = \"spring\"\nparameters = { k = \"1 N\" }", "bank:2:23:"),
             (
                 "law = \"spring\"\npast = { held = 3 }\nparameters = { k = 1 }",
                 "bank:3:14: element \"element1\" has a past",
