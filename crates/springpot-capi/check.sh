@@ -3,6 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 target=${CARGO_TARGET_DIR:-$PWD/../../target}
+mkdir -p "$target"
 
 # The header is made of the two files that C sees; --write renews it.
 if command -v cbindgen >/dev/null; then
