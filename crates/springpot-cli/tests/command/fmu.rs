@@ -106,7 +106,11 @@ fn what_cannot_be_an_fmu_is_refused() {
         ),
         (&["fmu", "arm.toml", "--set", "element.damper.alpha=3", "--library", "library"], 2, "--set:1:22"),
         (&["fmu", "none.toml", "--library", "library"], 2, "none.toml: cannot be opened"),
-        (&["fmu", "arm.toml", "--set", "element.damper.u=-100", "--library", "library"], 1, "the scenario cannot start"),
+        (
+            &["fmu", "arm.toml", "--set", "element.damper.u=-100", "--library", "library"],
+            1,
+            "the scenario cannot start",
+        ),
     ] {
         let ended = place.springpot(arguments);
         assert_eq!(ended.code, Some(code), "{arguments:?}: {}", ended.stderr);
