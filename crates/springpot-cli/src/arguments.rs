@@ -190,6 +190,21 @@ log-decrement, residual-vibration. Reads results.csv, .parquet and .npz; where m
 
 Exit codes: 0 done, 1 a file cannot be written, 2 the results, a metric or a column is not there.")]
     Metrics(MetricsOptions),
+    /// Write a scenario as an FMU, which other simulation tools drive (FMI 2.0 for Co-Simulation).
+    #[command(after_help = "\
+Examples:
+  springpot fmu arm.toml
+  springpot fmu arm.toml --set element.strut.alpha=0.3 --out soft.fmu
+  springpot fmu arm.toml --library target/release/libspringpot_capi.so
+
+Inputs of the FMU are tau.JOINT, added to the actuator force of every joint that a force drives, and ELEMENT.INPUT; outputs are all \
+other columns of a run; parameters are those of the laws, start.q and start.v, all in SI units. Steps of communication may have any size; states can be \
+kept, set and serialized. A motion that is given in advance has no tau.JOINT. The scenario and every file that it names are in the FMU, \
+with the shared library of this platform.
+
+Exit codes: 0 done, 1 the scenario cannot start, or the file cannot be written, 2 the scenario was refused (several cases, events that act, \
+named schemes), or the library is not there.")]
+    Fmu(FmuOptions),
     /// Write a commented scenario to start from.
     #[command(after_help = "\
 Examples:
@@ -280,6 +295,22 @@ pub(crate) struct MetricsOptions {
     /// Write a file instead of the standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FmuOptions {
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) file: PathBuf,
+    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// File to write [default: <file stem>.fmu]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Shared library of this platform [default: beside this command, or in ../lib]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) library: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -30,6 +30,7 @@ mod drawing;
 mod dynamics;
 mod excerpt;
 mod failures;
+mod fmu;
 mod frequency;
 mod grid;
 mod info;
@@ -148,6 +149,7 @@ fn code(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsSt
         Command::Laws(options) => laws::laws(&options, catalog),
         Command::Plot(options) => plot::plot(&options),
         Command::Metrics(options) => metrics::metrics(&options, disk),
+        Command::Fmu(options) => fmu::fmu(&options),
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),

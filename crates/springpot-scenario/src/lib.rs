@@ -47,6 +47,7 @@ mod figures;
 mod heat;
 mod inputs;
 mod keys;
+mod lone;
 mod material;
 mod metrics;
 mod mistaken;
@@ -56,6 +57,7 @@ mod overrides;
 mod past;
 mod path;
 mod plan;
+mod portable;
 mod reader;
 mod refusal;
 mod resolved;
@@ -77,6 +79,7 @@ pub use figures::{
     Selection, Statistic, Summarised, SweptAxis,
 };
 pub use keys::MAX_CASES;
+pub use lone::LoneElement;
 pub use metrics::{Band, Metric, MetricKind, MetricPlan};
 pub use motion::MotionPlan;
 pub use names::{list, suggest};
@@ -85,6 +88,7 @@ pub use path::{equals_sign, toml_key};
 pub use plan::{
     BodyPlaces, ElementPlan, EndStops, FramePlan, Gripper, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan,
 };
+pub use portable::Portable;
 pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 pub use schema::json_schema;
 

@@ -85,6 +85,17 @@ impl Scenario {
         Ok(())
     }
 
+    /// As [`Self::set`], but in place of what was set at this path before.
+    ///
+    /// # Errors
+    /// No `=`, an empty path or an empty value.
+    pub fn set_anew(&mut self, assignment: &str) -> Result<(), Refusals> {
+        if let Some(path) = path::equals_sign(assignment).and_then(|equals| path::keys(assignment[..equals].trim())) {
+            self.overrides.retain(|earlier| path::keys(&earlier.path) != Some(path.clone()));
+        }
+        self.set(assignment)
+    }
+
     /// Sweeps a parameter: `PATH=v1,v2,…`, `PATH=from:to:count` or `PATH=from:to:count:log`. It takes the place of the file's sweep of that
     /// path, or stands beside the sweeps of the file and runs fastest. Commas inside brackets or quotes belong to a value. Paths that move together
     /// are `[PATH, PATH]=[v, w],…`.

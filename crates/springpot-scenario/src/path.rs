@@ -202,15 +202,20 @@ pub fn toml_key(key: &str) -> String {
     if bare {
         return key.to_owned();
     }
-    let mut text = "\"".to_owned();
-    for c in key.chars() {
+    toml_text(key)
+}
+
+/// A text in the quotes of TOML, on one line.
+pub(crate) fn toml_text(text: &str) -> String {
+    let mut quoted = "\"".to_owned();
+    for c in text.chars() {
         match c {
-            '"' | '\\' => text.extend(['\\', c]),
-            c if c.is_control() => text.push_str(&format!("\\u{:04X}", u32::from(c))),
-            c => text.push(c),
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c => quoted.push(c),
         }
     }
-    text + "\""
+    quoted + "\""
 }
 
 /// The keys of the table that `steps` lead to, where it is an element or a component of a bushing.

@@ -18,6 +18,7 @@ fn help_is_where_it_is_looked_for() {
         "  modes        Natural frequencies",
         "  laws         Show the laws",
         "  plot         Draw columns",
+        "  fmu          Write a scenario as an FMU",
         "  init         Write a commented scenario",
         "  completions  Print a script",
         "  man          Print the manual page",
@@ -44,6 +45,7 @@ fn help_is_where_it_is_looked_for() {
             ][..],
         ),
         ("check", &["--set <PATH=VALUE>", "--schema", "--quiet"]),
+        ("fmu", &["--set <PATH=VALUE>", "--out <FILE>", "--library <FILE>"]),
         ("info", &["--json", "--floating-base", "--ignore-mimic", "--package-path <DIR>"]),
         (
             "dynamics",

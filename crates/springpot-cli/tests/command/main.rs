@@ -11,6 +11,7 @@ mod events;
 mod failures;
 mod figures;
 mod first_week;
+mod fmu;
 mod formats;
 mod friction;
 mod help;

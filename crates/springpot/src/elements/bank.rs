@@ -102,6 +102,10 @@ pub(crate) struct Kept {
     scales: Vec<f64>,
 }
 
+/// What of a bank outlasts its steps: states of the laws, and energies since t = 0; see [`ElementBank::state`].
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct BankState(Vec<Option<Kept>>);
+
 /// What an element was told of a step, at its start and at its nodes.
 #[derive(Debug, Clone)]
 struct Told {
@@ -436,7 +440,7 @@ impl ElementBank {
         }
     }
 
-    /// Energies of element `e` dissipated and supplied by inputs since t = 0, J; unknown where it takes no part.
+    /// Energies of element `e` dissipated and supplied by inputs since t = 0, J, of steps that were accounted; unknown where it takes no part.
     pub fn energies(&self, e: usize) -> (f64, f64) {
         self.elements[e].kept.as_ref().map_or((f64::NAN, f64::NAN), |kept| (kept.dissipated, kept.supplied))
     }
@@ -501,7 +505,7 @@ impl ElementBank {
         }
     }
 
-    /// [`Self::commit`] of a step that was accounted ([`Self::account`]) of all elements, with its energies.
+    /// [`Self::commit`] of a step that was accounted, with its energies.
     pub fn commit_account(&mut self) {
         for e in 0..self.elements.len() {
             let (dissipated, supplied) = self.energies_until(e, 1.0);
@@ -514,6 +518,16 @@ impl ElementBank {
             }
         }
         self.commit();
+    }
+
+    /// What it takes to go on from here to the bit, in this bank or in another one of the same laws.
+    pub fn state(&self) -> BankState {
+        BankState(self.kept())
+    }
+
+    /// Goes on from a state of a bank of the same laws, later or earlier; `false`, and nothing changed, where it is of another one.
+    pub fn set_state(&mut self, state: BankState) -> bool {
+        self.go_on(state.0)
     }
 
     /// What outlasts the steps, element by element.

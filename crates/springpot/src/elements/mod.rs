@@ -5,7 +5,7 @@ mod element;
 mod measure;
 
 pub(crate) use bank::Kept;
-pub use bank::{ElementBank, MemoryRange};
+pub use bank::{BankState, ElementBank, MemoryRange};
 pub use element::Element;
 pub use measure::{
     Bushing, Cable, CableError, Component, Joint, JointMeasureError, Line, Measure, NoDirection, Reading,
