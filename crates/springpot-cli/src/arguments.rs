@@ -37,7 +37,7 @@ Examples:
   springpot run --resume results/arm
   springpot run grid.toml --shard 3/16
 
-Writes results.csv (or .parquet, .npz), summary.csv, metrics.csv, figures/ and run.json. \
+Writes results.csv (or .parquet, .npz), summary.csv, events.csv and metrics.csv where there are events and metrics, figures/ and run.json. \
 They take the place of the last run's files when the run ends, all or none, \
 and of nothing else; one run at a time writes to a folder. \
 Ctrl-C ends a run early; the rows so far are kept, all of them complete. With --checkpoint-every a run that was interrupted or \

@@ -1,7 +1,7 @@
 //! `springpot metrics`: metrics of a finished run, from its rows.
 
 use crate::arguments::MetricsOptions;
-use crate::{Ending, diagnostic, output, printed, terminal};
+use crate::{Ending, diagnostic, output, plain, printed, terminal};
 use springpot_run::metrics::{LaterError, Recomputed, Source};
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::Folder;
@@ -49,19 +49,21 @@ fn recomputed(options: &MetricsOptions, disk: &Disk) -> Result<Recomputed, Later
 
 fn taken(text: &str, name: &str) -> Refusals {
     let help = "names are unique: write another one in front, as in 'NAME = KIND(COLUMN)'";
-    Metric::refuse(text, "--metric", RefusalKind::BadName, &format!("the name {name:?} is taken")).help(help).into()
+    let name = plain::field(name.as_bytes());
+    Metric::refuse(text, "--metric", RefusalKind::BadName, &format!("the name {name} is taken")).help(help).into()
 }
 
 fn help(error: &LaterError) -> Option<String> {
     match error {
         LaterError::File { .. } => Some("name the folder of the results of a run".to_owned()),
-        LaterError::NoRecord(_) => {
+        LaterError::NoRecord(_) | LaterError::NoneBeside(_) => {
             Some("name the folder of the results of a run, which run.json belongs to".to_owned())
         }
         LaterError::NoMetrics(_) => Some("ask for some, as in --metric 'rms(strut.force)'".to_owned()),
         LaterError::LeftOut { help, .. } => {
             Some(format!("{help}; `columns` of [output] left it out: the run's own metrics.csv has what it came to"))
         }
+        LaterError::NoRow { help, .. } => Some(help.clone()),
         LaterError::Unlisted(_) => Some("the run's own metrics.csv has them".to_owned()),
         LaterError::Refused(_) => None,
     }

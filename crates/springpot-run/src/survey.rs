@@ -2,7 +2,9 @@
 
 use crate::sweep::LimitTally;
 use crate::trouble::Trouble;
-use springpot::integrate::{ElementStart, LimitWatch, RowTimes, Stop, System};
+use springpot::control::Aim;
+use springpot::dynamics::Kinematics;
+use springpot::integrate::{ElementStart, LimitWatch, RowTimes, RunError, Stop, System};
 use springpot::model::JointKind;
 use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, ShapePlan};
 use std::ops::RangeInclusive;
@@ -136,7 +138,10 @@ impl Survey {
             watch.see(&row);
             self.limits.take(index, &watch.passed());
         }
-        let ends_early = || system.motion.has_path().then(|| system.pose(plan.settings.end).err()).flatten();
+        let ends_early = || match system.motion.has_path() {
+            true => system.pose(plan.settings.end).err(),
+            false => reference_ends(system, plan.settings.end),
+        };
         let failure = match depth {
             Depth::Paths => ends_early().or_else(|| system.look_for_jumps(&plan.settings, stop).err()),
             Depth::Starts => system.look_for_jumps(&plan.settings, stop).err(),
@@ -183,7 +188,7 @@ impl ElementSurvey {
 
 /// The first case, and each other value of each sweep with the rest at their first values.
 fn looked_at(cases: &Cases, plan: &Plan, depth: Depth) -> Vec<usize> {
-    let most = if depth == Depth::Paths && plan.motion.has_path() { PATHS_FOLLOWED } else { LOOKED_AT };
+    let most = if depth == Depth::Paths && plan.motion.solves_path() { PATHS_FOLLOWED } else { LOOKED_AT };
     let mut indices = vec![0];
     let mut stride = cases.len();
     for axis in 0..cases.axis_count() {
@@ -192,6 +197,13 @@ fn looked_at(cases: &Cases, plan: &Plan, depth: Depth) -> Vec<usize> {
         indices.extend((1..count.min(most)).map(|k| k * stride));
     }
     indices
+}
+
+/// Why the reference of a controller cannot be followed to the end.
+fn reference_ends(system: &System, end: f64) -> Option<RunError> {
+    let controlled = system.control.controller.as_ref()?;
+    let (mut kinematics, mut aim) = (Kinematics::new(&system.model), Aim::default());
+    controlled.reference.at_into(&system.model, None, end, &mut kinematics, &mut aim).err().map(RunError::from)
 }
 
 /// End and distance of the rows where no second row is due before the end.

@@ -1,8 +1,12 @@
 //! Where in a scenario the cause of a failed run stands, and what can be done.
 
-use super::plan::{ElementPlan, Plan};
+use super::plan::{ElementPlan, Plan, SignalPlan};
 use super::refusal::Place;
 use springpot::integrate::RunError;
+use springpot::law::heat;
+
+/// What an error calls the force of a controller.
+const CONTROLLER: &str = "the force of the controller";
 
 /// Where the cause of a failed run stands, and what can be done, as far as it is known.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -28,10 +32,26 @@ impl Plan {
                     format!("change the input or the parameters, so that the law's rule{law} holds at every time");
                 (input.or_else(|| place_of(plan)), Some(help))
             }
+            RunError::Heat { element: name, .. } => {
+                let plan = element(name);
+                let input = plan.and_then(|plan| plan.input(heat::INPUT)).map(|input| input.place.clone());
+                (input.or_else(|| place_of(plan)), None)
+            }
+            RunError::NotFinite { what, .. } => match self.said(what) {
+                Some((place, true)) => {
+                    let help = "keep it finite wherever the motion comes: guard what divides, as in 1/max(x, 1e-6), and roots, as in sqrt(max(x, 0))";
+                    (Some(place), Some(help.to_owned()))
+                }
+                Some((place, false)) => (Some(place), None),
+                None => (None, None),
+            },
+            RunError::ControlChatter { signal, .. } => match signal {
+                Some(signal) => (self.said(signal).map(|(place, _)| place), None),
+                None => (self.motion.place_of_controller().cloned(), None),
+            },
             RunError::InputRange { element: name, input, low, high, .. } => {
                 let plan = element(name);
-                let at = plan.and_then(|plan| plan.element.entry.inputs.iter().position(|row| row.name == *input));
-                let input = plan.zip(at).and_then(|(plan, at)| plan.inputs.get(at)).map(|input| input.place.clone());
+                let input = plan.and_then(|plan| plan.input(input)).map(|input| input.place.clone());
                 (input.or_else(|| place_of(plan)), Some(format!("keep it between {low} and {high}")))
             }
             RunError::ZeroLength { element: name, .. } => {
@@ -58,10 +78,41 @@ impl Plan {
                     .motion
                     .has_orientation()
                     .then_some("without `rpy` the orientation is free, and more can be reached");
-                (Some(self.motion.place_of("").clone()), help.map(str::to_owned))
+                (Some(self.motion.place_of_path().clone()), help.map(str::to_owned))
             }
             _ => (None, None),
         };
         Cure { place, help }
+    }
+
+    /// Where what a column tells is said, and whether by an expression of the state.
+    fn said(&self, column: &str) -> Option<(Place, bool)> {
+        if column == CONTROLLER {
+            return Some((self.motion.place_of_controller()?.clone(), false));
+        }
+        let (symbol, label) = column.split_once('.')?;
+        let is_of =
+            |name: &&str| label.strip_prefix(*name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+        let joint = || self.own_joint_names().filter(is_of).max_by_key(|name| name.len());
+        match symbol {
+            "tau" => {
+                let velocity = self.model.v_labels().iter().position(|own| own.name == label);
+                let is_feedback = self.motion.feedback().iter().any(|(k, _)| Some(*k) == velocity);
+                Some((self.motion.place_of_force(joint()?)?.clone(), is_feedback))
+            }
+            "q" | "v" | "a" => Some((self.motion.own_place_of(joint()?)?.clone(), false)),
+            _ => self.elements.iter().find_map(|plan| {
+                let input = column.strip_prefix(&plan.element.name)?.strip_prefix('.')?;
+                let signal = plan.input(input)?;
+                Some((signal.place.clone(), signal.feedback.is_some()))
+            }),
+        }
+    }
+}
+
+impl ElementPlan {
+    /// The input of that name.
+    fn input(&self, name: &str) -> Option<&SignalPlan> {
+        self.inputs.get(self.element.entry.inputs.iter().position(|row| row.name == name)?)
     }
 }

@@ -68,6 +68,26 @@ impl Node {
         })
     }
 
+    /// The same, with its places in another source.
+    pub(crate) fn moved_to(&self, source: &Arc<Source>) -> Self {
+        let place = |place: &Place| Place { source: source.clone(), span: place.span.clone() };
+        let value = match &self.value {
+            Value::Array(items) => Value::Array(items.iter().map(|item| Arc::new(item.moved_to(source))).collect()),
+            Value::Table(entries) => Value::Table(
+                entries
+                    .iter()
+                    .map(|entry| Entry {
+                        key: entry.key.clone(),
+                        key_place: place(&entry.key_place),
+                        node: Arc::new(entry.node.moved_to(source)),
+                    })
+                    .collect(),
+            ),
+            value => value.clone(),
+        };
+        Self { value, place: place(&self.place), tag: self.tag }
+    }
+
     /// A table without keys.
     pub(crate) fn empty_table(place: &Place) -> Self {
         Self { value: Value::Table(Vec::new()), place: place.clone(), tag: None }

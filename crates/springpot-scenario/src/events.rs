@@ -1,13 +1,14 @@
 //! `[[event]]`: what is watched in forward runs.
 
 use super::document::shorten;
+use super::feedback;
 use super::keys::{ACTION, EVENT, RECORD, STOP};
 use super::names;
 use super::plan::Plan;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::{Place, RefusalKind};
 use super::robot::{checked_name, unique};
-use super::signals::{self, Wanted};
+use super::signals::Wanted;
 use serde_json::{Map, Value, json};
 use springpot::actuation::Drive;
 use springpot::integrate::{Action, Direction, Event, Motion, Setting};
@@ -142,7 +143,7 @@ fn setting(field: &Field<'_>, settable: &[Settable]) -> Read<(Setting, (String, 
         return Err(unsettable(field, settable));
     };
     let wanted = Wanted { unit, range: *range, smooth: false, end: None };
-    let signal = signals::read(field, wanted)?;
+    let signal = feedback::read_of_time(field, wanted)?;
     let Some(value) = signal.constant.or_else(|| signal.signal.is_constant()) else {
         let message = "varies with t, but what an event sets is a number";
         return Err(field.refuse(RefusalKind::Rule, message, Some("write a number or a quantity".to_owned())));

@@ -10,6 +10,7 @@ use super::plan::{Plan, SignalPlan};
 use super::reader::{Context, Field, Read, Refused, all};
 use super::refusal::{Place, RefusalKind};
 use super::signals::{self, Wanted};
+use super::units;
 use springpot::control::{Control, Feedback, InputFeedback, Sampling, Sense, TorqueFeedback};
 use springpot::integrate::Settings;
 use springpot::law::Range;
@@ -30,6 +31,11 @@ pub(crate) struct FeedbackText {
     /// Time between two samples, s.
     sample: Option<f64>,
 }
+
+const MAY_NAME: &str = "feedback may name q.JOINT, v.JOINT, ELEMENT.length, .stroke, .rate and gripper.x, .vx";
+
+/// A column that only some runs have.
+const GRIPPER_ERROR: &str = "gripper.error";
 
 /// What follows the name of an element or of the gripper in what feedback may see.
 const OF_ELEMENT: [&str; 3] = ["length", "stroke", "rate"];
@@ -60,6 +66,19 @@ pub(crate) fn read(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
             let sampled = field.node.get("sample").is_some();
             let text = field.node.get("expression").and_then(|node| node.text());
             if sampled || text.is_some_and(names_state) { table(field, wanted) } else { signals::read(field, wanted) }
+        }
+        _ => signals::read(field, wanted),
+    }
+}
+
+/// A signal where the state may not stand.
+pub(crate) fn read_of_time(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
+    let node = field.node.get("expression").map_or(field.node, |node| node);
+    match node.text() {
+        Some(text) if names_state(text) && units::split_quantity(text).is_none() => {
+            let message = format!("{field} follows from the state, but has to be a signal of t");
+            let help = "feedback may stand in the inputs of elements and the torques of joints of one degree, where motion.kind = \"forward\"";
+            Err(field.ctx.refuse(node.place.refuse(RefusalKind::Rule, message).help(help)))
         }
         _ => signals::read(field, wanted),
     }
@@ -159,14 +178,14 @@ pub(crate) fn settle(ctx: &Context<'_>, plan: &Plan) -> Read<Control> {
     }
     let senses = senses(plan);
     let inputs = all(inputs.into_iter().map(|((element, input), text)| {
-        let (law, sampling) = text.made(ctx, &senses)?;
+        let (law, sampling) = text.made(ctx, plan, &senses)?;
         if plan.elements[element].element.law.stretched_by() == Some(input) {
             text.check_stretch(ctx, &law, &plan.settings)?;
         }
         Ok(InputFeedback { element, input, law, sampling })
     }));
     let torques = all(torques.iter().map(|(velocity, text)| {
-        let (law, sampling) = text.made(ctx, &senses)?;
+        let (law, sampling) = text.made(ctx, plan, &senses)?;
         Ok(TorqueFeedback { velocity: *velocity, law, sampling })
     }));
     let (torques, inputs) = (torques?, inputs?);
@@ -205,19 +224,19 @@ fn is_whole(ratio: f64) -> bool {
 }
 
 impl FeedbackText {
-    fn made(&self, ctx: &Context<'_>, senses: &[(String, Sense)]) -> Read<(Feedback, Option<Sampling>)> {
+    fn made(&self, ctx: &Context<'_>, plan: &Plan, senses: &[(String, Sense)]) -> Read<(Feedback, Option<Sampling>)> {
         let text = self.node.text().unwrap_or_default();
         let names: Vec<&str> = senses.iter().map(|(name, _)| name.as_str()).collect();
         let expression = ColumnExpression::parse(text, &ctx.constants(), &names).map_err(|error| {
-            let help = match &error {
-                ExpressionError::UnknownName { name, suggestion: None, .. } => self.of_unknown(name, &names),
-                ExpressionError::UnknownName { .. } => {
-                    "feedback may name q.JOINT, v.JOINT, ELEMENT.length, .stroke, .rate and gripper.x, .vx".to_owned()
+            let (what, help) = match &error {
+                ExpressionError::UnknownName { name, suggestion, .. } => {
+                    let what = self.of_unknown(name, suggestion.as_deref(), plan, senses);
+                    what.unwrap_or_else(|| (error.to_string(), MAY_NAME.to_owned()))
                 }
-                _ => "write an expression of t and of the state, such as \"-5*v.q1\"".to_owned(),
+                _ => (error.to_string(), "write an expression of t and of the state, such as \"-5*v.q1\"".to_owned()),
             };
             let place = self.node.place_in_text(error.span());
-            ctx.refuse(place.refuse(RefusalKind::BadQuantity, format!("{}: {error}", self.owner)).help(help))
+            ctx.refuse(place.refuse(RefusalKind::BadQuantity, format!("{}: {what}", self.owner)).help(help))
         })?;
         let seen: Vec<Sense> = expression.columns().iter().map(|&k| senses[k].1).collect();
         if self.sample.is_none()
@@ -251,11 +270,32 @@ impl FeedbackText {
         Err(ctx.refuse(self.node.place.refuse(RefusalKind::Rule, message).help(help)))
     }
 
-    fn of_unknown(&self, name: &str, names: &[&str]) -> String {
-        if name.starts_with("tau.") || name.starts_with("energy.") {
-            return format!("{name} is no part of the state; feedback may name {}", names::list(names.iter().copied()));
+    /// What to say of a name that is none of the state; nothing where `suggestion`, what is most like it, may stand here.
+    fn of_unknown(
+        &self,
+        name: &str,
+        suggestion: Option<&str>,
+        plan: &Plan,
+        senses: &[(String, Sense)],
+    ) -> Option<(String, String)> {
+        let is_known = |sense: &Sense| self.sample.is_some() || !sense.follows_from_forces();
+        let known = senses.iter().filter(|(_, sense)| is_known(sense)).map(|(name, _)| name.as_str());
+        let columns = || plan.observables().with_leaves().with_joint_losses().columns();
+        if name == GRIPPER_ERROR || name.starts_with("energy.") || columns().iter().any(|column| column.name == name) {
+            let what = format!("{name} is a column of the results, but no part of the state");
+            return Some((what, format!("feedback may name {}", names::list(known))));
         }
-        names::suggest(name, names.iter().copied())
+        let unknown = format!("unknown name `{name}`");
+        match suggestion.or_else(|| names::nearest(name, senses.iter().map(|(name, _)| name.as_str()))) {
+            Some(right) if senses.iter().any(|(name, sense)| name == right && !is_known(sense)) => {
+                let help = format!(
+                    "did you mean `{right}`? it follows from the forces, so that feedback on it needs a `sample`"
+                );
+                Some((unknown, help))
+            }
+            Some(_) if suggestion.is_some() => None,
+            _ => Some((unknown, names::suggest(name, known))),
+        }
     }
 
     /// An algebraic loop: what the expression says would be a part of what it sees.

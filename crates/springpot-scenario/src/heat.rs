@@ -50,7 +50,8 @@ fn shift(field: &Field<'_>) -> Read<Shift> {
         let energy = table.number("energy");
         return Ok(Shift::Arrhenius { energy: energy?, reference: reference? });
     }
-    let (c1, c2) = (table.number("C1"), table.number("C2"));
+    let c2 = table.get("C2").map_or(Ok(()), |field| field.refuse_affine()).and_then(|()| table.number("C2"));
+    let c1 = table.number("C1");
     Ok(Shift::Wlf { c1: c1?, c2: c2?, reference: reference? })
 }
 
@@ -77,7 +78,7 @@ fn temperature<'a>(table: &Table<'a>, key: &'a str) -> Read<f64> {
         return Ok(value);
     }
     let message = format!("is {value} K, {}", how_outside(TEMPERATURE));
-    Err(field.refuse(RefusalKind::OutOfRange, message, celsius("K", TEMPERATURE, value)))
+    Err(field.refuse(RefusalKind::OutOfRange, message, celsius(field.node, "K", TEMPERATURE, value)))
 }
 
 /// Its record: the tables that there are, SI.

@@ -328,7 +328,7 @@ fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f6
     let message = format!("is {value}{unit}, {}", how_outside(param.range));
     let of = if param.unit.is_empty() { "a number" } else { &*param.unit };
     let right = || format!("{}: {} ({of}, {})", param.name, param.meaning, interval(param.range));
-    let help = celsius(&param.unit, param.range, value).unwrap_or_else(right);
+    let help = celsius(field.node, &param.unit, param.range, value).unwrap_or_else(right);
     Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)))
 }
 
@@ -375,7 +375,11 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, time: Option<&Dura
         if let Some((shift, temperature)) = shift.zip(signal.constant)
             && let Err(broken) = shift.check(temperature)
         {
-            return Err(field.refuse(RefusalKind::Rule, format!("breaks a rule of `shift`: {broken}"), None));
+            return Err(field.refuse(
+                RefusalKind::Rule,
+                format!("does not go with `shift`, which needs {broken}"),
+                None,
+            ));
         }
         Ok(signal)
     }))

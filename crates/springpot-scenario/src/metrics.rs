@@ -5,11 +5,11 @@ use super::document::{Entry, Node, Value, shorten};
 use super::keys::METRIC;
 use super::names;
 use super::plan::Plan;
-use super::reader::{Context, Field, Read, Table, all};
+use super::reader::{Context, Field, Read, Refused, Table, all};
 use super::refusal::{Place, Refusal, RefusalKind, Refusals, Source};
 use super::robot::{checked_name, unique};
 use super::signals::CsvCache;
-use super::units::{Unit, split_quantity};
+use super::units::Unit;
 use super::urdf::UrdfCache;
 use serde::{Deserialize, Serialize};
 use springpot::integrate::RowTimes;
@@ -21,6 +21,9 @@ use std::sync::Arc;
 
 /// Most of them.
 const MAX_METRICS: usize = 1_000;
+
+/// What stands behind the commas of one that is a line.
+const BEHIND_COMMAS: [&str; 3] = ["window", "band", "target"];
 
 /// What is taken from a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -199,7 +202,7 @@ fn one(table: &Table<'_>, name: Read<String>, columns: &[Column], rows: Option<&
     Ok(MetricPlan { metric, place: table.node.place.clone(), of })
 }
 
-fn has_no_meaning(field: &Field<'_>, kind: MetricKind) -> super::reader::Refused {
+fn has_no_meaning(field: &Field<'_>, kind: MetricKind) -> Refused {
     let message = format!("has no meaning where kind = {:?}", kind.name());
     field.refuse(RefusalKind::Rule, message, Some(format!("leave `{}` out", field.key)))
 }
@@ -258,6 +261,7 @@ fn in_unit(field: &Field<'_>, column: &Column) -> Read<f64> {
 }
 
 fn band(field: &Field<'_>, column: &Column) -> Read<Band> {
+    field.refuse_affine()?;
     let band = match &field.node.value {
         Value::Text(text) if text.trim_end().ends_with('%') => Band::Share(field.number("")?),
         Value::Table(_) if constants::is_expression(field.node) => match constants::written_expression(field)? {
@@ -269,11 +273,6 @@ fn band(field: &Field<'_>, column: &Column) -> Read<Band> {
         _ => Band::Width(in_unit(field, column)?),
     };
     let (Band::Width(value) | Band::Share(value)) = band;
-    let unit = field.node.text().and_then(split_quantity).map(|(_, unit)| unit);
-    if unit.is_some_and(|unit| Unit::parse(unit, &|_| None).is_ok_and(|unit| unit.is_affine())) {
-        let message = format!("is {}, a temperature and no difference of two", field.node.written());
-        return Err(field.refuse(RefusalKind::BadQuantity, message, Some("write it in K, as in \"2 K\"".to_owned())));
-    }
     if value > 0.0 {
         return Ok(band);
     }
@@ -320,7 +319,7 @@ impl Metric {
         let mut entries = match rest.strip_prefix(',') {
             None if rest.is_empty() => Vec::new(),
             None => return Err(misread("there is something behind the parenthesis")),
-            Some(_) => pairs(text, option, rest_start)?
+            Some(_) => pairs(&source, rest_start)?
                 .ok_or_else(|| misread("what stands behind the parenthesis is not KEY = VALUE, …"))?,
         };
         let trimmed = |span: std::ops::Range<usize>| {
@@ -328,6 +327,12 @@ impl Metric {
             let start = span.start + part.len() - part.trim_start().len();
             start..start + part.trim().len()
         };
+        let (catalog, tables, robots) = (Catalog::standard(), CsvCache::default(), UrdfCache::default());
+        let ctx = Context::new(&catalog, Path::new(""), &tables, &robots);
+        // What else a metric has stands in front of the commas.
+        let tail = Node { value: Value::Table(entries.clone()), place: whole.clone(), tag: None };
+        let opened = Table::open(&ctx, &tail, option, &BEHIND_COMMAS).map(|_| ());
+        let ctx = ctx.going_on(opened)?;
         let called = trimmed(kind_start..close + 1);
         for (key, span) in [
             ("name", trimmed(named.clone().unwrap_or(called.clone()))),
@@ -339,8 +344,6 @@ impl Metric {
             entries.insert(0, Entry { key: key.to_owned(), key_place: place(span), node: Arc::new(node) });
         }
         let node = Node { value: Value::Table(entries), place: whole.clone(), tag: None };
-        let (catalog, tables, robots) = (Catalog::standard(), CsvCache::default(), UrdfCache::default());
-        let ctx = Context::new(&catalog, Path::new(""), &tables, &robots);
         let read = Table::of(&ctx, &node, option, &METRIC).and_then(|table| {
             let name = table.require("name").and_then(|field| match named {
                 Some(_) => checked_name(&field).map(str::to_owned),
@@ -353,12 +356,14 @@ impl Metric {
 }
 
 /// The keys and values behind the comma at a byte; `None` where they are no TOML.
-fn pairs(text: &str, option: &str, comma: usize) -> Result<Option<Vec<Entry>>, Refusals> {
+fn pairs(source: &Arc<Source>, comma: usize) -> Result<Option<Vec<Entry>>, Refusals> {
     // The comma becomes a brace, so that all places stay.
-    let text = format!("{}{{{}}}", &text[..comma], &text[comma + 1..]);
-    let range = comma..text.len();
-    let node = Node::value(&Arc::new(Source { name: option.to_owned(), text: text.into() }), range)?;
-    Ok(node.and_then(|node| match node.value {
+    let braced = format!("{}{{{}}}", &source.text[..comma], &source.text[comma + 1..]);
+    let range = comma..braced.len();
+    let node = Node::value(&Arc::new(Source { name: source.name.clone(), text: braced.into() }), range);
+    let as_written = |refusal: Refusal| Refusal { text: source.text.clone(), ..refusal };
+    let node = node.map_err(|refusals| Refusals::of(refusals.into_iter().map(as_written).collect()))?;
+    Ok(node.and_then(|node| match node.moved_to(source).value {
         Value::Table(entries) => Some(entries),
         _ => None,
     }))

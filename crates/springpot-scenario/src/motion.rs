@@ -151,9 +151,10 @@ pub struct MotionPlan {
     /// What the record of a run has of it besides its kind.
     record: Map<String, Value>,
     maker: Arc<dyn Maker>,
-    /// Where it stands, and where the motion of each joint does that has one of its own.
+    /// Where it stands, and where the motion of each joint does that has one of its own, or a torque.
     place: Place,
     joints: Vec<(String, Place)>,
+    torques: Vec<(String, Place)>,
     has_orientation: bool,
     /// Torques that are feedback, by velocity.
     feedback: TorqueTexts,
@@ -212,9 +213,35 @@ impl MotionPlan {
         self.maker.has_path()
     }
 
+    /// Whether a path of the gripper has to be solved, be it that of the motion or that of its controller.
+    pub fn solves_path(&self) -> bool {
+        self.has_path() || self.controller.as_ref().is_some_and(|controller| controller.path_place().is_some())
+    }
+
     /// Where the motion of a joint stands in the scenario; that of the whole where there is none.
     pub fn place_of(&self, joint: &str) -> &Place {
-        self.joints.iter().find(|(name, _)| name == joint).map_or(&self.place, |(_, place)| place)
+        self.own_place_of(joint).unwrap_or(&self.place)
+    }
+
+    /// Where the motion of a joint stands that has one of its own.
+    pub(crate) fn own_place_of(&self, joint: &str) -> Option<&Place> {
+        self.joints.iter().find(|(name, _)| name == joint).map(|(_, place)| place)
+    }
+
+    /// Where the path of the gripper stands that it follows, or that its controller does; its own place where there is none.
+    pub(crate) fn place_of_path(&self) -> &Place {
+        self.controller.as_ref().and_then(ControllerPlan::path_place).unwrap_or(&self.place)
+    }
+
+    /// Where the force on a joint stands: its torque, else the controller.
+    pub(crate) fn place_of_force(&self, joint: &str) -> Option<&Place> {
+        let own = self.torques.iter().find(|(name, _)| name == joint).map(|(_, place)| place);
+        own.or_else(|| self.place_of_controller())
+    }
+
+    /// Where the controller stands.
+    pub(crate) fn place_of_controller(&self) -> Option<&Place> {
+        self.controller.as_ref().map(ControllerPlan::place)
     }
 
     /// Torques that are feedback, by velocity.
@@ -237,9 +264,9 @@ impl MotionPlan {
         self.controller.as_ref().map(|controller| controller.made(model, course))
     }
 
-    /// Whether it says how the gripper is to be turned.
+    /// Whether it says how the gripper is to be turned, or its controller does.
     pub(crate) fn has_orientation(&self) -> bool {
-        self.has_orientation
+        self.has_orientation || self.controller.as_ref().is_some_and(|controller| controller.has_orientation)
     }
 
     /// The motion of `model`, solved along `course`.
@@ -271,7 +298,11 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
     };
     let word = Field { key: "kind", row, node, owner: "[motion]".into(), ..field.clone() }.word("kind of motion")?;
     let kind = MotionKind::named(word).expect("a word that may stand there");
-    let table = Table::of_kind(field.ctx, field.node, "[motion]", (&MOTION, kind.name()), |_| None)?;
+    let table = Table::of_kind(field.ctx, field.node, "[motion]", (&MOTION, kind.name()), |key| {
+        MOTION.get(key).filter(|row| row.only == FORWARD)?;
+        let message = format!("`{key}` of [motion] belongs to kind = {FORWARD_RUNS:?}, and this is {:?}", kind.name());
+        Some((RefusalKind::Rule, message))
+    })?;
     let (mut feedback, mut controller) = (TorqueTexts::new(), None);
     let (record, maker) = match kind {
         MotionKind::Prescribed => prescribed::read(&table, robot, end)?,
@@ -282,8 +313,11 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
             made
         }
     };
-    let of_joints = ["joints", "prescribed"].into_iter().filter_map(|key| field.node.get(key)?.entries()).flatten();
-    let joints = of_joints.map(|entry| (entry.key.clone(), entry.node.place.clone())).collect();
+    let places = |key: &str| {
+        let entries = field.node.get(key).and_then(|node| node.entries()).unwrap_or_default();
+        entries.iter().map(|entry| (entry.key.clone(), entry.node.place.clone())).collect::<Vec<_>>()
+    };
+    let (joints, torques) = ([places("joints"), places("prescribed")].concat(), places("torque"));
     let (place, has_orientation) = (field.node.place.clone(), field.node.get("rpy").is_some());
-    Ok(MotionPlan { kind, record, maker, place, joints, has_orientation, feedback, controller })
+    Ok(MotionPlan { kind, record, maker, place, joints, torques, has_orientation, feedback, controller })
 }

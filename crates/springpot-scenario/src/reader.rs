@@ -6,7 +6,7 @@ use super::keys::{self, Bound, Key, Keys, Need, Shape, Slot};
 use super::names;
 use super::refusal::{Refusal, RefusalKind, Refusals};
 use super::signals::CsvCache;
-use super::units;
+use super::units::{self, Unit};
 use super::urdf::UrdfCache;
 use springpot::law::Catalog;
 use std::cell::RefCell;
@@ -58,6 +58,14 @@ impl<'a> Context<'a> {
     /// Whether nothing more is noted.
     pub(crate) fn full(&self) -> bool {
         self.refusals.borrow().len() >= MAX_REFUSALS
+    }
+
+    /// Itself, if nothing was noted so far.
+    pub(crate) fn going_on<T>(self, read: Read<T>) -> Result<Self, Refusals> {
+        if read.is_ok() && self.refusals.borrow().is_empty() {
+            return Ok(self);
+        }
+        Err(Refusals::of(self.refusals.into_inner()))
     }
 
     /// The reading if nothing was noted on the way.
@@ -502,6 +510,17 @@ impl<'a> Field<'a> {
                 Err(self.refuse(RefusalKind::OutOfRange, message, Some(right.to_owned())))
             }
         }
+    }
+
+    /// Refuses a temperature in degC or degF where a difference of two belongs: these scales have zeros of their own.
+    pub(crate) fn refuse_affine(&self) -> Read<()> {
+        let in_quantity = self.node.text().and_then(units::split_quantity).map(|(_, unit)| unit);
+        let unit = in_quantity.or_else(|| self.node.get("unit")?.text());
+        if !unit.is_some_and(|unit| Unit::parse(unit, &|_| None).is_ok_and(|unit| unit.is_affine())) {
+            return Ok(());
+        }
+        let message = format!("is {}, a temperature and no difference of two", self.node.written());
+        Err(self.refuse(RefusalKind::BadQuantity, message, Some("write it in K, as in \"2 K\"".to_owned())))
     }
 
     /// A whole number in the range of its key.

@@ -1,10 +1,10 @@
 //! Signals of a scenario: numbers, quantities, expressions, columns of CSV files.
 
-use super::document::{Value, shorten};
+use super::document::{Node, Value, shorten};
 use super::keys::SIGNAL;
 use super::names;
 use super::plan::SignalPlan;
-use super::reader::{Field, Read, Refused, Table, unit_help};
+use super::reader::{Field, Read, Refused, Table};
 use super::refusal::RefusalKind;
 use super::units::{self, Unit};
 use crate::csv::{CsvError, CsvProblem, CsvTable, Dialect};
@@ -284,8 +284,10 @@ fn probe(field: &Field<'_>, wanted: Wanted<'_>, plan: &SignalPlan) -> Read<()> {
 fn outside(field: &Field<'_>, wanted: Wanted<'_>, value: f64, t: Option<f64>) -> Refused {
     let when = t.map(|t| format!(" at t = {t} s")).unwrap_or_default();
     let message = format!("is {value} {}{when}, {}", wanted.unit, how_outside(wanted.range));
-    let right = match (&field.node.value, celsius(wanted.unit, wanted.range, value)) {
-        (_, None) => unit_help(wanted.unit),
+    let right = match (&field.node.value, celsius(field.node, wanted.unit, wanted.range, value)) {
+        (_, None) => keep_within(wanted),
+        // What begins as a temperature is one.
+        (_, Some(_)) if t.is_some_and(|t| t > 0.0) => keep_within(wanted),
         (Value::Text(text), Some(_)) if t.is_some() => {
             format!("{value} K? write {{ expression = {text:?}, unit = \"degC\" }}")
         }
@@ -295,10 +297,23 @@ fn outside(field: &Field<'_>, wanted: Wanted<'_>, value: f64, t: Option<f64>) ->
     field.refuse(RefusalKind::OutOfRange, message.replace("  ", " "), Some(right))
 }
 
-/// What its author may have meant by a temperature that is far too cold: degrees Celsius.
-pub(crate) fn celsius(unit: &str, range: Range, value: f64) -> Option<String> {
-    (unit == "K" && range.low > 0.0 && range.contains(value + 273.15))
+/// What its author may have meant by a temperature without a unit that is far too cold: degrees Celsius.
+pub(crate) fn celsius(node: &Node, unit: &str, range: Range, value: f64) -> Option<String> {
+    let has_unit = node.text().and_then(units::split_quantity).is_some_and(|(_, unit)| !unit.is_empty())
+        || node.get("unit").is_some_and(|node| node.text() == Some("K"));
+    (unit == "K" && !has_unit && range.low > 0.0 && range.contains(value + 273.15))
         .then(|| format!("{value} K? write \"{value} degC\""))
+}
+
+/// Where the values of a signal have to stay.
+fn keep_within(Wanted { unit, range, .. }: Wanted<'_>) -> String {
+    let where_to = match (range.low > f64::MIN, range.high < f64::MAX) {
+        (true, true) => format!("between {} and {}", range.low, range.high),
+        (true, false) if range.low != f64::MIN_POSITIVE => format!("at {} or above", range.low),
+        (false, true) => format!("at {} or below", range.high),
+        _ => interval(range),
+    };
+    format!("keep it {where_to} {unit}").trim_end().to_owned()
 }
 
 /// An interval in words.

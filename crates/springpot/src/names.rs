@@ -22,12 +22,16 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             // What only lacks a prefix is meant: `joint1` for `panda_joint1`.
             let is_end = name.len() > 2 && candidate.ends_with(name);
             let other = candidate.to_lowercase();
+            // Or its end: `pd` for `pd-gravity`.
+            let rest = other.strip_prefix(&folded).filter(|_| folded.len() > 1);
+            let is_start = rest.is_some_and(|rest| rest.starts_with(['-', '_']));
             // A letter too few or too many, of which the measure thinks ill in short names.
             let is_slip = folded.len().min(other.len()) > 1
                 && folded.len() != other.len()
                 && strsim::levenshtein(&folded, &other) == 1;
             let likeness = if is_end { 1.0 } else { strsim::jaro_winkler(&folded, &other) };
             let likeness = if is_slip { likeness.max(0.9) } else { likeness };
+            let likeness = if is_start { 0.95 + 0.05 * likeness } else { likeness };
             (likeness, candidate)
         })
         .filter(|(likeness, _)| *likeness > 0.78)
@@ -59,6 +63,7 @@ mod tests {
         assert_eq!(nearest("rn", ["check", "run"]), Some("run"));
         assert_eq!(nearest("q1", ["q2", "x1"]), None);
         assert_eq!(nearest("joint2", ["panda_joint1", "panda_joint2", "joint3x"]), Some("panda_joint2"));
+        assert_eq!(nearest("pd", ["pid", "pd-gravity", "pd-gravity-2", "pid"]), Some("pd-gravity"));
         assert_eq!(nearest("joint2", ["left_joint2", "right_joint2"]), Some("right_joint2"));
     }
 }

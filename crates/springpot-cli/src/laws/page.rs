@@ -74,16 +74,38 @@ pub(super) fn json(law: &Entry) -> Value {
     })
 }
 
+/// What differs of a piezo stack: it moves by tens of micrometres under 150 V, so that its rest is its start.
+const STACK: [(&str, &str); 14] = [
+    ("F_block", "\"1 kN\""),
+    ("x_0", "\"50 um\""),
+    ("V_max", "\"150 V\""),
+    ("C", "\"5 uF\""),
+    ("creep", "0.015"),
+    ("alpha_creep", "0.1"),
+    ("a", "[0.2, 0.1]"),
+    ("r", "[\"10 V\", \"25 V\"]"),
+    ("alpha_h", "0.2"),
+    ("A", "1"),
+    ("beta", "\"0.02 1/V^n\""),
+    ("gamma", "\"0.02 1/V^n\""),
+    ("n", "1"),
+    ("U", "\"50 + 40*sin(6*t)\""),
+];
+
 /// An element of the law with parameters of a usual size.
 fn example(law: &Entry) -> String {
+    let is_stack = law.params.iter().any(|param| param.name == "F_block");
+    let own = |name: &str| STACK.iter().find(|(own, _)| is_stack && *own == name).map(|(_, value)| (*value).to_owned());
     let value = |param: &Param| match (usual(&param.unit, param.range), param.is_list) {
         (value, false) => value,
         (value, true) => format!("[{value}, {}]", twice(&value)),
     };
+    let value = |param: &Param| own(&param.name).unwrap_or_else(|| value(param));
     let params: Vec<String> = law.params.iter().map(|param| format!("{} = {}", param.name, value(param))).collect();
-    let inputs: Vec<String> =
-        law.inputs.iter().map(|input| format!("{} = {}", input.name, usual(&input.unit, input.range))).collect();
-    element(&law.name, &params, &inputs)
+    let input = |input: &Input| own(&input.name).unwrap_or_else(|| usual(&input.unit, input.range));
+    let inputs: Vec<String> = law.inputs.iter().map(|one| format!("{} = {}", one.name, input(one))).collect();
+    let rest = if is_stack { "start" } else { REST };
+    element(&law.name, rest, &params, &inputs)
 }
 
 /// A quantity twice as large, so that lists rise; a pure number as it is.
@@ -91,6 +113,9 @@ fn twice(value: &str) -> String {
     let Some((number, unit)) = value.trim_matches('"').split_once(' ') else { return value.to_owned() };
     number.parse::<f64>().map_or_else(|_| value.to_owned(), |number| format!("\"{} {unit}\"", 2.0 * number))
 }
+
+/// Rest length of most.
+const REST: &str = "42 cm";
 
 /// Tables that make a longer line are written with a line for each value.
 const LONGEST_LINE: usize = 80;
@@ -101,17 +126,17 @@ pub(super) fn found(law: &str, params: &[(&str, &str, f64)]) -> String {
         "" => format!("{name} = {}", short(*value)),
         unit => format!("{name} = \"{} {unit}\"", short(*value)),
     };
-    element(law, &params.iter().map(written).collect::<Vec<_>>(), &[])
+    element(law, REST, &params.iter().map(written).collect::<Vec<_>>(), &[])
 }
 
 /// An `[[element]]` between the world and a body; parameters and inputs are written as `name = value`.
-fn element(law: &str, params: &[String], inputs: &[String]) -> String {
+fn element(law: &str, rest: &str, params: &[String], inputs: &[String]) -> String {
     let mut text = format!(
         "[[element]]\n\
          name = \"strut\"\n\
          from = {{ body = \"world\", point = [0, 0, \"-30 cm\"] }}\n\
          to = {{ body = \"arm\", point = [\"30 cm\", 0, 0] }}\n\
-         rest_length = \"42 cm\"\n\
+         rest_length = \"{rest}\"\n\
          law = \"{law}\"\n"
     );
     let sections = [("parameters", params), ("inputs", inputs)].into_iter().filter(|(_, values)| !values.is_empty());

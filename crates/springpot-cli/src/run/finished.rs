@@ -2,7 +2,7 @@
 
 use super::{NAMED_LIMITS, in_cases};
 use crate::numbers::{brief, count, rough, short};
-use crate::{diagnostic, failures, terminal};
+use crate::{diagnostic, failures, plain, terminal};
 use springpot_run::Finished;
 use springpot_run::sweep::{CaseResult, CasesPassing, Status};
 use std::time::Duration;
@@ -163,12 +163,13 @@ impl Said {
     fn metrics(&self, width: Option<usize>) -> String {
         let Finished { cases, outcome, metrics, .. } = &self.0;
         let told = outcome.cases.first().filter(|_| cases.len() == 1 && metrics.len() <= NAMED_METRICS);
-        let names = metrics.iter().map(|[name, _]| name.chars().count()).max();
-        match (told, names) {
+        let names: Vec<String> = metrics.iter().map(|[name, _]| plain::title(name)).collect();
+        let longest = names.iter().map(|name| name.chars().count()).max();
+        match (told, longest) {
             (_, None) => String::new(),
             (Some(case), Some(longest)) => {
-                let units = metrics.iter().zip(&case.metrics.values).enumerate();
-                let line = |(k, ([name, unit], value)): (usize, (&[String; 2], &f64))| {
+                let units = names.iter().zip(metrics).zip(&case.metrics.values).enumerate();
+                let line = |(k, ((name, [_, unit]), value)): (usize, ((&String, &[String; 2]), &f64))| {
                     let value = if value.is_finite() { format!("{} {unit}", short(*value)) } else { "none".to_owned() };
                     let before = if k == 0 { "metrics  " } else { "         " };
                     format!("{before}{name:longest$}  {}\n", value.trim_end())

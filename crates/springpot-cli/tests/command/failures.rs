@@ -94,6 +94,85 @@ fn a_path_out_of_reach_is_named_with_time_and_distance() {
 }
 
 #[test]
+fn a_controllers_path_out_of_reach_is_found_by_check() {
+    let text = unreachable();
+    let at = text.find("kind = \"gripper-path\"").unwrap();
+    let end = text.find("\n[time]").unwrap();
+    let keys = text[at..end].trim_end().replace(['\n', '\r'], ", ");
+    let forward = format!(
+        "{}kind = \"forward\"\nstart = {{ q = {{ x = 0.1 }} }}\n[motion.controller]\nkind = \"pd-gravity\"\nkp = 100\nreference = {{ {keys} }}\n{}",
+        &text[..at],
+        &text[end..]
+    );
+    let place = Place::with(&forward);
+    let line = forward.lines().position(|line| line.starts_with("reference")).unwrap() + 1;
+    for command in ["check", "run"] {
+        let ended = place.springpot(&[command, "arm.toml"]);
+        let said = &ended.stderr;
+        assert_eq!(ended.code, Some(1), "{said}");
+        assert!(said.contains("error: the gripper cannot reach its path at t = 0.25"), "{said}");
+        assert!(said.contains(&format!("arm.toml:{line}:13")), "{said}");
+    }
+}
+
+/// The arm falls, so that torques and inputs may follow from its state.
+fn falling() -> String {
+    let [motion, time] = ["[motion]", "[time]"].map(|head| ARM.find(head).unwrap());
+    let forward = "[motion]\nkind = \"forward\"\nstart = { q = { x = 0.1 } }\n";
+    format!("{}{forward}{}", &ARM[..motion], &ARM[time..])
+}
+
+#[test]
+fn what_stops_a_run_names_its_place() {
+    let place = Place::with(&falling());
+    let input = "element.damper.u={ expression = \"1/(q.x - 0.1)\", sample = \"10 ms\" }";
+    let guard = "keep it finite wherever the motion comes: guard what divides";
+    for (set, words, help) in [
+        (&["element.damper.u=1/(q.x - 0.1)"][..], "t = 0 s: damper.u is ", guard),
+        (&[input], "t = 0 s: damper.u is ", guard),
+        (&["motion.torque.x=exp(1000*(1 + q.x))"], "t = 0 s: tau.x is inf", guard),
+        (&["element.damper.u=1/(q.x - 0.1)", "solver.method=midpoint", "solver.step=1 ms"], "damper.u is ", guard),
+        (
+            &["motion.torque.q1=-30*sign(v.q1)", "robot.gravity=[0, 0, 0]"],
+            "the expression \"-30*sign(v.q1)\" of tau.q1 switches again and again",
+            "look at --set:1:18",
+        ),
+        (
+            &[
+                "motion.controller={ kind = \"pd-gravity\", kp = 1e300, reference = { kind = \"move\", to = { x = 0.2 }, duration = 1 } }",
+            ],
+            "error: t = 1.",
+            "no step meets the tolerance",
+        ),
+        (
+            &[
+                "motion.controller={ kind = \"computed-torque\", kp = 1, reference = { kind = \"move\", to = { x = 0.2 }, duration = 1e-12 } }",
+            ],
+            "times too much in joint",
+            "a duration or a capacity that is too small",
+        ),
+        (
+            &[
+                "element.damper.expansion={ coefficient = 1e-3, T_ref = 300 }",
+                "element.damper.T=300 + 10*step(t - 0.1)",
+            ],
+            "it expands by a temperature that does not jump",
+            "look at --set:1:18",
+        ),
+    ] {
+        let sets = set.iter().flat_map(|set| ["--set", set]);
+        let arguments: Vec<&str> = ["run", "arm.toml", "--quiet"].into_iter().chain(sets).collect();
+        let ended = place.springpot(&arguments);
+        let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(ended.code != Some(0) && said.contains(words) && said.contains(help), "{set:?}: {said}");
+        assert!(!said.contains("stick = true") && !said.contains("0.00000000"), "{set:?}: {said}");
+        if help == guard {
+            assert!(said.contains("help: --set:1:18: keep it") || said.contains("help: --set:1:17: keep it"), "{said}");
+        }
+    }
+}
+
+#[test]
 fn a_path_that_is_lost_at_once_keeps_its_start() {
     let place = Place::with(&unreachable().replace("\"step(t - 0.25)*(t - 0.25)\"", "\"1e9*t\""));
     for command in ["run", "check"] {

@@ -25,6 +25,37 @@ fn element(text: &str) -> &str {
 }
 
 #[test]
+fn stacks_start_from_what_a_stack_is() {
+    let laws = Catalog::standard();
+    let stacks = laws.entries().iter().filter(|law| law.name.starts_with("piezo-stack"));
+    let lost = stacks.map(|law| {
+        let page = Place::new().done(&["laws", &law.name]).stdout;
+        let blocked =
+            AROUND.replace("0.5*sin(t)", "0").replace("end = 1, output_step = 0.5", "end = 2, output_step = 0.01");
+        let place = Place::with(&format!("{blocked}{}", element(&page)));
+        place.done(&["run", "arm.toml", "--out", "o"]);
+        let table = place.table("o/results.csv");
+        // Blocked it pushes, with F_block at V_max and never more.
+        let force = table.numbers("strut.force");
+        assert!(force.iter().all(|force| (-1e3..0.0).contains(force)), "{}: {force:?}", law.name);
+        // The drive swings about 50 V; what its way up leaves of the way down.
+        let driven = table.numbers("strut.U");
+        let passes = |rises: bool| {
+            let is_it = |k: &usize| (driven[*k] < 50.0) == rises && (driven[k + 1] < 50.0) != rises;
+            let k = (1..driven.len() - 1).find(is_it).unwrap();
+            let share = (50.0 - driven[k]) / (driven[k + 1] - driven[k]);
+            force[k] + share * (force[k + 1] - force[k])
+        };
+        (&*law.name, passes(true) - passes(false))
+    });
+    let lost: Vec<(&str, f64)> = lost.collect();
+    assert_eq!(lost.len(), 4);
+    for (name, lost) in lost {
+        assert_eq!(lost.abs() > 10.0, name != "piezo-stack", "{name}: {lost} N");
+    }
+}
+
+#[test]
 fn the_table_has_every_law_and_fits() {
     let place = Place::new();
     let table = place.done(&["laws"]).stdout;

@@ -191,6 +191,9 @@ fn what_is_too_long_is_cut() {
         let longest = refused.stderr.lines().map(|line| line.chars().count()).max().unwrap();
         assert!(longest < 700, "{arguments:?}: {longest} characters: {}", &refused.stderr[..700]);
     }
+    place.write("metric.toml", format!("{ARM}[[metric]]\nname = \"{word}\"\nof = \"t\"\nkind = \"max\"\n"));
+    let told = place.done(&["run", "metric.toml", "--out", "o"]).stdout;
+    assert!(told.contains("metrics  xxx") && told.lines().all(|line| line.chars().count() < 200), "{told:.999}");
     let shown = place.springpot(&["check", "0.toml"]).stderr;
     assert!(shown.contains("999…999") && shown.contains(", not a finite number"), "{shown}");
 }

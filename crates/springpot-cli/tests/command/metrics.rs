@@ -196,6 +196,14 @@ fn other_metrics_are_asked_for_on_the_command_line() {
         ("rms(q.q1), windows = [1, 2]", "did you mean `window`?", "--metric:1:12"),
         ("overshoot(q.q1), band = \"1 mm\"", "rad", "--metric:1:28"),
         ("my rms = rms(q.q1)", "which is not a name", "--metric:1:1"),
+        // What is shown is what was written, and what else a metric has stands in front.
+        ("rms(q.q1), window = [3, 2]", "rms(q.q1), window = [3, 2]\n", "--metric:1:21"),
+        ("rms(q.q1), of = \"v.x\"", "there is window, band and target", "--metric:1:12"),
+        (
+            "rms(q.q1), window = [100, 200]",
+            "the rows go from 0 s to 0.35 s; choose a window that holds some",
+            "100 s to 200 s",
+        ),
     ] {
         let ended = place.springpot(&["metrics", "o", "--metric", metric]);
         assert_eq!(ended.code, Some(2), "{metric}: {}", ended.stderr);
@@ -219,7 +227,10 @@ fn what_is_not_there_is_said() {
         assert!(ended.code == Some(2) && ended.stderr.contains(said), "{arguments:?}: {}", ended.stderr);
     };
     refused(&["metrics", "o"], "metric \"f\" is of damper.force, which is not among the columns of o/results.csv");
-    refused(&["metrics", "nothing"], "has no run.json");
+    refused(&["metrics", "nothing"], "error: nothing: there is no such file or folder");
+    fs::create_dir(place.path("bare")).unwrap();
+    refused(&["metrics", "bare"], "error: bare has no run.json");
+    refused(&["metrics", "arm.toml"], "no run.json stands beside arm.toml");
     place.write("plain.toml", ARM);
     place.done(&["run", "plain.toml", "--out", "p"]);
     assert!(!place.files("p").contains(&"metrics.csv".to_owned()));

@@ -1,6 +1,7 @@
 //! Metrics of a run that has ended, from its results.
 
 use super::{COLUMNS, push_line, value};
+use crate::sweep::is_within;
 use crate::table::disk::Disk;
 use crate::table::push_text;
 use crate::table::stored::Stored;
@@ -24,6 +25,21 @@ pub enum LaterError {
     /// There is no run.json beside the rows that says which metrics the run has.
     #[error("{} has no run.json that says what its columns are", .0.display())]
     NoRecord(PathBuf),
+    /// As [`LaterError::NoRecord`], of a file of rows.
+    #[error("no run.json stands beside {}, which would say what its columns are", .0.display())]
+    NoneBeside(PathBuf),
+    /// No case has a row in the window of a metric that was asked for.
+    #[error("the window of {name:?} runs from {from} s to {to} s, where there is no row")]
+    NoRow {
+        /// The metric.
+        name: String,
+        /// The window, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// What the rows go over.
+        help: String,
+    },
     /// The run has none, and none were asked for.
     #[error("the run in {} has no metrics", .0.display())]
     NoMetrics(PathBuf),
@@ -119,9 +135,17 @@ impl Source {
     pub fn open(disk: &Disk, results: &Path) -> Result<Self, LaterError> {
         let is_folder = disk.is_folder(results);
         let folder = if is_folder { results } else { results.parent().unwrap_or(Path::new("")) };
-        let record =
-            disk.read(&folder.join("run.json")).ok().and_then(|bytes| serde_json::from_slice::<Record>(&bytes).ok());
-        let record = record.ok_or_else(|| LaterError::NoRecord(folder.to_owned()))?;
+        let read = disk.read(&folder.join("run.json"));
+        let record = read.ok().and_then(|bytes| serde_json::from_slice::<Record>(&bytes).ok());
+        let record = record.ok_or_else(|| match disk.look(results) {
+            Ok(None) => {
+                let error = io::Error::new(io::ErrorKind::NotFound, "there is no such file or folder");
+                LaterError::File { file: results.to_owned(), error }
+            }
+            Err(error) => LaterError::File { file: results.to_owned(), error },
+            Ok(_) if is_folder => LaterError::NoRecord(results.to_owned()),
+            Ok(_) => LaterError::NoneBeside(results.to_owned()),
+        })?;
         let file = match &record.format {
             _ if !is_folder => results.to_owned(),
             format => folder.join(format!("results.{}", format.as_deref().unwrap_or("csv"))),
@@ -166,13 +190,17 @@ impl Source {
             text.push(if name == COLUMNS[3] { '\n' } else { ',' });
         }
         let mut own = own.into_iter().flatten();
+        let (mut is_met, mut reach) = (vec![false; metrics.len()], [f64::INFINITY, f64::NEG_INFINITY]);
         let mut end = |case: &mut Rows| {
             if case.columns[0].is_empty() {
                 return;
             }
             let own = own.next();
+            let t = &case.columns[0];
+            reach = t.iter().fold(reach, |[low, high], t| [low.min(*t), high.max(*t)]);
             for (k, (metric, &at)) in metrics.iter().zip(&of).enumerate() {
                 let metric = own.flatten().and_then(|own| own.get(k)).unwrap_or(metric);
+                is_met[k] |= metric.window.is_none_or(|window| t.iter().any(|t| is_within(window, *t)));
                 let value = value(metric, &case.columns[0], &case.columns[at]);
                 push_line(&mut text, &case.lead, metric, &self.columns[places[at]], value);
             }
@@ -191,6 +219,14 @@ impl Source {
         let read = self.rows.visit(self.swept, &places, &mut take);
         read.map_err(|error| LaterError::File { file: self.rows.file().to_owned(), error })?;
         end(&mut case);
+        let is_empty = |(metric, is_met): &(&Metric, bool)| !is_own && !is_met && metric.window.is_some();
+        if let Some((metric, _)) = metrics.iter().zip(is_met).find(is_empty)
+            && let Some([from, to]) = metric.window
+        {
+            let [first, last] = reach;
+            let help = format!("the rows go from {first} s to {last} s; choose a window that holds some");
+            return Err(LaterError::NoRow { name: metric.name.clone(), from, to, help });
+        }
         Ok(Recomputed { text, is_own })
     }
 

@@ -3,12 +3,13 @@
 use super::gripper_path;
 use super::joints::open_joints;
 use crate::document::shorten;
+use crate::feedback;
 use crate::keys::{self, CONTROLLER, REFERENCE};
 use crate::names;
 use crate::reader::{Field, Read, Table, all};
 use crate::refusal::{Place, RefusalKind};
 use crate::robot::{OwnJoint, Robot};
-use crate::signals::{self, Wanted};
+use crate::signals::Wanted;
 use serde_json::{Map, Value, json};
 use springpot::control::{
     AntiWindup, ComputedTorque, Controlled, Controller, Impedance, Limit, PdGravity, Pid, Profile, Reference, Sampling,
@@ -23,6 +24,9 @@ use std::sync::Arc;
 /// Shares of a period by which a delay may miss a multiple of it.
 const WHOLE: f64 = 1e-9;
 
+/// Most samples that wait for their delay.
+const LONGEST_DELAY: f64 = 1e6;
+
 /// A controller as it was read.
 #[derive(Debug, Clone)]
 pub(super) struct ControllerPlan {
@@ -31,6 +35,11 @@ pub(super) struct ControllerPlan {
     sample: Option<Place>,
     /// In place of the reference, where it has to be solved for.
     path: Option<Arc<gripper_path::Path>>,
+    /// Where it stands, and its reference.
+    place: Place,
+    reference: Place,
+    /// Whether the reference says how the gripper is to be turned.
+    pub(super) has_orientation: bool,
     /// As the record of a run has it.
     pub(super) record: Value,
 }
@@ -57,6 +66,16 @@ impl ControllerPlan {
                 format!("{words}, every {period} s, {} s late", period * delay as f64)
             }
         }
+    }
+
+    /// Where it stands.
+    pub(super) fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// Where its reference stands, if it is a path of the gripper.
+    pub(super) fn path_place(&self) -> Option<&Place> {
+        self.path.as_ref().map(|_| &self.reference)
     }
 
     pub(super) fn made(&self, model: &Model, course: &Course<'_>) -> Controlled {
@@ -110,6 +129,11 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
         let kinds = names::either(row.only.iter().map(|kind| format!("{kind:?}")));
         Some((RefusalKind::Rule, format!("`{key}` of [motion.controller] belongs to kind = {kinds}")))
     })?;
+    if joints.driven().next().is_none() {
+        let message = format!("kind = {kind:?} drives no joint: of this robot none of one degree is driven by forces");
+        let help = "leave [motion.controller] out; a floating joint is driven by `torque`, others where they are not locked or prescribed";
+        return Err(field.ctx.refuse(field.node.place.refuse(RefusalKind::Rule, message).help(help)));
+    }
     let mut record = Map::new();
     record.insert("kind".to_owned(), json!(kind));
     let law = law(&table, kind, joints, &mut record);
@@ -121,6 +145,9 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
     };
     let sampling = sampling(&table, &mut record);
     let (law, (reference, path, referred), limits, sampling) = (law?, reference?, limits?, sampling?);
+    let (own, written) = (field.node.place.clone(), table.get("reference"));
+    let has_orientation = written.as_ref().is_some_and(|field| field.node.get("rpy").is_some());
+    let to = written.map_or_else(|| own.clone(), |field| field.node.place.clone());
     if kind == keys::PID || kind == keys::FRACTIONAL_PID {
         let word = if anti_windup == AntiWindup::None { keys::NONE } else { keys::CONDITIONAL };
         record.insert("anti_windup".to_owned(), json!(word));
@@ -128,7 +155,7 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
     record.insert("reference".to_owned(), referred);
     let controlled = Controlled { law, reference, limits, anti_windup, sampling };
     let sample = table.get("sample").map(|field| field.node.place.clone());
-    Ok(ControllerPlan { controlled, sample, path, record: record.into() })
+    Ok(ControllerPlan { controlled, sample, path, place: own, reference: to, has_orientation, record: record.into() })
 }
 
 /// The word under `kind` of a table.
@@ -236,7 +263,7 @@ fn units(kind: &str) -> [[&'static str; 3]; 2] {
     match kind {
         keys::COMPUTED_TORQUE => [["1/s^2", "1/s", ""]; 2],
         keys::FRACTIONAL_PID => {
-            [["N*m/rad", "N*m*s^order/rad", "N*m/(rad*s^order)"], ["N/m", "N*s^order/m", "N/(m*s^order)"]]
+            [["N*m/rad", "N*m*s^mu/rad", "N*m/(rad*s^lambda)"], ["N/m", "N*s^mu/m", "N/(m*s^lambda)"]]
         }
         _ => [["N*m/rad", "N*m*s/rad", "N*m/(rad*s)"], ["N/m", "N*s/m", "N/(m*s)"]],
     }
@@ -324,9 +351,19 @@ fn sampling(table: &Table<'_>, record: &mut Map<String, Value>) -> Read<Option<S
     if let Some(field) = delay {
         let value = field.quantity()?;
         let whole = (value / period).round();
-        if value < 0.0 || (value / period - whole).abs() > WHOLE * whole.max(1.0) || whole > 1e6 {
+        if value < 0.0 {
+            let message = format!("is {}, but a delay is not negative", field.node.label());
+            return Err(field.refuse(RefusalKind::OutOfRange, message, Some(format!("write 0, or {period} (s)"))));
+        }
+        if whole > LONGEST_DELAY {
+            let message =
+                format!("is {}, {whole:e} times `sample`; at most {LONGEST_DELAY} are taken", field.node.label());
+            let help = "take a longer sample, or a shorter delay".to_owned();
+            return Err(field.refuse(RefusalKind::TooLarge, message, Some(help)));
+        }
+        if (value / period - whole).abs() > WHOLE * whole.max(1.0) {
             let message = format!("is {}, which is no multiple of `sample`, {period} s", field.node.label());
-            let near = whole.max(0.0) * period;
+            let near = whole * period;
             return Err(field.refuse(RefusalKind::Rule, message, Some(format!("write {near} (s), or another sample"))));
         }
         periods = whole as usize;
@@ -383,7 +420,7 @@ fn reference(field: &Field<'_>, law: &str, joints: &Joints<'_>, end: Option<f64>
         let start = Signal::constant(joints.start[model.q_range(j).start]);
         let Some(field) = table.get(joint.name).filter(|_| joint.kind.nv() == 1) else { return Ok((start, None)) };
         let wanted = Wanted { unit: joint.unit(), range: Range::ANY, smooth: true, end };
-        let plan = signals::read(&field, wanted)?;
+        let plan = feedback::read_of_time(&field, wanted)?;
         Ok((plan.signal.clone(), Some((joint.name.to_owned(), plan.record()))))
     }))?;
     let (signals, records): (Vec<Signal>, Vec<_>) = paths.into_iter().unzip();

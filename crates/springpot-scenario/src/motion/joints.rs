@@ -1,11 +1,12 @@
 //! What several kinds of motion say by joint: which joints, and how one moves.
 
+use crate::feedback;
 use crate::keys::{POSE, Shape};
 use crate::plan::SignalPlan;
 use crate::reader::{Field, Read, Table, all};
 use crate::refusal::{Place, RefusalKind};
 use crate::robot::{OwnJoint, Robot};
-use crate::signals::{self, Wanted};
+use crate::signals::Wanted;
 use serde_json::{Value, json};
 use springpot::law::Range;
 use springpot::model::JointKind;
@@ -22,7 +23,7 @@ pub(super) fn signal(field: &Field<'_>, smooth: bool, end: Option<f64>) -> Read<
         Some(Shape::Signal(unit) | Shape::Signals(unit)) => unit,
         _ => "",
     };
-    signals::read(field, Wanted { smooth, ..wanted(unit, end) })
+    feedback::read_of_time(field, Wanted { smooth, ..wanted(unit, end) })
 }
 
 /// What stands for a signal that is left out.
@@ -35,7 +36,7 @@ pub(super) fn zero(place: &Place) -> SignalPlan {
 pub(super) fn path_of_joint(field: &Field<'_>, joint: &OwnJoint<'_>, end: Option<f64>) -> Read<(JointPath, Value)> {
     match joint.kind {
         JointKind::Floating => pose(field, end),
-        _ => signals::read(field, wanted(joint.unit(), end)).map(coordinate),
+        _ => feedback::read_of_time(field, wanted(joint.unit(), end)).map(coordinate),
     }
 }
 

@@ -60,7 +60,24 @@ fn feedback_sees_what_is_known() {
             ),
             (&[("u = 1 }", "u = \"‸strut.derivative\" }")], Rule, "strut.derivative follows from the forces"),
             (&[("torque = { q1 = 0 }", "torque = { q1 = \"‸strut.rat\" }")], BadQuantity, "did you mean `strut.rate`?"),
-            (&[("torque = { q1 = 0 }", "torque = { q1 = \"-‸tau.q2\" }")], BadQuantity, "tau.q2"),
+            (
+                &[("torque = { q1 = 0 }", "torque = { q1 = \"-‸tau.q2\" }")],
+                BadQuantity,
+                "tau.q2 is a column of the results, but no part of the state\n  help: feedback may name q.q1, v.q1, q.q2, v.q2, strut.length",
+            ),
+            (&[("u = 1 }", "u = { expression = \"‸strut.u\", sample = 0.1 } }")], BadQuantity, "no part of the state"),
+            (
+                &[("u = 1 }", "u = { expression = \"‸strut.stored\", sample = 0.1 } }")],
+                BadQuantity,
+                "feedback may name q.q1, v.q1, a.q1",
+            ),
+            (&[("u = 1 }", "u = \"‸gripper.error\" }")], BadQuantity, "gripper.error is a column of the results"),
+            // What would be refused next is said to need more.
+            (
+                &[("u = 1 }", "u = \"‸strut.forc\" }")],
+                BadQuantity,
+                "did you mean `strut.force`? it follows from the forces",
+            ),
             (&[("torque = { q1 = 0 }", "torque = { q1 = \"-‸v.q3\" }")], BadQuantity, "v.q3"),
             (
                 &[("torque = { q1 = 0 }", "torque = { q1 = { expression = \"-v.q1\", unit = ‸\"V\" } }")],
@@ -97,7 +114,11 @@ fn controllers_have_their_keys_and_joints() {
     assert_all_refused(
         &controlled(PD),
         &[
-            (&[("\"pd-gravity\"", "‸\"pd\"")], UnknownName, "which is no kind of controller"),
+            (
+                &[("\"pd-gravity\"", "‸\"pd\"")],
+                UnknownName,
+                "no kind of controller\n  help: did you mean `pd-gravity`?",
+            ),
             (&[("kp = 10", "kp = ‸-10")], OutOfRange, "a gain is not negative"),
             (&[("kp = 10", "kp = { q1 = 10, ‸q3 = 2 }")], UnknownKey, "unknown key `q3`"),
             (
@@ -110,6 +131,12 @@ fn controllers_have_their_keys_and_joints() {
             (&[("kd = 1", "kd = 1\nlimits = { q1 = \"5 ‸N\" }")], BadQuantity, "N*m"),
             (&[("kd = 1", "kd = 1\nrate_limits = { q2 = ‸0 }")], OutOfRange, "a limit is positive"),
             (&[("kd = 1", "kd = 1\nsample = 0.01\ndelay = ‸0.015")], Rule, "is no multiple of `sample`"),
+            (&[("kd = 1", "kd = 1\nsample = 0.01\ndelay = ‸\"-1 ms\"")], OutOfRange, "a delay is not negative"),
+            (
+                &[("kd = 1", "kd = 1\nsample = \"1 ms\"\ndelay = ‸\"1e9 s\"")],
+                TooLarge,
+                "is 1e9 s, 1e12 times `sample`; at most 1000000 are taken",
+            ),
             (&[("kd = 1", "kd = 1\ndelay = ‸0.01")], Rule, "needs a `sample`"),
             (&[("to = { q1 = 0.5 }", "to = { ‸q5 = 0.5 }")], UnknownKey, "unknown key `q5`"),
             (&[("duration = 1", "duration = ‸-1")], OutOfRange, "must be positive"),
@@ -136,6 +163,8 @@ fn controllers_have_their_keys_and_joints() {
         &[
             (&[("lambda = 0.5", "lambda = ‸0")], OutOfRange, "an order is above 0 and at most 1"),
             (&[("lambda = 0.5", "mu = { q1 = ‸1.5 }")], OutOfRange, "an order is above 0 and at most 1"),
+            (&[("kd = 1", "mu = 0.5\nkd = \"1 ‸N*m*s/rad\"")], BadQuantity, "this place takes `N*m*s^mu/rad`"),
+            (&[("kd = 1", "ki = \"1 ‸N*m\"")], BadQuantity, "this place takes `N*m/(rad*s^lambda)`"),
         ],
     );
     let impedance = controlled(PD).replace("\"pd-gravity\"", "\"impedance\"");
@@ -147,6 +176,43 @@ fn controllers_have_their_keys_and_joints() {
     assert_all_refused(
         &gripperless.replace("[motion.controller]", "‸[motion.controller]"),
         &[(&[("‸[motion", "‸[motion")], Missing, "needs a gripper")],
+    );
+}
+
+#[test]
+fn the_state_stands_in_inputs_and_torques_alone() {
+    let reference = "reference = { kind = \"joints\", q1 = ‸\"q.q2\", q2 = 0 }";
+    let event = "[[event]]\nname = \"e\"\nwhen = \"t - 0.1\"\naction = { set = { \"strut.u\" = ‸\"q.q1\" } }\n[time]";
+    let words = "follows from the state, but has to be a signal of t";
+    assert_all_refused(
+        &controlled(PD),
+        &[
+            (&[("reference = { kind = \"move\", to = { q1 = 0.5 }, duration = 1 }", reference)], Rule, words),
+            (&[("[time]", event)], Rule, words),
+            (&[("\"forward\"", "\"forward\"\nprescribed = { q2 = { expression = ‸\"v.q1\" } }")], Rule, words),
+        ],
+    );
+    let given = controlled(PD).replace("\"forward\"", "\"prescribed\"\njoints = { q1 = 0, q2 = 0 }");
+    assert_all_refused(
+        &given.replace("[motion.controller]", "[motion.‸controller]"),
+        &[(
+            &[("[motion.‸", "[motion.‸")],
+            Rule,
+            "`controller` of [motion] belongs to kind = \"forward\", and this is \"prescribed\"",
+        )],
+    );
+    let floating = "[[robot.body]]\nname = \"b\"\njoint = { name = \"f\", kind = \"floating\" }\nmass = 1\ninertia = { xx = 1, yy = 1, zz = 1 }\n[time]\nend = 1\noutput_step = 0.1\n\
+                    [motion]\nkind = \"forward\"\ntorque = { f = { vz = 0 } }\n[motion.controller]\nkind = \"pd-gravity\"\nkp = 1\n\
+                    reference = { kind = \"move\", to = {}, duration = 1 }\n";
+    let alone = &floating[..floating.find("[motion.controller]").unwrap()];
+    assert_all_refused(alone, &[(&[("vz = 0", "vz = ‸\"9.81 - v.f.vz\"")], Rule, words)]);
+    assert_all_refused(
+        floating,
+        &[(
+            &[("[motion.controller]", "‸[motion.controller]")],
+            Rule,
+            "drives no joint: of this robot none of one degree",
+        )],
     );
 }
 

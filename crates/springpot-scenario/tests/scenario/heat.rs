@@ -88,6 +88,13 @@ fn what_is_wrong_with_heat_is_refused_in_its_place() {
             (&[("kind = \"wlf\", ", ""), ("shift = ", "shift = ‸")], Missing, "kind"),
             (&[("C1 = 17.44", "C1 = ‸-1")], Rule, "C1 ≥ 0"),
             (&[("C2 = \"51.6 K\"", "C2 = ‸0")], OutOfRange, "must be positive"),
+            (&[("C2 = \"51.6 K\"", "C2 = ‸\"51.6 degC\"")], BadQuantity, "no difference of two\n  help: write it in K"),
+            (&[("C2 = \"51.6 K\"", "C2 = ‸\"93 degF\"")], BadQuantity, "a temperature and no difference of two"),
+            (
+                &[("C2 = \"51.6 K\"", "C2 = ‸{ expression = \"50 + 2\", unit = \"degC\" }")],
+                BadQuantity,
+                "no difference of two",
+            ),
             (
                 &[("C1 = 17.44", "C1 = 17.44, ‸energy = 3")],
                 Rule,
@@ -96,7 +103,15 @@ fn what_is_wrong_with_heat_is_refused_in_its_place() {
             (&[("T_ref = 300", "T_ref = ‸30")], OutOfRange, "30 K"),
             (&[("coefficient = \"1 mm/K\"", "coefficient = \"1 ‸mm\"")], BadQuantity, "m/K"),
             (&[(THERMAL, &format!("{THERMAL}\ninputs = {{ ‸T = 300 }}"))], Rule, "stands beside `thermal`"),
-            (&[(THERMAL, "inputs = { T = ‸\"-60 degC\" }")], Rule, "C2 + T − T_ref > 0"),
+            (&[(THERMAL, "inputs = { T = ‸\"-60 degC\" }")], Rule, "at or below the pole at 221.55 K"),
+            (
+                &[(THERMAL, "inputs = { T = ‸\"-51.5 degC\" }")],
+                Rule,
+                "does not go with `shift`, which needs an a_T between 1e-100 and 1e100: at T = 221.65 K log10 a_T is 8.982e3",
+            ),
+            (&[(THERMAL, "inputs = { T = ‸\"300 - 1000*t\" }")], OutOfRange, "help: keep it between 150 and 1500 K"),
+            (&[(THERMAL, "inputs = { T = ‸\"25 + t\" }")], OutOfRange, "unit = \"degC\" }"),
+            (&[(THERMAL, "inputs = { T = ‸\"20 K\" }")], OutOfRange, "help: keep it between 150 and 1500 K"),
             (
                 &[("derivative = \"riemann-liouville\"", "scheme = ‸\"l1\"")],
                 Rule,

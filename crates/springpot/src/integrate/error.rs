@@ -8,7 +8,7 @@ use crate::motion::PathError;
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The points that an element joins met, so that its direction is undefined.
-    #[error("t = {t} s: element \"{element}\" has no direction: its points met (length {length:.1e} m)")]
+    #[error("t = {} s: element \"{element}\" has no direction: its points met (length {length:.1e} m)", seconds(*.t))]
     ZeroLength {
         /// Time, s.
         t: f64,
@@ -19,7 +19,8 @@ pub enum RunError {
     },
     /// The ends of a segment of a cable met, so that its direction is undefined.
     #[error(
-        "t = {t} s: element \"{element}\" has no direction: the points of segment {segment} of its cable met (length {length:.1e} m)"
+        "t = {} s: element \"{element}\" has no direction: the points of segment {segment} of its cable met (length {length:.1e} m)",
+        seconds(*.t)
     )]
     SegmentLength {
         /// Time, s.
@@ -33,7 +34,8 @@ pub enum RunError {
     },
     /// The frames of a bushing came to half a turn, where their rotation vector jumps.
     #[error(
-        "t = {t} s: element \"{element}\" is turned by {angle:.4} rad: a bushing's rotation vector jumps at half a turn, pi"
+        "t = {} s: element \"{element}\" is turned by {angle:.4} rad: a bushing's rotation vector jumps at half a turn, pi",
+        seconds(*.t)
     )]
     HalfTurn {
         /// Time, s.
@@ -44,7 +46,7 @@ pub enum RunError {
         angle: f64,
     },
     /// A signal gave NaN or infinity.
-    #[error("t = {t} s: {what} is {value}, not a finite number")]
+    #[error("t = {} s: {what} is {value}, not a finite number", seconds(*.t))]
     NotFinite {
         /// Time, s.
         t: f64,
@@ -54,7 +56,7 @@ pub enum RunError {
         value: f64,
     },
     /// An input broke a rule of its law.
-    #[error("t = {t} s: element \"{element}\": {rule}")]
+    #[error("t = {} s: element \"{element}\": {rule}", seconds(*.t))]
     Rule {
         /// Time, s.
         t: f64,
@@ -63,8 +65,18 @@ pub enum RunError {
         /// The rule.
         rule: String,
     },
+    /// What temperature does to an element has no answer: a shift, an expansion, losses that warm it.
+    #[error("t = {} s: element \"{element}\": {why}", seconds(*.t))]
+    Heat {
+        /// Time, s.
+        t: f64,
+        /// Element.
+        element: String,
+        /// Why, and what would have one.
+        why: String,
+    },
     /// An input left the range of its law.
-    #[error("t = {t} s: element \"{element}\": input {input} = {value} lies outside {low} … {high}")]
+    #[error("t = {} s: element \"{element}\": input {input} = {value} lies outside {low} … {high}", seconds(*.t))]
     InputRange {
         /// Time, s.
         t: f64,
@@ -81,8 +93,9 @@ pub enum RunError {
     },
     /// An element warmed itself beyond what materials are known at.
     #[error(
-        "t = {t} s: element \"{element}\" runs away: it has warmed itself to {temperature:.1} K, above {highest} K: it loses more than its \
-         surroundings take"
+        "t = {} s: element \"{element}\" runs away: it has warmed itself to {temperature:.1} K, above {highest} K: it loses more than its \
+         surroundings take",
+        seconds(*.t)
     )]
     RunAway {
         /// Time, s.
@@ -95,7 +108,7 @@ pub enum RunError {
         highest: f64,
     },
     /// A coordinate jumps.
-    #[error("t = {t} s: joint \"{joint}\" jumps by {jump:e}; a motion must be continuous")]
+    #[error("t = {} s: joint \"{joint}\" jumps by {jump:e}; a motion must be continuous", seconds(*.t))]
     Jump {
         /// Time, s.
         t: f64,
@@ -106,7 +119,10 @@ pub enum RunError {
     },
     /// No step is small enough.
     #[error(
-        "t = {t} s: no step meets the tolerance: {h:e} s still errs {error:.1} times too much in {subject}; raise solver.rtol"
+        "t = {} s: no step meets the tolerance: {h:.1e} s still {} in {subject}; {}",
+        seconds(*.t),
+        errs(*.error),
+        if *.error < FAR_OFF { "raise solver.rtol, or slow down what is that fast, such as a gain" } else { TOO_FAST }
     )]
     StepTooSmall {
         /// Time, s.
@@ -120,7 +136,9 @@ pub enum RunError {
     },
     /// The step of a fixed-step method is too long.
     #[error(
-        "t = {t} s: a step of {h} s is too long: no finite acceleration of {joint} solves it; take a shorter solver.step"
+        "t = {} s: a step of {} s is too long: no finite acceleration of {joint} solves it; take a shorter solver.step",
+        seconds(*.t),
+        seconds(*.h)
     )]
     FixedStep {
         /// Time, s.
@@ -131,7 +149,7 @@ pub enum RunError {
         joint: String,
     },
     /// The equations of motion of a step have no solution that the iteration finds.
-    #[error("t = {t} s: the motion cannot go on: joint \"{joint}\" settles in no step down to {h:e} s")]
+    #[error("t = {} s: the motion cannot go on: joint \"{joint}\" settles in no step down to {h:e} s", seconds(*.t))]
     NoConvergence {
         /// Time, s.
         t: f64,
@@ -142,8 +160,9 @@ pub enum RunError {
     },
     /// Joints stick and slide without getting on.
     #[error(
-        "t = {t} s: joint \"{joint}\" sticks and slides without getting on: {count} changes within {span:.1e} s; \
-         give its friction a speed in place of stick = true"
+        "t = {} s: joint \"{joint}\" sticks and slides without getting on: {count} changes within {span:.1e} s; \
+         give its friction a speed in place of stick = true",
+        seconds(*.t)
     )]
     Chatter {
         /// Time, s.
@@ -157,8 +176,9 @@ pub enum RunError {
     },
     /// Events set one another off without getting on.
     #[error(
-        "t = {t} s: event \"{event}\" acts again and again without getting on: {count} events act within {span:.1e} s; \
-         leave a gap between what sets them off"
+        "t = {} s: event \"{event}\" acts again and again without getting on: {count} events act within {span:.1e} s; \
+         leave a gap between what sets them off",
+        seconds(*.t)
     )]
     EventChatter {
         /// Time, s.
@@ -172,8 +192,9 @@ pub enum RunError {
     },
     /// The reference of a controller jumps.
     #[error(
-        "t = {t} s: the reference of {what} jumps by {jump:e}; computed torque and D^mu of an error would answer with an impulse: \
-         write one that is continuous, such as a move"
+        "t = {} s: the reference of {what} jumps by {jump:e}; computed torque and D^mu of an error would answer with an impulse: \
+         write one that is continuous, such as a move",
+        seconds(*.t)
     )]
     ReferenceJump {
         /// Time, s.
@@ -197,14 +218,17 @@ pub enum RunError {
     },
     /// Feedback goes to and fro between two branches without getting on.
     #[error(
-        "t = {t} s: {what} switches again and again without getting on: {count} times within {span:.1e} s; leave a gap between where it \
-         switches on and off, write a smooth function such as tanh(s/s0) in place of sign(s), or sample it"
+        "t = {} s: {what} switches again and again without getting on: {count} times within {span:.1e} s; leave a gap between where it \
+         switches on and off, write a smooth function such as tanh(s/s0) in place of sign(s), or sample it",
+        seconds(*.t)
     )]
     ControlChatter {
         /// Time, s.
         t: f64,
         /// What switches.
         what: String,
+        /// The column of what an expression says; none where it is the controller.
+        signal: Option<String>,
         /// How many times.
         count: u32,
         /// Within this time, s.
@@ -212,8 +236,9 @@ pub enum RunError {
     },
     /// Which joints hold by friction and which slide has no answer.
     #[error(
-        "t = {t} s: no friction between -force and force of joint \"{joint}\" goes with the forces on it; \
-         give its friction a speed in place of stick = true"
+        "t = {} s: no friction between -force and force of joint \"{joint}\" goes with the forces on it; \
+         give its friction a speed in place of stick = true",
+        seconds(*.t)
     )]
     NoHold {
         /// Time, s.
@@ -223,8 +248,9 @@ pub enum RunError {
     },
     /// An accepted inertia is negative where the motion comes.
     #[error(
-        "t = {t} s: the mass matrix is not positive definite at joint \"{joint}\": what it moves has a negative inertia here, \
-         which was accepted; correct the inertia of these bodies"
+        "t = {} s: the mass matrix is not positive definite at joint \"{joint}\": what it moves has a negative inertia here, \
+         which was accepted; correct the inertia of these bodies",
+        seconds(*.t)
     )]
     IndefiniteMassMatrix {
         /// Time, s.
@@ -233,7 +259,7 @@ pub enum RunError {
         joint: String,
     },
     /// More steps than allowed.
-    #[error("t = {t} s: {limit} steps are used up (solver.max_steps)")]
+    #[error("t = {} s: {limit} steps are used up (solver.max_steps)", seconds(*.t))]
     TooManySteps {
         /// Time, s.
         t: f64,
@@ -254,7 +280,8 @@ pub enum RunError {
     },
     /// A row contradicts the step that it lies in.
     #[error(
-        "t = {t} s: the steps missed what the motion does: at this row the rate of element \"{element}\" departs from its step by {departure:.1e} of its largest derivative; the rows are kept; give solver.max_step a time in which the motion changes little"
+        "t = {} s: the steps missed what the motion does: at this row the rate of element \"{element}\" departs from its step by {departure:.1e} of its largest derivative; the rows are kept; give solver.max_step a time in which the motion changes little",
+        seconds(*.t)
     )]
     Missed {
         /// Time of the first such row, s.
@@ -266,7 +293,8 @@ pub enum RunError {
     },
     /// The energies do not balance.
     #[error(
-        "t = {t} s: the energy balance is off by {residual:.1e} J of {turned_over:.1e} J turned over: the results are wrong or the motion is not what it seems; the rows are kept; try a smaller solver.max_step"
+        "t = {} s: the energy balance is off by {residual:.1e} J of {turned_over:.1e} J turned over: the results are wrong or the motion is not what it seems; the rows are kept; try a smaller solver.max_step",
+        seconds(*.t)
     )]
     Unbalanced {
         /// Time of the largest residual, s.
@@ -293,7 +321,7 @@ pub enum RunError {
         source: SchemeError,
     },
     /// Interrupted by the user.
-    #[error("interrupted at t = {t} s")]
+    #[error("interrupted at t = {} s", seconds(*.t))]
     Interrupted {
         /// Time reached, s.
         t: f64,
@@ -316,7 +344,7 @@ pub enum RunError {
         element: String,
     },
     /// A time that cannot be gone to or looked at.
-    #[error("t = {t} s lies outside {from} … {to} s")]
+    #[error("t = {} s lies outside {from} … {to} s", seconds(*.t))]
     Outside {
         /// Time, s.
         t: f64,
@@ -347,6 +375,24 @@ pub enum RunError {
     Output(#[from] std::io::Error),
 }
 
+/// An error in units of the tolerance that no tolerance is meant for, and what then helps.
+const FAR_OFF: f64 = 1e3;
+const TOO_FAST: &str = "something acts faster than any step: look for a duration or a capacity that is too small, or a gain that is too large";
+
+/// By how much a step errs.
+fn errs(error: f64) -> String {
+    match error {
+        error if error < FAR_OFF => format!("errs {error:.1} times too much"),
+        error if error.is_finite() => format!("errs {error:.0e} times too much"),
+        _ => "has no finite error".to_owned(),
+    }
+}
+
+/// A time as messages say it: with an exponent where its zeros would be counted.
+fn seconds(t: f64) -> String {
+    if t == 0.0 || (1e-5..1e15).contains(&t.abs()) { format!("{t}") } else { format!("{t:e}") }
+}
+
 impl RunError {
     /// When it happened, s; `None` where no time is to blame.
     pub fn time(&self) -> Option<f64> {
@@ -356,6 +402,7 @@ impl RunError {
             | Self::HalfTurn { t, .. }
             | Self::NotFinite { t, .. }
             | Self::Rule { t, .. }
+            | Self::Heat { t, .. }
             | Self::InputRange { t, .. }
             | Self::RunAway { t, .. }
             | Self::Jump { t, .. }
@@ -394,9 +441,9 @@ impl RunError {
 
     /// That of an element whose temperature, which stretches it, jumps.
     pub(super) fn heat_jump(t: f64, element: &str, before: f64, after: f64) -> Self {
-        let rule =
+        let why =
             format!("it expands by a temperature that does not jump, here from {before} to {after} K: give it a ramp");
-        Self::Rule { t, element: element.to_owned(), rule }
+        Self::Heat { t, element: element.to_owned(), why }
     }
 }
 

@@ -6,7 +6,7 @@ use super::resistance::{add_resistance, joint_loss};
 use super::system::System;
 use crate::dynamics::{CoincidentAnchors, Kinematics, Workspace, kinetic_energy, potential_energy, rnea_at_into};
 use crate::elements::{Element, NoDirection, Reading};
-use crate::law::{InputValue, Point, State};
+use crate::law::{InputValue, Point, RuleError, State, heat};
 use crate::model::Model;
 use crate::motion::{Trajectory, Wanted};
 use crate::observe::Snapshot;
@@ -193,14 +193,14 @@ impl Element {
     }
 
     /// # Errors
-    /// [`RunError::Rule`] where it warms itself by what nobody knows: a start that takes infinite work, or begins as steeply.
+    /// [`RunError::Heat`] where it warms itself by what nobody knows: a start that takes infinite work, or begins as steeply.
     pub(super) fn check_start(&self, state: &State) -> Result<(), RunError> {
         if !self.law.is_thermal() || state.is_accounted() {
             return Ok(());
         }
-        let rule = "a temperature of its own needs to know what is lost, and a jump to the stroke at t = 0 does not \
+        let why = "a temperature of its own needs to know what is lost, and a jump to the stroke at t = 0 does not \
                     tell: write past = \"held\", or begin at a stroke of 0";
-        Err(RunError::Rule { t: 0.0, element: self.name.clone(), rule: rule.to_owned() })
+        Err(RunError::Heat { t: 0.0, element: self.name.clone(), why: why.to_owned() })
     }
 
     pub(super) fn check_inputs(&self, t: f64, inputs: &[InputValue]) -> Result<(), RunError> {
@@ -220,10 +220,12 @@ impl Element {
                 });
             }
         }
-        self.law.check_inputs(inputs).map_err(|broken| RunError::Rule {
-            t,
-            element: self.name.clone(),
-            rule: broken.rule,
+        self.law.check_inputs(inputs).map_err(|RuleError { rule, parameter }| {
+            let element = self.name.clone();
+            match parameter == heat::INPUT {
+                true => RunError::Heat { t, element, why: rule },
+                false => RunError::Rule { t, element, rule },
+            }
         })
     }
 }

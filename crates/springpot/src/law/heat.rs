@@ -104,17 +104,20 @@ impl Shift {
     /// Whether there is an a_T at `temperature`.
     ///
     /// # Errors
-    /// [`RuleError`]: C2 + T − T_ref > 0 of WLF; a_T between 1e-100 and 1e100.
+    /// [`RuleError`]: what it needs, C2 + T − T_ref > 0 of WLF; a_T between 1e-100 and 1e100.
     pub fn check(&self, temperature: f64) -> Result<(), RuleError> {
         let refuse = |rule: String| Err(RuleError { rule, parameter: INPUT.into() });
         let factor = self.ln_factor(temperature);
         match *self {
             Self::Wlf { c2, reference, .. } if factor.is_nan() => {
-                let pole = c2 + temperature - reference;
-                refuse(format!("C2 + T − T_ref > 0 is broken: T = {temperature} K is at or below its pole, {pole} K"))
+                let pole = (1e9 * (reference - c2)).round() / 1e9;
+                refuse(format!("C2 + T − T_ref > 0: T = {temperature} K is at or below the pole at {pole} K"))
             }
             _ if factor.abs() <= FARTHEST => Ok(()),
-            _ => refuse(format!("a shift between 1e-100 and 1e100 is broken: at T = {temperature} K it is e^{factor}")),
+            _ => {
+                let decades = factor / std::f64::consts::LN_10;
+                refuse(format!("an a_T between 1e-100 and 1e100: at T = {temperature} K log10 a_T is {decades:.3e}"))
+            }
         }
     }
 
@@ -263,7 +266,9 @@ mod tests {
         assert_eq!(of(Shift::Arrhenius { energy: 1.0, reference: 20.0 }), Err("T_ref".into()));
         assert_eq!(of(wlf(17.44, 51.6)), Ok(()));
         let pole = wlf(17.44, 51.6).check(248.3).unwrap_err();
-        assert!(pole.rule.contains("pole"), "{pole}");
+        assert!(pole.rule.ends_with("T = 248.3 K is at or below the pole at 248.4 K"), "{pole}");
+        let near = wlf(17.44, 51.6).check(248.4).unwrap_err();
+        assert!(near.rule.contains("an a_T between 1e-100 and 1e100: at T = 248.4 K log10 a_T is 1.2"), "{near}");
         assert!(wlf(17.44, 51.6).check(248.5).is_err() && wlf(17.44, 51.6).check(270.0).is_ok());
         let warm = Thermal { capacity: 1.0, conductance: 0.0, ambient: 300.0, start: 300.0 };
         let check = |thermal, shift| Heat { shift, thermal: Some(thermal), expansion: None }.check();

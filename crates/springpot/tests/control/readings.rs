@@ -238,7 +238,7 @@ fn references_and_temperatures_that_jump_are_seen_before_the_run() {
             &format!("[motion]\nkind = \"forward\"\n[time]\nend = 0.2\noutput_step = 0.01\n{solver}"),
         );
         let error = try_run(&text).error;
-        assert!(matches!(error, Some(RunError::Rule { .. })), "{error:?}");
+        assert!(matches!(error, Some(RunError::Heat { .. })), "{error:?}");
     }
 }
 

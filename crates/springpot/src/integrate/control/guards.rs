@@ -1,12 +1,13 @@
 //! Where a branch is left, and onto which one.
 
-use super::ControlRun;
 use super::eye::Eye;
 use super::mode::{Bound, Guard, Slew};
 use super::term::Integrand;
+use super::{ControlRun, LawRun};
 use crate::collocation::{RADAU_NODES, STAGES, lagrange_row};
 use crate::control::Aim;
 use crate::integrate::error::RunError;
+use crate::integrate::system::System;
 use crate::integrate::zero::{cubic, first_zero};
 
 /// Where a step is first looked at that starts where a branch begins.
@@ -229,7 +230,7 @@ impl ControlRun {
     ///
     /// # Errors
     /// [`RunError::ControlChatter`] where branches are left again and again at one time.
-    pub(in crate::integrate) fn change(&mut self, is_end: bool, end: f64) -> Result<(), RunError> {
+    pub(in crate::integrate) fn change(&mut self, system: &System, is_end: bool, end: f64) -> Result<(), RunError> {
         let (theta, node) = if is_end { (1.0, STAGES) } else { (0.0, 0) };
         let changes = std::mem::take(&mut self.changes);
         let Some(&last) = changes.last() else { return Ok(()) };
@@ -249,7 +250,8 @@ impl ControlRun {
         if count <= MOST_CHANGES {
             return Ok(());
         }
-        Err(RunError::ControlChatter { t, what: self.named(last), count, span })
+        let (what, signal) = self.named(last, system);
+        Err(RunError::ControlChatter { t, what, signal, count, span })
     }
 
     /// Goes onto the branch behind a guard; `drift` is dτ/dt of the wanted force before, where it is known.
@@ -398,11 +400,11 @@ impl ControlRun {
         }
     }
 
-    /// What a guard belongs to, for messages.
-    fn named(&self, guard: Guard) -> String {
-        match guard {
-            Guard::Branch { law, .. } => format!("the expression \"{}\"", self.laws[law].law.expression()),
-            _ => "the controller".to_owned(),
-        }
+    /// What a guard belongs to, for messages, and the column of what an expression says.
+    fn named(&self, guard: Guard, system: &System) -> (String, Option<String>) {
+        let Guard::Branch { law, .. } = guard else { return ("the controller".to_owned(), None) };
+        let LawRun { law, target, .. } = &self.laws[law];
+        let column = target.column(system);
+        (format!("the expression \"{}\" of {column}", law.expression()), Some(column))
     }
 }

@@ -86,6 +86,19 @@ enum Target {
     Input(usize, usize),
 }
 
+impl Target {
+    /// The column that tells it.
+    fn column(self, system: &System) -> String {
+        match self {
+            Self::Torque(k) => format!("tau.{}", system.model.v_labels()[k].name),
+            Self::Input(e, i) => {
+                let element = &system.elements[e];
+                format!("{}.{}", element.name, element.entry.inputs[i].name)
+            }
+        }
+    }
+}
+
 /// A joint that a controller drives.
 #[derive(Debug, Clone)]
 struct JointRun {

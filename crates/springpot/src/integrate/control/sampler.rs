@@ -1,7 +1,7 @@
 //! Sampled laws: when they are due, what they say, and when it acts.
 
-use super::ControlRun;
 use super::eye::Eye;
+use super::{ControlRun, Target};
 use crate::control::{Aim, At, Control, Feedback, Sampling, Scratch, Sense};
 use crate::integrate::context::Held;
 use crate::integrate::error::RunError;
@@ -293,11 +293,10 @@ impl Sampler {
 /// What a law says, as a column is called.
 fn named(control: &Control, what: What, system: &System) -> String {
     match what {
-        What::Torque(i) => format!("tau.{}", system.model.v_labels()[control.torques[i].velocity].name),
+        What::Torque(i) => Target::Torque(control.torques[i].velocity).column(system),
         What::Input(i) => {
             let own = &control.inputs[i];
-            let element = &system.elements[own.element];
-            format!("{}.{}", element.name, element.entry.inputs[own.input].name)
+            Target::Input(own.element, own.input).column(system)
         }
         What::Controller => "the force of the controller".to_owned(),
     }

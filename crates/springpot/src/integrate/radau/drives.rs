@@ -10,7 +10,11 @@ use crate::signal::Signal;
 
 /// The actuator force on velocity `k` at t.
 pub(super) fn force_at(cx: Context, k: usize, signal: &Signal, t: f64) -> Result<f64, RunError> {
-    let value = cx.force(k, signal, t);
+    finite(cx, k, t, cx.force(k, signal, t))
+}
+
+/// The force `value` on velocity `k` at t.
+pub(super) fn finite(cx: Context, k: usize, t: f64, value: f64) -> Result<f64, RunError> {
     if value.is_finite() {
         return Ok(value);
     }

@@ -161,8 +161,11 @@ impl Stepper for Radau {
         let step = match self.settle(cx, recorder, target)? {
             Settled::Shorter(size) => return Ok(Trial::Rejected { size }),
             Settled::AtStart => {
-                self.stop_sliding(recorder.settings.end)?;
-                recorder.change_branches(false)?;
+                // What expressions alone change is counted with them.
+                if self.step.stick.changes() || !recorder.control.as_ref().is_some_and(|control| control.changes()) {
+                    self.stop_sliding(recorder.settings.end)?;
+                }
+                recorder.change_branches(cx, false)?;
                 return Ok(Trial::Changes);
             }
             Settled::At(step) => step,

@@ -86,7 +86,7 @@ impl Radau {
     /// Brings to rest what stops at the origin.
     ///
     /// # Errors
-    /// [`RunError::Chatter`].
+    /// [`RunError::Chatter`]; [`RunError::NoConvergence`] where nothing rubs.
     pub(super) fn stop_sliding(&mut self, end: f64) -> Result<(), RunError> {
         let span = CHATTER * end;
         let step = &mut self.step;
@@ -96,7 +96,11 @@ impl Radau {
         }
         let Some(count) = step.stick.count_change(t, span) else { return Ok(()) };
         let last = step.stick.stopping.first().copied();
-        let last = last.or_else(|| step.stick.rubbing().next().map(|(k, _)| k)).unwrap_or(0);
-        Err(RunError::Chatter { t, joint: step.model.v_labels()[last].name.clone(), count, span })
+        let last = last.or_else(|| step.stick.rubbing().next().map(|(k, _)| k));
+        let joint = step.model.v_labels()[last.unwrap_or(0)].name.clone();
+        Err(match last {
+            Some(_) => RunError::Chatter { t, joint, count, span },
+            None => RunError::NoConvergence { t, h: span, joint },
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! The first evaluation and the first step.
 
-use super::drives::{force_at, take_path};
+use super::drives::{finite, force_at, take_path};
 use super::scale::jump_travel;
 use super::sizes::Tolerance;
 use super::step::{Origin, RadauStep};
@@ -183,7 +183,7 @@ fn balance(
             for (k, signal) in model.v_range(j).zip(signals) {
                 drives[k] = force_at(cx, k, signal, t)?;
                 if let Some(control) = control.as_deref().filter(|_| !cx.holds_force(k)) {
-                    drives[k] += control.torque(0)[k];
+                    drives[k] = finite(cx, k, t, drives[k] + control.torque(0)[k])?;
                 }
                 residual[k] -= drives[k];
             }

@@ -141,9 +141,9 @@ impl Recorder {
     ///
     /// # Errors
     /// [`RunError::ControlChatter`].
-    pub(super) fn change_branches(&mut self, is_end: bool) -> Result<(), RunError> {
+    pub(super) fn change_branches(&mut self, cx: Context, is_end: bool) -> Result<(), RunError> {
         let end = self.settings.end;
-        self.control.as_mut().map_or(Ok(()), |control| control.change(is_end, end))
+        self.control.as_mut().map_or(Ok(()), |control| control.change(cx.system, is_end, end))
     }
 
     /// Begins the laws at the first evaluation, `evaluations[0]`, their memories without kernels.
@@ -212,7 +212,7 @@ impl Recorder {
     /// # Errors
     /// [`RunError::ControlChatter`]; where the reference of a controller cannot be followed.
     pub(super) fn commit(&mut self, cx: Context) -> Result<(), RunError> {
-        self.change_branches(true)?;
+        self.change_branches(cx, true)?;
         if let Some(control) = &mut self.control {
             let ends = [0, STAGES].map(|k| &self.evaluations[k]).map(|end| (end.t, &end.q[..], &end.v[..]));
             control.commit(cx.system, ends)?;
@@ -253,7 +253,7 @@ impl Recorder {
     /// Goes on from the far side of a kink, `right`, and records what jumps there.
     ///
     /// # Errors
-    /// [`RunError::Rule`] where a temperature jumps that stretches an element.
+    /// [`RunError::Heat`] where a temperature jumps that stretches an element.
     pub(super) fn jump(&mut self, cx: Context, right: Evaluation) -> Result<(), RunError> {
         for (e, element) in cx.system.elements.iter().enumerate().filter(|(_, element)| element.law.stretched_by().is_some()) {
             let [before, after] =

@@ -135,7 +135,7 @@ impl Leaf for BoucWen {
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
-        self.alpha_h.check(inputs, "z")
+        self.alpha_h.check(inputs, "the coefficient of z")
     }
 }
 

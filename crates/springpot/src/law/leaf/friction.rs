@@ -84,7 +84,7 @@ impl Leaf for Friction {
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
-        self.force.check(inputs, "tanh(x'/v0)")
+        self.force.check(inputs, "the coefficient of tanh(x'/v0)")
     }
 }
 

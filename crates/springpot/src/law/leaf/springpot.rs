@@ -60,7 +60,7 @@ impl Coefficient {
         self.constant == 0.0 && (self.slope == 0.0 || self.input.is_none())
     }
 
-    /// Whether it is 0 or more under the inputs, as the coefficient of `what`.
+    /// Whether it is 0 or more under the inputs; `what` is what messages call it.
     ///
     /// # Errors
     /// [`RuleError`] with its rule and its parameter.
@@ -69,7 +69,7 @@ impl Coefficient {
         if c >= 0.0 {
             return Ok(());
         }
-        let rule = format!("{} is broken: the coefficient of {what} is {c}", self.rule);
+        let rule = format!("{} is broken: {what} is {c}", self.rule);
         Err(RuleError { rule, parameter: self.parameter.clone() })
     }
 
@@ -259,7 +259,7 @@ impl Leaf for Springpot {
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
-        self.coefficient.check(inputs, "D^alpha x")
+        self.coefficient.check(inputs, "the coefficient of D^alpha x")
     }
 }
 

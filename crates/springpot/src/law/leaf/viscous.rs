@@ -62,6 +62,6 @@ impl Leaf for Viscous {
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
-        self.viscosity.check(inputs, "x'")
+        self.viscosity.check(inputs, "the coefficient of x'")
     }
 }

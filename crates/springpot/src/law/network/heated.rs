@@ -540,7 +540,8 @@ impl Heated {
     pub(super) fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
         let temperature = self.seen(inputs);
         if let Some(shift) = self.heat.shift.filter(|_| self.heat.thermal.is_none()) {
-            shift.check(temperature.value)?;
+            let needs = |broken: RuleError| RuleError { rule: format!("its shift needs {}", broken.rule), ..broken };
+            shift.check(temperature.value).map_err(needs)?;
         }
         let mut own = Vec::new();
         self.hand_on(inputs, temperature, 1.0, &mut own);
