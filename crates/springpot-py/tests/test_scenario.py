@@ -114,6 +114,12 @@ def test_doctests(name: str) -> None:
     assert found.attempted > 0 and found.failed == 0
 
 
+def test_the_lines_of_the_readme(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    found = doctest.testfile(str(PACKAGE / "README.md"), module_relative=False)
+    assert found.attempted > 10 and found.failed == 0
+
+
 def test_everything_has_a_docstring() -> None:
     for name in sp.__all__:
         thing = getattr(sp, name)
