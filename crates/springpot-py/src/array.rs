@@ -76,6 +76,10 @@ impl Rows {
         // SAFETY: the row and its numbers lie within the shape of the array, which NumPy keeps within its memory.
         unsafe {
             let start = self.data.byte_offset(to_row * row as isize);
+            if to_next == size_of::<f64>() as isize {
+                std::ptr::copy_nonoverlapping(start.cast::<u8>(), into.as_mut_ptr().cast::<u8>(), size_of_val(into));
+                return;
+            }
             for (k, number) in into.iter_mut().enumerate() {
                 *number = start.byte_offset(to_next * k as isize).read_unaligned();
             }
