@@ -17,7 +17,7 @@ from scipy import linalg
 import springpot as sp
 
 # The error of one step, in units of the largest stroke so far; steps add up to far below 1e-5.
-TOLERANCE = 1e-10
+TOLERANCE = 1e-9
 
 
 @dataclass

@@ -76,6 +76,10 @@ impl Rows {
         // SAFETY: the row and its numbers lie within the shape of the array, which NumPy keeps within its memory.
         unsafe {
             let start = self.data.byte_offset(to_row * row as isize);
+            if to_next == size_of::<f64>() as isize {
+                std::ptr::copy_nonoverlapping(start.cast::<u8>(), into.as_mut_ptr().cast::<u8>(), size_of_val(into));
+                return;
+            }
             for (k, number) in into.iter_mut().enumerate() {
                 *number = start.byte_offset(to_next * k as isize).read_unaligned();
             }
@@ -110,6 +114,9 @@ pub(crate) fn written(shape: &[usize]) -> String {
     }
 }
 
+/// Numbers for which there is room without asking.
+const MOST: f64 = 1e7;
+
 /// Where results go: `count` rows of `width` numbers, one after the other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sink {
@@ -135,7 +142,9 @@ impl Sink {
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Self, Bound<'py, PyArrayDyn<f64>>)> {
         let array = match out {
-            None => PyArrayDyn::zeros(py, shape, false),
+            None if shape.iter().map(|n| *n as f64).product::<f64>() < MOST => PyArrayDyn::zeros(py, shape, false),
+            // NumPy says itself where there is no room.
+            None => py.import("numpy")?.call_method1("zeros", (shape.to_vec(),))?.cast_into::<PyArrayDyn<f64>>()?,
             Some(out) => taken(out, shape)?,
         };
         let count = shape.first().copied().unwrap_or(1);

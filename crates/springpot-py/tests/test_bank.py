@@ -162,7 +162,7 @@ def test_bad_arguments() -> None:
         with pytest.raises(ValueError, match=r"strokes has shape"):
             bank.begin(strokes)
     bank.begin([0.0])
-    for h in (0.0, -1.0, math.nan, math.inf):
+    for h in (0.0, -1.0, math.nan, math.inf, 1e-300):
         with pytest.raises(ValueError, match="h positive"):
             bank.evaluate(0, h, [[0, 0, 0]])
     with pytest.raises(ValueError, match=r"strokes has shape \(3,\); it must have shape \(1, 3\)"):

@@ -211,6 +211,10 @@ def test_bad_arguments(ur5: sp.Model) -> None:
         ur5.frame_jacobian("wrist", zero)
     assert np.array_equal(ur5.gravity(np.zeros(6, dtype=np.int8)), ur5.gravity(zero))
     assert np.array_equal(ur5.gravity(np.zeros(6, dtype=np.float32)), ur5.gravity(zero))
+    with pytest.raises(MemoryError):
+        ur5.gravity(np.broadcast_to(zero, (2**52, 6)))
+    with pytest.raises(MemoryError):
+        ur5.random(0, 2**60)
     base, _ = robot("anymal_b_ff")
     with pytest.raises(sp.ModelError, match="one degree of freedom"):
         base.christoffel(base.neutral())

@@ -114,6 +114,12 @@ def test_doctests(name: str) -> None:
     assert found.attempted > 0 and found.failed == 0
 
 
+def test_the_lines_of_the_readme(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    found = doctest.testfile(str(PACKAGE / "README.md"), module_relative=False)
+    assert found.attempted > 10 and found.failed == 0
+
+
 def test_everything_has_a_docstring() -> None:
     for name in sp.__all__:
         thing = getattr(sp, name)
@@ -162,7 +168,7 @@ def test_one_mass_without_mass_forces(alpha: float) -> None:
     found = one_mass.solve(2.0, 3.0, alpha, 0.0, 0.0, 0.2, 0.7, times)
     for t in times:
         exact = 0.2 + 0.7 * t * sp.fractional.mittag_leffler(-1.5 * t ** (2 - alpha), 2 - alpha, 2.0)
-        assert found[t] == pytest.approx(exact, abs=1e-7)
+        assert found[t] == pytest.approx(exact, abs=1e-6)
     assert one_mass.main(["1"]) == 2 and one_mass.main(["0", "1", "0.5", "1", "1", "0", "0", "1"]) == 2
     assert one_mass.main(["1", "1", "1.5", "1", "1", "0", "0", "1"]) == 2
     free = one_mass.solve(2.0, 0.0, 0.5, 0.0, 3.0, 0.1, 0.2, [2.0])

@@ -6,6 +6,9 @@ use springpot::fractional::{Form, KernelError};
 use springpot::law::{Course, Entry, InputValue, Network, Start};
 use std::sync::Arc;
 
+/// Shorter steps, s, have lags that are no numbers.
+const SHORTEST: f64 = 1e-200;
+
 /// How all steps are taken.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Settings {
@@ -127,7 +130,7 @@ impl Core {
         inputs: Vec<f64>,
     ) -> Result<(), BankError> {
         self.begun.as_ref().ok_or(BankError::NotBegun)?;
-        if !(t.is_finite() && h.is_finite() && h > 0.0) {
+        if !(t.is_finite() && h.is_finite() && h >= SHORTEST) {
             return Err(BankError::Step(t, h));
         }
         let s = self.settings.nodes.count();

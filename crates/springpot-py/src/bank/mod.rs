@@ -8,7 +8,7 @@ use crate::array::{Rows, numbers, written};
 use crate::error::{guarded, run_error_at, value_error};
 use crate::law::{described, flat};
 use crate::quantity::number;
-use numpy::{PyArray1, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use springpot::collocation::Nodes;
 use springpot::elements::MemoryRange;
@@ -65,6 +65,9 @@ pub(crate) struct PyBank {
     /// `element.input` and its unit, element by element.
     inputs: Vec<(String, String)>,
 }
+
+/// Forces and their two tangents.
+type Answer<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>);
 
 impl PyBank {
     fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Core>> {
@@ -281,7 +284,7 @@ impl PyBank {
         strokes: &Bound<'py, PyAny>,
         rates: Option<&Bound<'py, PyAny>>,
         inputs: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>)> {
+    ) -> PyResult<Answer<'py>> {
         let strokes = self.matrix(strokes, "strokes")?;
         let rates = rates.map(|rates| self.matrix(rates, "rates")).transpose()?;
         self.with(py, |core| {
@@ -291,7 +294,7 @@ impl PyBank {
             let forces = PyArray1::from_vec(py, core.forces()).reshape([n, s])?.into_any();
             let slopes = core.slopes(rates.is_none());
             let [by_stroke, by_rate] = slopes.map(|slopes| PyArray1::from_vec(py, slopes).reshape([n, s, s]));
-            Ok((forces, by_stroke?, by_rate?))
+            Ok((forces, by_stroke?.into_any(), by_rate?.into_any()))
         })
     }
 

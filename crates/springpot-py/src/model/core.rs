@@ -1,7 +1,7 @@
 //! The engine's model, and what its algorithms work in.
 
 use springpot::dynamics::{AbaDerivatives, Kinematics, RneaDerivatives, Workspace};
-use springpot::model::Model;
+use springpot::model::{JointKind, Model};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Scratch kept for later calls, at most.
@@ -9,8 +9,10 @@ const KEPT: usize = 64;
 
 /// A model that many threads ask at once.
 #[derive(Debug)]
+#[expect(clippy::vec_box, reason = "scratch is large, and goes to and fro in every call")]
 pub(crate) struct Core {
     pub(crate) model: Arc<Model>,
+    pub(crate) is_free_of_quaternions: bool,
     free: Mutex<Vec<Box<Scratch>>>,
 }
 
@@ -29,7 +31,8 @@ pub(crate) struct Scratch {
 
 impl Core {
     pub(crate) fn new(model: Arc<Model>) -> Self {
-        Self { model, free: Mutex::default() }
+        let is_free_of_quaternions = (0..model.joint_count()).all(|j| model.joint_kind(j) != JointKind::Floating);
+        Self { model, is_free_of_quaternions, free: Mutex::default() }
     }
 
     /// What somebody gave back, or new.

@@ -5,6 +5,7 @@ use super::batch::Symbol::{Q, V};
 use super::batch::each;
 use crate::error::{model_error, type_error};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use springpot::dynamics::{frame_jacobian_into, frame_jacobian_rate_into, pair_into};
 use springpot::model::{Anchor, Site};
@@ -33,8 +34,10 @@ impl PyModel {
     fn random<'py>(&self, py: Python<'py>, seed: u64, count: Option<usize>) -> PyResult<Any<'py>> {
         let model = &self.core.model;
         let Some(count) = count else { return Ok(PyArray1::from_vec(py, model.random(seed)).into_any()) };
-        let all = (0..count as u64).flat_map(|k| model.random(seed.wrapping_add(k)));
-        let flat = PyArray1::from_vec(py, all.collect());
+        let (mut all, wanted) = (Vec::new(), count.saturating_mul(model.nq()));
+        all.try_reserve_exact(wanted).map_err(|_| PyMemoryError::new_err(format!("no room for {wanted} numbers")))?;
+        (0..count as u64).for_each(|k| all.extend(model.random(seed.wrapping_add(k))));
+        let flat = PyArray1::from_vec(py, all);
         let matrix: Bound<'py, PyArray2<f64>> = flat.reshape([count, model.nq()])?;
         Ok(matrix.into_any())
     }

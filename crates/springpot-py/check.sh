@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Installs the package into a virtual environment of its own and runs all that must hold of it: tests with doctests and types, examples.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+skip() {
+    echo "springpot-py: skipped, $1"
+    exit 0
+}
+
+python=
+for candidate in "${PYTHON:-python3}" python3.14 python3.13 python3.12 python3.11 python3.10; do
+    if "$candidate" -c 'import sys, venv; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
+        python=$candidate
+        break
+    fi
+done
+[ -n "$python" ] || skip "no Python 3.10 or later is here"
+
+target=${CARGO_TARGET_DIR:-../../target}
+mkdir -p "$target"
+venv=$(cd "$target" && pwd)/springpot-py
+[ -x "$venv/bin/python" ] || "$python" -m venv "$venv" 2>/dev/null || skip "$python makes no virtual environments (python3-venv)"
+# The build backend calls maturin by its name.
+export PATH="$venv/bin:$PATH"
+pip() { "$venv/bin/python" -m pip --disable-pip-version-check --quiet "$@"; }
+
+# The tools come from PyPI once; what is already there needs no network.
+if ! "$venv/bin/python" -c 'import maturin, mypy, numpy, pytest, scipy' 2>/dev/null; then
+    pip install --timeout 10 --retries 1 'maturin>=1.9,<2' 'mypy>=1.11' 'numpy>=1.26' 'pytest>=8' 'scipy>=1.11' 2>/dev/null ||
+        skip "PyPI is out of reach, and NumPy, SciPy, maturin, pytest and mypy are not all in $venv"
+fi
+if [ -n "${WHEEL:-}" ]; then
+    pip install --force-reinstall --no-deps "$WHEEL"
+else
+    pip install --no-build-isolation --force-reinstall --no-deps .
+fi
+
+# Not from here: what was installed is what is tested.
+cd tests
+"$venv/bin/python" -m pytest --quiet -p no:cacheprovider .
+"$venv/bin/python" ../examples/one_mass.py 2 50 0.5 50 -19.62 0 0 0.5 1 2
+"$venv/bin/springpot" --version
+echo "springpot-py: all checks passed"
