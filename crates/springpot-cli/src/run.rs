@@ -136,8 +136,7 @@ fn to_go_on(out: &Path) -> String {
 fn execute(jobs: usize, quiet: bool, mut prepared: Prepared) -> Result<Finished, Stopped> {
     let done = Progress::default();
     let (wanted, end) = (prepared.rows_wanted(), prepared.planned.plan.settings.end);
-    let outcome =
-        progress::show_while(wanted, end, &done, quiet, || prepared.sweep(jobs, signals::stop(), &done))?;
+    let outcome = progress::show_while(wanted, end, &done, quiet, || prepared.sweep(jobs, signals::stop(), &done))?;
     Ok(prepared.finish(outcome, &done, &mut diagnostic::warn)?)
 }
 

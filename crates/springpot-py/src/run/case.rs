@@ -42,7 +42,11 @@ impl Case {
     /// The column number `k`, behind those of swept parameters.
     fn column(&self, k: usize) -> PyResult<Column> {
         let count = self.0.columns().map_or(0, <[Vec<f64>]>::len);
-        if k < count { Ok(Column { of: self.0.clone(), k }) } else { Err(value_error(format!("column {k} of {count}"))) }
+        if k < count {
+            Ok(Column { of: self.0.clone(), k })
+        } else {
+            Err(value_error(format!("column {k} of {count}")))
+        }
     }
 
     /// Why it failed, and what can be done; `None` where it did not.

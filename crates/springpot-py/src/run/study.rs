@@ -8,7 +8,9 @@ use crate::scenario::{CATALOG, asked};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 use springpot::integrate::Stop;
-use springpot_run::sweep::{CheckpointError, Outcome, Parcel, Progress, Shards, Source, Status, SweepError, Unfinished};
+use springpot_run::sweep::{
+    CheckpointError, Outcome, Parcel, Progress, Shards, Source, Status, SweepError, Unfinished,
+};
 use springpot_run::table::Format;
 use springpot_run::table::disk::Disk;
 use springpot_run::{Asked, BeginError, NewRun, Planned, Prepared, Surroundings, Warning, labels};
@@ -39,11 +41,7 @@ impl Study {
     /// `sweeps`: texts `PATH=v1,v2,…`.
     #[new]
     #[pyo3(signature = (scenario, set = None, sweeps = Vec::new()))]
-    fn new(
-        scenario: &Bound<'_, PyAny>,
-        set: Option<&Bound<'_, PyAny>>,
-        sweeps: Vec<String>,
-    ) -> PyResult<Self> {
+    fn new(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>, sweeps: Vec<String>) -> PyResult<Self> {
         let py = scenario.py();
         guarded(py, || Self::of(py, Asked { sweeps, ..asked(scenario, set)? }))
     }
@@ -191,9 +189,7 @@ impl Study {
         let kept = Arc::new(Mutex::new(vec![None; self.planned.cases.len()]));
         let raised = Arc::new(Mutex::new(None));
         let source: Box<dyn Source> = match from {
-            From::Here => {
-                Box::new(Keeping { planned: self.planned.clone(), stop: stop.clone(), kept: kept.clone() })
-            }
+            From::Here => Box::new(Keeping { planned: self.planned.clone(), stop: stop.clone(), kept: kept.clone() }),
             From::Cases(cases) => {
                 let mut known = vec![None; self.planned.cases.len()];
                 for case in cases {
@@ -219,7 +215,14 @@ impl Study {
             }
             None => {
                 let checkpoint_every = journal.then_some(f64::INFINITY);
-                let new = NewRun { asked: self.asked.clone(), out: Some(out), format, figures, checkpoint_every, shard: None };
+                let new = NewRun {
+                    asked: self.asked.clone(),
+                    out: Some(out),
+                    format,
+                    figures,
+                    checkpoint_every,
+                    shard: None,
+                };
                 Prepared::begin(new, with, &mut warn).map_err(|error| begin_error(py, error))?
             }
         };
@@ -227,10 +230,12 @@ impl Study {
         prepared.source = Some(source);
         let wanted = prepared.rows_wanted();
         let look = |_: Python<'_>| tell(progress, &seen, wanted);
-        let swept = guarded(py, || watched(py, &stop, look, || {
-            let outcome = prepared.sweep(jobs, &stop, &seen);
-            (prepared, outcome)
-        }));
+        let swept = guarded(py, || {
+            watched(py, &stop, look, || {
+                let outcome = prepared.sweep(jobs, &stop, &seen);
+                (prepared, outcome)
+            })
+        });
         if let Some(error) = raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
             return Err(error);
         }
@@ -240,9 +245,8 @@ impl Study {
             SweepError::Output(error) => error.into(),
         })?;
         let mut warn = |warning: Warning| warnings.push((warning.message, warning.help));
-        let finished = py
-            .detach(|| prepared.finish(outcome, &seen, &mut warn))
-            .map_err(|error| springpot_error(py, error))?;
+        let finished =
+            py.detach(|| prepared.finish(outcome, &seen, &mut warn)).map_err(|error| springpot_error(py, error))?;
         let told = PyDict::new(py);
         told.set_item("status", status(&finished.outcome))?;
         told.set_item("folder", finished.folder.path())?;
@@ -270,7 +274,11 @@ impl Study {
 
     fn checked(&self, index: usize) -> PyResult<usize> {
         let count = self.planned.cases.len();
-        if index < count { Ok(index) } else { Err(pyo3::exceptions::PyIndexError::new_err(format!("case {index} of {count}"))) }
+        if index < count {
+            Ok(index)
+        } else {
+            Err(pyo3::exceptions::PyIndexError::new_err(format!("case {index} of {count}")))
+        }
     }
 
     /// Runs cases on threads; `None` where they were interrupted.
@@ -304,7 +312,10 @@ impl Study {
         warn: &mut dyn FnMut(Warning),
     ) -> PyResult<Option<(Prepared, Vec<Parcel>)>> {
         let none = |error: &CheckpointError| {
-            matches!(error, CheckpointError::Missing(_) | CheckpointError::Finished(_) | CheckpointError::Settled { .. })
+            matches!(
+                error,
+                CheckpointError::Missing(_) | CheckpointError::Finished(_) | CheckpointError::Settled { .. }
+            )
         };
         match Unfinished::read(out, with.disk.clone(), with.holder) {
             Ok(unfinished) if !is_same(&unfinished.origin().asked, &self.asked) => {

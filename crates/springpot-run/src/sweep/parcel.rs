@@ -36,6 +36,9 @@ enum ParcelRows {
     Columns(Vec<Vec<f64>>),
 }
 
+/// Takes text of rows, and values kept for figures.
+type TakeRows<'a> = &'a mut dyn FnMut(&[u8], &[f64]) -> io::Result<()>;
+
 /// Where cases are found that have come to their end elsewhere.
 pub trait Source: Send + Sync {
     /// Case `index`; `None` where it is to be run here. Each case is asked for once, in order where one job runs.
@@ -194,7 +197,7 @@ impl Parcel {
         &self,
         lead: &str,
         width: usize,
-        take: &mut dyn FnMut(&[u8], &[f64]) -> io::Result<()>,
+        take: TakeRows<'_>,
     ) -> io::Result<()> {
         let columns = match &self.rows {
             ParcelRows::Text(text) => return take(text, &self.kept),

@@ -54,7 +54,8 @@ impl System {
 
     /// Refuses laws that are sampled more often than the run may take steps.
     fn check_samples(&self, settings: &Settings) -> Result<(), RunError> {
-        let laws = self.control.laws().map(|(law, sampling)| (format!("the feedback \"{}\"", law.expression()), sampling));
+        let laws =
+            self.control.laws().map(|(law, sampling)| (format!("the feedback \"{}\"", law.expression()), sampling));
         let controller = self.control.controller.as_ref().map(|own| ("the controller".to_owned(), own.sampling));
         let limit = settings.step_limit(0);
         for (what, sampling) in laws.chain(controller) {

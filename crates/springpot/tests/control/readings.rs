@@ -13,9 +13,7 @@ fn slide(element: &str, rest: &str) -> String {
 }
 
 fn element(law: &str, parameters: &str, more: &str) -> String {
-    format!(
-        "[[element]]\nname = \"e\"\njoint = \"q\"\nlaw = \"{law}\"\nparameters = {{ {parameters} }}\n{more}\n"
-    )
+    format!("[[element]]\nname = \"e\"\njoint = \"q\"\nlaw = \"{law}\"\nparameters = {{ {parameters} }}\n{more}\n")
 }
 
 /// F = k x_s + c x_s' with x_s = x − 2 mm/K·20 K/m·x = 0.96 x: the temperature follows from the stroke, and how fast it changes from its rate.

@@ -64,10 +64,7 @@ impl RadauStep {
             let rounding = 4.0 * f64::EPSILON * place.abs();
             let allowed = (tolerance.of(speed) + noise).max(f64::MIN_POSITIVE);
             self.noisy = self.noisy.max(noise / allowed);
-            self.allowed.push([
-                allowed,
-                (tolerance.of(travel) + rounding + h * noise).max(f64::MIN_POSITIVE),
-            ]);
+            self.allowed.push([allowed, (tolerance.of(travel) + rounding + h * noise).max(f64::MIN_POSITIVE)]);
         }
     }
 

@@ -255,7 +255,9 @@ impl Recorder {
     /// # Errors
     /// [`RunError::Heat`] where a temperature jumps that stretches an element.
     pub(super) fn jump(&mut self, cx: Context, right: Evaluation) -> Result<(), RunError> {
-        for (e, element) in cx.system.elements.iter().enumerate().filter(|(_, element)| element.law.stretched_by().is_some()) {
+        for (e, element) in
+            cx.system.elements.iter().enumerate().filter(|(_, element)| element.law.stretched_by().is_some())
+        {
             let [before, after] =
                 [&self.evaluations[0], &right].map(|of| element.law.temperature(&of.elements[e].inputs));
             if (after - before).abs() > SAME_TEMPERATURE * before {

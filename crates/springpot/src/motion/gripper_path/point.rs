@@ -10,14 +10,7 @@ use crate::signal::Signal;
 pub struct GripperPoint(pub [Signal; 3]);
 
 impl Source for GripperPoint {
-    fn at(
-        &self,
-        _: &Model,
-        t: f64,
-        q: &mut [f64],
-        v: &mut [f64],
-        a: &mut [f64],
-    ) -> Result<Option<Wanted>, PathError> {
+    fn at(&self, _: &Model, t: f64, q: &mut [f64], v: &mut [f64], a: &mut [f64]) -> Result<Option<Wanted>, PathError> {
         [q, v, a].into_iter().for_each(|values| values.fill(0.0));
         let jets = self.0.each_ref().map(|signal| signal.at(t));
         Ok(Some(Wanted { position: jets.map(|jet| jet.value), velocity: jets.map(|jet| jet.first) }))
