@@ -39,6 +39,12 @@ RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 step "tests"
 cargo test --workspace --quiet
 
+step "engines in C and FMUs"
+crates/springpot-capi/check.sh
+
+step "Python"
+crates/springpot-py/check.sh
+
 step "scenarios"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT

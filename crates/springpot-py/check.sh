@@ -26,9 +26,10 @@ export PATH="$venv/bin:$PATH"
 pip() { "$venv/bin/python" -m pip --disable-pip-version-check --quiet "$@"; }
 
 # The tools come from PyPI once; what is already there needs no network.
-if ! "$venv/bin/python" -c 'import maturin, mypy, numpy, pytest, scipy' 2>/dev/null; then
-    pip install --timeout 10 --retries 1 'maturin>=1.9,<2' 'mypy>=1.11' 'numpy>=1.26' 'pytest>=8' 'scipy>=1.11' 2>/dev/null ||
-        skip "PyPI is out of reach, and NumPy, SciPy, maturin, pytest and mypy are not all in $venv"
+if ! "$venv/bin/python" -c 'import distributed, matplotlib, maturin, mypy, numpy, pandas, polars, pytest, scipy' 2>/dev/null; then
+    pip install --timeout 10 --retries 1 'distributed>=2024.1' 'matplotlib>=3.8' 'maturin>=1.9,<2' 'mypy>=1.11' 'numpy>=1.26' 'pandas>=2' \
+        'polars>=1' 'pytest>=8' 'scipy>=1.11' 2>/dev/null ||
+        skip "PyPI is out of reach, and what the tests need is not all in $venv"
 fi
 if [ -n "${WHEEL:-}" ]; then
     pip install --force-reinstall --no-deps "$WHEEL"
