@@ -189,6 +189,10 @@ impl Said {
         let outcome = &self.0.outcome;
         let wall = outcome.wall.as_secs_f64();
         let residual = match outcome.energy_residual {
+            // Of a robot at rest hardly any energy is turned over.
+            Some((residual, turned_over)) if outcome.is_rounding && residual > 1e-6 * turned_over => {
+                "rounding".to_owned()
+            }
             Some((residual, turned_over)) if turned_over > 0.0 => rough(residual / turned_over),
             Some(_) => "0".to_owned(),
             None => "unknown".to_owned(),

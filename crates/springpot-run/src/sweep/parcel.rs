@@ -193,12 +193,7 @@ impl Parcel {
     }
 
     /// Hands over its rows as they stand in results.csv, and with each piece the values kept for figures that belong to it or to an earlier one.
-    pub(super) fn hand_over(
-        &self,
-        lead: &str,
-        width: usize,
-        take: TakeRows<'_>,
-    ) -> io::Result<()> {
+    pub(super) fn hand_over(&self, lead: &str, width: usize, take: TakeRows<'_>) -> io::Result<()> {
         let columns = match &self.rows {
             ParcelRows::Text(text) => return take(text, &self.kept),
             ParcelRows::Columns(columns) => columns,

@@ -107,7 +107,8 @@ impl Driver {
         let first = self.solver.stepper_mut().start(cx, &mut self.recorder, &self.agenda)?;
         cx.system.check_definite(&self.recorder.evaluations[0].q)?;
         self.recorder.open(cx, first)?;
-        (self.h, self.planned) = (self.aligned(first), first);
+        self.h = self.aligned(first);
+        self.planned = self.h;
         Ok(())
     }
 
@@ -155,7 +156,10 @@ impl Driver {
         let solver = Solver::new(cx, settings)?;
         let longest_step = solver.stepper().longest_step(cx, settings);
         let agenda = match solver.stepper().fixed_step() {
-            None => cx.system.agenda(settings, longest_step, stop)?,
+            None => {
+                cx.system.look_for_jumps_of_references(settings, stop)?;
+                cx.system.agenda(settings, longest_step, stop)?
+            }
             Some(_) => {
                 // What such steps pass over without a trace.
                 cx.system.look_for_jumps(settings, stop)?;
@@ -342,8 +346,8 @@ impl Driver {
                 Trial::Rejected { size } => {
                     self.rejected_steps += 1;
                     self.h = self.aligned(size);
-                    if self.t == 0.0 && size < MUCH_SHORTER * self.planned {
-                        // What is faster than the memories are built for has its energies as if nothing changed meanwhile.
+                    if self.t == 0.0 && size < MUCH_SHORTER * self.planned && self.recorder.has_inner_strokes(cx) {
+                        // Strokes inside a series may change faster than the memories are built for, whose energies take that for still.
                         self.recorder.begin(cx)?;
                         self.recorder.open(cx, size)?;
                         self.planned = size;

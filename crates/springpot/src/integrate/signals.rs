@@ -107,7 +107,7 @@ impl System {
     }
 
     /// The reference of a controller that follows accelerations, or has D^mu of its error, must not jump, sampled or not.
-    fn look_for_jumps_of_references(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
+    pub(super) fn look_for_jumps_of_references(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
         let Some(controlled) = &self.control.controller else { return Ok(()) };
         let derives = || controlled.law.error_terms().iter().any(|term| term.order > 0.0);
         if !controlled.law.follows_accelerations() && !derives() {

@@ -146,6 +146,11 @@ impl Recorder {
         self.control.as_mut().map_or(Ok(()), |control| control.change(cx.system, is_end, end))
     }
 
+    /// Whether an element has strokes, or other variables, of its own inside.
+    pub(super) fn has_inner_strokes(&self, cx: Context) -> bool {
+        cx.system.elements.iter().any(|element| element.law.hidden_errors() == usize::MAX)
+    }
+
     /// Begins the laws at the first evaluation, `evaluations[0]`, their memories without kernels.
     pub(super) fn begin(&mut self, cx: Context) -> Result<(), RunError> {
         for (e, element) in cx.system.elements.iter().enumerate().filter(|(e, _)| self.grid[*e].is_none()) {
