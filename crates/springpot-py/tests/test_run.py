@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import springpot as sp
-from springpot.__main__ import main
+from springpot._springpot import command_line
 
 SCENARIOS = Path(__file__).parents[3] / "scenarios"
 
@@ -48,6 +48,11 @@ y = ["pad.force"]
 """
 
 GRID = {"element.pad.u": [0, 1, 2], "element.pad.alpha": [0.3, 0.6]}
+
+
+def main(arguments):
+    """The command in process; its exit code."""
+    return command_line(["springpot", *arguments])
 
 
 def files(folder):
@@ -109,7 +114,7 @@ def test_shipped_scenarios_are_those_of_the_command_to_the_last_bit(scenario, tm
                 read = np.array([float(cell) if cell else np.nan for cell in cells])
                 assert np.array_equal(read, values, equal_nan=True), name
             else:
-                assert list(values) == list(cells)
+                assert all(float(cell) == value if isinstance(value, float) else cell == value for value, cell in zip(values, cells))
 
 
 @pytest.mark.parametrize("format", ["csv", "parquet", "npz"])
@@ -173,7 +178,7 @@ def test_progress_is_told_and_its_exceptions_come_through(capsys):
         sp.run(SLIDE, progress=fail)
 
 
-ENDLESS = {"time.end": 1e6, "time.output_step": 1.0}
+ENDLESS = {"time.end": 1e4, "time.output_step": 0.01, "solver.max_steps": 10**9}
 
 
 def test_ctrl_c_ends_a_long_run():
