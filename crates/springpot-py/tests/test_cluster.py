@@ -98,17 +98,20 @@ def test_a_sweep_goes_on_where_its_client_broke(tmp_path):
         sp.sweep(SLIDE, sweep=other, client=Failing(()), out=tmp_path / "other", resume=True)
 
 
-def test_ctrl_c_ends_a_sweep_of_workers():
+def test_ctrl_c_ends_a_sweep_of_workers(tmp_path):
     class Never:
         def submit(self, work, payload, indices):
             return concurrent.futures.Future()
 
-    for words in [{}, {"out": "never"}]:
+    for words in [{}, {"out": tmp_path / "never"}]:
         timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
         timer.start()
         begun = time.monotonic()
-        with pytest.raises(KeyboardInterrupt):
-            sp.sweep(SLIDE, sweep=GRID, client=Never(), **words)
+        try:
+            with pytest.raises(KeyboardInterrupt):
+                sp.sweep(SLIDE, sweep=GRID, client=Never(), **words)
+        finally:
+            timer.cancel()
         assert time.monotonic() - begun < 5
 
 

@@ -7,6 +7,7 @@ import importlib
 import json
 import os
 import pickle
+import re
 import subprocess
 import sys
 import tomllib
@@ -19,6 +20,7 @@ from conftest import ARM, PACKAGE, ROOT, oracle
 
 import springpot as sp
 from springpot._scenario import described
+from springpot._tables import Metrics, Rows
 from springpot._toml import dumps
 
 
@@ -105,7 +107,8 @@ def test_command_line(tmp_path: Path) -> None:
     assert refused.returncode == 2 and "nothing.toml" in refused.stderr
 
 
-MODULES = ["springpot", "springpot._springpot", "springpot._law", "springpot._toml", "springpot._scenario", "springpot.fractional", "springpot.units"]
+PRIVATE = ["_springpot", "_law", "_run", "_sweeps", "_toml", "_scenario"]
+MODULES = ["springpot", *(f"springpot.{name}" for name in [*PRIVATE, "fractional", "units"])]
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -130,11 +133,26 @@ def test_everything_has_a_docstring() -> None:
             assert not bare, (name, bare)
 
 
+def test_the_typed_script_uses_everything() -> None:
+    script = (PACKAGE / "tests" / "typed.py").read_text(encoding="utf-8")
+    names = [f"sp.{name}" for name in sp.__all__]
+    for module in ("fractional", "units"):
+        names += [f"sp.{module}.{name}" for name in getattr(sp, module).__all__]
+    for name in sp.__all__:
+        thing = getattr(sp, name)
+        if isinstance(thing, type) and not issubclass(thing, Exception):
+            names += [f".{own}" for own in vars(thing) if not own.startswith("_")]
+    for table in (Rows, Metrics):
+        names += [table.__name__, *(f".{own}" for own in vars(table) if not own.startswith("_"))]
+    assert [name for name in names if not re.search(rf"{re.escape(name)}\b", script)] == []
+
+
 def test_types(tmp_path: Path) -> None:
     pytest.importorskip("mypy")
     found = run("-m", "mypy", "--strict", "--cache-dir", str(tmp_path), str(PACKAGE / "tests" / "typed.py"))
     assert found.returncode == 0, found.stdout
-    whole = run("-m", "mypy", "--strict", "--cache-dir", str(tmp_path), str(PACKAGE / "python" / "springpot"))
+    settings = ["--config-file", str(PACKAGE / "pyproject.toml"), "--cache-dir", str(tmp_path)]
+    whole = run("-m", "mypy", "--strict", *settings, str(PACKAGE / "python" / "springpot"))
     assert whole.returncode == 0, whole.stdout
     assert run(str(PACKAGE / "tests" / "typed.py")).returncode == 0
     # What the stubs say of names and arguments is what there is; `__all__` and the types of the stubs alone are not compared.

@@ -1,55 +1,188 @@
-"""A script that uses every class, for the type checker."""
+"""A script that uses every class, method and function, for the type checker."""
+
+import concurrent.futures
+import tempfile
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import springpot as sp
+from springpot._tables import Metrics, Rows
+
+Array = NDArray[np.float64]
 
 TEXT = """
 robot.body = [{ name = "arm", joint = { name = "q1", kind = "revolute", axis = [0, 1, 0] }, mass = 1, com = [0.2, 0, 0] }]
+robot.gripper = { body = "arm", point = [0.4, 0, 0] }
 motion = { kind = "forward" }
 time = { end = "1 s", output_step = "10 ms" }
+event = [{ name = "turn", when = "v.q1" }]
+metric = [{ name = "largest", of = "q.q1", kind = "max" }]
 [[element]]
 name = "strut"
 from = { body = "world", point = [0, 0, -0.3] }
 to = { body = "arm", point = [0.3, 0, 0] }
 rest_length = "42 cm"
-law = "springpot"
-parameters = { c = "50 N*s^alpha/m", alpha = 0.4 }
+law = "magnetorheological"
+parameters = { E_c = 40, mu_0 = "50 N*s^alpha/m", mu = 10, alpha = 0.4 }
+inputs = { u = "1 V" }
 """
 
-model: sp.Model = sp.Model.from_scenario(TEXT)
-tau: NDArray[np.float64] = model.rnea([0.1], [0.0], [0.0])
-by_q, by_v = model.rnea_derivatives(np.zeros((3, 1)), np.zeros(1), np.zeros((3, 1)))
-names: list[str] = model.joint_names
+
+def robots() -> None:
+    model: sp.Model = sp.Model.from_scenario(TEXT, set={"robot.body.arm.mass": "1.5 kg"})
+    urdf: sp.Model = sp.Model.from_urdf(Path(__file__).parents[3] / "testdata" / "multibody" / "ur5.urdf", gravity=[0, 0, -1.62])
+    words: list[str] = [model.name, *model.joint_names, *model.joint_kinds, *model.q_names, *model.v_names, *urdf.warnings]
+    frames: list[str] = [*model.body_names, *model.body_parents, *model.frame_names, model.gripper_body or "", *words]
+    counts: tuple[int, int] = (model.nq, model.nv)
+    facts: list[Array] = [model.gravity_vector, model.masses, model.inertias, model.damping, model.friction]
+    limits: list[Array] = [model.lower_limits, model.upper_limits, model.velocity_limits, model.effort_limits]
+    mass: float = model.mass
+    q, v = model.normalise(model.neutral()), np.zeros((3, 1))
+    tau: Array = model.rnea([0.1], [0.0], [0.0])
+    model.nonlinear_effects(q, v, out=np.empty((3, 1)))
+    a: Array = model.aba(q, v, v)
+    square: list[Array] = [model.crba(q), model.mass_inverse(q), model.coriolis(q, v), model.christoffel(q)]
+    by_q, by_v = model.rnea_derivatives(v, [0.0], v)
+    model.aba_derivatives(v, [0.0], v, out=(by_q, by_v))
+    force: Array = model.gravity(model.random(seed=1, count=3))
+    points: list[Array] = [model.com(q), model.com_jacobian(q), model.integrate(q, v), model.difference(q, q)]
+    energy: float = model.kinetic_energy(q, [1.0]) + model.potential_energy(q)
+    rotation, place = model.frame_placement("arm", q)
+    jacobian: Array = model.frame_jacobian("arm", q) + model.frame_jacobian_rate("arm", q, [1.0])
+    length, gradient = model.pair_length(("world", [0, 0, -0.3]), ("arm", (0.3, 0, 0)), q)
+    print(frames, counts, facts, limits, mass, tau, a, square, force, points, energy, rotation, place, jacobian, length, gradient)
 
 
-def controller(t: float, q: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-    return -10 * q - v
+def simulations() -> None:
+    def controller(t: float, q: Array, v: Array) -> Array:
+        return -10 * q - v
+
+    def voltage(t: float, q: Array, v: Array) -> float:
+        return 1.0 if v[0] > 0 else 0.0
+
+    simulation: sp.Simulation = sp.Simulation(
+        TEXT, controller=controller, inputs={"strut.u": (voltage, "20 ms")}, sample="10 ms", set={"time.end": 0.5}
+    )
+    sp.Simulation(TEXT, inputs={"strut.u": "2 V"}, motions={"q1": lambda t: 0.1 * t}, motion_step=0.1)
+    while simulation.t < 0.1 and simulation.step():
+        pass
+    simulation.step_to("200 ms")
+    snapshot: sp.Snapshot = simulation.interpolate(0.5 * (simulation.t_before + simulation.t))
+    snapshot = simulation.snapshot()
+    force: float = snapshot["strut.force"]
+    unit: str = snapshot.units["strut.force"]
+    known: dict[str, float] = {**dict(snapshot.items()), **dict(zip(snapshot.keys(), snapshot.values()))}
+    nothing: float | None = snapshot.get("strut.nothing")
+    vectors: list[Array] = [snapshot.q, snapshot.v, snapshot.a, simulation.q, simulation.v]
+    state: sp.SimulationState = simulation.state()
+    simulation.set_torque("q1", "2 N*m")
+    simulation.set_torques([0.0])
+    simulation.set_input("strut", "u", None)
+    simulation.set_state(sp.SimulationState.from_bytes(state.to_bytes()))
+    times: list[float] = [simulation.end, snapshot.t, state.t]
+    words: list[str] = [*simulation.columns, *simulation.units, *simulation.element_names, simulation.model.name]
+    steps: int = simulation.report["steps"]
+    print(force, unit, known, nothing, vectors, times, words, steps)
 
 
-simulation: sp.Simulation = sp.Simulation(TEXT, controller=controller, sample="10 ms", set={"time.end": 0.5})
-simulation.step_to(0.2)
-snapshot: sp.Snapshot = simulation.snapshot()
-force: float = snapshot["strut.force"]
-unit: str = snapshot.units["strut.force"]
-state: sp.SimulationState = simulation.state()
-simulation.set_state(state)
+def materials() -> None:
+    law: sp.Law = sp.law("springpot", c="50 N*s^alpha/m", alpha=0.4)
+    mount: sp.Law = sp.network("series(spring(k), springpot(c, a))", k=3.0, c=4.0, a=0.5)
+    modulus: NDArray[np.complex128] = law.modulus([1.0, 2.0])
+    relaxed: Array = mount.relaxation([0.1, 1.0])
+    words: list[str] = [law.name, law.equation, law.source, law.derivative, *mount.leaves, *mount.inputs, *law.units]
+    again: sp.Law = sp.Law(law.description)
+    linear: bool = again.is_linear and law.parameters == again.parameters
+    equations: list[str] = [row["equation"] for row in sp.laws()]
+    found, deviation = sp.datasheet([("stiffness", "5 kN/m", 0.0)])
+    fitted, spread, sigmas = sp.fit([1.0, 2.0, 3.0], law.modulus([1.0, 2.0, 3.0]), law="springpot")
 
-law: sp.Law = sp.law("springpot", c="50 N*s^alpha/m", alpha=0.4)
-modulus: NDArray[np.complex128] = law.modulus([1.0, 2.0])
-series: sp.Prony = sp.prony(law, (1e-3, "10 s"))
-found, deviation = sp.datasheet([("stiffness", "5 kN/m", 0.0)])
-bank: sp.Bank = sp.Bank([law, {"law": "spring", "parameters": {"k": 3.0}}])
-bank.begin([0.0, 0.0])
-forces, by_stroke, by_rate = bank.evaluate(0.0, 0.1, np.zeros((2, 3)))
-bank.commit()
-half: NDArray[np.float64] = sp.fractional.derivative([0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], np.zeros(8), 0.5)
-values, errors = sp.fractional.derivative(np.linspace(0, 1, 20), np.zeros(20), 0.5, with_error=True)
-kelvin: float = sp.units.parse("25 degC", "K")
-try:
-    sp.Simulation("a = 1")
-except sp.ScenarioError as error:
-    place: tuple[str | None, int | None, int | None] = (error.path, error.line, error.column)
-except (sp.RunError, sp.ModelError, sp.SpringpotError):
-    raise
+    series: sp.Prony = sp.prony(sp.law("fractional-kelvin-voigt", k=3, c=4, alpha=0.5), (1e-3, "10 s"))
+    bounds: tuple[float, float, float, int] = (series.equilibrium, series.error, series.rtol, len(series))
+    terms: list[Array] = [series.moduli, series.times, series.relaxation([1.0])]
+    answer: NDArray[np.complex128] = series.modulus(1.0)
+    text: str = series.csv() + series.abaqus() + series.ansys("elastic")
+
+    bank: sp.Bank = sp.Bank([law, {"law": "spring", "parameters": {"k": 3.0}}], nodes="radau", step="1 ms", horizon=10.0)
+    bank.begin([0.0, 0.0])
+    forces, by_stroke, by_rate = bank.evaluate(0.0, 0.1, np.zeros((2, 3)))
+    bank.commit()
+    bank.restart()
+    bank.set_state(bank.state())
+    energies: list[Array] = [bank.stored, bank.dissipated, bank.supplied, bank.nodes, bank.matrix_of_nodes]
+    more: tuple[list[str], list[str], float, int] = (bank.names, bank.inputs, bank.t, bank.modes)
+    print(modulus, relaxed, words, linear, equations, found, deviation, fitted, spread, sigmas, bounds, terms, answer, text)
+    print(forces, by_stroke, by_rate, energies, more)
+
+
+def calculus() -> None:
+    half: Array = sp.fractional.derivative([0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], np.zeros(8), 0.5)
+    values, errors = sp.fractional.derivative(np.linspace(0, 1, 20), np.zeros(20), 0.5, with_error=True)
+    relaxed: float = sp.fractional.mittag_leffler(-1.0, 0.5)
+    kelvin: float = sp.units.parse("25 degC", "K")
+    degrees: Array = sp.units.convert(np.array([0.1, 0.2]), "rad", "deg")
+    print(half, values, errors, relaxed, kelvin, degrees, sp.units.convert(kelvin, "K", "degC"), sp.__version__)
+
+
+def runs(folder: Path) -> None:
+    told: list[float] = []
+    run: sp.Run = sp.run(TEXT, set={"element.strut.u": 2}, progress=told.append, jobs=1)
+    force: Array = run["strut.force"]
+    with concurrent.futures.ThreadPoolExecutor(2) as client:
+        grid: sp.Run = sp.sweep(TEXT, sweep={"element.strut.alpha": [0.3, 0.6]}, client=client, out=folder / "grid", chunk=1)
+    case: sp.Case = grid.case(1)
+    column: Array = case["strut.force"]
+    called: tuple[int, dict[str, float | str], dict[str, str]] = (case.index, case.parameters, case.units)
+    failed: sp.RunError | None = case.error
+    said: tuple[dict[str, Any], list[str]] = (case.report, case.limits)
+    words: list[str] = [grid.title or "", *grid.parameters, *grid.columns, *grid.units, *grid.meanings]
+    failures: dict[int, sp.RunError] = grid.failures
+    first: sp.Case = grid.cases[0]
+    metrics: Metrics = grid.metrics
+    events: Rows = run.events
+    summary: Sequence[dict[str, Any]] = grid.summary
+    row: dict[str, Any] = metrics[0]
+    some: Sequence[dict[str, Any]] = events[:2]
+    largest: float = run.metrics["largest"]
+    table: dict[str, NDArray[Any]] = grid.table()
+    files: list[str] = run.save(folder / "run", format="npz", figures=False)
+    print(told, force, column, called, failed, said, words, failures, first, summary, row, some, largest, table, files)
+    if find_spec("pandas"):
+        print(run.to_pandas().shape, events.to_pandas().shape)
+    if find_spec("polars"):
+        print(run.to_polars().shape)
+    if find_spec("matplotlib"):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        print(grid.plot(["strut.force", "strut.stroke"], cases=[0]).get_title())
+
+
+def mistakes() -> None:
+    try:
+        sp.Simulation("a = 1")
+    except sp.ScenarioError as error:
+        place: tuple[str | None, int | None, int | None] = (error.path, error.line, error.column)
+        print(place, error.help, error.refusals)
+    try:
+        sp.Model.from_urdf("nothing.urdf")
+    except sp.ModelError as error:
+        print(error)
+    except sp.RunError as error:
+        print(error.t)
+    except sp.SpringpotError:
+        raise
+
+
+robots()
+simulations()
+materials()
+calculus()
+with tempfile.TemporaryDirectory() as scratch:
+    runs(Path(scratch))
+mistakes()

@@ -115,7 +115,7 @@ class Gathering:
 def _workers(client: Client) -> int:
     threads = getattr(client, "nthreads", None)
     if callable(threads):
-        return max(1, sum(threads().values()))
+        return max(1, int(sum(threads().values())))
     known = getattr(client, "_max_workers", None)
     return known if isinstance(known, int) and known > 0 else os.cpu_count() or 1
 

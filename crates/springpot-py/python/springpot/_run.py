@@ -210,10 +210,10 @@ class Run:
         table: dict[str, npt.NDArray[Any]] = {}
         for k, parameter in enumerate(self.parameters):
             values = [self._study.values(case.index)[k] for case in self._cases]
-            # Numbers and texts side by side stay what they are.
-            texts = any(isinstance(value, str) for value in values)
-            column = np.asarray(values, dtype=object if texts else np.float64)
-            table[parameter] = np.repeat(column, [case._case.rows for case in self._cases])
+            if any(isinstance(value, str) for value in values):
+                # One type for a column: numbers beside texts are the texts that they are in results.csv.
+                values = [value if isinstance(value, str) else repr(value).removesuffix(".0") for value in values]
+            table[parameter] = np.repeat(np.asarray(values), [case._case.rows for case in self._cases])
         for column in self.columns:
             parts = [case[column] for case in self._cases]
             table[column] = parts[0] if len(parts) == 1 else np.concatenate(parts)

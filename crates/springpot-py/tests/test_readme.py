@@ -1,0 +1,28 @@
+"""The lines of Python in the README of the repository give the numbers that it prints."""
+
+from __future__ import annotations
+
+import doctest
+import re
+
+import pytest
+from conftest import ROOT
+
+README = ROOT / "README.md"
+
+
+def test_the_lines_of_the_readme_of_the_repository(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Paths in it count from the repository's root.
+    monkeypatch.chdir(ROOT)
+    found = doctest.testfile(str(README), module_relative=False)
+    assert found.attempted >= 8 and found.failed == 0
+
+
+def test_the_readme_says_how_to_install_and_where_more_is() -> None:
+    section = README.read_text(encoding="utf-8").split("\n## In Python\n")[1].split("\n## ")[0]
+    assert "pip install ./crates/springpot-py" in section
+    links = re.findall(r"\]\(([^)#]+)\)", section)
+    assert "crates/springpot-py/README.md" in links
+    assert [link for link in links if not (ROOT / link).exists()] == []
+    # What is not in a block of Python is not tested.
+    assert section.count(">>>") == sum(block.count(">>>") for block in re.findall(r"```pycon\n(.*?)```", section, re.DOTALL))
