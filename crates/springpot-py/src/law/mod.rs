@@ -209,11 +209,12 @@ impl PyLaw {
         })
     }
 
-    /// F at t > 0, s, after a unit step of the stroke: in the shape of ``t``, N/m. For linear laws without dashpots.
+    /// F at t > 0, s, after a unit step of the stroke: in the shape of ``t``, N/m. For linear laws of springs and springpots.
     fn relaxation<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let tangent = self.tangent()?;
         if !tangent.is_smooth() {
-            return Err(value_error("dashpots answer a step of the stroke with an impulse: the law has no relaxation"));
+            let why = "the relaxation is worked out for springs and springpots alone, and the law holds a dashpot";
+            return Err(value_error(why));
         }
         if let Tangent::Leaf(term, _) = &tangent
             && term.order == 0.0
