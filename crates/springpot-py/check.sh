@@ -31,6 +31,10 @@ if ! "$venv/bin/python" -c 'import distributed, matplotlib, maturin, mypy, numpy
         'polars>=1' 'pytest>=8' 'scipy>=1.11' 2>/dev/null ||
         skip "PyPI is out of reach, and what the tests need is not all in $venv"
 fi
+# Other engines are extras: where they cannot be had, their tests are skipped.
+if ! "$venv/bin/python" -c 'import mujoco, pinocchio' 2>/dev/null; then
+    pip install --timeout 10 --retries 1 'mujoco>=3.2' 'pin>=3.9' 2>/dev/null || echo "springpot-py: MuJoCo or Pinocchio cannot be had, their tests are skipped"
+fi
 if [ -n "${WHEEL:-}" ]; then
     pip install --force-reinstall --no-deps "$WHEEL"
 else

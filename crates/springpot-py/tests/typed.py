@@ -1,6 +1,7 @@
 """A script that uses every class, method and function, for the type checker."""
 
 import concurrent.futures
+import importlib
 import tempfile
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -11,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import springpot as sp
+import springpot.mujoco
+import springpot.pinocchio
 from springpot._tables import Metrics, Rows
 
 Array = NDArray[np.float64]
@@ -120,6 +123,51 @@ def materials() -> None:
     print(forces, by_stroke, by_rate, energies, more)
 
 
+MJCF = """
+<mujoco><worldbody><site name="a"/><body pos="1 0 0"><joint type="slide"/><geom size=".1"/><site name="b"/></body></worldbody></mujoco>
+"""
+
+
+def engines() -> None:
+    law: sp.Law = sp.law("magnetorheological", E_c=40, mu_0=50, mu=10, alpha=0.4)
+    if find_spec("mujoco"):
+        mujoco: Any = importlib.import_module("mujoco")
+        model = mujoco.MjModel.from_xml_string(MJCF)
+        data = mujoco.MjData(model)
+        strut: dict[str, Any] = {"from": "a", "to": "b", "rest_length": "start", "law": law, "inputs": {"u": "1 V"}}
+        with springpot.mujoco.Elements(model, data, [strut], horizon="10 s") as elements:
+            mujoco.mj_step(model, data)
+            kept: springpot.mujoco.State = elements.state()
+            elements.set_input(elements.names[0], "u", lambda t: 1.0 + t)
+            elements.set_state(kept)
+            geometry: list[Array] = [elements.rest_lengths, elements.lengths, elements.strokes, elements.rates]
+            energies: list[Array] = [elements.forces, elements.stored, elements.dissipated, elements.supplied]
+            row: dict[str, float] = elements["0"]
+            facts: tuple[float, float | None, bool, int] = (elements.t, elements.begun_at, elements.enabled, len(elements))
+            twin = mujoco.MjData(model)
+            other: springpot.mujoco.Elements = elements.copy(twin)
+            other.reset()
+            other.disable()
+            other.enable()
+            print(geometry, energies, row, facts, other)
+            other.disable()
+    if find_spec("pinocchio"):
+        pinocchio: Any = importlib.import_module("pinocchio")
+        model = pinocchio.Model()
+        still = pinocchio.SE3.Identity()
+        joint = model.addJoint(0, pinocchio.JointModelPZ(), still, "q")
+        model.addFrame(pinocchio.Frame("tip", joint, still, pinocchio.FrameType.OP_FRAME))
+        end = {"frame": "tip", "point": [0.1, 0.0, 0.0]}
+        ties = springpot.pinocchio.Elements(model, [{"from": "universe", "to": end, "rest_length": 0.1, "law": law, "inputs": {"u": 1.0}}])
+        ties.begin([0.2])
+        generalized, by_q, by_v = ties.evaluate(0.0, 0.01, [0.21], [1.0])
+        ties.commit()
+        ties.set_input("0", "u", 2.0)
+        ties.set_state(ties.state())
+        arrays: list[Array] = [generalized, by_q, by_v, ties.lengths, ties.rest_lengths, ties.forces]
+        print(arrays, ties.names, ties.bank, len(ties))
+
+
 def calculus() -> None:
     half: Array = sp.fractional.derivative([0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], np.zeros(8), 0.5)
     values, errors = sp.fractional.derivative(np.linspace(0, 1, 20), np.zeros(20), 0.5, with_error=True)
@@ -182,6 +230,7 @@ def mistakes() -> None:
 robots()
 simulations()
 materials()
+engines()
 calculus()
 with tempfile.TemporaryDirectory() as scratch:
     runs(Path(scratch))
