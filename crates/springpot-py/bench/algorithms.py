@@ -1,8 +1,10 @@
 """Rigid-body algorithms called from Python: Springpot, Pinocchio and MuJoCo in turn, medians of one run.
 
-``python bench/algorithms.py [URDF] [ROUNDS]``; needs ``pin`` and ``mujoco`` from PyPI. MuJoCo reads the same URDF file.
+``python bench/algorithms.py [URDF] [ROUNDS]``; needs ``pin`` and ``mujoco`` from PyPI. MuJoCo reads the same URDF file. The engine's own batch is
+timed in turn with ours where ``cargo build --release -p springpot --example batch`` has been called.
 """
 
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -75,6 +77,19 @@ def main(urdf=ROOT / "testdata/multibody/ur5.urdf", rounds=41):
     for name, seconds in median_of(batch, max(5, rounds // 4), 1).items():
         count = 1000 if "loop" in name else 100_000
         print(f"| rnea of {count} states, {name}, each | {1e6 * seconds / count:.3f} |")
+    beside_rust(urdf, batch["springpot"])
+
+
+def beside_rust(urdf, batch):
+    """Medians of 15 batches of 10⁵ states, Python's and Rust's in turn."""
+    example = ROOT / "target/release/examples/batch"
+    if not example.exists():
+        print("the engine's own batch is not built")
+        return
+    for _ in range(5):
+        own = median_of({"": batch}, 15, 1)[""]
+        rust = subprocess.run([example, urdf], capture_output=True, text=True, check=True).stdout
+        print(f"batch: {1e4 * own:.0f} ns a state from Python; Rust: {rust.strip()}")
 
 
 if __name__ == "__main__":

@@ -69,21 +69,26 @@ impl Rows {
     }
 
     /// Copies row `row` (of one row: that one).
-    #[inline]
     pub(crate) fn read(&self, row: usize, into: &mut [f64]) {
+        let _ = self.read_finite(row, into);
+    }
+
+    /// Copies a row as [`Rows::read`], and says whether its numbers are finite.
+    #[inline]
+    #[must_use]
+    pub(crate) fn read_finite(&self, row: usize, into: &mut [f64]) -> bool {
         assert!(self.count.is_none_or(|count| row < count) && into.len() == self.width);
         let [to_row, to_next] = self.strides;
+        let mut is_finite = true;
         // SAFETY: the row and its numbers lie within the shape of the array, which NumPy keeps within its memory.
         unsafe {
             let start = self.data.byte_offset(to_row * row as isize);
-            if to_next == size_of::<f64>() as isize {
-                std::ptr::copy_nonoverlapping(start.cast::<u8>(), into.as_mut_ptr().cast::<u8>(), size_of_val(into));
-                return;
-            }
             for (k, number) in into.iter_mut().enumerate() {
                 *number = start.byte_offset(to_next * k as isize).read_unaligned();
+                is_finite &= number.is_finite();
             }
         }
+        is_finite
     }
 
     /// Whether `out` lies in the same memory, in rows that are not the very same.

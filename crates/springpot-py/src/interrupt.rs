@@ -13,23 +13,33 @@ pub(crate) const PATIENCE: Duration = Duration::from_millis(30);
 /// and the exception comes once it has.
 pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Stop) -> T + Send) -> PyResult<T> {
     let stop = Stop::new(false);
+    watched(py, &stop, |_| Ok(()), || work(&stop))
+}
+
+/// Does `work` on a thread of its own, without the GIL; now and then `look` is called with it. What `look` or a signal raises sets `stop`, and comes
+/// once the work has ended.
+pub(crate) fn watched<T: Send>(
+    py: Python<'_>,
+    stop: &Stop,
+    mut look: impl FnMut(Python<'_>) -> PyResult<()>,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
     std::thread::scope(|scope| {
         let (sender, mut receiver) = channel();
-        let stopped = &stop;
-        let thread = scope.spawn(move || _ = sender.send(work(stopped)));
+        let thread = scope.spawn(move || _ = sender.send(work()));
         let mut raised = None;
         let done = loop {
             let waiting = &mut receiver;
-            let waited = py.detach(move || waiting.recv_timeout(PATIENCE));
-            match waited {
+            match py.detach(move || waiting.recv_timeout(PATIENCE)) {
                 Ok(done) => break Some(done),
                 Err(RecvTimeoutError::Disconnected) => break None,
-                Err(RecvTimeoutError::Timeout) => {
-                    if let Err(error) = py.check_signals() {
-                        stop.store(true, Ordering::Relaxed);
-                        raised = raised.or(Some(error));
-                    }
-                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if raised.is_none()
+                && let Err(error) = py.check_signals().and_then(|()| look(py))
+            {
+                stop.store(true, Ordering::Relaxed);
+                raised = Some(error);
             }
         };
         if let Err(panic) = py.detach(|| thread.join()) {
@@ -37,7 +47,7 @@ pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Stop) ->
         }
         match (raised, done) {
             (Some(error), _) => Err(error),
-            (None, Some(done)) => Ok(done),
+            (None, Some(done)) => look(py).map(|()| done),
             (None, None) => unreachable!("the work has ended without a panic"),
         }
     })

@@ -22,14 +22,17 @@ struct Described {
     assignments: Vec<String>,
 }
 
+fn described(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Described> {
+    scenario.py().import("springpot._scenario")?.getattr("described")?.call1((scenario, set))?.extract()
+}
+
 /// Reads the scenario with the values of `set`: a dict of dotted paths.
 ///
 /// # Errors
 /// `ScenarioError`, and `TypeError` for what is no scenario.
 pub(crate) fn read(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Scenario> {
     let py = scenario.py();
-    let described = py.import("springpot._scenario")?.getattr("described")?.call1((scenario, set))?;
-    let Described { path, text, assignments } = described.extract()?;
+    let Described { path, text, assignments } = described(scenario, set)?;
     let read = match text {
         Some(text) => Scenario::parse(&text, path.display().to_string(), ""),
         None => Scenario::read(path),
@@ -47,8 +50,7 @@ pub(crate) fn read(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) 
 /// As [`read`].
 pub(crate) fn asked(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Asked> {
     let py = scenario.py();
-    let described = py.import("springpot._scenario")?.getattr("described")?.call1((scenario, set))?;
-    let Described { path, text, assignments } = described.extract()?;
+    let Described { path, text, assignments } = described(scenario, set)?;
     let asked = match text {
         Some(text) => Asked::text(text, path.display().to_string(), std::env::current_dir()?),
         None => Asked::read(&path).map_err(|refusals| scenario_error(py, &refusals))?,

@@ -66,13 +66,14 @@ impl Prepared {
         let goes_on = checkpoints.is_some() && (outcome.status == Status::Interrupted || shard.is_some());
         let is_put = match outcome.status {
             Status::Done => true,
-            Status::Failed => rows > 0,
+            // A part without a row is a part: what failed in it belongs to the whole.
+            Status::Failed => rows > 0 || shard.is_some(),
             // Less than one row is no reason to lose an earlier result.
             Status::Interrupted => rows > 0 || !folder.has_earlier(),
         };
         if !is_put {
             // What a checkpoint goes on with stays beside the earlier results.
-            if !(goes_on && outcome.status == Status::Interrupted) {
+            if !goes_on {
                 folder.discard()?;
             }
             return Ok(Finished { cases, outcome, folder, events, metrics, rows, end, is_put });

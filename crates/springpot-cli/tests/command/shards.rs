@@ -145,3 +145,27 @@ fn parts_that_do_not_belong_together_are_refused() {
     assert!(said.contains("do not belong") || said.contains("are in none of these folders"), "{said}");
     assert!(!place.path("c/results.csv").exists());
 }
+
+/// A part whose only case fails before its first row is a part all the same.
+#[test]
+fn a_case_without_a_row_is_merged_too() {
+    let place = Place::with(&GRID.replace("\"1-4*t\"]", "\"-3\"]"));
+    assert_eq!(place.springpot(&["run", "arm.toml", "--out", "whole", "-q"]).code, Some(1));
+    for (shard, out, code) in [("1/7", "part-1", 0), ("7/7", "part-7", 1)] {
+        let part = place.springpot(&["run", "arm.toml", "--shard", shard, "--out", out, "-q"]);
+        assert_eq!(part.code, Some(code), "{part:?}");
+    }
+    let mut merge =
+        vec!["merge".to_owned(), "--out".to_owned(), "merged".to_owned(), "part-1".to_owned(), "part-7".to_owned()];
+    for k in 2..=6 {
+        let out = format!("part-{k}");
+        place.done(&["run", "arm.toml", "--shard", &format!("{k}/7"), "--out", &out, "-q"]);
+        merge.push(out);
+    }
+    let merged = place.springpot(&merge.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!(merged.code, Some(1), "{merged:?}");
+    let (whole, merged) = (place.path("whole"), place.path("merged"));
+    assert_eq!(files(&merged), files(&whole));
+    assert_eq!(record(&merged), record(&whole));
+    assert_eq!(record(&whole)["cases"][6]["rows"], 0);
+}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import os
 import warnings as _warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -31,9 +31,9 @@ Sweep: TypeAlias = "Mapping[str | tuple[str, ...], Any]"
 class Case(Mapping[str, Column]):
     """One case of a run: its columns as read-only arrays ``(rows,)``, without a copy; NaN where a cell is empty."""
 
-    def __init__(self, study: Study, case: _Case) -> None:
-        self._study, self._case = study, case
-        self._names = [name for name, _, _ in study.columns[len(study.parameters) :]]
+    def __init__(self, study: Study, case: _Case, units: Mapping[str, str]) -> None:
+        # The columns of all cases are the same, and asked for once.
+        self._study, self._case, self._units = study, case, units
         self._found: dict[str, Column] = {}
 
     @property
@@ -68,22 +68,23 @@ class Case(Mapping[str, Column]):
     @property
     def units(self) -> dict[str, str]:
         """The unit of every column."""
-        return {name: unit for name, unit, _ in self._study.columns[len(self._study.parameters) :]}
+        return dict(self._units)
 
     def __getitem__(self, column: str) -> Column:
         found = self._found.get(column)
         if found is None:
-            if column not in self._names:
-                raise KeyError(_unknown(column, self._names))
-            found = np.asarray(self._case.column(self._names.index(column)))
+            names = list(self._units)
+            if column not in self._units:
+                raise KeyError(_unknown(column, names))
+            found = np.asarray(self._case.column(names.index(column)))
             self._found[column] = found
         return found
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
+        return iter(self._units)
 
     def __len__(self) -> int:
-        return len(self._names)
+        return len(self._units)
 
     def __repr__(self) -> str:
         name = self._study.name(self.index)
@@ -92,7 +93,7 @@ class Case(Mapping[str, Column]):
         return f"<Case {self.index}{of}: {self._case.rows} rows, {len(self)} columns{failed}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Case, (self._study, self._case)
+        return Case, (self._study, self._case, self._units)
 
 
 class Run:
@@ -115,7 +116,8 @@ class Run:
 
     def __init__(self, study: Study, cases: Sequence[_Case]) -> None:
         self._study = study
-        self._cases = [Case(study, case) for case in cases]
+        units = {name: unit for name, unit, _ in study.columns[len(study.parameters) :]}
+        self._cases = [Case(study, case, units) for case in cases]
 
     @property
     def title(self) -> str | None:
@@ -177,9 +179,11 @@ class Run:
     def metrics(self) -> Metrics:
         """The rows of metrics.csv: a sequence of dicts; ``run.metrics["name"]`` is the value of the only case, else an array ``(cases,)``."""
         rows: list[dict[str, Any]] = []
+        metrics = self._study.metrics
         for case in self._cases:
-            for (name, column, unit), value in zip(self._study.metrics, case._case.metrics):
-                rows.append({**case.parameters, "metric": name, "column": column, "value": value, "unit": unit})
+            swept = case.parameters
+            for (name, column, unit), value in zip(metrics, case._case.metrics):
+                rows.append({**swept, "metric": name, "column": column, "value": value, "unit": unit})
         return Metrics(rows, len(self._cases))
 
     @property
@@ -187,10 +191,11 @@ class Run:
         """The rows of events.csv: a sequence of dicts, ``run.events["t"]`` is a column."""
         names = [*self.parameters, "event", *self._study.event_columns]
         rows: list[dict[str, Any]] = []
+        kept = len(self.parameters)
         for case in self._cases:
+            swept = case.parameters
             for cells in csv.reader(case._case.events.splitlines()):
-                row: dict[str, Any] = dict(case.parameters)
-                kept = len(self.parameters)
+                row: dict[str, Any] = dict(swept)
                 row["event"] = cells[kept]
                 row.update({name: float(cell) if cell else float("nan") for name, cell in zip(names[kept + 1 :], cells[kept + 1 :])})
                 rows.append(row)
@@ -201,15 +206,17 @@ class Run:
         """The rows of summary.csv: the smallest, largest and root-mean-square value of every column of every case."""
         rows: list[dict[str, Any]] = []
         for case in self._cases:
-            for (name, unit, _), (low, high, rms) in zip(self._study.columns[len(self.parameters) :], case._case.statistics):
-                rows.append({**case.parameters, "column": name, "unit": unit, "min": low, "max": high, "rms": rms})
+            swept = case.parameters
+            for (name, unit), (low, high, rms) in zip(case._units.items(), case._case.statistics):
+                rows.append({**swept, "column": name, "unit": unit, "min": low, "max": high, "rms": rms})
         return Rows(rows)
 
     def table(self) -> dict[str, npt.NDArray[Any]]:
         """All rows of all cases by column, swept parameters first, as results.csv has them."""
         table: dict[str, npt.NDArray[Any]] = {}
+        swept = [self._study.values(case.index) for case in self._cases]
         for k, parameter in enumerate(self.parameters):
-            values = [self._study.values(case.index)[k] for case in self._cases]
+            values = [row[k] for row in swept]
             if any(isinstance(value, str) for value in values):
                 # One type for a column: numbers beside texts are the texts that they are in results.csv.
                 values = [value if isinstance(value, str) else repr(value).removesuffix(".0") for value in values]
@@ -319,6 +326,3 @@ def _unknown(column: str, names: Sequence[str]) -> str:
 
     near = difflib.get_close_matches(str(column), names, n=1)
     return f"no column {column!r}" + (f"; did you mean {near[0]!r}?" if near else "")
-
-
-Reporter: TypeAlias = "Callable[[float], object]"

@@ -39,10 +39,9 @@ impl Symbol {
         }
     }
 
+    /// Without quaternions there is nothing to look at but whether the numbers are finite.
     #[inline]
-    fn check(self, core: &Core, values: &[f64]) -> Result<(), StateError> {
-        // 0·x is 0 for finite x alone; without quaternions there is nothing else to look at.
-        let is_finite = values.iter().map(|x| 0.0 * x).sum::<f64>() == 0.0;
+    fn check(self, core: &Core, values: &[f64], is_finite: bool) -> Result<(), StateError> {
         match self {
             Self::Q(_) if is_finite && core.is_free_of_quaternions => Ok(()),
             Self::V(_) if is_finite => Ok(()),
@@ -132,8 +131,8 @@ fn state<const I: usize, const O: usize>(
     for k in 0..I {
         let width = symbols[k].width(model);
         inputs[k].resize(width, 0.0);
-        rows[k].read(row, &mut inputs[k]);
-        done = done.and_then(|()| symbols[k].check(core, &inputs[k]));
+        let is_finite = rows[k].read_finite(row, &mut inputs[k]);
+        done = done.and_then(|()| symbols[k].check(core, &inputs[k], is_finite));
     }
     if done.is_ok() {
         // SAFETY: each row is taken once, by one thread.

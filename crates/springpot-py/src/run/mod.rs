@@ -3,7 +3,6 @@
 mod case;
 mod source;
 mod study;
-mod watched;
 
 use pyo3::prelude::*;
 

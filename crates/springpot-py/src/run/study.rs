@@ -2,8 +2,8 @@
 
 use super::case::Case;
 use super::source::{Called, Keeping, Known, is_same};
-use super::watched::watched;
 use crate::error::{guarded, run_error_at, scenario_error, springpot_error, value_error};
+use crate::interrupt::watched;
 use crate::scenario::{CATALOG, asked};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
