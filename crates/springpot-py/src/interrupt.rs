@@ -13,21 +13,22 @@ pub(crate) const PATIENCE: Duration = Duration::from_millis(30);
 /// and the exception comes once it has.
 pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Stop) -> T + Send) -> PyResult<T> {
     let stop = Stop::new(false);
-    watched(py, &stop, |_| Ok(()), || work(&stop))
+    let (done, told) = watched(py, &stop, |_| Ok(()), || work(&stop));
+    told.map(|()| done)
 }
 
-/// Does `work` on a thread of its own, without the GIL; now and then `look` is called with it. What `look` or a signal raises sets `stop`, and comes
-/// once the work has ended.
+/// Does `work` on a thread of its own, without the GIL; now and then `look` is called with it. What `look` or a signal raises sets `stop`, and
+/// stands beside what the work then came to.
 pub(crate) fn watched<T: Send>(
     py: Python<'_>,
     stop: &Stop,
     mut look: impl FnMut(Python<'_>) -> PyResult<()>,
     work: impl FnOnce() -> T + Send,
-) -> PyResult<T> {
+) -> (T, PyResult<()>) {
     std::thread::scope(|scope| {
         let (sender, mut receiver) = channel();
         let thread = scope.spawn(move || _ = sender.send(work()));
-        let mut raised = None;
+        let mut told = Ok(());
         let done = loop {
             let waiting = &mut receiver;
             match py.detach(move || waiting.recv_timeout(PATIENCE)) {
@@ -35,20 +36,15 @@ pub(crate) fn watched<T: Send>(
                 Err(RecvTimeoutError::Disconnected) => break None,
                 Err(RecvTimeoutError::Timeout) => {}
             }
-            if raised.is_none()
-                && let Err(error) = py.check_signals().and_then(|()| look(py))
-            {
-                stop.store(true, Ordering::Relaxed);
-                raised = Some(error);
+            if told.is_ok() {
+                told = py.check_signals().and_then(|()| look(py));
+                stop.fetch_or(told.is_err(), Ordering::Relaxed);
             }
         };
         if let Err(panic) = py.detach(|| thread.join()) {
             std::panic::resume_unwind(panic);
         }
-        match (raised, done) {
-            (Some(error), _) => Err(error),
-            (None, Some(done)) => look(py).map(|()| done),
-            (None, None) => unreachable!("the work has ended without a panic"),
-        }
+        let done = done.expect("the work has ended without a panic");
+        (done, told.and_then(|()| look(py)))
     })
 }

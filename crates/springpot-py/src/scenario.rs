@@ -4,7 +4,6 @@ use crate::error::scenario_error;
 use pyo3::prelude::*;
 use springpot::law::Catalog;
 use springpot_run::Asked;
-use springpot_scenario::Scenario;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
@@ -22,35 +21,14 @@ struct Described {
     assignments: Vec<String>,
 }
 
-fn described(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Described> {
-    scenario.py().import("springpot._scenario")?.getattr("described")?.call1((scenario, set))?.extract()
-}
-
-/// Reads the scenario with the values of `set`: a dict of dotted paths.
+/// The scenario with the values of `set`, a dict of dotted paths; a text or a dict names files from the current folder.
 ///
 /// # Errors
 /// `ScenarioError`, and `TypeError` for what is no scenario.
-pub(crate) fn read(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Scenario> {
-    let py = scenario.py();
-    let Described { path, text, assignments } = described(scenario, set)?;
-    let read = match text {
-        Some(text) => Scenario::parse(&text, path.display().to_string(), ""),
-        None => Scenario::read(path),
-    };
-    let mut scenario = read.map_err(|refusals| scenario_error(py, &refusals))?;
-    for assignment in assignments {
-        scenario.set(&assignment).map_err(|refusals| scenario_error(py, &refusals))?;
-    }
-    Ok(scenario)
-}
-
-/// The same, to be run: a text or a dict names files from the current folder.
-///
-/// # Errors
-/// As [`read`].
 pub(crate) fn asked(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Asked> {
     let py = scenario.py();
-    let Described { path, text, assignments } = described(scenario, set)?;
+    let described = py.import("springpot._scenario")?.getattr("described")?.call1((scenario, set))?;
+    let Described { path, text, assignments } = described.extract()?;
     let asked = match text {
         Some(text) => Asked::text(text, path.display().to_string(), std::env::current_dir()?),
         None => Asked::read(&path).map_err(|refusals| scenario_error(py, &refusals))?,

@@ -1,6 +1,7 @@
 """Sweeps on workers: the same files as here, whoever dies on the way."""
 
 import concurrent.futures
+import json
 import multiprocessing
 import os
 import signal
@@ -78,7 +79,7 @@ def test_a_sweep_goes_on_where_its_client_broke(tmp_path):
     sp.run(SLIDE, sweep=MANY, out=tmp_path / "here")
     with pytest.raises(sp.RunError, match="takes no more work: out of order"):
         sp.sweep(SLIDE, sweep=MANY, client=Failing((), most=23), out=tmp_path / "there", chunk=1)
-    assert not (tmp_path / "there" / "results.csv").exists()
+    assert json.loads((tmp_path / "there/run.json").read_text())["status"] == "interrupted"
     asked = []
     whole = _cluster.work
 

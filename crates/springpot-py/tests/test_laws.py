@@ -120,6 +120,29 @@ def test_data_sheets() -> None:
     assert found.parameters["alpha"] == pytest.approx(0.35) and rms < 1e-10 and set(spread) == {"k", "c", "alpha"}
 
 
+def test_moduli_are_those_of_a_sample() -> None:
+    sample = {"area": "4 cm^2", "length": 0.01}
+    of_sample, _ = sp.datasheet([("storage", "2 MPa", "10 Hz"), ("tan_delta", "10 deg", "10 Hz")], **sample)
+    told, _ = sp.datasheet([("storage", 8e4, "10 Hz"), ("tan_delta", math.tan(math.radians(10)), "10 Hz")])
+    assert of_sample.parameters == pytest.approx(told.parameters, rel=1e-12)
+    omega = np.logspace(-1, 3, 40)
+    exact = sp.law("zener", k_e=300, k_m=900, c=20)
+    found, rms, spread = sp.fit(omega, exact.modulus(omega) / 0.04, "zener", **sample)
+    assert found.parameters == pytest.approx(exact.parameters, rel=1e-6) and rms < 1e-8 and set(spread) == {"k_e", "k_m", "c"}
+    for words, message in [
+        ({}, "area and the length"),
+        ({"area": 1.0}, "give both"),
+        ({"area": -1.0, "length": 1.0}, "must be positive"),
+        ({"area": "1 m", "length": 1.0}, "area"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            sp.datasheet([("storage", "2 MPa", "10 Hz"), ("tan_delta", 0.1, "10 Hz")], **words)
+    with pytest.raises(ValueError, match="no modulus"):
+        sp.datasheet([("storage", 2e6, "10 Hz"), ("tan_delta", 0.1, "10 Hz")], **sample)
+    with pytest.raises(ValueError, match="90 deg"):
+        sp.datasheet([("storage", 2e6, "10 Hz"), ("tan_delta", "95 deg", "10 Hz")])
+
+
 def test_units() -> None:
     assert sp.units.parse("25 degC", "K") == 298.15
     assert sp.units.convert(np.array([0.0, 100.0]), "degC", "degF").tolist() == pytest.approx([32.0, 212.0])

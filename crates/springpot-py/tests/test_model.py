@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import threading
 from typing import Any
 
@@ -244,6 +245,24 @@ def test_from_scenario() -> None:
     assert model.gravity_vector[2] == -1 and model.gripper_body == "forearm"
     rotation, position = model.frame_placement("gripper", model.neutral())
     assert np.array_equal(rotation, np.eye(3)) and position.shape == (3,)
+
+
+def test_models_are_sent_to_other_processes(tmp_path: Any) -> None:
+    file = tmp_path / "ur5.urdf"
+    file.write_bytes((ROOT / "testdata/multibody/ur5.urdf").read_bytes())
+    robot = sp.Model.from_urdf(file, floating_base=True, gravity=[0, 1, -2])
+    packed = pickle.dumps(robot)
+    # The file itself is not needed any more.
+    file.unlink()
+    scenario = ROOT / "scenarios/thermoviscoelastic_order.toml"
+    of_scenario = sp.Model.from_scenario(scenario, set={"robot.gravity": [0, 0, -1.62]})
+    simulated = sp.Simulation(scenario).model
+    for one, other in [(robot, pickle.loads(packed))] + [(m, pickle.loads(pickle.dumps(m))) for m in (of_scenario, simulated)]:
+        q, v = one.random(seed=3), np.linspace(-1, 1, one.nv)
+        assert np.array_equal(one.rnea(q, v, v), other.rnea(q, v, v))
+        assert (other.name, other.joint_names, other.frame_names) == (one.name, one.joint_names, one.frame_names)
+    with pytest.raises(ValueError, match="no model"):
+        sp.Model._from_bytes(b"nonsense")  # type: ignore[attr-defined]
 
 
 def test_threads_share_a_model(ur5: sp.Model) -> None:

@@ -1,6 +1,7 @@
 """Runs in memory and in folders: the same numbers as the command, to the bit."""
 
 import csv
+import json
 import pickle
 import signal
 import subprocess
@@ -193,6 +194,24 @@ def test_ctrl_c_ends_a_long_run():
         # A run that ended by itself must not leave a signal to the tests after it.
         timer.cancel()
     assert time.monotonic() - begun < 5
+
+
+def test_what_has_ended_is_put_before_an_exception_goes_on(tmp_path):
+    class Enough(Exception):
+        pass
+
+    def enough(share):
+        if share > 0.3:
+            raise Enough
+
+    # One case at a time: the last of them has no end.
+    steps = {"solver.max_step": [1e-3, 1e-2, 1e-6]}
+    with pytest.raises(Enough):
+        sp.run(SLIDE, set={"time.end": 90, "time.output_step": 0.1}, sweep=steps, jobs=1, out=tmp_path / "out", progress=enough)
+    assert "results.csv" in (names := {path.name for path in (tmp_path / "out").iterdir()}) and not names & {".unfinished", "results.csv.part"}
+    record = json.loads((tmp_path / "out/run.json").read_text())
+    assert record["status"] == "interrupted"
+    assert [case["status"] for case in record["cases"]][:1] == ["done"]
 
 
 def test_two_threads_run_at_once():

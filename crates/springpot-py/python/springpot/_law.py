@@ -82,36 +82,51 @@ def prony(
 
 
 def datasheet(
-    data: Iterable[tuple[str, Number, Number]], law: str | None = None
+    data: Iterable[tuple[str, Number, Number]],
+    law: str | None = None,
+    *,
+    area: Number | None = None,
+    length: Number | None = None,
 ) -> tuple[Law, float]:
     """The law that values of a data sheet determine, and the largest relative deviation from them.
 
     Args:
         data: tuples of a name (``tan_delta``, ``stiffness``, ``storage``, ``loss``, ``damping``), its value, and the frequency: rad/s, a text
-            such as ``"10 Hz"``, or 0 for a static value.
+            such as ``"10 Hz"``, or 0 for a static value. Values without a unit are N/m, N·s/m, or numbers; the loss factor may be told as the
+            angle, ``"17 deg"``.
         law: the name of the law; left out: the one of the form that such data determine.
+        area, length: the sample that moduli in Pa were measured on, m² and m: the stiffness is E·A/L.
 
     >>> import springpot as sp
     >>> rubber, deviation = sp.datasheet([("tan_delta", 0.3, "10 Hz"), ("stiffness", "5 kN/m", "10 Hz")])
     >>> rubber.name, round(rubber.parameters["alpha"], 4), deviation < 1e-12
     ('springpot', 0.1855, True)
+    >>> again, _ = sp.datasheet([("tan_delta", 0.3, "10 Hz"), ("stiffness", "0.125 MPa", "10 Hz")], area="4 cm^2", length="10 mm")
+    >>> again.parameters == rubber.parameters
+    True
     """
-    return _springpot.datasheet(list(data), law)
+    return _springpot.datasheet(list(data), law, area=area, length=length)
 
 
 def fit(
-    omega: ArrayLike, modulus: ArrayLike, law: str = "fractional-kelvin-voigt"
+    omega: ArrayLike,
+    modulus: ArrayLike,
+    law: str = "fractional-kelvin-voigt",
+    *,
+    area: Number | None = None,
+    length: Number | None = None,
 ) -> tuple[Law, float, dict[str, float | None]]:
     """A law fitted to a measured modulus over the frequency.
 
     Args:
         omega: rad/s, shape ``(N,)``.
-        modulus: K* = K' + iK'', N/m, complex, shape ``(N,)``.
-        law: its name: a spring, dashpot or springpot, or both side by side.
+        modulus: K* = K' + iK'', N/m, complex, shape ``(N,)``; with a sample E* = E' + iE'', Pa.
+        law: its name: any linear one without inputs, such as ``springpot``, ``fractional-kelvin-voigt``, ``zener``, ``fractional-maxwell``.
+        area, length: of the sample, m² and m: the stiffness is E*·A/L.
 
     Returns:
         The law, the root mean square of its relative deviations, and one standard deviation of each parameter (``None`` for one at an end of
         its range).
     """
     measured = np.asarray(modulus, dtype=np.complex128)
-    return _springpot.fit_modulus(omega, measured.real, measured.imag, law)
+    return _springpot.fit_modulus(omega, measured.real, measured.imag, law, area, length)

@@ -5,9 +5,10 @@ mod batch;
 mod core;
 mod facts;
 mod frames;
-mod read;
+pub(crate) mod origin;
 
 use self::core::Core;
+use self::origin::Origin;
 use crate::error::model_error;
 use pyo3::prelude::*;
 use springpot::model::{BodySpec, Frame, Parent};
@@ -33,6 +34,7 @@ pub(crate) struct PyModel {
     /// Its body and the point there, of a scenario that has one.
     gripper: Option<(Frame, String)>,
     warnings: Vec<String>,
+    origin: Origin,
 }
 
 impl PyModel {

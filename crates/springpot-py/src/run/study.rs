@@ -28,14 +28,6 @@ pub(crate) struct Study {
     warnings: Vec<(String, Option<String>)>,
 }
 
-/// Where the cases of a run that is written come from.
-enum From<'py> {
-    /// Run here, and kept.
-    Here,
-    Cases(Vec<Py<Case>>),
-    Callable(Bound<'py, PyAny>),
-}
-
 #[pymethods]
 impl Study {
     /// `sweeps`: texts `PATH=v1,v2,…`.
@@ -157,7 +149,10 @@ impl Study {
         let (stop, seen) = (Stop::new(false), Progress::default());
         let wanted = (indices.len() as u64).saturating_mul(self.planned.plan.settings.rows.count() as u64);
         let look = |_: Python<'_>| tell(progress, &seen, wanted);
-        let found = guarded(py, || watched(py, &stop, look, || self.run(&indices, workers(jobs), &stop, &seen)))?;
+        let found = guarded(py, || {
+            let (found, told) = watched(py, &stop, look, || self.run(&indices, workers(jobs), &stop, &seen));
+            told.map(|()| found)
+        })?;
         found.map(|cases| cases.into_iter().map(Case).collect()).ok_or_else(|| interrupted(py))
     }
 
@@ -180,28 +175,21 @@ impl Study {
     ) -> PyResult<Bound<'py, PyDict>> {
         let format = Format::named(format)
             .ok_or_else(|| value_error(format!("format {format:?}: there are \"csv\", \"parquet\" and \"npz\"")))?;
-        let from = match cases {
-            None => From::Here,
-            Some(cases) if cases.is_callable() => From::Callable(cases.clone()),
-            Some(cases) => From::Cases(cases.extract()?),
-        };
         let stop = Arc::new(Stop::new(false));
         let kept = Arc::new(Mutex::new(vec![None; self.planned.cases.len()]));
         let raised = Arc::new(Mutex::new(None));
-        let source: Box<dyn Source> = match from {
-            From::Here => Box::new(Keeping { planned: self.planned.clone(), stop: stop.clone(), kept: kept.clone() }),
-            From::Cases(cases) => {
-                let mut known = vec![None; self.planned.cases.len()];
-                for case in cases {
-                    let parcel = case.get().0.clone();
-                    let place = known.get_mut(parcel.index()).ok_or_else(|| value_error("a case of another study"))?;
-                    *place = Some(parcel);
-                }
-                Box::new(Known(known))
+        let (source, jobs): (Box<dyn Source>, usize) = match cases {
+            None => {
+                let keeping = Keeping { planned: self.planned.clone(), stop: stop.clone(), kept: kept.clone() };
+                (Box::new(keeping), workers(jobs))
             }
-            From::Callable(get) => Box::new(Called { get: get.unbind(), raised: raised.clone(), stop: stop.clone() }),
+            // One at a time: they come from elsewhere.
+            Some(get) if get.is_callable() => {
+                let called = Called { get: get.clone().unbind(), raised: raised.clone(), stop: stop.clone() };
+                (Box::new(called), 1)
+            }
+            Some(cases) => (Box::new(self.known(cases)?), workers(jobs)),
         };
-        let jobs = if matches!(cases, Some(cases) if cases.is_callable()) { 1 } else { workers(jobs) };
         let (disk, seen) = (Disk::default(), Progress::default());
         let mut warnings: Vec<(String, Option<String>)> = Vec::new();
         let with = Surroundings { catalog: &CATALOG, disk: &disk, stop: &stop, holder: "springpot in Python" };
@@ -230,23 +218,18 @@ impl Study {
         prepared.source = Some(source);
         let wanted = prepared.rows_wanted();
         let look = |_: Python<'_>| tell(progress, &seen, wanted);
-        let swept = guarded(py, || {
-            watched(py, &stop, look, || {
-                let outcome = prepared.sweep(jobs, &stop, &seen);
-                (prepared, outcome)
-            })
-        });
-        if let Some(error) = raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            return Err(error);
-        }
-        let (prepared, outcome) = swept?;
-        let outcome = outcome.map_err(|error| match error {
-            SweepError::Refused(refusals) => scenario_error(py, &refusals),
-            SweepError::Output(error) => error.into(),
-        })?;
+        let (outcome, told) = guarded(py, || Ok(watched(py, &stop, look, || prepared.sweep(jobs, &stop, &seen))))?;
+        let raised = raised.lock().unwrap_or_else(PoisonError::into_inner).take().or(told.err());
         let mut warn = |warning: Warning| warnings.push((warning.message, warning.help));
-        let finished =
-            py.detach(|| prepared.finish(outcome, &seen, &mut warn)).map_err(|error| springpot_error(py, error))?;
+        // What has ended is put in its place before an exception goes on.
+        let finished = match outcome {
+            Ok(outcome) => {
+                py.detach(|| prepared.finish(outcome, &seen, &mut warn)).map_err(|error| springpot_error(py, error))
+            }
+            Err(SweepError::Refused(refusals)) => Err(scenario_error(py, &refusals)),
+            Err(SweepError::Output(error)) => Err(error.into()),
+        };
+        let finished = raised.map_or(finished, Err)?;
         let told = PyDict::new(py);
         told.set_item("status", status(&finished.outcome))?;
         told.set_item("folder", finished.folder.path())?;
@@ -279,6 +262,17 @@ impl Study {
         } else {
             Err(pyo3::exceptions::PyIndexError::new_err(format!("case {index} of {count}")))
         }
+    }
+
+    /// Cases that were run before, in the places of their indices.
+    fn known(&self, cases: &Bound<'_, PyAny>) -> PyResult<Known> {
+        let mut known = vec![None; self.planned.cases.len()];
+        for case in cases.extract::<Vec<Py<Case>>>()? {
+            let parcel = case.get().0.clone();
+            let place = known.get_mut(parcel.index()).ok_or_else(|| value_error("a case of another study"))?;
+            *place = Some(parcel);
+        }
+        Ok(Known(known))
     }
 
     /// Runs cases on threads; `None` where they were interrupted.

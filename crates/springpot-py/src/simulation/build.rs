@@ -6,9 +6,9 @@ use super::{Inner, PySimulation, failed};
 use crate::array::numbers;
 use crate::error::{scenario_error, type_error, value_error};
 use crate::interrupt::interruptible;
-use crate::model::PyModel;
+use crate::model::{PyModel, origin::Origin};
 use crate::quantity::number;
-use crate::scenario::{CATALOG, read};
+use crate::scenario::{CATALOG, asked as scenario_asked};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -40,7 +40,8 @@ pub(super) fn build(
     set: Option<&Bound<'_, PyAny>>,
     asked: &Asked<'_, '_>,
 ) -> PyResult<PySimulation> {
-    let scenario = read(scenario, set)?.without_sweeps();
+    let origin = scenario_asked(scenario, set)?;
+    let scenario = origin.scenario().map_err(|refusals| scenario_error(py, &refusals))?.without_sweeps();
     let plan = interruptible(py, |_| scenario.cases(&CATALOG).and_then(|cases| cases.plan(0)))?;
     let plan = plan.map_err(|refusals| scenario_error(py, &refusals))?;
     let motions = motions(py, &plan, asked)?;
@@ -81,7 +82,7 @@ pub(super) fn build(
         gripper: plan.gripper,
     };
     Ok(PySimulation {
-        robot: Py::new(py, PyModel::of(py, robot)?)?,
+        robot: Py::new(py, PyModel::of(py, robot, Origin::Scenario(origin))?)?,
         columns: Arc::new(Columns::new(&system.observables())),
         v_names: model.v_labels().into_iter().map(|label| label.name).collect(),
         inner: Mutex::new(Inner { simulation, callbacks, driven, own, control }),

@@ -13,7 +13,7 @@ use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::trouble::Trouble;
 use springpot::integrate::{PassedLimit, Report};
-use std::io;
+use std::io::{self, ErrorKind};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -90,20 +90,26 @@ impl<'a> Rest<'a> {
     }
 }
 
-/// Runs case `index`, or goes on with it, or takes what an earlier run or another process has of it.
+/// Runs case `index`, or goes on with it, or takes what an earlier run or another process has of it; `None` where it was to come from elsewhere
+/// and the run was interrupted first.
 ///
 /// # Errors
 /// What keeps rows from being written; that of the case itself is in the result.
-pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>) -> io::Result<CaseResult> {
+pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>) -> io::Result<Option<CaseResult>> {
     let Options { checkpoints, source, stop, progress, .. } = sweep.options;
     if let Some(done) = checkpoints.map(|checkpoints| checkpoints.done(index)).transpose()?.flatten() {
-        return again(sweep, done, Some(sections));
+        return again(sweep, done, Some(sections)).map(Some);
     }
     let state = checkpoints.and_then(|checkpoints| checkpoints.take_state(index));
-    if state.is_none()
-        && let Some(parcel) = source.map(|source| source.case(index)).transpose()?.flatten()
-    {
-        return delivered(sweep, &parcel, sections);
+    if let (None, Some(source)) = (&state, source) {
+        match source.case(index) {
+            Ok(Some(parcel)) => return delivered(sweep, &parcel, sections).map(Some),
+            Ok(None) => {}
+            Err(error) if error.kind() == ErrorKind::Interrupted && stop.load(Ordering::Relaxed) => {
+                return sections.finish().map(|()| None);
+            }
+            Err(error) => return Err(error),
+        }
     }
     let Sections { rows, rest } = sections;
     let mut output = Output::open(sweep, index, rows, state.as_ref())?;
@@ -122,7 +128,7 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
     rest.write(&output::summary(sweep, index, &statistics), &events.lines, &ran.metrics.lines)?;
     let (curves, events) = (kept.and_then(Kept::into_curves), events.happened);
     let Ran { report, error, interrupted, no_ledger, limits, metrics } = ran;
-    Ok(CaseResult { index, report, error, interrupted, wall, no_ledger, events, limits, curves, metrics })
+    Ok(Some(CaseResult { index, report, error, interrupted, wall, no_ledger, events, limits, curves, metrics }))
 }
 
 /// Writes a case that came to its end elsewhere.

@@ -187,7 +187,7 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
                 sections.finish()?;
                 break;
             }
-            let result = case::run(&sweep, index, sections)?;
+            let Some(result) = case::run(&sweep, index, sections)? else { break };
             tally.lock().unwrap_or_else(PoisonError::into_inner).take(result);
         }
         Ok(())

@@ -44,7 +44,7 @@ pub trait Source: Send + Sync {
     /// Case `index`; `None` where it is to be run here. Each case is asked for once, in order where one job runs.
     ///
     /// # Errors
-    /// What keeps the whole run from going on.
+    /// What keeps the whole run from going on; `Interrupted` where it was told to stop before the case was there.
     fn case(&self, index: usize) -> io::Result<Option<Arc<Parcel>>>;
 
     /// Wall time that was spent elsewhere.

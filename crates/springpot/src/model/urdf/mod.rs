@@ -42,6 +42,7 @@ mod source;
 mod tree;
 mod warning;
 
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 pub use error::{Owner, UrdfError};
@@ -55,7 +56,7 @@ use super::{BodySpec, Field, JointKind, Model, ModelBuilder, ModelError, Parent}
 pub const FLOATING_BASE: &str = "floating_base";
 
 /// How a URDF file is read.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct UrdfOptions {
     /// Whether the root link hangs on a floating joint called [`FLOATING_BASE`] instead of being the world.
     pub floating_base: bool,
@@ -128,7 +129,15 @@ impl Urdf {
     /// or friction; on a moving joint, a principal moment below −1e-12 of the largest that is not accepted; the axis 0 0 0; mimic joints that
     /// follow no joint of one degree, or one another; xacro. Each names the link or joint and has its line.
     pub fn read(path: &Path, options: &UrdfOptions) -> Result<Self, UrdfError> {
-        robot::read(&source::read(path)?, Some(path), options)
+        robot::read(&Self::read_text(path)?, Some(path), options)
+    }
+
+    /// The text of a file, for [`Urdf::parse`].
+    ///
+    /// # Errors
+    /// A file that cannot be read, is too long or is no UTF-8.
+    pub fn read_text(path: &Path) -> Result<String, UrdfError> {
+        source::read(path)
     }
 
     /// As [`Urdf::read`], from text. Mesh files are looked for from `file`, and not at all without it.

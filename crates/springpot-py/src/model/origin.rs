@@ -1,0 +1,136 @@
+//! What models are made of: files, texts and dicts; a model that is sent to another process is made there again.
+
+use super::PyModel;
+use super::core::Core;
+use crate::error::{guarded, model_error, scenario_error, urdf_error, value_error};
+use crate::scenario::{CATALOG, asked};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use serde::{Deserialize, Serialize};
+use springpot::model::urdf::{Urdf, UrdfOptions};
+use springpot::spatial::Rotation;
+use springpot_run::Asked;
+use springpot_scenario::RobotPlan;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Gravity of a URDF robot, m/s²; the file says nothing of it.
+const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+
+/// All that a model is made of, but the files that a scenario names.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) enum Origin {
+    Urdf { path: PathBuf, text: String, options: UrdfOptions, gravity: [f64; 3] },
+    Scenario(Asked),
+}
+
+impl Origin {
+    fn model(self, py: Python<'_>) -> PyResult<PyModel> {
+        match &self {
+            Self::Urdf { path, text, options, gravity } => {
+                let built = Urdf::parse(text, Some(path), options).and_then(|urdf| {
+                    let model = urdf.model(*gravity)?;
+                    Ok((urdf, model))
+                });
+                let (urdf, model) = built.map_err(|error| urdf_error(py, &error))?;
+                let stem = || path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                Ok(PyModel {
+                    core: Core::new(Arc::new(model)),
+                    name: if urdf.name.is_empty() { stem() } else { urdf.name },
+                    bodies: urdf.bodies,
+                    gripper: None,
+                    warnings: urdf.warnings.iter().map(ToString::to_string).collect(),
+                    origin: self,
+                })
+            }
+            Self::Scenario(asked) => {
+                let plan = asked.scenario().and_then(|scenario| scenario.robot(&CATALOG));
+                let plan = plan.map_err(|refusals| scenario_error(py, &refusals))?;
+                PyModel::of(py, plan, self)
+            }
+        }
+    }
+}
+
+#[pymethods]
+impl PyModel {
+    /// The robot of a URDF file.
+    ///
+    /// Args:
+    ///     path: the file.
+    ///     floating_base: whether the root link floats, on a joint called ``floating_base``: seven coordinates x y z qx qy qz qw, six velocities
+    ///         vx vy vz wx wy wz in its own axes.
+    ///     ignore_mimic: whether joints that follow others have coordinates of their own.
+    ///     accept_inertia: whether inertias that no distribution of mass has are taken.
+    ///     package_path: folders that are packages or hold some.
+    ///     gravity: m/s², shape ``(3,)``; (0, 0, −9.81) where left out.
+    ///
+    /// Raises:
+    ///     ModelError: what is wrong, with the file and the line.
+    #[staticmethod]
+    #[pyo3(signature = (path, floating_base=false, *, ignore_mimic=false, accept_inertia=false, package_path=Vec::new(), gravity=None))]
+    fn from_urdf(
+        py: Python<'_>,
+        path: PathBuf,
+        floating_base: bool,
+        ignore_mimic: bool,
+        accept_inertia: bool,
+        package_path: Vec<PathBuf>,
+        gravity: Option<[f64; 3]>,
+    ) -> PyResult<Self> {
+        guarded(py, || {
+            let text = Urdf::read_text(&path).map_err(|error| urdf_error(py, &error))?;
+            let gravity = gravity.unwrap_or(STANDARD_GRAVITY);
+            let options = UrdfOptions { floating_base, ignore_mimic, accept_inertia, package_path };
+            Origin::Urdf { path, text, options, gravity }.model(py)
+        })
+    }
+
+    /// The robot of a scenario: a path, a text (with a line break or ``=``) or a dict, of which ``[robot]`` alone counts.
+    ///
+    /// Args:
+    ///     scenario: the scenario.
+    ///     set: values in place of its own, by dotted path: ``{"robot.gravity": [0, 0, -1.62]}``.
+    ///
+    /// Raises:
+    ///     ScenarioError: what is wrong, and where.
+    #[staticmethod]
+    #[pyo3(signature = (scenario, *, set=None))]
+    fn from_scenario(py: Python<'_>, scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        guarded(py, || Origin::Scenario(asked(scenario, set)?).model(py))
+    }
+
+    /// What `__reduce__` made.
+    #[staticmethod]
+    fn _from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let origin: Origin = postcard::from_bytes(bytes).map_err(|error| value_error(format!("no model: {error}")))?;
+        guarded(py, || origin.model(py))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let bytes = postcard::to_stdvec(&self.origin).map_err(|error| value_error(error.to_string()))?;
+        Ok((py.get_type::<Self>().getattr("_from_bytes")?, (PyBytes::new(py, &bytes),)))
+    }
+}
+
+impl PyModel {
+    /// The robot of a scenario.
+    pub(crate) fn of(py: Python<'_>, robot: RobotPlan, origin: Origin) -> PyResult<Self> {
+        let gripper = match &robot.gripper {
+            None => None,
+            Some(gripper) => {
+                let frame = robot.model.resolve_frame(&gripper.anchor, &Rotation::IDENTITY);
+                Some((frame.map_err(|error| model_error(py, error))?, gripper.body.clone()))
+            }
+        };
+        let urdf = robot.urdf.as_ref().map(|urdf| &urdf.robot);
+        Ok(Self {
+            core: Core::new(robot.model),
+            name: urdf.map_or_else(String::new, |urdf| urdf.name.clone()),
+            warnings: urdf.map_or_else(Vec::new, |urdf| urdf.warnings.iter().map(ToString::to_string).collect()),
+            bodies: robot.bodies,
+            gripper,
+            origin,
+        })
+    }
+}
