@@ -190,6 +190,18 @@ log-decrement, residual-vibration. Reads results.csv, .parquet and .npz; where m
 
 Exit codes: 0 done, 1 a file cannot be written, 2 the results, a metric or a column is not there.")]
     Metrics(MetricsOptions),
+    /// Write a page that shows the robot of a finished run in motion.
+    #[command(after_help = "\
+Examples:
+  springpot view results/arm
+  springpot view results/arm --case 0,4 --out soft_and_stiff.html
+
+Writes one file, view.html among the results, which any browser opens and which asks for nothing from a network: the robot moving, its elements \
+coloured by force or stored energy, the gripper's trail, events, and curves of any columns beside it; ? on the page lists its keys. Of a sweep \
+the first 12 cases are shown, or those named; of more than a million numbers, every so many rows. `run --view` writes it too.
+
+Exit codes: 0 done, 1 the file cannot be written, 2 the results or a case are not there.")]
+    View(ViewOptions),
     /// Write a scenario as an FMU, which other simulation tools drive (FMI 2.0 for Co-Simulation).
     #[command(after_help = "\
 Examples:
@@ -298,6 +310,19 @@ pub(crate) struct MetricsOptions {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ViewOptions {
+    /// Folder of the results of a run
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    /// Cases to show, counted from 0 [default: the first 12]
+    #[arg(long = "case", value_name = "K,...", value_delimiter = ',')]
+    pub(crate) cases: Vec<usize>,
+    /// File to write [default: view.html among the results]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct FmuOptions {
     /// Scenario file (TOML)
     #[arg(value_name = "SCENARIO")]
@@ -382,6 +407,9 @@ pub(crate) struct RunOptions {
     /// Write no figures
     #[arg(long)]
     pub(crate) no_figures: bool,
+    /// Write view.html too, a page that shows the robot in motion
+    #[arg(long)]
+    pub(crate) view: bool,
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     pub(crate) quiet: bool,

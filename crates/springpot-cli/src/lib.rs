@@ -52,6 +52,7 @@ mod run;
 mod signals;
 mod starts;
 mod terminal;
+mod view;
 
 use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;
@@ -149,6 +150,7 @@ fn code(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsSt
         Command::Laws(options) => laws::laws(&options, catalog),
         Command::Plot(options) => plot::plot(&options),
         Command::Metrics(options) => metrics::metrics(&options, disk),
+        Command::View(options) => view::view(&options, disk),
         Command::Fmu(options) => fmu::fmu(&options),
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),

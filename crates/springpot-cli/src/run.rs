@@ -7,7 +7,7 @@ use self::finished::Said;
 use self::prepare::{Unprepared, prepare};
 use crate::arguments::{MergeOptions, RunOptions};
 use crate::numbers::count;
-use crate::{Ending, diagnostic, failures, progress, signals, starts, terminal};
+use crate::{Ending, diagnostic, failures, progress, signals, starts, terminal, view};
 use springpot::law::Catalog;
 use springpot_run::sweep::{Progress, Status, SweepError};
 use springpot_run::table::disk::Disk;
@@ -32,16 +32,22 @@ enum Stopped {
 pub(crate) fn run(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> Ending {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = options.jobs.map_or(cores, usize::from);
-    carry_out(jobs, options.quiet, || prepare(options, catalog, disk))
+    carry_out(jobs, options.quiet, options.view.then_some(disk), || prepare(options, catalog, disk))
 }
 
 /// `springpot merge`.
 pub(crate) fn merge(options: &MergeOptions, catalog: &Catalog, disk: &Disk) -> Ending {
     // One job reads the parts in order.
-    carry_out(1, options.quiet, || prepare::merge(options, catalog, disk))
+    carry_out(1, options.quiet, None, || prepare::merge(options, catalog, disk))
 }
 
-fn carry_out(jobs: usize, quiet: bool, prepare: impl FnOnce() -> Result<Prepared, Unprepared>) -> Ending {
+/// `view`: the disk on which a page is written beside the results.
+fn carry_out(
+    jobs: usize,
+    quiet: bool,
+    view: Option<&Disk>,
+    prepare: impl FnOnce() -> Result<Prepared, Unprepared>,
+) -> Ending {
     let begun = Instant::now();
     let prepared = match prepare() {
         Ok(prepared) => prepared,
@@ -65,7 +71,7 @@ fn carry_out(jobs: usize, quiet: bool, prepare: impl FnOnce() -> Result<Prepared
     let (out, goes_on) = (prepared.folder.path().to_owned(), prepared.checkpoints.is_some());
     match execute(jobs, quiet, prepared) {
         Ok(finished) => {
-            let status = finished.outcome.status;
+            let (status, is_put) = (finished.outcome.status, finished.is_put);
             let finished = Said(finished);
             finished.warn();
             finished.complain();
@@ -74,6 +80,13 @@ fn carry_out(jobs: usize, quiet: bool, prepare: impl FnOnce() -> Result<Prepared
             }
             if !quiet {
                 terminal::print(&finished.summary(begun.elapsed()));
+            }
+            if let Some(disk) = view.filter(|_| is_put) {
+                match view::after_run(&out, disk) {
+                    Ok(page) if !quiet => terminal::print(&format!("view     {}\n", page.display())),
+                    Ok(_) => {}
+                    Err(ending) => return ending,
+                }
             }
             match status {
                 Status::Done => Ending::Done,

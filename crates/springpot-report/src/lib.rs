@@ -30,7 +30,9 @@
 
 mod chart;
 mod draw;
+pub mod page;
 mod robot;
+pub mod scene;
 
 pub use chart::{Axis, Curve, Panel, Plot, Scale};
 pub use robot::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, Link, RobotDrawing, WORLD};

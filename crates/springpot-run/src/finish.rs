@@ -3,6 +3,7 @@
 use crate::asked::Planned;
 use crate::figures;
 use crate::prepare::Prepared;
+use crate::scene;
 use crate::sweep::{self, Options, Outcome, Progress, Status, SweepError};
 use crate::table::Format;
 use crate::table::folder::{Folder, FolderError};
@@ -87,7 +88,12 @@ impl Prepared {
         // What is gone on with goes on as text.
         let written = if goes_on { Format::Csv } else { format };
         folder.convert_rows(written, layout.written(), layout.swept())?;
-        folder.put(|files| outcome.record(&cases, &plan, &layout, written, files), goes_on)?;
+        let record = |files: &[String]| {
+            let mut record = outcome.record(&cases, &plan, &layout, written, files);
+            scene::record(&mut record, &cases, (&plan, &system));
+            record
+        };
+        folder.put(record, goes_on)?;
         Ok(Finished { cases, outcome, folder, events, metrics, rows, end, is_put })
     }
 }

@@ -110,7 +110,8 @@ impl ElementMark {
 }
 
 /// What the law of an element holds.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ElementSign {
     /// A zigzag.
     #[default]

@@ -2,11 +2,10 @@
 
 use super::look::millimetres;
 use super::source::Source;
-use springpot::elements::Element;
+use crate::scene::{ground, sign_of};
 use springpot::integrate::{Pose, System};
-use springpot::law::{InputValue, Network, Point, Term};
 use springpot::model::{Anchor, Dimension, JointKind, Parent};
-use springpot_report::{ElementMark, ElementShape, ElementSign, JointMark, Link, Rendered, RobotDrawing, WORLD};
+use springpot_report::{ElementMark, ElementShape, JointMark, Link, Rendered, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan, ShapePlan};
 
 /// Most links of a sketch.
@@ -87,39 +86,6 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
     drawing.gripper = plan.gripper.as_ref().map(|gripper| pose.point(&gripper.anchor));
     drawing.ground = ground(plan, &pose);
     Ok(drawing)
-}
-
-/// What an element's law holds, as it is at t = 0.
-fn sign_of(element: &Element) -> ElementSign {
-    let mut inputs = vec![InputValue { value: 0.0, rate: 0.0 }; element.inputs.len()];
-    element.inputs_at(0.0, &mut inputs);
-    sign(&element.law, &Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs })
-}
-
-fn sign(law: &Network, at: &Point<'_>) -> ElementSign {
-    let all = |parts: &[Network]| parts.iter().map(|part| sign(part, at)).collect();
-    match law {
-        Network::Leaf(leaf) => match leaf.linearised(at) {
-            // A stop that is free at the moment is a spring all the same.
-            Term { order: 0.0, coefficient: 0.0 } if leaf.is_linear() => ElementSign::Source,
-            Term { order: 0.0, .. } => ElementSign::Spring,
-            Term { order: 1.0, .. } => ElementSign::Dashpot,
-            Term { .. } => ElementSign::Springpot,
-        },
-        Network::Parallel(parts) => ElementSign::Parallel(all(parts)),
-        Network::Series(parts) => ElementSign::Series(all(parts)),
-        Network::Heated(heated) => sign(heated.law(), &Point { inputs: &heated.inputs_of_law(at.inputs), ..*at }),
-    }
-}
-
-/// Where the robot stands; nowhere where its first body floats.
-fn ground(plan: &Plan, pose: &Pose<'_>) -> Option<[f64; 3]> {
-    let first = plan.bodies.first()?;
-    match (first.joint.kind, &plan.urdf) {
-        (JointKind::Floating, _) => None,
-        (_, Some(_)) => Some([0.0; 3]),
-        (_, None) => Some(pose.origin(Parent::Body(0))),
-    }
 }
 
 /// The centre lines of a robot. Links of a URDF that are fixed to others are frames of those and have no line.

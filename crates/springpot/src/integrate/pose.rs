@@ -4,6 +4,7 @@ use super::error::RunError;
 use super::evaluate::{Evaluation, Scratch};
 use super::system::{Motion, System};
 use crate::actuation::Drive;
+use crate::control::Aim;
 use crate::dynamics::Kinematics;
 use crate::model::{Anchor, Model, Parent};
 use crate::spatial::Vec3;
@@ -85,6 +86,27 @@ impl System {
         let at_start = matches!(self.motion, Motion::Forward(_));
         self.place(if at_start { 0.0 } else { t }, &mut state)?;
         Ok(state)
+    }
+
+    /// Where the gripper is to be at time t, m, world axes: on its path, or where the reference of a controller has it; `None` where nothing says so.
+    ///
+    /// # Errors
+    /// [`RunError::Path`] where the path or the reference cannot be followed.
+    pub fn wanted(&self, t: f64) -> Result<Option<[f64; 3]>, RunError> {
+        let (nq, nv) = (self.model.nq(), self.model.nv());
+        match (&self.motion, &self.control.controller) {
+            (Motion::Given(trajectory), _) => {
+                let wanted =
+                    trajectory.at(&self.model, t, &mut vec![0.0; nq], &mut vec![0.0; nv], &mut vec![0.0; nv])?;
+                Ok(wanted.map(|wanted| wanted.position))
+            }
+            (Motion::Forward(_), Some(controlled)) if self.gripper.is_some() => {
+                let (mut kinematics, mut aim) = (Kinematics::new(&self.model), Aim::default());
+                controlled.reference.at_into(&self.model, self.gripper.as_ref(), t, &mut kinematics, &mut aim)?;
+                Ok(Some(aim.gripper[0]))
+            }
+            (Motion::Forward(_), _) => Ok(None),
+        }
     }
 
     /// Puts what is given in advance of the motion at time t into `state`: all of it, or prescribed joints.

@@ -40,6 +40,7 @@ mod reader;
 mod robot;
 mod source;
 mod tree;
+mod visual;
 mod warning;
 
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,7 @@ use std::path::{Path, PathBuf};
 pub use error::{Owner, UrdfError};
 pub use link::Inertial;
 pub use problem::UrdfProblem;
+pub use visual::{Visual, VisualShape};
 pub use warning::{UrdfPlace, UrdfWarning, UrdfWarningKind};
 
 use super::{BodySpec, Field, JointKind, Model, ModelBuilder, ModelError, Parent};
@@ -79,6 +81,8 @@ pub struct RootLink {
     pub line: usize,
     /// Its mass and inertia, if it has some; on a fixed base they have no part in the dynamics.
     pub inertial: Option<Inertial>,
+    /// What it looks like where it does not move; of a floating base that stands in [`Urdf::visuals`].
+    pub visuals: Vec<Visual>,
 }
 
 /// Where a body stands in the file.
@@ -111,6 +115,8 @@ pub struct Urdf {
     pub bodies: Vec<BodySpec>,
     /// Where the bodies stand in the file.
     pub lines: Vec<BodyLines>,
+    /// What the bodies look like, as far as that can be read.
+    pub visuals: Vec<Vec<Visual>>,
     /// What was not used or was assumed, by kind, the weightiest first.
     pub warnings: Vec<UrdfWarning>,
 }
@@ -118,7 +124,7 @@ pub struct Urdf {
 impl Urdf {
     /// Reads a file.
     ///
-    /// `<visual>`, `<collision>` and `<material>` have no part in the dynamics. Mesh files that are not found, whatever
+    /// `<visual>`, `<collision>` and `<material>` have no part in the dynamics; shapes of `<visual>` that can be read are in [`Urdf::visuals`]. Mesh files that are not found, whatever
     /// else is not used, massless links on moving joints, and single links whose inertia breaks the triangle inequality
     /// are warnings.
     ///

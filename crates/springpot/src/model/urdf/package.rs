@@ -25,7 +25,16 @@ pub(super) struct Packages {
     /// The folders of every package asked for.
     folders: HashMap<String, Vec<PathBuf>>,
     /// What was found.
-    found: HashMap<String, bool>,
+    found: HashMap<String, Found>,
+}
+
+/// Whether a file is there.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Found {
+    At(PathBuf),
+    /// In the network, where nothing is looked up.
+    Elsewhere,
+    Nowhere,
 }
 
 impl Packages {
@@ -38,26 +47,28 @@ impl Packages {
         Self { home, places, folders: HashMap::new(), found: HashMap::new() }
     }
 
-    /// Whether the file named `name` exists. Files of the network count as found: nothing is looked up there.
-    pub(super) fn finds(&mut self, name: &str) -> bool {
-        if let Some(&found) = self.found.get(name) {
-            return found;
+    /// Where the file named `name` is.
+    pub(super) fn find(&mut self, name: &str) -> Found {
+        if let Some(found) = self.found.get(name) {
+            return found.clone();
         }
         let found = self.look_for(name);
-        self.found.insert(name.to_owned(), found);
+        self.found.insert(name.to_owned(), found.clone());
         found
     }
 
-    fn look_for(&mut self, name: &str) -> bool {
-        let Some((scheme, rest)) = name.split_once("://") else { return self.home.join(name).is_file() };
+    fn look_for(&mut self, name: &str) -> Found {
+        let file = |path: PathBuf| if path.is_file() { Found::At(path) } else { Found::Nowhere };
+        let Some((scheme, rest)) = name.split_once("://") else { return file(self.home.join(name)) };
         match scheme {
             "package" | "model" => {
                 let (package, path) = rest.split_once('/').unwrap_or((rest, ""));
                 let path = path.trim_start_matches('/');
-                self.folders_of(package).iter().any(|folder| folder.join(path).is_file())
+                let candidates = self.folders_of(package).iter().map(|folder| file(folder.join(path)));
+                candidates.into_iter().find(|found| *found != Found::Nowhere).unwrap_or(Found::Nowhere)
             }
-            "file" => self.home.join(rest).is_file(),
-            _ => true,
+            "file" => file(self.home.join(rest)),
+            _ => Found::Elsewhere,
         }
     }
 

@@ -6,11 +6,12 @@ use std::path::Path;
 use super::error::{Owner, UrdfError};
 use super::joint::JointEntry;
 use super::link::{Inertial, LinkEntry, Physical};
-use super::package::Packages;
+use super::package::{Found, Packages};
 use super::problem::{UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::source::Source;
 use super::tree::Tree;
+use super::visual::{self, Visual};
 use super::warning::UrdfWarningKind;
 use super::{BodyLines, FLOATING_BASE, RootLink, Urdf, UrdfOptions, joint, link, mimic};
 use crate::model::spec::{BodySpec, JointKind, JointSpec, Parent};
@@ -43,20 +44,22 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
     if options.floating_base {
         free_the_name(&mut reader, &mut joints)?;
     }
-    if let Some(file) = file {
-        let mut packages = Packages::of(file, &options.package_path);
+    let mut packages = file.map(|file| Packages::of(file, &options.package_path));
+    if let Some(packages) = &mut packages {
         for link in &links {
             let owner = Owner::Link(link.name.to_owned());
-            for mesh in link.meshes.iter().filter(|mesh| !packages.finds(mesh.file)) {
+            for mesh in link.meshes.iter().filter(|mesh| packages.find(mesh.file) == Found::Nowhere) {
                 reader.warnings.add(UrdfWarningKind::MeshNotFound, &owner, mesh.line, mesh.file);
             }
         }
     }
+    let materials = visual::materials(&reader, robot);
+    let looks = links.iter().map(|link| visual::read(&reader, link.node, &materials, packages.as_mut())).collect();
     let name = reader.text(robot, "name").unwrap_or_default().to_owned();
     if name.is_empty() {
         reader.warnings.add(UrdfWarningKind::NoName, &Owner::Robot, reader.line(robot), "");
     }
-    assemble(reader, name, links, joints, &tree, options)
+    assemble(reader, name, links, looks, joints, &tree, options)
 }
 
 type Entries<'a> = (Vec<LinkEntry<'a>>, Vec<JointEntry<'a>>);
@@ -154,6 +157,7 @@ fn assemble<'a>(
     mut reader: Reader<'a>,
     name: String,
     links: Vec<LinkEntry<'a>>,
+    mut looks: Vec<Vec<Visual>>,
     mut joints: Vec<JointEntry<'a>>,
     tree: &Tree,
     options: &UrdfOptions,
@@ -163,6 +167,7 @@ fn assemble<'a>(
     let root = &links[tree.root];
     let mut bodies = Vec::with_capacity(links.len());
     let mut body_lines = Vec::with_capacity(links.len());
+    let mut visuals = Vec::with_capacity(links.len());
     // Of every link that is done: the body to hang on, and whether it moves in the world.
     let mut done = vec![(Parent::World, false); links.len()];
     if floats {
@@ -170,6 +175,7 @@ fn assemble<'a>(
         let name = floating_name(&mut reader, &links, tree.root);
         bodies.push(BodySpec { name, ..body(root, Parent::World, joint) });
         body_lines.push(BodyLines { link: lines[tree.root], joint: lines[tree.root] });
+        visuals.push(std::mem::take(&mut looks[tree.root]));
         note_inertia(&mut reader, root, [true, true], options)?;
         done[tree.root] = (Parent::Body(0), true);
     } else {
@@ -183,6 +189,7 @@ fn assemble<'a>(
         note_inertia(&mut reader, link, [is_carried, moves], options)?;
         done[branch.child] = (Parent::Body(bodies.len()), moves);
         body_lines.push(BodyLines { link: lines[branch.child], joint: reader.line(joint.node) });
+        visuals.push(std::mem::take(&mut looks[branch.child]));
         let spec = std::mem::replace(&mut joint.spec, JointSpec::fixed("", [0.0; 3]));
         bodies.push(body(link, parent, spec));
     }
@@ -190,6 +197,7 @@ fn assemble<'a>(
         name: root.name.to_owned(),
         line: lines[tree.root],
         inertial: root.inertial.as_ref().map(|inertial| inertial.value),
+        visuals: std::mem::take(&mut looks[tree.root]),
     };
     let file = reader.source.file.map(Path::to_path_buf);
     let warnings = reader.warnings.finish();
@@ -201,6 +209,7 @@ fn assemble<'a>(
         accept_inertia: options.accept_inertia,
         bodies,
         lines: body_lines,
+        visuals,
         warnings,
     })
 }

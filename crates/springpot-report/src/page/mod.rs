@@ -1,0 +1,14 @@
+//! Pages that one opens: a moving picture of a run ([`View`]) and a report.
+//!
+//! A page is one file with its style, its script and its data inside; it asks for nothing from any network. What it shows as text is text: it goes into
+//! the file as JSON, or escaped.
+
+mod mesh;
+mod view;
+
+pub use view::{CaseEvent, CaseMetric, View, ViewCase, ViewColumn};
+
+/// JSON inside `<script>`: the bytes that could end it, or begin a comment, are written as escapes.
+fn in_script(json: &str) -> String {
+    json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}

@@ -1,0 +1,237 @@
+//! What is drawn of a robot: of one case of a scenario, for pages and files that outlive the run.
+
+use serde_json::{Map, Value, json};
+use springpot::elements::Element;
+use springpot::integrate::{Pose, System};
+use springpot::law::{InputValue, Network, Point, Term};
+use springpot::model::urdf::{self, VisualShape};
+use springpot::model::{Anchor, JointKind, Parent};
+use springpot_report::ElementSign;
+use springpot_report::scene::{
+    Body, Driven, Follows, Freedom, Joint, LawText, Parameter, Path, Placed, Root, Scene, SceneElement, SceneShape,
+    Shape, Spot, Visual,
+};
+use springpot_scenario::{Cases, ElementPlan, FramePlan, Plan, ShapePlan};
+
+/// Points of a path.
+const POINTS: usize = 400;
+/// Cases whose own scene is recorded.
+const MOST_SCENES: usize = 12;
+
+/// One case as it is drawn, without the wanted path.
+pub(crate) fn scene(plan: &Plan) -> Scene {
+    let robot = plan.urdf.as_ref().map(|urdf| &urdf.robot);
+    let bodies = plan.bodies.iter().enumerate().map(|(index, body)| {
+        let joint = &body.joint;
+        let follows = joint.mimic.as_ref().map(|mimic| Follows {
+            joint: mimic.joint.clone(),
+            ratio: mimic.multiplier,
+            offset: mimic.offset,
+        });
+        let visuals = robot.and_then(|robot| robot.visuals.get(index)).map_or(&[][..], Vec::as_slice);
+        Body {
+            name: body.name.clone(),
+            parent: index_of(body.parent),
+            origin: joint.origin,
+            rpy: joint.rpy,
+            joint: Joint { name: joint.name.clone(), kind: freedom(joint.kind), axis: joint.axis, follows },
+            com: body.com,
+            mass: body.mass,
+            visuals: visuals.iter().filter_map(visual).collect(),
+        }
+    });
+    let root = robot.filter(|robot| !robot.floating_base).map(|robot| Root {
+        name: robot.root.name.clone(),
+        visuals: robot.root.visuals.iter().filter_map(visual).collect(),
+    });
+    Scene {
+        bodies: bodies.collect(),
+        root,
+        ground: None,
+        gripper: plan.gripper.as_ref().map(|gripper| spot(&gripper.anchor)),
+        elements: elements(plan),
+        wanted: None,
+    }
+}
+
+/// Where the gripper is to be, and where the robot stands; nothing of what cannot be told.
+pub(crate) fn complete(scene: &mut Scene, plan: &Plan, system: &System) {
+    scene.ground = system.pose(0.0).ok().and_then(|pose| ground(plan, &pose));
+    let end = plan.settings.end;
+    let mut path = Path::default();
+    for k in 0..=POINTS {
+        let t = end * k as f64 / POINTS as f64;
+        let Ok(Some([x, y, z])) = system.wanted(t) else { return };
+        for (to, value) in [&mut path.t, &mut path.x, &mut path.y, &mut path.z].into_iter().zip([t, x, y, z]) {
+            to.push(value);
+        }
+    }
+    scene.wanted = Some(path);
+}
+
+/// What is said of the laws.
+pub(crate) fn laws(plan: &Plan) -> Vec<LawText> {
+    let one = |plan: &ElementPlan| {
+        let ElementPlan { element, parameters, inputs, .. } = plan;
+        let entry = &element.entry;
+        let parameters = entry.params.iter().zip(parameters).map(|(param, value)| Parameter {
+            name: param.name.to_string(),
+            value: *value,
+            unit: param.unit.to_string(),
+            meaning: param.meaning.to_string(),
+        });
+        let inputs = entry.inputs.iter().zip(inputs).map(|(input, signal)| Driven {
+            name: input.name.to_string(),
+            written: signal.written.clone(),
+            unit: input.unit.to_string(),
+        });
+        LawText {
+            name: element.name.clone(),
+            law: entry.name.to_string(),
+            equation: entry.equation.to_string(),
+            source: entry.source.to_string(),
+            parameters: parameters.collect(),
+            inputs: inputs.collect(),
+        }
+    };
+    plan.elements.iter().map(one).collect()
+}
+
+/// Where the robot stands; nowhere where its first body floats.
+pub(crate) fn ground(plan: &Plan, pose: &Pose<'_>) -> Option<[f64; 3]> {
+    let first = plan.bodies.first()?;
+    match (first.joint.kind, &plan.urdf) {
+        (JointKind::Floating, _) => None,
+        (_, Some(_)) => Some([0.0; 3]),
+        (_, None) => Some(pose.origin(Parent::Body(0))),
+    }
+}
+
+/// What an element's law holds, as it is at t = 0.
+pub(crate) fn sign_of(element: &Element) -> ElementSign {
+    let mut inputs = vec![InputValue { value: 0.0, rate: 0.0 }; element.inputs.len()];
+    element.inputs_at(0.0, &mut inputs);
+    sign(&element.law, &Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs })
+}
+
+fn sign(law: &Network, at: &Point<'_>) -> ElementSign {
+    let all = |parts: &[Network]| parts.iter().map(|part| sign(part, at)).collect();
+    match law {
+        Network::Leaf(leaf) => match leaf.linearised(at) {
+            // A stop that is free at the moment is a spring all the same.
+            Term { order: 0.0, coefficient: 0.0 } if leaf.is_linear() => ElementSign::Source,
+            Term { order: 0.0, .. } => ElementSign::Spring,
+            Term { order: 1.0, .. } => ElementSign::Dashpot,
+            Term { .. } => ElementSign::Springpot,
+        },
+        Network::Parallel(parts) => ElementSign::Parallel(all(parts)),
+        Network::Series(parts) => ElementSign::Series(all(parts)),
+        Network::Heated(heated) => sign(heated.law(), &Point { inputs: &heated.inputs_of_law(at.inputs), ..*at }),
+    }
+}
+
+fn elements(plan: &Plan) -> Vec<SceneElement> {
+    let mut drawn: Vec<SceneElement> = Vec::with_capacity(plan.elements.len());
+    for element in &plan.elements {
+        let (mut name, sign) = (element.element.name.clone(), sign_of(&element.element));
+        let shape = match &element.shape {
+            ShapePlan::Points(points) => SceneShape::Points(points.iter().map(spot).collect()),
+            ShapePlan::Joint(joint) => {
+                let Some(body) = plan.bodies.iter().position(|body| body.joint.name == *joint) else { continue };
+                let turns = element.element.measure.is_rotation();
+                SceneShape::Joint { body, axis: plan.bodies[body].joint.axis, turns }
+            }
+            ShapePlan::Bushing { from, to, component } => {
+                // One ring for all components.
+                let part = std::mem::take(&mut name);
+                let whole = part.strip_suffix(component.name()).and_then(|whole| whole.strip_suffix('.'));
+                name = whole.unwrap_or_default().to_owned();
+                if let Some(SceneElement { shape: SceneShape::Bushing { parts, .. }, .. }) =
+                    drawn.iter_mut().find(|drawn| drawn.name == name)
+                {
+                    parts.push(part);
+                    continue;
+                }
+                SceneShape::Bushing { from: placed(from), to: placed(to), parts: vec![part] }
+            }
+        };
+        drawn.push(SceneElement { name, sign, contact: lets_go(&element.element.law), shape });
+    }
+    drawn
+}
+
+/// Whether a part of a law is one-sided, as a contact is.
+fn lets_go(law: &Network) -> bool {
+    match law {
+        Network::Leaf(leaf) => ["tension", "compression", "stop"].contains(&leaf.name()),
+        Network::Parallel(parts) | Network::Series(parts) => parts.iter().any(lets_go),
+        Network::Heated(heated) => lets_go(heated.law()),
+    }
+}
+
+fn freedom(kind: JointKind) -> Freedom {
+    match kind {
+        JointKind::Fixed => Freedom::Fixed,
+        JointKind::Revolute => Freedom::Revolute,
+        JointKind::Continuous => Freedom::Continuous,
+        JointKind::Prismatic => Freedom::Prismatic,
+        JointKind::Floating => Freedom::Floating,
+    }
+}
+
+fn index_of(parent: Parent) -> Option<usize> {
+    match parent {
+        Parent::World => None,
+        Parent::Body(index) => Some(index),
+    }
+}
+
+fn spot(anchor: &Anchor) -> Spot {
+    Spot { body: index_of(anchor.body), point: anchor.point }
+}
+
+fn placed(frame: &FramePlan) -> Placed {
+    Placed { body: index_of(frame.anchor.body), point: frame.anchor.point, rpy: frame.rpy }
+}
+
+/// A shape of a URDF file; nothing for files that were not found.
+fn visual(visual: &urdf::Visual) -> Option<Visual> {
+    let shape = match &visual.shape {
+        VisualShape::Mesh { path, scale, .. } => {
+            Shape::Mesh { path: path.as_ref()?.to_str()?.to_owned(), scale: *scale }
+        }
+        VisualShape::Box(sizes) => Shape::Box(*sizes),
+        VisualShape::Cylinder { radius, length } => Shape::Cylinder(*radius, *length),
+        VisualShape::Sphere { radius } => Shape::Sphere(*radius),
+    };
+    Some(Visual { origin: visual.origin, rpy: visual.rpy, color: visual.color, shape })
+}
+
+/// Adds to the record of a run what is drawn of it: the scenes of the first cases, each once, and what is said of the laws.
+pub(crate) fn record(record: &mut Map<String, Value>, cases: &Cases, first: (&Plan, &System)) {
+    let mut scenes = vec![scene(first.0)];
+    complete(&mut scenes[0], first.0, first.1);
+    let moves = |path: &String| !path.starts_with("element.") && !path.starts_with("solver.");
+    let is_moved = cases.parameters().iter().any(moves);
+    for listed in record.get_mut("cases").and_then(Value::as_array_mut).into_iter().flatten() {
+        let index = listed["index"].as_u64().map_or(0, |index| index as usize);
+        if index == 0 || index >= MOST_SCENES {
+            continue;
+        }
+        let Ok(plan) = cases.plan(index) else { continue };
+        let mut own = scene(&plan);
+        match is_moved {
+            true => complete(&mut own, &plan, &plan.system()),
+            false => (own.ground, own.wanted) = (scenes[0].ground, scenes[0].wanted.clone()),
+        }
+        let place = scenes.iter().position(|scene| *scene == own).unwrap_or_else(|| {
+            scenes.push(own);
+            scenes.len() - 1
+        });
+        if place > 0 {
+            listed["scene"] = json!(place);
+        }
+    }
+    record.insert("scenes".to_owned(), json!(scenes));
+    record.insert("laws".to_owned(), json!(laws(first.0)));
+}
