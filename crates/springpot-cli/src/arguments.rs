@@ -190,18 +190,33 @@ log-decrement, residual-vibration. Reads results.csv, .parquet and .npz; where m
 
 Exit codes: 0 done, 1 a file cannot be written, 2 the results, a metric or a column is not there.")]
     Metrics(MetricsOptions),
-    /// Write a page that shows the robot of a finished run in motion.
+    /// Write a page that shows the robot of a run in motion, or serve it while the run goes on.
     #[command(after_help = "\
 Examples:
   springpot view results/arm
   springpot view results/arm --case 0,4 --out soft_and_stiff.html
+  springpot view results/arm --serve
 
 Writes one file, view.html among the results, which any browser opens and which asks for nothing from a network: the robot moving, its elements \
 coloured by force or stored energy, the gripper's trail, events, and curves of any columns beside it; ? on the page lists its keys. Of a sweep \
-the first 12 cases are shown, or those named; of more than a million numbers, every so many rows. `run --view` writes it too.
+the first 12 cases are shown, or those named; of more than a million numbers, every so many rows. `run --view` writes it too. With --serve the page comes from 127.0.0.1 until Ctrl-C, and follows a run that is under way in \
+the folder.
 
-Exit codes: 0 done, 1 the file cannot be written, 2 the results or a case are not there.")]
+Exit codes: 0 done, 1 the file cannot be written or the port is taken, 2 the results or a case are not there.")]
     View(ViewOptions),
+    /// Write a page that says what a run was and what came of it, or how two runs differ.
+    #[command(after_help = "\
+Examples:
+  springpot report results/arm
+  springpot report results/arm results/stiff --out compared.html
+
+Writes one file, report.html among the results, to be read in any browser and printed: warnings, figures, each element with its law, equations, \
+parameters and source, metrics, events, the balance of energy case by case, the robot, statistics of the columns, the scenario as it was run and the \
+command that runs it again. Of two results, comparison.html among the first: what was run otherwise, metrics side by side, curves over one another, \
+and the largest difference of every column.
+
+Exit codes: 0 done, 1 the file cannot be written, 2 there are no results.")]
+    Report(ReportOptions),
     /// Write a scenario as an FMU, which other simulation tools drive (FMI 2.0 for Co-Simulation).
     #[command(after_help = "\
 Examples:
@@ -310,6 +325,19 @@ pub(crate) struct MetricsOptions {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ReportOptions {
+    /// Folder of the results of a run
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    /// Results to compare them with
+    #[arg(value_name = "OTHER")]
+    pub(crate) other: Option<PathBuf>,
+    /// File to write [default: report.html, or comparison.html, among the results]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Args)]
 pub(crate) struct ViewOptions {
     /// Folder of the results of a run
     #[arg(value_name = "RESULTS")]
@@ -320,6 +348,12 @@ pub(crate) struct ViewOptions {
     /// File to write [default: view.html among the results]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Serve the page to browsers on this machine instead, with the rows of a run under way as they come
+    #[arg(long, conflicts_with = "out")]
+    pub(crate) serve: bool,
+    /// Port of the server [default: any that is free]
+    #[arg(long, value_name = "N", requires = "serve")]
+    pub(crate) port: Option<u16>,
 }
 
 #[derive(Debug, Args)]

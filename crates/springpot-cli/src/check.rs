@@ -1,11 +1,11 @@
 //! `springpot check`.
 
 use crate::arguments::CheckOptions;
-use crate::numbers::{count, short};
 use crate::{Ending, diagnostic, failures, plain, printed, starts, terminal};
 use springpot::elements::Element;
 use springpot::integrate::{ElementStart, RowTimes, Stop};
 use springpot::law::{Catalog, Entry, Expansion, Heat, Shift, Thermal};
+use springpot_run::numbers::{count, short};
 use springpot_run::sweep::Layout;
 use springpot_run::{Depth, Survey, Trouble};
 use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, ShapePlan, SignalPlan, json_schema};

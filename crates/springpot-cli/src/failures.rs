@@ -1,8 +1,8 @@
 //! Cases that fail: those that say the same are one message, with its place and its cure.
 
 use crate::diagnostic;
-use crate::numbers::count;
 use crate::run::in_cases;
+use springpot_run::numbers::count;
 use springpot_run::{Survey, Trouble};
 use springpot_scenario::Cases;
 

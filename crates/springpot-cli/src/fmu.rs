@@ -1,9 +1,9 @@
 //! `springpot fmu`.
 
 use crate::arguments::FmuOptions;
-use crate::numbers::count;
 use crate::{Ending, diagnostic, output, printed, terminal};
 use springpot_capi::fmi::{LIBRARY, Package, PackageError, Role, is_this_library};
+use springpot_run::numbers::count;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -41,12 +41,13 @@ mod metrics;
 mod mistakes;
 mod modes;
 mod modulus;
-mod numbers;
 mod output;
+mod pages;
 mod plain;
 mod plot;
 mod progress;
 mod prony;
+mod report;
 mod robot;
 mod run;
 mod signals;
@@ -151,6 +152,7 @@ fn code(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsSt
         Command::Plot(options) => plot::plot(&options),
         Command::Metrics(options) => metrics::metrics(&options, disk),
         Command::View(options) => view::view(&options, disk),
+        Command::Report(options) => report::report(&options, disk),
         Command::Fmu(options) => fmu::fmu(&options),
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),

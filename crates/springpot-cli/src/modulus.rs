@@ -2,11 +2,11 @@
 
 use crate::arguments::ModulusOptions;
 use crate::grid::{Grid, Set};
-use crate::numbers::{four, short};
 use crate::{Ending, diagnostic, drawing, frequency, output, printed, terminal};
 use serde_json::json;
 use springpot::law::{Catalog, InputValue, Point};
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
+use springpot_run::numbers::{four, short};
 use springpot_scenario::units::parse_quantity;
 use springpot_scenario::{ElementPlan, suggest};
 use std::f64::consts::{PI, TAU};

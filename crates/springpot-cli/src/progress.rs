@@ -1,8 +1,8 @@
 //! The progress bar on stderr, when it is a terminal.
 
-use crate::numbers::brief;
 use crate::signals;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use springpot_run::numbers::brief;
 use springpot_run::sweep::Progress;
 use std::fmt::Write;
 use std::io::IsTerminal;

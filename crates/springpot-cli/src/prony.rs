@@ -2,12 +2,12 @@
 
 use crate::arguments::{BulkModulus, PronyFormat, PronyOptions};
 use crate::grid::{Grid, Set};
-use crate::numbers::{count, rough, short};
 use crate::robot::Refused;
 use crate::{Ending, diagnostic, frequency, output, printed, terminal};
 use springpot::fractional::mittag_leffler::Complex64;
 use springpot::fractional::prony::{Bulk, PronyError, PronySeries, Relaxation, Slowest, Springpot, Term, Window};
 use springpot::law::{Catalog, Derivative, Entry, Point, Tangent};
+use springpot_run::numbers::{count, rough, short};
 use springpot_scenario::suggest;
 use springpot_scenario::units::parse_quantity;
 use std::f64::consts::TAU;

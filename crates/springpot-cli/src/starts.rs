@@ -1,8 +1,8 @@
 //! What is said of a survey: starts that deserve a warning, and cases that cannot run.
 
 use crate::diagnostic;
-use crate::numbers::{count, short};
 use crate::run::{NAMED_LIMITS, in_cases};
+use springpot_run::numbers::{count, short};
 use springpot_run::sweep::CasesPassing;
 use springpot_run::{ElementSurvey, Found, Survey};
 use springpot_scenario::Cases;

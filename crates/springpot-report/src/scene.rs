@@ -205,6 +205,15 @@ pub struct LawText {
     pub equation: String,
     /// Where the law comes from.
     pub source: String,
+    /// Its parts, drawn with characters.
+    #[serde(default)]
+    pub drawing: Option<String>,
+    /// Its complex modulus K*(ω) as a formula, where it is linear.
+    #[serde(default)]
+    pub modulus: Option<String>,
+    /// The force that a step of the stroke to 1 leaves, as a formula, where there is a closed form.
+    #[serde(default)]
+    pub relaxation: Option<String>,
     /// Values of the parameters in the first case.
     pub parameters: Vec<Parameter>,
     /// Names of its inputs with what drives them.

@@ -3,6 +3,7 @@
 use crate::sweep::Layout;
 use crate::warning::{Warn, robot_warnings};
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use springpot::integrate::{Stop, System};
 use springpot::law::Catalog;
 use springpot_scenario::{Cases, Plan, RefusalKind, Refusals, Scenario};
@@ -71,6 +72,11 @@ impl Asked {
         self.overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
         self.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
         Ok(scenario)
+    }
+
+    /// What run.json says of it.
+    pub(crate) fn record(&self) -> Value {
+        json!({ "name": self.name, "text": self.text, "set": self.overrides, "sweep": self.sweeps })
     }
 
     /// Whether its file says something else by now; one that is gone does not matter.

@@ -3,7 +3,7 @@
 use crate::asked::Planned;
 use crate::figures;
 use crate::prepare::Prepared;
-use crate::scene;
+use crate::scene::Drawn;
 use crate::sweep::{self, Options, Outcome, Progress, Status, SweepError};
 use crate::table::Format;
 use crate::table::folder::{Folder, FolderError};
@@ -46,6 +46,13 @@ impl Prepared {
     /// # Errors
     /// As [`sweep::run`].
     pub fn sweep(&mut self, jobs: usize, stop: &Stop, progress: &Progress) -> Result<Outcome, SweepError> {
+        let Planned { cases, plan, system, layout } = &self.planned;
+        let drawn = Drawn::of(cases, (plan, system));
+        let mut begun = sweep::begun(cases, plan, layout);
+        drawn.record(&mut begun);
+        // Who watches may see less; the run goes on.
+        let _ = self.folder.tell(&begun);
+        self.drawn = Some(drawn);
         let (checkpoints, source) = (self.checkpoints.as_ref(), self.source.as_deref());
         let options = Options { jobs, stop, progress, checkpoints, source, shard: self.shard };
         sweep::run(&self.planned.cases, &self.planned.layout, &mut self.folder, options)
@@ -59,7 +66,7 @@ impl Prepared {
     /// # Errors
     /// The folder cannot be written.
     pub fn finish(self, outcome: Outcome, progress: &Progress, warn: Warn<'_>) -> Result<Finished, FolderError> {
-        let Self { planned, mut folder, checkpoints, shard, figures, format, .. } = self;
+        let Self { asked, planned, mut folder, checkpoints, shard, figures, format, drawn, .. } = self;
         let Planned { cases, plan, system, layout } = planned;
         let (rows, end) = (progress.rows.load(Ordering::Relaxed), plan.settings.end);
         let (events, metrics) = (layout.events().to_vec(), layout.metric_units());
@@ -90,7 +97,8 @@ impl Prepared {
         folder.convert_rows(written, layout.written(), layout.swept())?;
         let record = |files: &[String]| {
             let mut record = outcome.record(&cases, &plan, &layout, written, files);
-            scene::record(&mut record, &cases, (&plan, &system));
+            record.insert("scenario".to_owned(), asked.record());
+            drawn.unwrap_or_else(|| Drawn::of(&cases, (&plan, &system))).record(&mut record);
             record
         };
         folder.put(record, goes_on)?;

@@ -10,6 +10,8 @@
 //! | [`table`] | results as files: numbers as text, formats, statistics, the folder that holds them |
 //! | [`figures`] | figures from the curves that a run kept, or from any others |
 //! | [`metrics`] | numbers that say how good a run is, at its end and from its results |
+//! | [`parts`] | a law as its parts: drawn, and as formulas |
+//! | [`numbers`] | numbers and counts as a reader wants them |
 //! | [`labels`] | names of columns as a reader of a figure wants them |
 //!
 //! ```no_run
@@ -32,9 +34,14 @@
 mod asked;
 pub mod figures;
 mod finish;
+mod follow;
 pub mod labels;
 pub mod metrics;
+pub mod numbers;
+pub mod parts;
 mod prepare;
+mod record;
+mod report;
 mod results;
 mod scene;
 mod survey;
@@ -46,8 +53,10 @@ mod warning;
 
 pub use asked::{Asked, Planned};
 pub use finish::Finished;
+pub use follow::{NewRows, News, Tail, Underway};
 pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
-pub use results::{Results, ResultsError};
+pub use report::{comparison, report};
+pub use results::{COMPARISON_PAGE, REPORT_PAGE, Results, ResultsError, VIEW_PAGE};
 pub use survey::{Depth, ElementSurvey, Found, Survey};
 pub use trouble::Trouble;
 pub use view::view;

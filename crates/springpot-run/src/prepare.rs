@@ -2,6 +2,7 @@
 
 use crate::asked::{Asked, Planned};
 use crate::figures;
+use crate::scene::Drawn;
 use crate::survey::{Depth, Survey};
 use crate::sweep::{CheckpointError, Checkpoints, MergeError, Origin, Shard, Shards, Source, Unfinished};
 use crate::table::Format;
@@ -55,6 +56,8 @@ pub struct Surroundings<'a> {
 
 /// All that a run needs, checked.
 pub struct Prepared {
+    /// What was asked for.
+    pub asked: Asked,
     /// What is run.
     pub planned: Planned,
     /// The folder of the results.
@@ -71,6 +74,8 @@ pub struct Prepared {
     pub format: Format,
     /// What was seen before the run; `None` where one goes on.
     pub survey: Option<Survey>,
+    /// What is drawn of it, from its beginning on.
+    pub(crate) drawn: Option<Drawn>,
 }
 
 impl fmt::Debug for Prepared {
@@ -126,11 +131,12 @@ impl Prepared {
         let folder = open(&out, (&scenario, &asked), (cases, figures, every.is_some()), with, warn);
         let folder = folder.map_err(no_results)?;
         let checkpoints = every.map(|every| {
-            let origin = Origin { asked, figures, every, format, shard };
+            let origin = Origin { asked: asked.clone(), figures, every, format, shard };
             Checkpoints::begin(&folder, origin, cases, plan, system)
         });
         let checkpoints = checkpoints.transpose().map_err(|error| no_results(error.into()))?;
-        Ok(Self { planned, folder, checkpoints, source: None, shard, figures, format, survey: Some(survey) })
+        let survey = Some(survey);
+        Ok(Self { asked, planned, folder, checkpoints, source: None, shard, figures, format, survey, drawn: None })
     }
 
     /// Goes on with the run whose checkpoint is in `folder`. With `every`, s, checkpoints are written at other times from now on;
@@ -160,7 +166,8 @@ impl Prepared {
         let targets = Targets { figures: &names, checkpoints: true, is_input: &is_input };
         let (checkpoints, folder) = unfinished.take_up(cases, (plan, system), layout, every, targets)?;
         let checkpoints = Some(checkpoints);
-        Ok(Self { planned, folder, checkpoints, source: None, shard, figures, format, survey: None })
+        let (source, survey, drawn) = (None, None, None);
+        Ok(Self { asked, planned, folder, checkpoints, source, shard, figures, format, survey, drawn })
     }
 
     /// Puts the parts of one run together that stand in `parts`, in any order: what is then swept comes from them, and nothing is run. The
@@ -190,7 +197,8 @@ impl Prepared {
         let folder = open(&out, (&scenario, &origin.asked), (cases, figures, false), with, warn)
             .map_err(|error| MergeError::Folder { folder: out.clone(), error })?;
         let (source, format) = (Some(Box::new(shards) as Box<dyn Source>), format.unwrap_or(origin.format));
-        Ok(Self { planned, folder, checkpoints: None, source, shard: None, figures, format, survey: None })
+        let (asked, checkpoints, shard, survey, drawn) = (origin.asked, None, None, None, None);
+        Ok(Self { asked, planned, folder, checkpoints, source, shard, figures, format, survey, drawn })
     }
 }
 

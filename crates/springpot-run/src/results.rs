@@ -1,13 +1,18 @@
 //! Results of a run that has ended, read again for pages and files.
 
+use crate::record::{self, Record};
 use crate::table::disk::Disk;
 use crate::table::stored::Stored;
-use serde::Deserialize;
-use serde_json::{Map, Value};
 use springpot::table::Column;
-use springpot_report::scene::{LawText, Scene};
 use std::io;
 use std::path::{Path, PathBuf};
+
+/// What pages are called among the results that they show.
+pub const VIEW_PAGE: &str = "view.html";
+/// As [`VIEW_PAGE`], of reports.
+pub const REPORT_PAGE: &str = "report.html";
+/// As [`VIEW_PAGE`], of what two results have to do with each other.
+pub const COMPARISON_PAGE: &str = "comparison.html";
 
 /// Why there are no results to read.
 #[derive(Debug, thiserror::Error)]
@@ -44,51 +49,6 @@ pub struct Results {
     disk: Disk,
 }
 
-/// What run.json says.
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(crate) struct Record {
-    pub(crate) status: String,
-    pub(crate) title: Option<String>,
-    pub(crate) versions: Map<String, Value>,
-    columns: Vec<Described>,
-    sweeps: Vec<Sweep>,
-    pub(crate) cases: Vec<Listed>,
-    format: Option<String>,
-    pub(crate) scenes: Vec<Scene>,
-    pub(crate) laws: Vec<LawText>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Described {
-    name: String,
-    #[serde(default)]
-    unit: String,
-    #[serde(default)]
-    meaning: String,
-}
-
-#[derive(Debug, Deserialize)]
-struct Sweep {
-    parameters: Vec<String>,
-}
-
-/// A case as it is listed.
-#[derive(Debug, Deserialize)]
-pub(crate) struct Listed {
-    pub(crate) index: usize,
-    #[serde(default)]
-    pub(crate) parameters: Map<String, Value>,
-    #[serde(default)]
-    pub(crate) status: String,
-    #[serde(default)]
-    pub(crate) error: Option<String>,
-    #[serde(default)]
-    pub(crate) rows: u64,
-    #[serde(default)]
-    pub(crate) scene: usize,
-}
-
 /// Takes the swept values of a case as text, each with its comma, its place among those with rows, and the values of a row.
 pub(crate) type TakeRow<'a> = &'a mut dyn FnMut(&str, usize, &[f64]) -> io::Result<()>;
 
@@ -106,21 +66,14 @@ impl Results {
             }
             Err(error) => return Err(failed(folder, error)),
         }
-        let read = disk.read(&folder.join("run.json"));
-        let record: Option<Record> = read.ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        let record = record.ok_or_else(|| ResultsError::NoRecord(folder.to_owned()))?;
+        let record = Record::read(disk, folder).ok_or_else(|| ResultsError::NoRecord(folder.to_owned()))?;
         if record.scenes.is_empty() {
             return Err(ResultsError::NoScene(folder.to_owned()));
         }
-        let file = folder.join(format!("results.{}", record.format.as_deref().unwrap_or("csv")));
+        let file = folder.join(record.rows_file());
         let rows = Stored::open(disk, &file).map_err(|error| failed(&file, error))?;
-        let swept = record.sweeps.iter().map(|sweep| sweep.parameters.len()).sum::<usize>().min(rows.columns().len());
-        let described = |name: &String| {
-            let found = record.columns.iter().find(|column| column.name == *name);
-            let (unit, meaning) = found.map_or(("", ""), |column| (&column.unit, &column.meaning));
-            Column::new(name.as_str(), unit, meaning)
-        };
-        let columns = rows.columns()[swept..].iter().map(described).collect();
+        let swept = record.parameters().count().min(rows.columns().len());
+        let columns = rows.columns()[swept..].iter().map(|name| record.column(name)).collect();
         Ok(Self { folder: folder.to_owned(), record, columns, swept, rows, disk: disk.clone() })
     }
 
@@ -131,13 +84,17 @@ impl Results {
 
     /// What they are called.
     pub(crate) fn name(&self) -> String {
-        let folder = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
-        folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
+        record::name(&self.folder)
     }
 
-    /// Paths of the swept parameters.
-    pub(crate) fn parameters(&self) -> impl Iterator<Item = &String> {
-        self.record.sweeps.iter().flat_map(|sweep| &sweep.parameters)
+    /// Names of the columns, those of swept parameters aside.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|column| column.name.as_str())
+    }
+
+    /// A file among the results.
+    pub(crate) fn file(&self, name: &str) -> Option<Vec<u8>> {
+        self.disk.read(&self.folder.join(name)).ok()
     }
 
     /// Calls `take` with every row.

@@ -1,5 +1,6 @@
 //! What is drawn of a robot: of one case of a scenario, for pages and files that outlive the run.
 
+use crate::parts::Part;
 use serde_json::{Map, Value, json};
 use springpot::elements::Element;
 use springpot::integrate::{Pose, System};
@@ -85,11 +86,15 @@ pub(crate) fn laws(plan: &Plan) -> Vec<LawText> {
             written: signal.written.clone(),
             unit: input.unit.to_string(),
         });
+        let parts = Part::of(entry);
         LawText {
             name: element.name.clone(),
             law: entry.name.to_string(),
             equation: entry.equation.to_string(),
             source: entry.source.to_string(),
+            drawing: parts.as_ref().and_then(Part::drawing),
+            modulus: parts.as_ref().and_then(Part::modulus),
+            relaxation: parts.as_ref().and_then(Part::relaxation),
             parameters: parameters.collect(),
             inputs: inputs.collect(),
         }
@@ -207,31 +212,53 @@ fn visual(visual: &urdf::Visual) -> Option<Visual> {
     Some(Visual { origin: visual.origin, rpy: visual.rpy, color: visual.color, shape })
 }
 
-/// Adds to the record of a run what is drawn of it: the scenes of the first cases, each once, and what is said of the laws.
-pub(crate) fn record(record: &mut Map<String, Value>, cases: &Cases, first: (&Plan, &System)) {
-    let mut scenes = vec![scene(first.0)];
-    complete(&mut scenes[0], first.0, first.1);
-    let moves = |path: &String| !path.starts_with("element.") && !path.starts_with("solver.");
-    let is_moved = cases.parameters().iter().any(moves);
-    for listed in record.get_mut("cases").and_then(Value::as_array_mut).into_iter().flatten() {
-        let index = listed["index"].as_u64().map_or(0, |index| index as usize);
-        if index == 0 || index >= MOST_SCENES {
-            continue;
+/// What is drawn of a run, and said of its laws: known before its first step.
+#[derive(Debug)]
+pub(crate) struct Drawn {
+    /// Each once.
+    scenes: Vec<Scene>,
+    /// The scene of each of the first cases.
+    places: Vec<usize>,
+    laws: Vec<LawText>,
+}
+
+impl Drawn {
+    /// The scenes of the first cases; `first`: the plan and the system of the first of them.
+    pub(crate) fn of(cases: &Cases, first: (&Plan, &System)) -> Self {
+        let mut scenes = vec![scene(first.0)];
+        complete(&mut scenes[0], first.0, first.1);
+        let moves = |path: &String| !path.starts_with("element.") && !path.starts_with("solver.");
+        let is_moved = cases.parameters().iter().any(moves);
+        let mut places = vec![0];
+        for index in 1..cases.len().min(MOST_SCENES) {
+            // A case without a plan has no rows either.
+            let Ok(plan) = cases.plan(index) else {
+                places.push(0);
+                continue;
+            };
+            let mut own = scene(&plan);
+            match is_moved {
+                true => complete(&mut own, &plan, &plan.system()),
+                false => (own.ground, own.wanted) = (scenes[0].ground, scenes[0].wanted.clone()),
+            }
+            let place = scenes.iter().position(|scene| *scene == own).unwrap_or_else(|| {
+                scenes.push(own);
+                scenes.len() - 1
+            });
+            places.push(place);
         }
-        let Ok(plan) = cases.plan(index) else { continue };
-        let mut own = scene(&plan);
-        match is_moved {
-            true => complete(&mut own, &plan, &plan.system()),
-            false => (own.ground, own.wanted) = (scenes[0].ground, scenes[0].wanted.clone()),
-        }
-        let place = scenes.iter().position(|scene| *scene == own).unwrap_or_else(|| {
-            scenes.push(own);
-            scenes.len() - 1
-        });
-        if place > 0 {
-            listed["scene"] = json!(place);
-        }
+        Self { scenes, places, laws: laws(first.0) }
     }
-    record.insert("scenes".to_owned(), json!(scenes));
-    record.insert("laws".to_owned(), json!(laws(first.0)));
+
+    /// Adds it to the record of a run.
+    pub(crate) fn record(&self, record: &mut Map<String, Value>) {
+        for listed in record.get_mut("cases").and_then(Value::as_array_mut).into_iter().flatten() {
+            let index = listed["index"].as_u64().map_or(0, |index| index as usize);
+            if let Some(place) = self.places.get(index).filter(|place| **place > 0) {
+                listed["scene"] = json!(place);
+            }
+        }
+        record.insert("scenes".to_owned(), json!(self.scenes));
+        record.insert("laws".to_owned(), json!(self.laws));
+    }
 }

@@ -1,8 +1,8 @@
 //! The page that shows results in motion.
 
-use crate::labels;
-use crate::results::{Listed, Results, ResultsError};
-use serde_json::Value;
+use crate::record::{Listed, Record};
+use crate::results::{Results, ResultsError};
+use springpot::table::Column;
 use springpot_report::page::{CaseEvent, CaseMetric, View, ViewCase, ViewColumn};
 
 /// Numbers of a page.
@@ -16,7 +16,7 @@ const MOST_CASES: usize = 12;
 /// The results cannot be read.
 pub fn view(results: &Results, asked: &[usize]) -> Result<View, ResultsError> {
     let record = &results.record;
-    let with_rows: Vec<&Listed> = record.cases.iter().filter(|case| case.rows > 0).collect();
+    let with_rows = record.with_rows();
     let is_shown = |case: &Listed| asked.is_empty() || asked.contains(&case.index);
     let mut notes = Vec::new();
     // By case with rows: its place among those shown.
@@ -27,7 +27,7 @@ pub fn view(results: &Results, asked: &[usize]) -> Result<View, ResultsError> {
             break;
         }
         *place = Some(cases.len());
-        cases.push(shown(results, case));
+        cases.push(shown(record, case));
     }
     let columns = results.columns.len();
     let rows: usize =
@@ -75,17 +75,9 @@ pub fn view(results: &Results, asked: &[usize]) -> Result<View, ResultsError> {
         title: record.title.clone(),
         name: results.name(),
         status: record.status.clone(),
-        version: record.versions.get("springpot").and_then(Value::as_str).unwrap_or_default().to_owned(),
+        version: record.version().to_owned(),
         notes,
-        columns: results
-            .columns
-            .iter()
-            .map(|column| ViewColumn {
-                name: column.name.clone(),
-                unit: column.unit.clone(),
-                meaning: column.meaning.clone(),
-            })
-            .collect(),
+        columns: view_columns(&results.columns),
         scenes: record.scenes.clone(),
         laws: record.laws.clone(),
         cases,
@@ -93,22 +85,24 @@ pub fn view(results: &Results, asked: &[usize]) -> Result<View, ResultsError> {
     })
 }
 
+/// Columns as a page has them.
+pub(crate) fn view_columns(columns: &[Column]) -> Vec<ViewColumn> {
+    let column = |column: &Column| {
+        let Column { name, unit, meaning } = column.clone();
+        ViewColumn { name, unit, meaning }
+    };
+    columns.iter().map(column).collect()
+}
+
 /// A case without its rows.
-fn shown(results: &Results, case: &Listed) -> ViewCase {
-    let named = results.parameters().filter_map(|path| {
-        let value = match case.parameters.get(path)? {
-            Value::String(text) => text.clone(),
-            value => value.to_string(),
-        };
-        Some(format!("{} = {value}", labels::parameter(path)))
-    });
+pub(crate) fn shown(record: &Record, case: &Listed) -> ViewCase {
     ViewCase {
         index: case.index,
-        name: named.collect::<Vec<_>>().join(", "),
+        name: record.case_name(case),
         parameters: case.parameters.iter().map(|(path, value)| (path.clone(), value.clone())).collect(),
         status: case.status.clone(),
         error: case.error.clone(),
-        scene: if case.scene < results.record.scenes.len() { case.scene } else { 0 },
+        scene: if case.scene < record.scenes.len() { case.scene } else { 0 },
         ..ViewCase::default()
     }
 }

@@ -8,12 +8,12 @@ mod states;
 mod terms;
 
 use crate::arguments::DynamicsOptions;
-use crate::numbers::{count, short};
 use crate::robot::{Refused, Robot};
 use crate::{Ending, diagnostic, plain, printed, robot};
 use answer::Answers;
 use springpot::law::Catalog;
 use springpot::model::{Dimension, Frame};
+use springpot_run::numbers::{count, short};
 use springpot_scenario::suggest;
 use states::States;
 use std::collections::BTreeMap;

@@ -1,11 +1,11 @@
 //! The equations of motion as text.
 
 use crate::grid::{Grid, Set, width_of};
-use crate::numbers::{brief, rough, short};
 use crate::plain;
 use crate::terminal;
 use springpot::elements::{Element, Measure};
 use springpot::integrate::{ElementTerm, Equation, System};
+use springpot_run::numbers::{brief, rough, short};
 
 /// Most velocities for which a_ab, and Γ_ab,c, are printed.
 const MOST_WITH_MATRIX: usize = 8;

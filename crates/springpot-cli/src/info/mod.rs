@@ -5,11 +5,11 @@ mod tables;
 
 use crate::arguments::InfoOptions;
 use crate::grid::width_of;
-use crate::numbers::brief;
 use crate::robot::{Refused, Robot};
 use crate::{Ending, plain, printed, robot, terminal};
 use springpot::law::Catalog;
 use springpot::model::JointKind;
+use springpot_run::numbers::brief;
 
 /// Columns of the words that lead a line.
 const LEAD: usize = 10;

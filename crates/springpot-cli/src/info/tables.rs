@@ -1,10 +1,10 @@
 //! The tables of `springpot info`.
 
 use crate::grid::{Grid, Set};
-use crate::numbers::brief;
 use crate::plain;
 use crate::robot::Robot;
 use springpot::model::{Dimension, Limits, Parent};
+use springpot_run::numbers::brief;
 use std::ops::Range;
 
 /// Branches in branches that are drawn; deeper ones stand at the same indentation.

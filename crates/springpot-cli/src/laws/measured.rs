@@ -4,11 +4,11 @@ use super::columns::{self, Table};
 use super::sample::Sample;
 use super::{Refused, figure, page};
 use crate::arguments::LawsOptions;
-use crate::numbers::{count, rough, short};
 use crate::{Ending, terminal};
 use serde_json::{Map, Value, json};
 use springpot::law::datasheet::{FitError, Measured, Model, can_fit, fit, fit_network};
 use springpot::law::{Catalog, Entry};
+use springpot_run::numbers::{count, rough, short};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 

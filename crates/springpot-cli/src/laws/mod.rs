@@ -5,7 +5,6 @@ mod figure;
 mod measured;
 mod names;
 mod page;
-mod parts;
 mod sample;
 mod sheet;
 

@@ -1,11 +1,11 @@
 //! One law: equation, parameters, inputs, source, and an element to start from.
 
-use super::parts::Part;
 use crate::grid::{Grid, Set};
-use crate::numbers::short;
 use crate::terminal;
 use serde_json::{Value, json};
 use springpot::law::{Entry, Input, Param, Range};
+use springpot_run::numbers::short;
+use springpot_run::parts::Part;
 
 /// The page of a law.
 pub(super) fn text(law: &Entry) -> String {

@@ -3,11 +3,11 @@
 use super::names::{self, SUGGESTED};
 use super::sample::{ANGLES, Missized, Sample, is_angle, tangent};
 use super::{Refused, page};
-use crate::numbers::{rough, short};
 use crate::{diagnostic, frequency};
 use serde_json::{Map, Value, json};
 use springpot::law::datasheet::{DatasheetError, Datum, Identified, Model, Quantity, identify};
 use springpot::law::{Catalog, Entry};
+use springpot_run::numbers::{rough, short};
 use springpot_scenario::suggest;
 use springpot_scenario::units::{UnitError, parse_quantity, split_quantity};
 use std::ops::Range;

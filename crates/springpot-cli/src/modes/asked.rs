@@ -2,12 +2,12 @@
 
 use super::{Problem, Stopped};
 use crate::arguments::ModesOptions;
-use crate::numbers::{rough, short};
 use crate::{Ending, diagnostic};
 use serde_json::{Value, json};
 use springpot::integrate::{EquationError, Motion, System};
 use springpot::law::Catalog;
 use springpot::linear::{Equilibrium, LinearError, Linearisation};
+use springpot_run::numbers::{rough, short};
 use springpot_scenario::Plan;
 use springpot_scenario::units::parse_quantity;
 

@@ -4,7 +4,6 @@ use super::asked::Asked;
 use super::{Problem, Stopped, Told};
 use crate::arguments::ModesOptions;
 use crate::grid::{Grid, Set};
-use crate::numbers::four;
 use crate::{frequency, terminal};
 use serde_json::Value;
 use springpot::actuation::Drive;
@@ -12,6 +11,7 @@ use springpot::integrate::Motion;
 use springpot::linear::{Excitation, NoResponse};
 use springpot::observe::Quantity;
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
+use springpot_run::numbers::four;
 use springpot_scenario::suggest;
 use std::f64::consts::TAU;
 

@@ -3,11 +3,11 @@
 use super::asked::Asked;
 use super::{Stopped, Told};
 use crate::grid::{Grid, Set};
-use crate::numbers::{brief, count, short};
 use crate::{diagnostic, plain, terminal};
 use serde_json::{Value, json};
 use springpot::linear::{Mode, Modes, ModesError};
 use springpot_report::{Curve, Panel, Plot};
+use springpot_run::numbers::{brief, count, short};
 
 /// Coordinates that are printed in a line; --json has all of them.
 const MOST_COORDINATES: usize = 12;

@@ -1,9 +1,9 @@
 //! What is said of a run that came to an end.
 
 use super::{NAMED_LIMITS, in_cases};
-use crate::numbers::{brief, count, rough, short};
 use crate::{diagnostic, failures, plain, terminal};
 use springpot_run::Finished;
+use springpot_run::numbers::{brief, count, rough, short};
 use springpot_run::sweep::{CaseResult, CasesPassing, Status};
 use std::time::Duration;
 

@@ -30,6 +30,7 @@ mod modes;
 mod modulus;
 mod networks;
 #[cfg(unix)]
+mod pages;
 mod pipes;
 mod plot;
 mod prony;

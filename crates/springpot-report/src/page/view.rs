@@ -1,6 +1,6 @@
 //! The page that shows a run in motion.
 
-use super::{in_script, mesh};
+use super::{MARK, in_script, mesh};
 use crate::scene::{LawText, Scene};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -128,6 +128,7 @@ impl View {
             "follow": self.follow,
         });
         let (before, after) = PAGE.split_once(DATA).expect("the page has a place for its data");
-        [before, &in_script(&data.to_string()), after].concat()
+        let before = before.replacen("<head>", &format!("<head>\n{MARK}"), 1);
+        [&before, &*in_script(&data.to_string()), after].concat()
     }
 }

@@ -1,11 +1,11 @@
 //! Metrics of a run that has ended, from its results.
 
 use super::{COLUMNS, push_line, value};
+use crate::record::Record;
 use crate::sweep::is_within;
 use crate::table::disk::Disk;
 use crate::table::push_text;
 use crate::table::stored::Stored;
-use serde::Deserialize;
 use springpot::table::Column;
 use springpot_scenario::{Metric, Refusals, suggest};
 use std::io;
@@ -73,51 +73,6 @@ pub struct Source {
     swept: usize,
 }
 
-/// What run.json says of it.
-#[derive(Debug, Default, Deserialize)]
-struct Record {
-    #[serde(default)]
-    columns: Vec<Described>,
-    #[serde(default)]
-    sweeps: Vec<Sweep>,
-    #[serde(default)]
-    cases: Vec<Case>,
-    #[serde(default)]
-    cases_done: usize,
-    #[serde(default)]
-    cases_failed: usize,
-    #[serde(default)]
-    plan: Plan,
-    #[serde(default)]
-    format: Option<String>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Described {
-    name: String,
-    #[serde(default)]
-    unit: String,
-}
-
-#[derive(Debug, Deserialize)]
-struct Sweep {
-    parameters: Vec<String>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Case {
-    #[serde(default)]
-    rows: u64,
-    /// Where they are not those of the first case.
-    metrics: Option<Vec<Metric>>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-struct Plan {
-    #[serde(default)]
-    metrics: Vec<Metric>,
-}
-
 /// What metrics came to.
 #[derive(Debug)]
 pub struct Recomputed {
@@ -135,9 +90,7 @@ impl Source {
     pub fn open(disk: &Disk, results: &Path) -> Result<Self, LaterError> {
         let is_folder = disk.is_folder(results);
         let folder = if is_folder { results } else { results.parent().unwrap_or(Path::new("")) };
-        let read = disk.read(&folder.join("run.json"));
-        let record = read.ok().and_then(|bytes| serde_json::from_slice::<Record>(&bytes).ok());
-        let record = record.ok_or_else(|| match disk.look(results) {
+        let record = Record::read(disk, folder).ok_or_else(|| match disk.look(results) {
             Ok(None) => {
                 let error = io::Error::new(io::ErrorKind::NotFound, "there is no such file or folder");
                 LaterError::File { file: results.to_owned(), error }
@@ -146,15 +99,10 @@ impl Source {
             Ok(_) if is_folder => LaterError::NoRecord(results.to_owned()),
             Ok(_) => LaterError::NoneBeside(results.to_owned()),
         })?;
-        let file = match &record.format {
-            _ if !is_folder => results.to_owned(),
-            format => folder.join(format!("results.{}", format.as_deref().unwrap_or("csv"))),
-        };
+        let file = if is_folder { folder.join(record.rows_file()) } else { results.to_owned() };
         let rows = Stored::open(disk, &file).map_err(|error| LaterError::File { file: file.clone(), error })?;
-        let unit =
-            |name: &str| record.columns.iter().find(|column| column.name == name).map_or("", |column| &column.unit);
-        let columns = rows.columns().iter().map(|name| Column::new(name.as_str(), unit(name), "")).collect();
-        let swept = record.sweeps.iter().map(|sweep| sweep.parameters.len()).sum::<usize>().min(rows.columns().len());
+        let columns = rows.columns().iter().map(|name| record.column(name)).collect();
+        let swept = record.parameters().count().min(rows.columns().len());
         Ok(Self { rows, folder: folder.to_owned(), record, columns, swept })
     }
 
@@ -169,7 +117,8 @@ impl Source {
     /// The file lacks a column, or cannot be read.
     pub fn metrics(&self, asked: &[Metric]) -> Result<Recomputed, LaterError> {
         let is_own = asked.is_empty();
-        let metrics = if is_own { &self.record.plan.metrics } else { asked };
+        let of_run = if is_own { self.record.metrics() } else { Vec::new() };
+        let metrics = if is_own { &of_run[..] } else { asked };
         if metrics.is_empty() {
             return Err(LaterError::NoMetrics(self.folder.clone()));
         }
@@ -250,7 +199,7 @@ impl Source {
         if cases.len() < self.record.cases_done + self.record.cases_failed {
             return Err(LaterError::Unlisted(self.folder.clone()));
         }
-        Ok(Some(cases.iter().filter(|case| case.rows > 0).map(|case| case.metrics.as_deref()).collect()))
+        Ok(Some(self.record.with_rows().into_iter().map(|case| case.metrics.as_deref()).collect()))
     }
 }
 

@@ -25,6 +25,7 @@ pub use layout::Layout;
 pub use limits::{CasesPassing, LimitTally};
 pub use metrics::CaseMetrics;
 pub use parcel::{Parcel, ParcelError, Source};
+pub(crate) use record::begun;
 pub use shard::Shard;
 pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, Total, is_within};
 pub(crate) use wanted::{Summed, Wanted};

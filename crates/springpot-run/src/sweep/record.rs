@@ -66,6 +66,34 @@ impl Outcome {
     }
 }
 
+/// Cases of a run under way that are listed.
+const MAX_BEGUN: usize = 12;
+
+/// What is known of a run at its beginning, by the names of run.json.
+pub(crate) fn begun(cases: &Cases, plan: &Plan, layout: &Layout) -> Map<String, Value> {
+    let listed =
+        (0..cases.len().min(MAX_BEGUN)).map(|index| json!({ "index": index, "parameters": swept(cases, index) }));
+    let record = json!({
+        "status": "running",
+        "title": plan.title,
+        "versions": { "springpot": env!("CARGO_PKG_VERSION") },
+        "cases_total": cases.len(),
+        "plan": plan.resolved(),
+        "columns": layout.written(),
+        "sweeps": sweeps(cases),
+        "cases": listed.collect::<Value>(),
+    });
+    match record {
+        Value::Object(map) => map,
+        _ => unreachable!("the literal above is an object"),
+    }
+}
+
+/// Swept values of a case by path.
+fn swept(cases: &Cases, index: usize) -> Map<String, Value> {
+    cases.parameters().iter().cloned().zip(cases.values(index).iter().map(value)).collect()
+}
+
 /// How often each event happened, by name.
 fn counts(layout: &Layout, happened: &Happened) -> Value {
     let count = |k: usize| happened.counts.get(k).copied().unwrap_or(0);
@@ -101,8 +129,6 @@ fn value(value: &SweptValue) -> Value {
 }
 
 fn one(cases: &Cases, layout: &Layout, case: &CaseResult) -> Value {
-    let values = cases.values(case.index);
-    let parameters: Map<String, Value> = cases.parameters().iter().cloned().zip(values.iter().map(value)).collect();
     let status = match (&case.error, case.interrupted) {
         (None, _) => "done",
         (_, true) => "interrupted",
@@ -110,7 +136,7 @@ fn one(cases: &Cases, layout: &Layout, case: &CaseResult) -> Value {
     };
     let mut record = json!({
         "index": case.index,
-        "parameters": parameters,
+        "parameters": swept(cases, case.index),
         "status": status,
         "error": case.error.as_ref().map(|trouble| &trouble.message),
         "ledger": case.no_ledger.as_ref().map(|why| format!("unknown: {why}")),

@@ -188,6 +188,12 @@ impl Disk {
         }
     }
 
+    /// Whether somebody holds the lock of a file, which is not kept from being taken; where there are no locks, whether the file is there.
+    pub(crate) fn is_locked(&self, path: &Path) -> bool {
+        let opened = self.ask(Call::Open(path)).and_then(|_| File::open(path));
+        opened.is_ok_and(|file| file.try_lock_shared().is_err())
+    }
+
     /// Gives a file another name, and replaces what had it.
     pub(crate) fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.ask(Call::Rename { from, to })?;

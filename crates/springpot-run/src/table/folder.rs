@@ -7,12 +7,13 @@ mod lock;
 mod owned;
 mod settle;
 
-pub(crate) use owned::{CASE, HEAD, JOURNAL, checkpoint_folder};
+pub(crate) use lock::is_held;
+pub(crate) use owned::{CASE, HEAD, JOURNAL, PART, RUNNING, UNFINISHED, checkpoint_folder};
 
 use super::disk::{Disk, DiskFile, Entry};
 use super::format::{self, Format};
 use lock::{Lock, Taken};
-use owned::{Checkpoint, Claims, EVENTS, FIGURES, FIXED, METRICS, PART, RESULTS, RUN, SUMMARY, UNFINISHED};
+use owned::{Checkpoint, Claims, EVENTS, FIGURES, FIXED, METRICS, RESULTS, RUN, SUMMARY};
 use settle::{Commit, waiting};
 use springpot::table::Column;
 use std::io::{self, Read as _, Seek as _, Write as _};
@@ -266,6 +267,15 @@ impl Folder {
         format::convert(&self.disk, &rows, &new, format, columns, swept)?;
         self.files.iter_mut().filter(|file| *file == RESULTS).for_each(|file| file.clone_from(&name));
         Ok(())
+    }
+
+    /// Says what the run is to those who watch it while it is under way.
+    ///
+    /// # Errors
+    /// The file system's.
+    pub(crate) fn tell(&self, running: &serde_json::Map<String, serde_json::Value>) -> io::Result<()> {
+        let mut file = self.disk.create(&self.path.join(UNFINISHED).join(RUNNING))?;
+        file.write_all(&serde_json::to_vec(running).map_err(io::Error::other)?)
     }
 
     /// Makes the file of the statistics.

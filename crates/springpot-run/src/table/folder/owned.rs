@@ -1,13 +1,15 @@
 //! What in a folder of results was written by a run, and by which.
 
+use crate::results::{COMPARISON_PAGE, REPORT_PAGE, VIEW_PAGE};
 use crate::table::disk::{Disk, Entry};
 use crate::table::sealed;
 use serde::Deserialize;
+use springpot_report::page::MARK;
 use std::io::{self, Read as _, Write as _};
 use std::path::{Component, Path};
 
 /// The rows while they are written, and at the end.
-pub(super) const PART: &str = "results.csv.part";
+pub(crate) const PART: &str = "results.csv.part";
 pub(super) const RESULTS: &str = "results.csv";
 /// Statistics per case and column.
 pub(super) const SUMMARY: &str = "summary.csv";
@@ -23,9 +25,14 @@ const FIGURE_ENDINGS: [&str; 3] = ["svg", "png", "pdf"];
 /// Every other file that a run puts in place.
 pub(super) const FIXED: [&str; 7] = [RESULTS, "results.parquet", "results.npz", SUMMARY, EVENTS, METRICS, RUN];
 
+/// Bytes of a page within which its mark stands.
+const PAGE_HEAD: u64 = 4_096;
+
 /// The folder of what is not yet in its place, and the file in it that says what else belongs to the run.
-pub(super) const UNFINISHED: &str = ".unfinished";
+pub(crate) const UNFINISHED: &str = ".unfinished";
 const CLAIMS: &str = "run";
+/// What is known of a run under way, in the same folder.
+pub(crate) const RUNNING: &str = "running.json";
 const CLAIMS_TAG: &str = "springpot run\n";
 /// The file that makes a run's files the valid ones.
 pub(super) const COMMIT: &str = "commit";
@@ -51,6 +58,21 @@ pub(super) struct Record {
 struct Versions {
     #[expect(dead_code, reason = "as above")]
     springpot: String,
+}
+
+/// Takes away the pages of earlier results: those that bear the mark of ours.
+pub(super) fn remove_pages(disk: &Disk, folder: &Path) -> io::Result<()> {
+    for name in [VIEW_PAGE, REPORT_PAGE, COMPARISON_PAGE] {
+        let path = folder.join(name);
+        if matches!(disk.look(&path)?, Some(Entry::File(_))) {
+            let mut beginning = Vec::new();
+            disk.open(&path)?.take(PAGE_HEAD).read_to_end(&mut beginning)?;
+            if String::from_utf8_lossy(&beginning).contains(MARK) {
+                disk.remove(&path)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The record of the last run; `None` where there is none, or something else of that name.
@@ -147,7 +169,7 @@ pub(super) fn clear_unfinished(disk: &Disk, folder: &Path) -> io::Result<()> {
     disk.remove_folder(&figures)?;
     for name in disk.list(&path)? {
         let plain = name.strip_suffix(".new").unwrap_or(&name);
-        if FIXED.contains(&plain) || plain == COMMIT {
+        if FIXED.contains(&plain) || [COMMIT, RUNNING].contains(&plain) {
             disk.remove(&path.join(name))?;
         }
     }

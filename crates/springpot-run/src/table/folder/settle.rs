@@ -3,10 +3,12 @@
 //! New files wait in `.unfinished`, the rows in `results.csv.part`, all of them safe from the loss of power. Then `.unfinished/commit` is
 //! written, whole or not at all: it names them and the last run's, and from then on the new ones are the valid ones. What follows
 //! may be broken off anywhere and done again: run.json of the last run goes first, so that nothing claims to be a whole that is not; then
-//! its other files, unless the new ones replace them; the new ones get their names, run.json last; the commit is taken away.
+//! its other files and the pages made of them, unless the new ones replace them; the new ones get their names, run.json last; the commit is taken away.
 
 use super::FolderError;
-use super::owned::{COMMIT, FIGURES, PART, RESULTS, RUN, UNFINISHED, clear_unfinished, is_figure, remove_checkpoint};
+use super::owned::{
+    COMMIT, FIGURES, PART, RESULTS, RUN, UNFINISHED, clear_unfinished, is_figure, remove_checkpoint, remove_pages,
+};
 use crate::table::disk::{Disk, Entry};
 use crate::table::sealed::{self, SealError};
 use serde::{Deserialize, Serialize};
@@ -87,6 +89,7 @@ impl Commit {
         for name in self.last.iter().filter(|name| !self.files.contains(name)) {
             disk.remove(&folder.join(name))?;
         }
+        remove_pages(disk, folder)?;
         for (_, from, to) in &left {
             disk.rename(from, to)?;
         }

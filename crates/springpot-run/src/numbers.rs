@@ -1,17 +1,17 @@
 //! Numbers and counts as a reader wants them.
 
 /// Six significant digits, without trailing zeros.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     digits(value, 5)
 }
 
 /// Five significant digits, for tables.
-pub(crate) fn brief(value: f64) -> String {
+pub fn brief(value: f64) -> String {
     digits(value, 4)
 }
 
 /// Two significant digits, for shares and errors.
-pub(crate) fn rough(value: f64) -> String {
+pub fn rough(value: f64) -> String {
     digits(value, 1)
 }
 
@@ -22,7 +22,7 @@ fn digits(value: f64, behind: usize) -> String {
 }
 
 /// `1 row`, `2 rows`.
-pub(crate) fn count(number: impl TryInto<u64>, one: &str, many: &str) -> String {
+pub fn count(number: impl TryInto<u64>, one: &str, many: &str) -> String {
     match number.try_into().unwrap_or(u64::MAX) {
         1 => format!("1 {one}"),
         number => format!("{number} {many}"),
@@ -30,7 +30,7 @@ pub(crate) fn count(number: impl TryInto<u64>, one: &str, many: &str) -> String 
 }
 
 /// A number with four digits.
-pub(crate) fn four(value: f64) -> String {
+pub fn four(value: f64) -> String {
     short(format!("{value:.3e}").parse().unwrap_or(value))
 }
 

@@ -9,16 +9,21 @@ const SAME: f64 = 1e-12;
 
 /// A part of a law.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Part {
+pub enum Part {
+    /// One of its leaves.
     Leaf(Leaf),
+    /// The same stroke, forces add.
     Parallel(Vec<Part>),
+    /// The same force, strokes add.
     Series(Vec<Part>),
 }
 
 /// A leaf by the names of its parameters.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Leaf {
+pub enum Leaf {
+    /// Its stiffness.
     Spring(String),
+    /// Its coefficient.
     Dashpot(String),
     /// Coefficient and order.
     Springpot(String, String),
@@ -36,7 +41,7 @@ struct Trial {
 
 impl Part {
     /// The parts of a law; `None` where it is not built of any values that are tried.
-    pub(super) fn of(law: &Entry) -> Option<Self> {
+    pub fn of(law: &Entry) -> Option<Self> {
         let (mut values, mut trials) = (Vec::new(), Vec::new());
         let terms = if law.params.iter().any(|param| param.is_list) { 2 } else { 1 };
         for (k, param) in law.params.iter().enumerate() {
@@ -52,7 +57,7 @@ impl Part {
     }
 
     /// The drawing: parts in series beside one another, parallel ones below one another; `None` where it is too wide, or one leaf.
-    pub(super) fn drawing(&self) -> Option<String> {
+    pub fn drawing(&self) -> Option<String> {
         if let Self::Leaf(_) = self {
             return None;
         }
@@ -77,7 +82,7 @@ impl Part {
     }
 
     /// K*(ω) as a formula; `None` where it is not linear.
-    pub(super) fn modulus(&self) -> Option<String> {
+    pub fn modulus(&self) -> Option<String> {
         match self {
             Self::Leaf(Leaf::Spring(k)) => Some(k.clone()),
             Self::Leaf(Leaf::Dashpot(c)) => Some(format!("{}·iω", factor(c))),
@@ -99,7 +104,7 @@ impl Part {
     }
 
     /// The force that a step of the stroke to 1 leaves, as a formula; `None` where it is not linear, or there is no closed form.
-    pub(super) fn relaxation(&self) -> Option<String> {
+    pub fn relaxation(&self) -> Option<String> {
         match self {
             Self::Leaf(Leaf::Spring(k)) => Some(k.clone()),
             Self::Leaf(Leaf::Dashpot(c)) => Some(format!("{}·δ(t)", factor(c))),

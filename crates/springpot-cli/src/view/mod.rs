@@ -1,0 +1,43 @@
+//! `springpot view`: the page that shows results in motion.
+
+mod http;
+mod serve;
+
+use crate::arguments::ViewOptions;
+use crate::pages::{refused, written};
+use crate::{Ending, printed, terminal};
+use springpot_report::page::View;
+use springpot_run::table::disk::Disk;
+use springpot_run::{Results, ResultsError, VIEW_PAGE};
+use std::path::{Path, PathBuf};
+
+pub(crate) fn view(options: &ViewOptions, disk: &Disk) -> Ending {
+    if options.serve {
+        return serve::serve(options, disk);
+    }
+    let out = options.out.clone().unwrap_or_else(|| options.results.join(VIEW_PAGE));
+    match page(&options.results, &options.cases, &out, disk) {
+        Ok(()) => printed(terminal::try_print(&format!("{}\n", out.display()))),
+        Err(ending) => ending,
+    }
+}
+
+/// The page of a run that has just ended, in its folder.
+pub(crate) fn after_run(results: &Path, disk: &Disk) -> Result<PathBuf, Ending> {
+    let out = results.join(VIEW_PAGE);
+    page(results, &[], &out, disk).map(|()| out)
+}
+
+fn page(results: &Path, cases: &[usize], out: &Path, disk: &Disk) -> Result<(), Ending> {
+    match of_results(results, cases, disk) {
+        Ok(view) => written(out, &view.html()),
+        Err(error) => Err(refused(&error)),
+    }
+}
+
+fn of_results(results: &Path, cases: &[usize], disk: &Disk) -> Result<View, ResultsError> {
+    let results = Results::open(disk, results)?;
+    let missing = cases.iter().find(|case| !results.has_rows(**case)).copied();
+    missing.map_or(Ok(()), |case| Err(ResultsError::NoCase(case)))?;
+    springpot_run::view(&results, cases)
+}

@@ -1,0 +1,150 @@
+//! `springpot view --serve`: the page from a server on this machine, with the rows of a run under way as they come (server-sent events).
+
+use super::http::{self, Bad, Request};
+use super::of_results;
+use crate::arguments::ViewOptions;
+use crate::pages::refused;
+use crate::{Ending, diagnostic, terminal};
+use serde_json::{Value, json};
+use springpot_report::page::ViewCase;
+use springpot_run::table::disk::Disk;
+use springpot_run::{NewRows, News, Underway};
+use std::io::{self, Write as _};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Where the rows are asked for.
+const EVENTS: &str = "/events";
+/// Connections at a time.
+const MOST: usize = 32;
+/// Between two looks at the rows.
+const PAUSE: Duration = Duration::from_millis(100);
+/// A line that says nothing is sent after so long, to see whether somebody listens.
+const QUIET: Duration = Duration::from_secs(5);
+
+/// What is served.
+#[derive(Debug)]
+struct Server {
+    options: ViewOptions,
+    disk: Disk,
+    open: AtomicUsize,
+}
+
+pub(super) fn serve(options: &ViewOptions, disk: &Disk) -> Ending {
+    // What cannot be shown is said now.
+    if Underway::open(disk, &options.results).is_none()
+        && let Err(error) = of_results(&options.results, &options.cases, disk)
+    {
+        return refused(&error);
+    }
+    let port = options.port.unwrap_or(0);
+    let bound =
+        TcpListener::bind((Ipv4Addr::LOCALHOST, port)).and_then(|listener| Ok((listener.local_addr()?, listener)));
+    let (address, listener) = match bound {
+        Ok(bound) => bound,
+        Err(error) => {
+            let help = "leave --port out, and a free one is taken".to_owned();
+            diagnostic::error_with_help(format!("port {port} of this machine cannot be listened on: {error}"), help);
+            return Ending::Failed;
+        }
+    };
+    terminal::print(&format!("http://{address}/\n"));
+    terminal::print_error("Ctrl-C ends it\n");
+    let server = Arc::new(Server { options: options.clone(), disk: disk.clone(), open: AtomicUsize::new(0) });
+    for stream in listener.incoming().filter_map(Result::ok) {
+        let server = server.clone();
+        if server.open.fetch_add(1, Ordering::Relaxed) >= MOST {
+            server.open.fetch_sub(1, Ordering::Relaxed);
+            continue;
+        }
+        let answer = move || {
+            // A browser that goes away is no error.
+            let _ = server.answer(stream);
+            server.open.fetch_sub(1, Ordering::Relaxed);
+        };
+        if thread::Builder::new().spawn(answer).is_err() {
+            break;
+        }
+    }
+    Ending::Failed
+}
+
+impl Server {
+    fn answer(&self, mut stream: TcpStream) -> io::Result<()> {
+        let Request { path, wants_body, last_event } = match http::request(&stream)? {
+            Ok(request) => request,
+            Err(Bad(status)) => return http::answer(&mut stream, status, "text/plain", status.as_bytes(), true),
+        };
+        let results: &Path = &self.options.results;
+        let underway = Underway::open(&self.disk, results);
+        match (path.as_str(), underway) {
+            ("/", Some(run)) => html(&mut stream, "200 OK", &run.view(EVENTS).html(), wants_body),
+            ("/", None) => match of_results(results, &self.options.cases, &self.disk) {
+                Ok(view) => html(&mut stream, "200 OK", &view.html(), wants_body),
+                Err(error) => {
+                    let text = error.to_string();
+                    http::answer(&mut stream, "404 Not Found", "text/plain", text.as_bytes(), wants_body)
+                }
+            },
+            (EVENTS, Some(run)) if wants_body => {
+                let sent = last_event.and_then(|id| id.parse().ok()).unwrap_or(0);
+                events(&mut stream, &run, sent)
+            }
+            // It has ended in between.
+            (EVENTS, None) if wants_body => {
+                http::begin_events(&mut stream)?;
+                let status = of_results(results, &[], &self.disk).map_or("interrupted".to_owned(), |view| view.status);
+                http::event(&mut stream, &json!({ "status": status }).to_string(), None)
+            }
+            _ => http::answer(&mut stream, "404 Not Found", "text/plain", b"404 Not Found", wants_body),
+        }
+    }
+}
+
+fn html(stream: &mut TcpStream, status: &str, page: &str, wants_body: bool) -> io::Result<()> {
+    http::answer(stream, status, "text/html", page.as_bytes(), wants_body)
+}
+
+/// Sends rows as they come, until the run or the connection ends.
+fn events(stream: &mut TcpStream, run: &Underway, sent: u64) -> io::Result<()> {
+    http::begin_events(stream)?;
+    let mut tail = run.tail(sent)?;
+    let mut spoken = Instant::now();
+    loop {
+        let news = tail.news()?;
+        if news.is_empty() {
+            if spoken.elapsed() > QUIET {
+                stream.write_all(b":\n\n")?;
+                spoken = Instant::now();
+            }
+            thread::sleep(PAUSE);
+            continue;
+        }
+        spoken = Instant::now();
+        for one in news {
+            match one {
+                News::Case(case) => {
+                    let ViewCase { index, name, parameters, scene, .. } = *case;
+                    let case = json!({ "index": index, "name": name, "parameters": parameters, "scene": scene });
+                    http::event(stream, &json!({ "cases": [case] }).to_string(), None)?;
+                }
+                News::Rows(NewRows { case, rows, position }) => {
+                    let rows: Vec<Value> = rows.iter().map(|row| row.iter().copied().map(number).collect()).collect();
+                    http::event(stream, &json!({ "case": case, "rows": rows }).to_string(), Some(position))?;
+                }
+                News::Ended(status) => {
+                    return http::event(stream, &json!({ "status": status }).to_string(), None);
+                }
+            }
+        }
+    }
+}
+
+/// An empty field is null.
+fn number(value: f64) -> Value {
+    serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number)
+}

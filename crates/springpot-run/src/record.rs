@@ -1,0 +1,148 @@
+//! run.json, read again.
+
+use crate::labels;
+use crate::table::disk::Disk;
+use serde::Deserialize;
+use serde_json::{Map, Value};
+use springpot::table::Column;
+use springpot_report::scene::{LawText, Scene};
+use springpot_scenario::Metric;
+use std::path::Path;
+
+/// What it says; empty where it says nothing of something.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct Record {
+    pub(crate) status: String,
+    pub(crate) title: Option<String>,
+    pub(crate) versions: Map<String, Value>,
+    columns: Vec<Described>,
+    pub(crate) sweeps: Vec<Sweep>,
+    pub(crate) cases: Vec<Listed>,
+    pub(crate) cases_total: usize,
+    pub(crate) cases_done: usize,
+    pub(crate) cases_failed: usize,
+    pub(crate) steps: u64,
+    pub(crate) wall_time: f64,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) limits: Vec<Value>,
+    pub(crate) ledger: Option<String>,
+    pub(crate) plan: Value,
+    pub(crate) scenario: Option<Recorded>,
+    pub(crate) files: Vec<String>,
+    format: Option<String>,
+    pub(crate) scenes: Vec<Scene>,
+    pub(crate) laws: Vec<LawText>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Described {
+    name: String,
+    #[serde(default)]
+    unit: String,
+    #[serde(default)]
+    meaning: String,
+}
+
+/// What was asked for.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Recorded {
+    pub(crate) name: String,
+    pub(crate) text: String,
+    #[serde(default)]
+    pub(crate) set: Vec<String>,
+    #[serde(default)]
+    pub(crate) sweep: Vec<String>,
+}
+
+/// Parameters that are swept together.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Sweep {
+    pub(crate) parameters: Vec<String>,
+    #[serde(default)]
+    pub(crate) count: usize,
+    /// The values as they were written.
+    #[serde(default)]
+    pub(crate) labels: Vec<String>,
+}
+
+/// A case as it is listed.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct Listed {
+    pub(crate) index: usize,
+    pub(crate) parameters: Map<String, Value>,
+    pub(crate) status: String,
+    pub(crate) error: Option<String>,
+    pub(crate) rows: u64,
+    pub(crate) scene: usize,
+    pub(crate) steps: u64,
+    pub(crate) wall_time: f64,
+    pub(crate) t_reached: Option<f64>,
+    pub(crate) energy_residual: Option<f64>,
+    pub(crate) energy_turned_over: Option<f64>,
+    /// Where they are not those of the first case.
+    pub(crate) metrics: Option<Vec<Metric>>,
+}
+
+impl Record {
+    /// The record in a folder of results; `None` where there is none that can be read.
+    pub(crate) fn read(disk: &Disk, folder: &Path) -> Option<Self> {
+        disk.read(&folder.join("run.json")).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok())
+    }
+
+    /// What the file of the rows is called.
+    pub(crate) fn rows_file(&self) -> String {
+        format!("results.{}", self.format.as_deref().unwrap_or("csv"))
+    }
+
+    /// Unit and meaning of the column of a name; nothing of one that is not known.
+    pub(crate) fn column(&self, name: &str) -> Column {
+        let found = self.columns.iter().find(|column| column.name == name);
+        let (unit, meaning) = found.map_or(("", ""), |column| (&column.unit, &column.meaning));
+        Column::new(name, unit, meaning)
+    }
+
+    /// All columns as the run wrote them, those of swept parameters first.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = Column> {
+        self.columns.iter().map(|column| Column::new(&*column.name, &*column.unit, &*column.meaning))
+    }
+
+    /// Paths of the swept parameters.
+    pub(crate) fn parameters(&self) -> impl Iterator<Item = &String> {
+        self.sweeps.iter().flat_map(|sweep| &sweep.parameters)
+    }
+
+    /// The metrics of the first case.
+    pub(crate) fn metrics(&self) -> Vec<Metric> {
+        serde_json::from_value(self.plan["metrics"].clone()).unwrap_or_default()
+    }
+
+    /// The cases that have rows, in the order of these.
+    pub(crate) fn with_rows(&self) -> Vec<&Listed> {
+        self.cases.iter().filter(|case| case.rows > 0).collect()
+    }
+
+    /// Swept values of a case as a reader wants them, `α = 0.2`; empty where nothing is swept.
+    pub(crate) fn case_name(&self, case: &Listed) -> String {
+        let named = self.parameters().filter_map(|path| {
+            let value = match case.parameters.get(path)? {
+                Value::String(text) => text.clone(),
+                value => value.to_string(),
+            };
+            Some(format!("{} = {value}", labels::parameter(path)))
+        });
+        named.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The version of Springpot that wrote it.
+    pub(crate) fn version(&self) -> &str {
+        self.versions.get("springpot").and_then(Value::as_str).unwrap_or_default()
+    }
+}
+
+/// What results are called: their folder.
+pub(crate) fn name(folder: &Path) -> String {
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
