@@ -35,6 +35,10 @@ fi
 if ! "$venv/bin/python" -c 'import mujoco, pinocchio' 2>/dev/null; then
     pip install --timeout 10 --retries 1 'mujoco>=3.2' 'pin>=3.9' 2>/dev/null || echo "springpot-py: MuJoCo or Pinocchio cannot be had, their tests are skipped"
 fi
+# So are readers of recordings.
+if ! "$venv/bin/python" -c 'import mcap, mcap_ros2' 2>/dev/null; then
+    pip install --timeout 10 --retries 1 'mcap>=1.2' 'mcap-ros2-support>=0.5' 2>/dev/null || echo "springpot-py: mcap cannot be had, its tests are skipped"
+fi
 if [ -n "${WHEEL:-}" ]; then
     pip install --force-reinstall --no-deps "$WHEEL"
 else

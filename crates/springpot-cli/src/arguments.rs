@@ -1,7 +1,7 @@
 //! What the command line takes.
 
 use crate::plot::LookOptions;
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use springpot::fractional::{Definition, Method};
 use springpot_run::sweep::Shard;
 use std::path::PathBuf;
@@ -217,6 +217,18 @@ and the largest difference of every column.
 
 Exit codes: 0 done, 1 the file cannot be written, 2 there are no results.")]
     Report(ReportOptions),
+    /// Write a finished run as a file for other programs: MCAP, glTF.
+    #[command(after_help = "\
+Examples:
+  springpot export results/arm arm.mcap
+  springpot export results/arm soft.glb --case 4
+
+The ending of the file says what it is. .mcap is a recording as ROS 2 makes them, for Foxglove and rosbag2: joint states, frames, the gripper, \
+elements and all other columns of every row, with all digits, and events. .glb and .gltf (the same as text) are the robot with its elements in \
+motion in glTF 2.0, for browsers, Blender and engines of games, with at most 2000 keyframes.
+
+Exit codes: 0 done, 1 the file cannot be written, 2 the results or a case are not there, or the ending is none of these.")]
+    Export(ExportOptions),
     /// Write a scenario as an FMU, which other simulation tools drive (FMI 2.0 for Co-Simulation).
     #[command(after_help = "\
 Examples:
@@ -354,6 +366,19 @@ pub(crate) struct ViewOptions {
     /// Port of the server [default: any that is free]
     #[arg(long, value_name = "N", requires = "serve")]
     pub(crate) port: Option<u16>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportOptions {
+    /// Folder of the results of a run
+    #[arg(value_name = "RESULTS", value_hint = ValueHint::DirPath)]
+    pub(crate) results: PathBuf,
+    /// File to write: .mcap, .glb or .gltf
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) file: PathBuf,
+    /// Case to write, counted from 0 [default: the first that has rows]
+    #[arg(long, value_name = "K")]
+    pub(crate) case: Option<usize>,
 }
 
 #[derive(Debug, Args)]

@@ -85,6 +85,11 @@ pub(crate) fn warning(message: impl Into<String>, help: Option<String>) {
     show(&Shown::plain(Severity::Warning, message.into(), help));
 }
 
+/// Prints what is good to know on stderr.
+pub(crate) fn note(message: impl Into<String>) {
+    show(&Shown::plain(Severity::Advice, message.into(), None));
+}
+
 /// Prints what the robot's files hold that is not used, or lack and is assumed.
 pub(crate) fn robot_warnings(cases: &Cases) {
     springpot_run::robot_warnings(cases).into_iter().for_each(warn);
@@ -107,8 +112,12 @@ fn headline(refusal: &Refusal) -> String {
 
 fn show(shown: &Shown) {
     let styles = if terminal::is_coloured() { ThemeStyles::ansi() } else { ThemeStyles::none() };
-    let characters =
-        ThemeCharacters { error: "error:".into(), warning: "warning:".into(), ..ThemeCharacters::unicode() };
+    let characters = ThemeCharacters {
+        error: "error:".into(),
+        warning: "warning:".into(),
+        advice: "note:".into(),
+        ..ThemeCharacters::unicode()
+    };
     let width = terminal::stderr_width();
     let handler = GraphicalReportHandler::new_themed(GraphicalTheme { characters, styles })
         .with_links(false)

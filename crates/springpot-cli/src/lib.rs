@@ -29,6 +29,7 @@ mod diagnostic;
 mod drawing;
 mod dynamics;
 mod excerpt;
+mod export;
 mod failures;
 mod fmu;
 mod frequency;
@@ -42,12 +43,12 @@ mod mistakes;
 mod modes;
 mod modulus;
 mod output;
-mod pages;
 mod plain;
 mod plot;
 mod progress;
 mod prony;
 mod report;
+mod results;
 mod robot;
 mod run;
 mod signals;
@@ -153,6 +154,7 @@ fn code(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsSt
         Command::Metrics(options) => metrics::metrics(&options, disk),
         Command::View(options) => view::view(&options, disk),
         Command::Report(options) => report::report(&options, disk),
+        Command::Export(options) => export::export(&options, disk),
         Command::Fmu(options) => fmu::fmu(&options),
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),

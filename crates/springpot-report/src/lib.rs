@@ -30,9 +30,12 @@
 
 mod chart;
 mod draw;
+pub mod gltf;
 pub mod page;
+pub mod recording;
 mod robot;
 pub mod scene;
+mod surface;
 
 pub use chart::{Axis, Curve, Panel, Plot, Scale};
 pub use robot::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, Link, RobotDrawing, WORLD};

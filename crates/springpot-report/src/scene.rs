@@ -1,5 +1,9 @@
 //! What a moving picture of a robot is made of: bodies on joints, elements between them, and paths. All numbers are SI, axes are those of the world, z up.
 
+mod pose;
+
+pub use pose::{Drive, Kinematics, Placement};
+
 use crate::robot::ElementSign;
 use serde::{Deserialize, Serialize};
 

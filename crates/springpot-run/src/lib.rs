@@ -32,6 +32,7 @@
 //! ```
 
 mod asked;
+mod export;
 pub mod figures;
 mod finish;
 mod follow;
@@ -52,6 +53,7 @@ mod view;
 mod warning;
 
 pub use asked::{Asked, Planned};
+pub use export::{ExportError, ExportFormat, export};
 pub use finish::Finished;
 pub use follow::{NewRows, News, Tail, Underway};
 pub use prepare::{BeginError, NewRun, Prepared, Surroundings};

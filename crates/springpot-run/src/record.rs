@@ -126,18 +126,27 @@ impl Record {
     /// Swept values of a case as a reader wants them, `α = 0.2`; empty where nothing is swept.
     pub(crate) fn case_name(&self, case: &Listed) -> String {
         let named = self.parameters().filter_map(|path| {
-            let value = match case.parameters.get(path)? {
-                Value::String(text) => text.clone(),
-                value => value.to_string(),
-            };
-            Some(format!("{} = {value}", labels::parameter(path)))
+            Some(format!("{} = {}", labels::parameter(path), written_value(case.parameters.get(path)?)))
         });
         named.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Index of the scene of a case.
+    pub(crate) fn scene_of(&self, case: &Listed) -> usize {
+        if case.scene < self.scenes.len() { case.scene } else { 0 }
     }
 
     /// The version of Springpot that wrote it.
     pub(crate) fn version(&self) -> &str {
         self.versions.get("springpot").and_then(Value::as_str).unwrap_or_default()
+    }
+}
+
+/// A swept value as text.
+pub(crate) fn written_value(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        value => value.to_string(),
     }
 }
 

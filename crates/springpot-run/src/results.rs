@@ -34,6 +34,17 @@ pub enum ResultsError {
     /// A case that was asked for has no row.
     #[error("case {0} has no row")]
     NoCase(usize),
+    /// There is no row at all.
+    #[error("no case of {} has a row", .0.display())]
+    NoRow(PathBuf),
+    /// The rows lack a column.
+    #[error("the rows of {} have no column `{column}`", folder.display())]
+    NoColumn {
+        /// The folder.
+        folder: PathBuf,
+        /// The column.
+        column: &'static str,
+    },
 }
 
 /// The results in a folder.
@@ -80,6 +91,16 @@ impl Results {
     /// Whether the case of that index has rows.
     pub fn has_rows(&self, index: usize) -> bool {
         self.record.cases.iter().any(|case| case.index == index && case.rows > 0)
+    }
+
+    /// Indices of the cases that have rows.
+    pub fn cases_with_rows(&self) -> Vec<usize> {
+        self.record.with_rows().iter().map(|case| case.index).collect()
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// What they are called.

@@ -102,7 +102,7 @@ pub(crate) fn shown(record: &Record, case: &Listed) -> ViewCase {
         parameters: case.parameters.iter().map(|(path, value)| (path.clone(), value.clone())).collect(),
         status: case.status.clone(),
         error: case.error.clone(),
-        scene: if case.scene < record.scenes.len() { case.scene } else { 0 },
+        scene: record.scene_of(case),
         ..ViewCase::default()
     }
 }

@@ -4,11 +4,11 @@ mod http;
 mod serve;
 
 use crate::arguments::ViewOptions;
-use crate::pages::{refused, written};
+use crate::results::{self, refused, write_page};
 use crate::{Ending, printed, terminal};
 use springpot_report::page::View;
+use springpot_run::VIEW_PAGE;
 use springpot_run::table::disk::Disk;
-use springpot_run::{Results, ResultsError, VIEW_PAGE};
 use std::path::{Path, PathBuf};
 
 pub(crate) fn view(options: &ViewOptions, disk: &Disk) -> Ending {
@@ -29,15 +29,10 @@ pub(crate) fn after_run(results: &Path, disk: &Disk) -> Result<PathBuf, Ending> 
 }
 
 fn page(results: &Path, cases: &[usize], out: &Path, disk: &Disk) -> Result<(), Ending> {
-    match of_results(results, cases, disk) {
-        Ok(view) => written(out, &view.html()),
-        Err(error) => Err(refused(&error)),
-    }
+    write_page(out, &of_results(results, cases, disk)?.html())
 }
 
-fn of_results(results: &Path, cases: &[usize], disk: &Disk) -> Result<View, ResultsError> {
-    let results = Results::open(disk, results)?;
-    let missing = cases.iter().find(|case| !results.has_rows(**case)).copied();
-    missing.map_or(Ok(()), |case| Err(ResultsError::NoCase(case)))?;
-    springpot_run::view(&results, cases)
+fn of_results(folder: &Path, cases: &[usize], disk: &Disk) -> Result<View, Ending> {
+    let results = results::open(folder, cases, disk)?;
+    springpot_run::view(&results, cases).map_err(|error| refused(&error))
 }

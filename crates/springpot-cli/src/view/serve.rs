@@ -3,7 +3,6 @@
 use super::http::{self, Bad, Request};
 use super::of_results;
 use crate::arguments::ViewOptions;
-use crate::pages::refused;
 use crate::{Ending, diagnostic, terminal};
 use serde_json::{Value, json};
 use springpot_report::page::ViewCase;
@@ -37,9 +36,9 @@ struct Server {
 pub(super) fn serve(options: &ViewOptions, disk: &Disk) -> Ending {
     // What cannot be shown is said now.
     if Underway::open(disk, &options.results).is_none()
-        && let Err(error) = of_results(&options.results, &options.cases, disk)
+        && let Err(ending) = of_results(&options.results, &options.cases, disk)
     {
-        return refused(&error);
+        return ending;
     }
     let port = options.port.unwrap_or(0);
     let bound =
@@ -85,10 +84,8 @@ impl Server {
             ("/", Some(run)) => html(&mut stream, "200 OK", &run.view(EVENTS).html(), wants_body),
             ("/", None) => match of_results(results, &self.options.cases, &self.disk) {
                 Ok(view) => html(&mut stream, "200 OK", &view.html(), wants_body),
-                Err(error) => {
-                    let text = error.to_string();
-                    http::answer(&mut stream, "404 Not Found", "text/plain", text.as_bytes(), wants_body)
-                }
+                // Why, stands on the terminal.
+                Err(_) => http::answer(&mut stream, "404 Not Found", "text/plain", b"no results", wants_body),
             },
             (EVENTS, Some(run)) if wants_body => {
                 let sent = last_event.and_then(|id| id.parse().ok()).unwrap_or(0);
@@ -97,7 +94,8 @@ impl Server {
             // It has ended in between.
             (EVENTS, None) if wants_body => {
                 http::begin_events(&mut stream)?;
-                let status = of_results(results, &[], &self.disk).map_or("interrupted".to_owned(), |view| view.status);
+                let status =
+                    of_results(results, &[], &self.disk).map_or_else(|_| "interrupted".to_owned(), |view| view.status);
                 http::event(&mut stream, &json!({ "status": status }).to_string(), None)
             }
             _ => http::answer(&mut stream, "404 Not Found", "text/plain", b"404 Not Found", wants_body),

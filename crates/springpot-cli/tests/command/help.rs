@@ -47,6 +47,7 @@ fn help_is_where_it_is_looked_for() {
         ("check", &["--set <PATH=VALUE>", "--schema", "--quiet"]),
         ("view", &["--case <K,...>", "--out <FILE>", "--serve", "--port <N>"]),
         ("report", &["--out <FILE>"]),
+        ("export", &["--case <K>", "<RESULTS> <FILE>"]),
         ("fmu", &["--set <PATH=VALUE>", "--out <FILE>", "--library <FILE>"]),
         ("info", &["--json", "--floating-base", "--ignore-mimic", "--package-path <DIR>"]),
         (

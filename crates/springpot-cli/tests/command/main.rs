@@ -8,6 +8,7 @@ mod dynamics_refusals;
 mod end_stops;
 mod equation;
 mod events;
+mod export;
 mod failures;
 mod figures;
 mod first_week;
