@@ -1,7 +1,8 @@
-/** Bundles the page into ../assets/viewer.html, one file that needs nothing else. The same sources give the same bytes. */
+/** Bundles the page into viewer.html, one file that needs nothing else. The same sources give the same bytes. Usage: node build.mjs [FOLDER], without it ../assets */
 
 import { createHash } from 'node:crypto';
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
 
@@ -25,7 +26,8 @@ for (const [name, body] of [['script', script], ['style', style]]) {
 const parts = { '@POLICY@': policy, '@STYLE@': style, '@SCRIPT@': script };
 const page = (await readFile(here('src/page.html'), 'utf8')).replace(/@(POLICY|STYLE|SCRIPT)@/g, (name) => parts[name]);
 if (page.split('@DATA@').length !== 2) throw new Error('the place of the data must be there once');
-await mkdir(here('../assets'), { recursive: true });
-await writeFile(here('../assets/viewer.html'), page);
-await writeFile(here('../assets/THREE-LICENSE.txt'), await readFile(here('node_modules/three/LICENSE'), 'utf8'));
-console.log(`assets/viewer.html: ${Math.round(Buffer.byteLength(page) / 1000)} kB`);
+const folder = process.argv[2] ?? here('../assets');
+await mkdir(folder, { recursive: true });
+await writeFile(join(folder, 'viewer.html'), page);
+await writeFile(join(folder, 'THREE-LICENSE.txt'), await readFile(here('node_modules/three/LICENSE'), 'utf8'));
+console.log(`viewer.html: ${Math.round(Buffer.byteLength(page) / 1000)} kB`);

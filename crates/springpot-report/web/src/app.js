@@ -2,7 +2,7 @@
 
 import { caseColor } from './colors.js';
 import { CaseList, MOST_SHOWN } from './cases.js';
-import { byId, h, setText } from './dom.js';
+import { byId, h, plain, setText, title } from './dom.js';
 import { ElementShapes } from './elements.js';
 import { extent } from './extent.js';
 import { follow } from './follow.js';
@@ -147,9 +147,9 @@ export class App {
   /** Title, badge and notes. */
   head() {
     const { data } = this;
-    document.title = `${data.title.slice(0, 120)} – Springpot`;
+    document.title = `${plain(data.title.slice(0, 120))} – Springpot`;
     setText(byId('title'), data.title);
-    byId('title').title = data.title.slice(0, 200);
+    byId('title').title = title(data.title);
     setText(byId('subtitle'), [data.name !== data.title ? data.name : '', data.version && `Springpot ${data.version}`].filter(Boolean).join(' · '));
     this.badge();
     byId('notes-panel').hidden = !data.notes.length;

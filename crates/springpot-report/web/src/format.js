@@ -1,5 +1,7 @@
 /** @file Numbers, units, ticks and formulas as text. */
 
+import { plain } from './dom.js';
+
 /** Short but honest: four digits, exponents only where they help. @param {number} v @param {number} digits */
 export function number(v, digits = 4) {
   if (!Number.isFinite(v)) return '–';
@@ -35,7 +37,7 @@ export const label = (column) => (unitText(column.unit) ? `${column.name} / ${un
 /** Writes a formula into a node: Greek letters, raised exponents and lowered indices. Only text nodes are made. @param {Element} node @param {string} text */
 export function formula(node, text) {
   node.replaceChildren();
-  const cut = text.length > 2000 ? `${text.slice(0, 2000)}…` : text;
+  const cut = plain(text.length > 2000 ? `${text.slice(0, 2000)}…` : text);
   const pattern = /([_^])(\([^()]{1,40}\)|[A-Za-z0-9,]+)|([A-Za-z]+)|([^A-Za-z_^]+|[_^])/g;
   for (const [, mark, small, word, rest] of cut.matchAll(pattern)) {
     if (mark) {

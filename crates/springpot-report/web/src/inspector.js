@@ -68,16 +68,18 @@ export class Inspector {
           const key = `element.${name}.${p.name}`, swept = one && key in one.parameters, value = swept ? one.parameters[key] : p.value;
           const head = h('th', { scope: 'row' });
           formula(head, p.name);
-          return h('tr', { class: swept ? 'swept' : '' }, head, h('td', { text: typeof value === 'number' ? number(value) : String(value) }), h('td', { class: 'unit', text: unitText(p.unit) + (swept ? ' · swept' : '') }));
+          return h('tr', { class: swept ? 'swept' : '' }, head, h('td', { text: typeof value === 'number' ? number(value, 6) : String(value) }), h('td', { class: 'unit', text: unitText(p.unit) + (swept ? ' · swept' : '') }));
         }))));
       }
     }
-    const columns = data.columns.map((column, i) => ({ ...column, i })).filter((column) => column.name.startsWith(`${name}.`) && column.name.length < name.length + 60);
+    const own = data.columns.map((column, i) => ({ ...column, i, short: column.name.slice(name.length + 1) })).filter((column) => column.name.startsWith(`${name}.`));
+    // Generalized forces come last, and only on joints that the element acts on.
+    const columns = [...own.filter((column) => !column.short.startsWith('Q.')), ...own.filter((column) => column.short.startsWith('Q.') && one && (one.status === 'running' || this.app.range(one, column.i).some((v) => Math.abs(v) > 0)))];
     if (columns.length) {
       node.append(h('table', { class: 'live' }, h('caption', { text: 'At this moment' }), h('tbody', {}, ...columns.slice(0, 60).map((column) => {
         const cell = h('td');
         this.values.push({ cell, column: column.i });
-        return h('tr', {}, h('th', { scope: 'row', text: column.name.slice(name.length + 1), title: title(column.meaning || column.name) }), cell, h('td', { class: 'unit', text: unitText(column.unit) }));
+        return h('tr', {}, h('th', { scope: 'row', text: column.short.length > 60 ? `${column.short.slice(0, 60)}…` : column.short, title: title(column.meaning || column.name) }), cell, h('td', { class: 'unit', text: unitText(column.unit) }));
       }))));
     }
     const stored = data.column(`${name}.stored`), dissipated = data.column(`${name}.dissipated`);

@@ -21,7 +21,7 @@ addEventListener('unhandledrejection', (event) => fail(event.reason));
 /** What tests may ask and do. @param {App} app */
 const door = (app) => ({
   data: app.data,
-  seek: (t) => { app.seek(t); app.draw(); },
+  seek: (t) => app.seek(t),
   time: () => app.player.time,
   row: () => (app.primary() ? app.primary().rowAt(app.player.time) : 0),
   play: () => app.player.toggle(true),
@@ -29,6 +29,9 @@ const door = (app) => ({
   playing: () => app.player.playing,
   gripper: (i) => placed(app, i, (view) => (view.shared.scene.gripper ? Array.from(view.grip) : null)),
   body: (i, name) => placed(app, i, (view) => view.body(name)),
+  line: (i, name) => placed(app, i, (view) => Array.from(view.elements.find((each) => each.name === name)?.line ?? [])),
+  drawn: () => app.drawn,
+  drawnGripper: (i) => Array.from(app.views.get(app.data.cases[i])?.grip ?? []),
   elementColor: (i, name) => placed(app, i, (view) => {
     const element = view.elements.find((each) => each.name === name);
     return element ? app.colors.map.hex[element.entry] : null;

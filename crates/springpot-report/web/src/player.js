@@ -1,6 +1,14 @@
 /** @file The time that is shown, and how it goes on. */
 
-export const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10];
+/** Speeds around the one that fits the run, and real time. @param {number} own */
+export function speeds(own) {
+  const list = new Set([1, own]);
+  for (let k = Math.floor(Math.log10(own)) - 1; k <= Math.log10(own) + 1; k++) for (const m of [1, 2, 5]) {
+    const v = Number(`${m}e${k}`);
+    if (v >= 0.0999 * own && v <= 10.01 * own) list.add(v);
+  }
+  return [...list].sort((a, b) => a - b);
+}
 
 export class Player {
   /** @param {() => import('./data.js').Case[]} cases that are shown */

@@ -2,7 +2,7 @@
 
 import { columnColor, DASHES } from './colors.js';
 import { free, ordered, widen } from './curve.js';
-import { h, title } from './dom.js';
+import { h, plain, title } from './dom.js';
 import { label, number, powerText, ticks, unitText } from './format.js';
 
 const LEFT = 54, RIGHT = 14, TOP = 20, BOTTOM = 36;
@@ -408,7 +408,7 @@ function line(g, x0, y0, x1, y1) {
 
 /** Cuts a text to a width. */
 function clip(g, text, width) {
-  if (text.length > 200) text = text.slice(0, 200);
+  text = plain(text.slice(0, 200));
   if (g.measureText(text).width <= width) return text;
   let n = text.length;
   while (n > 1 && g.measureText(`${text.slice(0, n)}…`).width > width) n = Math.floor(n * 0.85);

@@ -31,7 +31,7 @@ export class Stats {
     const round = (v) => Math.round(v * 1000) / 1000;
     return {
       count: this.count,
-      scriptMs: { mean: round(mean(sorted)), max: round(sorted[n - 1] ?? 0), p95: round(sorted[Math.floor(0.95 * (n - 1))] ?? 0) },
+      scriptMs: { median: round(sorted[n >> 1] ?? 0), mean: round(mean(sorted)), max: round(sorted[n - 1] ?? 0), p95: round(sorted[Math.floor(0.95 * (n - 1))] ?? 0) },
       fps: gaps.length ? Math.round(10000 / mean(gaps)) / 10 : 0,
     };
   }

@@ -2,7 +2,7 @@
 
 import { byId, h, setText, title } from './dom.js';
 import { fixed, number } from './format.js';
-import { SPEEDS } from './player.js';
+import { speeds } from './player.js';
 
 const MOST_MARKS = 120;
 
@@ -33,11 +33,10 @@ export class Transport {
     this.loop.setAttribute('aria-pressed', String(on));
   }
 
-  /** Speeds to choose from; the one that fits the run is among them. */
+  /** Speeds to choose from. */
   speeds() {
     const { player } = this.app, own = player.speed;
-    const list = SPEEDS.includes(own) ? SPEEDS : [...SPEEDS, own].sort((a, b) => a - b);
-    this.speed.replaceChildren(...list.map((v) => h('option', { value: String(v), text: `${number(v, 2)}×`, selected: v === own })));
+    this.speed.replaceChildren(...speeds(own).map((v) => h('option', { value: String(v), text: `${number(v, 2)}×`, selected: v === own })));
   }
 
   /** @param {number} by +1 or −1 */
@@ -55,7 +54,7 @@ export class Transport {
     this.slider.disabled = !(span > 0);
     // As many digits as rows are apart.
     const one = this.app.primary(), apart = one && one.rows > 1 ? span / (one.rows - 1) : span;
-    this.digits = Math.min(Math.max(Math.ceil(-Math.log10(apart || 1) + 0.3), 2), 6);
+    this.digits = apart >= 0.5 ? 0 : Math.min(Math.max(Math.ceil(-Math.log10(apart || 0.1) + 0.3), 2), 6);
     this.total = fixed(player.end, Math.min(this.digits, 3));
     this.readout.style.setProperty('--chars', String(fixed(player.end, this.digits).length + this.total.length + 5));
     const events = (one?.events ?? []).slice(0, MOST_MARKS);
