@@ -39,6 +39,9 @@ RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 step "tests"
 cargo test --workspace --quiet
 
+step "pages in a browser"
+crates/springpot-report/web/check.sh
+
 step "engines in C and FMUs"
 crates/springpot-capi/check.sh
 
