@@ -199,6 +199,10 @@ def runs(folder: Path) -> None:
     largest: float = run.metrics["largest"]
     table: dict[str, NDArray[Any]] = grid.table()
     files: list[str] = run.save(folder / "run", format="npz", figures=False)
+    page: Path = run.view(folder / "view.html", cases=[0], open=False)
+    report: Path = run.report(folder / "report.html", other=run, open=False)
+    notes: list[str] = run.export(folder / "run.glb", case=0)
+    print(page, report, notes)
     print(told, force, column, called, failed, said, words, failures, first, summary, row, some, largest, table, files)
     if find_spec("pandas"):
         print(run.to_pandas().shape, events.to_pandas().shape)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the page anew, makes pages of runs with the command itself, and uses them in a browser. SPRINGPOT names the command, BROWSER the browser.
+# Builds the page anew, makes pages, reports and models of runs with the command itself, uses them in a browser and validates the models. SPRINGPOT names the command, BROWSER the browser.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -46,12 +46,33 @@ page() { # NAME SCENARIO; what a run warns of is not about pages
     mv "$out/view.html" "$tmp/pages/$1.html"
     [ "$out" = "$tmp/pages/$1" ] || mv "$out" "$tmp/pages/$1"
 }
-for name in falling_piezo piezo_order point_to_point torsional_coupling bumper foam_pad panda_drop panda_strut_and_strap tendon_finger flyball_governor; do
+report() { # NAME SCENARIO [BESIDE]; with the scenario's figures, and compared with a run that came before
+    springpot run "$2" --out "$tmp/reports/$1" --quiet 2>"$tmp/warnings" || { cat "$tmp/warnings" >&2; exit 1; }
+    springpot report "$tmp/reports/$1" >/dev/null
+    if [ -n "${3:-}" ]; then springpot report "$tmp/reports/$1" "$tmp/reports/$3" >/dev/null; fi
+}
+model() { # NAME
+    springpot export "$tmp/pages/$1" "$tmp/models/$1.glb" >/dev/null 2>&1 && springpot export "$tmp/pages/$1" "$tmp/models/$1.gltf" >/dev/null 2>&1
+}
+for name in falling_piezo piezo_order point_to_point torsional_coupling bumper panda_drop tendon_finger; do
     page "$name" "$repository/scenarios/$name.toml"
 done
 page hostile "$(node test/hostile.mjs "$tmp/hostile")"
 page humanoid "$(node test/humanoid.mjs "$tmp/humanoid")"
+for name in panda_strut_and_strap point_to_point bumper piezo_stack; do
+    report "$name" "$repository/scenarios/$name.toml"
+done
+report thermoviscoelastic_order "$repository/scenarios/thermoviscoelastic_order.toml" panda_strut_and_strap
+report hostile "$tmp/hostile/$(ls "$tmp/hostile" | grep '\.toml$')" thermoviscoelastic_order
+mkdir "$tmp/models"
+for name in falling_piezo panda_drop tendon_finger torsional_coupling humanoid; do
+    model "$name"
+done
 
+REPORTS="$tmp/reports" node --test --test-reporter=spec test/report.test.mjs >"$tmp/tests" || { cat "$tmp/tests" >&2; exit 1; }
+grep -E '^ℹ (tests|pass|fail)' "$tmp/tests"
+MODELS="$tmp/models" node --test --test-reporter=spec test/gltf.test.mjs >"$tmp/tests" || { cat "$tmp/tests" >&2; exit 1; }
+grep -E '^ℹ (tests|pass|fail)' "$tmp/tests"
 PAGES="$tmp/pages" node --test --test-reporter=spec test/pages.test.mjs >"$tmp/tests" || { cat "$tmp/tests" >&2; exit 1; }
 grep -E 'per frame|^ℹ (tests|pass|fail|skipped|duration)' "$tmp/tests"
 echo "pages in a browser: all checks passed"

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import os
+import pathlib
+import tempfile
 import warnings as _warnings
+import webbrowser
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -16,6 +20,7 @@ from ._progress import Progress, shown
 from ._scenario import Scenario
 from ._springpot import Study
 from ._springpot import Case as _Case
+from ._springpot import export_bytes, report_page, view_page
 from ._sweeps import sweeps_of
 from ._tables import Metrics, Rows
 
@@ -250,6 +255,50 @@ class Run:
         files: list[str] = told["files"]
         return files
 
+    def view(
+        self, out: str | os.PathLike[str] | None = None, *, cases: Sequence[int] = (), open: bool | None = None
+    ) -> pathlib.Path:
+        """Writes the page that shows the run in motion, one HTML file that needs no network, and opens it in a browser.
+
+        ``out``: the file, default a new temporary one; ``cases``: indices, default the first twelve; ``open``: whether a browser shows it, default
+        where ``out`` is left out. Gives the path of the file."""
+        with self._saved(figures=False) as folder:
+            html = view_page(folder, list(cases))
+        return _page(html, "view", out, open)
+
+    def report(
+        self, out: str | os.PathLike[str] | None = None, *, other: Run | None = None, open: bool | None = None
+    ) -> pathlib.Path:
+        """Writes the page that says what the run was and what came of it, to be read and printed; with ``other``, how that run differs.
+
+        ``out``, ``open`` and what it gives: as ``view``."""
+        with self._saved(figures=other is None, name="first") as folder:
+            if other is None:
+                html = report_page(folder, None)
+            else:
+                with other._saved(figures=False, name="second") as second:
+                    html = report_page(folder, second)
+        return _page(html, "report", out, open)
+
+    def export(self, file: str | os.PathLike[str], *, case: int | None = None) -> list[str]:
+        """Writes a case as a file for other programs: a recording ``.mcap`` (ROS 2, Foxglove), a moving model ``.glb`` or ``.gltf`` (glTF 2.0).
+
+        ``case``: its index, default the first that has rows. Gives what is to be known of the file, a clause each."""
+        if case is None:
+            case = next((case.index for case in self._cases if case._case.rows), 0)
+        with self._saved(figures=False) as folder:
+            data, notes = export_bytes(folder, case, file)
+        pathlib.Path(file).write_bytes(data)
+        return notes
+
+    @contextlib.contextmanager
+    def _saved(self, figures: bool, name: str = "run") -> Iterator[str]:
+        """Its results in a folder for a while."""
+        with tempfile.TemporaryDirectory(prefix="springpot-") as place:
+            folder = os.path.join(place, name)
+            self._study.write(folder, cases=[case._case for case in self._cases], format="csv", figures=figures)
+            yield folder
+
     def plot(
         self, y: str | Sequence[str], x: str = "t", *, cases: Sequence[int] | None = None, ax: matplotlib.axes.Axes | None = None
     ) -> matplotlib.axes.Axes:
@@ -259,6 +308,19 @@ class Run:
         from ._plot import plot
 
         return plot(self, [y] if isinstance(y, str) else list(y), x, cases, ax)
+
+
+def _page(html: str, name: str, out: str | os.PathLike[str] | None, show: bool | None) -> pathlib.Path:
+    """Writes a page, and shows it where that is wanted."""
+    if out is None:
+        # It stays: a browser may read it any time.
+        path = pathlib.Path(tempfile.mkdtemp(prefix="springpot-")) / f"{name}.html"
+    else:
+        path = pathlib.Path(out)
+    path.write_text(html, encoding="utf-8")
+    if show if show is not None else out is None:
+        webbrowser.open(path.resolve().as_uri())
+    return path
 
 
 def run(

@@ -1,6 +1,7 @@
-//! Runs of scenarios: a study that knows its cases, cases that were run, and results written as the command writes them.
+//! Runs of scenarios: a study that knows its cases, cases that were run, and results written as the command writes them, with their pages.
 
 mod case;
+mod pages;
 mod source;
 mod study;
 
@@ -10,5 +11,5 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<case::Case>()?;
     module.add_class::<case::Column>()?;
     module.add_class::<study::Study>()?;
-    Ok(())
+    pages::register(module)
 }

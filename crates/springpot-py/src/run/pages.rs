@@ -1,0 +1,60 @@
+//! Pages and files of results in a folder, as the command makes them.
+
+use crate::error::{springpot_error, value_error};
+use pyo3::prelude::*;
+use springpot_run::table::disk::Disk;
+use springpot_run::{ExportError, ExportFormat, Results};
+use std::path::{Path, PathBuf};
+
+fn open(py: Python<'_>, folder: &Path) -> PyResult<Results> {
+    Results::open(&Disk::default(), folder).map_err(|error| springpot_error(py, error))
+}
+
+/// The page that shows results in motion.
+#[pyfunction]
+fn view_page(py: Python<'_>, folder: PathBuf, cases: Vec<usize>) -> PyResult<String> {
+    let results = open(py, &folder)?;
+    if let Some(missing) = cases.iter().find(|case| !results.has_rows(**case)) {
+        return Err(value_error(format!("case {missing} has no row")));
+    }
+    let html = py.detach(|| springpot_run::view(&results, &cases).map(|view| view.html()));
+    html.map_err(|error| springpot_error(py, error))
+}
+
+/// The report of results, or of how those of another run differ from them.
+#[pyfunction]
+fn report_page(py: Python<'_>, folder: PathBuf, other: Option<PathBuf>) -> PyResult<String> {
+    let results = open(py, &folder)?;
+    let other = other.map(|other| open(py, &other)).transpose()?;
+    let report = py.detach(|| {
+        let report = match &other {
+            None => springpot_run::report(&results),
+            Some(other) => springpot_run::comparison(&results, other),
+        };
+        report.map(|report| report.html())
+    });
+    report.map_err(|error| springpot_error(py, error))
+}
+
+/// The bytes of a file for other programs, which the ending of its name tells, and what is to be known of it.
+#[pyfunction]
+fn export_bytes(py: Python<'_>, folder: PathBuf, case: usize, file: PathBuf) -> PyResult<(Vec<u8>, Vec<String>)> {
+    let Some(format) = ExportFormat::of(&file) else {
+        let endings = ExportFormat::ENDINGS.map(|ending| format!(".{ending}")).join(", ");
+        return Err(value_error(format!("the ending of {} names no format; there are {endings}", file.display())));
+    };
+    let results = open(py, &folder)?;
+    let mut bytes = Vec::new();
+    let notes = py.detach(|| springpot_run::export(&results, case, format, &mut bytes));
+    match notes {
+        Ok(notes) => Ok((bytes, notes)),
+        Err(ExportError::Results(error)) => Err(springpot_error(py, error)),
+        Err(ExportError::Write(error)) => Err(error.into()),
+    }
+}
+
+pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(view_page, module)?)?;
+    module.add_function(wrap_pyfunction!(report_page, module)?)?;
+    module.add_function(wrap_pyfunction!(export_bytes, module)?)
+}
