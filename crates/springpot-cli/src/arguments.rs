@@ -169,6 +169,7 @@ Examples:
   springpot plot results/arm strut.force --x strut.stroke --out loop.svg
   springpot plot results/arm strut.force --unit strut.force=kN --y-range 0,2
   springpot plot results/arm results/other strut.force --out both.pdf
+  springpot plot results/orders 'max(strut.force)' --x element.strut.alpha
 
 The cases of a first sweep make curves, those of others panels. \
 Columns may be globs: * stands for any text, ? for one character. \
@@ -301,10 +302,10 @@ pub(crate) struct PlotOptions {
     /// Folder of the results of a run, or its results.csv
     #[arg(value_name = "RESULTS")]
     pub(crate) results: PathBuf,
-    /// Columns to draw; before them further results to draw in the same figure
+    /// Columns to draw, or statistics such as max(COLUMN) over a swept parameter; before them further results to draw in the same figure
     #[arg(value_name = "COLUMN", required = true)]
     pub(crate) y: Vec<String>,
-    /// Column of the abscissa
+    /// Column of the abscissa; of statistics a swept path
     #[arg(long, value_name = "COLUMN", default_value = "t")]
     pub(crate) x: String,
     /// Draw only the cases with this value of a swept parameter; may be given several times

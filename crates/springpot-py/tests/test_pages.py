@@ -1,7 +1,9 @@
-"""Pages and files of runs: view, report, export."""
+"""Pages, figures and files of runs: view, report, figure, export."""
 
 import json
 import re
+import subprocess
+import sys
 import webbrowser
 from pathlib import Path
 
@@ -66,3 +68,36 @@ def test_export(run: sp.Run, tmp_path: Path) -> None:
         run.export(tmp_path / "a.txt")
     with pytest.raises(sp.SpringpotError, match="case 9"):
         run.export(tmp_path / "b.mcap", case=9)
+
+
+def test_figures_are_those_of_the_command(run: sp.Run, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    run.save(folder)
+    for name, figure in run.figures().items():
+        assert figure.svg == (folder / "figures" / f"{name}.svg").read_text(encoding="utf-8")
+        assert figure.png == (folder / "figures" / f"{name}.png").read_bytes()
+    look = ["--size=90mm,60mm", "--y-range=-10,10", "--label=stack.force=pull", "--legend=order"]
+    arguments = ["plot", str(folder), "stack.force", "--unit=stack.force=kN", "--title=A title", *look]
+    for ending in ("svg", "pdf"):
+        subprocess.run([sys.executable, "-m", "springpot", *arguments, f"--out={tmp_path / 'a'}.{ending}"], check=True, stdout=subprocess.PIPE)
+    figure = run.figure(
+        "stack.force", units={"stack.force": "kN"}, title="A title", size=("90mm", "60mm"), y_range=(-10, 10), labels={"stack.force": "pull"}, legend="order"
+    )
+    assert figure.svg == (tmp_path / "a.svg").read_text(encoding="utf-8")
+    assert figure.pdf == (tmp_path / "a.pdf").read_bytes()
+    assert figure.save(tmp_path / "b.pdf").read_bytes() == figure.pdf
+    assert figure._repr_svg_() == figure.svg
+    with pytest.raises(ValueError, match="saved as .svg, .png, .pdf"):
+        figure.save(tmp_path / "b.jpg")
+
+
+def test_statistics_over_a_swept_parameter(run: sp.Run) -> None:
+    figure = run.figure(["max(stack.force)", "rms(stack.force)"], "element.stack.alpha")
+    assert "max of" in figure.svg and "α" in figure.svg
+    for wrong, why in ((["max(stack.force)", "stack.force"], "no statistic"), ("max(stack.farce)", "matches no column"), ("metric(m)", "metrics.csv")):
+        with pytest.raises(ValueError, match=why):
+            run.figure(wrong, "element.stack.alpha")
+    with pytest.raises(ValueError, match="90"):
+        run.figure("stack.force", size=("90", "60"))
+    with pytest.raises(TypeError, match="x_range"):
+        run.figure("stack.force", x_range=3)  # type: ignore[arg-type]

@@ -201,6 +201,8 @@ def runs(folder: Path) -> None:
     files: list[str] = run.save(folder / "run", format="npz", figures=False)
     page: Path = run.view(folder / "view.html", cases=[0], open=False)
     report: Path = run.report(folder / "report.html", other=run, open=False)
+    figure: sp.Figure = run.figure("strut.force", "strut.stroke", units={"strut.stroke": "mm"}, size=("90 mm", "60 mm"), legend=False)
+    print(figure.save(folder / "loop.pdf"), len(figure.svg), len(figure.png), figure.remarks, list(run.figures()))
     notes: list[str] = run.export(folder / "run.glb", case=0)
     print(page, report, notes)
     print(told, force, column, called, failed, said, words, failures, first, summary, row, some, largest, table, files)

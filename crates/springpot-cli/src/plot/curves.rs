@@ -1,7 +1,7 @@
 //! Which columns and cases are drawn, and the curves that they make.
 
 use super::Refused;
-use super::table::Table;
+use super::table::{Sweep, Table};
 use crate::arguments::PlotOptions;
 use springpot::table::Column;
 use springpot_report::Plot;
@@ -97,7 +97,7 @@ impl Places {
 }
 
 /// Columns that a glob matches; at least one.
-fn found(table: &Table, glob: &str) -> Result<Vec<usize>, Refused> {
+pub(super) fn found(table: &Table, glob: &str) -> Result<Vec<usize>, Refused> {
     let found: Vec<usize> = (0..table.columns.len()).filter(|&k| matches(glob, &table.columns[k].name)).collect();
     if found.is_empty() {
         let help = suggest(glob, table.columns.iter().map(|column| column.name.as_str()));
@@ -106,10 +106,10 @@ fn found(table: &Table, glob: &str) -> Result<Vec<usize>, Refused> {
     Ok(found)
 }
 
-type Units = Vec<(String, String, Unit)>;
+pub(super) type Units = Vec<(String, String, Unit)>;
 
 /// Reads `COLUMN=UNIT`.
-fn units(table: &Table, assignments: &[String]) -> Result<Units, Refused> {
+pub(super) fn units(table: &Table, assignments: &[String]) -> Result<Units, Refused> {
     let read = assignments.iter().map(|assignment| {
         let Some((glob, unit)) = assignment.split_once('=') else {
             return Err(Refused::new(format!("--unit {assignment:?} has no `=`"), "write COLUMN=UNIT".to_owned()));
@@ -124,7 +124,7 @@ fn units(table: &Table, assignments: &[String]) -> Result<Units, Refused> {
 }
 
 /// Reads `COLUMN=TEXT`.
-fn own_names(table: &Table, assignments: &[String]) -> Result<Vec<(String, String)>, Refused> {
+pub(super) fn own_names(table: &Table, assignments: &[String]) -> Result<Vec<(String, String)>, Refused> {
     let read = assignments.iter().map(|assignment| {
         let Some((glob, text)) = assignment.split_once('=') else {
             return Err(Refused::new(format!("--label {assignment:?} has no `=`"), "write COLUMN=TEXT".to_owned()));
@@ -135,7 +135,7 @@ fn own_names(table: &Table, assignments: &[String]) -> Result<Vec<(String, Strin
     read.collect()
 }
 
-fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), Refused> {
+pub(super) fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), Refused> {
     let own = Unit::parse(if column.unit.is_empty() { "1" } else { &column.unit }, &|_| None);
     match own {
         Ok(own) if own.dimension() == unit.dimension() => Ok((text.to_owned(), unit.clone())),
@@ -147,7 +147,7 @@ fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), R
 }
 
 /// By result, the value of each sweep that `--where` chooses; a path need not be swept in all of them.
-fn chosen(tables: &[Table], selection: &[String]) -> Result<Vec<Vec<Option<String>>>, Refused> {
+pub(super) fn chosen(tables: &[Table], selection: &[String]) -> Result<Vec<Vec<Option<String>>>, Refused> {
     let mut chosen: Vec<Vec<Option<String>>> = tables.iter().map(|table| vec![None; table.sweeps.len()]).collect();
     for assignment in selection {
         let Some(equals) = equals_sign(assignment) else {
@@ -196,16 +196,10 @@ pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Re
         let (cases, sweeps) = cases(table, places, wanted, &mut count)?;
         read.push((cases, sweeps));
     }
-    let names: Vec<String> = tables.iter().map(Table::name).collect();
-    let source = |at: usize| {
-        let is_alone = names.iter().filter(|name| **name == names[at]).count() == 1;
-        let name = if is_alone { names[at].clone() } else { tables[at].folder.display().to_string() };
-        (tables.len() > 1).then_some(name)
-    };
     let drawn = read.iter().enumerate().flat_map(|(at, (cases, sweeps))| {
         let chosen = &wanted.places[at].chosen;
         let free: Vec<usize> = (0..sweeps.len()).filter(|&k| chosen[k].is_none()).collect();
-        let source = source(at);
+        let source = source(tables, at);
         cases.iter().map(move |case| {
             let value = |&k: &usize| (sweeps[k].0.clone(), sweeps[k].1[case.position[k]].clone());
             let points = case.curves.iter().map(KeptCurve::points).collect();
@@ -216,8 +210,15 @@ pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Re
     Ok(Curves { title, x, y, look, is_marked: false }.plot(drawn))
 }
 
+/// What the results at this place are called, where there are several.
+pub(super) fn source(tables: &[Table], at: usize) -> Option<String> {
+    let is_alone = tables.iter().filter(|table| table.name() == tables[at].name()).count() == 1;
+    let name = if is_alone { tables[at].name() } else { tables[at].folder.display().to_string() };
+    (tables.len() > 1).then_some(name)
+}
+
 /// Title and labels of every sweep.
-type Sweeps = Vec<(String, Vec<String>)>;
+pub(super) type Sweeps = Vec<(String, Vec<String>)>;
 
 /// The points of every case that is drawn, in the order of the rows; `count` are the curves of all results so far.
 fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> Result<(Vec<Case>, Sweeps), Refused> {
@@ -252,12 +253,7 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
             let help = "choose fewer columns, or some of the cases with --where PATH=VALUE".to_owned();
             return Err(Refused::new(message, help));
         }
-        let number = |at: usize| {
-            let field = record.get(at).unwrap_or_default();
-            let text = std::str::from_utf8(field).unwrap_or("?");
-            let value = if text.is_empty() { Some(f64::NAN) } else { text.parse::<f64>().ok() };
-            value.ok_or_else(|| table.no_number(at, line, field))
-        };
+        let number = |at: usize| table.number(record, at, line);
         if let (Some(window), Some(t)) = (wanted.window, places.t)
             && !is_within(window, number(t)?)
         {
@@ -276,9 +272,14 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
         return Err(Refused::new("--window: no row lies in it", "choose times that the run has".to_owned()));
     }
     *count += cases.len() * wanted.y.len();
+    Ok((cases, named(sweeps)))
+}
+
+/// Sweeps with names and values as legends show them.
+pub(super) fn named(sweeps: Vec<Sweep>) -> Sweeps {
     let sweeps = sweeps.into_iter().map(|sweep| {
         let names: Vec<String> = sweep.parameters.iter().map(|path| labels::parameter(path)).collect();
         (names.join(", "), labels::values(&sweep.labels))
     });
-    Ok((cases, sweeps.collect()))
+    sweeps.collect()
 }

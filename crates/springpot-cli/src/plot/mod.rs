@@ -2,6 +2,7 @@
 
 mod curves;
 mod look;
+mod summary;
 mod table;
 
 pub(crate) use self::look::LookOptions;
@@ -10,7 +11,7 @@ use self::curves::Wanted;
 use self::table::Table;
 use crate::arguments::PlotOptions;
 use crate::{Ending, diagnostic, output, printed, terminal};
-use springpot_report::Plot;
+use springpot_report::{Plot, Rendered};
 use springpot_run::figures::bytes;
 use springpot_scenario::FigureFormat;
 use std::fs;
@@ -63,6 +64,12 @@ pub(crate) fn plot(options: &PlotOptions) -> Ending {
     printed(terminal::try_print(&lines))
 }
 
+/// The figure for a program that is no command; else what is wrong, with what would be right.
+pub(crate) fn rendered(options: &PlotOptions) -> Result<Rendered, String> {
+    let refused = |Refused { message, help }| help.map_or(message.clone(), |help| format!("{message} ({help})"));
+    figure(options).map_err(refused)?.plot.render().map_err(|error| format!("the figure is not drawn: {error}"))
+}
+
 fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder)?;
@@ -79,8 +86,10 @@ fn figure(options: &PlotOptions) -> Result<Figure, Refused> {
     let out = options.out.as_ref().map(|out| Ok((out.clone(), format(out)?))).transpose()?;
     let (folders, columns) = results_and_columns(options)?;
     let tables = folders.iter().map(|folder| Table::open(folder)).collect::<Result<Vec<_>, _>>()?;
-    let wanted = Wanted::new(&tables, options, &columns)?;
-    let plot = curves::plot(&tables, &wanted, options.title.as_deref())?;
+    let plot = match summary::asked(&columns)? {
+        Some(asked) => summary::plot(&tables, options, &asked)?,
+        None => curves::plot(&tables, &Wanted::new(&tables, options, &columns)?, options.title.as_deref())?,
+    };
     let files = match out {
         Some(out) => vec![out],
         None => {

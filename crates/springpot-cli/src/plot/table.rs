@@ -29,6 +29,17 @@ pub(super) struct Table {
     pub(super) drawn: Vec<String>,
 }
 
+/// A row of metrics.csv.
+#[derive(Debug, Clone)]
+pub(super) struct MetricRow {
+    /// Swept values as in the file.
+    pub(super) swept: Vec<Vec<u8>>,
+    pub(super) name: String,
+    /// NaN: none.
+    pub(super) value: f64,
+    pub(super) unit: String,
+}
+
 /// One sweep: parameters that move together.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sweep {
@@ -101,10 +112,49 @@ impl Table {
         Ok(sweeps)
     }
 
-    /// What a field that is no number is refused with.
-    pub(super) fn no_number(&self, column: usize, line: u64, field: &[u8]) -> Refused {
-        let (file, name, field) = (self.file.display(), &self.columns[column].name, plain::field(field));
-        Refused::new(format!("{file}:{line}: {field} in column {name:?} is not a number"), None)
+    /// The rows of metrics.csv.
+    pub(super) fn metrics(&self) -> Result<Vec<MetricRow>, Refused> {
+        let file = self.folder.join("metrics.csv");
+        if !file.is_file() {
+            let help = "springpot metrics works them out, or name them in the scenario: [[metric]]".to_owned();
+            return Err(Refused::new(format!("{} holds no metrics.csv", self.folder.display()), help));
+        }
+        let swept = swept_count(&self.sweeps);
+        let mut rows = Vec::new();
+        for record in reader(&file)?.byte_records() {
+            let record = record.map_err(|error| unreadable(&file, &error))?;
+            let text = |k: usize| String::from_utf8_lossy(record.get(swept + k).unwrap_or_default()).into_owned();
+            let fields = record.iter().take(swept).map(<[u8]>::to_vec).collect();
+            // A metric without a value is a gap.
+            rows.push(MetricRow {
+                swept: fields,
+                name: text(0),
+                value: text(2).parse().unwrap_or(f64::NAN),
+                unit: text(3),
+            });
+        }
+        Ok(rows)
+    }
+
+    /// Index of the value that each of `sweeps` has in these fields.
+    pub(super) fn position(&self, sweeps: &mut [Sweep], mut fields: &[Vec<u8>]) -> Vec<usize> {
+        let mut own = |sweep: &mut Sweep| {
+            let (own, rest) = fields.split_at(sweep.parameters.len().min(fields.len()));
+            fields = rest;
+            sweep.index(own)
+        };
+        sweeps.iter_mut().map(&mut own).collect()
+    }
+
+    /// The number in a field of a row; NaN where it is empty.
+    pub(super) fn number(&self, record: &ByteRecord, column: usize, line: u64) -> Result<f64, Refused> {
+        let field = record.get(column).unwrap_or_default();
+        let text = std::str::from_utf8(field).unwrap_or("?");
+        let value = if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() };
+        value.ok_or_else(|| {
+            let (file, name, field) = (self.file.display(), &self.columns[column].name, plain::field(field));
+            Refused::new(format!("{file}:{line}: {field} in column {name:?} is not a number"), None)
+        })
     }
 }
 
@@ -148,7 +198,8 @@ impl Sweep {
         rows.next().and_then(|(_, k)| self.labels.get(*k))
     }
 
-    fn index(&mut self, fields: &[Vec<u8>]) -> usize {
+    /// Index of the value of these fields, which is listed where it is not known.
+    pub(super) fn index(&mut self, fields: &[Vec<u8>]) -> usize {
         let key = fields.join(&b'\n');
         if let Some(index) = self.by_fields.get(&key) {
             return *index;

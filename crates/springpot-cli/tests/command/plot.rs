@@ -208,3 +208,74 @@ fn what_is_not_there_is_said() {
     let failed = place.springpot(&["plot", "r", "t", "--out", "text.csv/a.svg"]);
     assert!(failed.code == Some(1) && failed.stderr.contains("cannot be written"), "{}", failed.stderr);
 }
+
+/// Orders and voltages with a metric, and summaries over them.
+const SURVEYED: &str = r#"
+[[metric]]
+name = "peak"
+of = "damper.force"
+kind = "max"
+[[sweep]]
+parameter = "element.damper.alpha"
+values = [0.2, 0.6, 0.4]
+[[sweep]]
+parameter = "element.damper.u"
+values = ["1 V", "4 V"]
+[[figure]]
+name = "survey"
+kind = "summary"
+x = "element.damper.alpha"
+y = ["max(damper.force)", "rms(damper.force)", "final(damper.force)"]
+units = { "damper.force" = "mN" }
+window = [0.1, 0.3]
+[[figure]]
+name = "peaks"
+kind = "summary"
+x = "element.damper.u"
+y = "metric(peak)"
+[[figure]]
+name = "some"
+kind = "summary"
+x = "element.damper.u"
+y = "mean(damper.force)"
+where = { "element.damper.alpha" = 0.4 }
+"#;
+
+#[test]
+fn statistics_over_a_swept_parameter_as_a_run_draws_them() {
+    let place = Place::with(&format!("{ARM}{SURVEYED}"));
+    place.done(&["run", "arm.toml", "--out", "r", "--set", "time.output_step=0.01", "--quiet"]);
+    let same = |name: &str, arguments: &[&str]| {
+        place.done(&[&["plot", "r"], arguments, &["--out", "f.svg"]].concat());
+        assert_eq!(place.read("f.svg"), place.read(format!("r/figures/{name}.svg")), "{name}");
+    };
+    let look = ["--x", "element.damper.alpha", "--unit", "damper.force=mN", "--window", "0.1,0.3"];
+    same("survey", &[&["max(damper.force)", "rms(damper.force)", "final(damper.force)"], &look[..]].concat());
+    same("peaks", &["metric(peak)", "--x", "element.damper.u"]);
+    same("some", &["mean(damper.force)", "--x", "element.damper.u", "--where", "element.damper.alpha=0.4"]);
+    // The only parameter needs no name, and one that moves with others has the numbers of the rows.
+    let zipped = "[[sweep]]\nparameter = [\"element.damper.alpha\", \"element.damper.u\"]\nvalues = [[0.2, \"1 V\"], [0.5, \"t\"]]\n";
+    place.write("one.toml", format!("{ARM}[[sweep]]\nparameter = \"element.damper.alpha\"\nvalues = [0.2, 0.5]\n"));
+    place.write("two.toml", format!("{ARM}{zipped}"));
+    place.done(&["run", "one.toml", "--out", "one", "--quiet"]);
+    place.done(&["run", "two.toml", "--out", "two", "--quiet"]);
+    place.done(&["plot", "one", "max(damper.force)", "--out", "f.svg"]);
+    place.done(&["plot", "two", "max(damper.*)", "--x", "element.damper.alpha", "--out", "g.svg"]);
+    place.done(&["plot", "one", "two", "max(damper.force)", "--x", "element.damper.alpha", "--out", "h.svg"]);
+    assert!(place.read("h.svg").contains(">one<") && place.read("h.svg").contains(">two<"));
+    let refused = |arguments: &[&str], message: &str| {
+        let ended = place.springpot(&[&["plot"], arguments].concat());
+        assert_eq!(ended.code, Some(2), "{arguments:?}: {}", ended.stderr);
+        assert!(ended.stderr.contains(message), "{arguments:?}: {}", ended.stderr);
+    };
+    refused(&["r", "max(damper.force)"], "choose one with --x: element.damper.alpha, element.damper.u");
+    refused(&["r", "max(damper.force)", "damper.force"], "is no statistic");
+    refused(&["r", "max(damper.farce)", "--x", "element.damper.u"], "matches no column");
+    refused(&["r", "metric(peek)", "--x", "element.damper.u"], "peak");
+    refused(&["r", "max(damper.force)", "--x", "damper.force"], "it is not swept in r");
+    refused(&["one", "metric(peak)"], "holds no metrics.csv");
+    refused(&["two", "max(damper.force)", "--x", "element.damper.u"], "is not a number");
+    place.done(&["run", "arm.toml", "--out", "p", "--set", "time.end=0.1", "--quiet"]);
+    fs::remove_file(place.path("p/run.json")).unwrap();
+    refused(&["p", "max(damper.force)"], "has no sweep");
+}

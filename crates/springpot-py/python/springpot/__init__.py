@@ -19,6 +19,7 @@ from collections.abc import Mapping as _Mapping
 from . import fractional, units
 from ._errors import ModelError, RunError, ScenarioError, SpringpotError
 from ._cluster import sweep
+from ._figure import Figure
 from ._law import datasheet, fit, law, laws, network, prony
 from ._run import Case, Run, run
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
@@ -28,6 +29,7 @@ _Mapping.register(Snapshot)
 __all__ = [
     "Bank",
     "Case",
+    "Figure",
     "Law",
     "Model",
     "ModelError",

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import RunError, SpringpotError
+from ._figure import Figure, Range, draw, drawn
 from ._progress import Progress, shown
 from ._scenario import Scenario
 from ._springpot import Study
@@ -298,6 +299,48 @@ class Run:
             folder = os.path.join(place, name)
             self._study.write(folder, cases=[case._case for case in self._cases], format="csv", figures=figures)
             yield folder
+
+    def figure(
+        self,
+        y: str | Sequence[str],
+        x: str = "t",
+        *,
+        where: Mapping[str, object] | None = None,
+        units: Mapping[str, str] | None = None,
+        title: str | None = None,
+        x_range: Range | None = None,
+        y_range: Range | None = None,
+        x_scale: str | None = None,
+        y_scale: str | None = None,
+        aspect: str | None = None,
+        size: Sequence[str] | None = None,
+        x_label: str | None = None,
+        y_label: str | None = None,
+        labels: Mapping[str, str] | None = None,
+        legend: str | bool | None = None,
+        window: Range | None = None,
+    ) -> Figure:
+        """Draws columns, or statistics of them over a swept parameter, as ``springpot plot`` and the figures of a scenario are drawn.
+
+        ``y``: columns (``*`` stands for any text), or ``"max(strut.force)"`` (min, max, mean, rms, final) and ``"metric(NAME)"`` with a swept path as ``x``.
+        ``where``: values that are fixed, by path; ``units``: by column, ``{"strut.stroke": "mm"}``. All others are the keys of ``[[figure]]``: ranges as
+        numbers or quantities, scales ``"linear"`` or ``"log"``, ``aspect="equal"``, ``size=("90 mm", "60 mm")``, ``legend=False`` for none, ``window`` in t.
+
+        Raises:
+            ValueError: a column, a value or an option is not there or does not fit.
+        """
+        look = {
+            "x_range": x_range, "y_range": y_range, "x_scale": x_scale, "y_scale": y_scale, "aspect": aspect, "size": size,
+            "x_label": x_label, "y_label": y_label, "labels": labels, "window": window,
+        }  # fmt: skip
+        wanted = [y] if isinstance(y, str) else list(y)
+        with self._saved(figures=False) as folder:
+            return draw(folder, wanted, x=x, where=where, units=units, title=title, look=look, legend=legend)
+
+    def figures(self) -> dict[str, Figure]:
+        """The figures of the scenario, by their names, as ``springpot run`` draws them."""
+        with self._saved(figures=True) as folder:
+            return drawn(folder)
 
     def plot(
         self, y: str | Sequence[str], x: str = "t", *, cases: Sequence[int] | None = None, ax: matplotlib.axes.Axes | None = None

@@ -1,9 +1,10 @@
-//! Pages and files of results in a folder, as the command makes them.
+//! Pages, figures and files of results in a folder, as the command makes them.
 
 use crate::error::{springpot_error, value_error};
 use pyo3::prelude::*;
 use springpot_run::table::disk::Disk;
 use springpot_run::{ExportError, ExportFormat, Results};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 fn open(py: Python<'_>, folder: &Path) -> PyResult<Results> {
@@ -53,8 +54,19 @@ fn export_bytes(py: Python<'_>, folder: PathBuf, case: usize, file: PathBuf) -> 
     }
 }
 
+/// SVG, PNG and PDF of a figure, and what it does not show.
+type Drawn = (String, Vec<u8>, Vec<u8>, Vec<String>);
+
+/// The figure that `springpot plot` draws with these arguments.
+#[pyfunction]
+fn plot_figure(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<Drawn> {
+    let drawn = py.detach(|| springpot_cli::figure(arguments)).map_err(value_error)?;
+    Ok((drawn.svg, drawn.png, drawn.pdf, drawn.remarks))
+}
+
 pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(view_page, module)?)?;
     module.add_function(wrap_pyfunction!(report_page, module)?)?;
-    module.add_function(wrap_pyfunction!(export_bytes, module)?)
+    module.add_function(wrap_pyfunction!(export_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(plot_figure, module)?)
 }

@@ -11,6 +11,7 @@ mod summary;
 
 pub use look::{AskedAxis, AskedLook, Look, Misfit, Part};
 pub use panels::{Curves, DrawnCase, FigureColumn};
+pub use summary::swept_numbers;
 
 use crate::sweep::{FigureData, Layout, Outcome, Wanted};
 use crate::table::folder::Folder;

@@ -7,7 +7,7 @@ use crate::sweep::{Abscissa, CaseResult, FigureData, Summed, Total, Wanted};
 use springpot::table::Column;
 use springpot_report::Rendered;
 use springpot_scenario::units::Unit;
-use springpot_scenario::{Cases, FigurePlan, RangeEnd, RefusalKind, Refusals, Statistic, Summarised, SweptAxis};
+use springpot_scenario::{Cases, FigurePlan, RangeEnd, RefusalKind, Refusals, Summarised, SweptAxis};
 
 /// A curve for each statistic and each value of the other sweeps.
 pub(super) fn data(
@@ -40,15 +40,24 @@ pub(super) fn data(
 
 /// The swept values as numbers in the unit that the first is written in.
 fn abscissa(cases: &Cases, figure: &FigurePlan, x: &SweptAxis) -> Result<Abscissa, Refusals> {
-    let refuse =
-        |message: String, help: &str| -> Refusals { figure.place.refuse(RefusalKind::Rule, message).help(help).into() };
+    let written: Vec<String> = (0..cases.axis_len(x.axis)).map(|k| cases.axis_label_of(x.axis, &x.path, k)).collect();
+    match swept_numbers(&x.path, &written) {
+        Ok((column, values)) => Ok(Abscissa { axis: x.axis, column, values }),
+        Err((message, help)) => Err(figure.place.refuse(RefusalKind::Rule, message).help(help).into()),
+    }
+}
+
+/// Values of a sweep, as they were written, as an abscissa: the column in the unit of the first, and SI numbers.
+///
+/// # Errors
+/// What is wrong with them, and what would be right: texts, values in several units.
+pub fn swept_numbers(path: &str, written: &[String]) -> Result<(FigureColumn, Vec<f64>), (String, &'static str)> {
     let mut unit: Option<Option<(String, Unit)>> = None;
-    let mut values = Vec::with_capacity(cases.axis_len(x.axis));
-    for k in 0..cases.axis_len(x.axis) {
-        let written = cases.axis_label_of(x.axis, &x.path, k);
-        let Ok(end) = RangeEnd::parse(&written) else {
-            let message = format!("a summary over {} needs numbers, and {written} is none", x.path);
-            return Err(refuse(message, "draw it over a parameter that is swept over numbers or quantities"));
+    let mut values = Vec::with_capacity(written.len());
+    for written in written {
+        let Ok(end) = RangeEnd::parse(written) else {
+            let message = format!("a summary over {path} needs numbers, and {written} is none");
+            return Err((message, "draw it over a parameter that is swept over numbers or quantities"));
         };
         let own = end.unit.as_ref().and_then(|text| Some((text.clone(), Unit::parse(text, &|_| None).ok()?)));
         let first = unit.get_or_insert_with(|| own.clone());
@@ -56,16 +65,15 @@ fn abscissa(cases: &Cases, figure: &FigurePlan, x: &SweptAxis) -> Result<Absciss
             (None, None) => end.number,
             (Some((_, first)), Some((_, own))) if first.dimension() == own.dimension() => own.to_si(end.number),
             _ => {
-                let message = format!("a summary over {} needs values in one unit, and {written} has another", x.path);
-                return Err(refuse(message, "write all values of the sweep with one unit, or all without"));
+                let message = format!("a summary over {path} needs values in one unit, and {written} has another");
+                return Err((message, "write all values of the sweep with one unit, or all without"));
             }
         };
         values.push(value);
     }
     let unit = unit.flatten();
-    let column = Column::new(x.path.as_str(), unit.as_ref().map_or("", |(text, _)| text), "swept parameter");
-    let column = FigureColumn { column, unit, label: Some(labels::parameter(&x.path)) };
-    Ok(Abscissa { axis: x.axis, column, values })
+    let column = Column::new(path, unit.as_ref().map_or("", |(text, _)| text), "swept parameter");
+    Ok((FigureColumn { column, unit, label: Some(labels::parameter(path)) }, values))
 }
 
 /// Cases that differ in the abscissa alone: values of the other sweeps, and of each statistic the points.
@@ -111,11 +119,5 @@ fn value(what: Total, case: &CaseResult) -> Option<f64> {
         Total::Statistic { index, statistic } => (index, statistic),
     };
     let totals = case.curves.as_ref()?.totals.get(&index)?;
-    Some(match statistic {
-        Statistic::Min => totals.statistics.min,
-        Statistic::Max => totals.statistics.max,
-        Statistic::Rms => totals.statistics.rms(),
-        Statistic::Mean => totals.mean(),
-        Statistic::Final => totals.last(),
-    })
+    Some(totals.value(statistic))
 }

@@ -1,6 +1,7 @@
 //! Smallest, largest and root-mean-square value of a column.
 
 use serde::{Deserialize, Serialize};
+use springpot_scenario::Statistic;
 
 /// Running statistics over rows; empty fields do not count.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -53,6 +54,17 @@ impl Totals {
         self.last = Some(value);
         if value.is_finite() {
             self.sum += value;
+        }
+    }
+
+    /// That statistic; NaN without any row.
+    pub fn value(&self, statistic: Statistic) -> f64 {
+        match statistic {
+            Statistic::Min => self.statistics.min,
+            Statistic::Max => self.statistics.max,
+            Statistic::Rms => self.statistics.rms(),
+            Statistic::Mean => self.mean(),
+            Statistic::Final => self.last(),
         }
     }
 
