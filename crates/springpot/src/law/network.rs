@@ -631,7 +631,13 @@ impl Network {
                 coefficient * if order == 0.0 { Complex64::ONE } else { s.powf(order) }
             }
             Self::Parallel(parts) => parts.iter().map(|part| part.modulus(at, s)).sum(),
-            Self::Series(parts) => parts.iter().map(|part| part.modulus(at, s).inv()).sum::<Complex64>().inv(),
+            Self::Series(parts) => {
+                let moduli = parts.iter().map(|part| part.modulus(at, s));
+                // At s = 0 one that carries nothing lets all of them carry nothing.
+                let compliance =
+                    moduli.map(|one| (one != Complex64::ZERO).then(|| one.inv())).sum::<Option<Complex64>>();
+                compliance.map_or(Complex64::ZERO, |compliance| compliance.inv())
+            }
             Self::Heated(heated) => heated.modulus(at, s),
         }
     }

@@ -98,3 +98,24 @@ fn every_named_law_has_its_complex_modulus() {
     check("prony", "k_e = 5, k = [90, 30], tau = [0.1, 2]", k(5.0) + term(90.0, 0.1) + term(30.0, 2.0));
     println!("worst {worst:e}");
 }
+
+/// At ω = 0 what is left is what stays: springs that no damper relieves.
+#[test]
+fn at_rest_the_modulus_is_what_remains() {
+    use springpot::law::{Catalog, Derivative, InputValue, Point};
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[InputValue { value: 0.0, rate: 0.0 }] };
+    let remaining = [
+        ("maxwell", &[90.0, 4.0][..], 0.0),
+        ("fractional-zener", &[25.0, 90.0, 40.0, 0.4], 25.0),
+        ("poynting-thomson", &[90.0, 25.0, 40.0, 0.4], 90.0 * 25.0 / 115.0),
+        ("fractional-burgers", &[90.0, 40.0, 0.4, 25.0, 10.0, 0.6], 0.0),
+        ("jeffreys", &[4.0, 25.0, 2.0], 0.0),
+    ];
+    for (name, parameters, stiffness) in remaining {
+        let law = (Catalog::standard().get(name).unwrap().build)(parameters, Derivative::Caputo).unwrap();
+        let [stored, lost] = law.complex_modulus(&at, 0.0);
+        assert!((stored - stiffness).abs() < 1e-12 && lost == 0.0, "{name}: {stored} {lost}");
+        let near = law.complex_modulus(&at, 1e-30);
+        assert!((near[0] - stiffness).abs() < 1e-6, "{name}: {near:?}");
+    }
+}

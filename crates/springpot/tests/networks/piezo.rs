@@ -53,6 +53,25 @@ fn a_blocked_stack_is_charged() {
     assert!(run.residual() < 1e-8, "{:e}", run.residual());
 }
 
+/// A drive that begins at 0 V and rest is there with the rounding of what it is the difference of; every stack finds its first step.
+#[test]
+fn a_drive_may_begin_at_nothing() {
+    let laws = [
+        ("piezo-stack", ""),
+        ("piezo-stack-bouc-wen", ", alpha_h = 0.2, A = 1, beta = 0.02, gamma = 0.02, n = 1"),
+        ("piezo-stack-prandtl-ishlinskii", ", a = [0.2, 0.1], r = [10, 25]"),
+        ("piezo-stack-feed-forward", ", a = [0.2, 0.1], r = [10, 25]"),
+    ];
+    for (law, parameters) in laws {
+        for u in ["50*(1 - cos(2*pi*t))", "2*(1 - cos(2*pi*t))", "40*t", "20*t^3"] {
+            let parameters = format!("c = 10, alpha = 0.5, creep = 0.015{parameters}");
+            let run = scenario(law, &parameters, u, HELD, "end = 0.2\noutput_step = 1e-2", 1e-9);
+            assert!(run.column("s.voltage").last().unwrap().abs() > 1e-3, "{law} {u}");
+            assert!(run.residual() < 1e-8, "{law} {u}: {:e}", run.residual());
+        }
+    }
+}
+
 /// A sine at the drive along a sine of the stroke: all is linear, and has its phasors.
 #[test]
 fn under_sines_it_has_its_phasors() {

@@ -394,7 +394,10 @@ impl Leaf for Stack {
         let kept = self.kept(state);
         let Solved { charge, current, drive, z, .. } = self.solve(step, &kept);
         let last = step.nodes.count();
-        let volts = drive.iter().zip(&charge).map(|(u, q)| u.abs().max(q.abs() / self.capacitance)).fold(0.0, f64::max);
+        // A drive that begins at 0 V may be the difference of voltages as large as the stack takes: their rounding is in it.
+        let most = self.range[0].abs().max(self.range[1].abs());
+        let volts =
+            drive.iter().zip(&charge).map(|(u, q)| u.abs().max(q.abs() / self.capacitance)).fold(most, f64::max);
         let mut push = |rates: &Values, value: f64, rounding: f64| {
             let defect = step.h * quadrature_defect(step.nodes, rates);
             let error = if defect <= rounding { 0.0 } else { defect };
