@@ -179,3 +179,15 @@ fn code(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsSt
     };
     ending.into()
 }
+
+/// The programs in the book, as documentation tests. docs/ is outside of the package: only tests of the workspace read it.
+#[cfg(doctest)]
+#[allow(rustdoc::invalid_codeblock_attributes, reason = "files that the reader writes have names")]
+mod book {
+    #[doc = include_str!("../../../docs/tutorial/rust.md")]
+    struct Tutorial;
+    #[doc = include_str!("../../../docs/how-to/own-law.md")]
+    struct OwnLaw;
+    #[doc = include_str!("../../../docs/how-to/own-controller.md")]
+    struct OwnController;
+}
