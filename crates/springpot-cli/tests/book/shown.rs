@@ -1,38 +1,78 @@
-//! What the documents show of the program's output is what it prints.
+//! What a page shows of an output against what is printed.
 
-use crate::support::Ended;
-use std::process::Command;
-
-/// Runs every `$ springpot …` of a document, and asserts that the lines shown are printed in that order; `…` stands for any
-/// lines, and a residual, which is rounding, for any numbers. Returns how many lines were found.
-fn check(document: &str) -> usize {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-    let text = std::fs::read_to_string(format!("{root}/{document}")).unwrap();
-    let mut found = 0;
-    for block in text.split("\n```text\n$ springpot ").skip(1) {
-        let (command, rest) = block.split_once('\n').unwrap();
-        let shown = rest.split("\n```").next().unwrap();
-        let mut program = Command::new(env!("CARGO_BIN_EXE_springpot"));
-        let ended = Ended::from(program.current_dir(root).args(command.split(' ')).output().unwrap());
-        assert_eq!(ended.code, Some(0), "{command}: {}", ended.stderr);
-        let mut printed = ended.stdout.lines();
-        let mut skips = false;
-        for line in shown.lines() {
-            if line == "…" {
-                skips = true;
-                continue;
-            }
-            let same =
-                |printed: &str| printed == line || line.starts_with("residual ") && printed.starts_with("residual ");
-            let here = if skips { printed.find(|printed| same(printed)) } else { printed.next().filter(|p| same(p)) };
-            assert!(here.is_some(), "{document}: springpot {command} does not print\n{line}\nbut\n{}", ended.stdout);
-            (skips, found) = (false, found + 1);
-        }
+/// Why the lines shown are not those printed; `None` if they are. `…` alone stands for any lines, in a line for any text.
+pub(crate) fn difference(shown: &[String], printed: &[&str]) -> Option<String> {
+    // How much of what is shown is found at best tells where it stops.
+    let mut furthest = 0;
+    if matches(shown, printed, 0, &mut furthest) {
+        return None;
     }
-    found
+    let wanted = shown.get(furthest).map_or("the end", String::as_str);
+    Some(format!(
+        "the page shows\n{wanted}\nin its line {} of the output, but printed is\n{}",
+        furthest + 1,
+        printed.join("\n")
+    ))
+}
+
+fn matches(shown: &[String], printed: &[&str], at: usize, furthest: &mut usize) -> bool {
+    *furthest = at.max(*furthest);
+    let Some((first, rest)) = shown.split_first() else { return printed.is_empty() };
+    if first == "…" {
+        return (0..=printed.len()).any(|skipped| matches(rest, &printed[skipped..], at + 1, furthest));
+    }
+    printed.split_first().is_some_and(|(line, more)| is_as(first, line) && matches(rest, more, at + 1, furthest))
+}
+
+/// Whether a line is as shown. A residual is rounding: its numbers may be any.
+fn is_as(shown: &str, printed: &str) -> bool {
+    let (shown, printed) = (shown.trim_end(), printed.trim_end());
+    if shown.starts_with("residual ") && printed.starts_with("residual ") {
+        return true;
+    }
+    let Some((start, rest)) = shown.split_once('…') else { return shown == printed };
+    let Some(mut printed) = printed.strip_prefix(start) else { return false };
+    let mut parts: Vec<&str> = rest.split('…').collect();
+    let end = parts.pop().unwrap_or_default();
+    for part in parts {
+        let Some(found) = printed.find(part) else { return false };
+        printed = &printed[found + part.len()..];
+    }
+    printed.ends_with(end)
 }
 
 #[test]
-fn outputs_are_as_shown() {
-    assert_eq!(check("docs/ROBOTS.md"), 11 + 11);
+fn differences_are_found() {
+    let difference = |shown: &str, printed: &str| {
+        let shown: Vec<String> = shown.lines().map(str::to_owned).collect();
+        super::shown::difference(&shown, &printed.lines().collect::<Vec<_>>())
+    };
+    let printed = "title  A\nq = -0.14595 rad\nq = 2\nended after 0.3 s\n";
+    for same in [
+        printed,
+        "…",
+        "title  A\n…",
+        "…\nq = 2\n…",
+        "…\nq = 2\nended after … s",
+        "…\nended after …",
+        "title  A\n…\nq = -0.1…5 rad\n…",
+        // The first of two lines alike is not the one that the next line follows.
+        "…\nq = …\nended …",
+    ] {
+        assert_eq!(difference(same, printed), None, "{same}");
+    }
+    for (other, line) in [
+        ("title  B\n…", "title  B"),
+        ("title  A", "the end"),
+        ("…\nq = 3\n…", "q = 3"),
+        ("title  A\nq = -0.14596 rad\n…", "q = -0.14596 rad"),
+        ("…\nended after … ms", "ended after … ms"),
+        ("…\nq = 2\nq = -0.14595 rad\n…", "q = -0.14595 rad"),
+        ("title  A\nq = 2\n…", "q = 2"),
+    ] {
+        let said = difference(other, printed).unwrap_or_else(|| panic!("{other} is taken"));
+        assert!(said.contains(&format!("shows\n{line}\n")), "{said}");
+    }
+    assert!(is_as("residual  0  -2.7e-15", "residual  0   1.1e-16"));
+    assert!(!is_as("tau  0  -2.7e-15", "tau  0   1.1e-16"));
 }

@@ -2,7 +2,6 @@
 
 mod check;
 mod derivative;
-mod documents;
 mod dynamics;
 mod dynamics_refusals;
 mod end_stops;
