@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import json
 from pathlib import Path
 from typing import Any
@@ -41,3 +42,12 @@ def testdata() -> Path:
 
 def oracle(*path: str) -> Any:
     return json.loads(ROOT.joinpath("testdata", *path).read_text())
+
+
+def follow(page: Path, monkeypatch: pytest.MonkeyPatch) -> int:
+    """Runs the lines of Python in a page, from the root of the repository, and counts them."""
+    monkeypatch.chdir(ROOT)
+    options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+    found = doctest.testfile(str(page), module_relative=False, optionflags=options, encoding="utf-8")
+    assert found.failed == 0
+    return found.attempted

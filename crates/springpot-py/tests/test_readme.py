@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import doctest
 import re
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, follow
 
 README = ROOT / "README.md"
 
 
 def test_the_lines_of_the_readme_of_the_repository(monkeypatch: pytest.MonkeyPatch) -> None:
-    # Paths in it count from the repository's root.
-    monkeypatch.chdir(ROOT)
-    found = doctest.testfile(str(README), module_relative=False)
-    assert found.attempted >= 8 and found.failed == 0
+    assert follow(README, monkeypatch) >= 8
 
 
 def test_the_readme_says_how_to_install_and_where_more_is() -> None:

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import ARM, PACKAGE, ROOT, oracle
+from conftest import ARM, PACKAGE, ROOT, follow, oracle
 
 import springpot as sp
 from springpot._scenario import described
@@ -118,9 +118,7 @@ def test_doctests(name: str) -> None:
 
 
 def test_the_lines_of_the_readme(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
-    found = doctest.testfile(str(PACKAGE / "README.md"), module_relative=False)
-    assert found.attempted > 10 and found.failed == 0
+    assert follow(PACKAGE / "README.md", monkeypatch) > 10
 
 
 def test_everything_has_a_docstring() -> None:
