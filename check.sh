@@ -36,6 +36,19 @@ fi
 step "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 
+# Its commands, links and programs are among the tests.
+step "the book"
+if mdbook --version >/dev/null 2>&1; then
+    book=$(mktemp -d)
+    said=$(mdbook build docs -d "$book" 2>&1) || { echo "$said"; exit 1; }
+    rm -rf "$book"
+    if grep -E 'WARN|ERROR' <<<"$said"; then
+        exit 1
+    fi
+else
+    echo "mdbook is not installed: not built"
+fi
+
 step "tests"
 cargo test --workspace --quiet
 
