@@ -56,6 +56,7 @@ pages! {
     tolerance: "theory/tolerance.md";
     dynamics: "theory/dynamics.md";
     scenario: "SCENARIO.md";
+    keys: "reference/keys.md";
     commands: "COMMANDS.md";
     robots: "ROBOTS.md";
     notation: "NOTATION.md";

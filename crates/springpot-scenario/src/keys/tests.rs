@@ -1,5 +1,7 @@
 //! The tables of keys beside those of docs/SCENARIO.md, and what must hold of any key.
 
+mod reference;
+
 use super::super::figures::FIGURE;
 use super::super::motion::{MOTION, MotionKind};
 use super::super::root::SCENARIO;
@@ -13,6 +15,7 @@ fn inner(key: &Key) -> Option<&'static Keys> {
         | Shape::Tables(keys, _)
         | Shape::ValuesOr(keys)
         | Shape::WordsOr(_, keys)
+        | Shape::TableWithJoints(keys)
         | Shape::JointNumberOr(_, _, keys) => Some(keys),
         Shape::ByJoint(Each::NumberOr(keys)) => Some(keys),
         _ => None,
