@@ -1,5 +1,6 @@
 //! The book is followed to the letter, and what it says of the program is what the program says.
 
+mod evidence;
 mod laws;
 mod line;
 mod links;
