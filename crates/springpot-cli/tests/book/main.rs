@@ -68,6 +68,37 @@ pages! {
     architecture: "ARCHITECTURE.md";
 }
 
+/// The README, whose commands build the program first.
+#[test]
+fn readme() {
+    let mut page = Page::open("README.md");
+    let mut left_out = 0;
+    for block in &mut page.blocks {
+        match block.info.as_str() {
+            "toml" => block.info = "toml file=arm.toml".to_owned(),
+            "console" => block.info = "bash".to_owned(),
+            _ => {}
+        }
+        // What builds, waits for a browser, needs another library, or puts rows there that `plot` does not read.
+        let elsewhere = |line: &String| {
+            line.starts_with("cargo install ")
+                || line.starts_with("./check.sh")
+                || line.contains(" --serve")
+                || line.contains(" fmu ")
+                || line.contains(" --format parquet ")
+        };
+        let before = block.lines.len();
+        block.lines.retain(|line| block.info != "sh" || !elsewhere(line));
+        left_out += before - block.lines.len();
+        for line in &mut block.lines {
+            *line = line.replacen("cargo run --release -- ", "springpot ", 1);
+        }
+    }
+    let done = reader::follow(&page).unwrap_or_else(|words| panic!("{words}"));
+    println!("README.md: {done:?}");
+    assert!(done.files == 1 && done.commands > 15 && left_out < 6, "{done:?}, {left_out} left out");
+}
+
 /// Programs in Rust are documentation tests of the library.
 #[test]
 fn every_program_is_a_test() {

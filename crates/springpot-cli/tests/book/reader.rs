@@ -19,7 +19,7 @@ const NOT_RUN: [(&str, &str); 2] = [
 ];
 
 /// Pages that show commands on files of other pages or of each reader: without them only the arguments are tried.
-const EXAMPLES: [&str; 2] = ["docs/COMMANDS.md", "docs/theory/tolerance.md"];
+const EXAMPLES: [&str; 3] = ["README.md", "docs/COMMANDS.md", "docs/theory/tolerance.md"];
 
 /// What a page has made its reader do.
 #[derive(Debug, Default)]
