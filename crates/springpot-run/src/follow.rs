@@ -213,7 +213,7 @@ impl Tail<'_> {
             news.push(News::Case(Box::new(self.run.case(&listed[case]))));
         }
         self.rows += 1;
-        if is_sent || (self.rows - 1) % self.run.stride != 0 {
+        if is_sent || !(self.rows - 1).is_multiple_of(self.run.stride) {
             return;
         }
         let fields = line[self.run.leads[case].len()..].split(',');

@@ -79,13 +79,12 @@ fn readme() {
             "console" => block.info = "bash".to_owned(),
             _ => {}
         }
-        // What builds, waits for a browser, needs another library, or puts rows there that `plot` does not read.
+        // What builds, waits for a browser, or needs another library.
         let elsewhere = |line: &String| {
             line.starts_with("cargo install ")
                 || line.starts_with("./check.sh")
                 || line.contains(" --serve")
                 || line.contains(" fmu ")
-                || line.contains(" --format parquet ")
         };
         let before = block.lines.len();
         block.lines.retain(|line| block.info != "sh" || !elsewhere(line));

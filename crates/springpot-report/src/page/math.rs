@@ -7,7 +7,7 @@ use super::escaped;
 
 /// A line as HTML: each clause a formula that does not break, with commas between them.
 pub(super) fn html(line: &str) -> String {
-    let clauses: Vec<String> = clauses(line).iter().map(|clause| one(clause)).collect();
+    let clauses: Vec<String> = clauses(line).iter().map(one).collect();
     clauses.join(" ")
 }
 
