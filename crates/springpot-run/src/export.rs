@@ -61,6 +61,7 @@ pub fn export(
     let time = results.columns.iter().position(|column| column.name == "t");
     let time = time.ok_or_else(|| ResultsError::NoColumn { folder: results.folder.clone(), column: "t" })?;
     let mut notes = rest(results, case);
+    notes.extend(results.record.scene_note(case));
     match format {
         ExportFormat::Mcap => record(results, place, case, time, out)?,
         ExportFormat::Gltf(container) => model(results, place, case, container, out, &mut notes)?,

@@ -48,8 +48,10 @@ impl Prepared {
     pub fn sweep(&mut self, jobs: usize, stop: &Stop, progress: &Progress) -> Result<Outcome, SweepError> {
         let Planned { cases, plan, system, layout } = &self.planned;
         let drawn = Drawn::of(cases, (plan, system));
-        let mut begun = sweep::begun(cases, plan, layout);
+        let range = self.shard.map_or(0..cases.len(), |shard| shard.cases(cases.len()));
+        let mut begun = sweep::begun(cases, plan, layout, range);
         drawn.record(&mut begun);
+        begun.insert("id".to_owned(), self.id.clone().into());
         // Who watches may see less; the run goes on.
         let _ = self.folder.tell(&begun);
         self.drawn = Some(drawn);
@@ -98,6 +100,7 @@ impl Prepared {
         let record = |files: &[String]| {
             let mut record = outcome.record(&cases, &plan, &layout, written, files);
             record.insert("scenario".to_owned(), asked.record());
+            record.insert("rows".to_owned(), rows.into());
             drawn.unwrap_or_else(|| Drawn::of(&cases, (&plan, &system))).record(&mut record);
             record
         };

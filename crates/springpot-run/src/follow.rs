@@ -3,21 +3,18 @@
 //! A run writes its rows into `results.csv.part`, and what they are into `.unfinished/running.json` before the first of them; both are only read here.
 
 use crate::record::{self, Listed, Record};
-use crate::results::Results;
 use crate::table::disk::{Disk, DiskFile};
 use crate::table::folder::{PART, RUNNING, UNFINISHED, is_held};
-use crate::table::{push_number, push_text};
-use crate::view::{shown, view_columns};
-use serde_json::Value;
+use crate::view::{MOST_NUMBERS, shown, view_columns};
 use springpot::table::Column;
 use springpot_report::page::{View, ViewCase};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// Numbers that a page is sent.
-const MOST_NUMBERS: usize = 1_200_000;
 /// Rows that come together.
 const MOST_ROWS: usize = 500;
+/// Pieces that are read without news.
+const MOST_PIECES: usize = 64;
 /// Bytes that are read at a time.
 const PIECE: usize = 1 << 20;
 
@@ -30,6 +27,10 @@ pub struct Underway {
     /// Those of swept parameters aside.
     columns: Vec<Column>,
     told: Vec<u8>,
+    /// The checksum of run.json when it was opened: that of an earlier run.
+    earlier: Option<u32>,
+    /// Index of the column of times.
+    time: Option<usize>,
     /// Every so many rows are sent.
     stride: usize,
     /// Swept values of the listed cases, as they lead their rows.
@@ -51,6 +52,7 @@ pub struct Tail<'a> {
     /// Case of the last row: its place among those listed, and its rows so far.
     case: Option<usize>,
     rows: usize,
+    t: f64,
 }
 
 /// What is new.
@@ -83,21 +85,11 @@ impl Underway {
         let columns: Vec<Column> = record.columns().skip(record.parameters().count()).collect();
         let rows = record.plan["time"]["rows"].as_u64().unwrap_or(1) as usize;
         let numbers = rows.saturating_mul(record.cases.len()).saturating_mul(columns.len());
-        let lead = |case: &Listed| {
-            let mut lead = String::new();
-            for path in record.parameters() {
-                match case.parameters.get(path) {
-                    Some(Value::Number(number)) => push_number(&mut lead, number.as_f64().unwrap_or(f64::NAN)),
-                    Some(Value::String(text)) => push_text(&mut lead, text),
-                    _ => {}
-                }
-                lead.push(',');
-            }
-            lead
-        };
-        let leads = record.cases.iter().map(lead).collect();
+        let leads = record.cases.iter().map(|case| record.lead(case)).collect();
+        let earlier = disk.read(&folder.join("run.json")).ok().map(|bytes| crc32fast::hash(&bytes));
+        let time = columns.iter().position(|column| column.name == "t");
         let (disk, folder, stride) = (disk.clone(), folder.to_owned(), numbers.div_ceil(MOST_NUMBERS).max(1));
-        Some(Self { disk, folder, record, columns, told, stride, leads })
+        Some(Self { disk, folder, record, columns, told, earlier, time, stride, leads })
     }
 
     /// The page without rows, which asks `follow` for them.
@@ -134,7 +126,22 @@ impl Underway {
     /// The file system's.
     pub fn tail(&self, sent: u64) -> io::Result<Tail<'_>> {
         let file = self.disk.open(&self.folder.join(PART))?;
-        Ok(Tail { run: self, file, rest: Vec::new(), position: 0, sent, has_head: false, case: None, rows: 0 })
+        Ok(Tail {
+            run: self,
+            file,
+            rest: Vec::new(),
+            position: 0,
+            sent,
+            has_head: false,
+            case: None,
+            rows: 0,
+            t: f64::NAN,
+        })
+    }
+
+    /// What tells it from other runs in its folder.
+    pub fn id(&self) -> &str {
+        &self.record.id
     }
 
     /// How the run has ended; `None` while it is under way.
@@ -144,8 +151,11 @@ impl Underway {
             // A run that was killed says nothing.
             return (!is_held(&self.disk, folder)).then(|| "interrupted".to_owned());
         }
-        let ended = Results::open(&self.disk, folder).ok().map(|results| results.record.status);
-        Some(ended.unwrap_or_else(|| "interrupted".to_owned()))
+        // One that ended without a row left an earlier run's record.
+        let now = self.disk.read(&folder.join("run.json")).ok();
+        let own = now.filter(|bytes| Some(crc32fast::hash(bytes)) != self.earlier);
+        let status = own.and_then(|bytes| serde_json::from_slice::<Record>(&bytes).ok()).map(|record| record.status);
+        Some(status.unwrap_or_else(|| "interrupted".to_owned()))
     }
 }
 
@@ -154,21 +164,31 @@ fn told_in(folder: &Path) -> PathBuf {
 }
 
 impl Tail<'_> {
-    /// What has come since the last call, or nothing.
+    /// What has come since the last call; `None` where the run has written nothing more. Of much, a part, which may hold no news.
     ///
     /// # Errors
     /// The file system's.
-    pub fn news(&mut self) -> io::Result<Vec<News>> {
+    pub fn news(&mut self) -> io::Result<Option<Vec<News>>> {
         let mut news = Vec::new();
-        if self.read(&mut news)? {
-            return Ok(news);
+        for _ in 0..MOST_PIECES {
+            if !self.read(&mut news)? {
+                return Ok(if news.is_empty() { self.end()? } else { Some(news) });
+            }
+            if !news.is_empty() {
+                break;
+            }
         }
-        if let Some(status) = self.run.ended() {
-            // Rows may have come in between.
-            while self.read(&mut news)? {}
-            news.push(News::Ended(status));
-        }
-        Ok(news)
+        Ok(Some(news))
+    }
+
+    /// The last rows and how the run ended, where it has.
+    fn end(&mut self) -> io::Result<Option<Vec<News>>> {
+        let Some(status) = self.run.ended() else { return Ok(None) };
+        let mut news = Vec::new();
+        // Rows may have come in between.
+        while self.read(&mut news)? {}
+        news.push(News::Ended(status));
+        Ok(Some(news))
     }
 
     /// Takes one piece; false where nothing is there.
@@ -201,9 +221,16 @@ impl Tail<'_> {
             return;
         }
         let listed = &self.run.record.cases;
-        // Cases come in their order; those without a row do not come.
-        let from = self.case.unwrap_or(0);
-        let Some(case) = (from..listed.len()).find(|case| line.starts_with(&self.run.leads[*case])) else { return };
+        let leads = &self.run.leads;
+        let fields = |case: usize| {
+            line[leads[case].len()..].split(',').map(|field| field.trim_end().parse().unwrap_or(f64::NAN))
+        };
+        let time = |case: usize| self.run.time.and_then(|time| fields(case).nth(time)).unwrap_or(f64::NAN);
+        // Cases come in their order, times rise within each; those without a row do not come.
+        let goes_on = self.case.filter(|case| line.starts_with(&leads[*case]) && !(time(*case) <= self.t));
+        let next = || (self.case.map_or(0, |case| case + 1)..listed.len()).find(|case| line.starts_with(&leads[*case]));
+        let Some(case) = goes_on.or_else(next) else { return };
+        self.t = time(case);
         let is_new = self.case != Some(case);
         if is_new {
             (self.case, self.rows) = (Some(case), 0);
@@ -216,8 +243,7 @@ impl Tail<'_> {
         if is_sent || !(self.rows - 1).is_multiple_of(self.run.stride) {
             return;
         }
-        let fields = line[self.run.leads[case].len()..].split(',');
-        let row: Vec<f64> = fields.map(|field| field.trim_end().parse().unwrap_or(f64::NAN)).collect();
+        let row: Vec<f64> = fields(case).collect();
         let (case, position) = (listed[case].index, self.position);
         match news.last_mut() {
             Some(News::Rows(last)) if last.case == case && last.rows.len() < MOST_ROWS => {

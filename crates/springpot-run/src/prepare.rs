@@ -15,6 +15,7 @@ use springpot_scenario::{Cases, FigurePlan, Refusals, Scenario};
 use std::cell::OnceCell;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// What is asked of a new run.
 #[derive(Debug, Clone)]
@@ -76,6 +77,8 @@ pub struct Prepared {
     pub survey: Option<Survey>,
     /// What is drawn of it, from its beginning on.
     pub(crate) drawn: Option<Drawn>,
+    /// What tells it from other runs in its folder.
+    pub(crate) id: String,
 }
 
 impl fmt::Debug for Prepared {
@@ -136,7 +139,19 @@ impl Prepared {
         });
         let checkpoints = checkpoints.transpose().map_err(|error| no_results(error.into()))?;
         let survey = Some(survey);
-        Ok(Self { asked, planned, folder, checkpoints, source: None, shard, figures, format, survey, drawn: None })
+        Ok(Self {
+            asked,
+            planned,
+            folder,
+            checkpoints,
+            source: None,
+            shard,
+            figures,
+            format,
+            survey,
+            drawn: None,
+            id: id(),
+        })
     }
 
     /// Goes on with the run whose checkpoint is in `folder`. With `every`, s, checkpoints are written at other times from now on;
@@ -167,7 +182,7 @@ impl Prepared {
         let (checkpoints, folder) = unfinished.take_up(cases, (plan, system), layout, every, targets)?;
         let checkpoints = Some(checkpoints);
         let (source, survey, drawn) = (None, None, None);
-        Ok(Self { asked, planned, folder, checkpoints, source, shard, figures, format, survey, drawn })
+        Ok(Self { asked, planned, folder, checkpoints, source, shard, figures, format, survey, drawn, id: id() })
     }
 
     /// Puts the parts of one run together that stand in `parts`, in any order: what is then swept comes from them, and nothing is run. The
@@ -198,8 +213,14 @@ impl Prepared {
             .map_err(|error| MergeError::Folder { folder: out.clone(), error })?;
         let (source, format) = (Some(Box::new(shards) as Box<dyn Source>), format.unwrap_or(origin.format));
         let (asked, checkpoints, shard, survey, drawn) = (origin.asked, None, None, None, None);
-        Ok(Self { asked, planned, folder, checkpoints, source, shard, figures, format, survey, drawn })
+        Ok(Self { asked, planned, folder, checkpoints, source, shard, figures, format, survey, drawn, id: id() })
     }
+}
+
+/// The process and the time.
+fn id() -> String {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    format!("{}-{}", std::process::id(), since.as_nanos())
 }
 
 /// Opens the folder of the results of a new run.

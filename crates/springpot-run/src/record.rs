@@ -2,6 +2,7 @@
 
 use crate::labels;
 use crate::table::disk::Disk;
+use crate::table::{push_number, push_text};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use springpot::table::Column;
@@ -22,8 +23,15 @@ pub(crate) struct Record {
     pub(crate) cases_total: usize,
     pub(crate) cases_done: usize,
     pub(crate) cases_failed: usize,
+    /// Of all cases.
+    pub(crate) rows: Option<u64>,
+    pub(crate) energy_residual: Option<f64>,
+    pub(crate) energy_turned_over: Option<f64>,
     pub(crate) steps: u64,
+    /// s.
     pub(crate) wall_time: f64,
+    /// What tells a run under way from others in its folder.
+    pub(crate) id: String,
     pub(crate) warnings: Vec<String>,
     pub(crate) limits: Vec<Value>,
     pub(crate) ledger: Option<String>,
@@ -43,6 +51,9 @@ struct Described {
     #[serde(default)]
     meaning: String,
 }
+
+/// Cases that a page shows where none are named: those whose own scene is recorded.
+pub(crate) const MOST_SHOWN: usize = 12;
 
 /// What was asked for.
 #[derive(Debug, Deserialize)]
@@ -75,14 +86,24 @@ pub(crate) struct Listed {
     pub(crate) status: String,
     pub(crate) error: Option<String>,
     pub(crate) rows: u64,
-    pub(crate) scene: usize,
+    /// Index of its scene; `None`: it has one of its own that is not recorded.
+    #[serde(default = "first_scene")]
+    pub(crate) scene: Option<usize>,
     pub(crate) steps: u64,
+    /// s.
     pub(crate) wall_time: f64,
+    /// s.
     pub(crate) t_reached: Option<f64>,
+    /// J.
     pub(crate) energy_residual: Option<f64>,
+    /// J.
     pub(crate) energy_turned_over: Option<f64>,
     /// Where they are not those of the first case.
     pub(crate) metrics: Option<Vec<Metric>>,
+}
+
+fn first_scene() -> Option<usize> {
+    Some(0)
 }
 
 impl Record {
@@ -131,9 +152,34 @@ impl Record {
         named.collect::<Vec<_>>().join(", ")
     }
 
-    /// Index of the scene of a case.
+    /// Index of the scene of a case; that of the first where its own is not recorded.
     pub(crate) fn scene_of(&self, case: &Listed) -> usize {
-        if case.scene < self.scenes.len() { case.scene } else { 0 }
+        case.scene.filter(|scene| *scene < self.scenes.len()).unwrap_or(0)
+    }
+
+    /// What is said where a case is not drawn as it was.
+    pub(crate) fn scene_note(&self, case: &Listed) -> Option<String> {
+        let words = || {
+            format!(
+                "case {} is drawn with the robot and the elements of case 0: of the first {MOST_SHOWN} cases alone they are recorded",
+                case.index
+            )
+        };
+        case.scene.is_none().then(words)
+    }
+
+    /// The swept values of a case as they lead its rows, each with its comma.
+    pub(crate) fn lead(&self, case: &Listed) -> String {
+        let mut lead = String::new();
+        for path in self.parameters() {
+            match case.parameters.get(path) {
+                Some(Value::Number(number)) => push_number(&mut lead, number.as_f64().unwrap_or(f64::NAN)),
+                Some(Value::String(text)) => push_text(&mut lead, text),
+                _ => {}
+            }
+            lead.push(',');
+        }
+        lead
     }
 
     /// The version of Springpot that wrote it.

@@ -118,29 +118,42 @@ impl Results {
         self.disk.read(&self.folder.join(name)).ok()
     }
 
-    /// Calls `take` with every row.
+    /// Calls `take` with every row of the cases that run.json lists.
     ///
     /// # Errors
-    /// The rows cannot be read; what `take` returns.
+    /// The rows cannot be read, or are not those that run.json tells of; what `take` returns.
     pub(crate) fn visit(&self, take: TakeRow<'_>) -> Result<(), ResultsError> {
+        let failed = |error| ResultsError::File { file: self.rows.file().to_owned(), error };
         let numbers: Vec<usize> = (self.swept..self.swept + self.columns.len()).collect();
         let time = self.columns.iter().position(|column| column.name == "t");
-        let (mut lead, mut case, mut last) = (None::<String>, 0, f64::NEG_INFINITY);
+        let cases = self.record.with_rows();
+        let leads: Vec<String> = cases.iter().map(|case| self.record.lead(case)).collect();
+        let mut counts = vec![0_u64; cases.len()];
+        let (mut lead, mut case, mut next, mut last) = (None::<String>, None, 0, f64::NEG_INFINITY);
         let read = self.rows.visit(self.swept, &numbers, &mut |text, values| {
             let t = time.map_or(f64::NEG_INFINITY, |time| values[time]);
             // Times rise within a case.
-            match &lead {
-                None => lead = Some(text.to_owned()),
-                Some(earlier) if earlier == text && !(t <= last && time.is_some()) => {}
-                Some(_) => {
-                    lead = Some(text.to_owned());
-                    case += 1;
-                }
+            let is_same = lead.as_deref() == Some(text) && !(t <= last && time.is_some());
+            if !is_same {
+                lead = Some(text.to_owned());
+                // Cases come in their order; of many, only the first are listed.
+                case = (next..cases.len()).find(|at| leads[*at] == text);
+                next = case.map_or(next, |at| at + 1);
             }
             last = t;
+            let Some(case) = case else { return Ok(()) };
+            counts[case] += 1;
             take(text, case, values)
         });
-        read.map_err(|error| ResultsError::File { file: self.rows.file().to_owned(), error })
+        read.map_err(failed)?;
+        match cases.iter().zip(counts).find(|(case, count)| case.rows != *count) {
+            None => Ok(()),
+            Some((case, count)) => {
+                let words =
+                    format!("it holds {count} rows of case {}, where run.json tells of {}", case.index, case.rows);
+                Err(failed(io::Error::new(io::ErrorKind::InvalidData, words)))
+            }
+        }
     }
 
     /// The rows of a file of texts, such as events.csv: the swept values as in [`Self::visit`], and the other fields; nothing where there is no such file.

@@ -1,6 +1,7 @@
 //! What is drawn of a robot: of one case of a scenario, for pages and files that outlive the run.
 
 use crate::parts::Part;
+use crate::record::MOST_SHOWN;
 use serde_json::{Map, Value, json};
 use springpot::elements::Element;
 use springpot::integrate::{Pose, System};
@@ -16,8 +17,6 @@ use springpot_scenario::{Cases, ElementPlan, FramePlan, Plan, ShapePlan};
 
 /// Points of a path.
 const POINTS: usize = 400;
-/// Cases whose own scene is recorded.
-const MOST_SCENES: usize = 12;
 
 /// One case as it is drawn, without the wanted path.
 pub(crate) fn scene(plan: &Plan) -> Scene {
@@ -219,6 +218,8 @@ pub(crate) struct Drawn {
     scenes: Vec<Scene>,
     /// The scene of each of the first cases.
     places: Vec<usize>,
+    /// Whether all cases have one scene.
+    is_one: bool,
     laws: Vec<LawText>,
 }
 
@@ -230,7 +231,7 @@ impl Drawn {
         let moves = |path: &String| !path.starts_with("element.") && !path.starts_with("solver.");
         let is_moved = cases.parameters().iter().any(moves);
         let mut places = vec![0];
-        for index in 1..cases.len().min(MOST_SCENES) {
+        for index in 1..cases.len().min(MOST_SHOWN) {
             // A case without a plan has no rows either.
             let Ok(plan) = cases.plan(index) else {
                 places.push(0);
@@ -247,15 +248,19 @@ impl Drawn {
             });
             places.push(place);
         }
-        Self { scenes, places, laws: laws(first.0) }
+        let is_one = !is_moved && scenes.len() == 1;
+        Self { scenes, places, is_one, laws: laws(first.0) }
     }
 
     /// Adds it to the record of a run.
     pub(crate) fn record(&self, record: &mut Map<String, Value>) {
         for listed in record.get_mut("cases").and_then(Value::as_array_mut).into_iter().flatten() {
             let index = listed["index"].as_u64().map_or(0, |index| index as usize);
-            if let Some(place) = self.places.get(index).filter(|place| **place > 0) {
-                listed["scene"] = json!(place);
+            match self.places.get(index) {
+                Some(0) => {}
+                Some(place) => listed["scene"] = json!(place),
+                None if self.is_one => {}
+                None => listed["scene"] = Value::Null,
             }
         }
         record.insert("scenes".to_owned(), json!(self.scenes));

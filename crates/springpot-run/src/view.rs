@@ -1,14 +1,12 @@
 //! The page that shows results in motion.
 
-use crate::record::{Listed, Record};
+use crate::record::{Listed, MOST_SHOWN, Record};
 use crate::results::{Results, ResultsError};
 use springpot::table::Column;
 use springpot_report::page::{CaseEvent, CaseMetric, View, ViewCase, ViewColumn};
 
 /// Numbers of a page.
-const MOST_NUMBERS: usize = 1_200_000;
-/// Cases of a page where none are asked for.
-const MOST_CASES: usize = 12;
+pub(crate) const MOST_NUMBERS: usize = 1_200_000;
 
 /// The page of the cases of these indices, or of the first that have rows; of rows that are too many, every so many are taken, and the last.
 ///
@@ -22,17 +20,22 @@ pub fn view(results: &Results, asked: &[usize]) -> Result<View, ResultsError> {
     // By case with rows: its place among those shown.
     let (mut places, mut cases) = (vec![None; with_rows.len()], Vec::new());
     for (place, case) in places.iter_mut().zip(&with_rows).filter(|(_, case)| is_shown(case)) {
-        if asked.is_empty() && cases.len() == MOST_CASES {
-            notes.push(format!("the first {MOST_CASES} of {} cases are shown", with_rows.len()));
+        if asked.is_empty() && cases.len() == MOST_SHOWN {
+            notes.push(format!("the first {MOST_SHOWN} of {} cases are shown", with_rows.len()));
             break;
         }
         *place = Some(cases.len());
         cases.push(shown(record, case));
+        notes.extend(record.scene_note(case));
     }
     let columns = results.columns.len();
-    let rows: usize =
-        with_rows.iter().zip(&places).filter(|(_, place)| place.is_some()).map(|(case, _)| case.rows as usize).sum();
-    let stride = (rows * columns).div_ceil(MOST_NUMBERS).max(1);
+    let rows: usize = with_rows
+        .iter()
+        .zip(&places)
+        .filter(|(_, place)| place.is_some())
+        .map(|(case, _)| case.rows as usize)
+        .fold(0, usize::saturating_add);
+    let stride = rows.saturating_mul(columns).div_ceil(MOST_NUMBERS).max(1);
     if stride > 1 {
         notes.push(format!("one of {stride} rows is shown"));
     }

@@ -10,6 +10,7 @@ use springpot_run::figures::{Curves, DrawnCase, FigureColumn, swept_numbers};
 use springpot_run::sweep::is_within;
 use springpot_run::table::{Totals, matches};
 use springpot_scenario::{Statistic, suggest};
+use std::collections::HashMap;
 
 /// What stands before the parenthesis of a metric.
 const METRIC: &str = "metric";
@@ -78,16 +79,10 @@ pub(super) fn plot(tables: &[Table], options: &PlotOptions, asked: &[Asked]) -> 
         let what = what(table, asked)?;
         let (cases, sweeps) = cases(table, (&path, axis), &what, chosen, window)?;
         let sweep = &table.sweeps[axis];
-        let (column, values) = match &sweep.parameters[..] {
-            [_] => swept_numbers(&path, &sweeps[axis].labels)
-                .map_err(|(message, help)| Refused::new(message, help.to_owned()))?,
-            // Of several that move together, the rows have the numbers.
-            _ => {
-                let (column, _) =
-                    swept_numbers(&path, &[]).map_err(|(message, help)| Refused::new(message, help.to_owned()))?;
-                (column, Vec::new())
-            }
-        };
+        // Of several that move together, and beyond the values that run.json lists, the rows have the numbers.
+        let listed = if sweep.parameters.len() == 1 { &sweep.labels[..] } else { &[] };
+        let (column, values) =
+            swept_numbers(&path, listed).map_err(|(message, help)| Refused::new(message, help.to_owned()))?;
         x.get_or_insert(column);
         if y.is_none() {
             y = Some(ordinates(table, &what, &names, &units)?);
@@ -238,9 +233,10 @@ fn cases(
             if !is_drawn(position) {
                 return Ok(());
             }
-            // Only of sweeps that move several parameters the field is needed, and there it may be a text.
-            let field =
-                if table.sweeps[axis].parameters.len() > 1 { at_x.map_or(Ok(f64::NAN), number)? } else { f64::NAN };
+            // The field may be a text where it is not needed.
+            let sweep = &table.sweeps[axis];
+            let is_listed = sweep.parameters.len() == 1 && position[axis] < sweep.labels.len();
+            let field = if is_listed { f64::NAN } else { at_x.map_or(Ok(f64::NAN), number)? };
             let (totals, metrics) = (vec![Totals::default(); columns.len()], vec![f64::NAN; named.len()]);
             cases.push(Case { position: position.to_vec(), field, totals, metrics });
         }
@@ -257,23 +253,19 @@ fn cases(
         Ok(())
     })?;
     if !named.is_empty() {
-        let mut sweeps = sweeps.clone();
-        for metric in table.metrics()? {
+        let (mut sweeps, metrics) = (sweeps.clone(), table.metrics()?);
+        let places: HashMap<Vec<usize>, usize> =
+            cases.iter().enumerate().map(|(at, case)| (case.position.clone(), at)).collect();
+        for metric in &metrics {
             let position = table.position(&mut sweeps, &metric.swept);
-            let Some(case) = cases.iter_mut().find(|case| case.position == position) else { continue };
-            if let Some(place) = named.iter().position(|name| **name == metric.name) {
-                case.metrics[place] = metric.value;
+            let place = named.iter().position(|name| **name == metric.name);
+            if let (Some(case), Some(place)) = (places.get(&position), place) {
+                cases[*case].metrics[place] = metric.value;
             }
         }
-        if let Some(name) =
-            named.iter().find(|name| table.metrics().is_ok_and(|all| all.iter().all(|metric| metric.name != ***name)))
-        {
-            let known = table.metrics()?.into_iter().map(|metric| metric.name);
-            let known: Vec<String> = known.collect();
-            return Err(Refused::new(
-                format!("{} has no metric {name:?}", table.name()),
-                suggest(name, known.iter().map(String::as_str)),
-            ));
+        if let Some(name) = named.iter().find(|name| metrics.iter().all(|metric| metric.name != ***name)) {
+            let message = format!("{} has no metric {name:?}", table.name());
+            return Err(Refused::new(message, suggest(name, metrics.iter().map(|metric| metric.name.as_str()))));
         }
     }
     Ok((cases, sweeps))

@@ -2,7 +2,7 @@
 
 use std::io::{self, BufRead as _, BufReader, Read as _, Write};
 use std::net::TcpStream;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Bytes of a request that are read.
 const LONGEST: u64 = 16 << 10;
@@ -25,16 +25,19 @@ pub(super) struct Bad(pub(super) &'static str);
 
 /// Reads a request; the outer error is the connection's.
 pub(super) fn request(stream: &TcpStream) -> io::Result<Result<Request, Bad>> {
-    stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
-    let mut lines = Vec::new();
+    let (mut lines, begun) = (Vec::new(), Instant::now());
     let mut reader = BufReader::new(stream.take(LONGEST));
     loop {
-        let mut line = String::new();
-        if reader.read_line(&mut line)? == 0 {
+        // One that sends a byte now and then is left too.
+        let left = PATIENCE.checked_sub(begun.elapsed()).filter(|left| !left.is_zero());
+        let Some(left) = left else { return Ok(Err(Bad("408 Request Timeout"))) };
+        stream.set_read_timeout(Some(left))?;
+        let mut line = Vec::new();
+        if reader.read_until(b'\n', &mut line)? == 0 {
             return Ok(Err(Bad("400 Bad Request")));
         }
-        let line = line.trim_end().to_owned();
+        let line = String::from_utf8_lossy(&line).trim_end().to_owned();
         if line.is_empty() {
             return Ok(read(&lines));
         }
@@ -59,6 +62,12 @@ fn read(lines: &[String]) -> Result<Request, Bad> {
     };
     // A page from elsewhere whose name was made to lead here is not answered.
     if !header("Host").is_some_and(|host| is_here(&host)) {
+        return Err(Bad("403 Forbidden"));
+    }
+    // Nor does a page from elsewhere make this machine work; whoever follows a link does.
+    if header("Sec-Fetch-Site").is_some_and(|site| site == "cross-site")
+        && header("Sec-Fetch-Mode").is_none_or(|mode| mode != "navigate")
+    {
         return Err(Bad("403 Forbidden"));
     }
     let path = target.unwrap_or("/").split(['?', '#']).next().unwrap_or("/").to_owned();
@@ -100,7 +109,7 @@ pub(super) fn begin_events(stream: &mut impl Write) -> io::Result<()> {
 }
 
 /// Writes an event whose data is one line; `id` is what a browser says when it comes again.
-pub(super) fn event(stream: &mut impl Write, data: &str, id: Option<u64>) -> io::Result<()> {
+pub(super) fn event(stream: &mut impl Write, data: &str, id: Option<&str>) -> io::Result<()> {
     if let Some(id) = id {
         writeln!(stream, "id: {id}")?;
     }
@@ -139,5 +148,10 @@ mod tests {
         }
         assert_eq!(of(&["GET / HTTP/1.1", "Host: example.org"]), Err(Bad("403 Forbidden")));
         assert_eq!(of(&["GET / HTTP/1.1"]), Err(Bad("403 Forbidden")));
+        let from = |mode: &str| {
+            of(&["GET / HTTP/1.1", "Host: localhost", "Sec-Fetch-Site: cross-site", &format!("Sec-Fetch-Mode: {mode}")])
+        };
+        assert_eq!(from("no-cors"), Err(Bad("403 Forbidden")));
+        assert!(from("navigate").is_ok());
     }
 }

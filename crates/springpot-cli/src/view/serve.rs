@@ -35,9 +35,13 @@ struct Server {
 
 pub(super) fn serve(options: &ViewOptions, disk: &Disk) -> Ending {
     // What cannot be shown is said now.
-    if Underway::open(disk, &options.results).is_none()
-        && let Err(ending) = of_results(&options.results, &options.cases, disk)
-    {
+    if Underway::open(disk, &options.results).is_some() {
+        if !options.cases.is_empty() {
+            let help = "leave --case out: the page shows the first 12 as they begin".to_owned();
+            diagnostic::error_with_help("cases cannot be chosen while a run is under way", help);
+            return Ending::Refused;
+        }
+    } else if let Err(ending) = of_results(&options.results, &options.cases, disk) {
         return ending;
     }
     let port = options.port.unwrap_or(0);
@@ -54,22 +58,39 @@ pub(super) fn serve(options: &ViewOptions, disk: &Disk) -> Ending {
     terminal::print(&format!("http://{address}/\n"));
     terminal::print_error("Ctrl-C ends it\n");
     let server = Arc::new(Server { options: options.clone(), disk: disk.clone(), open: AtomicUsize::new(0) });
-    for stream in listener.incoming().filter_map(Result::ok) {
-        let server = server.clone();
-        if server.open.fetch_add(1, Ordering::Relaxed) >= MOST {
-            server.open.fetch_sub(1, Ordering::Relaxed);
+    for stream in listener.incoming() {
+        let Ok(mut stream) = stream else {
+            // Too many files are open, or the like.
+            thread::sleep(PAUSE);
+            continue;
+        };
+        let place = Place::of(&server);
+        if server.open.load(Ordering::Relaxed) > MOST {
+            let _ = http::answer(&mut stream, "503 Service Unavailable", "text/plain", b"too many at a time", true);
             continue;
         }
-        let answer = move || {
-            // A browser that goes away is no error.
-            let _ = server.answer(stream);
-            server.open.fetch_sub(1, Ordering::Relaxed);
-        };
-        if thread::Builder::new().spawn(answer).is_err() {
-            break;
-        }
+        // A browser that goes away is no error, and neither is one that no thread can be had for.
+        let _ = thread::Builder::new().spawn(move || place.server.answer(stream));
     }
     Ending::Failed
+}
+
+/// One of the connections, until it is dropped.
+struct Place {
+    server: Arc<Server>,
+}
+
+impl Place {
+    fn of(server: &Arc<Server>) -> Self {
+        server.open.fetch_add(1, Ordering::Relaxed);
+        Self { server: server.clone() }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.server.open.fetch_sub(1, Ordering::Relaxed);
+    }
 }
 
 impl Server {
@@ -88,7 +109,9 @@ impl Server {
                 Err(_) => http::answer(&mut stream, "404 Not Found", "text/plain", b"no results", wants_body),
             },
             (EVENTS, Some(run)) if wants_body => {
-                let sent = last_event.and_then(|id| id.parse().ok()).unwrap_or(0);
+                // Of another run, nothing was sent.
+                let of_run = |id: &str| id.strip_prefix(run.id())?.strip_prefix('@')?.parse().ok();
+                let sent = last_event.and_then(|id| of_run(&id)).unwrap_or(0);
                 events(&mut stream, &run, sent)
             }
             // It has ended in between.
@@ -113,16 +136,17 @@ fn events(stream: &mut TcpStream, run: &Underway, sent: u64) -> io::Result<()> {
     let mut tail = run.tail(sent)?;
     let mut spoken = Instant::now();
     loop {
-        let news = tail.news()?;
-        if news.is_empty() {
+        let Some(news) = tail.news()? else {
             if spoken.elapsed() > QUIET {
                 stream.write_all(b":\n\n")?;
                 spoken = Instant::now();
             }
             thread::sleep(PAUSE);
             continue;
+        };
+        if !news.is_empty() {
+            spoken = Instant::now();
         }
-        spoken = Instant::now();
         for one in news {
             match one {
                 News::Case(case) => {
@@ -132,7 +156,11 @@ fn events(stream: &mut TcpStream, run: &Underway, sent: u64) -> io::Result<()> {
                 }
                 News::Rows(NewRows { case, rows, position }) => {
                     let rows: Vec<Value> = rows.iter().map(|row| row.iter().copied().map(number).collect()).collect();
-                    http::event(stream, &json!({ "case": case, "rows": rows }).to_string(), Some(position))?;
+                    http::event(
+                        stream,
+                        &json!({ "case": case, "rows": rows }).to_string(),
+                        Some(&format!("{}@{position}", run.id())),
+                    )?;
                 }
                 News::Ended(status) => {
                     return http::event(stream, &json!({ "status": status }).to_string(), None);

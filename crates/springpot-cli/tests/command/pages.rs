@@ -196,6 +196,72 @@ fn what_is_no_result_is_refused() {
     refused(&["view", "o"], "results.csv");
 }
 
+#[test]
+fn rows_belong_to_the_case_of_their_values() {
+    let place = swept();
+    let rows = place.read("o/results.csv");
+    let lines: Vec<&str> = rows.lines().collect();
+    let without_first: Vec<&str> = lines.iter().copied().filter(|line| !line.starts_with("1,")).collect();
+    assert!(without_first.len() < lines.len());
+    // Rows that run.json tells of are not there.
+    for (cut, message) in [
+        (without_first.join("\n"), "0 rows of case 0"),
+        (lines[..lines.len() - 1].join("\n"), "of case 1, where run.json tells of"),
+        (lines[0].to_owned(), "0 rows of case 0"),
+    ] {
+        place.write("o/results.csv", format!("{cut}\n"));
+        for command in ["view", "report"] {
+            let ended = place.springpot(&[command, "o"]);
+            assert_eq!(ended.code, Some(2), "{command}");
+            assert!(ended.stderr.contains(message), "{}", ended.stderr);
+        }
+    }
+}
+
+#[test]
+fn cases_whose_scene_is_not_recorded_say_so() {
+    let sweep = "robot.body.arm.joint.origin.2=0.1:1.4:14";
+    let place = Place::with(ARM);
+    place.done(&["run", "arm.toml", "--out", "o", "--sweep", sweep]);
+    place.done(&["view", "o", "--case", "11,13"]);
+    let notes = data(&place.read("o/view.html"))["notes"].to_string();
+    assert!(
+        notes.contains("case 13 is drawn with the robot and the elements of case 0") && !notes.contains("case 11"),
+        "{notes}"
+    );
+    let ended = place.done(&["export", "o", "arm.glb", "--case", "13"]);
+    assert!(ended.stderr.contains("case 13 is drawn"), "{}", ended.stderr);
+    // What is swept moves nothing: all cases have one scene.
+    place.done(&["run", "arm.toml", "--out", "p", "--sweep", "element.damper.alpha=0.1:0.9:14"]);
+    place.done(&["view", "p", "--case", "13"]);
+    assert!(!data(&place.read("p/view.html"))["notes"].to_string().contains("drawn with"));
+}
+
+#[test]
+fn only_metrics_of_the_same_thing_are_compared() {
+    let metric = |of: &str| format!("[[metric]]\nname = \"peak\"\nof = \"{of}\"\nkind = \"max\"\n");
+    let place = Place::with(&format!("{ARM}{}", metric("damper.force")));
+    place.write("other.toml", format!("{ARM}{}", metric("v.q1")));
+    place.done(&["run", "arm.toml", "--out", "a", "--sweep", "element.damper.alpha=0.2,0.5"]);
+    place.done(&[
+        "run",
+        "arm.toml",
+        "--out",
+        "b",
+        "--sweep",
+        "element.damper.alpha=0.2,0.5",
+        "--set",
+        "element.damper.u=4 V",
+    ]);
+    place.done(&["run", "arm.toml", "--out", "c", "--sweep", "element.damper.E_c=0.2,0.5"]);
+    place.done(&["run", "other.toml", "--out", "d", "--sweep", "element.damper.alpha=0.2,0.5"]);
+    let has_metrics = |other: &str| {
+        place.done(&["report", "a", other, "--out", "c.html"]);
+        place.read("c.html").contains(">Metrics</h2>")
+    };
+    assert!(has_metrics("b") && !has_metrics("c") && !has_metrics("d"));
+}
+
 /// A server of a page, ended with the test.
 struct Server {
     child: Child,
@@ -266,7 +332,7 @@ fn a_server_shows_a_run_while_it_is_under_way() {
     let page = server.get("/");
     let told = data(&page);
     assert_eq!((&told["status"], &told["follow"]), (&"running".into(), &"/events".into()));
-    let (messages, id) = server.events("0");
+    let (messages, id) = server.events("");
     assert!(run.wait().unwrap().success());
     // Every row of every case, as the file has them.
     let names: Vec<&str> =
@@ -284,11 +350,12 @@ fn a_server_shows_a_run_while_it_is_under_way() {
     assert_eq!(cases.len(), 1);
     assert_eq!(cases[0]["cases"][0]["index"], 1);
     assert_eq!(messages.last().unwrap()["status"], "done");
-    assert_eq!(id, fs::metadata(place.path("o/results.csv")).unwrap().len().to_string());
+    let whole = fs::metadata(place.path("o/results.csv")).unwrap().len();
+    assert_eq!(id.rsplit('@').next(), Some(&*whole.to_string()));
     // The same server shows what has ended.
     let ended = data(&server.get("/"));
     assert_eq!((&ended["status"], &ended["follow"]), (&"done".into(), &Value::Null));
-    assert_eq!(server.events("0").0, [serde_json::json!({ "status": "done" })]);
+    assert_eq!(server.events("").0, [serde_json::json!({ "status": "done" })]);
     assert!(server.get("/../etc/passwd").starts_with("HTTP/1.1 404 "));
     let mut answer = String::new();
     server.ask("GET / HTTP/1.1\r\nHost: example.org\r\n\r\n").read_to_string(&mut answer).unwrap();

@@ -10,10 +10,12 @@ use crate::results::{Results, ResultsError};
 use crate::sweep::KeptCurve;
 use serde_json::Value;
 use springpot_report::page::{Block, Figure, Report, Section, Table};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Numbers of a case that are held in memory.
 const MOST_NUMBERS: usize = 20_000_000;
+/// Metrics that are listed.
+const MOST_METRICS: usize = 300;
 /// Differences of the scenarios that are listed.
 const MOST_LISTED: usize = 300;
 
@@ -25,7 +27,7 @@ struct Pair {
 
 /// The report of how `b` differs from `a`.
 ///
-/// Cases are compared that have the same swept values, or else the first ones; of rows at different times, those of `b` are taken as straight lines
+/// Rows are those of the first case that both have with the same swept values, or else of the first of each; of rows at different times, those of `b` are taken as straight lines
 /// between them.
 ///
 /// # Errors
@@ -138,35 +140,40 @@ fn otherwise(results: [&Results; 2], names: &[String; 2]) -> Vec<Block> {
     vec![Block::Table(table)]
 }
 
-/// Metrics that both have, of the same swept values.
+/// Metrics that both have, of the same column and the same swept values.
 fn metrics(results: [&Results; 2], names: &[String; 2]) -> Option<Table> {
+    if !results[0].record.parameters().eq(results[1].record.parameters()) {
+        return None;
+    }
     let [a, b] = results.map(|results| results.texts("metrics.csv"));
+    let others: HashMap<(&str, &[String]), &[String]> = b
+        .iter()
+        .filter(|(_, fields)| fields.len() == 4)
+        .map(|(lead, fields)| ((&**lead, &fields[..2]), &fields[..]))
+        .collect();
     let difference = format!("#{} − {}", names[1], names[0]);
     let [first, second] = [0, 1].map(|k| format!("#{}", names[k]));
     let mut table = Table::new("", &["case", "metric", &first, &second, &difference, "#relative", "unit"]);
     for (lead, fields) in &a {
         let [name, _, value, unit] = &fields[..] else { continue };
-        let other = b.iter().find(|(other, fields)| other == lead && fields.first() == Some(name));
-        let Some((_, others)) = other else { continue };
-        let (x, y) = (value.parse::<f64>().ok(), others.get(2).and_then(|value| value.parse::<f64>().ok()));
+        let Some([_, _, other, other_unit]) = others.get(&(&**lead, &fields[..2])) else { continue };
+        if unit != other_unit {
+            continue;
+        }
+        if table.rows.len() == MOST_METRICS {
+            table.note = Some("The first ones; metrics.csv of both has all.".to_owned());
+            break;
+        }
+        let (x, y) = (value.parse::<f64>().ok(), other.parse::<f64>().ok());
         let shown = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), short);
         let (change, share) = match (x, y) {
-            (Some(x), Some(y)) => (
-                brief(y - x),
-                if x == 0.0 { "–".to_owned() } else { format!("{} %", brief(100.0 * (y - x) / x.abs())) },
-            ),
+            (Some(0.0), Some(y)) => (brief(y), "–".to_owned()),
+            (Some(x), Some(y)) => (brief(y - x), format!("{} %", brief(100.0 * (y - x) / x.abs()))),
             _ => ("–".to_owned(), "–".to_owned()),
         };
         let case = lead.trim_end_matches(',').replace(',', ", ");
-        table.rows.push(vec![
-            case,
-            written::cut(name.clone()),
-            shown(x),
-            shown(y),
-            change,
-            share,
-            labels::written_unit(unit),
-        ]);
+        let unit = labels::written_unit(unit);
+        table.rows.push(vec![case, written::cut(name.clone()), shown(x), shown(y), change, share, unit]);
     }
     (!table.rows.is_empty()).then_some(table)
 }
@@ -196,27 +203,30 @@ fn figures(results: [&Results; 2], names: &[String; 2], pair: &Pair) -> Result<V
             Some(curves::figure(asked.title.clone(), curves::picture(results[0], asked, cases)?))
         })
         .collect();
-    let mut blocks = Vec::new();
-    if !pair.name.is_empty() {
-        blocks.push(Block::Text(format!("Case: {}.", pair.name)));
-    }
+    let mut blocks = of_case(pair);
     if !figures.is_empty() {
         blocks.push(Block::Figures(figures));
     }
     Ok(blocks)
 }
 
+/// Which case it is, where there are several.
+fn of_case(pair: &Pair) -> Vec<Block> {
+    if pair.name.is_empty() { Vec::new() } else { vec![Block::Text(format!("Case: {}.", pair.name))] }
+}
+
 /// The rows of a case, column by column.
 struct Rows {
     columns: Vec<Vec<f64>>,
+    /// Every so many rows are held.
     stride: usize,
 }
 
 impl Rows {
     fn of(results: &Results, place: usize) -> Result<Self, ResultsError> {
         let rows = results.record.with_rows().get(place).map_or(0, |case| case.rows as usize);
-        let stride = (rows * results.columns.len()).div_ceil(MOST_NUMBERS).max(1);
-        let mut columns = vec![Vec::with_capacity(rows / stride + 1); results.columns.len()];
+        let stride = rows.saturating_mul(results.columns.len()).div_ceil(MOST_NUMBERS).max(1);
+        let mut columns = vec![Vec::new(); results.columns.len()];
         let mut seen = 0;
         results.visit(&mut |_, case, values| {
             if case == place {
@@ -239,7 +249,7 @@ impl Rows {
 fn columns(results: [&Results; 2], names: &[String; 2], pair: &Pair) -> Result<Vec<Block>, ResultsError> {
     let rows = [Rows::of(results[0], pair.places[0])?, Rows::of(results[1], pair.places[1])?];
     let times = [0, 1].map(|k| rows[k].column(results[k], "t"));
-    let mut blocks = Vec::new();
+    let mut blocks = of_case(pair);
     if let [Some(t), Some(other)] = times
         && !t.is_empty()
         && !other.is_empty()

@@ -98,6 +98,10 @@ pub(super) fn summary(results: &Results) -> Option<Table> {
     let mut table = Table::new("", &["column", "#least", "#largest", "#root mean square", "unit", "meaning"]);
     for (_, fields) in rows.into_iter().take_while(|(lead, _)| *lead == first) {
         let [name, unit, least, largest, rms] = &fields[..] else { continue };
+        // Another case of the same values.
+        if table.rows.first().is_some_and(|row| row[0] == *name) {
+            break;
+        }
         let meaning = results.columns.iter().find(|column| column.name == *name).map_or("", |column| &column.meaning);
         let numbers = [least, largest, rms].map(|text| shortened(text));
         let [least, largest, rms] = numbers;

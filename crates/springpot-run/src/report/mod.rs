@@ -10,7 +10,6 @@ pub use compare::comparison;
 
 use crate::labels;
 use crate::numbers::{brief, count, four, rough, short};
-use crate::record::Listed;
 use crate::results::{Results, ResultsError};
 use curves::{Asked, Drawn};
 use springpot_report::page::{Block, Fact, Report, Section, Table};
@@ -98,7 +97,7 @@ fn in_short(results: &Results) -> Vec<Block> {
 /// Names and values that say how a run went.
 fn facts(results: &Results) -> Vec<(&'static str, String)> {
     let record = &results.record;
-    let rows: u64 = record.cases.iter().map(|case| case.rows).sum();
+    let rows = record.rows.unwrap_or_else(|| record.cases.iter().map(|case| case.rows).fold(0, u64::saturating_add));
     let cases = match record.cases_failed {
         0 => format!("{} of {} done", record.cases_done, record.cases_total),
         failed => format!("{} of {} done, {failed} failed", record.cases_done, record.cases_total),
@@ -120,12 +119,10 @@ fn facts(results: &Results) -> Vec<(&'static str, String)> {
 
 /// The worst case's residual beside the energy that it turned over.
 fn balance(results: &Results) -> String {
-    let share = |case: &&Listed| Some(case.energy_residual?.abs() / case.energy_turned_over?.max(f64::MIN_POSITIVE));
-    let worst =
-        results.record.cases.iter().max_by(|a, b| share(a).unwrap_or(-1.0).total_cmp(&share(b).unwrap_or(-1.0)));
-    match worst.and_then(|case| Some((case.energy_residual?, case.energy_turned_over?))) {
-        Some((residual, turned)) => format!("closes to {} J of {} J", rough(residual.abs()), four(turned)),
-        None => results.record.ledger.clone().unwrap_or_else(|| "unknown".to_owned()),
+    let record = &results.record;
+    match (record.energy_residual, record.energy_turned_over) {
+        (Some(residual), Some(turned)) => format!("closes to {} J of {} J", rough(residual.abs()), four(turned)),
+        _ => record.ledger.clone().unwrap_or_else(|| "unknown".to_owned()),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::layout::Layout;
 use super::{CaseResult, Happened, MAX_LISTED, Outcome};
+use crate::record::MOST_SHOWN;
 use crate::table::Format;
 use serde_json::{Map, Value, json};
 use springpot_scenario::{Cases, Plan, SweptValue};
@@ -66,18 +67,15 @@ impl Outcome {
     }
 }
 
-/// Cases of a run under way that are listed.
-const MAX_BEGUN: usize = 12;
-
-/// What is known of a run at its beginning, by the names of run.json.
-pub(crate) fn begun(cases: &Cases, plan: &Plan, layout: &Layout) -> Map<String, Value> {
-    let listed =
-        (0..cases.len().min(MAX_BEGUN)).map(|index| json!({ "index": index, "parameters": swept(cases, index) }));
+/// What is known of a run of these cases at its beginning, by the names of run.json.
+pub(crate) fn begun(cases: &Cases, plan: &Plan, layout: &Layout, range: Range<usize>) -> Map<String, Value> {
+    let total = range.len();
+    let listed = range.take(MOST_SHOWN).map(|index| json!({ "index": index, "parameters": swept(cases, index) }));
     let record = json!({
         "status": "running",
         "title": plan.title,
         "versions": { "springpot": env!("CARGO_PKG_VERSION") },
-        "cases_total": cases.len(),
+        "cases_total": total,
         "plan": plan.resolved(),
         "columns": layout.written(),
         "sweeps": sweeps(cases),

@@ -8,6 +8,11 @@ use std::fs::{self, File, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
+
+/// How often a lock is tried, and how long it is waited in between.
+const LOOKS: usize = 4;
+const LOOK: Duration = Duration::from_millis(5);
 
 /// One call to the file system.
 #[derive(Debug, Clone, Copy)]
@@ -181,14 +186,18 @@ impl Disk {
     pub(crate) fn lock(&self, path: &Path) -> io::Result<Option<DiskFile>> {
         self.ask(Call::Lock(path))?;
         let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
-        match file.try_lock() {
-            Ok(()) => Ok(Some(self.file(file, path))),
-            Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Error(error)) => Err(error),
+        // One that only looks ([`Self::is_locked`]) lets go at once.
+        for _ in 0..LOOKS {
+            match file.try_lock() {
+                Ok(()) => return Ok(Some(self.file(file, path))),
+                Err(TryLockError::WouldBlock) => std::thread::sleep(LOOK),
+                Err(TryLockError::Error(error)) => return Err(error),
+            }
         }
+        Ok(None)
     }
 
-    /// Whether somebody holds the lock of a file, which is not kept from being taken; where there are no locks, whether the file is there.
+    /// Whether somebody holds the lock of a file, which is shared for a moment to see it; where there are no locks, whether the file is there.
     pub(crate) fn is_locked(&self, path: &Path) -> bool {
         let opened = self.ask(Call::Open(path)).and_then(|_| File::open(path));
         opened.is_ok_and(|file| file.try_lock_shared().is_err())

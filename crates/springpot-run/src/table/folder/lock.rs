@@ -62,7 +62,7 @@ pub(super) fn take(disk: &Disk, folder: &Path, holder: &str) -> io::Result<Taken
     Err(io::Error::new(io::ErrorKind::ResourceBusy, format!("{}: others take it all the time", path.display())))
 }
 
-/// Whether a run writes to a folder, as far as can be told without disturbing it; where the file system knows no locks, the file says it.
+/// Whether a run writes to a folder; where the file system knows no locks, the file says it.
 pub(crate) fn is_held(disk: &Disk, folder: &Path) -> bool {
     disk.is_locked(&folder.join(LOCK))
 }
