@@ -227,7 +227,8 @@ impl Tail<'_> {
         };
         let time = |case: usize| self.run.time.and_then(|time| fields(case).nth(time)).unwrap_or(f64::NAN);
         // Cases come in their order, times rise within each; those without a row do not come.
-        let goes_on = self.case.filter(|case| line.starts_with(&leads[*case]) && !(time(*case) <= self.t));
+        let is_back = |case: usize| time(case) <= self.t;
+        let goes_on = self.case.filter(|case| line.starts_with(&leads[*case]) && !is_back(*case));
         let next = || (self.case.map_or(0, |case| case + 1)..listed.len()).find(|case| line.starts_with(&leads[*case]));
         let Some(case) = goes_on.or_else(next) else { return };
         self.t = time(case);
