@@ -29,7 +29,12 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             let is_slip = folded.len().min(other.len()) > 1
                 && folded.len() != other.len()
                 && strsim::levenshtein(&folded, &other) == 1;
-            let likeness = if is_end { 1.0 } else { strsim::jaro_winkler(&folded, &other) };
+            let likeness = match candidate.strip_suffix(name) {
+                // The coordinate of a joint before all else that is told of it.
+                Some("q.") => 1.1,
+                Some(_) if is_end => 1.0,
+                _ => strsim::jaro_winkler(&folded, &other),
+            };
             let likeness = if is_slip { likeness.max(0.9) } else { likeness };
             let likeness = if is_start { 0.95 + 0.05 * likeness } else { likeness };
             (likeness, candidate)
@@ -65,5 +70,8 @@ mod tests {
         assert_eq!(nearest("joint2", ["panda_joint1", "panda_joint2", "joint3x"]), Some("panda_joint2"));
         assert_eq!(nearest("pd", ["pid", "pd-gravity", "pd-gravity-2", "pid"]), Some("pd-gravity"));
         assert_eq!(nearest("joint2", ["left_joint2", "right_joint2"]), Some("right_joint2"));
+        let columns = ["q.shoulder", "v.shoulder", "tau.shoulder", "strut.Q.shoulder"];
+        assert_eq!(nearest("shoulder", columns), Some("q.shoulder"));
+        assert_eq!(nearest("q1", ["q.q1", "v.q1", "q.q2"]), Some("q.q1"));
     }
 }

@@ -291,3 +291,71 @@ fn a_switch_with_a_gap_acts_once_each_time() {
     assert!(numbers.len() > 15, "{numbers:?}");
     assert!(numbers.iter().enumerate().all(|(k, number)| (k + 1) % 2 == *number), "{numbers:?}");
 }
+
+/// What hangs on t alone is known before the run: no pulse is too narrow, no wave too fast, moving or at rest.
+#[test]
+fn events_of_time_are_all_found() {
+    let text = std::fs::read_to_string("../../testdata/silent/event_pulse_of_time.toml").unwrap();
+    near(&done(&text).at(0, "t"), &[31.399_95, 31.400_05], 1e-12, "pulse");
+    let rest = |when: &str, end: f64| {
+        let law = "law = \"spring\"\nparameters = { k = 1 }";
+        let times = format!("\n[time]\nend = {end}\noutput_step = {end}\n");
+        slider("1", 0.0, law, &state("0", "0")) + &event("e", &format!("when = \"{when}\"")) + &times
+    };
+    let waves = done(&rest("sin(200*t)", 60.0)).at(0, "t");
+    let wanted: Vec<f64> = (1..=3819).map(|k| f64::from(k) * PI / 200.0).collect();
+    near(&waves, &wanted, 1e-13 * 60.0, "waves");
+    for (when, count) in [
+        ("sin(2000*t)", 1273),
+        // Beside a state, which rests or moves.
+        ("sin(200*t) + 0*q.q", 127),
+        ("sin(200*t) + 0.1*q.q", 127),
+        ("max(0, 1 - abs(t - 1.4)/1e-5) - 0.5 + q.q", 2),
+        ("step(t - 1.4) - step(t - 1.4000001) - 0.5 + 0*v.q", 2),
+        ("q.q + 2*step(t - 1) - 1", 1),
+    ] {
+        assert_eq!(done(&rest(when, 2.0)).at(0, "t").len(), count, "{when}");
+    }
+    let moving =
+        |when: &str| done(&oscillator(&event("e", &format!("when = \"{when}\"")), 2.0, "rtol = 1e-9")).at(0, "t");
+    // cos t against fast waves: each of these crosses it once in every half turn.
+    assert_eq!(moving("2*sin(2000*t) - q.q").len(), 1274);
+    near(&moving("step(t - 1.4) - 0.5 + 0*q.q"), &[1.4], 1e-15, "jump");
+}
+
+/// Functions of t that act end steps on time, also where a signal has its kink, and several at one time.
+#[test]
+fn events_of_time_act_on_time() {
+    let text = [
+        event("on", "when = \"max(0, 1 - abs(t - 1)/1e-4) - 0.5\"\ndirection = \"rising\"\naction = { set = { \"tau.q\" = 2 } }"),
+        event("off", "when = \"step(t - 2) - 0.5\"\naction = { set = { \"tau.q\" = 0 } }"),
+        event("too", "when = \"step(t - 2) - 0.25\""),
+        event("end", "when = \"t - 3\"\naction = \"stop\""),
+    ]
+    .concat();
+    for solver in ["rtol = 1e-10", "method = \"midpoint\"\nstep = 1e-2"] {
+        let run = done(&mass("torque = { q = \"0.5*step(t - 2)\" }", &text, 4.0, solver));
+        near(&run.at(0, "t"), &[0.999_95], 1e-12, "on");
+        near(&run.at(1, "t"), &[2.0], 1e-12, "off");
+        near(&run.at(2, "t"), &[2.0], 1e-12, "too");
+        near(&[run.report.t_reached.unwrap()], &[3.0], 1e-12, "end");
+        let speed = *run.column("v.q").last().unwrap();
+        near(&[speed], &[2.0 - 0.999_95], 1e-9, "speed");
+    }
+    let states = try_run(&mass("torque = { q = \"1\" }", &text, 4.0, "rtol = 1e-9"), true).kept;
+    for (state, told) in states.states.into_iter().step_by(7) {
+        let plan = plan(&mass("torque = { q = \"1\" }", &text, 4.0, "rtol = 1e-9"));
+        let mut rest = Kept::default();
+        resume(&plan.system(), &plan.settings, state, &mut rest, &Stop::new(false)).1.unwrap();
+        assert_eq!(rest.events, states.events[told..]);
+    }
+}
+
+#[test]
+fn a_function_of_time_that_passes_zero_too_often_is_refused() {
+    let text = mass("torque = { q = \"1\" }", &event("e", "when = \"sin(1e9*t)\""), 4.0, "rtol = 1e-9");
+    let error = try_run(&text, false).error;
+    assert!(matches!(&error, Some(RunError::TooBusy { what, .. }) if what.contains("\"e\"")), "{error:?}");
+    let error = try_run(&text.replace("sin(1e9*t)", "log(t - 1)"), false).error;
+    assert!(matches!(error, Some(RunError::NotFinite { .. })), "{error:?}");
+}

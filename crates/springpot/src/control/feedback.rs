@@ -61,6 +61,11 @@ impl Feedback {
         self.scale * self.expression.value_on(branch, t, seen) + self.offset
     }
 
+    /// A bound of what rounding makes of its value on a branch.
+    pub(crate) fn rounding_on(&self, branch: u64, t: f64, seen: &[f64]) -> f64 {
+        self.scale.abs() * self.expression.rounding_on(branch, t, seen) + f64::EPSILON * self.offset.abs()
+    }
+
     /// Its value and time derivative on a branch.
     pub(crate) fn jet_on(&self, branch: u64, t: f64, seen: &[Jet]) -> Jet {
         let jet = self.expression.jet_on(branch, t, seen);

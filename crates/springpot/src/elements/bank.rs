@@ -466,6 +466,16 @@ impl ElementBank {
         }
     }
 
+    /// Whether all energies of element `e` are known.
+    pub(crate) fn is_accounted(&self, e: usize) -> bool {
+        self.elements[e].kept.as_ref().is_some_and(|kept| kept.state.is_accounted())
+    }
+
+    /// Whether the force of element `e`, which has made no step, is infinite.
+    pub(crate) fn begins_singular(&self, e: usize) -> bool {
+        self.elements[e].kept.as_ref().is_some_and(|kept| kept.state.seen_at(0.0).is_singular())
+    }
+
     /// Whether a singular start makes the force of element `e` infinite at t = 0.
     pub(crate) fn is_singular(&self, e: usize) -> bool {
         self.elements[e].kept.as_ref().is_some_and(|kept| kept.state.is_singular())

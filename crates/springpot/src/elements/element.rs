@@ -4,7 +4,7 @@ use super::bank::MemoryRange;
 use super::measure::Measure;
 use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
-use crate::law::{Derivative, Entry, InputValue, Network, Past, RuleError, Start, State};
+use crate::law::{Derivative, Entry, InputValue, Network, Past, RuleError, Start, State, past};
 use crate::signal::Signal;
 use std::sync::Arc;
 
@@ -97,7 +97,9 @@ impl Element {
 
     /// What the law starts from at t = 0 at this coordinate y and under these inputs.
     pub fn start<'i>(&self, coordinate: f64, inputs: &'i [InputValue]) -> Start<'i> {
-        Start { stroke: self.stroke(coordinate), jump: self.jump(coordinate), inputs }
+        // What was held since ever was not stretched at t = 0.
+        let jump = if self.derivative == Derivative::RiemannLiouville { self.jump(coordinate) } else { 0.0 };
+        Start { stroke: self.stroke(coordinate), jump, inputs }
     }
 
     /// The law's state at t = 0 at this coordinate y and under these inputs, its memories without kernels
@@ -126,6 +128,15 @@ impl Element {
             false => self.memory_range(MemoryRange { tolerance, shortest: 0.0, horizon }, inputs).horizon,
         };
         self.past.state(&self.law, &self.start(coordinate, inputs), tolerance, horizon)
+    }
+
+    /// The state that a run begins with where at t = 0 that of the law is `state`: behind a jump that parts in series share ([`past::settle`]).
+    ///
+    /// # Errors
+    /// As [`Self::begin`].
+    pub(crate) fn settled(&self, start: &Start, state: State, range: MemoryRange) -> Result<State, KernelError> {
+        let MemoryRange { tolerance, horizon, .. } = self.memory_range(range, start.inputs);
+        past::settle(&self.law, start, state, tolerance, horizon)
     }
 
     /// The range of its memories in their own time, under the inputs at t = 0 and what its signals say of the rest of the run.

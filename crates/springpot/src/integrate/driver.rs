@@ -14,10 +14,10 @@ use super::stepper::{Behind, Target, Trial};
 use super::system::Motion;
 use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
-use crate::observe::Snapshot;
+use crate::observe::{Needs, Snapshot};
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Steps above this many last bits of the end are whole multiples of such a bit.
 const COARSE: f64 = (1u64 << 20) as f64;
@@ -71,6 +71,8 @@ pub(super) struct Driver {
     tick: usize,
     steps: u64,
     rejected_steps: u64,
+    /// What tells system and settings from others, once it was asked for.
+    fingerprint: OnceLock<u64>,
 }
 
 impl Driver {
@@ -190,6 +192,7 @@ impl Driver {
             tick: 1,
             steps: 0,
             rejected_steps: 0,
+            fingerprint: OnceLock::new(),
         })
     }
 
@@ -317,17 +320,26 @@ impl Driver {
         Ok(())
     }
 
-    /// Works out the next step, which ends at `until` at the latest; everything before it is settled.
+    /// Works out the next step, which ends at `until` at the latest; everything before it is settled. `pauses` is asked before every try.
     ///
     /// # Errors
-    /// Where no step leads on, or no more are allowed.
-    pub(super) fn advance(&mut self, cx: Context, until: f64, rows: Option<RowsAhead>) -> Result<(), RunError> {
+    /// Where no step leads on, or no more are allowed; [`RunError::Interrupted`].
+    pub(super) fn advance(
+        &mut self,
+        cx: Context,
+        until: f64,
+        rows: Option<RowsAhead>,
+        pauses: &mut dyn FnMut() -> bool,
+    ) -> Result<(), RunError> {
         let limit = self.recorder.settings.step_limit(self.agenda.switches());
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
         loop {
             if self.steps >= limit {
                 return Err(RunError::TooManySteps { t: self.t, limit: self.steps });
+            }
+            if pauses() {
+                return Err(RunError::Interrupted { t: self.t });
             }
             let target = self.target(until, rows);
             match self.solver.stepper_mut().try_step(cx, &mut self.recorder, target)? {
@@ -465,10 +477,70 @@ impl Driver {
         Ok(Some(theta))
     }
 
+    /// As [`Self::read`], for what `needs` say alone.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn glance(
+        &mut self,
+        cx: Context,
+        at: f64,
+        needs: Needs,
+        snapshot: &mut Snapshot,
+    ) -> Result<(), RunError> {
+        if needs >= Needs::Forces {
+            return self.read(cx, at, 0, snapshot).map(|_| ());
+        }
+        let (recorder, evaluation) = (&mut self.recorder, &mut snapshot.evaluation);
+        match self.step {
+            Some(Target { from, to, behind, .. }) if at > from && (at < to || behind == Behind::Break) => {
+                let theta = if at == to { 1.0 } else { (at - from) / (to - from) };
+                self.solver.stepper_mut().place(cx, recorder, at, theta, evaluation)?;
+            }
+            step => {
+                let node = step.filter(|step| at > step.from).map_or(0, |_| STAGES);
+                evaluation.q.copy_from_slice(&recorder.evaluations[node].q);
+                evaluation.v.copy_from_slice(&recorder.evaluations[node].v);
+            }
+        }
+        cx.fill_readings((at, needs), None, &mut recorder.scratch, evaluation)
+    }
+
+    /// As [`Self::glance`], at the start (0) or at a node of the step at hand; gives θ.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn glance_at_node(
+        &mut self,
+        cx: Context,
+        node: usize,
+        needs: Needs,
+        snapshot: &mut Snapshot,
+    ) -> Result<f64, RunError> {
+        let Target { from, to, .. } = self.step.expect("a step at hand");
+        let theta = if node == 0 { 0.0 } else { RADAU_NODES[node - 1] };
+        let at = if node == STAGES { to } else { from + theta * (to - from) };
+        let (recorder, evaluation) = (&mut self.recorder, &mut snapshot.evaluation);
+        match self.solver.stepper().kinematics(node) {
+            Some(kinematics) => {
+                evaluation.q.copy_from_slice(&recorder.evaluations[node].q);
+                evaluation.v.copy_from_slice(&recorder.evaluations[node].v);
+                cx.fill_readings((at, needs), Some(kinematics), &mut recorder.scratch, evaluation)?;
+            }
+            None => self.glance(cx, at, needs, snapshot)?,
+        }
+        Ok(theta)
+    }
+
+    /// What tells system and settings from others.
+    fn fingerprint(&self, cx: Context) -> u64 {
+        *self.fingerprint.get_or_init(|| fingerprint(cx.system, &self.recorder.settings))
+    }
+
     /// What it takes to go on; everything is settled.
     pub(super) fn state(&self, cx: Context) -> DriverState {
         DriverState {
-            system: fingerprint(cx.system, &self.recorder.settings),
+            system: self.fingerprint(cx),
             recorder: self.recorder.state(),
             sampler: self.sampler.as_ref().map(|sampler| sampler.state()),
             solver: self.solver.save(),
@@ -487,8 +559,7 @@ impl Driver {
     /// [`RunError::OtherRun`], and the driver as it was.
     pub(super) fn go_on(&mut self, cx: Context, state: DriverState) -> Result<(), RunError> {
         let DriverState { system, recorder, sampler, solver, t, h, crossing, tick, steps, rejected_steps } = state;
-        let own = fingerprint(cx.system, &self.recorder.settings);
-        if system != own || !self.solver.fits(&solver) || !self.recorder.go_on(recorder) {
+        if system != self.fingerprint(cx) || !self.solver.fits(&solver) || !self.recorder.go_on(recorder) {
             return Err(RunError::OtherRun);
         }
         let samples = match (&mut self.sampler, sampler) {

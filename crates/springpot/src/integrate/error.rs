@@ -268,7 +268,8 @@ pub enum RunError {
     },
     /// Signals change more often than the run may take steps.
     #[error(
-        "{what} changes too often: it takes at least {times:.1e} steps, and {limit} are allowed; raise solver.max_steps or shorten the run"
+        "{what} changes too often: it takes {}, and {limit} are allowed; raise solver.max_steps or shorten the run",
+        at_least(*.times)
     )]
     TooBusy {
         /// Which signal, or all of them.
@@ -290,6 +291,23 @@ pub enum RunError {
         element: String,
         /// Departure in units of the largest D^alpha x so far.
         departure: f64,
+    },
+    /// At a row an expression of the state is not what its step used.
+    #[error(
+        "t = {} s: the steps missed what the motion does: at this row the expression \"{expression}\" of {column} is {is:.6e}, and its step went with {used:.6e}; the rows are kept; give solver.max_step a time in which the motion changes little",
+        seconds(*.t)
+    )]
+    MissedKink {
+        /// Time of the first such row, s.
+        t: f64,
+        /// The expression.
+        expression: String,
+        /// The column of what it says.
+        column: String,
+        /// Its value there, SI.
+        is: f64,
+        /// What its step used, SI.
+        used: f64,
     },
     /// The energies do not balance.
     #[error(
@@ -377,7 +395,8 @@ pub enum RunError {
 
 /// An error in units of the tolerance that no tolerance is meant for, and what then helps.
 const FAR_OFF: f64 = 1e3;
-const TOO_FAST: &str = "something acts faster than any step: look for a duration or a capacity that is too small, or a gain that is too large";
+const TOO_FAST: &str = "something acts faster than any step: look for a duration or a capacity that is too small, or a gain that is too large; \
+    where so small a motion does not matter, solver.atol says from which size on it does";
 
 /// By how much a step errs.
 fn errs(error: f64) -> String {
@@ -386,6 +405,11 @@ fn errs(error: f64) -> String {
         error if error.is_finite() => format!("errs {error:.0e} times too much"),
         _ => "has no finite error".to_owned(),
     }
+}
+
+/// A number of steps that may be beyond all counting.
+fn at_least(steps: f64) -> String {
+    if steps.is_finite() { format!("at least {steps:.1e} steps") } else { "more steps than can be counted".into() }
 }
 
 /// A time as messages say it: with an exponent where its zeros would be counted.
@@ -417,10 +441,12 @@ impl RunError {
             | Self::IndefiniteMassMatrix { t, .. }
             | Self::TooManySteps { t, .. }
             | Self::Missed { t, .. }
+            | Self::MissedKink { t, .. }
             | Self::Unbalanced { t, .. }
             | Self::Interrupted { t }
             | Self::Outside { t, .. } => Some(*t),
             Self::Kernel { .. } => Some(0.0),
+            Self::Path(error) => Some(error.t()),
             Self::TooBusy { .. }
             | Self::SampleBetweenSteps { .. }
             | Self::Scheme { .. }
@@ -429,7 +455,6 @@ impl RunError {
             | Self::NoStepping { .. }
             | Self::NotDriven { .. }
             | Self::NoInput { .. }
-            | Self::Path(_)
             | Self::Output(_) => None,
         }
     }

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::motion::{Trajectory, Wanted};
 use crate::observe::Snapshot;
 pub(super) use crate::observe::evaluation::{ElementEvaluation, Evaluation};
-use crate::observe::{ElementQuantity, Quantity};
+use crate::observe::{ElementQuantity, Needs, Quantity};
 
 /// Scratch of [`Context::evaluate`].
 #[derive(Debug)]
@@ -137,6 +137,37 @@ impl Context<'_> {
                 let square = |k: usize| (evaluation.gripper[k] - position[k]).powi(2);
                 (square(0) + square(1) + square(2)).sqrt()
             });
+        }
+        Ok(())
+    }
+
+    /// Fills what `needs` say of an `evaluation` whose q and v are there, for the time `t`; from `kinematics`, where they are known.
+    ///
+    /// # Errors
+    /// [`RunError`] where an element that is asked has no direction.
+    pub(super) fn fill_readings(
+        &self,
+        (t, needs): (f64, Needs),
+        kinematics: Option<&Kinematics>,
+        scratch: &mut Scratch,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError> {
+        evaluation.t = t;
+        if needs < Needs::Gripper {
+            return Ok(());
+        }
+        let kinematics = kinematics.unwrap_or_else(|| {
+            scratch.kinematics.update_velocity(&self.system.model, &evaluation.q, &evaluation.v);
+            &scratch.kinematics
+        });
+        if let Some(site) = &self.system.gripper {
+            evaluation.gripper = kinematics.position(site).0;
+        }
+        let elements = self.system.elements.iter().zip(&mut evaluation.elements);
+        for (element, state) in elements.filter(|_| needs >= Needs::Readings) {
+            element.measure.read_into(&self.system.model, kinematics, &mut state.gradient, &mut state.reading);
+            element.check_direction(t, &state.reading)?;
+            state.stroke = element.stroke(state.reading.coordinate);
         }
         Ok(())
     }

@@ -1,8 +1,7 @@
 //! Limits of joints that a motion passes, seen in its rows.
 
-use super::row_times::RowTimes;
-use super::run::run;
-use super::settings::{Settings, Stop};
+use super::settings::Settings;
+use super::simulation::Simulation;
 use super::system::System;
 use crate::model::{Dimension, Limits, Model};
 use crate::observe::{Observables, Quantity};
@@ -174,12 +173,9 @@ impl System {
     /// # Errors
     /// What keeps a run from starting.
     pub fn first_row(&self, settings: &Settings) -> Result<Vec<f64>, super::error::RunError> {
-        let settings = Settings { rows: RowTimes::Times([0.0].into()), ..settings.clone() };
-        let mut table = self.table();
-        // Stopped from the outset, it writes its first row and takes no step.
-        let _ = run(self, &settings, &mut table, &Stop::new(true));
-        if let Some(row) = table.rows().next() {
-            return Ok(row.to_vec());
+        let begun = Simulation::new(self.clone(), settings.clone());
+        if let Ok(snapshot) = begun.and_then(|mut simulation| simulation.snapshot()) {
+            return Ok(self.observables().quantities().into_iter().map(|quantity| snapshot.value(quantity)).collect());
         }
         let state = self.state(0.0)?;
         let known = |quantity| match quantity {

@@ -1,6 +1,7 @@
 //! The rows of a run, and what they tell of it: whether its steps saw what the motion does, and whether its energies balance.
 
 use super::context::Context;
+use super::control::Misread;
 use super::driver::Driver;
 use super::error::RunError;
 use super::report::Report;
@@ -38,11 +39,15 @@ impl<'a> Output<'a> {
     pub(super) fn emit(&mut self, cx: Context, driver: &mut Driver) -> Result<(), RunError> {
         while let Some(at) = self.next(&driver.recorder.settings).filter(|at| driver.shows(*at)) {
             let theta = driver.read(cx, at, self.written.rows, &mut self.snapshot)?;
-            if let Some(theta) = theta
-                && self.written.departure.is_none()
-            {
-                let departure = driver.recorder.departure(theta, &self.snapshot);
-                self.written.departure = departure.map(|(e, size)| (self.snapshot.t(), e, size));
+            if let Some(theta) = theta {
+                let t = self.snapshot.t();
+                if self.written.departure.is_none() {
+                    let departure = driver.recorder.departure(theta, &self.snapshot);
+                    self.written.departure = departure.map(|(e, size)| (t, e, size));
+                }
+                if self.written.misread.is_none() {
+                    self.written.misread = driver.recorder.misread(cx, &self.snapshot).map(|misread| (t, misread));
+                }
             }
             self.write(cx, driver)?;
         }
@@ -62,27 +67,33 @@ impl<'a> Output<'a> {
     /// Tells the row at the time of an event.
     pub(super) fn event(&mut self, cx: Context, driver: &mut Driver, event: usize, at: f64) -> Result<(), RunError> {
         driver.read(cx, at, self.written.rows, &mut self.snapshot)?;
-        self.take_row(cx)?;
+        self.take_row(cx, driver)?;
         self.rows.event(event, &self.row)?;
         Ok(())
     }
 
     fn write(&mut self, cx: Context, driver: &Driver) -> Result<(), RunError> {
         self.take_residual(driver);
-        self.take_row(cx)?;
+        self.take_row(cx, driver)?;
         self.rows.row(&self.row)?;
         self.written.rows += 1;
         self.written.last = Some(self.snapshot.t());
         Ok(())
     }
 
-    fn take_row(&mut self, cx: Context) -> Result<(), RunError> {
+    /// Takes the numbers of the row; what is none fails, but for what a start or a ledger leaves unknown.
+    fn take_row(&mut self, cx: Context, driver: &Driver) -> Result<(), RunError> {
         self.row.clear();
         // No field says -0.
         self.row.extend(self.quantities.iter().map(|quantity| self.snapshot.value(*quantity) + 0.0));
-        if let Some(k) = self.row.iter().position(|value| value.is_infinite()) {
+        let (t, recorder) = (self.snapshot.t(), &driver.recorder);
+        let mut values = self.quantities.iter().zip(&self.row);
+        let is_wrong = |(quantity, value): (&Quantity, &f64)| {
+            !(value.is_finite() || value.is_nan() && recorder.may_be_unknown(t, quantity))
+        };
+        if let Some(k) = values.position(is_wrong) {
             let what = cx.system.columns().swap_remove(k).name;
-            return Err(RunError::NotFinite { t: self.snapshot.t(), what, value: self.row[k] });
+            return Err(RunError::NotFinite { t, what, value: self.row[k] });
         }
         Ok(())
     }
@@ -105,9 +116,13 @@ impl<'a> Output<'a> {
     /// Whether the run may be believed; to be asked at its end.
     ///
     /// # Errors
-    /// [`RunError::Missed`] where a row contradicts its step, [`RunError::Unbalanced`] where the energies do not balance.
+    /// [`RunError::Missed`] and [`RunError::MissedKink`] where a row contradicts its step, [`RunError::Unbalanced`] where the energies do not balance.
     pub(super) fn verdict(&self, cx: Context, driver: &Driver) -> Result<(), RunError> {
-        let Written { departure, residual, residual_at: t, rounding, .. } = self.written;
+        let Written { departure, misread, residual, residual_at: t, rounding, .. } = self.written;
+        if let (Some((t, Misread { law, is, used })), Some(control)) = (misread, &driver.recorder.control) {
+            let (expression, column) = control.words(law, cx.system);
+            return Err(RunError::MissedKink { t, expression, column, is, used });
+        }
         if let Some((t, e, departure)) = departure {
             return Err(RunError::Missed { t, element: cx.system.elements[e].name.clone(), departure });
         }

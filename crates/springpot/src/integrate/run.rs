@@ -50,7 +50,8 @@ fn go(
         Err(error) => return (Report::default(), Err(error)),
     };
     let mut output = Output::new(system.context(), rows, written);
-    let outcome = to_the_end(&mut driver, &mut output, Watch::new(system, events), stop);
+    let events = Watch::new(system, &driver.recorder.settings, events, stop);
+    let outcome = events.and_then(|events| to_the_end(&mut driver, &mut output, events, stop));
     (output.report(&driver), outcome)
 }
 
@@ -80,7 +81,7 @@ fn to_the_end(driver: &mut Driver, output: &mut Output, mut events: Watch, stop:
         let next = output.next(&driver.recorder.settings);
         let rows = next.map(|next| RowsAhead { next, last: output.written.last.unwrap_or(0.0) });
         let before = driver.mark();
-        driver.advance(events.cx(), f64::INFINITY, rows)?;
+        driver.advance(events.cx(), f64::INFINITY, rows, &mut || false)?;
         events.look(driver, before, rows)?;
         output.emit(events.cx(), driver)?;
         if events.happen(driver, output)? == Next::Stops {

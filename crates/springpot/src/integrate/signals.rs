@@ -6,7 +6,7 @@ use super::settings::Settings;
 use super::system::{Motion, System};
 use crate::actuation::Drive;
 use crate::signal::{Agenda, AgendaError, Signal, Watched};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Share of a signal's range that may stay unseen between the nodes of a step, in units of rtol and within these bounds: what is
 /// seen at all is met to rtol by the control of the steps.
@@ -38,18 +38,36 @@ impl System {
         let watched: Vec<Watched> = named.iter().map(|(_, watched)| *watched).collect();
         let [least, most] = UNSEEN_BOUNDS;
         let tolerance = (UNSEEN * settings.rtol).clamp(least, most);
-        let agenda = Agenda::new(&watched, settings.end, tolerance, Some(stop)).map_err(|error| match error {
+        let most = settings.most_kinks();
+        let agenda = Agenda::new(&watched, settings.end, tolerance, most, Some(stop)).map_err(|error| match error {
             AgendaError::Interrupted => RunError::Interrupted { t: 0.0 },
-            AgendaError::TooBusy { signal, cells } => {
-                RunError::TooBusy { what: named[signal].0.clone(), times: cells as f64, limit: settings.step_limit(0) }
+            AgendaError::TooBusy { signal, times } => {
+                RunError::TooBusy { what: named[signal].0.clone(), times, limit: most }
             }
         })?;
         self.check_samples(settings)?;
         let (least, limit) = (agenda.least_steps(settings.end, longest), settings.step_limit(agenda.switches()));
         if least > limit as f64 {
-            return Err(RunError::TooBusy { what: "the motion".to_owned(), times: least, limit });
+            let what = self.busiest(&named, settings, longest, tolerance).unwrap_or_else(|| "the motion".to_owned());
+            return Err(RunError::TooBusy { what, times: least, limit });
         }
         Ok(agenda)
+    }
+
+    /// The name of the signal that by itself asks for the most steps.
+    fn busiest(
+        &self,
+        named: &[(String, Watched<'_>)],
+        settings: &Settings,
+        longest: f64,
+        tolerance: f64,
+    ) -> Option<String> {
+        let steps = |watched: &Watched<'_>| {
+            let alone = Agenda::new(&[*watched], settings.end, tolerance, settings.most_kinks(), None).ok()?;
+            Some(alone.least_steps(settings.end, longest))
+        };
+        let each = named.iter().filter_map(|(name, watched)| Some((steps(watched)?, name)));
+        each.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name.clone())
     }
 
     /// Refuses laws that are sampled more often than the run may take steps.
@@ -79,10 +97,11 @@ impl System {
     /// with an impulse, and for temperatures that stretch an element at once; on gripper paths a run looks for itself.
     ///
     /// # Errors
-    /// [`RunError::Jump`], [`RunError::ReferenceJump`], [`RunError::Rule`], and as [`Self::switches`].
+    /// [`RunError::Jump`], [`RunError::ReferenceJump`], [`RunError::Rule`], and as [`Self::switches`], also for functions of events that hang on t alone.
     pub fn look_for_jumps(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
         self.look_for_jumps_of_references(settings, stop)?;
         self.look_for_jumps_of_heat(settings, stop)?;
+        self.look_at_events(settings, stop)?;
         if self.motion.has_path() || settings.fixed_step.is_some() {
             return Ok(());
         }
@@ -91,6 +110,9 @@ impl System {
         let mut t = 0.0;
         for _ in 0..MOST_LOOKED_AT {
             let Some(kink) = agenda.next_stop(t).filter(|stop| stop.before < settings.end) else { break };
+            if stop.load(Ordering::Relaxed) {
+                return Err(RunError::Interrupted { t: 0.0 });
+            }
             let after = kink.after.unwrap_or(kink.before).max(t.next_up());
             self.place(kink.before, &mut left)?;
             self.place(after, &mut right)?;
@@ -114,7 +136,7 @@ impl System {
             return Ok(());
         }
         for (what, signal) in controlled.reference.trajectory().named_signals(&self.model) {
-            if let Some((t, [before, after])) = first_jump(signal, settings, stop)? {
+            if let Some((t, [before, after])) = first_jump(&what, signal, settings, stop)? {
                 let what = what.replace("the motion of ", "");
                 return Err(RunError::ReferenceJump { t, what, jump: after - before });
             }
@@ -126,7 +148,7 @@ impl System {
     fn look_for_jumps_of_heat(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
         for element in &self.elements {
             let Some(signal) = element.law.stretched_by().and_then(|input| element.inputs.get(input)) else { continue };
-            if let Some((t, [before, after])) = first_jump(signal, settings, stop)? {
+            if let Some((t, [before, after])) = first_jump("a temperature", signal, settings, stop)? {
                 return Err(RunError::heat_jump(t, &element.name, before, after));
             }
         }
@@ -219,20 +241,28 @@ impl System {
 }
 
 /// When a signal first jumps, and its values on both sides; its first kinks are looked at, up to a number of them.
-fn first_jump(signal: &Signal, settings: &Settings, stop: &AtomicBool) -> Result<Option<(f64, [f64; 2])>, RunError> {
+fn first_jump(
+    what: &str,
+    signal: &Signal,
+    settings: &Settings,
+    stop: &AtomicBool,
+) -> Result<Option<(f64, [f64; 2])>, RunError> {
     if !is_function(signal) {
         return Ok(None);
     }
     let watched = [Watched { signal, is_position: true, slack: 1.0 }];
-    let agenda = Agenda::new(&watched, settings.end, UNSEEN_BOUNDS[1], Some(stop)).map_err(|error| match error {
-        AgendaError::Interrupted => RunError::Interrupted { t: 0.0 },
-        AgendaError::TooBusy { cells, .. } => {
-            RunError::TooBusy { what: "a signal".to_owned(), times: cells as f64, limit: settings.step_limit(0) }
-        }
-    })?;
+    let most = settings.most_kinks();
+    let agenda =
+        Agenda::new(&watched, settings.end, UNSEEN_BOUNDS[1], most, Some(stop)).map_err(|error| match error {
+            AgendaError::Interrupted => RunError::Interrupted { t: 0.0 },
+            AgendaError::TooBusy { times, .. } => RunError::TooBusy { what: what.to_owned(), times, limit: most },
+        })?;
     let mut t = 0.0;
     for _ in 0..MOST_LOOKED_AT {
         let Some(kink) = agenda.next_stop(t).filter(|stop| stop.before < settings.end) else { break };
+        if stop.load(Ordering::Relaxed) {
+            return Err(RunError::Interrupted { t: 0.0 });
+        }
         let after = kink.after.unwrap_or(kink.before).max(t.next_up());
         let [left, right] = [kink.before, after].map(|at| signal.at(at));
         let reach = 2.0 * (after - kink.before) * (left.first.abs() + right.first.abs());
@@ -252,6 +282,11 @@ fn is_function(signal: &Signal) -> bool {
 impl Settings {
     /// Steps that a run may take where nothing else is said and its signals do not switch.
     pub const MOST_STEPS: u64 = 10_000_000;
+
+    /// Kinks of one signal that a run may have, each of which ends a step.
+    pub(super) fn most_kinks(&self) -> u64 {
+        self.max_steps.unwrap_or(Self::MOST_STEPS)
+    }
 
     /// Inner steps that a run may take whose signals switch that often.
     pub(super) fn step_limit(&self, switches: u64) -> u64 {

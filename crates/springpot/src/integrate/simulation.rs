@@ -85,11 +85,23 @@ impl Simulation {
     /// # Errors
     /// As there.
     pub fn step_until(&mut self, until: f64) -> Result<bool, RunError> {
+        self.step_until_unless(until, &mut || false)
+    }
+
+    /// As [`Self::step_until`], but before every try of a step `pauses` is asked whether it is to be left for now.
+    ///
+    /// # Errors
+    /// As there, and [`RunError::Interrupted`]: asked again it goes on as if it had not been.
+    pub fn step_until_unless(&mut self, until: f64, pauses: &mut dyn FnMut() -> bool) -> Result<bool, RunError> {
         let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
         let before = self.driver.steps();
         // What changes at the start of a step is crossed first.
         while self.driver.steps() == before {
-            while self.driver.settle(cx)? {}
+            while self.driver.settle(cx)? {
+                if pauses() {
+                    return Err(RunError::Interrupted { t: self.driver.reached() });
+                }
+            }
             if self.driver.has_ended() {
                 return Ok(false);
             }
@@ -104,7 +116,7 @@ impl Simulation {
                 }
                 (self.sample < times.count()).then(|| times.at(self.sample))
             });
-            self.driver.advance(cx, sample.map_or(until, |sample| sample.min(until)), None)?;
+            self.driver.advance(cx, sample.map_or(until, |sample| sample.min(until)), None, pauses)?;
         }
         Ok(true)
     }

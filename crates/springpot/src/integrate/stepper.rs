@@ -5,6 +5,7 @@ use super::error::RunError;
 use super::evaluate::Evaluation;
 use super::recorder::Recorder;
 use super::settings::Settings;
+use crate::dynamics::Kinematics;
 use crate::signal::Agenda;
 
 /// A step to be tried.
@@ -100,6 +101,24 @@ pub(super) trait Stepper: std::fmt::Debug + Send + Sync {
     /// What a row there may show.
     fn complete(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
         recorder.complete(cx, end)
+    }
+
+    /// Fills q and v of an evaluation at t, θ inside the step that was worked out, 0 < θ ≤ 1.
+    ///
+    /// # Errors
+    /// Where the motion cannot be followed.
+    fn place(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        theta: f64,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError>;
+
+    /// Positions and velocities of the links at the start (0) or at a node of the step that was worked out, where the method knows them.
+    fn kinematics(&self, _node: usize) -> Option<&Kinematics> {
+        None
     }
 
     /// Fills an evaluation at t, θ inside the step that was worked out, 0 < θ ≤ 1.

@@ -1,5 +1,6 @@
 //! What a run has written so far.
 
+use super::control::Misread;
 use serde::{Deserialize, Serialize};
 
 /// What of the rows must outlast a step.
@@ -16,4 +17,6 @@ pub(super) struct Written {
     pub(super) rounding: f64,
     /// The first row whose rate is not that of its step: its time, the element, the departure in units of D^alpha x.
     pub(super) departure: Option<(f64, usize, f64)>,
+    /// The first row where an expression of the state is not what its step used, and its time.
+    pub(super) misread: Option<(f64, Misread)>,
 }

@@ -8,7 +8,7 @@ pub(super) use series::Ready;
 
 use super::heat::Heat;
 use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot, When};
-use super::past::Periodic;
+use super::past::Recalled;
 use super::rule::RuleError;
 use super::state::{State, StateMut, StateRef, StateSize};
 use super::step::{
@@ -179,12 +179,17 @@ impl Network {
         Self::Parallel(parts.into_iter().collect())
     }
 
-    /// Parts one behind the other: one force, strokes add. None: rigid, which no element may be.
+    /// Parts one behind the other: one force, strokes add. None: rigid, which no element may be. A series among the parts is none of its own: its
+    /// parts are those of the whole.
     ///
     /// # Panics
     /// Where a part is a law under heat, which is always a whole one.
     pub fn series(parts: impl IntoIterator<Item = Self>) -> Self {
-        let mut parts: Vec<Self> = parts.into_iter().collect();
+        let own = |part: Self| match part {
+            Self::Series(parts) => parts,
+            other => vec![other],
+        };
+        let mut parts: Vec<Self> = parts.into_iter().flat_map(own).collect();
         assert!(parts.iter().all(|part| part.as_heated().is_none()), "a law under heat is a whole one");
         while parts.len() > MOST_IN_SERIES {
             let nested = parts.drain(..MOST_IN_SERIES).collect();
@@ -340,6 +345,7 @@ impl Network {
     /// Takes an accepted step into the state: the only change of it.
     pub fn commit(&self, step: &Step, state: &mut State) {
         self.commit_part(step, &mut state.view_mut());
+        state.leave_start();
     }
 
     fn commit_part(&self, step: &Step, state: &mut StateMut) {
@@ -432,12 +438,12 @@ impl Network {
     /// The law between two steps, under the kinematics and inputs of `at`, which may have jumped since the last one: memories and inner
     /// variables do not jump. Pure.
     pub fn now(&self, at: &Point, state: &State) -> Observation {
-        self.now_part(at, &mut state.view(), &mut |_| ()).observation
+        self.now_part(at, &mut state.seen_at(at.t).view(), &mut |_| ()).observation
     }
 
     /// Appends every leaf, in their order, as [`Self::now`] has it. Pure.
     pub fn leaves_now(&self, at: &Point, state: &State, leaves: &mut Vec<LeafState>) {
-        self.now_part(at, &mut state.view(), &mut |leaf| leaves.push(leaf));
+        self.now_part(at, &mut state.seen_at(at.t).view(), &mut |leaf| leaves.push(leaf));
     }
 
     fn now_part(&self, at: &Point, state: &mut StateRef, take: Take) -> Reported {
@@ -595,6 +601,16 @@ impl Network {
         }
     }
 
+    /// Whether a part of a series has a memory.
+    pub(super) fn has_memories_in_series(&self) -> bool {
+        match self {
+            Self::Leaf(_) => false,
+            Self::Parallel(parts) => parts.iter().any(Self::has_memories_in_series),
+            Self::Series(_) => self.size().memories > 0,
+            Self::Heated(heated) => heated.law().has_memories_in_series(),
+        }
+    }
+
     /// Whether it keeps inner strokes or inner variables, whose errors no stroke shows.
     pub fn has_inner_variables(&self) -> bool {
         self.size().variables > 0
@@ -609,12 +625,12 @@ impl Network {
         }
     }
 
-    /// Puts a periodic stroke since ever into the state of a law that is linear, its memories opened.
-    pub(super) fn recall(&self, stroke: &Periodic, at: &Point, state: &mut State) {
+    /// Puts the stroke before t = 0 into the state of a law that is linear, its memories opened.
+    pub(super) fn recall(&self, stroke: &Recalled, at: &Point, state: &mut State) {
         self.recall_part(stroke, at, &mut state.view_mut());
     }
 
-    fn recall_part(&self, stroke: &Periodic, at: &Point, state: &mut StateMut) {
+    fn recall_part(&self, stroke: &Recalled, at: &Point, state: &mut StateMut) {
         match self {
             Self::Leaf(leaf) => state.take(leaf.size()).memories.iter_mut().for_each(|memory| recall(memory, stroke)),
             Self::Parallel(parts) => parts.iter().for_each(|part| part.recall_part(stroke, at, state)),
@@ -677,8 +693,8 @@ impl Network {
     }
 }
 
-/// Puts a periodic stroke since ever into a memory.
-fn recall(memory: &mut Memory, stroke: &Periodic) {
+/// Puts the stroke before t = 0 into a memory.
+fn recall(memory: &mut Memory, stroke: &Recalled) {
     let (alpha, width) = (memory.alpha(), stroke.last());
     let rate = |t: f64| stroke.sum(|s| s * (s * t).exp());
     let mode = |lambda: f64| stroke.sum(|s| s / (lambda + s));

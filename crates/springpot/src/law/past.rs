@@ -2,26 +2,35 @@
 
 use super::network::Network;
 use super::state::State;
-use super::step::{Course, Point, Start, Step};
+use super::step::{Course, InputValue, Point, Start, Step};
 use crate::collocation::Nodes;
 use crate::fractional::{Form, KernelError};
 use num_complex::Complex64;
 use realfft::RealFftPlanner;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Shortest lag of the memories of a stretch, in units of its age: what is faster counts as settled to the rate, which may jump at t = 0.
 const SHORTEST: f64 = 1e-13;
 
-/// Shortest and longest lags of the memories of a periodic stroke, in units of its period.
-const PERIODIC: [f64; 2] = [1e-7, 10.0];
+/// Shortest and longest lags of the memories of a stroke that is recalled, in units of its period or age.
+const LAGS: [f64; 2] = [1e-7, 10.0];
 
-/// The stretch before t = 0 of which fast modes are made, in units of the period.
+/// The stretch before t = 0 of which fast modes are made, in the same units.
 const LAST: f64 = 1e-4;
 
 /// First step of a relaxation and growth of the steps, in units of the time since the stretch.
 const FIRST: f64 = 1e-12;
 const GROWTH: f64 = 0.02;
+
+/// The age at which a jump at t = 0 is recalled, in units of the horizon: strokes in series have begun to share it by then.
+const SOON: f64 = 1e-10;
+
+/// Ages, in units of the first, and weights of the stretches that are one at t = 0 but for the third order of that.
+const TOGETHER: [[f64; 2]; 3] = [[1.0, 3.0], [2.0, -3.0], [3.0, 1.0]];
+
+/// Nodes on a contour: 0.6 digits each.
+const CONTOUR: usize = 24;
 
 /// What happened before t = 0.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -63,11 +72,6 @@ impl Periodic {
         (Self { period, spectrum: spectrum.into() }, sizes)
     }
 
-    /// The same with other harmonics: the stroke of a part.
-    pub(super) fn with(&self, spectrum: Vec<Complex64>) -> Self {
-        Self { spectrum: spectrum.into(), ..*self }
-    }
-
     /// The same in reduced time ([`Past::reduced`]).
     pub(super) fn reduced(&self, factor: f64, longer: f64) -> Self {
         let mut spectrum = self.spectrum.to_vec();
@@ -77,7 +81,7 @@ impl Periodic {
 
     /// The stroke at time t.
     pub fn stroke(&self, t: f64) -> f64 {
-        self.mean() + self.sum(|s| Complex64::cis(s.im * t))
+        self.recalled().stroke(t)
     }
 
     /// The period, s.
@@ -85,26 +89,85 @@ impl Periodic {
         self.period
     }
 
-    /// Coefficients of e^{2πint/P}, n = 0, 1, …, each with its 2πin/P.
-    pub(super) fn harmonics(&self) -> impl Iterator<Item = (Complex64, Complex64)> + '_ {
-        let omega = TAU / self.period;
-        self.spectrum.iter().enumerate().map(move |(n, x)| (Complex64::new(0.0, n as f64 * omega), *x))
+    fn recalled(&self) -> Recalled {
+        let line = |(n, x): (usize, &Complex64)| [Complex64::new(0.0, n as f64 * TAU / self.period), *x];
+        let exponentials = self.spectrum.iter().enumerate().skip(1).map(line).collect();
+        Recalled { mean: self.spectrum[0].re, exponentials, last: LAST * self.period }
+    }
+}
+
+/// A stroke before t = 0 as x = mean + 2 Re Σ X e^{st}, which holds at t ≤ 0 near 0.
+#[derive(Debug, Clone)]
+pub(super) struct Recalled {
+    mean: f64,
+    /// s and X.
+    exponentials: Vec<[Complex64; 2]>,
+    /// The stretch before t = 0 of which fast modes are made, s.
+    last: f64,
+}
+
+impl Recalled {
+    /// Stretches from 0 at once, each with its age, s, and by how much: inverse Laplace transforms along a contour around the negative real
+    /// axis, where all that laws relax by has its poles and cuts.
+    fn stretches(stretches: impl Iterator<Item = [f64; 2]>) -> Self {
+        let (mut exponentials, mut youngest) = (Vec::new(), f64::INFINITY);
+        for [age, stroke] in stretches {
+            youngest = age.min(youngest);
+            exponentials.extend(contour().map(|[z, weight]| {
+                let s = z / age;
+                [s, weight / (s * age) * stroke]
+            }));
+        }
+        Self { mean: 0.0, exponentials, last: LAST * youngest }
     }
 
-    /// Σ f(2πin/P) X_n over the harmonics above the mean, as a real number.
+    /// The same with other amplitudes: the stroke of a part.
+    pub(super) fn with(&self, mean: f64, exponentials: Vec<[Complex64; 2]>) -> Self {
+        Self { mean, exponentials, ..*self }
+    }
+
+    /// The same in reduced time ([`Past::reduced`]).
+    pub(super) fn reduced(&self, factor: f64, longer: f64) -> Self {
+        let exponentials = self.exponentials.iter().map(|[s, x]| [s * factor, *x]).collect();
+        Self { mean: self.mean + longer, exponentials, last: self.last / factor }
+    }
+
+    /// Each s with its X.
+    pub(super) fn exponentials(&self) -> &[[Complex64; 2]] {
+        &self.exponentials
+    }
+
+    /// 2 Re Σ f(s) X: what a linear map that turns e^{st} into f(s) makes of the stroke, but for its mean.
     pub(super) fn sum(&self, factor: impl Fn(Complex64) -> Complex64) -> f64 {
-        2.0 * self.harmonics().skip(1).map(|(s, x)| factor(s) * x).sum::<Complex64>().re
+        2.0 * self.exponentials.iter().map(|[s, x]| factor(*s) * x).sum::<Complex64>().re
+    }
+
+    /// The stroke at time t.
+    pub(super) fn stroke(&self, t: f64) -> f64 {
+        self.mean + self.sum(|s| (s * t).exp())
     }
 
     /// The mean.
     pub(super) fn mean(&self) -> f64 {
-        self.spectrum[0].re
+        self.mean
     }
 
     /// The stretch before t = 0 of which fast modes are made, s.
     pub(super) fn last(&self) -> f64 {
-        LAST * self.period
+        self.last
     }
+}
+
+/// The upper half of Talbot's contour as Weideman shaped it: z and the weight, so that f(t) = 2 Re Σ weight/t·F(z/t).
+fn contour() -> impl Iterator<Item = [Complex64; 2]> {
+    let n = CONTOUR as f64;
+    (0..CONTOUR / 2).map(move |k| {
+        let theta = (2 * k + 1) as f64 * PI / n;
+        let (sine, cosine) = (0.6407 * theta).sin_cos();
+        let z = n * Complex64::new(0.5017 * theta * cosine / sine - 0.6122, 0.2645 * theta);
+        let slope = Complex64::new(0.5017 * cosine / sine - 0.5017 * 0.6407 * theta / (sine * sine), 0.2645);
+        [z, z.exp() * slope / Complex64::I]
+    })
 }
 
 impl Past {
@@ -133,7 +196,12 @@ impl Past {
     pub fn state(&self, law: &Network, start: &Start, tolerance: f64, horizon: f64) -> Result<State, KernelError> {
         match self {
             Self::OfDerivative => law.begin(start),
-            _ if let Network::Heated(heated) = law => heated.recalled(self, start, tolerance, horizon),
+            _ if let Network::Heated(heated) = law => heated.recalled(start, |law, start, factor, longer| {
+                self.reduced(factor, longer).state(law, start, tolerance, horizon)
+            }),
+            Self::Held(age) if law.has_inner_variables() && shares_by_modulus(law, start.inputs) => {
+                stretched(law, start, std::iter::once([*age, 1.0]), tolerance, horizon)
+            }
             Self::Held(age) => {
                 let mut state = law.begin(&Start { jump: start.stroke, ..*start })?;
                 state.open(tolerance, SHORTEST * age, age + horizon)?;
@@ -145,15 +213,74 @@ impl Past {
             }
             Self::Periodic(past) => {
                 assert!(law.is_linear(), "a periodic past of a law that is not linear");
-                let mut state = law.begin(&Start { jump: 0.0, ..*start })?;
-                let [shortest, longest] = PERIODIC.map(|share| share * past.period);
-                state.open(tolerance, shortest, longest + horizon)?;
-                let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
-                law.recall(past, &at, &mut state);
-                Ok(state)
+                recalled(law, start, &past.recalled(), past.period, [tolerance, horizon])
             }
         }
     }
+}
+
+/// The state behind a jump at t = 0, whose own state is `state`, of a law with memories in series: right from a little later on, as if the
+/// stroke had been there somewhat before.
+///
+/// In series of orders that are near each other the parts share the jump like t^(β−α), settled on no scale of time that steps resolve.
+///
+/// # Errors
+/// [`KernelError`] where a memory cannot be.
+pub(crate) fn settle(
+    law: &Network,
+    start: &Start,
+    state: State,
+    tolerance: f64,
+    horizon: f64,
+) -> Result<State, KernelError> {
+    let ages = |factor: f64| TOGETHER.into_iter().map(move |[age, share]| [age * SOON * horizon / factor, share]);
+    let whole = |law: &Network, start: &Start, factor: f64| stretched(law, start, ages(factor), tolerance, horizon);
+    let heated = law.as_heated();
+    let inputs = heated.map_or_else(|| start.inputs.to_vec(), |heated| heated.inputs_of_law(start.inputs));
+    let inner = heated.map_or(law, |heated| heated.law());
+    if start.jump == 0.0 || !inner.has_memories_in_series() || !shares_by_modulus(inner, &inputs) {
+        return Ok(state);
+    }
+    let later = match heated {
+        Some(heated) => heated.recalled(start, |law, start, factor, _| whole(law, start, factor))?,
+        None => whole(law, start, 1.0)?,
+    };
+    Ok(later.behind(state))
+}
+
+/// Whether strokes inside follow from moduli alone: those of a linear law that gives no force where nothing was ever stretched.
+fn shares_by_modulus(law: &Network, inputs: &[InputValue]) -> bool {
+    let origin = Start { stroke: 0.0, jump: 0.0, inputs };
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs };
+    law.is_linear() && law.begin(&origin).is_ok_and(|state| law.now(&at, &state).force() == 0.0)
+}
+
+/// The state after stretches of x(0) from 0, each with its age, s, and its share.
+fn stretched(
+    law: &Network,
+    start: &Start,
+    stretches: impl Iterator<Item = [f64; 2]>,
+    tolerance: f64,
+    horizon: f64,
+) -> Result<State, KernelError> {
+    let past = Recalled::stretches(stretches.map(|[age, share]| [age, share * start.stroke]));
+    recalled(law, start, &past, past.last / LAST, [tolerance, horizon])
+}
+
+/// The state after such a stroke, which changes over times like `scale`, s.
+fn recalled(
+    law: &Network,
+    start: &Start,
+    past: &Recalled,
+    scale: f64,
+    [tolerance, horizon]: [f64; 2],
+) -> Result<State, KernelError> {
+    let mut state = law.begin(&Start { jump: 0.0, ..*start })?;
+    let [shortest, longest] = LAGS.map(|share| share * scale);
+    state.open(tolerance, shortest, longest + horizon)?;
+    let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
+    law.recall(past, &at, &mut state);
+    Ok(state)
 }
 
 /// Takes a law that was just stretched through the time until t = 0.

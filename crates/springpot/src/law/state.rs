@@ -21,6 +21,8 @@ pub struct State {
     /// What series have worked out for the step under way, one after the other; none before a step was prepared.
     #[serde(skip)]
     ready: Vec<Ready>,
+    /// What holds at t = 0 itself, where the rest is that of a little later ([`super::past::settle`]).
+    at_start: Option<Box<State>>,
 }
 
 /// The share of a state that belongs to one part of a law.
@@ -97,6 +99,26 @@ impl State {
     pub(super) fn append(&mut self, other: Self) {
         self.memories.extend(other.memories);
         self.variables.extend(other.variables);
+    }
+
+    /// The state at time t between two steps.
+    pub(crate) fn seen_at(&self, t: f64) -> &Self {
+        self.at_start.as_deref().filter(|_| t == 0.0).unwrap_or(self)
+    }
+
+    /// Goes on behind t = 0.
+    pub(super) fn leave_start(&mut self) {
+        self.at_start = None;
+    }
+
+    /// The same, but at t = 0 itself that of `start`, whose energies are as unknown.
+    pub(super) fn behind(mut self, start: Self) -> Self {
+        for (own, before) in self.memories.iter_mut().zip(&start.memories) {
+            if !before.is_accounted() {
+                own.lose_account();
+            }
+        }
+        Self { at_start: Some(Box::new(start)), ..self }
     }
 
     /// All of it.

@@ -153,7 +153,8 @@ pub struct LocalError {
     pub value: f64,
     /// The order; the error falls like h^{4−order}.
     pub order: f64,
-    /// The exponent that brings an estimate of a lower order to that: 1 where it has it.
+    /// The exponent that brings an estimate of a lower order to that: 1 where it has it; 0 where it is a rate as it was told, of which whoever
+    /// told it knows the error.
     pub sharpness: f64,
 }
 

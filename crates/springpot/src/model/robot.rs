@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::degree::{Coordinates, Degree, JointMotion};
+use super::degree::{Coordinates, Degree, DegreeMotion, JointMotion};
 use super::error::ModelError;
 use super::frame::{Frame, Site};
 use super::spec::{Anchor, FrictionLaw, JointKind, Limits, Parent};
@@ -282,6 +282,12 @@ impl Model {
     #[inline]
     pub fn subtree_mass(&self, joint: usize) -> f64 {
         self.subtree_masses[joint]
+    }
+
+    /// Of the velocities `v` (nv) those that are angular, rad/s.
+    pub(crate) fn turning<'a>(&'a self, v: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let turns = self.degrees.iter().filter(|degree| matches!(degree.motion, DegreeMotion::Turn(_)));
+        turns.map(|degree| degree.ratio * v[degree.index])
     }
 
     /// Whether a link has a negative principal moment, as [`ModelBuilder::accept_inertia`](super::ModelBuilder::accept_inertia)

@@ -15,6 +15,7 @@ mod units;
 
 pub use element::{ElectricQuantity, ElementQuantity, LeafQuantity};
 pub use observables::Observables;
+pub(crate) use quantity::Needs;
 pub use quantity::{Axis, EnergyQuantity, Quantity};
 pub use snapshot::Snapshot;
 pub use table::Table;

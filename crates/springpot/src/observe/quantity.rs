@@ -37,6 +37,19 @@ pub enum Quantity<Id = usize> {
     Energy(EnergyQuantity),
 }
 
+/// What must be known for a quantity, each with all before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Needs {
+    /// t, q and v.
+    Places,
+    /// Where the gripper is.
+    Gripper,
+    /// Coordinates of the elements and their rates.
+    Readings,
+    /// Forces, energies, accelerations, inputs.
+    Forces,
+}
+
 /// An axis of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Axis {
@@ -99,6 +112,22 @@ impl EnergyQuantity {
             Self::Actuators => "work of the actuators since t = 0",
             Self::Joints => "energy lost in joint damping and friction, and taken up by end stops, since t = 0",
             Self::Residual => "kinetic + potential + stored + dissipated - input - actuators, less its value at t = 0",
+        }
+    }
+}
+
+impl Quantity {
+    /// What must be known for its value.
+    pub(crate) const fn needs(self) -> Needs {
+        match self {
+            Self::Time | Self::Coordinate(_) | Self::Velocity(_) => Needs::Places,
+            Self::Gripper(_) => Needs::Gripper,
+            Self::Element(_, ElementQuantity::Length | ElementQuantity::Stroke | ElementQuantity::Rate) => {
+                Needs::Readings
+            }
+            Self::Element(..) | Self::Acceleration(_) | Self::Torque(_) | Self::GripperError | Self::Energy(_) => {
+                Needs::Forces
+            }
         }
     }
 }

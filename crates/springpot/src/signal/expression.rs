@@ -16,11 +16,12 @@ mod look;
 mod of_columns;
 mod parse;
 mod program;
+mod terms;
 mod within;
 
 pub use branch::Branch;
 pub use error::ExpressionError;
 pub use formula::Expression;
 pub use of_columns::ColumnExpression;
-pub use parse::number_length;
+pub use parse::{is_of_module, number_length};
 pub use program::{MAX_DEPTH, MAX_KINKS, MAX_LENGTH, is_name};

@@ -92,6 +92,17 @@ impl Signal {
         self.scale * value + self.offset
     }
 
+    /// A bound of what rounding has made of the value at `t`, which loses more than its own last digits where large numbers cancel; of samples
+    /// that of the numbers beside `t`.
+    pub(crate) fn rounding(&self, t: f64) -> f64 {
+        let error = match &self.kind {
+            Kind::Constant(_) => return 0.0,
+            Kind::Expression(expression) => expression.rounding(t),
+            Kind::Samples(samples) => samples.rounding(t),
+        };
+        self.scale.abs() * error + f64::EPSILON * self.offset.abs()
+    }
+
     /// What changes where the expression has a kink or jump ([`Expression::branch`]); always the same for other signals.
     pub fn branch(&self, t: f64) -> Branch {
         match &self.kind {

@@ -10,11 +10,15 @@ pub mod expression;
 mod function;
 mod interval;
 mod jet;
+mod passages;
+mod rounding;
 mod sampled;
+mod scan;
 mod series;
 
 pub use agenda::{Agenda, AgendaError, Stop, Watched};
 pub use expression::{Branch, ColumnExpression, Expression, ExpressionError};
 pub use function::Signal;
 pub use jet::Jet;
+pub(crate) use passages::{Passages, passages};
 pub use sampled::SampleError;

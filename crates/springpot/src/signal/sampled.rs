@@ -91,6 +91,14 @@ impl Samples {
         if n > 2 * skipped { &self.times[skipped..n - skipped] } else { &[] }
     }
 
+    /// A bound of what rounding has made of the value at `t`.
+    pub(super) fn rounding(&self, t: f64) -> f64 {
+        let Jet { value, first, .. } = self.at(t);
+        let i = self.times.partition_point(|&knot| knot <= t).saturating_sub(1).min(self.times.len() - 2);
+        let beside = self.values[i].abs().max(self.values[i + 1].abs());
+        f64::EPSILON * (value.abs().max(beside) + (first * t).abs())
+    }
+
     pub(super) fn at(&self, t: f64) -> Jet {
         let last = self.times.len() - 2;
         if self.held {

@@ -4,6 +4,7 @@ mod arm;
 mod closed;
 mod feedback;
 mod going_on;
+mod kinks_of_time;
 mod order;
 mod readings;
 #[path = "../support/mod.rs"]

@@ -10,3 +10,5 @@ mod recursions;
 mod refusals;
 mod robots_oracle;
 mod support;
+#[path = "../support/work.rs"]
+mod work;

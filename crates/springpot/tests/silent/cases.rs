@@ -19,7 +19,7 @@ pub(crate) fn silent(name: &str, overrides: &[&str]) -> Run {
 }
 
 /// The column of a run at the times of `expected` is right to `digits` of the largest of `expected`.
-fn holds(run: &Run, column: &str, expected: &[(f64, f64)], tolerance: f64) {
+pub(crate) fn holds(run: &Run, column: &str, expected: &[(f64, f64)], tolerance: f64) {
     assert!(run.error.is_none(), "{}", run.error.as_ref().unwrap());
     let (t, values) = (run.column("t"), run.column(column));
     let scale = expected.iter().fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
@@ -111,4 +111,17 @@ fn the_usual_triangle_wave_runs() {
         let run = silent("h2_triangle", &[&set]);
         assert!(run.error.is_none(), "{text}: {:?}", run.error);
     }
+}
+
+#[test]
+fn feedback_switches_with_time() {
+    // Closed forms; the damper by an explicit method of order 8 at 1e-12.
+    let x = [(19.0, 0.018_768_653_0), (25.0, 3.809_782_796), (35.0, 2.473_242_866), (60.0, 2.512_378_386)];
+    holds(&silent("feedback_step_of_time", &[]), "q.x", &x, 1e-8);
+    let x = [(19.0, 1.758_897_44), (25.0, 1.985_865_67), (35.0, 1.868_191_99), (60.0, 1.862_294_92)];
+    holds(&silent("feedback_abs_of_time", &[]), "q.x", &x, 1e-8);
+    let tau = [(19.0, 5.506_855_43), (25.0, 9.379_999_77), (35.0, 8.796_957_6), (60.0, 7.509_872_47)];
+    holds(&silent("feedback_abs_of_time", &[]), "tau.x", &tau, 1e-8);
+    let x = [(1.0, -0.302_282_89), (2.5, 0.064_860_93), (4.0, 0.003_386_87), (5.0, 0.000_070_91)];
+    holds(&silent("feedback_input_step", &[]), "q.x", &x, 3e-8);
 }

@@ -8,7 +8,7 @@ mod states;
 mod support;
 
 use springpot::Simulation;
-use springpot::integrate::{FixedStep, Settings, System, fixed::Method};
+use springpot::integrate::{FixedStep, RunError, Settings, System, fixed::Method};
 use springpot::observe::Snapshot;
 use support::forward::{every, falling};
 use support::robots::{ARM, PATH, magnetorheological, prescribed, springpot, strut, thermoviscoelastic};
@@ -109,6 +109,41 @@ fn going_to_times_ends_steps_there() {
             let allowed = if settings.fixed_step.is_some() { 1e-12 } else { 1e-7 };
             assert!(miss <= allowed * largest || force[k].is_nan(), "{name} at {t}: {miss:e} of {largest:e}");
         }
+    }
+}
+
+#[test]
+fn pauses_between_tries_change_no_bit() {
+    for (name, system, settings) in systems() {
+        let (mut straight, mut paused) = (start(&system, &settings), start(&system, &settings));
+        let (mut asked, mut left) = (0, 0);
+        while straight.t() < 0.1 {
+            let moved = straight.step_until(0.1).unwrap();
+            loop {
+                let before = paused.t();
+                let stepped = paused.step_until_unless(0.1, &mut || {
+                    asked += 1;
+                    asked % 3 == 1
+                });
+                match stepped {
+                    Ok(stepped) => break assert_eq!(stepped, moved, "{name}"),
+                    // What changes at a time is crossed to its far side, a rounding on, before a step is tried.
+                    Err(RunError::Interrupted { t }) => {
+                        assert!(
+                            t == paused.t() && t - before <= 4.0 * f64::EPSILON * before.max(1e-14),
+                            "{name} at {t}"
+                        );
+                    }
+                    Err(error) => panic!("{name}: {error}"),
+                }
+                left += 1;
+            }
+        }
+        assert!(left > 3, "{name}: {left} pauses");
+        let [one, other] =
+            [&mut straight, &mut paused].map(|simulation| bits(&system, &simulation.snapshot().unwrap()));
+        assert_eq!(one, other, "{name}");
+        assert_eq!(straight.report().rejected_steps, paused.report().rejected_steps, "{name}");
     }
 }
 

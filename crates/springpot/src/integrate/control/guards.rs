@@ -3,7 +3,7 @@
 use super::eye::Eye;
 use super::mode::{Bound, Guard, Slew};
 use super::term::Integrand;
-use super::{ControlRun, LawRun};
+use super::{ControlRun, LawRun, Node};
 use crate::collocation::{RADAU_NODES, STAGES, lagrange_row};
 use crate::control::Aim;
 use crate::integrate::error::RunError;
@@ -56,12 +56,9 @@ impl ControlRun {
         !(integrates && self.joints.iter().any(has_limits)) && self.laws.iter().all(|law| !law.law.has_kinks())
     }
 
-    /// The guards of the present branch.
-    fn guards(&self) -> Vec<Guard> {
+    /// The guards of the present branch of the controller.
+    fn guards_of_joints(&self) -> Vec<Guard> {
         let mut guards = Vec::new();
-        for law in 0..self.laws.len() {
-            self.branch_guards(law, 0, &mut |bit, _| guards.push(Guard::Branch { law, bit }));
-        }
         if !self.is_continuous {
             // Of a sampled controller only what its integrals take can change between samples.
             let at_limit = |own: &super::JointRun| own.mode.bound != Bound::Free;
@@ -96,12 +93,48 @@ impl ControlRun {
         guards
     }
 
+    /// Hands over the kinks of an expression that hang on the state, with their values at the start (0) or at a node; those of t alone end steps as
+    /// kinks of signals do.
     fn branch_guards(&self, law: usize, node: usize, take: &mut dyn FnMut(u32, f64)) {
-        let node = &self.nodes[node];
-        let before: usize = self.laws[..law].iter().map(|law| law.law.senses().len()).sum();
         let own = &self.laws[law];
-        let seen = &node.seen[before..][..own.law.senses().len()];
-        own.law.expression().guards(own.branch, node.t, seen, take);
+        let of_time = own.law.expression().kinks_of_time();
+        let node = &self.nodes[node];
+        own.law.expression().guards(own.branch, node.t, self.seen_by(law, node), &mut |bit, value| {
+            if of_time >> bit & 1 == 0 {
+                take(bit, value);
+            }
+        });
+    }
+
+    /// What an expression sees at a node.
+    pub(super) fn seen_by<'n>(&self, law: usize, node: &'n Node) -> &'n [f64] {
+        let before: usize = self.laws[..law].iter().map(|law| law.law.senses().len()).sum();
+        &node.seen[before..][..self.laws[law].law.senses().len()]
+    }
+
+    /// The guards of the present branch with their values at the start and at the nodes of the step.
+    fn guards_with_values(&self) -> Vec<(Guard, Values)> {
+        let mut kinks: Vec<(Guard, Values)> = Vec::new();
+        for law in (0..self.laws.len()).filter(|&law| self.laws[law].law.has_kinks()) {
+            let first = kinks.len();
+            for node in 0..=STAGES {
+                let mut at = first;
+                self.branch_guards(law, node, &mut |bit, value| {
+                    let guard = Guard::Branch { law, bit };
+                    // The angle of a point has one where it is beside its cut.
+                    while kinks.get(at).is_some_and(|(known, _)| known.precedes(guard)) {
+                        at += 1;
+                    }
+                    if kinks.get(at).is_none_or(|(known, _)| *known != guard) {
+                        kinks.insert(at, (guard, [f64::NAN; STAGES + 1]));
+                    }
+                    kinks[at].1[node] = value;
+                    at += 1;
+                });
+            }
+        }
+        kinks.extend(self.guards_of_joints().into_iter().map(|guard| (guard, self.values(guard))));
+        kinks
     }
 
     /// The values of a guard at the start and at the nodes of the step.
@@ -165,8 +198,7 @@ impl ControlRun {
             return ControlSeen::Nothing;
         }
         let (mut first, mut at_end): (Option<(f64, Guard)>, Vec<Guard>) = (None, Vec::new());
-        for guard in self.guards() {
-            let values = self.values(guard);
+        for (guard, values) in self.guards_with_values() {
             let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
             if !values.iter().all(|value| value.is_finite()) || largest == 0.0 {
                 continue;
@@ -335,22 +367,15 @@ impl ControlRun {
         self.changes.clear();
         let before = self.has_branches.then(|| self.nodes[0].shaped.clone());
         let (from, aimed) = (self.nodes[0].t, self.has_aim.then(|| self.nodes[0].aim.clone()));
+        self.take_sides(eye);
         self.see_start(eye)?;
         if let Some(aimed) = aimed {
             self.refuse_jump(eye, from, &aimed)?;
         }
         let answer = &mut |run: &mut Self| run.answer_at_start(pull);
-        if !self.has_branches {
-            self.has_branches = true;
-            let still = vec![0.0; eye.v.len()];
-            for k in 0..self.laws.len() {
-                let jets: Vec<_> = self.laws[k].law.senses().iter().map(|sense| eye.jet(*sense, &still)).collect();
-                self.laws[k].branch = self.laws[k].law.expression().branch(eye.t, &jets);
-            }
-        }
         answer(self);
         let Some(before) = before.filter(|before| self.is_continuous && before.len() == self.joints.len()) else {
-            self.leave_wrong(answer);
+            self.leave_wrong(eye, answer);
             return Ok(());
         };
         for joint in 0..self.joints.len() {
@@ -362,8 +387,23 @@ impl ControlRun {
             }
         }
         answer(self);
-        self.leave_wrong(answer);
+        self.leave_wrong(eye, answer);
         Ok(())
+    }
+
+    /// Takes the sides of kinks just after the time of `eye`: of all at the first start, later of those that hang on t alone, whose switches ended the step.
+    fn take_sides(&mut self, eye: &Eye) {
+        let still = vec![0.0; eye.v.len()];
+        for own in self.laws.iter_mut().filter(|own| own.law.has_kinks()) {
+            let expression = own.law.expression();
+            let taken = if self.has_branches { expression.kinks_of_time() } else { u64::MAX };
+            if taken == 0 {
+                continue;
+            }
+            let jets: Vec<_> = own.law.senses().iter().map(|sense| eye.jet(*sense, &still)).collect();
+            own.branch = own.branch & !taken | expression.branch(eye.t, &jets) & taken;
+        }
+        self.has_branches = true;
     }
 
     /// Refuses a reference that jumps, where the law would answer with an impulse.
@@ -388,16 +428,34 @@ impl ControlRun {
     }
 
     /// Leaves branches whose guards say so at the start, until none does.
-    fn leave_wrong(&mut self, answer: &mut dyn FnMut(&mut Self)) {
+    fn leave_wrong(&mut self, eye: &Eye, answer: &mut dyn FnMut(&mut Self)) {
         for _ in 0..MOST_AT_ONCE {
-            let at_start = |guard: &Guard| match guard {
-                Guard::Outruns { .. } | Guard::Empties { .. } | Guard::Fills { .. } => false,
-                _ => self.value(*guard, 0) < -ROUNDING * self.size(*guard),
-            };
-            let Some(guard) = self.guards().into_iter().find(at_start) else { return };
+            let Some(guard) = self.wrong_at_start() else { return };
             self.leave(guard, 0, None);
+            if matches!(guard, Guard::Branch { .. }) {
+                self.see(0, eye);
+            }
             answer(self);
         }
+    }
+
+    /// A guard whose branch is not that of the start.
+    fn wrong_at_start(&self) -> Option<Guard> {
+        for law in 0..self.laws.len() {
+            let mut wrong = None;
+            self.branch_guards(law, 0, &mut |bit, value| {
+                if value < 0.0 && wrong.is_none() {
+                    wrong = Some(Guard::Branch { law, bit });
+                }
+            });
+            if wrong.is_some() {
+                return wrong;
+            }
+        }
+        self.guards_of_joints().into_iter().find(|guard| match guard {
+            Guard::Outruns { .. } | Guard::Empties { .. } | Guard::Fills { .. } => false,
+            _ => self.value(*guard, 0) < -ROUNDING * self.size(*guard),
+        })
     }
 
     /// What a guard belongs to, for messages, and the column of what an expression says.

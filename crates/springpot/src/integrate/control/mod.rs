@@ -14,6 +14,7 @@ mod term;
 pub(super) use eye::{Eye, InputSlopes};
 pub(super) use guards::ControlSeen;
 pub(super) use mode::Guard;
+pub(super) use row::Misread;
 pub(super) use sampler::{Sampler, SamplerState, Shown};
 
 use super::error::RunError;
@@ -75,6 +76,8 @@ struct LawRun {
     stretches: bool,
     /// A bit for each of its kinks.
     branch: u64,
+    /// Its largest value at an end of a step so far.
+    largest: f64,
 }
 
 /// What an expression says.
@@ -137,6 +140,7 @@ struct Node {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct ControlState {
     branches: Vec<u64>,
+    largest: Vec<f64>,
     modes: Vec<Mode>,
     terms: Vec<term::Kept>,
     /// Of the start of the next step, what was wanted of its joints, what limits of rates let through, and what acts.
@@ -160,12 +164,14 @@ impl ControlRun {
             target: Target::Torque(own.velocity),
             stretches: false,
             branch: 0,
+            largest: 0.0,
         });
         let inputs = control.inputs.iter().filter(|own| is_now(&own.sampling)).map(|own| LawRun {
             law: own.law.clone(),
             target: Target::Input(own.element, own.input),
             stretches: system.elements[own.element].law.stretched_by() == Some(own.input),
             branch: 0,
+            largest: 0.0,
         });
         let laws: Vec<LawRun> = torques.chain(inputs).collect();
         let driven = system.driven_velocities();
@@ -278,6 +284,7 @@ impl ControlRun {
     pub(super) fn state(&self) -> ControlState {
         ControlState {
             branches: self.laws.iter().map(|law| law.branch).collect(),
+            largest: self.laws.iter().map(|law| law.largest).collect(),
             modes: self.joints.iter().map(|joint| joint.mode).collect(),
             terms: self.terms.iter().map(|term| term.kept.clone()).collect(),
             wanted: self.nodes[0].wanted.clone(),
@@ -289,12 +296,13 @@ impl ControlRun {
 
     /// Goes on from a state of the same system, after [`Self::begin`]; `false` where it is of another one.
     pub(super) fn go_on(&mut self, state: ControlState) -> bool {
-        let ControlState { branches, modes, terms, wanted, shaped, torque, together } = state;
-        let fits = branches.len() == self.laws.len() && modes.len() == self.joints.len();
+        let ControlState { branches, largest, modes, terms, wanted, shaped, torque, together } = state;
+        let fits = [branches.len(), largest.len()] == [self.laws.len(); 2] && modes.len() == self.joints.len();
         if !fits || terms.len() != self.terms.len() || torque.len() != self.nodes[0].torque.len() {
             return false;
         }
-        self.laws.iter_mut().zip(branches).for_each(|(law, branch)| law.branch = branch);
+        let kept = branches.into_iter().zip(largest);
+        self.laws.iter_mut().zip(kept).for_each(|(law, kept)| (law.branch, law.largest) = kept);
         self.joints.iter_mut().zip(modes).for_each(|(joint, mode)| joint.mode = mode);
         self.terms.iter_mut().zip(terms).for_each(|(term, kept)| term.kept = kept);
         let start = &mut self.nodes[0];

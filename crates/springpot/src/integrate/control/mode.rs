@@ -51,6 +51,16 @@ pub(in crate::integrate) enum Guard {
     Catches { joint: usize },
 }
 
+impl Guard {
+    /// Whether it is a kink of the same expression before another one.
+    pub(super) fn precedes(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Branch { law, bit }, Self::Branch { law: other, bit: next }) => law == other && bit < next,
+            _ => false,
+        }
+    }
+}
+
 impl Mode {
     /// The force that is wanted at t as the limit of its rate lets it through.
     pub(super) fn shaped(&self, wanted: f64, rate: f64, t: f64) -> f64 {

@@ -1,17 +1,27 @@
 //! Control at one time, for rows and for the ledger.
 
 use super::eye::Eye;
-use super::{ControlRun, Target, at, input};
+use super::{ControlRun, LawRun, Target, at, input};
 use crate::actuation::Drive;
 use crate::control::Feedback;
 use crate::dynamics::Kinematics;
 use crate::elements::ElementBank;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
-use crate::integrate::system::Motion;
+use crate::integrate::system::{Motion, System};
 use crate::law::Point;
 use crate::observe::evaluation::Evaluation;
 use crate::signal::Jet;
+use serde::{Deserialize, Serialize};
+
+/// An expression whose value at a row is not what its step used.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(in crate::integrate) struct Misread {
+    /// Its number.
+    pub(in crate::integrate) law: usize,
+    pub(in crate::integrate) is: f64,
+    pub(in crate::integrate) used: f64,
+}
 
 impl ControlRun {
     /// Completes an evaluation whose places, readings and other inputs are there, whatever its actuator forces are: at θ of the step at hand, or between
@@ -61,14 +71,7 @@ impl ControlRun {
     }
 
     fn jet(&self, law: &Feedback, branch: u64, cx: Context, kinematics: &Kinematics, evaluation: &Evaluation) -> Jet {
-        let read = |e: usize| {
-            let reading = &evaluation.elements[e].reading;
-            [reading.coordinate, reading.rate]
-        };
-        let (t, q, v) = (evaluation.t, &evaluation.q[..], &evaluation.v[..]);
-        let eye = Eye { system: cx.system, t, q, v, kinematics, element: &read };
-        let jets: Vec<Jet> = law.senses().iter().map(|sense| eye.jet(*sense, &evaluation.a)).collect();
-        law.jet_on(branch, t, &jets)
+        law.jet_on(branch, evaluation.t, &seen(law, cx, kinematics, evaluation))
     }
 
     fn fill_torques(
@@ -121,6 +124,71 @@ impl ControlRun {
         self.spare = torque;
     }
 
+    /// The first expression that the step took on the wrong side of a kink, as its own value at a row inside the step tells: what it gives there, and what
+    /// the step used. What a kink is behind by rounding is none, nor what is nothing beside the largest value so far.
+    pub(in crate::integrate) fn misread(&mut self, cx: Context, allowed: f64, at: &Evaluation) -> Option<Misread> {
+        if self.laws.iter().all(|law| !law.law.has_kinks()) {
+            return None;
+        }
+        let mut kinematics = std::mem::replace(&mut self.row_kinematics, Kinematics::new(&cx.system.model));
+        kinematics.update_velocity(&cx.system.model, &at.q, &at.v);
+        let found = self.find_misread(cx, &kinematics, allowed, at);
+        self.row_kinematics = kinematics;
+        found
+    }
+
+    fn find_misread(&self, cx: Context, kinematics: &Kinematics, allowed: f64, at: &Evaluation) -> Option<Misread> {
+        for (k, LawRun { law, target, branch, largest, .. }) in self.laws.iter().enumerate() {
+            let is_held = match *target {
+                Target::Torque(k) => cx.holds_force(k),
+                Target::Input(e, i) => cx.holds_input(e, i),
+            };
+            if is_held || !law.has_kinks() {
+                continue;
+            }
+            let jets = seen(law, cx, kinematics, at);
+            let is_on = law.expression().branch(at.t, &jets);
+            let wrong = is_on ^ branch;
+            if wrong == 0 {
+                continue;
+            }
+            let [is, used] = [is_on, *branch].map(|branch| law.jet_on(branch, at.t, &jets).value);
+            let departs = (is - used).abs() > allowed * largest.max(is.abs()).max(used.abs());
+            if departs && self.is_left(k, wrong, at.t, &jets) {
+                return Some(Misread { law: k, is, used });
+            }
+        }
+        None
+    }
+
+    /// Whether a kink of these bits was left before the row, by more than a small share of what its argument goes over in the step.
+    fn is_left(&self, law: usize, bits: u64, t: f64, jets: &[Jet]) -> bool {
+        const SHARE: f64 = 1e-3;
+        let own = &self.laws[law];
+        let (expression, branch) = (own.law.expression(), own.branch);
+        let at_row: Vec<f64> = jets.iter().map(|jet| jet.value).collect();
+        let mut left = Vec::new();
+        expression.guards(branch, t, &at_row, &mut |bit, value| {
+            if bits >> bit & 1 == 1 && value < 0.0 {
+                left.push((bit, value, 0.0));
+            }
+        });
+        for node in &self.nodes {
+            expression.guards(branch, node.t, self.seen_by(law, node), &mut |bit, value| {
+                for (_, at_row, moved) in left.iter_mut().filter(|(own, ..)| *own == bit) {
+                    *moved = f64::max(*moved, (value - *at_row).abs());
+                }
+            });
+        }
+        left.into_iter().any(|(_, value, moved)| -value > SHARE * moved)
+    }
+
+    /// The text of an expression, and the column of what it says.
+    pub(in crate::integrate) fn words(&self, law: usize, system: &System) -> (String, String) {
+        let LawRun { law, target, .. } = &self.laws[law];
+        (law.expression().to_string(), target.column(system))
+    }
+
     /// Tells an evaluation the forces at a node of the step (or its start).
     pub(in crate::integrate) fn add_torques(&self, cx: Context, node: usize, evaluation: &mut Evaluation) {
         add(cx, &self.nodes[node].torque, evaluation);
@@ -139,6 +207,17 @@ impl ControlRun {
     pub(in crate::integrate) fn has_inputs(&self) -> bool {
         self.laws.iter().any(|law| matches!(law.target, Target::Input(..)))
     }
+}
+
+/// What an expression sees at the time of an evaluation, with time derivatives.
+fn seen(law: &Feedback, cx: Context, kinematics: &Kinematics, evaluation: &Evaluation) -> Vec<Jet> {
+    let read = |e: usize| {
+        let reading = &evaluation.elements[e].reading;
+        [reading.coordinate, reading.rate]
+    };
+    let (t, q, v) = (evaluation.t, &evaluation.q[..], &evaluation.v[..]);
+    let eye = Eye { system: cx.system, t, q, v, kinematics, element: &read };
+    law.senses().iter().map(|sense| eye.jet(*sense, &evaluation.a)).collect()
 }
 
 /// What signals and `torque` (nv) say together, in the place of what drives the joints; where that is not known, it stays so.

@@ -102,6 +102,19 @@ impl ControlRun {
         }
     }
 
+    /// Takes in how large the values of expressions with kinks are at the start.
+    fn take_largest(&mut self) {
+        let Self { laws, nodes: [start, ..], .. } = self;
+        let mut seen = &start.seen[..];
+        for law in laws {
+            let (own, rest) = seen.split_at(law.law.senses().len());
+            seen = rest;
+            if law.law.has_kinks() {
+                law.largest = law.largest.max(law.law.value_on(law.branch, start.t, own).abs());
+            }
+        }
+    }
+
     /// Writes the inputs of element `element` at the start, where nobody holds them.
     pub(in crate::integrate) fn inputs_at_start(&self, cx: Context, element: usize, inputs: &mut [InputValue]) {
         self.for_each_law(0, |target, value| match target {
@@ -287,6 +300,56 @@ impl ControlRun {
         self.nodes[0].torque[k].abs()
     }
 
+    /// Adds the torques (nv) that expressions say at `t` of what was seen at the start, and writes the inputs of the elements, where nobody holds
+    /// them.
+    pub(in crate::integrate) fn expressions_at(
+        &self,
+        cx: Context,
+        t: f64,
+        torques: &mut [f64],
+        inputs: &mut [Vec<InputValue>],
+    ) {
+        let node = &self.nodes[0];
+        let mut seen = &node.seen[..];
+        for law in &self.laws {
+            let (own, rest) = seen.split_at(law.law.senses().len());
+            seen = rest;
+            let value = law.law.value(t, own);
+            match law.target {
+                Target::Torque(k) if !cx.holds_force(k) => torques[k] += value,
+                Target::Input(e, i) if !cx.holds_input(e, i) => inputs[e][i] = input(value, 0.0),
+                _ => {}
+            }
+        }
+    }
+
+    /// What rounding makes of the torques on velocity `k` that expressions say, at the start.
+    pub(in crate::integrate) fn rounded_torque(&self, k: usize) -> f64 {
+        let mut sum = 0.0;
+        self.for_each_rounded(|target, lost| {
+            sum += if matches!(target, Target::Torque(own) if own == k) { lost } else { 0.0 }
+        });
+        sum
+    }
+
+    /// Hands over the inputs of element `element` that expressions say, and what rounding makes of them at the start.
+    pub(in crate::integrate) fn for_each_rounded_input(&self, element: usize, take: &mut dyn FnMut(usize, f64)) {
+        self.for_each_rounded(|target, lost| match target {
+            Target::Input(e, i) if e == element => take(i, lost),
+            _ => {}
+        });
+    }
+
+    fn for_each_rounded(&self, mut take: impl FnMut(Target, f64)) {
+        let node = &self.nodes[0];
+        let mut seen = &node.seen[..];
+        for law in &self.laws {
+            let (own, rest) = seen.split_at(law.law.senses().len());
+            take(law.target, law.law.rounding_on(law.branch, node.t, own));
+            seen = rest;
+        }
+    }
+
     /// The terms of the force on velocity `k` between two steps, where its error and the rate of that are these.
     pub(super) fn terms_now(&self, k: usize, error: [f64; 2]) -> f64 {
         let integrand =
@@ -316,6 +379,7 @@ impl ControlRun {
         if self.knows_nodes {
             self.terms.iter_mut().for_each(super::Term::commit);
             self.nodes.swap(0, STAGES);
+            self.take_largest();
             return Ok(());
         }
         if self.terms.is_empty() {

@@ -1,6 +1,8 @@
 //! Events of forward runs: what happens where a function of the columns passes zero.
 
+mod nodes;
 mod sides;
+mod times;
 mod watch;
 
 pub(super) use watch::{Next, Watch, WatchState};

@@ -1,13 +1,16 @@
 //! On which side of zero the functions of events are, and where they pass it in a step.
 
 use super::Event;
+use super::nodes::Nodes;
+use super::times::Times;
 use crate::integrate::context::Context;
 use crate::integrate::driver::Driver;
 use crate::integrate::error::RunError;
+use crate::integrate::settings::{Settings, Stop};
 use crate::integrate::stepper::Target;
 use crate::integrate::system::Motion;
 use crate::integrate::zero::{SAMPLES, lowest_between, zero_within};
-use crate::observe::Snapshot;
+use crate::observe::{Needs, Snapshot};
 use serde::{Deserialize, Serialize};
 
 /// Where a step is looked at besides, where some function has just left zero.
@@ -33,6 +36,12 @@ impl Sides {
     pub(super) fn is_known(&self) -> bool {
         !self.signs.is_empty()
     }
+
+    /// Forgets the side of an event that acted at t.
+    pub(super) fn leave(&mut self, event: usize, t: f64) {
+        self.signs[event] = 0;
+        self.seen[event] = self.seen[event].max(t);
+    }
 }
 
 /// What is asked for values.
@@ -40,6 +49,11 @@ impl Sides {
 pub(super) struct Functions<'s> {
     pub(super) cx: Context<'s>,
     pub(super) events: &'s [Event],
+    /// What is known of them before the run.
+    times: Times,
+    /// What must be known for each.
+    needs: Vec<Needs>,
+    nodes: Nodes,
     snapshot: Snapshot,
     columns: Vec<f64>,
 }
@@ -47,19 +61,27 @@ pub(super) struct Functions<'s> {
 /// Of every event, what outlasts a step.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Sides {
-    /// Sign of the function; 0 until it has left zero.
+    /// Sign of the function; 0 until it has left zero, and of functions of t alone.
     pub(super) signs: Vec<i8>,
     /// Its value at the present time.
     values: Vec<f64>,
+    /// Up to when the passages of functions of t alone were taken, s.
+    seen: Vec<f64>,
 }
 
 impl<'s> Functions<'s> {
-    pub(super) fn new(cx: Context<'s>) -> Self {
+    /// # Errors
+    /// As [`Times::of`].
+    pub(super) fn new(cx: Context<'s>, settings: &Settings, stop: &Stop) -> Result<Self, RunError> {
         let events: &[Event] = match cx.system.motion {
             Motion::Given(_) => &[],
             Motion::Forward(_) => &cx.system.events,
         };
-        Self { cx, events, snapshot: Snapshot::new(cx.system), columns: Vec::new() }
+        let times = Times::of(events, settings, stop)?;
+        let needs = |event: &Event| event.columns.iter().map(|quantity| quantity.needs()).max();
+        let needs = events.iter().map(|event| needs(event).unwrap_or(Needs::Places)).collect();
+        let (nodes, snapshot) = (Nodes::of(events), Snapshot::new(cx.system));
+        Ok(Self { cx, events, times, needs, nodes, snapshot, columns: Vec::new() })
     }
 
     /// Whether a passage is in the direction of its event.
@@ -67,13 +89,19 @@ impl<'s> Functions<'s> {
         self.events[passage.event].direction.counts(passage.rises)
     }
 
-    /// Goes to a time of the step at hand, or to the present one.
-    pub(super) fn go_to(&mut self, cx: Context, driver: &mut Driver, t: f64) -> Result<(), RunError> {
-        driver.read(cx, t, 0, &mut self.snapshot).map(|_| ())
+    /// The events whose passages are not known beforehand.
+    fn of_state(&self) -> Vec<usize> {
+        (0..self.events.len()).filter(|&event| !self.times.knows(event)).collect()
+    }
+
+    /// Goes to a time of the step at hand, or to the present one, for the functions of these events.
+    fn go_to(&mut self, cx: Context, driver: &mut Driver, t: f64, events: &[usize]) -> Result<(), RunError> {
+        let needs = events.iter().map(|&event| self.needs[event]).max();
+        driver.glance(cx, t, needs.unwrap_or(Needs::Places), &mut self.snapshot)
     }
 
     /// The function of an event there.
-    pub(super) fn value(&mut self, event: usize) -> f64 {
+    fn value(&mut self, event: usize) -> f64 {
         let Event { when, columns, .. } = &self.events[event];
         self.columns.clear();
         self.columns.extend(columns.iter().map(|quantity| self.snapshot.value(*quantity)));
@@ -100,85 +128,136 @@ impl<'s> Functions<'s> {
         &mut self,
         cx: Context,
         driver: &mut Driver,
-        Sides { signs, values }: &mut Sides,
+        Sides { signs, values, seen }: &mut Sides,
     ) -> Result<Vec<Passage>, RunError> {
         let t = driver.reached();
-        self.go_to(cx, driver, t)?;
         signs.resize(self.events.len(), 0);
-        let mut passages = Vec::new();
-        for (event, sign) in signs.iter_mut().enumerate() {
-            let now = self.clear_side(event);
+        values.resize(self.events.len(), 0.0);
+        let mut passages = self.times.take(seen, t);
+        let events = self.of_state();
+        if events.is_empty() {
+            return Ok(passages);
+        }
+        self.go_to(cx, driver, t, &events)?;
+        for &event in &events {
+            let (now, sign) = (self.clear_side(event), &mut signs[event]);
             if *sign != 0 && now == -*sign {
                 passages.push(Passage { event, t, rises: now > 0 });
             }
             // Where a step ends at an event, the function is as near to zero as times can be told.
-            let near = values.get(event).map_or(0.0, |value| 2.0 * value.abs());
-            if now != 0 && (*sign != 0 || self.value(event).abs() > near) {
+            if now != 0 && (*sign != 0 || self.value(event).abs() > 2.0 * values[event].abs()) {
                 *sign = now;
             }
+            values[event] = self.finite_value(event)?;
         }
-        *values = self.values()?;
         Ok(passages)
     }
 
-    /// The functions of all events there.
+    /// The function of an event there.
     ///
     /// # Errors
     /// [`RunError::NotFinite`] of a function whose columns are numbers, but for t = 0.
-    fn values(&mut self) -> Result<Vec<f64>, RunError> {
-        let mut values = Vec::with_capacity(self.events.len());
-        for (k, event) in self.events.iter().enumerate() {
-            let (value, t) = (self.value(k), self.snapshot.t());
-            if !value.is_finite() && t > 0.0 && self.columns.iter().all(|column| column.is_finite()) {
-                let what = format!("`when` of event \"{}\"", event.name);
-                return Err(RunError::NotFinite { t, what, value });
-            }
-            values.push(value);
+    fn finite_value(&mut self, event: usize) -> Result<f64, RunError> {
+        let (value, t) = (self.value(event), self.snapshot.t());
+        if !value.is_finite() && t > 0.0 && self.columns.iter().all(|column| column.is_finite()) {
+            let what = format!("`when` of event \"{}\"", self.events[event].name);
+            return Err(RunError::NotFinite { t, what, value });
         }
-        Ok(values)
+        Ok(value)
     }
 
     /// The passages in the step at hand in the order of their times; the sides are taken to its end.
     ///
-    /// A function that leaves zero does not pass it. Two passages between two of the places that are looked at are seen where the function is lower
-    /// at one of them than at its neighbours.
+    /// A function that leaves zero does not pass it.
     pub(super) fn look(
         &mut self,
         cx: Context,
         driver: &mut Driver,
         step: &Target,
-        Sides { signs, values: start }: &mut Sides,
+        sides: &mut Sides,
     ) -> Result<Vec<Passage>, RunError> {
-        let mut passages = Vec::new();
         // At the very start of a step no law is asked.
-        let close = CLOSE.max(f64::EPSILON * step.to / (step.to - step.from));
-        let early = EARLY.into_iter().filter(|_| signs.contains(&0)).collect::<Vec<_>>();
+        let earliest = step.from + close(step) * (step.to - step.from);
+        let mut passages = self.times.take(&mut sides.seen, step.to);
+        passages.iter_mut().for_each(|passage| passage.t = passage.t.max(earliest).min(step.to));
+        let mut events = self.of_state();
+        if !events.is_empty() {
+            let (from, size) = (step.from, step.to - step.from);
+            let mut places: Vec<f64> = (1..SAMPLES).map(|i| from + size * i as f64 / SAMPLES as f64).collect();
+            self.times.places([from, step.to], &mut places);
+            places.push(step.to);
+            places.sort_by(f64::total_cmp);
+            places.dedup();
+            // What stays away from zero need not be asked more closely.
+            let apart = |functions: &mut Self, event: usize, sides: &mut Sides, driver: &mut Driver| {
+                let known = functions.needs[event] < Needs::Forces && sides.signs[event] != 0;
+                if !known {
+                    return Ok(false);
+                }
+                functions.nodes.read(cx, driver, functions.events, &functions.needs, &mut functions.snapshot)?;
+                let end = functions.nodes.end_where_apart(functions.events, event, &places, step, sides.signs[event]);
+                sides.values[event] = end.unwrap_or(sides.values[event]);
+                Ok::<_, RunError>(end.is_some())
+            };
+            self.nodes.forget();
+            let mut open = Vec::new();
+            for event in events.drain(..) {
+                if !apart(self, event, sides, driver)? {
+                    open.push(event);
+                }
+            }
+            if !open.is_empty() {
+                self.look_closely((cx, driver, step), &open, &places, sides, &mut passages)?;
+            }
+        }
+        passages.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.event.cmp(&b.event)));
+        Ok(passages)
+    }
+
+    /// Looks for passages of events at these times of the step.
+    ///
+    /// Two of them between two of the places are seen where the function is lower at one of these than at its neighbours.
+    fn look_closely(
+        &mut self,
+        (cx, driver, step): (Context, &mut Driver, &Target),
+        events: &[usize],
+        places: &[f64],
+        Sides { signs, values: start, .. }: &mut Sides,
+        passages: &mut Vec<Passage>,
+    ) -> Result<(), RunError> {
+        let close = close(step) * (step.to - step.from);
+        let early = EARLY.into_iter().filter(|_| events.iter().any(|&event| signs[event] == 0));
+        let mut places: Vec<f64> =
+            early.map(|theta| step.from + theta * (step.to - step.from)).chain(places.iter().copied()).collect();
+        places.sort_by(f64::total_cmp);
         // The two places before, and the values there.
-        let mut before = [(f64::NAN, vec![f64::NAN; start.len()]), (0.0, std::mem::take(start))];
-        for theta in early.into_iter().chain((1..=SAMPLES).map(|i| i as f64 / SAMPLES as f64)) {
-            self.go_to(cx, driver, time(step, theta))?;
-            let values = self.values()?;
-            for (event, sign) in signs.iter_mut().enumerate() {
+        let starts = events.iter().map(|&event| start[event]).collect();
+        let mut before = [(f64::NAN, vec![f64::NAN; events.len()]), (step.from, starts)];
+        for t in places.into_iter().filter(|t| *t > step.from) {
+            self.go_to(cx, driver, t, events)?;
+            let values = events.iter().map(|&event| self.finite_value(event)).collect::<Result<Vec<_>, _>>()?;
+            for (k, &event) in events.iter().enumerate() {
+                let sign = &mut signs[event];
                 if *sign == 0 {
-                    self.go_to(cx, driver, time(step, theta))?;
+                    self.go_to(cx, driver, t, &[event])?;
                     *sign = self.clear_side(event);
                     continue;
                 }
                 let side = f64::from(*sign);
-                let [first, left] = [0, 1].map(|k| (before[k].0, side * before[k].1[event]));
-                let here = (theta, side * values[event]);
+                let [first, left] = [0, 1].map(|at| (before[at].0, side * before[at].1[k]));
+                let here = (t, side * values[k]);
                 let mut failed = None;
-                let mut at = |theta: f64| match self.go_to(cx, driver, time(step, theta.max(0.5 * close))) {
+                let mut at = |t: f64| match self.go_to(cx, driver, t.max(step.from + 0.5 * close), &[event]) {
                     Ok(()) => side * self.value(event),
                     Err(error) => {
                         failed.get_or_insert(error);
                         f64::NAN
                     }
                 };
-                let mut note = |theta: f64, rises: bool| passages.push(Passage { event, t: time(step, theta), rises });
+                let mut note = |t: f64, rises: bool| passages.push(Passage { event, t, rises });
                 if here.1 <= 0.0 {
                     note(zero_within(&mut at, left.0, here.0, close), side < 0.0);
-                    *sign = side_of(values[event]);
+                    *sign = side_of(values[k]);
                 } else if may_dip([first.1, left.1, here.1]) {
                     let lowest = lowest_between(&mut at, first.0, here.0);
                     if at(lowest) < 0.0 {
@@ -193,15 +272,14 @@ impl<'s> Functions<'s> {
                 }
             }
             before.swap(0, 1);
-            before[1] = (theta, values);
+            before[1] = (t, values);
         }
         let [_, (_, end)] = before;
-        *start = end;
-        passages.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.event.cmp(&b.event)));
-        Ok(passages)
+        events.iter().zip(end).for_each(|(&event, value)| start[event] = value);
+        Ok(())
     }
 
-    /// How far behind the end of the step at hand a function passes zero on a straight line, s; negative where it lies before.
+    /// How far behind the end of the step at hand a function passes zero, on a straight line where it follows the state, s; negative where it lies before.
     pub(super) fn ahead(
         &mut self,
         cx: Context,
@@ -210,21 +288,26 @@ impl<'s> Functions<'s> {
         event: usize,
     ) -> Result<f64, RunError> {
         const SHORT: f64 = 0.001;
-        self.go_to(cx, driver, time(step, 1.0 - SHORT))?;
+        if self.times.knows(event) {
+            return Ok(self.times.ahead(event, step.to));
+        }
+        let short = SHORT * (step.to - step.from);
+        self.go_to(cx, driver, (step.to - short).max(step.from.next_up()), &[event])?;
         let before = self.value(event);
-        self.go_to(cx, driver, step.to)?;
+        self.go_to(cx, driver, step.to, &[event])?;
         let end = self.value(event);
-        Ok(SHORT * (step.to - step.from) * end / (before - end))
+        Ok(short * end / (before - end))
     }
+}
+
+/// How closely passages are found, in units of the step.
+fn close(step: &Target) -> f64 {
+    CLOSE.max(f64::EPSILON * step.to / (step.to - step.from))
 }
 
 /// Whether a function that is lowest in the middle of three places may come to zero between them: a parabola falls by less than it rises there.
 fn may_dip([first, middle, last]: [f64; 3]) -> bool {
     middle <= first && middle < last && middle < (first - middle) + (last - middle)
-}
-
-fn time(step: &Target, theta: f64) -> f64 {
-    if theta == 1.0 { step.to } else { (step.from + theta * (step.to - step.from)).clamp(step.from.next_up(), step.to) }
 }
 
 fn side_of(value: f64) -> i8 {

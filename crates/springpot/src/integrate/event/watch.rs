@@ -6,6 +6,7 @@ use crate::integrate::context::{Context, Held};
 use crate::integrate::driver::{Driver, Mark, RowsAhead};
 use crate::integrate::error::RunError;
 use crate::integrate::output::Output;
+use crate::integrate::settings::{Settings, Stop};
 use crate::integrate::stepper::Target;
 use crate::integrate::system::System;
 use serde::{Deserialize, Serialize};
@@ -48,8 +49,16 @@ pub(in crate::integrate) enum Next {
 }
 
 impl<'s> Watch<'s> {
-    pub(in crate::integrate) fn new(system: &'s System, state: WatchState) -> Self {
-        Self { functions: Functions::new(system.context()), state, passages: Vec::new() }
+    /// # Errors
+    /// Of a function of t alone that changes more often than a run can follow; [`RunError::Interrupted`].
+    pub(in crate::integrate) fn new(
+        system: &'s System,
+        settings: &Settings,
+        state: WatchState,
+        stop: &Stop,
+    ) -> Result<Self, RunError> {
+        let functions = Functions::new(system.context(), settings, stop)?;
+        Ok(Self { functions, state, passages: Vec::new() })
     }
 
     pub(in crate::integrate) fn state(&self) -> &WatchState {
@@ -139,7 +148,7 @@ impl<'s> Watch<'s> {
             }
             asked = if low < next && next < high { next } else { 0.5 * (low + high) };
             driver.take_back(before);
-            driver.advance(Context { held: &self.state.held, ..self.functions.cx }, asked, rows)?;
+            driver.advance(Context { held: &self.state.held, ..self.functions.cx }, asked, rows, &mut || false)?;
         }
         Ok(())
     }
@@ -157,7 +166,7 @@ impl<'s> Watch<'s> {
 
     /// An event acts before the step that was taken back.
     fn at_start(&mut self, first: Passage, t: f64) -> Result<(), RunError> {
-        self.state.sides.signs[first.event] = 0;
+        self.state.sides.leave(first.event, first.t);
         self.passages = vec![Passage { t, ..first }];
         Ok(())
     }

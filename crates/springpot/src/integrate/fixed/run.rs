@@ -193,7 +193,7 @@ impl Stepper for Fixed {
         if recorder.is_whole[end] { Ok(()) } else { self.accelerate(cx, recorder, end) }
     }
 
-    fn interpolate(
+    fn place(
         &mut self,
         cx: Context,
         recorder: &mut Recorder,
@@ -210,6 +210,18 @@ impl Stepper for Fixed {
         let h = recorder.bank.size();
         let within = Between::new(cx, &step.forward, [&step.origin, &step.end], [first, &end.a], h);
         within.place(at, theta, evaluation);
+        Ok(())
+    }
+
+    fn interpolate(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        theta: f64,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError> {
+        self.place(cx, recorder, at, theta, evaluation)?;
         cx.fill(at, at, None, &mut recorder.scratch, evaluation)
     }
 

@@ -36,6 +36,9 @@ const NEAR: f64 = 1e-3;
 /// A step that is shorter by 0.7 leaves less than this share where the motion is smooth.
 const SHRINKS: f64 = 0.5;
 
+/// Rounding of a stroke, in units of its largest value: signals that begin at nothing are differences of what is that large.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// Tries to end a step on a kink of a force.
 const MOST_TRIES: usize = 40;
 
@@ -48,6 +51,8 @@ pub(super) struct Prescribed {
     trajectory: Arc<Trajectory>,
     /// A lower bound of the energy turned over, estimated beforehand.
     energy_floor: f64,
+    /// The largest stroke of each element, m, seen beforehand.
+    largest: Vec<f64>,
     /// Velocities at which friction sticks: their power has a kink where they turn round.
     rubbing: Vec<usize>,
     /// Kinks of the elements' forces.
@@ -59,9 +64,10 @@ pub(super) struct Prescribed {
 }
 
 /// What the next step takes over from those before.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct StepperState {
     energy_floor: f64,
+    largest: Vec<f64>,
 }
 
 /// Error of a step in units of its tolerance, by what it comes from.
@@ -95,12 +101,13 @@ impl Prescribed {
     pub(super) fn new(cx: Context, trajectory: &Arc<Trajectory>) -> Self {
         let rubbing = reversal::rubbing(&cx.system.model);
         let kinks = Kinks::of(cx.system);
-        Self { trajectory: trajectory.clone(), energy_floor: 0.0, rubbing, kinks, behind: None, refused: None }
+        let (trajectory, largest) = (trajectory.clone(), vec![0.0; cx.system.elements.len()]);
+        Self { trajectory, energy_floor: 0.0, largest, rubbing, kinks, behind: None, refused: None }
     }
 
     /// What the next step takes over from those before.
     pub(super) fn save(&self) -> StepperState {
-        StepperState { energy_floor: self.energy_floor }
+        StepperState { energy_floor: self.energy_floor, largest: self.largest.clone() }
     }
 
     /// Goes on from what was saved.
@@ -108,14 +115,14 @@ impl Prescribed {
     /// # Errors
     /// What a named scheme refuses.
     pub(super) fn load(&mut self, cx: Context, recorder: &mut Recorder, state: StepperState) -> Result<(), RunError> {
-        self.energy_floor = state.energy_floor;
+        (self.energy_floor, self.largest) = (state.energy_floor, state.largest);
         let rows = recorder.settings.rows.clone();
         recorder.grid = on_grid::derivatives(cx, &self.trajectory, &rows, &mut recorder.scratch)?;
         Ok(())
     }
 
-    /// A lower bound of the energy that the motion turns over, from 65 samples of it.
-    fn estimate_energy_scale(&self, cx: Context, recorder: &mut Recorder) -> f64 {
+    /// Takes a lower bound of the energy that the motion turns over, and the largest strokes, from 65 samples of it.
+    fn look_ahead(&mut self, cx: Context, recorder: &mut Recorder) {
         let end = recorder.settings.end;
         let mut evaluation = Evaluation::new(cx.system);
         let (mut potential, mut kinetic) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0f64);
@@ -138,7 +145,8 @@ impl Prescribed {
             }
         }
         let elements: f64 = strokes.iter().zip(forces).map(|(range, force)| (range[1] - range[0]) * force).sum();
-        kinetic + (potential[1] - potential[0]).max(0.0) + elements.max(0.0)
+        self.energy_floor = kinetic + (potential[1] - potential[0]).max(0.0) + elements.max(0.0);
+        self.largest = strokes.iter().map(|[low, high]| low.abs().max(high.abs())).collect();
     }
 
     /// Evaluates the step without keeping it; an element that turns over on the way is asked for a shorter one.
@@ -162,7 +170,7 @@ impl Prescribed {
         recorder.bank.start(t, h);
         for e in 0..cx.system.elements.len() {
             recorder.tell(cx, e);
-            let noise = self.noise(recorder, e, t);
+            let noise = self.noise(recorder, e, t) + self.rounding(recorder, e);
             recorder.bank.set_resolution(e, recorder.bank.resolution(e) + noise);
             if !recorder.bank.account(e) {
                 continue;
@@ -224,6 +232,13 @@ impl Prescribed {
         let gradient = recorder.evaluations[0].elements[e].gradient.iter();
         let solved: f64 = gradient.map(|g| g.abs() * self.trajectory.solved_to()).sum();
         if left > SHRINKS * before[e] { (2.0 * left).min(solved) } else { 0.0 }
+    }
+
+    /// What rounding of the signals, and of the time that they are told, does to stroke `e`, m.
+    fn rounding(&self, recorder: &Recorder, e: usize) -> f64 {
+        let [_, rates] = recorder.bank.told(e);
+        let fastest = rates.iter().fold(0.0f64, |fastest, rate| fastest.max(rate.abs()));
+        ROUNDING * (self.largest[e] + recorder.bank.from() * fastest)
     }
 
     /// The first evaluation behind a kink, to which coordinates must not jump from that at index `from` of the recorder.
@@ -296,7 +311,7 @@ impl Stepper for Prescribed {
         let settings = recorder.settings.clone();
         cx.evaluate(&self.trajectory, 0.0, 0.0, &mut recorder.scratch, &mut recorder.evaluations[0])?;
         recorder.grid = on_grid::derivatives(cx, &self.trajectory, &settings.rows, &mut recorder.scratch)?;
-        self.energy_floor = self.estimate_energy_scale(cx, recorder);
+        self.look_ahead(cx, recorder);
         recorder.begin(cx)?;
         let first = settings.first_step.unwrap_or(self.longest_step(cx, &settings) * FIRST_STEP);
         Ok(agenda.reach(0.0, first.min(settings.end)))
@@ -331,6 +346,17 @@ impl Stepper for Prescribed {
             _ => None,
         };
         Ok(Trial::Accepted { step, next })
+    }
+
+    fn place(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        theta: f64,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError> {
+        self.interpolate(cx, recorder, at, theta, evaluation)
     }
 
     fn interpolate(

@@ -10,8 +10,8 @@ use crate::integrate::kinks::Seen;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::stepper::Target;
 
-/// Shortest step as a share of the run.
-const SHORTEST_STEP: f64 = 1e-14;
+/// Shortest step as a share of the run, and of the time that has passed.
+const SHORTEST_STEP: [f64; 2] = [1e-20, 2.0 * f64::EPSILON];
 
 /// Velocities whose squares are finite.
 const FASTEST: f64 = 1e150;
@@ -73,7 +73,8 @@ impl Radau {
             {
                 smaller = smaller.max((1.01 * theta).min(0.9) * h);
             }
-            if smaller < SHORTEST_STEP * recorder.settings.end {
+            let [of_run, of_time] = SHORTEST_STEP;
+            if smaller < (of_run * recorder.settings.end).max(of_time * t) {
                 return Err(self.step_too_small(cx, t, h, error, worst));
             }
             return Ok(Err(smaller));
@@ -118,7 +119,8 @@ impl Radau {
             if errors == 0 {
                 continue;
             }
-            let (share, order) = recorder.memory_error_of(e, errors);
+            let (share, order) =
+                recorder.memory_error_of(e, errors, self.step.coming_rate(e, h), self.step.sizes.since());
             let memory = share.powf(1.0 / (EXPONENT * (4.0 - order)));
             if memory > error {
                 (error, worst) = (memory, Worst::Element(e));

@@ -7,6 +7,7 @@ use super::sizes::Tolerance;
 use super::start;
 use super::step::{Carried, RadauStep};
 use crate::actuation::{Drive, Forward};
+use crate::dynamics::Kinematics;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::evaluate::Evaluation;
@@ -97,6 +98,9 @@ impl Radau {
         }
         self.step.sizes.take(&self.step.model, t, &self.step.origin.q, &self.step.origin.v);
         self.step.expect(cx, bank, 1.0 / recorder.settings.end);
+        let stretch = self.longest_step(cx, &recorder.settings).min(self.step.sizes.response());
+        let ahead = self.step.look_ahead(cx, bank, recorder.control.as_deref(), stretch)?;
+        self.step.sizes.look_ahead(ahead, stretch);
         Ok(())
     }
 
@@ -177,7 +181,7 @@ impl Stepper for Radau {
         Ok(Trial::Accepted { step: Target { behind, ..step }, next: target.size * factor })
     }
 
-    fn interpolate(
+    fn place(
         &mut self,
         cx: Context,
         recorder: &mut Recorder,
@@ -187,6 +191,22 @@ impl Stepper for Radau {
     ) -> Result<(), RunError> {
         let h = recorder.bank.size();
         self.dense(cx, recorder, h).place(at, theta, evaluation);
+        Ok(())
+    }
+
+    fn kinematics(&self, node: usize) -> Option<&Kinematics> {
+        Some(if node == 0 { &self.step.start } else { &self.step.stages[node - 1].kinematics })
+    }
+
+    fn interpolate(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        theta: f64,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError> {
+        self.place(cx, recorder, at, theta, evaluation)?;
         cx.fill(at, at, None, &mut recorder.scratch, evaluation)
     }
 
@@ -213,7 +233,7 @@ impl Stepper for Radau {
 
 impl System {
     /// Whether anything that drives the robot varies with time.
-    fn varies(&self) -> bool {
+    pub(super) fn varies(&self) -> bool {
         let Motion::Forward(forward) = &self.motion else { return true };
         let drives = forward.drives.iter().any(|drive| match drive {
             Drive::Force(signals) => signals.iter().any(|signal| signal.is_constant().is_none()),

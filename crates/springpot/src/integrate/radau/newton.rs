@@ -76,7 +76,7 @@ impl RadauStep {
                     stage.a[k] -= delta;
                 }
             }
-            if iterations == 1 && self.allowed.iter().any(|[speed, _]| *speed <= f64::MIN_POSITIVE) {
+            if iterations == 1 && self.sized.iter().any(|[speed, _]| *speed == 0.0) {
                 self.allow(cx, bank, control.as_deref(), h);
             }
             let size;

@@ -8,23 +8,31 @@ use crate::integrate::control::ControlRun;
 /// Share of the speed that all the energy turned over would give a joint alone: slower joints are not looked at more closely.
 const ENERGY_FLOOR: f64 = 1e-6;
 
-/// How much more rounding there is where laws of control hold a robot: their inverse dynamics round otherwise than those of the step.
-const HELD: f64 = 16.0;
-
 impl RadauStep {
     /// What the errors of velocities and coordinates may be in a step of size `h`, in the order of the free velocities.
     pub(super) fn allow(&mut self, cx: Context, bank: &ElementBank, control: Option<&ControlRun>, h: f64) {
-        // What a stroke's rounding does to each force; from nothing that a run that goes on does not know.
-        self.rounded.clear();
-        for (e, element) in cx.system.elements.iter().enumerate() {
-            let stiffness = element.law.stiffness(&bank.point(e, 0), 1.0 / h);
-            self.rounded.push(stiffness * bank.resolution(e));
-        }
-        let (n, sizes, tolerance) = (self.model.nv(), &self.sizes, self.tolerance);
+        self.size_up(cx, bank, control, h);
+        let (tolerance, sized) = (self.tolerance, std::mem::take(&mut self.sized));
+        self.round(cx, bank, control, h, |r| tolerance.of(sized[r][0]));
         self.allowed.clear();
         self.noisy = 0.0;
+        for (r, (&k, [speed, travel])) in self.free.iter().zip(&sized).enumerate() {
+            let noise = h * self.rounding.accelerations[r];
+            let place = self.model.coordinate_of(k).map_or(1.0, |c| self.origin.q[c]);
+            let rounding = 4.0 * f64::EPSILON * place.abs();
+            let allowed = (tolerance.of(*speed) + noise).max(f64::MIN_POSITIVE);
+            self.noisy = self.noisy.max(noise / allowed);
+            self.allowed.push([allowed, (tolerance.of(*travel) + rounding + h * noise).max(f64::MIN_POSITIVE)]);
+        }
+        self.sized = sized;
+    }
+
+    /// How fast and how far each free velocity moves until the end of a step of size `h`.
+    fn size_up(&mut self, cx: Context, bank: &ElementBank, control: Option<&ControlRun>, h: f64) {
+        let (n, sizes) = (self.model.nv(), &self.sizes);
         let until = self.origin.t + h;
-        for (r, &k) in self.free.iter().enumerate() {
+        self.sized.clear();
+        for &k in &self.free {
             let mass = self.slopes.d_a[k * n + k];
             let of_energy = if mass > 0.0 { ENERGY_FLOOR * (2.0 * self.energy / mass).sqrt() } else { 0.0 };
             // Memories of errors begin as steeply as no step resolves: they are measured by what is still missing.
@@ -47,24 +55,7 @@ impl RadauStep {
             });
             let square = stops.sum::<f64>() / mass;
             let taken_up = if square > 0.0 { speed / square.sqrt() } else { f64::INFINITY };
-            let travel = sizes.travel(k, until).min(taken_up).max(h * speed).max(missing);
-            // Strokes are differences of lengths: what they lose to rounding pushes the joints, and so does that of the drives.
-            let strokes: f64 = self.elements.iter().zip(&self.rounded).map(|(e, s)| e.gradient[k].abs() * s).sum();
-            let drives = self.drives.iter().fold(0.0, |largest: f64, drives| largest.max(drives[r].abs()));
-            // What rounds where a large force is held against another reaches the joints that are coupled to it.
-            let held = |own: &usize| {
-                let share = (self.slopes.d_a[k * n + own] / self.slopes.d_a[own * n + own]).abs();
-                let largest = control.map_or(0.0, |control| control.largest(*own));
-                if share.is_finite() { share * largest } else { 0.0 }
-            };
-            let drives = self.free.iter().map(held).fold(drives, f64::max);
-            let rounding = if control.is_some() { HELD } else { 1.0 } * 4.0 * f64::EPSILON * drives;
-            let noise = if mass > 0.0 { h * (strokes + rounding) / mass } else { 0.0 };
-            let place = self.model.coordinate_of(k).map_or(1.0, |c| self.origin.q[c]);
-            let rounding = 4.0 * f64::EPSILON * place.abs();
-            let allowed = (tolerance.of(speed) + noise).max(f64::MIN_POSITIVE);
-            self.noisy = self.noisy.max(noise / allowed);
-            self.allowed.push([allowed, (tolerance.of(travel) + rounding + h * noise).max(f64::MIN_POSITIVE)]);
+            self.sized.push([speed, sizes.travel(k, until).min(taken_up).max(h * speed).max(missing)]);
         }
     }
 

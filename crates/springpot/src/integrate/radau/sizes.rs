@@ -36,6 +36,10 @@ pub(super) struct Sizes {
     is_singular: bool,
     to_travel: Vec<f64>,
     to_speed: Vec<f64>,
+    /// Accelerations that come within a stretch of time from then, s, until it is over: what begins as a power of t is measured by what it
+    /// comes to soon.
+    ahead: Vec<f64>,
+    stretch: f64,
 }
 
 impl Sizes {
@@ -49,7 +53,9 @@ impl Sizes {
             omega: 0.0,
             is_singular: false,
             to_travel: zero.clone(),
-            to_speed: zero,
+            to_speed: zero.clone(),
+            ahead: zero,
+            stretch: 0.0,
         }
     }
 
@@ -58,6 +64,9 @@ impl Sizes {
         let travel = model.difference(&self.from, q);
         for (largest, value) in self.travel.iter_mut().zip(&travel).chain(self.speed.iter_mut().zip(v)) {
             *largest = largest.max(value.abs());
+        }
+        if t >= self.since + self.stretch {
+            self.ahead.fill(0.0);
         }
         let time = self.elapsed(t);
         let travels = self.travel.iter().zip(&mut self.to_travel).map(|(seen, a)| (seen, a, 0.5 * time * time));
@@ -75,14 +84,40 @@ impl Sizes {
         self.to_speed = self.to_travel.clone();
     }
 
+    /// Changes of the accelerations by `ahead` are to come within `stretch` seconds, until which nothing falls short of them.
+    pub(super) fn look_ahead(&mut self, ahead: Vec<f64>, stretch: f64) {
+        (self.ahead, self.stretch) = (ahead, stretch);
+    }
+
+    /// When what acts began last, s.
+    pub(super) fn since(&self) -> f64 {
+        self.since
+    }
+
+    /// Whether velocity `k` has been 0 so far.
+    pub(super) fn rests(&self, k: usize) -> bool {
+        self.speed[k] == 0.0
+    }
+
+    /// The time in which the system answers what began last, s.
+    pub(super) fn response(&self) -> f64 {
+        self.omega.recip()
+    }
+
     /// The largest speed of velocity `k` until `t`.
     pub(super) fn speed(&self, k: usize, t: f64) -> f64 {
-        self.speed[k].max(self.to_speed[k] * self.time(t))
+        self.speed[k].max(self.to_speed[k] * self.time(t)).max(self.coming(k, t))
+    }
+
+    /// The speed of velocity `k` until `t` by what was seen ahead.
+    pub(super) fn coming(&self, k: usize, t: f64) -> f64 {
+        self.ahead[k] * self.elapsed(t)
     }
 
     /// The largest travel of velocity `k` until `t`.
     pub(super) fn travel(&self, k: usize, t: f64) -> f64 {
-        self.travel[k].max(self.to_travel[k] * self.time(t).powi(2))
+        let ahead = self.ahead[k] * self.elapsed(t).powi(2);
+        self.travel[k].max(self.to_travel[k] * self.time(t).powi(2)).max(ahead)
     }
 
     fn time(&self, t: f64) -> f64 {

@@ -30,6 +30,7 @@ impl RadauStep {
             return Ok(());
         }
         self.start.update_velocity(&self.model, &self.origin.q, &self.origin.v);
+        self.rounding.forget();
         self.forces.clear();
         for (element, force) in cx.system.elements.iter().zip(&self.origin.forces) {
             self.forces.push(&element.measure, Pull::constant(*force));

@@ -1,5 +1,6 @@
 //! What one step of Radau IIA(5) in the accelerations works on: its start, its stages, its elements.
 
+use super::rounding::Rounding;
 use super::sizes::{Sizes, Tolerance};
 use super::stick::{Sliding, Stick};
 use crate::actuation::Forward;
@@ -133,8 +134,10 @@ pub(super) struct RadauStep {
     pub(super) sizes: Sizes,
     /// The energy turned over so far, J.
     pub(super) energy: f64,
-    /// What rounding of its stroke does to each element's force in this step, N.
-    pub(super) rounded: Vec<f64>,
+    /// How fast and how far each free velocity moves until the end of this step.
+    pub(super) sized: Vec<[f64; 2]>,
+    /// What rounding does in this step.
+    pub(super) rounding: Rounding,
     /// Errors that are allowed in this step, of each free velocity and of its coordinate.
     pub(super) allowed: Vec<[f64; 2]>,
     /// The largest share of them that rounding takes up.
@@ -202,7 +205,8 @@ impl RadauStep {
             contraction: 0.0,
             sizes: Sizes::new(&forward.q, nv),
             energy: 0.0,
-            rounded: Vec::new(),
+            sized: Vec::new(),
+            rounding: Rounding::default(),
             allowed: Vec::new(),
             noisy: 0.0,
             scratch: EstimateScratch::default(),

@@ -11,6 +11,9 @@ use crate::observe::evaluation::ElementRow;
 /// powers rise like t^{1−alpha}, which no step resolves, and such a step turns over next to nothing.
 const SHORTEST_LEDGER_STEP: f64 = 1e-11;
 
+/// Share of what a stroke comes to soon that is not looked at more closely.
+const BEGUN: f64 = 1e-3;
+
 /// Energies below this count as none, J.
 const TINY_ENERGY: f64 = 1e-280;
 
@@ -115,17 +118,18 @@ impl Recorder {
 
     /// The largest of the local errors of element `e` in units of their tolerances, and its order.
     pub(in crate::integrate) fn memory_error(&self, e: usize) -> (f64, f64) {
-        self.memory_error_of(e, usize::MAX)
+        self.memory_error_of(e, usize::MAX, 0.0, 0.0)
     }
 
-    /// As [`Self::memory_error`], of so many of them, the first ones.
-    pub(in crate::integrate) fn memory_error_of(&self, e: usize, first: usize) -> (f64, f64) {
+    /// As [`Self::memory_error`], of so many of them, the first ones, where the stroke is about to be as fast as `rate` and what acts began at the
+    /// time `since`: what has only begun is not looked at more closely than a share of what that leads to in the step.
+    pub(in crate::integrate) fn memory_error_of(&self, e: usize, first: usize, rate: f64, since: f64) -> (f64, f64) {
         let settings = &self.settings;
         let mut worst = (0.0, 0.0);
         // Strokes inside a series may begin like no power of t, alike on every scale of time: the very first steps err by what is soon nothing.
-        let is_onset = self.bank.from() + self.bank.size() <= SHORTEST_LEDGER_STEP * settings.end;
+        let is_onset = self.bank.from() + self.bank.size() - since <= SHORTEST_LEDGER_STEP * settings.end;
         for (m, error) in self.bank.errors(e).iter().enumerate().take(first) {
-            let scale = self.bank.scale(e, m);
+            let scale = self.bank.scale(e, m).max(BEGUN * rate * self.bank.size().powf(1.0 - error.order));
             let allowed = settings.atol.unwrap_or(0.0).max(settings.rtol * scale);
             let share = match error.share(scale, allowed) {
                 share if is_onset && share.is_finite() => share.min(1.0),
@@ -159,6 +163,10 @@ impl Recorder {
             let size = dissipated.abs() + (ACCOUNT_FLOOR * allowed).min(1.0) * turned_over;
             worst_account = worst_account.max(own / (ACCOUNT_SHARE * allowed * size));
         }
-        if defect.is_nan() { 0.0 } else { worst_account.max(defect / (ENERGY_SHARE * allowed * turned_over)) }
+        if defect.is_nan() {
+            // What is no number is no step to keep, but where no account is kept.
+            return if self.knows_energies() { f64::INFINITY } else { 0.0 };
+        }
+        worst_account.max(defect / (ENERGY_SHARE * allowed * turned_over))
     }
 }

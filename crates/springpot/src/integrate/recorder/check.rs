@@ -2,6 +2,8 @@
 
 use super::Recorder;
 use crate::collocation::{STAGES, lagrange_row};
+use crate::integrate::context::Context;
+use crate::integrate::control::Misread;
 use crate::observe::Snapshot;
 
 /// How much more than the tolerance a row may depart from its step, and what it may in any case: steps err less than the
@@ -10,6 +12,12 @@ const DEPARTURE: f64 = 1e3;
 const LEAST_DEPARTURE: f64 = 1e-5;
 
 impl Recorder {
+    /// The first expression of the state that the step at hand took on the wrong side of a kink, where a row shows it.
+    pub(in crate::integrate) fn misread(&mut self, cx: Context, snapshot: &Snapshot) -> Option<Misread> {
+        let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
+        self.control.as_mut()?.misread(cx, allowed, &snapshot.evaluation)
+    }
+
     /// Compares the rates at θ of the step with what its memories were told, the cubic through its nodes: the first element that departs too
     /// far, and how far in units of D^alpha x.
     ///
@@ -29,6 +37,11 @@ impl Recorder {
             let [_, rates] = self.bank.told(e);
             let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
             let is = snapshot.evaluation.elements[e].reading.rate;
+            // Parts in series share the stroke: what is little of all of it is no departure of any of them.
+            let fastest = rates.iter().fold(is.abs(), |fastest, rate| fastest.max(rate.abs()));
+            if (is - told).abs() <= allowed * fastest {
+                continue;
+            }
             let derivative = snapshot.elements[e].observation.derivative.abs();
             // D^alpha x and its share of a step are those of the time of the memories.
             let pace = self.bank.pace(e);

@@ -19,8 +19,8 @@ use crate::elements::{Element, ElementBank, Kept, MemoryRange};
 use crate::fractional::Form;
 use crate::law::heat::TEMPERATURE;
 use crate::law::{Observation, Point};
-use crate::observe::Snapshot;
 use crate::observe::evaluation::ElementRow;
+use crate::observe::{ElementQuantity, Quantity, Snapshot};
 use serde::{Deserialize, Serialize};
 
 /// What a temperature may move across a kink, in units of it: one bit of time further it is another one.
@@ -157,9 +157,15 @@ impl Recorder {
             let at = &self.evaluations[0].elements[e];
             let Settings { memory_rtol: tolerance, end: horizon, .. } = self.settings;
             let begun = element.begin_within(at.reading.coordinate, &at.inputs, tolerance, horizon);
-            let state = begun.map_err(RunError::of_kernel(&element.name))?;
+            let mut state = begun.map_err(RunError::of_kernel(&element.name))?;
             element.check_start(&state)?;
-            self.bank.begin_from(e, &element.start(at.reading.coordinate, &at.inputs), state);
+            let start = element.start(at.reading.coordinate, &at.inputs);
+            // Where the motion is sought, what the force does until then counts too.
+            if self.takes_elements_work {
+                let range = MemoryRange { tolerance, shortest: 0.0, horizon };
+                state = element.settled(&start, state, range).map_err(RunError::of_kernel(&element.name))?;
+            }
+            self.bank.begin_from(e, &start, state);
         }
         Ok(())
     }
@@ -331,6 +337,27 @@ impl Recorder {
     /// An element with a named scheme.
     fn on_grid(&self, cx: Context, e: usize, point: &Point, row: usize) -> Result<Observation, RunError> {
         on_grid_observation(&cx.system.elements[e], point, self.grid[e].as_deref().unwrap_or_default(), row)
+    }
+
+    /// Whether all energies are known.
+    pub(super) fn knows_energies(&self) -> bool {
+        (0..self.bank.len()).all(|e| self.bank.takes_part(e) && self.bank.is_accounted(e))
+    }
+
+    /// Whether a row at time t may leave this quantity empty: whatever follows from an infinite force, or from a named scheme, at t = 0, and
+    /// energies of which no account is kept.
+    pub(super) fn may_be_unknown(&self, t: f64, quantity: &Quantity) -> bool {
+        let is_unknown_at_start = |e: usize| !self.bank.takes_part(e) || self.bank.begins_singular(e);
+        match quantity {
+            Quantity::GripperError => true,
+            Quantity::Energy(_)
+            | Quantity::Element(_, ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input)
+                if !self.knows_energies() =>
+            {
+                true
+            }
+            _ => t == 0.0 && (0..self.bank.len()).any(is_unknown_at_start),
+        }
     }
 
     /// What outlasts the steps.

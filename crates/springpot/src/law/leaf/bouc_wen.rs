@@ -7,7 +7,7 @@ use super::springpot::Coefficient;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Holds, Network};
+use crate::law::network::{Guard, Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
@@ -127,6 +127,12 @@ impl Leaf for BoucWen {
 
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
         take(at.rate);
+    }
+
+    /// In metres, as rounding of strokes is: a rate between two of them is told no better in a short step.
+    fn guards_in(&self, step: &Step, _: StateRef, guards: &mut Vec<Guard>) {
+        let last = step.nodes.count();
+        guards.push(std::array::from_fn(|k| if k <= last { step.h * step.rate[k] } else { 0.0 }));
     }
 
     fn holds(&self) -> Holds {

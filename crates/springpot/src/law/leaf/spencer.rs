@@ -250,7 +250,7 @@ impl Leaf for Spencer {
         if self.fast.is_none() && self.stiffness == 0.0 { Holds::AtTimes } else { Holds::Always }
     }
 
-    /// As many as [`Leaf::guards_in`] has: where y rests, the rate itself.
+    /// As many as [`Leaf::guards_in`] has, which are in metres: where y rests, the rate itself.
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
         take(at.rate);
     }
@@ -258,7 +258,7 @@ impl Leaf for Spencer {
     fn guards_in(&self, step: &Step, state: StateRef, guards: &mut Vec<Guard>) {
         let Solved { y_rate, .. } = self.solve(step, Self::start(state));
         let last = step.nodes.count();
-        guards.push(std::array::from_fn(|k| if k <= last { step.rate[k] - y_rate[k] } else { 0.0 }));
+        guards.push(std::array::from_fn(|k| if k <= last { step.h * (step.rate[k] - y_rate[k]) } else { 0.0 }));
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {

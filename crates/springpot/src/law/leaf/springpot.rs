@@ -178,7 +178,7 @@ impl Leaf for Springpot {
             error: memory.defect(&polynomial, stroke, rate, step.resolution),
             value: memory.regular_derivative(&polynomial, 1.0, stroke[1], rate[1]),
             order: self.alpha,
-            sharpness: 1.0,
+            sharpness: if self.alpha == 1.0 { 0.0 } else { 1.0 },
         });
     }
 

@@ -13,7 +13,7 @@ use crate::collocation::{MAX_NODES, Nodes, lagrange_row};
 use crate::fractional::KernelError;
 use crate::law::heat::Heat;
 use crate::law::leaf::Unshifted;
-use crate::law::past::{Past, Periodic};
+use crate::law::past::Recalled;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Point, Power, Powers, Response, Start, Step, Term};
@@ -290,27 +290,27 @@ impl Heated {
         let tiny = 8.0 * f64::EPSILON * (start.stroke.abs() + longer.abs());
         let jump = match longer {
             0.0 => start.jump,
+            // Strokes alone do not tell whether it was held: memories do.
+            _ if start.jump == 0.0 && self.law.size().memories == 0 => 0.0,
             _ if stroke.abs() <= tiny => 0.0,
             _ => stroke,
         };
         Start { stroke, jump, inputs }
     }
 
-    /// The state at t = 0 after another past than that of the derivative, spent at the temperature of the start; `horizon` in ξ, s.
+    /// The state at t = 0 after a past that was spent at the temperature of the start: `recall` is told the law, its start, a_T and by how
+    /// much heat makes its strokes longer.
     pub(in crate::law) fn recalled(
         &self,
-        past: &Past,
         start: &Start,
-        tolerance: f64,
-        horizon: f64,
+        recall: impl FnOnce(&Network, &Start, f64, f64) -> Result<State, KernelError>,
     ) -> Result<State, KernelError> {
         let mut state = State::default();
         self.begin_own(&mut state);
         let temperature = self.seen(start.inputs).value;
         let (mut inputs, factor) = (Vec::new(), self.heat.factor(temperature));
         let start = self.start(start, &mut inputs);
-        let past = past.reduced(factor, self.heat.stroke(temperature));
-        state.append(past.state(&self.law, &start, tolerance, horizon)?);
+        state.append(recall(&self.law, &start, factor, self.heat.stroke(temperature))?);
         Ok(state)
     }
 
@@ -566,7 +566,7 @@ impl Heated {
         self.law.asymptote(&place.point(), onset).shifted(place.factor)
     }
 
-    pub(super) fn recall(&self, stroke: &Periodic, at: &Point, state: &mut StateMut) {
+    pub(super) fn recall(&self, stroke: &Recalled, at: &Point, state: &mut StateMut) {
         state.take(self.own_size());
         let place = self.still(at);
         let temperature = self.seen(at.inputs).value;

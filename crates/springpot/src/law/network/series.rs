@@ -32,8 +32,9 @@ const LAYER: f64 = 10.0;
 /// How much more an estimate counts before that: what it misses stays for as long as the parts relax.
 const ONSET: f64 = 6.0;
 
-/// What rounding of the strokes does to the estimate of a rate, in units of it over h.
+/// What rounding of the strokes does to the estimate of a rate, in units of it over h, and what memories take from strokes of their own.
 const ROUNDING: f64 = 40.0;
+const OF_MEMORIES: f64 = 6.0;
 
 /// Iterations of nonlinear parts, and how often one of them is halved.
 const MOST_ITERATIONS: usize = 60;
@@ -119,12 +120,15 @@ pub(super) fn local_errors(parts: &[Network], step: &Step, state: &mut StateRef,
             // The rates of the cubic through all strokes but one: what departs from it is the estimate.
             inner.rate = embedded_rates(&inner.stroke, step.h);
         }
-        part.local_errors_part(&inner.step(step), state, errors);
+        // Strokes of parts may be larger than that of the whole by far.
+        let largest = inner.stroke[..=end].iter().fold(0.0f64, |largest, stroke| largest.max(stroke.abs()));
+        let resolution = ROUNDING * (step.resolution + 4.0 * f64::EPSILON * largest);
+        let told = Step { resolution: resolution / OF_MEMORIES, ..inner.step(step) };
+        part.local_errors_part(&told, state, errors);
         for error in &mut errors[first..] {
-            // Dashpots are told rates that are known no better than the strokes.
-            if error.error == 0.0 && error.order == 1.0 {
-                let rounding = ROUNDING * step.resolution / step.h;
-                error.error = ((rate - inner.rate[end]).abs() - rounding).max(0.0);
+            // Dashpots are told rates that are known no better than the strokes; those of a series inside know it already.
+            if error.sharpness == 0.0 {
+                error.error = ((rate - inner.rate[end]).abs() - resolution / step.h).max(0.0);
             }
             // A part that hardly yields in the step does not matter, however little is known of it. With share = (h/τ)^α what a step near
             // the start errs is h/τ of it later on.

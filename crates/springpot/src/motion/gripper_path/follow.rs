@@ -71,10 +71,13 @@ impl<'a> Follower<'a> {
         let too_many = PathError::TooManyStretches { t: 0.0, limit: MOST_KNOTS / 2 };
         let watched: Vec<Watched> =
             solver.task.signals().map(|signal| Watched { signal, is_position: true, slack: 1.0 }).collect();
-        let agenda = Agenda::new(&watched, course.end, UNSEEN, Some(course.stop)).map_err(|error| match error {
-            AgendaError::Interrupted => PathError::Interrupted { t: 0.0 },
-            AgendaError::TooBusy { .. } => too_many,
-        })?;
+        let agenda =
+            Agenda::new(&watched, course.end, UNSEEN, 4 * MOST_KNOTS as u64, Some(course.stop)).map_err(|error| {
+                match error {
+                    AgendaError::Interrupted => PathError::Interrupted { t: 0.0 },
+                    AgendaError::TooBusy { .. } => too_many,
+                }
+            })?;
         let longest = (LONGEST * course.end).min(course.max_step.unwrap_or(f64::INFINITY));
         let steps = STEPS_IN_STRETCH as f64;
         if agenda.least_steps(course.end, longest / steps) / steps > 0.5 * MOST_KNOTS as f64 {

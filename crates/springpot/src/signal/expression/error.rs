@@ -16,6 +16,14 @@ pub enum ExpressionError {
         /// Where.
         at: Range<usize>,
     },
+    /// A comparison or a condition.
+    #[error("`{found}`: an expression has no conditions; step(t - 1) is 0 before t = 1 and 1 from then on")]
+    Condition {
+        /// The sign or word that stands there.
+        found: String,
+        /// Where.
+        at: Range<usize>,
+    },
     /// The text ends too early.
     #[error("the expression ends where {wanted} belongs")]
     UnexpectedEnd {
@@ -99,6 +107,7 @@ impl ExpressionError {
             Self::Unexpected { at, .. }
             | Self::UnexpectedEnd { at, .. }
             | Self::Unclosed { at }
+            | Self::Condition { at, .. }
             | Self::UnknownName { at, .. }
             | Self::NeedsParentheses { at, .. }
             | Self::ArgumentCount { at, .. }

@@ -5,6 +5,7 @@ use super::error::ExpressionError;
 use super::parse;
 use super::program::{Op, Trace, run};
 use crate::signal::jet::Jet;
+use crate::signal::rounding::Rounded;
 use std::fmt;
 use std::str::FromStr;
 
@@ -50,6 +51,13 @@ impl Expression {
         Ok(Self { source: source.to_owned(), program, kinks })
     }
 
+    /// Its sign, as an expression with a kink wherever it passes zero.
+    pub(in crate::signal) fn sign(&self) -> Self {
+        let mut program = self.program.clone();
+        program.push(Op::Sign);
+        Self { source: self.source.clone(), program, kinks: self.kinks + 1 }
+    }
+
     /// The text it was read from.
     pub fn source(&self) -> &str {
         &self.source
@@ -58,6 +66,11 @@ impl Expression {
     /// The value at `t`: the same number as `at(t).value`. NaN and infinities are returned as they are.
     pub fn value(&self, t: f64) -> f64 {
         run(&self.program, t, &mut Trace::default())
+    }
+
+    /// A bound of what rounding has made of the value at `t`.
+    pub(in crate::signal) fn rounding(&self, t: f64) -> f64 {
+        run(&self.program, Rounded::read(t), &mut Trace::default()).error
     }
 
     /// Value and exact first two derivatives at `t`; at a kink or jump the derivatives are those from the right.

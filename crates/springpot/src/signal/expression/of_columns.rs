@@ -3,8 +3,9 @@
 use super::error::ExpressionError;
 use super::formula::Expression;
 use super::parse::program_of;
-use super::program::{MAX_KINKS, MAX_STACK, Op, Trace, run_on, stack_after};
+use super::program::{MAX_KINKS, MAX_STACK, Op, Trace, carry_out, operands_from, run_on};
 use crate::signal::jet::Jet;
+use crate::signal::rounding::Rounded;
 use std::fmt;
 
 /// A function of t and of named columns, such as `gripper.z - 0.1`; otherwise as [`super::Expression`].
@@ -21,6 +22,8 @@ pub struct ColumnExpression {
     source: String,
     program: Vec<Op>,
     columns: Vec<usize>,
+    /// A bit for each of its kinks: whether it hangs on t alone.
+    of_time: u64,
 }
 
 impl ColumnExpression {
@@ -35,7 +38,11 @@ impl ColumnExpression {
         if kinks > MAX_KINKS {
             return Err(ExpressionError::TooManyKinks { given: kinks, limit: MAX_KINKS });
         }
-        Ok(Self { source: source.to_owned(), program, columns })
+        let mut own = Self { source: source.to_owned(), program, columns, of_time: 0 };
+        let at = (0..own.program.len()).filter(|&at| own.program[at].has_kink());
+        own.of_time =
+            at.zip(0..).filter(|(at, _)| !own.depends_on_columns(*at)).fold(0, |bits, (_, own)| bits | 1 << own);
+        Ok(own)
     }
 
     /// The columns that it names, by their places in those that it was read with.
@@ -49,6 +56,11 @@ impl ColumnExpression {
     /// Where there are fewer values than columns.
     pub fn value(&self, t: f64, values: &[f64]) -> f64 {
         run_on(&self.program, t, &|k| values[k], &mut Trace::default())
+    }
+
+    /// A bound of what rounding makes of the value, where columns are as exact as their last digits.
+    pub(crate) fn rounding_on(&self, branch: u64, t: f64, values: &[f64]) -> f64 {
+        run_on(&self.program, Rounded::read(t), &|k| Rounded::read(values[k]), &mut Trace::held(branch)).error
     }
 
     /// As [`Self::value`], its kinks on the sides that `branch` says ([`Self::branch`]), whatever their arguments are: beyond a kink it goes on
@@ -83,26 +95,32 @@ impl ColumnExpression {
         self.program.iter().any(|op| op.has_kink())
     }
 
-    /// Hands over the bit and the argument of each kink that hangs on a column: it is positive on the side of `branch` and passes zero at the kink.
+    /// The bits of its kinks that hang on t alone: they switch at times that are known before a run ([`Self::parts_of_time`]).
+    pub(crate) fn kinks_of_time(&self) -> u64 {
+        self.of_time
+    }
+
+    /// Hands over the bit and the argument of each kink: it is positive on the side of `branch` and passes zero at the kink.
     pub(crate) fn guards(&self, branch: u64, t: f64, values: &[f64], take: &mut dyn FnMut(u32, f64)) {
-        let kinks = self.program.iter().enumerate().filter(|(_, op)| op.has_kink());
-        for (own, (at, op)) in (0..).zip(kinks) {
-            if !self.depends_on_columns(at) {
-                continue;
+        let columns = |k: usize| values[k];
+        let (mut stack, mut top, mut trace) = ([t; MAX_STACK], 0, Trace::held(branch));
+        let mut kinks = 0..;
+        for &op in &self.program {
+            if let Some(own) = op.has_kink().then(|| kinks.next()).flatten() {
+                let argument = match op {
+                    Op::Min | Op::Max => Some(stack[top - 2] - stack[top - 1]),
+                    Op::Atan2 if stack[top - 1] < 0.0 => Some(stack[top - 2]),
+                    Op::Abs | Op::Sign | Op::Step => Some(stack[top - 1]),
+                    Op::AsinSin => Some(stack[top - 1].cos()),
+                    Op::AcosCos => Some(stack[top - 1].sin()),
+                    // Functions that end there, and the angle of a point that is not beside the cut.
+                    _ => None,
+                };
+                if let Some(argument) = argument {
+                    take(own, if branch >> own & 1 == 1 { -argument } else { argument });
+                }
             }
-            let columns = |k: usize| values[k];
-            let (stack, top) =
-                stack_after::<f64, MAX_STACK>(&self.program[..at], t, &columns, &mut Trace::held(branch));
-            let argument = match op {
-                Op::Min | Op::Max => stack[top - 2] - stack[top - 1],
-                Op::Atan2 if stack[top - 1] < 0.0 => stack[top - 2],
-                Op::Abs | Op::Sign | Op::Step => stack[top - 1],
-                Op::AsinSin => stack[top - 1].cos(),
-                Op::AcosCos => stack[top - 1].sin(),
-                // Functions that end there, and the angle of a point that is not beside the cut.
-                _ => continue,
-            };
-            take(own, if branch >> own & 1 == 1 { -argument } else { argument });
+            carry_out(op, &mut stack, &mut top, t, &columns, &mut trace);
         }
     }
 
@@ -113,12 +131,7 @@ impl ColumnExpression {
 
     /// Where the operands of instruction `at` begin.
     fn first_of(&self, at: usize) -> usize {
-        let (mut first, mut wanted) = (at, self.program[at].operands());
-        while wanted > 0 {
-            first -= 1;
-            wanted = wanted - 1 + self.program[first].operands();
-        }
-        first
+        operands_from(&self.program, at, self.program[at].operands())
     }
 
     /// Its largest parts that hang on t alone, as functions of it: steps must see what they do.
@@ -142,6 +155,13 @@ impl ColumnExpression {
             end = first;
         }
         parts
+    }
+
+    /// Itself as a function of t, where it names no column.
+    pub(crate) fn of_time_alone(&self) -> Option<Expression> {
+        let kinks = self.program.iter().filter(|op| op.has_kink()).count();
+        let expression = || Expression { source: self.source.clone(), program: self.program.clone(), kinks };
+        self.columns.is_empty().then(expression)
     }
 
     /// The value, if neither t nor a column occurs.

@@ -21,12 +21,30 @@ pub(super) fn program_of(
     if text.len() > MAX_LENGTH {
         return Err(ExpressionError::TooLong { length: text.len(), limit: MAX_LENGTH });
     }
+    if let Some(at) = condition(text, columns) {
+        return Err(ExpressionError::Condition { found: text[at.clone()].to_owned(), at });
+    }
     let (program, named) = (Vec::new(), Vec::new());
     let mut parser = Parser { text, constants, columns, at: 0, depth: 0, height: 0, program, named };
     parser.expression(0)?;
     match parser.peek() {
         None => Ok((parser.program, parser.named)),
         Some(_) => Err(parser.unexpected("an operator")),
+    }
+}
+
+/// Where a text compares or decides, as other languages do, with signs that no column has in its name.
+fn condition(text: &str, columns: &[&str]) -> Option<Range<usize>> {
+    let is_sign = |c: char| matches!(c, '<' | '>' | '=' | '?' | '&' | '|' | '\u{2264}' | '\u{2265}');
+    let sign = text.char_indices().find(|(_, c)| is_sign(*c) && !columns.iter().any(|column| column.contains(*c)));
+    let word = ["if ", "if(", "where(", "piecewise("].iter().find(|word| text.trim_start().starts_with(**word));
+    match (word, sign) {
+        (Some(word), _) => {
+            let start = text.len() - text.trim_start().len();
+            Some(start..start + word.len() - 1)
+        }
+        (None, Some((at, c))) => Some(at..at + c.len_utf8()),
+        (None, None) => None,
     }
 }
 
@@ -161,11 +179,22 @@ impl Parser<'_> {
                     let length = rest.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.')));
                     let name = &rest[..length.unwrap_or(rest.len())];
                     let near = nearest_column(name, self.columns).map(str::to_owned);
-                    let suggestion = near.or_else(|| suggest(name, self.constants));
+                    let of_module = || of_module(name).map(str::to_owned);
+                    let suggestion = near.or_else(of_module).or_else(|| suggest(name, self.constants));
                     let at = at.start..at.start + name.len();
                     Err(ExpressionError::UnknownName { name: shown(name), suggestion, at })
                 }
                 None => {
+                    let length = rest.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.')));
+                    let whole = &rest[..length.unwrap_or(rest.len())];
+                    if let Some(own) = of_module(whole) {
+                        let (name, suggestion) = (shown(whole), Some(own.to_owned()));
+                        return Err(ExpressionError::UnknownName {
+                            name,
+                            suggestion,
+                            at: at.start..at.start + whole.len(),
+                        });
+                    }
                     let suggestion = suggest(name, self.constants);
                     Err(ExpressionError::UnknownName { name: shown(name), suggestion, at })
                 }
@@ -334,6 +363,20 @@ const OTHER_SPELLINGS: [(&str, &str); 12] = [
     ("time", "t"),
     ("fabs", "abs"),
 ];
+
+/// What a name of another language's module is called here: `sin` for `np.sin`.
+fn of_module(name: &str) -> Option<&str> {
+    let (_, word) = name.rsplit_once('.')?;
+    let other = OTHER_SPELLINGS.iter().find(|(other, _)| *other == word).map(|(_, ours)| *ours);
+    other.or_else(|| lookup(word).is_some().then_some(word))
+}
+
+/// Whether a name is one of ours behind that of another language's module, as in `np.sin`.
+pub fn is_of_module(name: &str) -> bool {
+    const MODULES: [&str; 8] = ["np", "numpy", "math", "Math", "sp", "scipy", "torch", "jnp"];
+    let module = name.split('.').next().unwrap_or_default();
+    MODULES.contains(&module) && of_module(name).is_some()
+}
 
 fn suggest(name: &str, constants: &[(String, f64)]) -> Option<String> {
     let lower = name.to_lowercase();

@@ -62,6 +62,16 @@ impl Op {
     }
 }
 
+/// Where the last `wanted` operands of a program begin that ends before instruction `at`.
+pub(super) fn operands_from(program: &[Op], at: usize, mut wanted: usize) -> usize {
+    let mut first = at;
+    while wanted > 0 {
+        first -= 1;
+        wanted = wanted - 1 + program[first].operands();
+    }
+    first
+}
+
 /// What a name stands for.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Name {
@@ -169,28 +179,40 @@ pub(super) fn stack_after<V: Value, const STACK: usize>(
     columns: &dyn Fn(usize) -> V,
     trace: &mut Trace<'_>,
 ) -> ([V; STACK], usize) {
-    let mut stack = [time; STACK];
-    let mut top = 0;
+    let (mut stack, mut top) = ([time; STACK], 0);
     for &op in program {
-        let result = match op.operands() {
-            0 => match op {
-                Op::Number(value) => V::constant(value),
-                Op::Column(k) => columns(k),
-                _ => time,
-            },
-            1 => {
-                top -= 1;
-                unary(op, stack[top], trace)
-            }
-            _ => {
-                top -= 2;
-                binary(op, stack[top], stack[top + 1], trace)
-            }
-        };
-        stack[top] = result;
-        top += 1;
+        carry_out(op, &mut stack, &mut top, time, columns, trace);
     }
     (stack, top)
+}
+
+/// Carries out one instruction on the `top` intermediate results of a stack.
+#[inline(always)]
+pub(super) fn carry_out<V: Value>(
+    op: Op,
+    stack: &mut [V],
+    top: &mut usize,
+    time: V,
+    columns: &dyn Fn(usize) -> V,
+    trace: &mut Trace<'_>,
+) {
+    let result = match op.operands() {
+        0 => match op {
+            Op::Number(value) => V::constant(value),
+            Op::Column(k) => columns(k),
+            _ => time,
+        },
+        1 => {
+            *top -= 1;
+            unary(op, stack[*top], trace)
+        }
+        _ => {
+            *top -= 2;
+            binary(op, stack[*top], stack[*top + 1], trace)
+        }
+    };
+    stack[*top] = result;
+    *top += 1;
 }
 
 fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace<'_>) -> V {

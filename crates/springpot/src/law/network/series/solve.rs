@@ -224,7 +224,8 @@ fn search(parts: &[Network], step: &Step, starts: &[f64], state: StateRef) -> So
             }
             inner.take_rates(step.nodes, step.h);
         }
-        search.change = change / size;
+        // Where nothing moves and nothing has moved there is nothing left to find.
+        search.change = if change == 0.0 { 0.0 } else { change / size };
         if search.change <= search.enough() {
             is_found = true;
             break;
@@ -301,6 +302,7 @@ fn invert(matrix: &mut Matrix, count: usize, floor: f64) {
         let pivot = (k..count).max_by(|&a, &b| matrix[a][k].abs().total_cmp(&matrix[b][k].abs())).unwrap_or(k);
         matrix.swap(k, pivot);
         inverse.swap(k, pivot);
+        // What is no number stays none.
         if matrix[k][k].abs() < floor {
             matrix[k][k] = floor;
         }

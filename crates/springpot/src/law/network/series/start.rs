@@ -3,17 +3,18 @@
 use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, own};
 use crate::fractional::{KernelError, Kind as Derivative, Memory};
 use crate::law::network::{Network, Onset};
-use crate::law::past::Periodic;
+use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut};
 use crate::law::step::{Point, Start};
 use num_complex::Complex64;
 
 /// The strokes of the parts at t = 0, and the parts' own states.
 pub(in crate::law::network) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Result<(), KernelError> {
-    let onset = match parts.iter().find_map(|part| derivative(part, start)).unwrap_or(Derivative::Caputo) {
-        // What was held since ever has relaxed; what begins at t = 0 has not.
-        Derivative::Caputo => Onset::Long,
-        Derivative::RiemannLiouville => Onset::Short,
+    // What was held since ever has relaxed; what begins at t = 0 has not.
+    let onset = match parts.iter().find_map(|part| derivative(part, start)) {
+        Some(Derivative::RiemannLiouville) => Onset::Short,
+        None if start.jump != 0.0 => Onset::Short,
+        Some(Derivative::Caputo) | None => Onset::Long,
     };
     let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
     let Shares { of_parts, order, is_limp } = shares(parts, &at, onset);
@@ -96,20 +97,20 @@ fn derivative(part: &Network, start: &Start) -> Option<Derivative> {
     state.memories().first().map(Memory::kind)
 }
 
-/// The strokes of the parts under a periodic stroke since ever: all have one force at each frequency.
-pub(in crate::law::network) fn recall(parts: &[Network], whole: &Periodic, at: &Point, state: &mut StateMut) {
-    let mut inner: Vec<Vec<Complex64>> = vec![Vec::new(); parts.len()];
+/// The strokes of the parts under a stroke made of exponentials: all have one force at each of them.
+pub(in crate::law::network) fn recall(parts: &[Network], whole: &Recalled, at: &Point, state: &mut StateMut) {
+    let mut inner: Vec<Vec<[Complex64; 2]>> = vec![Vec::new(); parts.len()];
     let rest = shares(parts, at, Onset::Long).of_parts;
-    for (n, (s, stroke)) in whole.harmonics().enumerate() {
+    for &[s, stroke] in whole.exponentials() {
         let compliances: Vec<Complex64> = parts.iter().map(|part| part.modulus(at, s).inv()).collect();
         let compliance: Complex64 = compliances.iter().sum();
-        for (k, inner) in inner.iter_mut().enumerate() {
-            inner.push(if n == 0 { rest[k] * stroke } else { compliances[k] / compliance * stroke });
+        for (inner, own) in inner.iter_mut().zip(compliances) {
+            inner.push([s, own / compliance * stroke]);
         }
     }
     let strokes = state.take(own(parts)).variables;
-    for ((part, spectrum), stroke) in parts.iter().zip(inner).zip(strokes) {
-        let own = whole.with(spectrum);
+    for (k, (part, (exponentials, stroke))) in parts.iter().zip(inner.into_iter().zip(strokes)).enumerate() {
+        let own = whole.with(rest[k] * whole.mean(), exponentials);
         *stroke = own.stroke(0.0);
         part.recall_part(&own, at, state);
     }

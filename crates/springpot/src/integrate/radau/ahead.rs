@@ -1,0 +1,161 @@
+//! What forces come to that only begin: a motion that starts as a power of t has no size of its own yet.
+
+use super::drives::{force_at, take_path};
+use super::step::RadauStep;
+use crate::actuation::Drive;
+use crate::elements::{ElementBank, Forces};
+use crate::integrate::context::Context;
+use crate::integrate::control::ControlRun;
+use crate::integrate::error::RunError;
+use crate::law::{InputValue, Point};
+use crate::linalg::Lu;
+
+/// How far a joint may turn while a robot is thought to go on as it begins, rad.
+const TURN: f64 = 0.3;
+
+/// Where in the stretch ahead forces are looked at.
+const PLACES: [f64; 5] = [0.01, 0.09, 0.31, 0.66, 1.0];
+
+impl RadauStep {
+    /// By how much the accelerations of all velocities change most within `stretch` seconds from the origin, m/s² or rad/s², were the robot to
+    /// stay where it is: M Δa = Δτ − Σ g ΔF − M_fp Δa_p, where torques, inputs and prescribed joints go on.
+    ///
+    /// # Errors
+    /// Where what drives the robot is not finite.
+    pub(super) fn look_ahead(
+        &self,
+        cx: Context,
+        bank: &ElementBank,
+        control: Option<&ControlRun>,
+        stretch: f64,
+    ) -> Result<Vec<f64>, RunError> {
+        let (n, free) = (self.model.nv(), &self.free);
+        let mut largest = vec![0.0; n];
+        let mut mass = Lu::default();
+        let (varies, rests) = (cx.system.varies(), free.iter().any(|&k| self.sizes.rests(k)));
+        if !(varies || rests) || free.is_empty() || !mass.factor_part(n, &self.slopes.d_a, free) {
+            return Ok(largest);
+        }
+        let mut take = |change: &[f64]| {
+            let mut x: Vec<f64> = free.iter().map(|&k| change[k]).collect();
+            mass.solve(&mut x);
+            for (&k, a) in free.iter().zip(x).filter(|(_, a)| a.is_finite()) {
+                largest[k] = f64::max(largest[k], a.abs());
+            }
+        };
+        if rests {
+            take(&self.drift(cx, bank));
+        }
+        if !varies {
+            return Ok(largest);
+        }
+        let t = self.origin.t;
+        let now = self.drive_at(cx, bank, control, t)?;
+        for place in PLACES {
+            let then = self.drive_at(cx, bank, control, t + place * stretch)?;
+            let mut change: Vec<f64> = then.forces.iter().zip(&now.forces).map(|(then, now)| then - now).collect();
+            for (e, element) in self.elements.iter().enumerate() {
+                // What prescribed joints stretch until then is answered as fast as that.
+                let stroke: f64 = element
+                    .gradient
+                    .iter()
+                    .zip(then.places.iter().zip(&now.places))
+                    .map(|(g, (a, b))| g * (a - b))
+                    .sum();
+                let stiffness = cx.system.elements[e].law.stiffness(&bank.point(e, 0), (place * stretch).recip());
+                let pull = then.pulls[e] - now.pulls[e] + if stroke == 0.0 { 0.0 } else { stiffness * stroke };
+                change.iter_mut().zip(&element.gradient).for_each(|(sum, g)| *sum -= g * pull);
+            }
+            for (k, sum) in change.iter_mut().enumerate() {
+                let row = &self.slopes.d_a[k * n..][..n];
+                let led = row.iter().zip(then.accelerations.iter().zip(&now.accelerations));
+                *sum -= led.map(|(m, (then, now))| m * (then - now)).sum::<f64>();
+            }
+            take(&change);
+        }
+        Ok(largest)
+    }
+
+    /// By how much the forces on all velocities change while the robot goes on with the accelerations at the origin: what joints at rest are
+    /// moved by that no force moves yet.
+    fn drift(&self, cx: Context, bank: &ElementBank) -> Vec<f64> {
+        let (model, origin) = (&self.model, &self.origin);
+        let turning = model.turning(&origin.a).fold(0.0, |largest: f64, a| largest.max(a.abs()));
+        let h = self.sizes.response().min((2.0 * TURN / turning).sqrt());
+        let way: Vec<f64> = origin.v.iter().zip(&origin.a).map(|(v, a)| h * (v + 0.5 * h * a)).collect();
+        let v: Vec<f64> = origin.v.iter().zip(&origin.a).map(|(v, a)| v + h * a).collect();
+        let q = model.integrate(&origin.q, &way);
+        let [now, then] = [[&origin.q, &origin.v], [&q, &v]]
+            .map(|[q, v]| Forces::default().inverse_dynamics(model, [q, v, &origin.a]));
+        let mut change: Vec<f64> = now.iter().zip(&then).map(|(now, then)| now - then).collect();
+        for (e, element) in self.elements.iter().enumerate() {
+            let stroke: f64 = element.gradient.iter().zip(&way).map(|(g, way)| g * way).sum();
+            if stroke != 0.0 {
+                let pull = cx.system.elements[e].law.stiffness(&bank.point(e, 0), h.recip()) * stroke;
+                change.iter_mut().zip(&element.gradient).for_each(|(sum, g)| *sum -= g * pull);
+            }
+        }
+        change
+    }
+
+    /// How fast the stroke of element `e` may be at the end of a step of size `h` by what was seen ahead, m/s or rad/s.
+    pub(super) fn coming_rate(&self, e: usize, h: f64) -> f64 {
+        let until = self.origin.t + h;
+        self.elements[e].gradient.iter().enumerate().map(|(k, g)| g.abs() * self.sizes.coming(k, until)).sum()
+    }
+
+    /// What drives the robot at `t`, which stays where it is but for its prescribed joints.
+    fn drive_at(
+        &self,
+        cx: Context,
+        bank: &ElementBank,
+        control: Option<&ControlRun>,
+        t: f64,
+    ) -> Result<Driven, RunError> {
+        let model = &self.model;
+        let (mut forces, mut accelerations) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
+        let (mut q, mut v) = (self.origin.q.clone(), self.origin.v.clone());
+        for (j, drive) in model.own_joints().zip(&self.forward.drives) {
+            match drive {
+                Drive::Force(signals) => {
+                    for (k, signal) in model.v_range(j).zip(signals) {
+                        forces[k] = force_at(cx, k, signal, t)?;
+                    }
+                }
+                Drive::Prescribed(path) => take_path(model, j, path, t, &mut q, &mut v, &mut accelerations)?,
+                Drive::Locked => {}
+            }
+        }
+        let mut inputs: Vec<Vec<InputValue>> = Vec::with_capacity(cx.system.elements.len());
+        for (e, element) in cx.system.elements.iter().enumerate() {
+            let mut own = vec![InputValue::default(); element.inputs.len()];
+            cx.inputs_at(e, t, &mut own);
+            inputs.push(own);
+        }
+        if let Some(control) = control {
+            control.expressions_at(cx, t, &mut forces, &mut inputs);
+        }
+        let pulls = cx.system.elements.iter().enumerate().map(|(e, element)| {
+            // What takes no input pulls as before.
+            if element.inputs.is_empty() {
+                return 0.0;
+            }
+            let point = Point { inputs: &inputs[e], ..bank.point(e, 0) };
+            bank.now(e, &point).map_or(0.0, |now| now.finite_force())
+        });
+        let pulls = pulls.map(|pull| if pull.is_finite() { pull } else { 0.0 }).collect();
+        Ok(Driven { forces, accelerations, places: model.difference(&self.origin.q, &q), pulls })
+    }
+}
+
+/// What drives a robot at one time.
+struct Driven {
+    /// Torques and forces of the actuators (nv).
+    forces: Vec<f64>,
+    /// Of prescribed joints (nv).
+    accelerations: Vec<f64>,
+    /// How far prescribed joints are from the origin (nv).
+    places: Vec<f64>,
+    /// Forces of the elements that have inputs, N.
+    pulls: Vec<f64>,
+}
