@@ -42,7 +42,8 @@ fi
 if [ -n "${WHEEL:-}" ]; then
     pip install --force-reinstall --no-deps "$WHEEL"
 else
-    pip install --no-build-isolation --force-reinstall --no-deps .
+    # The profile dev, which is optimised: the engine is built already, by the tests in Rust.
+    MATURIN_PEP517_ARGS=${MATURIN_PEP517_ARGS:---profile dev} pip install --no-build-isolation --force-reinstall --no-deps .
 fi
 
 # Not from here: what was installed is what is tested.

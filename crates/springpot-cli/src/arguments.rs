@@ -251,6 +251,7 @@ Examples:
   springpot init
   springpot init panda.urdf --out panda_mount.toml
   springpot init panda.urdf --from panda_link0 --to panda_link3
+  springpot init panda.urdf --forward --gripper panda_hand
   springpot init quadrotor.urdf --floating-base
 
 Without a robot: an arm with one element, in scenario.toml. \
@@ -317,6 +318,9 @@ pub(crate) struct PlotOptions {
     /// File to write, .svg, .png or .pdf [default: SVG and PNG in the figures/ of the results]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Formats of the figure among the results, of svg, png and pdf [default: svg,png]
+    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', conflicts_with = "out")]
+    pub(crate) formats: Vec<String>,
     /// Title of the figure
     #[arg(long, value_name = "TEXT")]
     pub(crate) title: Option<String>,
@@ -387,7 +391,7 @@ pub(crate) struct FmuOptions {
     /// Scenario file (TOML)
     #[arg(value_name = "SCENARIO")]
     pub(crate) file: PathBuf,
-    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// File to write [default: <file stem>.fmu]
@@ -409,6 +413,12 @@ pub(crate) struct InitOptions {
     /// Take inertias that no distribution of mass has as they are
     #[arg(long, requires = "robot")]
     pub(crate) accept_inertia: bool,
+    /// Let it move by forces, from rest, in place of a prescribed motion
+    #[arg(long, requires = "robot")]
+    pub(crate) forward: bool,
+    /// Link whose place is told as that of the gripper
+    #[arg(long, value_name = "LINK", requires = "robot")]
+    pub(crate) gripper: Option<String>,
     /// Link that the element begins at
     #[arg(long, value_name = "LINK", requires = "robot")]
     pub(crate) from: Option<String>,
@@ -439,10 +449,10 @@ pub(crate) struct RunOptions {
     /// Scenario file (TOML)
     #[arg(value_name = "SCENARIO", required_unless_present = "resume")]
     pub(crate) file: Option<PathBuf>,
-    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE", conflicts_with = "resume")]
     pub(crate) overrides: Vec<String>,
-    /// Sweep a parameter: PATH=v1,v2,... or PATH=from:to:count[:log]; may be given several times
+    /// Sweep a parameter: PATH=v1,v2,... or PATH=FROM:TO:COUNT[:log]; may be given several times
     #[arg(long = "sweep", value_name = "PATH=VALUES", conflicts_with = "resume")]
     pub(crate) sweeps: Vec<String>,
     /// Folder of the results [default: results/<file stem>]
@@ -499,10 +509,10 @@ pub(crate) struct CheckOptions {
     /// Scenario file (TOML)
     #[arg(value_name = "SCENARIO", required_unless_present = "schema")]
     pub(crate) file: Option<PathBuf>,
-    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// Sweep a parameter: PATH=v1,v2,... or PATH=from:to:count[:log]; may be given several times
+    /// Sweep a parameter: PATH=v1,v2,... or PATH=FROM:TO:COUNT[:log]; may be given several times
     #[arg(long = "sweep", value_name = "PATH=VALUES")]
     pub(crate) sweeps: Vec<String>,
     /// Print the JSON schema of scenario files, with which editors complete them
@@ -533,7 +543,7 @@ pub(crate) struct ModulusOptions {
     /// Amplitude of the stroke, for the loss of a cycle
     #[arg(long, value_name = "STROKE", default_value = "1 mm", allow_hyphen_values = true)]
     pub(crate) amplitude: String,
-    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// Print all of it as JSON
@@ -569,7 +579,7 @@ pub(crate) struct ModesOptions {
     /// Number of frequencies, evenly on a logarithmic scale
     #[arg(long, value_name = "N", default_value_t = 301, requires = "frequency_response", allow_hyphen_values = true)]
     pub(crate) points: usize,
-    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// Print all of it as JSON
@@ -672,7 +682,7 @@ pub(crate) struct ScenarioOptions {
     /// Scenario file (TOML)
     #[arg(value_name = "SCENARIO")]
     pub(crate) file: PathBuf,
-    /// Override a value of the file, such as element.strut.alpha=0.5; may be given several times
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,
 }

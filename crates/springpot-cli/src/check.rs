@@ -1,7 +1,7 @@
 //! `springpot check`.
 
 use crate::arguments::CheckOptions;
-use crate::{Ending, diagnostic, failures, plain, printed, starts, terminal};
+use crate::{Ending, diagnostic, failures, plain, printed, signals, starts, swept, terminal};
 use springpot::elements::Element;
 use springpot::integrate::{ElementStart, RowTimes, Stop};
 use springpot::law::{Catalog, Entry, Expansion, Heat, Shift, Thermal};
@@ -12,9 +12,6 @@ use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, ShapePlan, SignalPl
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// Values of a sweep that are printed.
-const PRINTED: usize = 12;
-
 /// Numbers of a gradient that are printed even where they are 0, and what counts as 0.
 const PRINTED_GRADIENT: usize = 6;
 const ROUNDING: f64 = 1e-12;
@@ -23,6 +20,8 @@ const ROUNDING: f64 = 1e-12;
 const NAMED_JOINTS: usize = 100;
 
 pub(crate) fn check(options: &CheckOptions, catalog: &Catalog) -> Ending {
+    // Nothing is left behind that would have to be tidied up.
+    signals::before_the_end(|| terminal::print_error("interrupted\n"));
     let Some(file) = &options.file else {
         let schema = json_schema(catalog);
         return printed(terminal::try_print(&format!("{schema:#}\n")));
@@ -43,13 +42,16 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
     let cases = scenario.cases(catalog)?;
     let plan = cases.plan(0)?;
     let system = plan.system();
-    Layout::new(&cases, &system)?;
+    Layout::new(&cases, &plan)?;
 
     let mut survey = Survey::of(&cases, &plan, &system, Depth::Paths, &Stop::new(false))?;
     let switches = match plan.settings.fixed_step {
         Some(_) => 0,
         None => system.switches(&plan.settings, &Stop::new(false)).unwrap_or_else(|error| {
-            survey.failures.insert(0, (0, Trouble::of(&error, &plan)));
+            // Said already, where it was seen with the jumps.
+            if survey.failures.iter().all(|(index, _)| *index != 0) {
+                survey.failures.insert(0, (0, Trouble::of(&error, &plan)));
+            }
             0
         }),
     };
@@ -61,14 +63,21 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
     starts::warn(&survey, &cases);
     starts::warn_of_limits(&survey, &cases);
     failures::tell(&survey, &cases);
-    Ok(if survey.failures.is_empty() { ending } else { Ending::Failed })
+    Ok(match survey.failures.is_empty() {
+        true => ending,
+        // As a run of it.
+        false if survey.refused > 0 && survey.is_hopeless(&cases) => Ending::Refused,
+        false => Ending::Failed,
+    })
 }
 
 /// The description of a scenario.
 fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
     let width = terminal::stdout_width().or(Some(80));
     let mut text = String::new();
-    let mut line = |lead: &str, words: &str| text.push_str(&terminal::hanging(&format!("{lead:<10}"), words, width));
+    let mut line = |lead: &str, words: &str| {
+        text.push_str(&terminal::hanging(&format!("{lead:<10}"), &plain::words(words), width));
+    };
     if let Some(title) = &plan.title {
         line("title", &plain::title(title));
     }
@@ -89,14 +98,13 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
         line("cases", &cases.len().to_string());
     }
     for axis in 0..cases.axis_count() {
-        let parameters: Vec<&str> = cases.axis_parameters(axis).collect();
-        line("", &format!("{} = {}", parameters.join(" = "), values(cases, axis)));
+        line("", &swept::words(cases, axis));
     }
     let figures: Vec<&str> = cases.figures().iter().map(|figure| figure.name.as_str()).collect();
     if !figures.is_empty() {
         line("figures", &figures.join(", "));
     }
-    for (e, plan_of) in plan.elements.iter().enumerate() {
+    for (e, (place, plan_of)) in plan.placed_elements().enumerate() {
         let element = &plan_of.element;
         let law = if plan_of.is_network { "network" } else { &*element.entry.name };
         let along = match &plan_of.shape {
@@ -111,16 +119,19 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
         line("", &element.entry.equation);
         line("", &parameters(plan_of));
         if let Some(heated) = element.law.as_heated() {
-            line("", &heat(heated.heat(), survey.elements[e].unit));
+            line("", &heat(heated.heat(), survey.elements[place].unit));
         }
         let Some(start) = survey.first.as_ref().map(|starts| &starts[e]) else { continue };
-        let (length, stroke) = (survey.elements[e].lengths(), survey.elements[e].strokes());
-        let unit = survey.elements[e].unit;
+        let (length, stroke) = (survey.elements[place].lengths(), survey.elements[place].strokes());
+        let unit = survey.elements[place].unit;
         let (length, stroke) = (range(start.length, length, unit), range(start.stroke, stroke, unit));
         let y = if matches!(plan_of.shape, ShapePlan::Points(_)) { "l" } else { "y" };
         line("", &format!("{y}(0) = {length}, {y}0 = {} {unit}", short(element.rest)));
         line("", &format!("x(0) = {stroke}"));
         line("", &format!("d{y}/dq = {}", gradient(plan, start)));
+    }
+    for (_, absent) in &plan.absent {
+        line("element", &format!("{}: not enabled", absent.element.name));
     }
     text
 }
@@ -193,16 +204,6 @@ fn rows(rows: &RowTimes) -> String {
         RowTimes::Step { step, .. } => format!("{}, every {} s", rows.count(), short(*step)),
         RowTimes::Times(_) => format!("{}, at given times", rows.count()),
     }
-}
-
-/// The values of a sweep as written; of many the first ones and the last.
-fn values(cases: &Cases, axis: usize) -> String {
-    let len = cases.axis_len(axis);
-    if len <= PRINTED {
-        return (0..len).map(|k| cases.axis_label(axis, k)).collect::<Vec<_>>().join(", ");
-    }
-    let first: Vec<String> = (0..3).map(|k| cases.axis_label(axis, k)).collect();
-    format!("{}, …, {} ({len} values)", first.join(", "), cases.axis_label(axis, len - 1))
 }
 
 /// Which derivative, and by which scheme.

@@ -7,7 +7,7 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Se
 use springpot::law::Catalog;
 use springpot::model::urdf::UrdfError;
 use springpot_run::Warning;
-use springpot_scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Scenario, Source};
+use springpot_scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Remark, Scenario, Source};
 use std::fmt::{self, Display};
 use std::path::Path;
 use std::sync::Arc;
@@ -32,15 +32,31 @@ pub(crate) fn scenario(file: &Path, overrides: &[String]) -> Result<Scenario, Re
 
 /// Prints refusals on stderr.
 pub(crate) fn refused(refusals: &Refusals) {
+    refusals.iter().for_each(|refusal| pointed(Severity::Error, refusal));
+}
+
+/// Prints what is wrong at a place.
+pub(crate) fn error_at(place: &Place, message: String, help: Option<String>) {
+    pointed(Severity::Error, &place.refuse(RefusalKind::Rule, message).help_if(help));
+}
+
+/// Prints a warning, with its place where it has one.
+pub(crate) fn remark(Remark { message, place, help }: Remark) {
+    match place.filter(|place| !place.source.text.is_empty()) {
+        Some(place) => pointed(Severity::Warning, &place.refuse(RefusalKind::Rule, message).help_if(help)),
+        None => warning(message, help),
+    }
+}
+
+/// A message with the line that it is about.
+fn pointed(severity: Severity, refusal: &Refusal) {
     // The gutter takes the room of a line number and its frame.
     let width = terminal::stderr_width().map_or(EXCERPT, |width| width - 10);
-    for refusal in refusals.iter() {
-        show(&Shown {
-            label: plain::line(&refusal.label),
-            excerpt: Excerpt::new(refusal, width),
-            ..Shown::plain(Severity::Error, headline(refusal), refusal.help.clone())
-        });
-    }
+    show(&Shown {
+        label: plain::line(&refusal.label),
+        excerpt: Excerpt::new(refusal, width),
+        ..Shown::plain(severity, headline(refusal), refusal.help.clone())
+    });
 }
 
 /// Prints what is wrong with a URDF file on stderr, with the tag that it is about.

@@ -29,6 +29,10 @@ pub(crate) fn tell_all(failures: &[(usize, &Trouble)], looked_at: usize, cases: 
     }
     for (index, trouble, number) in groups.iter().take(NAMED) {
         let message = in_cases(cases, looked_at, *index, *number, &trouble.message);
+        if let Some(place) = &trouble.at {
+            diagnostic::error_at(place, message, trouble.help.clone());
+            continue;
+        }
         match (&trouble.place, &trouble.help) {
             (Some(place), Some(help)) => diagnostic::error_with_help(message, format!("{place}: {help}")),
             (Some(place), None) => diagnostic::error_with_help(message, format!("look at {place}")),

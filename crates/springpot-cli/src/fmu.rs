@@ -11,6 +11,11 @@ use std::path::{Path, PathBuf};
 pub(crate) fn fmu(options: &FmuOptions) -> Ending {
     let stem = options.file.file_stem().unwrap_or("scenario".as_ref());
     let out = options.out.clone().unwrap_or_else(|| Path::new(stem).with_extension("fmu"));
+    if !out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("fmu")) {
+        let help = "write a name that ends in .fmu: other tools know an FMU by it".to_owned();
+        diagnostic::error_with_help(format!("--out {} is no .fmu", out.display()), help);
+        return Ending::Refused;
+    }
     let packed = match diagnostic::scenario(&options.file, &options.overrides) {
         Ok(scenario) => Package::new(&scenario, &stem.to_string_lossy()),
         Err(refused) => Err(refused.into()),

@@ -53,6 +53,7 @@ mod robot;
 mod run;
 mod signals;
 mod starts;
+mod swept;
 mod terminal;
 mod view;
 
@@ -142,11 +143,23 @@ pub fn figure(arguments: impl IntoIterator<Item = OsString>) -> Result<Rendered,
     }
 }
 
+/// Stack of a command, whatever the system gives to the thread that asks for it.
+const STACK: usize = 8 << 20;
+
 fn code(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let arguments = match Arguments::try_parse_from(&arguments) {
+    let work = || command(catalog, disk, &arguments);
+    std::thread::scope(|scope| match std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work) {
+        Ok(worker) => worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+        // Without memory for a thread this one may still do.
+        Err(_) => work(),
+    })
+}
+
+fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
+    let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) if mistakes::told(&error, &arguments) => return Ending::Refused.into(),
+        Err(error) if mistakes::told(&error, arguments) => return Ending::Refused.into(),
         Err(error) => {
             let printed_all = error.print();
             if error.use_stderr() {

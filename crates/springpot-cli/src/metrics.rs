@@ -1,7 +1,7 @@
 //! `springpot metrics`: metrics of a finished run, from its rows.
 
 use crate::arguments::MetricsOptions;
-use crate::{Ending, diagnostic, output, plain, printed, terminal};
+use crate::{Ending, diagnostic, output, plain, printed, results, terminal};
 use springpot_run::metrics::{LaterError, Recomputed, Source};
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::Folder;
@@ -36,6 +36,8 @@ pub(crate) fn metrics(options: &MetricsOptions, disk: &Disk) -> Ending {
 
 fn recomputed(options: &MetricsOptions, disk: &Disk) -> Result<Recomputed, LaterError> {
     let source = Source::open(disk, &options.results)?;
+    let (folder, version) = source.origin();
+    results::say_version(folder, version);
     let mut asked: Vec<Metric> = Vec::with_capacity(options.metrics.len());
     for text in &options.metrics {
         let metric = Metric::parse(text, "--metric", source.columns())?;

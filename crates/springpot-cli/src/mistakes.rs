@@ -18,8 +18,67 @@ pub(crate) fn told(error: &clap::Error, arguments: &[OsString]) -> bool {
     match error.kind() {
         ErrorKind::InvalidSubcommand => said(ContextKind::InvalidSubcommand).is_some_and(|name| command(&name)),
         ErrorKind::UnknownArgument => said(ContextKind::InvalidArg).is_some_and(|name| option(&name, arguments)),
+        ErrorKind::MissingRequiredArgument => missing(error, arguments),
+        ErrorKind::InvalidValue | ErrorKind::ValueValidation => {
+            let (value, argument) = (said(ContextKind::InvalidValue), said(ContextKind::InvalidArg));
+            value.zip(argument).is_some_and(|(value, argument)| wrong(error, &value, &argument))
+        }
         _ => false,
     }
+}
+
+/// A value that its option does not take.
+fn wrong(error: &clap::Error, value: &str, argument: &str) -> bool {
+    let option = argument.split_whitespace().next().unwrap_or(argument);
+    let known: Vec<String> = match error.get(ContextKind::ValidValue) {
+        Some(ContextValue::Strings(known)) => known.clone(),
+        _ => Vec::new(),
+    };
+    if value.is_empty() {
+        diagnostic::error_with_help(format!("{option} has no value"), format!("write {argument}"));
+        return true;
+    }
+    let help = match (option, known.is_empty()) {
+        (_, false) => {
+            let known = || known.iter().map(String::as_str);
+            let meant = nearest(value, known()).map_or_else(String::new, |right| format!("did you mean {right}? "));
+            format!("{meant}there is {}", list(known()))
+        }
+        ("--jobs", true) => "write how many cases run at a time: a whole number from 1 on".to_owned(),
+        ("--shard", true) => "write which part of how many is run: --shard 3/16 is the third of 16".to_owned(),
+        ("--port", true) => "write a number from 0 to 65535".to_owned(),
+        ("--case", true) => "write a whole number: cases count from 0".to_owned(),
+        (_, true) => match std::error::Error::source(error) {
+            Some(why) if !why.to_string().starts_with("invalid") => format!("write {argument}: {why}"),
+            Some(_) => format!("write {argument}, a number"),
+            None => format!("write {argument}"),
+        },
+    };
+    diagnostic::error_with_help(format!("{option} {value}: not a value that it takes"), help);
+    true
+}
+
+/// What a command cannot do without.
+fn missing(error: &clap::Error, arguments: &[OsString]) -> bool {
+    let Some(ContextValue::Strings(lacking)) = error.get(ContextKind::InvalidArg) else { return false };
+    let all = Arguments::command();
+    let chosen = arguments.iter().filter_map(|argument| argument.to_str()).find_map(|text| all.find_subcommand(text));
+    let Some(chosen) = chosen else { return false };
+    let of = chosen.get_name();
+    let lacking: Vec<&str> = lacking.iter().map(String::as_str).collect();
+    let help = format!("write springpot {of} {} …; `springpot {of} --help` shows examples", lacking.join(" "));
+    diagnostic::error_with_help(format!("`springpot {of}` lacks {}", list(lacking.iter().copied())), help);
+    true
+}
+
+/// `--set PATH=VALUE` for `--set PATH VALUE`.
+fn joined(value: &str, arguments: &[OsString]) -> Option<String> {
+    let texts: Vec<&str> = arguments.iter().map(|argument| argument.to_str().unwrap_or_default()).collect();
+    let at = texts.windows(3).position(|three| matches!(three[0], "--set" | "--sweep") && three[2] == value)?;
+    let [option, path] = [texts[at], texts[at + 1]];
+    let value = value.trim_start_matches('=');
+    (!path.contains('=') || path.ends_with('='))
+        .then(|| format!("write {option} {}={value}", path.trim_end_matches('=')))
 }
 
 fn command(name: &str) -> bool {
@@ -68,7 +127,9 @@ fn option(name: &str, arguments: &[OsString]) -> bool {
     let of = chosen.get_name();
     let Some(bare) = name.strip_prefix("--").or_else(|| name.strip_prefix('-')) else {
         let message = format!("`springpot {of}` takes no {name:?} after what stands before it");
-        diagnostic::error_with_help(message, format!("`springpot {of} --help` shows how it is written"));
+        let help =
+            joined(name, arguments).unwrap_or_else(|| format!("`springpot {of} --help` shows how it is written"));
+        diagnostic::error_with_help(message, help);
         return true;
     };
     let has = |command: &clap::Command, long: &str| command.get_arguments().any(|own| own.get_long() == Some(long));
@@ -77,6 +138,9 @@ fn option(name: &str, arguments: &[OsString]) -> bool {
         all.get_subcommands().filter(|command| has(command, bare)).map(clap::Command::get_name).collect();
     let help = match (nearest(bare, own.iter().copied()), others.as_slice()) {
         (Some(right), _) => format!("did you mean --{right}? "),
+        (None, [_, ..]) if of == "export" && bare == "format" => {
+            "the ending of the file says the format: .mcap, .glb or .gltf. ".to_owned()
+        }
         (None, [_, ..]) => format!("it is one of `springpot {}`. ", others.join("`, `springpot ")),
         (None, []) => {
             let own: Vec<String> = own.iter().map(|long| format!("--{long}")).collect();

@@ -8,7 +8,7 @@ use springpot::law::{Catalog, InputValue, Point};
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
 use springpot_run::numbers::{four, short};
 use springpot_scenario::units::parse_quantity;
-use springpot_scenario::{ElementPlan, suggest};
+use springpot_scenario::{ElementPlan, ShapePlan, suggest};
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
@@ -20,6 +20,9 @@ struct Row {
     /// Energy lost in a cycle of the amplitude, J.
     cycle: f64,
 }
+
+/// No mount is pressed so far, m.
+const HUGE: f64 = 1.0;
 
 /// What is wrong, and what would be right.
 type Problem = (String, String);
@@ -41,7 +44,10 @@ pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
         return Ending::Refused;
     };
     match asked(options).and_then(|(band, amplitude)| Ok((rows(element, band, amplitude)?, amplitude))) {
-        Ok((rows, amplitude)) => tell(options, element, &rows, amplitude),
+        Ok((rows, amplitude)) => {
+            warn_of_amplitude(element, amplitude, &options.amplitude);
+            tell(options, element, &rows, amplitude)
+        }
         Err((message, help)) => {
             diagnostic::error_with_help(message, help);
             Ending::Refused
@@ -58,6 +64,21 @@ fn asked(options: &ModulusOptions) -> Result<(Vec<f64>, f64), Problem> {
         Some(amplitude) => Ok((band, amplitude)),
         None => Err((format!("--amplitude {text}: not a stroke above 0"), "write '1 mm' or '1 deg'".to_owned())),
     }
+}
+
+/// Warns of strokes beyond the element's own length, and of more than a turn.
+fn warn_of_amplitude(element: &ElementPlan, amplitude: f64, written: &str) {
+    let length = element.element.rest.abs();
+    let why = match (&element.shape, element.element.measure.is_rotation()) {
+        (ShapePlan::Points(_), _) if length > 0.0 && amplitude >= length => {
+            format!("its rest length is {} m: its ends would meet", short(length))
+        }
+        (_, true) if amplitude > TAU => format!("that is {} turns", short((amplitude / TAU * 10.0).round() / 10.0)),
+        (_, false) if amplitude >= HUGE => format!("that is {} m", short(amplitude)),
+        _ => return,
+    };
+    let help = "plain numbers are in m and rad: write '2 mm' or '2 deg'".to_owned();
+    diagnostic::warning(format!("--amplitude {written} of element {:?}: {why}", element.element.name), Some(help));
 }
 
 fn rows(element: &ElementPlan, band: Vec<f64>, amplitude: f64) -> Result<Vec<Row>, Problem> {

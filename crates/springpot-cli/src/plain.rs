@@ -9,6 +9,8 @@ pub(crate) const CUT: char = '…';
 /// Longest runs without a blank in a message and in what would be right, characters: longer ones than any name or path.
 const LONGEST_RUN: usize = 200;
 const LONGEST_RUN_OF_HELP: usize = 1000;
+/// Longest name, path or number in a description, characters.
+const LONGEST_WORD: usize = 120;
 /// Longest message.
 const LONGEST: usize = 4000;
 /// Longest title, and longest field of a table that a message repeats.
@@ -85,6 +87,12 @@ pub(crate) fn field(text: &[u8]) -> String {
 /// What is wrong: runs without a blank that are too long are cut, and so is the whole.
 pub(crate) fn message(text: &str) -> String {
     brief(text, LONGEST_RUN)
+}
+
+/// Words of a description, in which names may be of any length.
+pub(crate) fn words(text: &str) -> String {
+    let words = text.split_inclusive([' ', '\n']).map(|word| cut(word, LONGEST_WORD));
+    lines(&words.collect::<String>()).into_owned()
 }
 
 /// What would be right.

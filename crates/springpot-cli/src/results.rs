@@ -11,7 +11,22 @@ pub(crate) fn open(folder: &Path, cases: &[usize], disk: &Disk) -> Result<Result
         let missing = cases.iter().find(|case| !results.has_rows(**case)).copied();
         missing.map_or(Ok(results), |case| Err(ResultsError::NoCase(case)))
     });
-    results.map_err(|error| refused(&error))
+    let results = results.map_err(|error| refused(&error))?;
+    say_version(folder, results.version());
+    Ok(results)
+}
+
+/// Says where results are of another version of Springpot: names and meanings may have changed since.
+pub(crate) fn say_version(folder: &Path, version: &str) {
+    let own = env!("CARGO_PKG_VERSION");
+    if !version.is_empty() && version != own {
+        let version: String = version.chars().filter(|c| !c.is_control()).take(20).collect();
+        let message = format!(
+            "{} is of Springpot {version}, and this is {own}: what is called otherwise there is not found",
+            folder.join("run.json").display()
+        );
+        diagnostic::warning(message, None);
+    }
 }
 
 /// Writes a page, whole or not at all.

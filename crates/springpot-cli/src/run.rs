@@ -2,11 +2,12 @@
 
 mod finished;
 mod prepare;
+mod saturated;
 
 use self::finished::Said;
 use self::prepare::{Unprepared, prepare};
 use crate::arguments::{MergeOptions, RunOptions};
-use crate::{Ending, diagnostic, failures, progress, signals, starts, terminal, view};
+use crate::{Ending, diagnostic, failures, progress, signals, starts, swept, terminal, view};
 use springpot::law::Catalog;
 use springpot_run::numbers::count;
 use springpot_run::sweep::{Progress, Status, SweepError};
@@ -62,6 +63,10 @@ fn carry_out(
             return Ending::Refused;
         }
         Err(Unprepared::Shown) => return Ending::Refused,
+        Err(Unprepared::Interrupted) => {
+            terminal::print_error("interrupted before anything was run; earlier results are as they were\n");
+            return Ending::Interrupted;
+        }
         Err(Unprepared::Settled(status)) => return if status == "done" { Ending::Done } else { Ending::Failed },
         Err(Unprepared::Folder(out, error)) => return no_results(&out, error, None),
     };
@@ -69,9 +74,15 @@ fn carry_out(
         starts::warn(survey, &prepared.planned.cases);
     }
     let (out, goes_on) = (prepared.folder.path().to_owned(), prepared.checkpoints.is_some());
+    if !quiet {
+        terminal::print(&swept::lines(&prepared.planned.cases, terminal::stdout_width()));
+    }
     match execute(jobs, quiet, prepared) {
         Ok(finished) => {
             let (status, is_put) = (finished.outcome.status, finished.is_put);
+            if is_put && status != Status::Interrupted {
+                saturated::warn(&finished);
+            }
             let finished = Said(finished);
             finished.warn();
             finished.complain();
@@ -124,6 +135,13 @@ fn no_results(out: &Path, error: FolderError, goes_on: Option<bool>) -> Ending {
         FolderError::File(_) if out.is_file() => {
             let help = "name a folder with --out: the files of a run are written into it";
             (format!("the results cannot be written to {folder}: it is a file"), Some(help.to_owned()), Ending::Failed)
+        }
+        FolderError::File(_) if goes_on.is_some() && !out.is_dir() => {
+            return no_results(out, FolderError::Removed(out.to_owned()), goes_on);
+        }
+        FolderError::Removed(_) => {
+            let help = "its rows went with it; run it again, into a folder that stays";
+            (error.to_string(), Some(help.to_owned()), Ending::Failed)
         }
         FolderError::File(error) => {
             let help = goes_on.map(|goes_on| match goes_on {

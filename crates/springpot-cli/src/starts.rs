@@ -1,15 +1,18 @@
 //! What is said of a survey: starts that deserve a warning, and cases that cannot run.
 
 use crate::diagnostic;
-use crate::run::{NAMED_LIMITS, in_cases};
+use crate::run::{NAMED_LIMITS, in_case, in_cases};
 use springpot_run::numbers::{count, short};
 use springpot_run::sweep::CasesPassing;
 use springpot_run::{ElementSurvey, Found, Survey};
-use springpot_scenario::Cases;
+use springpot_scenario::{Cases, Remark};
 
 /// Prints warnings of elements that start far from their rest, or with an infinite force, and of runs shorter than a row.
 pub(crate) fn warn(survey: &Survey, cases: &Cases) {
-    survey.warnings.iter().for_each(|warning| diagnostic::warning(warning.clone(), None));
+    for (index, remark) in &survey.warnings {
+        let message = if *index == 0 { remark.message.clone() } else { in_case(cases, *index, &remark.message) };
+        diagnostic::remark(Remark { message, ..remark.clone() });
+    }
     let placed = |found: &Found, message: &str| in_cases(cases, survey.looked_at, found.index, found.cases, message);
     for ElementSurvey { name, unit, rest_key, large, singular, .. } in &survey.elements {
         if let Some(found) = large {

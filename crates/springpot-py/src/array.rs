@@ -3,6 +3,7 @@
 #![expect(unsafe_code, reason = "Python owns the memory")]
 
 use crate::error::{type_error, value_error};
+use numpy::npyffi::{_PyArray_GET_ITEM_DATA, NPY_ARRAY_WRITEABLE};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -179,8 +180,9 @@ fn taken<'py>(out: &Bound<'py, PyAny>, shape: &[usize]) -> PyResult<Bound<'py, P
         let (found, wanted) = (written(array.shape()), written(shape));
         return Err(value_error(format!("out has shape {found}; the result has shape {wanted}")));
     }
-    let is_aligned = array.data().is_aligned();
-    if !array.is_c_contiguous() || !is_aligned || !array.getattr("flags")?.getattr("writeable")?.extract::<bool>()? {
+    // SAFETY: the array is alive, and its flags are a plain number beside its shape.
+    let is_writeable = unsafe { (*_PyArray_GET_ITEM_DATA(array.as_array_ptr())).flags } & NPY_ARRAY_WRITEABLE != 0;
+    if !(array.is_c_contiguous() && array.data().is_aligned() && is_writeable) {
         return Err(value_error("out must be C-contiguous and writeable"));
     }
     Ok(array.clone())

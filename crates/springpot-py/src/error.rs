@@ -6,10 +6,12 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 use springpot::integrate::RunError;
 use springpot::model::urdf::UrdfError;
+use springpot_run::Trouble;
 use springpot_scenario::Refusals;
 use std::any::Any;
 use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 
 static EXCEPTIONS: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
 
@@ -61,8 +63,32 @@ pub(crate) fn run_error_at(py: Python<'_>, message: impl Display, t: Option<f64>
     }
 }
 
+/// `RunError` of a case: why, where the cause stands, and what can be done.
+pub(crate) fn case_error(py: Python<'_>, trouble: &Trouble) -> PyErr {
+    let more = [&trouble.place, &trouble.help].into_iter().flatten().map(|words| format!("\n  {words}"));
+    run_error_at(py, format!("{}{}", trouble.message, more.collect::<String>()), trouble.t)
+}
+
+/// `ModelError` of a file that is not there, which is a `FileNotFoundError` too.
+pub(crate) fn missing_model(py: Python<'_>, error: &UrdfError, path: &Path) -> PyErr {
+    let words = PyDict::new(py);
+    match words.set_item("filename", path.as_os_str()) {
+        Ok(()) => raise(py, "MissingModelError", &error.to_string(), &words),
+        Err(error) => error,
+    }
+}
+
 /// `ScenarioError` with the place of the first refusal, and all of them as its `refusals`.
 pub(crate) fn scenario_error(py: Python<'_>, refusals: &Refusals) -> PyErr {
+    refused(py, refusals, "ScenarioError", None)
+}
+
+/// `ScenarioError` of a file that is not there, which is a `FileNotFoundError` too.
+pub(crate) fn missing_scenario(py: Python<'_>, refusals: &Refusals, path: &Path) -> PyErr {
+    refused(py, refusals, "MissingScenarioError", Some(path))
+}
+
+fn refused(py: Python<'_>, refusals: &Refusals, class: &str, missing: Option<&Path>) -> PyErr {
     let words = PyDict::new(py);
     let fill = || -> PyResult<()> {
         if let Some(first) = refusals.first() {
@@ -71,13 +97,16 @@ pub(crate) fn scenario_error(py: Python<'_>, refusals: &Refusals) -> PyErr {
             words.set_item("column", first.column)?;
             words.set_item("help", first.help.as_deref())?;
         }
+        if let Some(path) = missing {
+            words.set_item("filename", path.as_os_str())?;
+        }
         let all = refusals.iter().map(|refusal| {
             (&refusal.file, refusal.line, refusal.column, &refusal.message, refusal.help.as_deref()).into_pyobject(py)
         });
         words.set_item("refusals", PyTuple::new(py, all.collect::<PyResult<Vec<_>>>()?)?)
     };
     match fill() {
-        Ok(()) => raise(py, "ScenarioError", &refusals.to_string(), &words),
+        Ok(()) => raise(py, class, &refusals.to_string(), &words),
         Err(error) => error,
     }
 }

@@ -2,12 +2,18 @@
 
 use crate::array::{Rows, numbers, written};
 use crate::error::{guarded, value_error};
+use crate::interrupt::left_behind;
 use crate::law::flat;
 use numpy::{Complex64, PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use springpot::fractional::mittag_leffler::MittagLeffler;
 use springpot::fractional::scheme::Samples;
 use springpot::fractional::{Definition, Method, derivative, derivative_with_error};
+use springpot::integrate::Stop;
+use std::sync::atomic::Ordering;
+
+/// So many samples take longer than a thread of their own does to start.
+const WORTH_A_THREAD: usize = 4096;
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(differentiate, module)?)?;
@@ -44,8 +50,9 @@ fn differentiate<'py>(
         }
         let first = times.first().copied().unwrap_or(0.0);
         let times: Vec<f64> = times.iter().map(|t| t - first).collect();
-        let work = || {
-            let each = x.columns.iter().enumerate().map(|(k, x)| {
+        let (is_flat, wanted) = (x.is_flat, x.columns.len() * rows);
+        let work = move |stop: &Stop| {
+            let each = x.columns.iter().enumerate().take_while(|_| !stop.load(Ordering::Relaxed)).map(|(k, x)| {
                 let rate = rates.as_ref().map(|rates| rates.columns[k].as_slice());
                 let samples = Samples { t: &times, x, rate };
                 if with_error {
@@ -56,10 +63,12 @@ fn differentiate<'py>(
             });
             each.collect::<Result<Vec<_>, springpot::fractional::DerivativeError>>()
         };
-        let found = py.detach(work).map_err(value_error)?;
+        let found =
+            if wanted < WORTH_A_THREAD { py.detach(|| work(&Stop::new(false))) } else { left_behind(py, work)? };
+        let found = found.map_err(value_error)?;
         let (values, errors): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-        let values = x.shaped(py, &values)?;
-        let errors = if with_error { Some(x.shaped(py, &errors)?) } else { None };
+        let values = shaped(py, &values, rows, is_flat)?;
+        let errors = if with_error { Some(shaped(py, &errors, rows, is_flat)?) } else { None };
         Ok((values, errors))
     })
 }
@@ -67,7 +76,6 @@ fn differentiate<'py>(
 /// Columns of samples.
 struct Columns {
     columns: Vec<Vec<f64>>,
-    rows: usize,
     /// Whether they came as one dimension.
     is_flat: bool,
 }
@@ -75,7 +83,7 @@ struct Columns {
 fn columns(value: &Bound<'_, PyAny>, name: &str, rows: usize) -> PyResult<Columns> {
     let array = numbers(value, name)?;
     match *array.shape() {
-        [found] if found == rows => Ok(Columns { columns: vec![flat(&array)?], rows, is_flat: true }),
+        [found] if found == rows => Ok(Columns { columns: vec![flat(&array)?], is_flat: true }),
         [found, count] if found == rows => {
             let all = Rows::new(&array, name, count)?;
             let (mut columns, mut row) = (vec![Vec::with_capacity(rows); count], vec![0.0; count]);
@@ -83,7 +91,7 @@ fn columns(value: &Bound<'_, PyAny>, name: &str, rows: usize) -> PyResult<Column
                 all.read(k, &mut row);
                 columns.iter_mut().zip(&row).for_each(|(column, value)| column.push(*value));
             }
-            Ok(Columns { columns, rows, is_flat: false })
+            Ok(Columns { columns, is_flat: false })
         }
         _ => {
             let shape = written(array.shape());
@@ -94,15 +102,13 @@ fn columns(value: &Bound<'_, PyAny>, name: &str, rows: usize) -> PyResult<Column
     }
 }
 
-impl Columns {
-    /// Results of every column in the shape that they came in.
-    fn shaped<'py>(&self, py: Python<'py>, columns: &[Vec<f64>]) -> PyResult<Bound<'py, PyAny>> {
-        if self.is_flat {
-            return Ok(PyArray1::from_slice(py, &columns[0]).into_any());
-        }
-        let all = (0..self.rows).flat_map(|row| columns.iter().map(move |column| column[row]));
-        Ok(PyArray1::from_vec(py, all.collect()).reshape([self.rows, columns.len()])?.into_any())
+/// Results of every column in the shape that they came in.
+fn shaped<'py>(py: Python<'py>, columns: &[Vec<f64>], rows: usize, is_flat: bool) -> PyResult<Bound<'py, PyAny>> {
+    if is_flat {
+        return Ok(PyArray1::from_slice(py, &columns[0]).into_any());
     }
+    let all = (0..rows).flat_map(|row| columns.iter().map(move |column| column[row]));
+    Ok(PyArray1::from_vec(py, all.collect()).reshape([rows, columns.len()])?.into_any())
 }
 
 /// dⁿE_{a,b}/dzⁿ of real arguments.

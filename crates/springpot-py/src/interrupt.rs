@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use springpot::integrate::Stop;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -15,6 +16,31 @@ pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Stop) ->
     let stop = Stop::new(false);
     let (done, told) = watched(py, &stop, |_| Ok(()), || work(&stop));
     told.map(|()| done)
+}
+
+/// Does work that cannot be told to stop on a thread of its own, without the GIL. Where a signal raises an exception, that comes at once; `stop` is set,
+/// and the work, which nobody waits for any more, ends by itself.
+pub(crate) fn left_behind<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&Stop) -> T + Send + 'static,
+) -> PyResult<T> {
+    let stop = Arc::new(Stop::new(false));
+    let (sender, mut receiver) = channel();
+    let told = stop.clone();
+    let thread = std::thread::spawn(move || _ = sender.send(work(&told)));
+    loop {
+        let waiting = &mut receiver;
+        match py.detach(move || waiting.recv_timeout(PATIENCE)) {
+            Ok(done) => return Ok(done),
+            Err(RecvTimeoutError::Disconnected) => break,
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        py.check_signals().inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+    }
+    match py.detach(|| thread.join()) {
+        Err(panic) => std::panic::resume_unwind(panic),
+        Ok(()) => unreachable!("what ends without a panic has sent what it found"),
+    }
 }
 
 /// Does `work` on a thread of its own, without the GIL; now and then `look` is called with it. What `look` or a signal raises sets `stop`, and

@@ -10,6 +10,8 @@ mod fractional;
 mod interrupt;
 mod law;
 mod model;
+mod notebook;
+mod pickle;
 mod quantity;
 mod run;
 mod scenario;

@@ -34,9 +34,9 @@ fn parse(text: &Bound<'_, PyAny>, expected: &str) -> PyResult<f64> {
     number(text, expected, "the quantity")
 }
 
-/// Factor and shift of a unit, SI = factor·number + shift, and its exponents of kg, m, s, A and K.
+/// Factor and shift of a unit, SI = factor·number + shift, and its exponents of kg, m, s, A, K and mol.
 #[pyfunction]
-fn parse_unit(text: &str) -> PyResult<(f64, f64, [f64; 5])> {
+fn parse_unit(text: &str) -> PyResult<(f64, f64, [f64; 6])> {
     let unit = Unit::parse(text, &|_| None).map_err(value_error)?;
     Ok((unit.scale(), unit.shift(), unit.dimension().exponents()))
 }

@@ -1,6 +1,6 @@
 //! Scenarios from a path, a text or a dict.
 
-use crate::error::scenario_error;
+use crate::error::{missing_scenario, scenario_error};
 use pyo3::prelude::*;
 use springpot::law::Catalog;
 use springpot_run::Asked;
@@ -31,7 +31,10 @@ pub(crate) fn asked(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>)
     let Described { path, text, assignments } = described.extract()?;
     let asked = match text {
         Some(text) => Asked::text(text, path.display().to_string(), std::env::current_dir()?),
-        None => Asked::read(&path).map_err(|refusals| scenario_error(py, &refusals))?,
+        None => Asked::read(&path).map_err(|refusals| match path.try_exists() {
+            Ok(false) => missing_scenario(py, &refusals, &path),
+            _ => scenario_error(py, &refusals),
+        })?,
     };
     Ok(Asked { overrides: assignments, ..asked })
 }

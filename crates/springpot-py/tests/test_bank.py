@@ -165,6 +165,14 @@ def test_bad_arguments() -> None:
     for h in (0.0, -1.0, math.nan, math.inf, 1e-300):
         with pytest.raises(ValueError, match="h positive"):
             bank.evaluate(0, h, [[0, 0, 0]])
+    with pytest.raises(ValueError, match="a step from t = 5 s, but the last one ended at 0 s"):
+        bank.evaluate(5, 1, [[0, 0, 0]])
+    bank.evaluate(0, 1, [[0, 0, 0]])
+    bank.commit()
+    with pytest.raises(ValueError, match="a step from t = 0 s, but the last one ended at 1 s"):
+        bank.evaluate(0, 1, [[0, 0, 0]])
+    bank.evaluate(1 + 1e-12, 1, [[0, 0, 0]])
+    bank.begin([0.0])
     with pytest.raises(ValueError, match=r"strokes has shape \(3,\); it must have shape \(1, 3\)"):
         bank.evaluate(0, 1, [0, 0, 0])
     with pytest.raises(ValueError, match="finite"):

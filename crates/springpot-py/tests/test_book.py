@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from pathlib import Path
 
 import pytest
 from conftest import ROOT, follow
+
+import springpot as sp
 
 PAGES = [path for path in sorted((ROOT / "docs").rglob("*.md")) if "```pycon\n" in path.read_text(encoding="utf-8")]
 
@@ -18,3 +22,26 @@ def test_there_are_pages_with_python() -> None:
 def test_the_lines_of_a_page(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # A block of another kind is not tested.
     assert follow(page, monkeypatch) == page.read_text(encoding="utf-8").count(">>>")
+
+
+def test_the_page_of_the_package_has_all_of_it() -> None:
+    """Every class, function and member that is public, and none that is not there."""
+    page = (ROOT / "docs/reference/python.md").read_text(encoding="utf-8")
+    public = [name for name in sp.__all__ if name not in ("__version__", "fractional", "units")]
+    functions = ["fractional.derivative", "fractional.mittag_leffler", "units.parse", "units.convert"]
+    assert [name for name in [*public, *functions] if f"`sp.{name}" not in page] == []
+    found = set(re.findall(r"`sp\.([\w.]+)", page))
+    missing = [name for name in found if not hasattr(sp, name.split(".")[0])]
+    assert missing == []
+    # Methods of mappings are everybody's.
+    everybodys = {"get", "items", "keys", "values", "add_note", "with_traceback", "args"}
+    for name in public:
+        row = next((line for line in page.splitlines() if line.startswith(f"| `sp.{name}` |")), "")
+        if name == "Model":
+            row = page.split("\n## Model")[1]
+        if inspect.isclass(getattr(sp, name)) and not issubclass(getattr(sp, name), BaseException):
+            members = {member for member in dir(getattr(sp, name)) if not member.startswith("_")} - everybodys
+            # A default of a data class, or none, is a member of its objects alone.
+            known = set(re.findall(r"`([\w]+)[`(]|([\w]+)\([^`]*\)`", row))
+            words = {word for pair in known for word in pair if word}
+            assert members <= words, (name, members - words)

@@ -6,7 +6,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -14,7 +13,7 @@ from conftest import PACKAGE
 
 EXAMPLES = PACKAGE / "examples"
 NOTEBOOKS = ["controller_in_python", "half_derivative_of_my_data", "papers_in_ten_cells", "ur5_rubber_mount"]
-SECONDS = 20
+SECONDS = 20  # of two cores
 
 
 def cells(name: str, kind: str) -> list[str]:
@@ -28,8 +27,13 @@ def run(file: Path, folder: Path) -> subprocess.CompletedProcess[str]:
     # Two cores and no window: what a batch system has.
     environment = {**os.environ, "MPLBACKEND": "Agg", "PYTHONWARNINGS": "error::UserWarning", "OMP_NUM_THREADS": "2"}
     return subprocess.run(
-        [sys.executable, str(file)], cwd=folder, env=environment, capture_output=True, text=True, timeout=6 * SECONDS
+        [sys.executable, str(file)], cwd=folder, env=environment, capture_output=True, text=True, timeout=900
     )
+
+
+def worked() -> float:
+    """Processor time of the programs that have ended, s."""
+    return os.times().children_user + os.times().children_system
 
 
 def test_all_notebooks_are_tested() -> None:
@@ -40,11 +44,11 @@ def test_all_notebooks_are_tested() -> None:
 def test_notebooks_run(name: str, tmp_path: Path) -> None:
     for library in ("matplotlib", "scipy"):
         pytest.importorskip(library)
-    begun = time.monotonic()
+    begun = worked()
     done = run(EXAMPLES / f"{name}.py", tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout and not done.stderr
-    assert time.monotonic() - begun < SECONDS
+    assert worked() - begun < 2 * SECONDS
     assert list(tmp_path.iterdir()) == []
 
 

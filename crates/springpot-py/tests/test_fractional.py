@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import signal
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -89,3 +92,31 @@ def test_columns_methods_and_errors() -> None:
             bad()
     with pytest.raises(TypeError):
         sp.fractional.derivative(t, x + 1j, 0.5)
+
+
+def test_ctrl_c_ends_a_long_derivative() -> None:
+    t = np.arange(20_000) * 1e-3
+    t[1] *= 1.0000001
+    # A sum over all pairs of rows, some seconds of work, which cannot be told to stop.
+    timer = threading.Timer(0.2, signal.raise_signal, [signal.SIGINT])
+    timer.start()
+    begun = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            for _ in range(1000):
+                sp.fractional.derivative(t, np.sin(t), 0.5, method="l1")
+    finally:
+        timer.cancel()
+    assert time.monotonic() - begun < 30
+
+
+def test_long_columns_are_those_of_short_ones() -> None:
+    # On a thread of their own, and not.
+    t = np.linspace(0, 1, 3001)
+    x = np.stack([t**2, np.sin(t), t], axis=1)
+    whole, errors = sp.fractional.derivative(t, x, 0.5, with_error=True)
+    for k in range(3):
+        one, error = sp.fractional.derivative(t, x[:, k], 0.5, with_error=True)
+        assert np.array_equal(whole[:, k], one) and np.array_equal(errors[:, k], error, equal_nan=True)
+    with pytest.raises(ValueError, match="must lie between"):
+        sp.fractional.derivative(t, x, 3.0)

@@ -208,6 +208,17 @@ def test_bad_arguments(ur5: sp.Model) -> None:
     many[900, 1] = np.inf
     with pytest.raises(ValueError, match="row 713: a.shoulder_lift_joint is inf"):
         ur5.rnea(np.zeros((1000, 6)), zero, many)
+    with pytest.raises(ValueError, match="numbers of the state are too large"):
+        ur5.rnea(zero, np.full(6, 1e308), zero)
+    many[:] = 0.0
+    many[41] = 1e308
+    with pytest.raises(ValueError, match="row 41: the result holds"):
+        ur5.rnea(np.zeros((1000, 6)), many, zero)
+    read_only = np.zeros(6)
+    read_only.flags.writeable = False
+    for out in (read_only, np.zeros(12)[::2], np.zeros(49, np.uint8)[1:].view(np.float64)):
+        with pytest.raises(ValueError, match="out must be C-contiguous and writeable"):
+            ur5.rnea(zero, zero, zero, out=out)
     with pytest.raises(sp.ModelError, match="no frame is called \"wrist\""):
         ur5.frame_jacobian("wrist", zero)
     assert np.array_equal(ur5.gravity(np.zeros(6, dtype=np.int8)), ur5.gravity(zero))

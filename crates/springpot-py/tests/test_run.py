@@ -135,11 +135,28 @@ def test_folders_are_those_of_the_command(tmp_path, format):
 
 def test_failures_are_recorded_in_a_sweep_and_raised_alone():
     run = sp.run(SLIDE, sweep={"element.pad.u": [1, "1-4*t"]})
-    assert list(run.failures) == [1] and run.failures[1].t == run.case(1)["t"][-1] > 0.5
+    # mu_0 + u·mu is negative from t = 0.75 on.
+    failed = run.failures[1]
+    assert list(run.failures) == [1] and f"t = {failed.t} s" in str(failed) and 0.75 < failed.t < 0.76
+    assert run.case(1)["t"][-1] <= failed.t
     assert "failed" in repr(run.case(1)) and run.case(0).error is None
     with pytest.raises(sp.RunError) as raised:
         sp.run(SLIDE, set={"element.pad.u": "1-4*t"})
-    assert raised.value.t > 0.5
+    assert raised.value.t == failed.t
+    with pytest.raises(sp.RunError) as raised:
+        sp.run(SLIDE, set={"element.pad.u": "1-4*t", "time.output_step": 1})
+    # The only row is at t = 0.
+    assert 0.75 < raised.value.t < 1 and f"t = {raised.value.t} s" in str(raised.value)
+
+
+def test_a_failure_is_when_it_happened_in_a_folder_too(tmp_path):
+    for u in ["1-4*t", "-3"]:
+        times = []
+        for words in ({}, {"out": tmp_path / u}):
+            with pytest.raises(sp.RunError) as raised:
+                sp.run(SLIDE, set={"element.pad.u": u, "time.output_step": 1}, **words)
+            times.append(raised.value.t)
+        assert times[0] == times[1] and (0.75 < times[0] < 1 if "t" in u else times[0] == 0)
 
 
 @pytest.mark.parametrize(
@@ -153,6 +170,7 @@ def test_failures_are_recorded_in_a_sweep_and_raised_alone():
         ({"sweep": {("element.pad.u", "element.pad.alpha"): [(1, 2, 3)]}}, ValueError),
         ({"sweep": {"element.nothing.u": [1]}}, sp.ScenarioError),
         ({"jobs": 0}, ValueError),
+        ({"jobs": -1}, ValueError),
         ({"jobs": True}, ValueError),
         ({"out": "/dev/null/x"}, sp.SpringpotError),
         ({"out": "x", "format": "xls"}, ValueError),
@@ -184,16 +202,17 @@ ENDLESS = {"time.end": 90, "time.output_step": 0.1, "solver.max_step": 1e-5}
 
 
 def test_ctrl_c_ends_a_long_run():
-    timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
-    timer.start()
-    begun = time.monotonic()
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            sp.run(SLIDE, set=ENDLESS)
-    finally:
-        # A run that ended by itself must not leave a signal to the tests after it.
-        timer.cancel()
-    assert time.monotonic() - begun < 5
+    begun = time.process_time()
+
+    def once_it_works():
+        while time.process_time() - begun < 0.2:
+            time.sleep(0.01)
+        signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        threading.Thread(target=once_it_works, daemon=True).start()
+        sp.run(SLIDE, set=ENDLESS)
+    assert time.process_time() - begun < 10
 
 
 def test_what_has_ended_is_put_before_an_exception_goes_on(tmp_path):
@@ -248,6 +267,15 @@ def test_a_figure_has_axes_with_units():
     assert [text.get_text() for text in ax.get_legend().texts] == ["0.3", "0.6"]
     assert ax.get_legend().get_title().get_text() == "α"
     assert run.plot("pad.force", cases=[1]).get_legend() is None
+    # Beyond what a legend holds: a colour bar of what they differ by, else of their numbers.
+    many = sp.run(SLIDE, sweep={"element.pad.alpha": list(np.linspace(0.3, 0.9, 13))})
+    ax = many.plot("pad.force")
+    assert ax.get_legend() is None and len(ax.figure.axes) == 2
+    assert ax.figure.axes[1].get_ylabel() == "element.pad.alpha" and ax.figure.axes[1].get_ylim() == pytest.approx((0.3, 0.9))
+    assert len({line.get_color() for line in ax.lines}) == 13
+    two = sp.run(SLIDE, sweep={"element.pad.alpha": list(np.linspace(0.3, 0.9, 7)), "element.pad.u": [0, 1]})
+    ax = two.plot(["pad.force", "pad.stroke"])
+    assert ax.figure.axes[1].get_ylabel() == "case" and len(ax.get_legend().texts) == 2
     matplotlib.pyplot.close("all")
 
 
@@ -259,3 +287,17 @@ def test_columns_outlive_their_run():
     assert np.array_equal(force, copy)
     with pytest.raises(ValueError):
         force[0] = 1
+
+
+def test_cases_have_names_and_elements_that_are_not_enabled_empty_columns():
+    sweep = '[[sweep]]\nparameter = "element.pad.enabled"\nvalues = [true, false]\nnames = ["on the pad", "free"]\n'
+    run = sp.run(SLIDE + sweep)
+    assert [case.name for case in run.cases] == ["on the pad", "free"]
+    free = run.case("free")
+    assert free is run.cases[1] and free.parameters == {"element.pad.enabled": "false"}
+    assert np.isnan(free["pad.force"]).all() and not np.isnan(run.case("on the pad")["pad.force"]).any()
+    # Without the pad the torque alone moves two kilograms: x = (5/2)(t/3 - sin(3t)/9).
+    t = free["t"]
+    assert np.allclose(free["q.x"], 2.5 * (t / 3 - np.sin(3 * t) / 9), rtol=0, atol=1e-9)
+    with pytest.raises(KeyError, match="no case 'fre'; did you mean 'free'"):
+        run.case("fre")

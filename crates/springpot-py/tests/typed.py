@@ -3,6 +3,7 @@
 import concurrent.futures
 import importlib
 import tempfile
+import warnings
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -187,6 +188,8 @@ def runs(folder: Path) -> None:
     column: Array = case["strut.force"]
     called: tuple[int, dict[str, float | str], dict[str, str]] = (case.index, case.parameters, case.units)
     failed: sp.RunError | None = case.error
+    sizes: tuple[int, list[tuple[float, float, float]], bool] = (case.rows, case.statistics, grid == run)
+    indices: list[int] = [one.index for one in grid]
     said: tuple[dict[str, Any], list[str]] = (case.report, case.limits)
     words: list[str] = [grid.title or "", *grid.parameters, *grid.columns, *grid.units, *grid.meanings]
     failures: dict[int, sp.RunError] = grid.failures
@@ -205,7 +208,7 @@ def runs(folder: Path) -> None:
     print(figure.save(folder / "loop.pdf"), len(figure.svg), len(figure.png), figure.remarks, list(run.figures()))
     notes: list[str] = run.export(folder / "run.glb", case=0)
     print(page, report, notes)
-    print(told, force, column, called, failed, said, words, failures, first, summary, row, some, largest, table, files)
+    print(sizes, indices, told, force, column, called, failed, said, words, failures, first, summary, row, some, largest, table, files)
     if find_spec("pandas"):
         print(run.to_pandas().shape, events.to_pandas().shape)
     if find_spec("polars"):
@@ -218,6 +221,7 @@ def runs(folder: Path) -> None:
 
 
 def mistakes() -> None:
+    warnings.simplefilter("ignore", category=sp.SpringpotWarning)
     try:
         sp.Simulation("a = 1")
     except sp.ScenarioError as error:

@@ -31,6 +31,7 @@
 mod chart;
 mod draw;
 pub mod gltf;
+mod mesh;
 pub mod page;
 pub mod recording;
 mod robot;
@@ -38,6 +39,7 @@ pub mod scene;
 mod surface;
 
 pub use chart::{Axis, Curve, Panel, Plot, Scale};
+pub use mesh::MeshFile;
 pub use robot::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, Link, RobotDrawing, WORLD};
 
 /// Width of a figure without a size of its own, mm.

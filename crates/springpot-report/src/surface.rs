@@ -1,13 +1,14 @@
 //! Triangles of mesh files, few enough for a page.
 
+use crate::mesh::{self, MeshFile, Part};
 use crate::scene::{Scene, Shape, Visual};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
 /// Most triangles over all meshes of a file; more are merged.
 const MOST_TRIANGLES: usize = 120_000;
-/// Largest file that is read, bytes.
-const LARGEST: u64 = 64 << 20;
+/// Bytes of all mesh files that are read.
+const MOST_BYTES: u64 = 512 << 20;
 /// Cells along the longest side of a mesh that is made coarser, at first.
 const CELLS: f32 = 96.0;
 
@@ -18,37 +19,71 @@ pub(crate) struct Surface {
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-/// The surfaces of all mesh files of the scenes by their path, and files that could not be read.
-pub(crate) fn read_all(scenes: &[Scene]) -> (HashMap<&str, Surface>, Vec<String>) {
-    let (mut surfaces, mut unread): (HashMap<&str, Surface>, Vec<String>) = (HashMap::new(), Vec::new());
-    for path in paths(scenes) {
-        match read(Path::new(path)) {
-            Some(surface) => _ = surfaces.insert(path, surface),
-            None => unread.push(path.to_owned()),
+/// The surfaces of all mesh files of the scenes by their names, and a word on those that could not be read; names without a file have none.
+pub(crate) fn read_all<'a>(
+    scenes: &'a [Scene],
+    files: &BTreeMap<String, MeshFile>,
+) -> (HashMap<&'a str, Vec<Part>>, Option<String>) {
+    let (mut surfaces, mut unread): (HashMap<&str, Vec<Part>>, Vec<String>) = (HashMap::new(), Vec::new());
+    let mut bytes = 0;
+    for (name, file) in names(scenes).into_iter().filter_map(|name| Some((name, files.get(name)?))) {
+        bytes += size_of(&file.path);
+        if bytes > MOST_BYTES {
+            unread.push(format!("{name} cannot be read: the meshes before it have {} MiB", MOST_BYTES >> 20));
+            continue;
+        }
+        match mesh::read(file) {
+            Ok(mut parts) => {
+                thin(&mut parts, MOST_TRIANGLES);
+                surfaces.insert(name, parts);
+            }
+            Err(why) => unread.push(format!("{name} cannot be read as a mesh: {why}")),
         }
     }
-    let all: usize = surfaces.values().map(|surface| surface.triangles.len()).sum();
+    let all: usize = surfaces.values().map(|parts| count(parts)).sum();
     if all > MOST_TRIANGLES {
-        for surface in surfaces.values_mut() {
+        for parts in surfaces.values_mut() {
             // Each mesh keeps its share.
-            let share = (surface.triangles.len() as f64 * MOST_TRIANGLES as f64 / all as f64) as usize;
-            *surface = coarse(surface, share.max(64));
+            let share = (count(parts) as f64 * MOST_TRIANGLES as f64 / all as f64) as usize;
+            thin(parts, share);
         }
     }
-    (surfaces, unread)
+    let word = match &unread[..] {
+        [] => None,
+        [one] => Some(one.clone()),
+        [first, rest @ ..] => Some(format!("{first}; and {} more", rest.len())),
+    };
+    (surfaces, word)
 }
 
-/// The mesh files of the scenes, each once, in their order.
-pub(crate) fn paths(scenes: &[Scene]) -> Vec<&str> {
-    let mut paths: Vec<&str> = Vec::new();
-    for visual in scenes.iter().flat_map(visuals) {
-        if let Shape::Mesh { path, .. } = &visual.shape
-            && !paths.contains(&path.as_str())
-        {
-            paths.push(path);
-        }
+fn size_of(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |about| about.len().min(mesh::LARGEST))
+}
+
+fn count(parts: &[Part]) -> usize {
+    parts.iter().map(|part| part.surface.triangles.len()).sum()
+}
+
+/// Leaves about so many triangles, of each part its share.
+fn thin(parts: &mut [Part], wanted: usize) {
+    let all = count(parts);
+    if all <= wanted {
+        return;
     }
-    paths
+    for part in parts {
+        let share = (part.surface.triangles.len() as f64 * wanted as f64 / all as f64) as usize;
+        part.surface = coarse(&part.surface, share.max(16));
+    }
+}
+
+/// Names of the mesh files of the scenes, each once, in their order.
+pub(crate) fn names(scenes: &[Scene]) -> Vec<&str> {
+    let mut seen = HashSet::new();
+    let named = scenes.iter().flat_map(visuals).filter_map(|visual| match &visual.shape {
+        Shape::Mesh { path, .. } => Some(path.as_str()),
+        _ => None,
+    });
+    named.filter(|name| seen.insert(*name)).collect()
 }
 
 fn visuals(scene: &Scene) -> impl Iterator<Item = &Visual> {
@@ -56,32 +91,19 @@ fn visuals(scene: &Scene) -> impl Iterator<Item = &Visual> {
     scene.bodies.iter().flat_map(|body| &body.visuals).chain(root)
 }
 
-/// A file of STL, OBJ or COLLADA; `None` where it cannot be read or holds no triangle.
-fn read(path: &Path) -> Option<Surface> {
-    if !std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() <= LARGEST) {
-        return None;
-    }
-    let scene = mesh_loader::Loader::default().merge_meshes(true).load(path).ok()?;
-    let mut surface = Surface::default();
-    for mesh in scene.meshes {
-        let first = u32::try_from(surface.vertices.len()).ok()?;
-        let count = u32::try_from(mesh.vertices.len()).ok()?;
-        let faces = mesh.faces.iter().filter(|face| face.iter().all(|corner| *corner < count));
-        surface.triangles.extend(faces.map(|face| face.map(|corner| corner + first)));
-        surface.vertices.extend(&mesh.vertices);
-    }
-    let is_whole = surface.vertices.iter().flatten().all(|number| number.is_finite());
-    (is_whole && !surface.triangles.is_empty()).then(|| welded(&surface))
+/// Whether a shape can be drawn at all: finite, and no larger than what is drawn.
+pub(crate) fn is_drawable(visual: &Visual) -> bool {
+    let sizes: &[f64] = match &visual.shape {
+        Shape::Mesh { scale, .. } => scale,
+        Shape::Box(sizes) => sizes,
+        Shape::Cylinder(radius, length) => &[*radius, *length],
+        Shape::Sphere(radius) => std::slice::from_ref(radius),
+    };
+    sizes.iter().chain(&visual.origin).chain(&visual.rpy).all(|number| number.abs() < FARTHEST)
 }
 
-/// The same surface whose equal vertices are one.
-fn welded(surface: &Surface) -> Surface {
-    let mut places: HashMap<[u32; 3], u32> = HashMap::new();
-    merged(surface, |vertex| {
-        let next = places.len() as u32;
-        *places.entry(vertex.map(f32::to_bits)).or_insert(next)
-    })
-}
+/// Lengths beyond are not drawn, m.
+const FARTHEST: f64 = 1e9;
 
 /// About `wanted` triangles: vertices of one cell of a grid become their mean.
 fn coarse(surface: &Surface, wanted: usize) -> Surface {
@@ -90,12 +112,17 @@ fn coarse(surface: &Surface, wanted: usize) -> Surface {
     let mut cells = CELLS;
     loop {
         let mut places: HashMap<[i32; 3], u32> = HashMap::new();
-        let found = merged(surface, |vertex| {
+        let mut found = merged(surface, |vertex| {
             let cell = [0, 1, 2].map(|k| ((vertex[k] - low[k]) / longest * cells).floor() as i32);
             let next = places.len() as u32;
             *places.entry(cell).or_insert(next)
         });
-        if found.triangles.len() <= wanted || cells < 4.0 {
+        if found.triangles.len() <= wanted {
+            return found;
+        }
+        if cells < 4.0 {
+            // A cloud of triangles that no grid makes fewer is no surface.
+            found.triangles.truncate(wanted);
             return found;
         }
         cells *= 0.75;
@@ -135,7 +162,7 @@ impl Surface {
 pub(crate) mod tests {
     use super::*;
 
-    /// A sphere of many triangles as an STL text.
+    /// A sphere of many triangles, each with its own corners.
     pub(crate) fn ball(parts: u32) -> Surface {
         let point = |i: u32, j: u32| {
             let (a, b) =
@@ -149,6 +176,26 @@ pub(crate) mod tests {
             surface.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
         }
         surface
+    }
+
+    fn welded(surface: &Surface) -> Surface {
+        let mut places: HashMap<[u32; 3], u32> = HashMap::new();
+        merged(surface, |vertex| {
+            let next = places.len() as u32;
+            *places.entry(vertex.map(f32::to_bits)).or_insert(next)
+        })
+    }
+
+    #[test]
+    fn a_cloud_becomes_no_more_than_is_wanted() {
+        let mut seed = 7_u32;
+        let mut number = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / 16_777_216.0
+        };
+        let vertices: Vec<[f32; 3]> = (0..30_000).map(|_| [number(), number(), number()]).collect();
+        let triangles = (0..10_000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        assert_eq!(coarse(&Surface { vertices, triangles }, 500).triangles.len(), 500);
     }
 
     #[test]

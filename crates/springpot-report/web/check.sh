@@ -54,7 +54,7 @@ report() { # NAME SCENARIO [BESIDE]; with the scenario's figures, and compared w
 model() { # NAME
     springpot export "$tmp/pages/$1" "$tmp/models/$1.glb" >/dev/null 2>&1 && springpot export "$tmp/pages/$1" "$tmp/models/$1.gltf" >/dev/null 2>&1
 }
-for name in falling_piezo piezo_order point_to_point torsional_coupling bumper panda_drop tendon_finger; do
+for name in falling_piezo piezo_order point_to_point torsional_coupling bumper panda_drop tendon_finger piezo_stack tool_damper; do
     page "$name" "$repository/scenarios/$name.toml"
 done
 page hostile "$(node test/hostile.mjs "$tmp/hostile")"

@@ -99,7 +99,7 @@ impl Planned {
         let plan = cases.plan(0)?;
         let system = plan.system_unless(stop);
         robot_warnings(&cases).into_iter().for_each(warn);
-        let layout = Layout::new(&cases, &system)?;
+        let layout = Layout::new(&cases, &plan)?;
         Ok(Self { cases, plan, system, layout })
     }
 }

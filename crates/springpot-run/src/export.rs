@@ -1,5 +1,6 @@
 //! Files of a case for other programs: recordings and moving models.
 
+use crate::meshes;
 use crate::record::{Listed, written_value};
 use crate::results::{Results, ResultsError};
 use crate::view::view_columns;
@@ -157,7 +158,9 @@ fn model(
 ) -> Result<(), ExportError> {
     let scene = &results.record.scenes[results.record.scene_of(case)];
     let rows = usize::try_from(case.rows).unwrap_or(usize::MAX);
-    let mut model = Model::new(scene, &view_columns(&results.columns), rows);
+    let (meshes, unseen) = meshes::files(&results.record, &results.folder);
+    notes.extend(unseen);
+    let mut model = Model::new(scene, &meshes, &view_columns(&results.columns), rows);
     if model.stride() > 1 {
         notes.push(format!("one of {} rows is a keyframe", model.stride()));
     }
@@ -166,12 +169,7 @@ fn model(
         Ok(())
     })?;
     let name = results.record.title.clone().unwrap_or_else(|| results.name());
-    let unread = model.write(&name, results.record.version(), &facts(results, case), container, out)?;
-    match &unread[..] {
-        [] => {}
-        [one] => notes.push(format!("{one} cannot be read as a mesh")),
-        [first, rest @ ..] => notes.push(format!("{first} and {} more cannot be read as meshes", rest.len())),
-    }
+    notes.extend(model.write(&name, results.record.version(), &facts(results, case), container, out)?);
     Ok(())
 }
 

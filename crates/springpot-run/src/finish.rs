@@ -50,7 +50,7 @@ impl Prepared {
         let drawn = Drawn::of(cases, (plan, system));
         let range = self.shard.map_or(0..cases.len(), |shard| shard.cases(cases.len()));
         let mut begun = sweep::begun(cases, plan, layout, range);
-        drawn.record(&mut begun);
+        drawn.record(&mut begun, self.folder.path());
         begun.insert("id".to_owned(), self.id.clone().into());
         // Who watches may see less; the run goes on.
         let _ = self.folder.tell(&begun);
@@ -66,10 +66,13 @@ impl Prepared {
     /// A run without a row leaves the results of an earlier one as they were.
     ///
     /// # Errors
-    /// The folder cannot be written.
+    /// The folder cannot be written, or is not there any more.
     pub fn finish(self, outcome: Outcome, progress: &Progress, warn: Warn<'_>) -> Result<Finished, FolderError> {
         let Self { asked, planned, mut folder, checkpoints, shard, figures, format, drawn, .. } = self;
         let Planned { cases, plan, system, layout } = planned;
+        if !folder.is_in_place() {
+            return Err(FolderError::Removed(folder.path().to_owned()));
+        }
         let (rows, end) = (progress.rows.load(Ordering::Relaxed), plan.settings.end);
         let (events, metrics) = (layout.events().to_vec(), layout.metric_units());
         // A part goes on where the parts are put together.
@@ -97,11 +100,12 @@ impl Prepared {
         // What is gone on with goes on as text.
         let written = if goes_on { Format::Csv } else { format };
         folder.convert_rows(written, layout.written(), layout.swept())?;
+        let results = folder.path().to_owned();
         let record = |files: &[String]| {
             let mut record = outcome.record(&cases, &plan, &layout, written, files);
             record.insert("scenario".to_owned(), asked.record());
             record.insert("rows".to_owned(), rows.into());
-            drawn.unwrap_or_else(|| Drawn::of(&cases, (&plan, &system))).record(&mut record);
+            drawn.unwrap_or_else(|| Drawn::of(&cases, (&plan, &system))).record(&mut record, &results);
             record
         };
         folder.put(record, goes_on)?;

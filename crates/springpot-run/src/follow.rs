@@ -2,6 +2,7 @@
 //!
 //! A run writes its rows into `results.csv.part`, and what they are into `.unfinished/running.json` before the first of them; both are only read here.
 
+use crate::meshes;
 use crate::record::{self, Listed, Record};
 use crate::table::disk::{Disk, DiskFile};
 use crate::table::folder::{PART, RUNNING, UNFINISHED, is_held};
@@ -102,6 +103,8 @@ impl Underway {
         if record.cases_total > record.cases.len() {
             notes.push(format!("the first {} of {} cases are shown", record.cases.len(), record.cases_total));
         }
+        let (meshes, unseen) = meshes::files(record, &self.folder);
+        notes.extend(unseen);
         View {
             title: record.title.clone(),
             name: record::name(&self.folder),
@@ -110,6 +113,7 @@ impl Underway {
             notes,
             columns: view_columns(&self.columns),
             scenes: record.scenes.clone(),
+            meshes,
             laws: record.laws.clone(),
             cases: record.cases.iter().take(1).map(|case| self.case(case)).collect(),
             follow: Some(follow.to_owned()),

@@ -4,8 +4,9 @@ mod value;
 
 pub use value::values;
 
-use springpot::observe::{ElementQuantity, Quantity};
+use springpot::observe::{ElementQuantity, EnergyQuantity, Quantity};
 use springpot::table::Column;
+use springpot_scenario::units::Unit;
 
 /// What stands at an axis: symbol or words, then the unit.
 pub fn axis(column: &Column, unit: Option<&str>) -> String {
@@ -14,9 +15,24 @@ pub fn axis(column: &Column, unit: Option<&str>) -> String {
     if unit.is_empty() { name } else { format!("{name}, {unit}") }
 }
 
-/// The quantity alone: `strut.Q.q2` becomes "Q₂ of strut"; what no run of ours calls a column stays.
+/// The quantity alone: `strut.Q.q2` becomes "Q₂ of strut", of a joint that is called by one letter `q.s` becomes "s"; what no run of ours calls
+/// a column stays.
 pub fn quantity(name: &str) -> String {
-    Quantity::read(name).map_or_else(|| name.into(), |quantity| quantity.symbol())
+    let letter = |name: &&str, dots: &str| {
+        let mut all = name.chars();
+        let is_letter = all.next().is_some_and(char::is_alphabetic) && all.next().is_none();
+        is_letter.then(|| format!("{name}{dots}"))
+    };
+    let Some(quantity) = Quantity::read(name) else { return name.into() };
+    let own = match &quantity {
+        Quantity::Coordinate(name) => letter(name, ""),
+        Quantity::Velocity(name) => letter(name, "\u{307}"),
+        Quantity::Acceleration(name) => letter(name, "\u{308}"),
+        Quantity::Energy(EnergyQuantity::Actuators) => Some("work of the actuators".to_owned()),
+        Quantity::Energy(EnergyQuantity::Joints) => Some("energy lost in joints".to_owned()),
+        _ => None,
+    };
+    own.unwrap_or_else(|| quantity.symbol())
 }
 
 /// What several columns have in common: "force F", "coordinate q"; of different quantities what their unit measures.
@@ -66,6 +82,19 @@ fn kind(name: &str) -> Option<String> {
     })
 }
 
+/// What a sweep and its values are called in legends: values that have names are these, and need no heading; else the parameters, and the
+/// values as written with as few digits as tell them apart.
+pub fn sweep<'a>(
+    parameters: impl Iterator<Item = &'a str>,
+    labels: &[String],
+    are_names: bool,
+) -> (String, Vec<String>) {
+    if are_names {
+        return (String::new(), labels.to_vec());
+    }
+    (parameters.map(parameter).collect::<Vec<_>>().join(", "), values(labels))
+}
+
 /// Last name of a path as a symbol: `alpha` becomes α, `mu_0` μ₀, `E_d` E with an index; other names stay.
 pub fn parameter(path: &str) -> String {
     let last = match path.strip_suffix('"') {
@@ -75,10 +104,33 @@ pub fn parameter(path: &str) -> String {
     value::symbol(last)
 }
 
-/// Text as a reader writes it: "25 degC" becomes "25 °C", "N*m" becomes "N·m".
+/// Text as a reader writes it: "25 degC" becomes "25 °C", "N*m" becomes "N·m", "um" becomes "µm".
 pub fn written_unit(unit: &str) -> String {
-    let text = unit.replace("degC", "°C").replace("degF", "°F").replace("alpha", "α").replace('*', "·");
-    raise(&text.replace("deg", "°"))
+    let mut text = String::new();
+    let mut rest = unit;
+    while let Some(start) = rest.find(char::is_alphabetic) {
+        let end = start + rest[start..].find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len() - start);
+        text.push_str(&rest[..start]);
+        text.push_str(&written_symbol(&rest[start..end]));
+        rest = &rest[end..];
+    }
+    text.push_str(rest);
+    raise(&text.replace('*', "·"))
+}
+
+/// The symbol of a unit, or the name of an exponent.
+fn written_symbol(symbol: &str) -> String {
+    match symbol {
+        "degC" => "°C".to_owned(),
+        "degF" => "°F".to_owned(),
+        "deg" => "°".to_owned(),
+        "alpha" => "α".to_owned(),
+        _ => match symbol.strip_prefix('u').filter(|base| Unit::parse(base, &|_| None).is_ok()) {
+            Some(base) => format!("µ{}", base.replace("ohm", "Ω")),
+            None if Unit::parse(symbol, &|_| None).is_ok() => symbol.replace("ohm", "Ω"),
+            None => symbol.to_owned(),
+        },
+    }
 }
 
 /// `^2` becomes ², `^alpha` ᵅ; other exponents stay.
@@ -116,6 +168,11 @@ mod tests {
         assert_eq!(axis(&column("arm.derivative", "m/s^alpha"), None), "Dᵅ x of arm, m/sᵅ");
         assert_eq!(axis(&column("strut.Q.elbow", "N*m"), None), "Q at elbow of strut, N·m");
         assert_eq!(written_unit("25 degC"), "25 °C");
+        let written =
+            ["um", "uC", "kN*um", "N/um", "1/us", "µm", "kJ/mol", "Mohm", "deg/s", "N*s^alpha/m"].map(written_unit);
+        assert_eq!(written, ["µm", "µC", "kN·µm", "N/µm", "1/µs", "µm", "kJ/mol", "MΩ", "°/s", "N·sᵅ/m"]);
+        let letters = ["q.s", "v.s", "a.z", "q.x1", "tau.s", "q.µ"].map(quantity);
+        assert_eq!(letters, ["s", "s\u{307}", "z\u{308}", "q of x1", "actuator τ at s", "µ"]);
         assert_eq!(axis(&column("q.left knee", "rad"), None), "q of left knee, rad");
         assert_eq!(axis(&column("q.base.qw", "1"), None), "qw of base, 1");
         assert_eq!(axis(&column("v.base.wx", "rad/s"), None), "ω_x of base, rad/s");

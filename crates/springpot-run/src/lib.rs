@@ -32,11 +32,13 @@
 //! ```
 
 mod asked;
+mod checks;
 mod export;
 pub mod figures;
 mod finish;
 mod follow;
 pub mod labels;
+mod meshes;
 pub mod metrics;
 pub mod numbers;
 pub mod parts;
@@ -52,6 +54,9 @@ mod trouble;
 mod view;
 mod warning;
 
+/// A name for this build: what one build computes, another may round differently.
+pub const BUILD: &str = env!("SPRINGPOT_BUILD");
+
 pub use asked::{Asked, Planned};
 pub use export::{ExportError, ExportFormat, export};
 pub use finish::Finished;
@@ -60,6 +65,7 @@ pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
 pub use report::{comparison, report};
 pub use results::{COMPARISON_PAGE, REPORT_PAGE, Results, ResultsError, VIEW_PAGE};
 pub use survey::{Depth, ElementSurvey, Found, Survey};
+pub use table::sealed::{SealError, open, seal};
 pub use trouble::Trouble;
 pub use view::view;
 pub use warning::{Warn, Warning, robot_warnings};

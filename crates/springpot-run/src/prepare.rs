@@ -102,6 +102,9 @@ pub enum BeginError {
         /// What is wrong with them.
         survey: Box<Survey>,
     },
+    /// Interrupted while the scenario was looked through.
+    #[error("interrupted before anything was run")]
+    Interrupted,
     /// The folder of the results takes none.
     #[error("{}: {error}", folder.display())]
     Folder {
@@ -124,6 +127,9 @@ impl Prepared {
         let planned = Planned::of(&scenario, with.catalog, with.stop, warn)?;
         let Planned { cases, plan, system, .. } = &planned;
         let survey = Survey::of(cases, plan, system, Depth::Starts, with.stop)?;
+        if survey.interrupted {
+            return Err(BeginError::Interrupted);
+        }
         if survey.is_hopeless(cases) {
             return Err(BeginError::Hopeless { cases: planned.cases.into(), survey: survey.into() });
         }

@@ -1,6 +1,7 @@
 //! run.json, read again.
 
 use crate::labels;
+use crate::meshes::RobotFile;
 use crate::table::disk::Disk;
 use crate::table::{push_number, push_text};
 use serde::Deserialize;
@@ -8,6 +9,7 @@ use serde_json::{Map, Value};
 use springpot::table::Column;
 use springpot_report::scene::{LawText, Scene};
 use springpot_scenario::Metric;
+use std::collections::HashMap;
 use std::path::Path;
 
 /// What it says; empty where it says nothing of something.
@@ -40,6 +42,7 @@ pub(crate) struct Record {
     pub(crate) files: Vec<String>,
     format: Option<String>,
     pub(crate) scenes: Vec<Scene>,
+    pub(crate) robots: Vec<RobotFile>,
     pub(crate) laws: Vec<LawText>,
 }
 
@@ -72,9 +75,19 @@ pub(crate) struct Sweep {
     pub(crate) parameters: Vec<String>,
     #[serde(default)]
     pub(crate) count: usize,
-    /// The values as they were written.
+    /// The values by their names, or as they were written.
     #[serde(default)]
     pub(crate) labels: Vec<String>,
+    /// Whether these are names.
+    #[serde(default, rename = "names")]
+    given: Option<Vec<String>>,
+}
+
+impl Sweep {
+    /// What it and its values are called: nothing and their names, or its parameters and values as a reader writes them.
+    pub(crate) fn words(&self) -> (String, Vec<String>) {
+        labels::sweep(self.parameters.iter().map(String::as_str), &self.labels, self.given.is_some())
+    }
 }
 
 /// A case as it is listed.
@@ -144,12 +157,31 @@ impl Record {
         self.cases.iter().filter(|case| case.rows > 0).collect()
     }
 
-    /// Swept values of a case as a reader wants them, `α = 0.2`; empty where nothing is swept.
+    /// Swept values of a case as a reader wants them, their names or `α = 0.2`; empty where nothing is swept.
     pub(crate) fn case_name(&self, case: &Listed) -> String {
-        let named = self.parameters().filter_map(|path| {
-            Some(format!("{} = {}", labels::parameter(path), written_value(case.parameters.get(path)?)))
-        });
-        named.collect::<Vec<_>>().join(", ")
+        let mut words = Vec::new();
+        let mut stride: usize = self.sweeps.iter().map(|sweep| sweep.count.max(1)).product();
+        for sweep in &self.sweeps {
+            let count = sweep.count.max(1);
+            stride = (stride / count).max(1);
+            let at = case.index / stride % count;
+            if let (Some(names), Some(name)) = (&sweep.given, sweep.labels.get(at)) {
+                debug_assert_eq!(names.get(at), Some(name));
+                words.push(name.clone());
+                continue;
+            }
+            words.extend(sweep.parameters.iter().filter_map(|path| {
+                Some(format!("{} = {}", labels::parameter(path), written_value(case.parameters.get(path)?)))
+            }));
+        }
+        words.join(", ")
+    }
+
+    /// What cases are called, by the swept values that lead their lines.
+    pub(crate) fn names_by_lead(&self) -> NamesByLead {
+        let is_named = self.sweeps.iter().any(|sweep| sweep.given.is_some());
+        let named = self.cases.iter().filter(|_| is_named);
+        NamesByLead(named.map(|case| (self.lead(case), self.case_name(case))).collect())
     }
 
     /// Index of the scene of a case; that of the first where its own is not recorded.
@@ -185,6 +217,16 @@ impl Record {
     /// The version of Springpot that wrote it.
     pub(crate) fn version(&self) -> &str {
         self.versions.get("springpot").and_then(Value::as_str).unwrap_or_default()
+    }
+}
+
+/// Names of cases, where some values of sweeps have them.
+pub(crate) struct NamesByLead(HashMap<String, String>);
+
+impl NamesByLead {
+    /// What the case with these swept values is called: its name, or the values.
+    pub(crate) fn of(&self, lead: &str) -> String {
+        self.0.get(lead).cloned().unwrap_or_else(|| lead.trim_end_matches(',').replace(',', ", "))
     }
 }
 

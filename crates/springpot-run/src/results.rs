@@ -98,6 +98,11 @@ impl Results {
         self.record.with_rows().iter().map(|case| case.index).collect()
     }
 
+    /// The version of Springpot that they are of; empty where run.json does not say it.
+    pub fn version(&self) -> &str {
+        self.record.version()
+    }
+
     /// The folder.
     pub fn folder(&self) -> &Path {
         &self.folder

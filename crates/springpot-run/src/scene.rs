@@ -1,5 +1,6 @@
 //! What is drawn of a robot: of one case of a scenario, for pages and files that outlive the run.
 
+use crate::meshes::{self, RobotPlace};
 use crate::parts::Part;
 use crate::record::MOST_SHOWN;
 use serde_json::{Map, Value, json};
@@ -14,13 +15,15 @@ use springpot_report::scene::{
     Shape, Spot, Visual,
 };
 use springpot_scenario::{Cases, ElementPlan, FramePlan, Plan, ShapePlan};
+use std::path::Path as FilePath;
 
 /// Points of a path.
 const POINTS: usize = 400;
 
-/// One case as it is drawn, without the wanted path.
-pub(crate) fn scene(plan: &Plan) -> Scene {
+/// One case as it is drawn, without the wanted path; its meshes are called by their paths from `folder`.
+pub(crate) fn scene(plan: &Plan, folder: &FilePath) -> Scene {
     let robot = plan.urdf.as_ref().map(|urdf| &urdf.robot);
+    let visual = |shown: &urdf::Visual| visual(shown, folder);
     let bodies = plan.bodies.iter().enumerate().map(|(index, body)| {
         let joint = &body.joint;
         let follows = joint.mimic.as_ref().map(|mimic| Follows {
@@ -37,12 +40,12 @@ pub(crate) fn scene(plan: &Plan) -> Scene {
             joint: Joint { name: joint.name.clone(), kind: freedom(joint.kind), axis: joint.axis, follows },
             com: body.com,
             mass: body.mass,
-            visuals: visuals.iter().filter_map(visual).collect(),
+            visuals: visuals.iter().filter_map(&visual).collect(),
         }
     });
     let root = robot.filter(|robot| !robot.floating_base).map(|robot| Root {
         name: robot.root.name.clone(),
-        visuals: robot.root.visuals.iter().filter_map(visual).collect(),
+        visuals: robot.root.visuals.iter().filter_map(&visual).collect(),
     });
     Scene {
         bodies: bodies.collect(),
@@ -69,36 +72,34 @@ pub(crate) fn complete(scene: &mut Scene, plan: &Plan, system: &System) {
     scene.wanted = Some(path);
 }
 
-/// What is said of the laws.
-pub(crate) fn laws(plan: &Plan) -> Vec<LawText> {
-    let one = |plan: &ElementPlan| {
-        let ElementPlan { element, parameters, inputs, .. } = plan;
-        let entry = &element.entry;
-        let parameters = entry.params.iter().zip(parameters).map(|(param, value)| Parameter {
-            name: param.name.to_string(),
-            value: *value,
-            unit: param.unit.to_string(),
-            meaning: param.meaning.to_string(),
-        });
-        let inputs = entry.inputs.iter().zip(inputs).map(|(input, signal)| Driven {
-            name: input.name.to_string(),
-            written: signal.written.clone(),
-            unit: input.unit.to_string(),
-        });
-        let parts = Part::of(entry);
-        LawText {
-            name: element.name.clone(),
-            law: entry.name.to_string(),
-            equation: entry.equation.to_string(),
-            source: entry.source.to_string(),
-            drawing: parts.as_ref().and_then(Part::drawing),
-            modulus: parts.as_ref().and_then(Part::modulus),
-            relaxation: parts.as_ref().and_then(Part::relaxation),
-            parameters: parameters.collect(),
-            inputs: inputs.collect(),
-        }
-    };
-    plan.elements.iter().map(one).collect()
+/// What is said of the law of an element.
+fn law(plan: &ElementPlan) -> LawText {
+    let ElementPlan { element, parameters, inputs, .. } = plan;
+    let entry = &element.entry;
+    let parameters = entry.params.iter().zip(parameters).map(|(param, value)| Parameter {
+        name: param.name.to_string(),
+        value: *value,
+        unit: param.unit.to_string(),
+        meaning: param.meaning.to_string(),
+    });
+    let inputs = entry.inputs.iter().zip(inputs).map(|(input, signal)| Driven {
+        name: input.name.to_string(),
+        written: signal.written.clone(),
+        unit: input.unit.to_string(),
+    });
+    let parts = Part::of(entry);
+    LawText {
+        name: element.name.clone(),
+        law: entry.name.to_string(),
+        equation: entry.equation.to_string(),
+        // Whoever reads a page has no folder of documents.
+        source: entry.source.trim_end_matches(" (docs/LITERATURE.md)").to_owned(),
+        drawing: parts.as_ref().and_then(Part::drawing),
+        modulus: parts.as_ref().and_then(Part::modulus),
+        relaxation: parts.as_ref().and_then(Part::relaxation),
+        parameters: parameters.collect(),
+        inputs: inputs.collect(),
+    }
 }
 
 /// Where the robot stands; nowhere where its first body floats.
@@ -199,10 +200,10 @@ fn placed(frame: &FramePlan) -> Placed {
 }
 
 /// A shape of a URDF file; nothing for files that were not found.
-fn visual(visual: &urdf::Visual) -> Option<Visual> {
+fn visual(visual: &urdf::Visual, folder: &FilePath) -> Option<Visual> {
     let shape = match &visual.shape {
-        VisualShape::Mesh { path, scale, .. } => {
-            Shape::Mesh { path: path.as_ref()?.to_str()?.to_owned(), scale: *scale }
+        VisualShape::Mesh { place, scale, .. } => {
+            Shape::Mesh { path: meshes::name(folder, &place.as_ref()?.path), scale: *scale }
         }
         VisualShape::Box(sizes) => Shape::Box(*sizes),
         VisualShape::Cylinder { radius, length } => Shape::Cylinder(*radius, *length),
@@ -220,16 +221,31 @@ pub(crate) struct Drawn {
     places: Vec<usize>,
     /// Whether all cases have one scene.
     is_one: bool,
+    /// Where the robots of the scenes are; their meshes are called by their paths from the folder of the first.
+    robots: Vec<RobotPlace>,
     laws: Vec<LawText>,
 }
 
 impl Drawn {
     /// The scenes of the first cases; `first`: the plan and the system of the first of them.
     pub(crate) fn of(cases: &Cases, first: (&Plan, &System)) -> Self {
-        let mut scenes = vec![scene(first.0)];
+        let place = |plan: &Plan| plan.urdf.as_ref().and_then(RobotPlace::of);
+        let mut robots: Vec<RobotPlace> = place(first.0).into_iter().collect();
+        let folder = robots.first().map(|robot| robot.folder().to_owned()).unwrap_or_default();
+        let mut scenes = vec![scene(first.0, &folder)];
         complete(&mut scenes[0], first.0, first.1);
         let moves = |path: &String| !path.starts_with("element.") && !path.starts_with("solver.");
         let is_moved = cases.parameters().iter().any(moves);
+        // Of elements that the first case has not, what the first one with them says.
+        let mut laws: Vec<Option<LawText>> = vec![None; first.0.all_elements().len()];
+        let mut tell = |plan: &Plan| {
+            for (told, element) in laws.iter_mut().zip(plan.all_elements()) {
+                if told.is_none() && plan.elements.iter().any(|own| own.element.name == element.element.name) {
+                    *told = Some(law(element));
+                }
+            }
+        };
+        tell(first.0);
         let mut places = vec![0];
         for index in 1..cases.len().min(MOST_SHOWN) {
             // A case without a plan has no rows either.
@@ -237,7 +253,11 @@ impl Drawn {
                 places.push(0);
                 continue;
             };
-            let mut own = scene(&plan);
+            tell(&plan);
+            let mut own = scene(&plan, &folder);
+            if let Some(place) = place(&plan).filter(|place| !robots.contains(place)) {
+                robots.push(place);
+            }
             match is_moved {
                 true => complete(&mut own, &plan, &plan.system()),
                 false => (own.ground, own.wanted) = (scenes[0].ground, scenes[0].wanted.clone()),
@@ -249,11 +269,11 @@ impl Drawn {
             places.push(place);
         }
         let is_one = !is_moved && scenes.len() == 1;
-        Self { scenes, places, is_one, laws: laws(first.0) }
+        Self { scenes, places, is_one, robots, laws: laws.into_iter().flatten().collect() }
     }
 
-    /// Adds it to the record of a run.
-    pub(crate) fn record(&self, record: &mut Map<String, Value>) {
+    /// Adds it to the record of a run whose results are in that folder.
+    pub(crate) fn record(&self, record: &mut Map<String, Value>, results: &FilePath) {
         for listed in record.get_mut("cases").and_then(Value::as_array_mut).into_iter().flatten() {
             let index = listed["index"].as_u64().map_or(0, |index| index as usize);
             match self.places.get(index) {
@@ -262,6 +282,10 @@ impl Drawn {
                 None if self.is_one => {}
                 None => listed["scene"] = Value::Null,
             }
+        }
+        if self.scenes.iter().any(meshes::has_any) {
+            let robots: Vec<_> = self.robots.iter().filter_map(|robot| robot.record(results)).collect();
+            record.insert("robots".to_owned(), json!(robots));
         }
         record.insert("scenes".to_owned(), json!(self.scenes));
         record.insert("laws".to_owned(), json!(self.laws));

@@ -1,12 +1,13 @@
 //! What is known of the cases before any of them is run: where elements start, and which cases cannot.
 
+use crate::checks;
 use crate::sweep::LimitTally;
 use crate::trouble::Trouble;
 use springpot::control::Aim;
 use springpot::dynamics::Kinematics;
 use springpot::integrate::{ElementStart, LimitWatch, RowTimes, RunError, Stop, System};
 use springpot::model::JointKind;
-use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, ShapePlan};
+use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, Remark, ShapePlan};
 use std::ops::RangeInclusive;
 
 /// A stroke at t = 0 beyond this share of the rest length is worth a warning.
@@ -19,6 +20,9 @@ const PATHS_FOLLOWED: usize = 50;
 const FAST_TURN: f64 = 10.0;
 const FAR_TURN: f64 = 12.0;
 const TURNS_LOOKED_AT: u32 = 257;
+
+/// So many warnings are enough.
+const MOST_WARNINGS: usize = 20;
 
 /// How closely cases are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,10 +44,14 @@ pub struct Survey {
     pub limits: LimitTally,
     /// Cases that cannot run, each with why.
     pub failures: Vec<(usize, Trouble)>,
+    /// How many of them ask of a controller what none can do: the scenario is to be refused where no case is left.
+    pub refused: usize,
+    /// Whether it was broken off.
+    pub interrupted: bool,
     /// Whether the run ends before its second row is due; the end and the distance of the rows, s.
     pub short: Option<[f64; 2]>,
-    /// What deserves a warning in the files and the motion of the first case.
-    pub warnings: Vec<String>,
+    /// What deserves a warning in the sweeps, and in files, geometry and motion of the cases looked at, each of which is named but for the first.
+    pub warnings: Vec<(usize, Remark)>,
     /// Every element where the first case starts.
     pub first: Option<Vec<ElementStart>>,
 }
@@ -96,21 +104,29 @@ impl Survey {
         };
         let mut survey = Self {
             looked_at: 0,
-            elements: plan.elements.iter().map(element).collect(),
+            elements: plan.all_elements().into_iter().map(element).collect(),
             limits: LimitTally::default(),
             failures: Vec::new(),
+            refused: 0,
+            interrupted: false,
             short: short_run(plan),
-            warnings: plan.warnings.iter().cloned().chain(fast_turns(plan, system)).collect(),
+            warnings: cases.remarks().into_iter().map(|remark| (0, remark)).collect(),
             first: None,
         };
         for index in looked_at(cases, plan, depth) {
+            if survey.interrupted {
+                break;
+            }
             if index == 0 {
+                let along = checks::elements(plan, system).into_iter().chain(fast_turns(plan, system));
+                survey.remark(0, plan.warnings.iter().cloned().chain(checks::sizes(plan, system)).chain(along));
                 survey.look(index, plan, system, depth, stop);
                 continue;
             }
             match cases.plan(index) {
                 Ok(plan) => {
                     let system = if depth == Depth::Paths { plan.system() } else { plan.system_at_start() };
+                    survey.remark(index, plan.warnings.iter().cloned().chain(checks::sizes(&plan, &system)));
                     survey.look(index, &plan, &system, depth, stop);
                 }
                 Err(refusals) if depth == Depth::Paths => return Err(refusals),
@@ -146,12 +162,35 @@ impl Survey {
             Depth::Paths => ends_early().or_else(|| system.look_for_jumps(&plan.settings, stop).err()),
             Depth::Starts => system.look_for_jumps(&plan.settings, stop).err(),
         };
-        self.failures.extend(failure.map(|failure| (index, Trouble::of(&failure, plan))));
+        match failure {
+            None => {}
+            Some(RunError::Interrupted { .. }) => self.interrupted = true,
+            Some(failure) => {
+                self.refused += usize::from(matches!(failure, RunError::ReferenceJump { .. }));
+                self.failures.push((index, Trouble::of(&failure, plan)));
+            }
+        }
+    }
+
+    /// Takes warnings of one case, of each place the first.
+    fn remark(&mut self, index: usize, remarks: impl IntoIterator<Item = Remark>) {
+        for remark in remarks {
+            let is_told = |(_, told): &(usize, Remark)| match (&told.place, &remark.place) {
+                (Some(told), Some(place)) => {
+                    told == place || *told.source == *place.source && place.source.name.starts_with("--")
+                }
+                _ => told.message == remark.message,
+            };
+            if self.warnings.len() < MOST_WARNINGS && !self.warnings.iter().any(is_told) {
+                self.warnings.push((index, remark));
+            }
+        }
     }
 
     /// Takes the start of one case.
     fn take(&mut self, index: usize, plan: &Plan, starts: &[ElementStart]) {
-        for ((element, plan), start) in self.elements.iter_mut().zip(&plan.elements).zip(starts) {
+        for ((place, plan), start) in plan.placed_elements().zip(starts) {
+            let element = &mut self.elements[place];
             widen(&mut element.length, start.length);
             widen(&mut element.stroke, start.stroke);
             let found = |found: &mut Option<Found>| {
@@ -215,7 +254,7 @@ fn short_run(plan: &Plan) -> Option<[f64; 2]> {
 }
 
 /// Joints that turn by tens of radians per second over the whole run, as where degrees are taken for radians.
-fn fast_turns(plan: &Plan, system: &System) -> Vec<String> {
+fn fast_turns(plan: &Plan, system: &System) -> Vec<Remark> {
     if plan.motion.is_forward() || plan.motion.has_path() {
         return Vec::new();
     }
@@ -234,10 +273,9 @@ fn fast_turns(plan: &Plan, system: &System) -> Vec<String> {
         let v = system.model.v_range(j).start;
         let name = &system.model.joint_names()[j];
         (speeds[v] > FAST_TURN && highest[v] - lowest[v] > FAR_TURN).then(|| {
-            format!(
-                "joint \"{name}\" turns by {:.0} rad/s on average: if its motion is in degrees, say so with unit = \"deg\"",
-                speeds[v]
-            )
+            let message = format!("joint \"{name}\" turns by {:.0} rad/s on average", speeds[v]);
+            let help = "if its motion is in degrees, say so with unit = \"deg\"";
+            Remark::at(plan.motion.place_of(name), message).help(help)
         })
     });
     fast.collect()

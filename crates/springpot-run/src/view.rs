@@ -1,5 +1,6 @@
 //! The page that shows results in motion.
 
+use crate::meshes;
 use crate::record::{Listed, MOST_SHOWN, Record};
 use crate::results::{Results, ResultsError};
 use springpot::table::Column;
@@ -74,6 +75,8 @@ pub fn view(results: &Results, asked: &[usize]) -> Result<View, ResultsError> {
             cases[place].metrics.push(CaseMetric { name, column, value: value.parse().ok(), unit });
         }
     }
+    let (meshes, unseen) = meshes::files(record, &results.folder);
+    notes.extend(unseen);
     Ok(View {
         title: record.title.clone(),
         name: results.name(),
@@ -82,6 +85,7 @@ pub fn view(results: &Results, asked: &[usize]) -> Result<View, ResultsError> {
         notes,
         columns: view_columns(&results.columns),
         scenes: record.scenes.clone(),
+        meshes,
         laws: record.laws.clone(),
         cases,
         follow: None,

@@ -243,7 +243,7 @@ values = { from = 1, to = 2, count = 64 }
         "[[figure]]\ny = [\"q.q1\", \"v.q1\"]\n[[figure]]\ny = \"v.q1\"\nwhere = { \"robot.body.arm.mass\" = 1 }\n",
     );
     let cases = Scenario::parse(&text, "arm.toml", "").unwrap().cases(&Catalog::standard()).unwrap();
-    let layout = Layout::new(&cases, &cases.plan(0).unwrap().system()).unwrap();
+    let layout = Layout::new(&cases, &cases.plan(0).unwrap()).unwrap();
     let (drawn, left_out) = layout.figures().split_at(MAX_CURVES_IN_ALL / 64);
     assert!(drawn.iter().all(|figure| figure.left_out.is_none() && figure.cases.len() == 64));
     let why: Vec<_> = left_out.iter().map(|figure| figure.left_out.clone().unwrap()).collect();
@@ -251,4 +251,63 @@ values = { from = 1, to = 2, count = 64 }
     assert_eq!(why, [in_all(64), LeftOut::Curves { curves: 128 }, in_all(1)]);
     assert!(left_out.iter().all(|figure| figure.cases.is_empty() && figure.curves.is_empty()));
     assert_eq!(layout.most_points(), 1024);
+}
+
+/// Farthest that a point of a curve is from a part of its points, where both are drawn on logarithmic axes, as a share of their height.
+fn off_on_logarithmic_axes(all: &[[f64; 2]], kept: &[[f64; 2]]) -> f64 {
+    let drawn = |points: &[[f64; 2]]| points.iter().map(|[x, y]| [x.ln(), y.ln()]).collect::<Vec<_>>();
+    let (all, kept) = (drawn(all), drawn(kept));
+    let (low, high) =
+        all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[1]), high.max(p[1])));
+    let (mut next, mut farthest) = (1, 0.0f64);
+    for [x, y] in &all {
+        while next + 1 < kept.len() && kept[next][0] < *x {
+            next += 1;
+        }
+        let [a, b] = [kept[next - 1], kept[next]];
+        let line = a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+        farthest = farthest.max((line - y).abs() / (high - low));
+    }
+    farthest
+}
+
+#[test]
+fn curves_on_logarithmic_axes_are_thinned_as_they_are_drawn() {
+    // Six decades of a creep that rings, in a million equal steps.
+    let rows: Vec<[f64; 2]> = (1..=1_000_000)
+        .map(|k| f64::from(k) * 1e-3)
+        .map(|t: f64| [t, t.powf(0.3) * (1.0 + 0.2 * (9.0 * t.ln()).sin())])
+        .collect();
+    let kept = |is_log: [bool; 2]| {
+        let mut curve = KeptCurve::on_axes(1 << 16, is_log);
+        rows.iter().for_each(|[x, y]| curve.push(*x, *y));
+        curve.points().to_vec()
+    };
+    let log = kept([true; 2]);
+    assert!(log.len() <= 1 << 16 && log.iter().all(|point| rows[(point[0] * 1e3).round() as usize - 1] == *point));
+    // A tenth of a pixel of 440.
+    let off = off_on_logarithmic_axes(&rows, &log);
+    assert!(off < 2.5e-4, "{off}");
+    let as_linear = off_on_logarithmic_axes(&rows, &kept([false; 2]));
+    assert!(as_linear > 4.0 * off.max(1e-5), "{as_linear} beside {off}");
+}
+
+#[test]
+fn what_a_logarithmic_axis_has_no_place_for_is_a_gap_that_stays() {
+    let mut curve = KeptCurve::on_axes(1024, [false, true]);
+    let rows: Vec<[f64; 2]> = (0..20_000).map(f64::from).map(|x| [x, (x * 1e-3).sin()]).collect();
+    rows.iter().for_each(|[x, y]| curve.push(*x, *y));
+    let points = curve.points();
+    assert!(points.len() <= 1024);
+    let below: Vec<&[f64; 2]> = points.iter().filter(|point| point[1].is_nan() || point[1] <= 0.0).collect();
+    assert!(below.len() >= 3, "{below:?}");
+    // Every half wave below zero leaves a gap, of a value that was there, and no line runs across it.
+    for wave in 0..3 {
+        let (from, to) =
+            ((2 * wave + 1) as f64 * std::f64::consts::PI * 1e3, (2 * wave + 2) as f64 * std::f64::consts::PI * 1e3);
+        assert!(below.iter().any(|point| point[0] > from && point[0] < to && point[1] < 0.0), "{wave}");
+        let middle = 0.5 * (from + to);
+        let crosses = |pair: &[[f64; 2]]| pair[0][0] < middle && pair[1][0] > middle && pair.iter().all(|p| p[1] > 0.0);
+        assert!(!points.windows(2).any(crosses), "{wave}");
+    }
 }

@@ -19,8 +19,8 @@ fn a_sweep_gives_the_same_bytes_for_any_number_of_threads() {
            [[sweep]]\nparameter = \"motion.torque.q2\"\nvalues = [0, \"abs(sin(9*t))\", \"2*sin(5*t)\"]\n";
     let cases = Scenario::parse(&text, "arm.toml", folder).unwrap().cases(&Catalog::standard()).unwrap();
     assert_eq!(cases.len(), 18);
-    let system = cases.plan(0).unwrap().system();
-    let layout = Layout::new(&cases, &system).unwrap();
+    let plan = cases.plan(0).unwrap();
+    let layout = Layout::new(&cases, &plan).unwrap();
     let results: Vec<Vec<u8>> = [1, 2, 7]
         .into_iter()
         .map(|jobs| {

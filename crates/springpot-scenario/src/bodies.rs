@@ -139,6 +139,10 @@ fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read
     let what = body.map_or_else(|| field.to_string(), |body| format!("the joint of body {body:?}"));
     let plain = kind.filter(|kind| !kind.has_axis());
     let reason = |key: &str| {
+        if matches!(key, "lower" | "upper" | "limit" | "limits" | "effort" | "velocity") {
+            let why = "limits of joints are those of a URDF file, where [robot] limits makes end stops of them; here an element with joint = \"NAME\" and network = \"stop(k, lower, upper)\" is one";
+            return Some((RefusalKind::UnknownKey, format!("`{key}` of {what} is no key of a joint: {why}")));
+        }
         let why = match plain? {
             JointKind::Floating => "a floating joint moves freely in all six directions",
             _ => "a fixed joint does not move",

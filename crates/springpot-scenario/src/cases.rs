@@ -1,13 +1,14 @@
 //! The cases of a scenario: the grid of its sweeps, each planned when it is asked for.
 
 use super::document::Node;
+use super::elements::Elements;
 use super::figures::{self, ColumnGlob, FigurePlan};
 use super::keys::OUTPUT;
 use super::metrics::{self, MetricPlan};
 use super::path;
 use super::plan::Plan;
 use super::reader::{Context, Read, Table};
-use super::refusal::{Place, RefusalKind, Refusals};
+use super::refusal::{Place, RefusalKind, Refusals, Remark};
 use super::robot::Robot;
 use super::root::SCENARIO;
 use super::signals::CsvCache;
@@ -53,6 +54,8 @@ pub struct Cases {
     units: Vec<String>,
     /// Whether the results have the column of the energy lost in joints.
     tell_joint_losses: bool,
+    /// What is to be said of the sweeps.
+    remarks: Vec<Remark>,
 }
 
 impl Cases {
@@ -92,6 +95,7 @@ impl Cases {
             parameters: Vec::new(),
             units: Vec::new(),
             tell_joint_losses: false,
+            remarks: Vec::new(),
         };
         cases.read_sweeps(scenario)?;
         Ok(cases)
@@ -122,9 +126,14 @@ impl Cases {
         self.axes[axis].targets.iter().map(|target| target.written.as_str())
     }
 
-    /// Value `k` of a sweep for a legend, as written.
+    /// Value `k` of a sweep for a legend: its name, else as written.
     pub fn axis_label(&self, axis: usize, k: usize) -> String {
         self.axes[axis].label(k)
+    }
+
+    /// What the values of a sweep are called, where the scenario says so.
+    pub fn axis_names(&self, axis: usize) -> Option<&[String]> {
+        self.axes[axis].names.as_deref()
     }
 
     /// Value `k` that a sweep gives to the parameter with this path, as written.
@@ -179,11 +188,28 @@ impl Cases {
         axes.flat_map(|(axis, k)| (0..axis.targets.len()).map(move |at| axis.label_of(k, at))).collect()
     }
 
-    /// The swept values of case `i` by name, as written: `element.strut.alpha = 0.5, …`; empty where nothing is swept.
+    /// What case `i` is called: the names of its swept values, or paths and values as written, `element.strut.alpha = 0.5, …`; empty where
+    /// nothing is swept.
     pub fn name(&self, i: usize) -> String {
-        let named =
-            self.parameters.iter().zip(self.labels(i)).map(|(parameter, label)| format!("{parameter} = {label}"));
-        named.collect::<Vec<_>>().join(", ")
+        let mut words = Vec::with_capacity(self.parameters.len());
+        for (axis, k) in self.axes.iter().zip(self.position(i)) {
+            match &axis.names {
+                Some(names) => words.push(names[k].clone()),
+                None => words.extend(
+                    axis.targets
+                        .iter()
+                        .enumerate()
+                        .map(|(at, target)| format!("{} = {}", target.written, axis.label_of(k, at))),
+                ),
+            }
+        }
+        words.join(", ")
+    }
+
+    /// What case `i` is called where values of its sweeps have names: these; empty where none has.
+    pub fn given_name(&self, i: usize) -> String {
+        let names = self.axes.iter().zip(self.position(i)).filter_map(|(axis, k)| Some(&*axis.names.as_ref()?[k]));
+        names.collect::<Vec<_>>().join(", ")
     }
 
     /// Globs of the columns to write; `None`: all.
@@ -199,6 +225,35 @@ impl Cases {
     /// What `accept` of `[robot]` would say, whole, to have none of [`Cases::warnings`].
     pub fn warning_kinds(&self) -> Vec<&'static str> {
         self.robots.kinds()
+    }
+
+    /// What deserves a warning in the sweeps.
+    pub fn remarks(&self) -> Vec<Remark> {
+        let equal = (0..self.axes.len()).filter_map(|axis| self.equal_values(axis));
+        self.remarks.iter().cloned().chain(equal).collect()
+    }
+
+    /// Two values of a sweep that are the same, so that two cases are.
+    fn equal_values(&self, axis: usize) -> Option<Remark> {
+        let swept = &self.axes[axis];
+        let mut seen: HashMap<String, usize> = HashMap::new();
+        let twice = (0..swept.len().min(TRIED)).find_map(|k| {
+            let targets = 0..swept.targets.len();
+            let one = |at: usize| match self.numbers[axis].get(k).and_then(|numbers| numbers[at]) {
+                Some(number) => number.to_string(),
+                None => swept.label_of(k, at),
+            };
+            let earlier = seen.insert(targets.map(one).collect::<Vec<_>>().join(", "), k)?;
+            Some((earlier, k))
+        });
+        let (first, second) = twice?;
+        let path = swept.targets.first().map_or("", |target| target.written.as_str());
+        let (one, other) = (swept.label(first), swept.label(second));
+        let values =
+            if one == other { format!("{one} twice") } else { format!("{one} and {other}, which are the same") };
+        let message = format!("the sweep of {path} holds {values}: cases that are alike are run again");
+        let place = swept.node(second, 0, 0).place;
+        Some(Remark::at(&place, message).help("leave one of them out"))
     }
 
     /// The figures.
@@ -284,7 +339,10 @@ impl Cases {
             }
             Ok(axes)
         })();
+        let mut remarks = ctx.warnings();
         let axes = ctx.finish(read)?;
+        remarks.extend(axes.iter().filter_map(Axis::read_otherwise));
+        self.remarks = remarks;
         self.document = document;
         self.parameters = axes.iter().flat_map(|axis| &axis.targets).map(|target| target.written.clone()).collect();
         self.axes = axes;
@@ -434,7 +492,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     let motion = motion::read(&root, &robot, time.as_ref().ok().map(|time| time.end));
     if let (Ok(elements), Ok(motion)) = (&elements, &motion)
         && motion.is_forward()
-        && let Some(element) = elements.iter().find(|plan| plan.element.scheme.is_some())
+        && let Some(element) = elements.acting.iter().find(|plan| plan.element.scheme.is_some())
     {
         let message = format!("element {:?} has a `scheme`, but the robot moves by itself", element.element.name);
         let place = element.scheme_place.as_ref().unwrap_or(&element.place);
@@ -443,6 +501,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         return Err(ctx.refuse(refusal.help(help)));
     }
     let tells_leaves = root.get("output").map_or(Ok(false), |field| field.table(&OUTPUT)?.flag("leaves"));
+    let Elements { acting, absent } = elements?;
     let mut plan = Plan {
         title: title?,
         gravity: robot.gravity,
@@ -452,14 +511,15 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         urdf: robot.parts.urdf,
         gripper: robot.gripper,
         end_stops: robot.end_stops,
-        elements: elements?,
+        elements: acting,
+        absent,
         motion: motion?,
         feedback: Control::default(),
         events: Vec::new(),
         metrics: Vec::new(),
         tells_joint_losses: false,
         tells_leaves: tells_leaves?,
-        warnings: ctx.warnings(),
+        warnings: Vec::new(),
         settings: time.and(settings)?,
         figures: Arc::new([]),
         columns: None,
@@ -469,5 +529,6 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     plan.feedback = feedback::settle(ctx, &plan)?;
     plan.events = events::read(&root, &plan)?;
     plan.metrics = metrics::read(&root, &plan)?;
+    plan.warnings = ctx.warnings();
     Ok(plan)
 }

@@ -29,8 +29,8 @@ pub(crate) fn read(root: &Table<'_>) -> Read<()> {
         check_name(&constant)?;
         let read = value(&constant);
         // What is refused is known all the same, so that nothing else is refused for want of it.
-        let value = read.unwrap_or(1.0);
-        constant.ctx.note_swept(constant.node, value, "");
+        let (value, unit) = read.clone().unwrap_or((1.0, String::new()));
+        constant.ctx.note_swept(constant.node, value, &unit);
         constant.ctx.know(constant.key, value);
         read.map(|_| ())
     });
@@ -53,20 +53,24 @@ fn check_name(field: &Field<'_>) -> Read<()> {
     Err(field.ctx.refuse(field.node.place.refuse(RefusalKind::BadName, message).help(help)))
 }
 
-/// A number in any unit, SI.
-fn value(field: &Field<'_>) -> Read<f64> {
+/// A number in any unit, SI, and its SI unit.
+fn value(field: &Field<'_>) -> Read<(f64, String)> {
     let none = |_: &str| None;
-    let value = match &field.node.value {
-        Value::Number { value, .. } => *value,
+    let si = |unit: &str| Unit::parse(unit, &none).map_or_else(|_| String::new(), |unit| unit.si_name());
+    let (value, unit) = match &field.node.value {
+        Value::Number { value, .. } => (*value, String::new()),
         Value::Text(text) => {
             let unit = units::split_quantity(text).map_or("", |(_, unit)| unit);
-            units::parse_quantity(text, unit, &none).map_err(|error| misread(field, &error))?
+            (units::parse_quantity(text, unit, &none).map_err(|error| misread(field, &error))?, si(unit))
         }
-        Value::Table(_) => expression(field, None, &none)?,
+        Value::Table(_) => {
+            let unit = field.node.get("unit").and_then(|unit| unit.text()).map_or_else(String::new, si);
+            (expression(field, None, &none)?, unit)
+        }
         _ => return Err(field.wrong_type(RIGHT)),
     };
     if value.is_finite() {
-        return Ok(value);
+        return Ok((value, unit));
     }
     let message = format!("is {}, not a finite number", field.node.label());
     Err(field.refuse(RefusalKind::OutOfRange, message, Some(format!("write {RIGHT}"))))

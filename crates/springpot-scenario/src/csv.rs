@@ -127,9 +127,26 @@ impl CsvTable {
 /// # Errors
 /// What is wrong with the file, its header or one of those columns.
 pub fn columns(path: &Path, names: &[&str], most: usize) -> Result<Vec<Vec<f64>>, CsvError> {
+    separated_columns(path, names, (most, ','))
+}
+
+/// As [`columns`], of a file whose cells are separated by another character; where that is `;` a comma is the decimal point.
+///
+/// # Errors
+/// As [`columns`].
+pub fn separated_columns(
+    path: &Path,
+    names: &[&str],
+    (most, separator): (usize, char),
+) -> Result<Vec<Vec<f64>>, CsvError> {
+    let unreadable = |source| CsvProblem::Unreadable { source };
     let read = || -> Result<_, CsvProblem> {
-        let file = File::open(path).map_err(|source| CsvProblem::Unreadable { source })?;
-        let mut rows = CsvRows::new(BufReader::new(file))?;
+        // Looked at before it is opened: opening a pipe would wait for its other end.
+        if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
+            return Err(CsvProblem::NotAFile);
+        }
+        let file = File::open(path).map_err(unreadable)?;
+        let mut rows = CsvRows::separated(BufReader::new(file), separator)?;
         let at = names.iter().map(|name| rows.find(name)).collect::<Result<Vec<_>, _>>()?;
         let mut columns = vec![Vec::new(); names.len()];
         while let Some(row) = rows.next_row()? {
@@ -238,7 +255,7 @@ fn missing(name: &str, headers: &[String], line: u64) -> CsvProblem {
         *distance == 0 || (length > 1 && *distance <= (length / 3).max(1))
     });
     let time = headers.iter().find(|header| name == TIME && header.to_lowercase().starts_with("time"));
-    let suggestion = near.map(|(_, header)| header).or(time).map(|header| shorten(header));
+    let suggestion = time.or(near.map(|(_, header)| header)).map(|header| shorten(header));
     let listed = headers.iter().take(20).map(|header| shorten(header)).collect();
     CsvProblem::MissingColumn { line, name: shorten(name), suggestion, headers: listed }
 }

@@ -22,6 +22,7 @@ impl Plan {
     pub fn cure(&self, error: &RunError) -> Cure {
         let element = |name: &str| self.elements.iter().find(|plan| plan.element.name == name);
         let place_of = |plan: Option<&ElementPlan>| plan.map(|plan| plan.place.clone());
+        let ends_of = |plan: Option<&ElementPlan>| plan.map(|plan| plan.ends.first().unwrap_or(&plan.place).clone());
         let (place, help) = match error {
             RunError::Rule { element: name, .. } => {
                 let plan = element(name);
@@ -45,6 +46,10 @@ impl Plan {
                 Some((place, false)) => (Some(place), None),
                 None => (None, None),
             },
+            RunError::TooBusy { what, .. } => {
+                let help = "look at its frequency (rad/s in an expression of t): is it what was meant?";
+                (self.busy(what), Some(help.to_owned()))
+            }
             RunError::ControlChatter { signal, .. } => match signal {
                 Some(signal) => (self.said(signal).map(|(place, _)| place), None),
                 None => (self.motion.place_of_controller().cloned(), None),
@@ -56,16 +61,16 @@ impl Plan {
             }
             RunError::ZeroLength { element: name, .. } => {
                 let help = "a force along a line needs a length: move `from` or `to`, or the motion, so that the points stay apart";
-                (place_of(element(name)), Some(help.to_owned()))
+                (ends_of(element(name)), Some(help.to_owned()))
             }
             RunError::SegmentLength { element: name, .. } => {
                 let help = "the tension needs a direction: move the points of `via`, or the motion, so that neighbours stay apart";
-                (place_of(element(name)), Some(help.to_owned()))
+                (ends_of(element(name)), Some(help.to_owned()))
             }
             RunError::HalfTurn { element: name, .. } => {
                 let help = "rx, ry and rz are for turns below pi: turn the frames by `rpy` so that they face one another, or put the element on a \
                             joint, where turns are counted";
-                (place_of(element(name)), Some(help.to_owned()))
+                (ends_of(element(name)), Some(help.to_owned()))
             }
             RunError::Kernel { element: name, .. } => (place_of(element(name)), None),
             RunError::Jump { joint, .. } => {
@@ -83,6 +88,21 @@ impl Plan {
             _ => (None, None),
         };
         Cure { place, help }
+    }
+
+    /// Where a signal stands that is named by what it drives.
+    fn busy(&self, what: &str) -> Option<Place> {
+        let names = |name: &str| what.contains(&format!("\"{name}\""));
+        if let Some(element) = self.elements.iter().find(|plan| names(&plan.element.name)) {
+            let input =
+                element.element.entry.inputs.iter().find(|row| what.starts_with(&format!("input {} ", row.name)));
+            return Some(
+                input.and_then(|row| element.input(&row.name)).map_or(&element.place, |input| &input.place).clone(),
+            );
+        }
+        let joint = self.own_joint_names().find(|joint| names(joint))?;
+        let own = self.motion.own_place_of(joint).or_else(|| self.motion.place_of_force(joint));
+        own.cloned()
     }
 
     /// Where what a column tells is said, and whether by an expression of the state.

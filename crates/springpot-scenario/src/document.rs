@@ -152,14 +152,12 @@ impl Node {
 
     /// Place of a stretch of this text value; the whole value where there is none or escapes hide it.
     pub(crate) fn place_in_text(&self, range: Option<Range<usize>>) -> Place {
-        let raw = self.place.text().len();
         let (Some(range), Value::Text(text)) = (range, &self.value) else { return self.place.clone() };
-        let quotes = match raw.checked_sub(text.len()) {
-            Some(0) => 0,
-            Some(2) => 1,
-            Some(6) => 3,
-            _ => return self.place.clone(),
+        let raw = self.place.text();
+        let is_quoted_by = |quotes: &usize| {
+            raw.len().checked_sub(2 * quotes) == Some(text.len()) && raw.get(*quotes..raw.len() - quotes) == Some(text)
         };
+        let Some(quotes) = [0, 1, 3].into_iter().find(is_quoted_by) else { return self.place.clone() };
         let start = (self.place.span.start + quotes + range.start).min(self.place.span.end);
         let end = (self.place.span.start + quotes + range.end).clamp(start, self.place.span.end);
         Place { source: self.place.source.clone(), span: start..end }
@@ -194,7 +192,34 @@ fn place(source: &Arc<Source>, span: Range<usize>) -> Place {
 fn syntax(source: &Arc<Source>, error: &toml::de::Error) -> Refusal {
     let span = error.span().unwrap_or(0..0);
     let help = syntax_help(&source.text, &span, error.message());
-    place(source, span).refuse(RefusalKind::Syntax, format!("not TOML: {}", error.message())).help_if(help)
+    let message = match source.text.get(span.start..).and_then(|text| text.chars().next()) {
+        Some(quote) if is_typographic(quote) => format!("{quote} is a quote of running text, not of TOML"),
+        _ => format!("not TOML: {}", error.message()),
+    };
+    place(source, span).refuse(RefusalKind::Syntax, message).help_if(help)
+}
+
+fn is_typographic(c: char) -> bool {
+    matches!(c, '“' | '”' | '„' | '‟' | '‘' | '’' | '‚' | '«' | '»' | '´' | '`')
+}
+
+/// A line as it would be with straight quotes.
+fn with_straight_quotes(line: &str) -> String {
+    line.trim().chars().map(|c| if is_typographic(c) { '"' } else { c }).collect()
+}
+
+/// `KEY = VALUE` for a line that has a colon, as YAML and JSON have it.
+fn with_equals_sign(line: &str) -> Option<String> {
+    let (key, value) = line.split_once(':')?;
+    let key = key.trim().trim_matches('"');
+    let value = value.trim().trim_end_matches(',');
+    let is_key = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.'));
+    if !is_key || value.is_empty() {
+        return None;
+    }
+    let is_value =
+        value.parse::<f64>().is_ok() || value.starts_with(['"', '\'', '[', '{']) || value == "true" || value == "false";
+    Some(if is_value { format!("{key} = {value}") } else { format!("{key} = \"{value}\"") })
 }
 
 /// What is likely meant where a text is not TOML.
@@ -211,6 +236,14 @@ fn syntax_help(text: &str, span: &Range<usize>, message: &str) -> Option<String>
         return Some(format!("{key} stands on line {} already: write it once", first + 1));
     }
     let letter = text.get(span.start..)?.chars().next()?;
+    let start = text[..span.start].rfind('\n').map_or(0, |at| at + 1);
+    let line = text[start..].lines().next()?;
+    if is_typographic(letter) {
+        return Some(format!("write straight quotes: {}", shorten(&with_straight_quotes(line))));
+    }
+    if let Some(right) = with_equals_sign(line).filter(|_| message.contains("expected `=`") || letter == ':') {
+        return Some(format!("write {}", shorten(&right)));
+    }
     names::greek(letter).map(|name| format!("write {name} for {letter}"))
 }
 

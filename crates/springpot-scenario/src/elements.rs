@@ -26,9 +26,18 @@ const MAX_ELEMENTS: usize = 10_000;
 /// Most numbers ∂l/∂q_b of all elements.
 const MAX_GRADIENTS: usize = 10_000_000;
 
+/// The elements of a case.
+#[derive(Debug, Default)]
+pub(crate) struct Elements {
+    /// Those that act.
+    pub(crate) acting: Vec<ElementPlan>,
+    /// Those that are not enabled, with their places among all.
+    pub(crate) absent: Vec<(usize, ElementPlan)>,
+}
+
 /// Reads every `[[element]]`; each component of a bushing is an element of its own.
-pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<Vec<ElementPlan>> {
-    let Some(field) = root.get("element") else { return Ok(Vec::new()) };
+pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<Elements> {
+    let Some(field) = root.get("element") else { return Ok(Elements::default()) };
     let items = field.items("an array of tables: [[element]]")?;
     let count: usize = items.iter().map(|item| bushing(item.node).map_or(1, <[_]>::len)).sum();
     if count > MAX_ELEMENTS {
@@ -42,7 +51,7 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
         return Err(field.refuse(RefusalKind::TooLarge, message, Some(help)));
     }
     let mut seen = HashMap::new();
-    let elements = all(items.iter().enumerate().map(|(i, item)| {
+    let read = all(items.iter().enumerate().map(|(i, item)| {
         if item.ctx.full() {
             return Err(Refused);
         }
@@ -52,6 +61,7 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
         let misplaced = |key: &str| Some((RefusalKind::Rule, format!("{what} {}", why_not(key, kind)?)));
         let table = Table::of_kind(item.ctx, item.node, what.clone(), (&ELEMENT, kind), misplaced)?;
         let name = table.require("name").and_then(|field| element_name(&field, &mut seen));
+        let is_enabled = table.flag("enabled");
         let elements = match kind {
             BUSHING => bushing_elements(&table, robot, time)?,
             ON_JOINT => vec![element(&table, shape::on_joint(&table, robot)?, time)?],
@@ -62,10 +72,14 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
                 vec![material.element(&table, shape?)?]
             }
         };
-        let name = name?;
-        Ok(elements.into_iter().map(|plan| named(plan, name)).collect::<Vec<_>>())
+        let (name, is_enabled) = (name?, is_enabled?);
+        Ok(elements.into_iter().map(|plan| (named(plan, name), is_enabled)).collect::<Vec<_>>())
     }))?;
-    Ok(elements.into_iter().flatten().collect())
+    let mut elements = Elements::default();
+    for (place, (plan, is_enabled)) in read.into_iter().flatten().enumerate() {
+        if is_enabled { elements.acting.push(plan) } else { elements.absent.push((place, plan)) }
+    }
+    Ok(elements)
 }
 
 /// What the element is by its keys.
@@ -173,7 +187,7 @@ impl Materials {
         }
     }
 
-    fn element(self, table: &Table<'_>, Shape { measure, plan }: Shape) -> Read<ElementPlan> {
+    fn element(self, table: &Table<'_>, Shape { measure, plan, ends }: Shape) -> Read<ElementPlan> {
         let Material { law, is_network, files, parameters, inputs } = self.material;
         let (is_length, is_rotation) = (matches!(plan, ShapePlan::Points(_)), measure.is_rotation());
         let (parameters, (derivative, past)) = (parameters?, self.past?);
@@ -205,6 +219,7 @@ impl Materials {
             parameters,
             inputs,
             place,
+            ends,
             scheme_place,
         })
     }

@@ -38,8 +38,28 @@ struct Settable {
     name: String,
     unit: String,
     range: Range,
-    made: fn(usize, usize, f64) -> Setting,
+    /// Nothing where its element is not enabled.
+    made: Option<fn(usize, usize, f64) -> Setting>,
     at: (usize, usize),
+}
+
+/// What a plan has, by the names of its columns.
+struct Seen {
+    names: Vec<String>,
+    /// `None` of elements that are not enabled.
+    quantities: Vec<Option<Quantity>>,
+}
+
+impl Seen {
+    fn of(plan: &Plan) -> Self {
+        let whole = |observables: Observables| observables.with_leaves().with_joint_losses();
+        let names = |observables: &Observables| observables.columns().into_iter().map(|column| column.name.to_string());
+        let acting = whole(plan.acting_observables());
+        let known: HashMap<String, Quantity> = names(&acting).zip(acting.quantities()).collect();
+        let names: Vec<String> = names(&whole(plan.observables())).collect();
+        let quantities = names.iter().map(|name| known.get(name).copied()).collect();
+        Self { names, quantities }
+    }
 }
 
 /// Reads the events of a plan that has all else.
@@ -62,8 +82,7 @@ pub(crate) fn read(root: &Table<'_>, plan: &Plan) -> Read<Vec<EventPlan>> {
         let message = format!("has {} events; at most {MAX_EVENTS} are taken", items.len());
         return Err(field.refuse(RefusalKind::TooLarge, message, None));
     }
-    let observables = plan.observables().with_leaves().with_joint_losses();
-    let settable = settable(plan, &observables);
+    let (columns, settable) = (Seen::of(plan), settable(plan));
     let mut seen = HashMap::new();
     all(items.iter().enumerate().map(|(k, item)| {
         let name = item.node.get("name").and_then(|node| node.text());
@@ -73,11 +92,12 @@ pub(crate) fn read(root: &Table<'_>, plan: &Plan) -> Read<Vec<EventPlan>> {
             let name = checked_name(&field)?;
             unique(&mut seen, &field, name).map(|()| name)
         });
-        let when = table.require("when").and_then(|field| when(&field, &observables));
+        let when = table.require("when").and_then(|field| when(&field, &columns));
         let direction = table.word("direction", "direction").map(|word| (word, direction(word)));
         let action = action(&table, &settable);
         let (name, (when, columns), (word, direction), (action, done)) = (name?, when?, direction?, action?);
-        let record = json!({ "name": name, "when": when.to_string(), "direction": word, "action": done });
+        let written = table.get("when").and_then(|field| field.node.text());
+        let record = json!({ "name": name, "when": written, "direction": word, "action": done });
         let event = Event { name: name.to_owned(), when, columns, direction, action };
         Ok(EventPlan { event, place: item.node.place.clone(), record })
     }))
@@ -90,14 +110,29 @@ fn direction(word: &str) -> Direction {
         .map_or_else(Direction::default, |(_, direction)| direction)
 }
 
-/// The function, and what its columns hold.
-fn when(field: &Field<'_>, observables: &Observables) -> Read<(ColumnExpression, Vec<Quantity>)> {
+/// What passes zero where a comparison becomes true.
+fn compared(text: &str, names: &[&str]) -> String {
+    let sides: Vec<&str> = text.split(['<', '>', '=', '\u{2264}', '\u{2265}']).map(str::trim).collect();
+    let sides: Vec<&str> = sides.into_iter().filter(|side| !side.is_empty()).collect();
+    let [left, right] = sides[..] else {
+        return "an event happens where `when` passes zero: write \"gripper.z - 0.1\"; `direction` says which way"
+            .to_owned();
+    };
+    let left = if names.contains(&left) { left } else { names::nearest(left, names.iter().copied()).unwrap_or(left) };
+    let right =
+        if right.parse::<f64>().is_ok_and(|number| number >= 0.0) { right.to_owned() } else { format!("({right})") };
+    let way = if text.contains('<') { "falling" } else { "rising" };
+    format!("an event happens where `when` passes zero: write \"{left} - {right}\" and direction = \"{way}\"")
+}
+
+/// The function, and what its columns hold; of an element that is not enabled one that never passes zero.
+fn when(field: &Field<'_>, seen: &Seen) -> Read<(ColumnExpression, Vec<Quantity>)> {
     let text = field.text()?;
-    let (columns, quantities) = (observables.columns(), observables.quantities());
-    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    let names: Vec<&str> = seen.names.iter().map(String::as_str).collect();
     let when = ColumnExpression::parse(text, &field.ctx.constants(), &names).map_err(|error| {
         let help = match &error {
             ExpressionError::UnknownName { name, suggestion: None, .. } => names::suggest(name, names.iter().copied()),
+            ExpressionError::Condition { .. } => compared(text, &names),
             _ => "write an expression of t and of columns, such as \"gripper.z - 0.1\"".to_owned(),
         };
         let place = field.node.place_in_text(error.span());
@@ -108,7 +143,11 @@ fn when(field: &Field<'_>, observables: &Observables) -> Read<(ColumnExpression,
         let help = "write a function that passes zero, such as \"gripper.z - 0.1\"".to_owned();
         return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
     }
-    let held: Vec<Quantity> = when.columns().iter().map(|&k| quantities[k]).collect();
+    let held: Option<Vec<Quantity>> = when.columns().iter().map(|&k| seen.quantities[k]).collect();
+    let Some(held) = held else {
+        let never = ColumnExpression::parse("1", &[], &[]).expect("a number");
+        return Ok((never, Vec::new()));
+    };
     if let Some(k) = held.iter().position(|quantity| matches!(quantity, Quantity::Acceleration(_))) {
         let name = names[when.columns()[k]];
         let message =
@@ -134,11 +173,14 @@ fn action(table: &Table<'_>, settable: &[Settable]) -> Read<(Action, Value)> {
     }
     let values = Table::of_any(set.ctx, set.node, set.to_string())?;
     let read = all(values.fields().map(|field| setting(&field, settable)).collect::<Vec<_>>())?;
-    let (settings, records): (Vec<Setting>, Vec<(String, Value)>) = read.into_iter().unzip();
-    Ok((Action::Set(settings), json!({ "set": records.into_iter().collect::<Map<_, _>>() })))
+    let (settings, records): (Vec<Option<Setting>>, Vec<(String, Value)>) = read.into_iter().unzip();
+    Ok((
+        Action::Set(settings.into_iter().flatten().collect()),
+        json!({ "set": records.into_iter().collect::<Map<_, _>>() }),
+    ))
 }
 
-fn setting(field: &Field<'_>, settable: &[Settable]) -> Read<(Setting, (String, Value))> {
+fn setting(field: &Field<'_>, settable: &[Settable]) -> Read<(Option<Setting>, (String, Value))> {
     let Some(Settable { name, unit, range, made, at }) = settable.iter().find(|one| one.name == field.key) else {
         return Err(unsettable(field, settable));
     };
@@ -148,7 +190,7 @@ fn setting(field: &Field<'_>, settable: &[Settable]) -> Read<(Setting, (String, 
         let message = "varies with t, but what an event sets is a number";
         return Err(field.refuse(RefusalKind::Rule, message, Some("write a number or a quantity".to_owned())));
     };
-    Ok((made(at.0, at.1, value), (name.clone(), json!(value))))
+    Ok((made.map(|made| made(at.0, at.1, value)), (name.clone(), json!(value))))
 }
 
 fn unsettable(field: &Field<'_>, settable: &[Settable]) -> Refused {
@@ -162,24 +204,28 @@ fn unsettable(field: &Field<'_>, settable: &[Settable]) -> Refused {
 }
 
 /// The inputs of all elements, and the actuator forces on the velocities that forces drive.
-fn settable(plan: &Plan, observables: &Observables) -> Vec<Settable> {
-    let column = |quantity| observables.column(quantity);
-    let inputs =
-        plan.elements.iter().enumerate().flat_map(|(e, plan)| {
-            plan.element.entry.inputs.iter().enumerate().map(move |(i, input)| (e, i, input.range))
-        });
-    let inputs = inputs.map(|(e, i, range)| {
-        let column = column(Quantity::Element(e, ElementQuantity::InputValue(i)));
-        let made = |element, input, value| Setting::Input { element, input, value };
-        Settable { name: column.name, unit: column.unit, range, made, at: (e, i) }
-    });
-    let Motion::Forward(forward) = plan.system_at_start().motion else { return inputs.collect() };
+fn settable(plan: &Plan) -> Vec<Settable> {
+    let observables = plan.observables();
+    let mut acting = 0;
+    let mut settable = Vec::new();
+    for (place, element) in plan.all_elements().into_iter().enumerate() {
+        let is_absent = plan.absent.iter().any(|(absent, _)| *absent == place);
+        for (i, input) in element.element.entry.inputs.iter().enumerate() {
+            let column = observables.column(Quantity::Element(place, ElementQuantity::InputValue(i)));
+            let made: fn(usize, usize, f64) -> Setting =
+                |element, input, value| Setting::Input { element, input, value };
+            let made = (!is_absent).then_some(made);
+            settable.push(Settable { name: column.name, unit: column.unit, range: input.range, made, at: (acting, i) });
+        }
+        acting += usize::from(!is_absent);
+    }
+    let Motion::Forward(forward) = plan.system_at_start().motion else { return settable };
     let drives = plan.model.own_joints().zip(&forward.drives);
     let driven = drives.filter(|(_, drive)| matches!(drive, Drive::Force(_)));
-    let torques = driven.flat_map(|(j, _)| plan.model.v_range(j)).map(|k| {
-        let column = column(Quantity::Torque(k));
-        let made = |velocity, _, value| Setting::Torque { velocity, value };
-        Settable { name: column.name, unit: column.unit, range: Range::ANY, made, at: (k, 0) }
-    });
-    inputs.chain(torques).collect()
+    settable.extend(driven.flat_map(|(j, _)| plan.model.v_range(j)).map(|k| {
+        let column = observables.column(Quantity::Torque(k));
+        let made: fn(usize, usize, f64) -> Setting = |velocity, _, value| Setting::Torque { velocity, value };
+        Settable { name: column.name, unit: column.unit, range: Range::ANY, made: Some(made), at: (k, 0) }
+    }));
+    settable
 }

@@ -8,14 +8,14 @@ use super::keys::SIGNAL;
 use super::names;
 use super::plan::{Plan, SignalPlan};
 use super::reader::{Context, Field, Read, Refused, all};
-use super::refusal::{Place, RefusalKind};
+use super::refusal::{Place, RefusalKind, Remark};
 use super::signals::{self, Wanted};
 use super::units;
 use springpot::control::{Control, Feedback, InputFeedback, Sampling, Sense, TorqueFeedback};
 use springpot::integrate::Settings;
 use springpot::law::Range;
 use springpot::observe::Axis;
-use springpot::signal::expression::ExpressionError;
+use springpot::signal::expression::{ExpressionError, is_of_module};
 use springpot::signal::{ColumnExpression, Signal};
 
 /// Feedback as it is written.
@@ -131,7 +131,8 @@ fn names_state(text: &str) -> bool {
         let after = &text[at + 1..];
         let word = &after[..after.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(after.len())];
         let is_number = bytes.get(start).is_none_or(|c| c.is_ascii_digit()) || start == at;
-        follows && (!is_number || OF_ELEMENT.contains(&word) || OF_FORCES.contains(&word))
+        let is_of_module = is_of_module(&text[start..at + 1 + word.len()]);
+        follows && !is_of_module && (!is_number || OF_ELEMENT.contains(&word) || OF_FORCES.contains(&word))
     })
 }
 
@@ -213,7 +214,14 @@ fn check_sample(ctx: &Context<'_>, place: &Place, what: &str, period: f64, setti
             format!("{what} is sampled every {period} s, which is no whole number of steps of {} s", fixed.step),
             "steps of one size know the state at their ends alone: make `sample` a multiple of solver.step".to_owned(),
         ),
-        _ => return Ok(()),
+        _ => {
+            if period > settings.end {
+                let message = format!("{what} is sampled every {period} s, and the run ends at {} s", settings.end);
+                let help = "it stays what it is at t = 0: write a shorter `sample`, or a later time.end";
+                ctx.warn(Remark::at(place, message).help(help));
+            }
+            return Ok(());
+        }
     };
     Err(ctx.refuse(place.refuse(RefusalKind::Rule, message).help(help)))
 }
@@ -280,6 +288,10 @@ impl FeedbackText {
     ) -> Option<(String, String)> {
         let is_known = |sense: &Sense| self.sample.is_some() || !sense.follows_from_forces();
         let known = senses.iter().filter(|(_, sense)| is_known(sense)).map(|(name, _)| name.as_str());
+        if plan.lacks(name) {
+            let what = format!("{name} is of an element that is not enabled");
+            return Some((what, "enable it, or leave it out of the expression".to_owned()));
+        }
         let columns = || plan.observables().with_leaves().with_joint_losses().columns();
         if name == GRIPPER_ERROR || name.starts_with("energy.") || columns().iter().any(|column| column.name == name) {
             let what = format!("{name} is a column of the results, but no part of the state");
@@ -325,7 +337,8 @@ mod tests {
         {
             assert!(names_state(text), "{text}");
         }
-        for text in ["1.5*t", "sin(2.*t)", "1.e5", "t-1.e5", ".5", "t*.5", "3.", "0.1*sin(8*t)"] {
+        for text in ["1.5*t", "sin(2.*t)", "1.e5", "t-1.e5", ".5", "t*.5", "3.", "0.1*sin(8*t)", "20*np.sin(2*np.pi*t)"]
+        {
             assert!(!names_state(text), "{text}");
         }
     }

@@ -14,7 +14,7 @@ impl Scenario {
         self.overrides
             .iter()
             .chain(&self.sweeps)
-            .map(|one| &one.value)
+            .filter_map(|one| one.value.as_ref())
             .chain([&self.document])
             .for_each(|node| collect(node, &mut texts));
         texts.sort_unstable();

@@ -65,6 +65,7 @@ mod robot;
 mod root;
 mod schema;
 mod signals;
+mod spacing;
 mod sweep;
 mod system;
 mod time;
@@ -75,8 +76,8 @@ pub use cases::{Cases, SweptValue};
 pub use cure::Cure;
 pub use events::EventPlan;
 pub use figures::{
-    AxisLook, AxisRange, ColumnGlob, FigureFormat, FigureKind, FigureLabel, FigurePlan, FigureUnit, Look, RangeEnd,
-    Selection, Statistic, Summarised, SweptAxis,
+    AxisLook, AxisRange, ColumnGlob, FigureFormat, FigureKind, FigureLabel, FigureNumbers, FigurePlan, FigurePoints,
+    FigureUnit, Look, RangeEnd, Selection, Statistic, Summarised, SweptAxis,
 };
 pub use keys::MAX_CASES;
 pub use lone::LoneElement;
@@ -89,7 +90,7 @@ pub use plan::{
     BodyPlaces, ElementPlan, EndStops, FramePlan, Gripper, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan,
 };
 pub use portable::Portable;
-pub use refusal::{Place, Refusal, RefusalKind, Refusals, Source};
+pub use refusal::{Place, Refusal, RefusalKind, Refusals, Remark, Source};
 pub use schema::json_schema;
 
 use document::{MAX_BYTES, Node};

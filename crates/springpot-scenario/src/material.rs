@@ -10,6 +10,7 @@ use super::reader::{Context, Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::signals::{Wanted, celsius, how_outside, interval};
 use super::time::Duration;
+use super::units;
 use springpot::law::heat::{INPUT as TEMPERATURE, TEMPERATURE as RANGE};
 use springpot::law::{Entry, Heat, Input, NetworkText, NetworkTextError, Param, Table as LawTable};
 use std::sync::Arc;
@@ -290,7 +291,10 @@ fn parameters<'a>(table: &Table<'a>, law: &'a Entry, lists: &Lists, files: &[&st
 
     // Exponents name pure numbers, so those are read first.
     let pure = |param: &'a Param| match get(param) {
-        Some(field) if param.unit.is_empty() => Some(value(&field, param, &|_| None)),
+        Some(field) if param.unit.is_empty() => match swapped(&field, param, law) {
+            Some(order) => Some(Err(refuse_swapped(&field, param, order))),
+            None => Some(value(&field, param, &|_| None)),
+        },
         _ => None,
     };
     let pure: Vec<Option<Read<f64>>> = law.params.iter().map(pure).collect();
@@ -312,6 +316,21 @@ fn parameters<'a>(table: &Table<'a>, law: &'a Entry, lists: &Lists, files: &[&st
     });
     let values = all(values)?;
     missing_refused.map_or(Ok(values), Err)
+}
+
+/// The parameter of a network that stands where a coefficient does, though the unit of `param`, which stands where an order does, has it as its
+/// exponent: `springpot(alpha, c)`.
+fn swapped<'a>(field: &Field<'_>, param: &Param, law: &'a Entry) -> Option<&'a Param> {
+    let (_, unit) = units::split_quantity(field.node.text()?)?;
+    let (_, exponent) = unit.split_once('^')?;
+    let name: String = exponent.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    law.params.iter().find(|other| other.name == name && other.name != param.name && !other.unit.is_empty())
+}
+
+fn refuse_swapped(field: &Field<'_>, param: &Param, order: &Param) -> Refused {
+    let (param, order) = (&param.name, &order.name);
+    let message = format!("is {}, but stands in the network where an order does, a pure number", field.node.written());
+    field.refuse(RefusalKind::Rule, message, Some(format!("the coefficient comes first: springpot({param}, {order})")))
 }
 
 fn describe(name: &str, unit: &str, meaning: &str) -> String {

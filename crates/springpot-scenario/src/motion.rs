@@ -3,6 +3,7 @@
 mod controller;
 mod forward;
 mod gripper_path;
+mod idle;
 mod joints;
 mod prescribed;
 
@@ -252,6 +253,11 @@ impl MotionPlan {
     /// Whether a controller drives it, which says where the gripper should be.
     pub(crate) fn has_controller(&self) -> bool {
         self.controller.is_some()
+    }
+
+    /// Largest forces of the controller by joint, N·m or N, and where they are said.
+    pub fn force_limits(&self) -> Option<(&Place, Vec<(String, f64)>)> {
+        self.controller.as_ref().and_then(ControllerPlan::limits)
     }
 
     /// The controller in words: its kind, what it follows, when it acts.

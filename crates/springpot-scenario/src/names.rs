@@ -73,6 +73,22 @@ pub(crate) fn greek(letter: char) -> Option<&'static str> {
     })
 }
 
+/// The name among `known` that another word of the field stands for: `alpha` for `order` and α.
+pub(crate) fn other_word<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    let mut letters = name.chars();
+    let letter = letters.next().filter(|_| letters.next().is_none());
+    let ours: &[&str] = match (letter.and_then(greek), name.to_lowercase().as_str()) {
+        (Some(greek), _) => &[greek],
+        (None, "order" | "exponent" | "fractional_order") => &["alpha"],
+        (None, "stiffness") => &["k", "E_c"],
+        (None, "damping" | "viscosity" | "coefficient") => &["c"],
+        (None, "temperature") => &["T"],
+        (None, "voltage") => &["u", "U"],
+        _ => return None,
+    };
+    ours.iter().find_map(|ours| known.iter().copied().find(|known| known == ours))
+}
+
 /// `a, b and c`, shortened after twelve.
 pub fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 12;

@@ -1,10 +1,14 @@
 //! What the command line says in place of the file: values (`--set`) and sweeps (`--sweep`).
 
+mod removal;
+mod span;
+
+use self::removal::{forget_figures, take_out};
 use super::Scenario;
 use super::document::{self, Entry, MAX_BYTES, Node, Value};
 use super::path::{self, Target};
 use super::reader::{Context, Read};
-use super::refusal::{Place, Refusal, RefusalKind, Refusals, Source};
+use super::refusal::{Place, Refusal, RefusalKind, Refusals, SWEEP_FORM, SWEEP_OPTION, Source};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -13,7 +17,8 @@ use std::sync::Arc;
 pub(crate) struct Override {
     pub(crate) path: String,
     pub(crate) place: Place,
-    pub(crate) value: Node,
+    /// `None`: what is there is taken out.
+    pub(crate) value: Option<Node>,
 }
 
 /// An option and what is written behind it: `PATH=…`.
@@ -21,7 +26,7 @@ struct Assignment {
     source: Arc<Source>,
     path: String,
     path_place: Place,
-    /// Where the text behind the `=` stands.
+    /// Where the text behind the `=` stands; empty where there is none.
     value: Range<usize>,
 }
 
@@ -39,9 +44,8 @@ impl Assignment {
             return Err(refuse(&format!("{option} {:?} has no `=`", document::shorten(text))));
         };
         let (path, value) = (text[..equals].trim(), text[equals + 1..].trim());
-        if value.is_empty() || path.is_empty() {
-            let what = if path.is_empty() { "path" } else { "value" };
-            return Err(refuse(&format!("{option} {:?} has no {what}", document::shorten(text))));
+        if path.is_empty() {
+            return Err(refuse(&format!("{option} {:?} has no path", document::shorten(text))));
         }
         let start = equals + 1 + (text[equals + 1..].len() - text[equals + 1..].trim_start().len());
         let path_start = text.len() - text.trim_start().len();
@@ -60,27 +64,32 @@ impl Assignment {
 
     fn refuse_second(&self, earlier: &[Override], what: &str) -> Result<(), Refusals> {
         let Some(earlier) = earlier.iter().find(|earlier| earlier.path == self.path) else { return Ok(()) };
-        let written = document::shorten(earlier.value.place.text());
-        let message = format!("{} is {what} twice, and was {written} before", self.path);
+        let before = match &earlier.value {
+            Some(value) => format!("was {} before", document::shorten(value.place.text())),
+            None => "was taken out before".to_owned(),
+        };
+        let message = format!("{} is {what} twice, and {before}", self.path);
         Err(self.path_place.refuse(RefusalKind::Rule, message).help("leave one of them out").into())
     }
 
-    fn with(self, value: Node) -> Override {
+    fn with(self, value: Option<Node>) -> Override {
         Override { path: self.path, place: self.path_place, value }
     }
 }
 
 impl Scenario {
-    /// Overrides one value: `PATH=VALUE`, as in `element.strut.alpha=0.5`. VALUE is read as a TOML value, else as a text.
+    /// Overrides one value: `PATH=VALUE`, as in `element.strut.alpha=0.5`. VALUE is read as a TOML value, else as a text; without one,
+    /// `PATH=`, the key is taken out, and `sweep=` takes all sweeps out, with the figures of swept values.
     /// What the path leads to is checked with everything else, in [`Scenario::cases`].
     ///
     /// # Errors
-    /// No `=`, an empty path or an empty value; a path that was set before.
+    /// No `=`, an empty path; a path that was set before.
     pub fn set(&mut self, assignment: &str) -> Result<(), Refusals> {
-        let right = "write PATH=VALUE, as in element.strut.alpha=0.5 or element.strut.T=\"25 degC\"";
+        let right =
+            "write PATH=VALUE, as in element.strut.alpha=0.5 or element.strut.T=\"25 degC\"; PATH= takes the key out";
         let read = Assignment::read("--set", right, assignment)?;
         read.refuse_second(&self.overrides, "set")?;
-        let value = read.value(read.value.clone())?;
+        let value = (!read.value.is_empty()).then(|| read.value(read.value.clone())).transpose()?;
         self.overrides.push(read.with(value));
         Ok(())
     }
@@ -88,7 +97,7 @@ impl Scenario {
     /// As [`Self::set`], but in place of what was set at this path before.
     ///
     /// # Errors
-    /// No `=`, an empty path or an empty value.
+    /// No `=`, an empty path.
     pub fn set_anew(&mut self, assignment: &str) -> Result<(), Refusals> {
         if let Some(path) = path::equals_sign(assignment).and_then(|equals| path::keys(assignment[..equals].trim())) {
             self.overrides.retain(|earlier| path::keys(&earlier.path) != Some(path.clone()));
@@ -96,25 +105,29 @@ impl Scenario {
         self.set(assignment)
     }
 
-    /// Sweeps a parameter: `PATH=v1,v2,…`, `PATH=from:to:count` or `PATH=from:to:count:log`. It takes the place of the file's sweep of that
+    /// Sweeps a parameter: `PATH=v1,v2,…`, `PATH=FROM:TO:COUNT` or `PATH=FROM:TO:COUNT:log`. It takes the place of the file's sweep of that
     /// path, or stands beside the sweeps of the file and runs fastest. Commas inside brackets or quotes belong to a value. Paths that move together
     /// are `[PATH, PATH]=[v, w],…`.
     ///
     /// # Errors
-    /// As [`Scenario::set`]; an empty value.
+    /// No `=`, an empty path or an empty value; a path that was swept before; what begins as a span and is none.
     pub fn sweep(&mut self, assignment: &str) -> Result<(), Refusals> {
-        let right = "write PATH=v1,v2,… or PATH=from:to:count, as in element.strut.alpha=0.2,0.5 or element.strut.c=1:100:5:log";
-        let read = Assignment::read("--sweep", right, assignment)?;
+        let read = Assignment::read(SWEEP_OPTION, SWEEP_FORM, assignment)?;
         read.refuse_second(&self.sweeps, "swept")?;
         let refuse = |span: Range<usize>, message: &str| -> Refusals {
             let place = Place { source: read.source.clone(), span };
-            place.refuse(RefusalKind::Syntax, message).help(right).into()
+            place.refuse(RefusalKind::Syntax, message).help(SWEEP_FORM).into()
         };
         let text = &*read.source.text;
+        if read.value.is_empty() {
+            let message = format!("{SWEEP_OPTION} {:?} has no value", document::shorten(text));
+            return Err(refuse(0..text.len(), &message));
+        }
         let parts = split(text, read.value.clone(), ',');
         let place = Place { source: read.source.clone(), span: read.value.clone() };
-        let ends = split(text, read.value.clone(), ':');
-        let value = if parts.len() == 1 && is_span(text, &ends) {
+        let value = if parts.len() == 1
+            && let Some(ends) = span::ends(text, read.value.clone()).map_err(|(at, why)| refuse(at, &why))?
+        {
             let mut entries = Vec::new();
             let keys = ["from", "to", "count", "scale"];
             for (key, range) in keys.into_iter().zip(ends) {
@@ -130,16 +143,9 @@ impl Scenario {
             let values = parts.into_iter().map(|part| read.value(part).map(Arc::new));
             Value::Array(values.collect::<Result<_, _>>()?)
         };
-        self.sweeps.push(read.with(Node { value, place, tag: None }));
+        self.sweeps.push(read.with(Some(Node { value, place, tag: None })));
         Ok(())
     }
-}
-
-/// Whether the parts between colons are `from:to:count` or `from:to:count:log`.
-fn is_span(text: &str, parts: &[Range<usize>]) -> bool {
-    let part = |at: usize| parts.get(at).map(|range| &text[range.clone()]);
-    let has_count = part(2).is_some_and(|count| count.parse::<u64>().is_ok());
-    has_count && (parts.len() == 3 || parts.len() == 4 && matches!(part(3), Some("log" | "linear")))
 }
 
 /// The stretches between separators that stand in no brackets and no quotes, without blanks around them.
@@ -176,10 +182,21 @@ fn split(text: &str, range: Range<usize>, separator: char) -> Vec<Range<usize>> 
 
 /// Puts values and sweeps into the document; the paths of the values.
 pub(crate) fn apply(ctx: &Context<'_>, scenario: &Scenario, document: &mut Node) -> Read<Vec<Target>> {
-    let mut set = Vec::new();
+    let mut set: Vec<Target> = Vec::new();
+    let mut freed = Vec::new();
     for item in &scenario.overrides {
+        let Some(value) = &item.value else {
+            freed.extend(take_out(ctx, document, item)?);
+            // Tables behind one that is gone have moved.
+            let paths: Vec<_> = set.iter().map(|target| (target.written.clone(), target.place.clone())).collect();
+            set.clear();
+            for (path, place) in paths {
+                set.push(path::resolve(ctx, document, &path, &place)?);
+            }
+            continue;
+        };
         let target = path::resolve(ctx, document, &item.path, &item.place)?;
-        path::set(document, &target, item.value.clone());
+        path::set(document, &target, value.clone());
         set.push(target);
     }
     for item in &scenario.sweeps {
@@ -189,6 +206,7 @@ pub(crate) fn apply(ctx: &Context<'_>, scenario: &Scenario, document: &mut Node)
         }
         replace_sweep(ctx, document, &paths, item)?;
     }
+    forget_figures(ctx, document, &freed);
     Ok(set)
 }
 
@@ -202,6 +220,7 @@ fn together(written: &str) -> Vec<&str> {
 
 /// Gives the sweep of these paths other values, or adds one.
 fn replace_sweep(ctx: &Context<'_>, document: &mut Node, wanted: &[&str], item: &Override) -> Read<()> {
+    let Some(values) = &item.value else { return Ok(()) };
     let wanted_keys: Vec<_> = wanted.iter().map(|path| path::keys(path)).collect();
     let blocks = document.get("sweep").and_then(|sweep| sweep.items()).unwrap_or_default();
     let mut found = None;
@@ -230,7 +249,7 @@ fn replace_sweep(ctx: &Context<'_>, document: &mut Node, wanted: &[&str], item: 
             Node { value: Value::Array(nodes), place: item.place.clone(), tag: None }
         }
     };
-    let block = Value::Table(vec![entry("parameter", parameter), entry("values", item.value.clone())]);
+    let block = Value::Table(vec![entry("parameter", parameter), entry("values", values.clone())]);
     let block = Arc::new(Node { value: block, place: item.place.clone(), tag: None });
     let mut blocks = blocks.to_vec();
     match found {

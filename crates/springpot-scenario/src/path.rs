@@ -2,11 +2,12 @@
 
 use super::document::{Entry, Node, Value, shorten};
 use super::elements::kind_of;
-use super::keys::{COMPONENT, COMPONENTS, ELEMENT, Keys};
+use super::keys::{COMPONENT, COMPONENTS, ELEMENT, Keys, Shape};
 use super::material::{files_of, law_of};
 use super::names;
 use super::reader::{Context, Read};
 use super::refusal::{Place, RefusalKind};
+use super::root::SCENARIO;
 use std::sync::Arc;
 use toml::de::DeValue;
 
@@ -107,8 +108,33 @@ fn closing_quote(text: &str) -> Option<usize> {
     })
 }
 
-/// Where `path` leads in `document`. Refuses names that do not exist; keys of tables may be new, the reader judges them.
+/// Where `path` leads in `document`. Refuses names that do not exist, and whole tables; keys of tables may be new, the reader judges them.
 pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Place) -> Read<Target> {
+    let target = lead(ctx, document, path, place)?;
+    let node = get(document, &target);
+    let is_table = node.is_some_and(|node| node.entries().is_some());
+    if matches!(target.steps.last(), Some(Step::Index(_))) && is_table
+        || (target.steps.len() == 1 && node.is_some_and(is_section))
+    {
+        let message = format!("path {:?} leads to a whole table", shorten(path));
+        let help = match parts_of(document, &target) {
+            parts if parts.is_empty() => "go on to one of its keys".to_owned(),
+            parts => format!("go on to one of its keys: {}", names::list(parts.iter().map(String::as_str))),
+        };
+        return Err(ctx.refuse(place.refuse(RefusalKind::WrongType, message).help(help)));
+    }
+    Ok(target)
+}
+
+/// What a path may go on with.
+fn parts_of(document: &Node, target: &Target) -> Vec<String> {
+    let start = keys(&target.written).unwrap_or_default();
+    let longer = all(document).into_iter().filter(|path| path.len() == start.len() + 1 && path.starts_with(&start));
+    longer.filter_map(|path| path.last().map(|key| toml_key(key))).collect()
+}
+
+/// As [`resolve`], whatever it leads to.
+pub(crate) fn lead(ctx: &Context<'_>, document: &Node, path: &str, place: &Place) -> Read<Target> {
     let refuse = |kind, message: String, help: String| ctx.refuse(place.refuse(kind, message).help(help));
     let Some(keys) = keys(path) else {
         let message = format!("{:?} is not a path", shorten(path));
@@ -118,6 +144,10 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
     if keys[0] == "sweep" {
         let message = format!("{:?} is not a path: a [[sweep]] has no name", shorten(path));
         return Err(refuse(RefusalKind::BadName, message, "write --sweep PATH=v1,v2,…".to_owned()));
+    }
+    if SCENARIO.get(&keys[0]).is_none() {
+        let message = format!("path {:?}: the scenario has no `{}`", shorten(path), shorten(&keys[0]));
+        return Err(refuse(RefusalKind::UnknownName, message, meant(document, &keys)));
     }
     let mut node = Some(document);
     let mut steps = Vec::with_capacity(keys.len() + 1);
@@ -179,11 +209,6 @@ pub(crate) fn resolve(ctx: &Context<'_>, document: &Node, path: &str, place: &Pl
             }
         }
     }
-    let is_table = node.is_some_and(|node| node.entries().is_some());
-    if matches!(steps.last(), Some(Step::Index(_))) && is_table || (keys.len() == 1 && node.is_some_and(is_section)) {
-        let message = format!("path {:?} leads to a whole table", shorten(path));
-        return Err(refuse(RefusalKind::WrongType, message, "go on to one of its keys".to_owned()));
-    }
     Ok(Target { written: dotted(&keys), place: place.clone(), steps })
 }
 
@@ -192,7 +217,73 @@ fn is_section(node: &Node) -> bool {
         || node.items().is_some_and(|items| items.iter().any(|item| item.entries().is_some()))
 }
 
-fn dotted(keys: &[String]) -> String {
+/// Paths of all that is written in a document, tables among it; array items by name, parameters and inputs of elements as their own keys.
+pub(crate) fn all(document: &Node) -> Vec<Vec<String>> {
+    let (mut paths, mut walked) = (Vec::new(), Vec::new());
+    below(document, &mut walked, &mut paths);
+    paths
+}
+
+fn below(node: &Node, walked: &mut Vec<String>, paths: &mut Vec<Vec<String>>) {
+    if walked.len() >= MAX_KEYS {
+        return;
+    }
+    let mut go = |key: &str, node: &Node| {
+        walked.push(key.to_owned());
+        paths.push(walked.clone());
+        below(node, walked, paths);
+        walked.pop();
+    };
+    match &node.value {
+        Value::Table(entries) => {
+            for entry in entries.iter().filter(|entry| entry.key != "sweep") {
+                let is_own = matches!(entry.key.as_str(), "parameters" | "inputs" | BUSHING);
+                match entry.node.entries().filter(|_| is_own) {
+                    Some(own) => own.iter().for_each(|entry| go(&entry.key, &entry.node)),
+                    None => go(&entry.key, &entry.node),
+                }
+            }
+        }
+        Value::Array(items) => {
+            for item in items.iter() {
+                if let Some(name) = item.get("name").and_then(|name| name.text()) {
+                    go(name, item);
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+/// What to say of a path that begins with no part of a scenario: the whole path that ends like it, if one does.
+fn meant(document: &Node, keys: &[String]) -> String {
+    let all = all(document);
+    let ends: Vec<String> = all.iter().filter(|path| path.ends_with(keys)).map(|path| dotted(path)).collect();
+    let sections = SCENARIO.names();
+    // What need not be written in the file, as of [solver].
+    let unwritten = || {
+        let tables = SCENARIO.keys.iter().filter_map(|row| match row.shape {
+            Shape::Table(table) => Some((row.name, table)),
+            _ => None,
+        });
+        let mut holding = tables.filter(|(_, table)| keys.len() == 1 && table.get(&keys[0]).is_some());
+        holding.next().map(|(section, _)| format!("did you mean {section}.{}?", keys[0]))
+    };
+    match ends.len() {
+        0 => unwritten().unwrap_or_else(|| {
+            let paths: Vec<String> = all.iter().map(|path| dotted(path)).collect();
+            match names::nearest(&dotted(keys), paths.iter().map(String::as_str)) {
+                Some(right) => format!("did you mean {right}?"),
+                None => names::suggest(&keys[0], sections),
+            }
+        }),
+        1 => format!("did you mean {}?", ends[0]),
+        _ => format!("did you mean {}?", names::either(ends.iter().map(String::as_str).take(5))),
+    }
+}
+
+/// Keys as a path.
+pub(crate) fn dotted(keys: &[String]) -> String {
     keys.iter().map(|key| toml_key(key)).collect::<Vec<_>>().join(".")
 }
 

@@ -6,7 +6,7 @@ use super::figures::{ColumnGlob, FigurePlan};
 use super::metrics::MetricPlan;
 use super::motion::MotionPlan;
 use super::past::PastPlan;
-use super::refusal::Place;
+use super::refusal::{Place, Remark};
 use springpot::control::Control;
 use springpot::elements::{Component, Element};
 use springpot::integrate::Settings;
@@ -34,8 +34,10 @@ pub struct Plan {
     pub gripper: Option<Gripper>,
     /// Whether limits of joints are stops.
     pub end_stops: Option<EndStops>,
-    /// The elements, in the order of the scenario.
+    /// The elements that act, in the order of the scenario.
     pub elements: Vec<ElementPlan>,
+    /// Those that are not enabled, with their places among all elements of the scenario: they have columns, whose cells are empty.
+    pub absent: Vec<(usize, ElementPlan)>,
     /// What moves the robot.
     pub motion: MotionPlan,
     /// Torques and inputs that follow from the state.
@@ -50,7 +52,7 @@ pub struct Plan {
     /// Whether the results tell the leaves of the elements' laws.
     pub tells_leaves: bool,
     /// What deserves a warning in its files.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
     /// Duration, rows, accuracy and steps.
     pub settings: Settings,
     /// The figures; the same in every case.
@@ -60,6 +62,26 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// All elements in the order of the scenario, those that are not enabled among them.
+    pub fn all_elements(&self) -> Vec<&ElementPlan> {
+        let mut all: Vec<&ElementPlan> = self.elements.iter().collect();
+        self.absent.iter().for_each(|(place, plan)| all.insert(*place, plan));
+        all
+    }
+
+    /// The elements that act, with their places among all elements of the scenario.
+    pub fn placed_elements(&self) -> impl Iterator<Item = (usize, &ElementPlan)> {
+        let count = self.elements.len() + self.absent.len();
+        let is_absent = |place: &usize| self.absent.binary_search_by_key(place, |(absent, _)| *absent).is_ok();
+        (0..count).filter(move |place| !is_absent(place)).zip(&self.elements)
+    }
+
+    /// Whether the element whose column or component has this name is not enabled.
+    pub(crate) fn lacks(&self, column: &str) -> bool {
+        let of = |name: &str| column.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+        self.absent.iter().any(|(_, plan)| of(&plan.element.name))
+    }
+
     /// Names of the moving joints, those that follow another one included.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> {
         self.model.joint_names().iter().map(String::as_str)
@@ -170,6 +192,8 @@ pub struct ElementPlan {
     pub inputs: Vec<SignalPlan>,
     /// Where its parameters stand in the scenario (the element itself where it has none).
     pub place: Place,
+    /// Where what it acts along stands: its points, from one end to the other, or its joint.
+    pub ends: Vec<Place>,
     /// Where its scheme stands, if it says one.
     pub scheme_place: Option<Place>,
 }

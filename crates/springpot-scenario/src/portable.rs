@@ -37,7 +37,9 @@ impl Scenario {
         moved.visit(&self.document);
         for one in &self.overrides {
             let last = path::keys(&one.path).and_then(|keys| keys.last().cloned());
-            moved.value(last.as_deref().unwrap_or_default(), &one.value);
+            if let Some(value) = &one.value {
+                moved.value(last.as_deref().unwrap_or_default(), value);
+            }
         }
         let sets = self.overrides.iter().map(|one| &one.place.source);
         Portable {

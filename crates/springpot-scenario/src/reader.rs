@@ -4,7 +4,7 @@ use super::constants::{self, Constant};
 use super::document::{self, Entry, Node, Value, shorten};
 use super::keys::{self, Bound, Key, Keys, Need, Shape, Slot};
 use super::names;
-use super::refusal::{Refusal, RefusalKind, Refusals};
+use super::refusal::{Refusal, RefusalKind, Refusals, Remark};
 use super::signals::CsvCache;
 use super::units::{self, Unit};
 use super::urdf::UrdfCache;
@@ -16,6 +16,8 @@ use std::sync::Arc;
 
 /// Most refusals that are collected.
 const MAX_REFUSALS: usize = 50;
+/// An angle without a unit that is larger may be meant in degrees, rad.
+const FAR_TURN: f64 = 4.0 * std::f64::consts::PI;
 
 /// Something was refused; what, is noted in the [`Context`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +39,7 @@ pub(crate) struct Context<'a> {
     /// The constants read so far.
     constants: RefCell<Vec<Constant>>,
     /// What deserves a warning.
-    warnings: RefCell<Vec<String>>,
+    warnings: RefCell<Vec<Remark>>,
 }
 
 impl<'a> Context<'a> {
@@ -78,15 +80,15 @@ impl<'a> Context<'a> {
     }
 
     /// Notes what deserves a warning.
-    pub(crate) fn warn(&self, message: String) {
+    pub(crate) fn warn(&self, remark: Remark) {
         let mut warnings = self.warnings.borrow_mut();
-        if !warnings.contains(&message) {
-            warnings.push(message);
+        if !warnings.contains(&remark) && warnings.len() < MAX_REFUSALS {
+            warnings.push(remark);
         }
     }
 
     /// What was noted so far.
-    pub(crate) fn warnings(&self) -> Vec<String> {
+    pub(crate) fn warnings(&self) -> Vec<Remark> {
         self.warnings.borrow().clone()
     }
 
@@ -205,14 +207,17 @@ impl<'a> Table<'a> {
                 ctx.refuse(entry.key_place.refuse(kind, reason));
                 continue;
             }
-            suspected.extend(names::nearest(&entry.key, known.iter().copied()).map(str::to_owned));
+            let other = names::other_word(&entry.key, known);
+            let meant = other.or_else(|| names::nearest(&entry.key, known.iter().copied()));
+            suspected.extend(meant.map(str::to_owned));
             let message = format!("unknown key `{key}` in {what}");
+            let help = other.map(|right| format!("did you mean `{right}`?"));
             ctx.refuse(
                 entry
                     .key_place
                     .refuse(RefusalKind::UnknownKey, message)
                     .label("unknown key")
-                    .help(names::suggest(&entry.key, known.iter().copied())),
+                    .help(help.unwrap_or_else(|| names::suggest(&entry.key, known.iter().copied()))),
             );
         }
         Ok(Self { ctx, node, what, entries, keys: None, suspected })
@@ -428,6 +433,7 @@ impl<'a> Field<'a> {
                 let value = constants::expression(self, Some(""), &|_| None)?;
                 Value::Number { value, integer: document::whole(value) }
             }
+            Value::Number { value, integer: None } => Value::Number { value: *value, integer: document::whole(*value) },
             value => value.clone(),
         };
         match value {
@@ -471,6 +477,12 @@ impl<'a> Field<'a> {
             return Err(self.refuse(RefusalKind::OutOfRange, message, Some(unit_help(unit))));
         }
         self.ctx.note_swept(self.node, value, unit);
+        if unit == "rad" && value.abs() > FAR_TURN && self.node.text().is_none_or(is_bare) {
+            let turns = value.abs() / std::f64::consts::TAU;
+            let message = format!("{self} is {} without a unit: rad, and so {turns:.1} turns", self.node.label());
+            let help = format!("if it is in degrees, write \"{0} deg\"; if not, \"{0} rad\"", self.node.label().trim());
+            self.ctx.warn(Remark::at(&self.node.place, message).help(help));
+        }
         Ok(value)
     }
 
@@ -560,6 +572,11 @@ impl<'a> Field<'a> {
         let read = [x.number(unit), y.number(unit), z.number(unit)];
         Ok([read[0]?, read[1]?, read[2]?])
     }
+}
+
+/// Whether a text is a number and nothing else.
+fn is_bare(text: &str) -> bool {
+    text.trim().parse::<f64>().is_ok()
 }
 
 fn or_quantity(unit: &str) -> String {

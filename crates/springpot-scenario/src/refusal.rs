@@ -4,6 +4,13 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// What sweeps of the command line are called.
+pub(crate) const SWEEP_OPTION: &str = "--sweep";
+
+/// How they are written.
+pub(crate) const SWEEP_FORM: &str =
+    "write PATH=v1,v2,… or PATH=FROM:TO:COUNT[:log], as in element.strut.alpha=0.2,0.5 or element.strut.c=1:100:5:log";
+
 /// A text that was read: the scenario file or one `--set` argument.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Source {
@@ -135,6 +142,19 @@ impl Refusal {
         }
     }
 
+    /// With how a sweep is written, where it is about one of the command line.
+    fn with_form(mut self) -> Self {
+        let help = self.help.take();
+        self.help = match help {
+            Some(help) if self.file == SWEEP_OPTION && !help.contains("FROM:TO:COUNT") => {
+                Some(format!("{help}; a sweep is PATH=v1,v2,… or PATH=FROM:TO:COUNT[:log]"))
+            }
+            None if self.file == SWEEP_OPTION => Some(SWEEP_FORM.to_owned()),
+            help => help,
+        };
+        self
+    }
+
     /// With these words under the place.
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
@@ -164,6 +184,35 @@ impl fmt::Display for Refusal {
     }
 }
 
+/// What a run goes on in spite of, and its author should know.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Remark {
+    /// What it is, with the value.
+    pub message: String,
+    /// Where it stands, if it stands in one place.
+    pub place: Option<Place>,
+    /// What can be done.
+    pub help: Option<String>,
+}
+
+impl Remark {
+    /// What stands nowhere.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: brief(message.into()), place: None, help: None }
+    }
+
+    /// What stands at `place`.
+    pub fn at(place: &Place, message: impl Into<String>) -> Self {
+        Self { place: Some(place.clone()), ..Self::new(message) }
+    }
+
+    /// With what can be done.
+    #[must_use]
+    pub fn help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+}
+
 /// Why a scenario is refused: at least one refusal, in the order of the text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub struct Refusals(Vec<Refusal>);
@@ -173,7 +222,7 @@ impl Refusals {
         debug_assert!(!list.is_empty());
         list.sort_by(|a, b| (&a.file, a.span.start).cmp(&(&b.file, b.span.start)));
         list.dedup();
-        Self(list)
+        Self(list.into_iter().map(Refusal::with_form).collect())
     }
 
     /// All of them.
@@ -199,7 +248,7 @@ impl Refusals {
 
 impl From<Refusal> for Refusals {
     fn from(refusal: Refusal) -> Self {
-        Self(vec![refusal])
+        Self(vec![refusal.with_form()])
     }
 }
 

@@ -29,7 +29,7 @@ impl Plan {
             "urdf": self.urdf.as_ref().map(urdf),
             "bodies": self.bodies.iter().map(|body| self.body(body)).collect::<Vec<_>>(),
             "gripper": self.gripper.as_ref().map(|gripper| self.anchor(&gripper.anchor)),
-            "elements": self.elements.iter().map(|element| self.element(element)).collect::<Vec<_>>(),
+            "elements": self.resolved_elements(),
             "motion": self.motion.resolved(),
             "time": time,
             "solver": self.solver(),
@@ -46,6 +46,17 @@ impl Plan {
             resolved["metrics"] = self.metrics.iter().map(|plan| json!(plan.metric)).collect();
         }
         resolved
+    }
+
+    /// All elements; only those that are not enabled say so.
+    fn resolved_elements(&self) -> Vec<Value> {
+        let mut elements: Vec<Value> = self.elements.iter().map(|plan| self.element(plan)).collect();
+        for (place, plan) in &self.absent {
+            let mut element = self.element(plan);
+            element["enabled"] = json!(false);
+            elements.insert(*place, element);
+        }
+        elements
     }
 
     /// The keys of `[solver]`.

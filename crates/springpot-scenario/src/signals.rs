@@ -5,7 +5,7 @@ use super::keys::SIGNAL;
 use super::names;
 use super::plan::SignalPlan;
 use super::reader::{Field, Read, Refused, Table};
-use super::refusal::RefusalKind;
+use super::refusal::{RefusalKind, Remark};
 use super::units::{self, Unit};
 use crate::csv::{CsvError, CsvProblem, CsvTable, Dialect};
 use springpot::law::Range;
@@ -205,7 +205,7 @@ pub(crate) fn csv_table(table: &Table<'_>, field: &Field<'_>, end: Option<f64>) 
             CsvProblem::MissingColumn { suggestion: Some(column), name, .. } if name == time => {
                 format!("write time = {column:?}")
             }
-            _ => "write the path of a CSV file, relative to the scenario, with a column t in seconds, or say time and time_unit".to_owned(),
+            problem => how_to_mend(problem, time),
         };
         field.refuse(RefusalKind::File, format!("cannot be read: {error}"), Some(help))
     })?;
@@ -221,12 +221,29 @@ pub(crate) fn csv_table(table: &Table<'_>, field: &Field<'_>, end: Option<f64>) 
         }
         Some(end) => {
             if last > FAR_LONGER * end {
+                let message = format!("{name:?} covers {last} s, and the run ends at {end} s");
                 let advice = "if its times are in milliseconds, write time_unit = \"ms\"";
-                field.ctx.warn(format!("{name:?} covers {last} s, and the run ends at {end} s: {advice}"));
+                field.ctx.warn(Remark::at(&field.node.place, message).help(advice));
             }
             Ok(samples)
         }
         None => Ok(samples),
+    }
+}
+
+/// What to do about a CSV file that cannot be read.
+fn how_to_mend(problem: &CsvProblem, time: &str) -> String {
+    match problem {
+        CsvProblem::TimeNotIncreasing { line, .. } => format!(
+            "sort the rows by {time} and leave out times that come twice (look at line {line}); if {time} is not the time, write time = \"NAME\""
+        ),
+        CsvProblem::NoHeader { .. } => format!("write the names of the columns above the numbers, such as {time},q1"),
+        CsvProblem::Ragged { .. } => "give every row as many cells as the header has".to_owned(),
+        CsvProblem::NotANumber { .. } | CsvProblem::NoNumber { .. } | CsvProblem::NotFinite { .. } => {
+            "write a number there, with a decimal point; where decimals have commas, columns are separated by ;".to_owned()
+        }
+        _ => "write the path of a CSV file, relative to the scenario, with a column t in seconds, or say time and time_unit"
+            .to_owned(),
     }
 }
 

@@ -2,9 +2,11 @@
 
 use super::document::{Node, Value, shorten, shortest, whole};
 use super::keys::{MAX_BLOCKS, MAX_CASES, MAX_TOGETHER, SPAN, SWEEP};
+use super::names;
 use super::path::{self, Target};
 use super::reader::{Field, Read, Table, all};
-use super::refusal::{Place, RefusalKind};
+use super::refusal::{Place, RefusalKind, Remark, SWEEP_OPTION};
+use super::spacing::Spacing;
 use super::units;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -14,6 +16,8 @@ use std::sync::Arc;
 pub(crate) struct Axis {
     pub(crate) targets: Vec<Target>,
     pub(crate) values: Values,
+    /// What its values are called, where the file says so.
+    pub(crate) names: Option<Vec<String>>,
     pub(crate) place: Place,
 }
 
@@ -30,10 +34,7 @@ pub(crate) enum Values {
 /// Values from one number to another.
 #[derive(Debug, Clone)]
 pub(crate) struct Span {
-    from: f64,
-    to: f64,
-    count: usize,
-    logarithmic: bool,
+    numbers: Spacing,
     /// Unit behind every number; empty for plain numbers.
     unit: String,
     place: Place,
@@ -44,8 +45,31 @@ impl Axis {
         match &self.values {
             Values::List(list) => list.len(),
             Values::Zipped(rows) => rows.len(),
-            Values::Span(span) => span.count,
+            Values::Span(span) => span.numbers.count,
         }
+    }
+
+    /// What is to be said of a span of the command line that could mean from, step and end as well: FROM:TO:COUNT where the step goes from
+    /// FROM to COUNT in fewer steps than values are asked for.
+    pub(crate) fn read_otherwise(&self) -> Option<Remark> {
+        let Values::Span(span) = &self.values else { return None };
+        if span.place.source.name != SWEEP_OPTION {
+            return None;
+        }
+        let ends: Vec<i64> = span.place.text().split(':').map(|end| end.trim().parse().ok()).collect::<Option<_>>()?;
+        let [from, step, end] = ends[..] else { return None };
+        let distance = end.checked_sub(from)?;
+        let steps = (step != 0 && distance % step == 0).then(|| distance / step)?;
+        if !(1..end).contains(&steps) {
+            return None;
+        }
+        let values = shown(self.len(), |k| self.label(k));
+        let path = self.targets.first().map_or("", |target| target.written.as_str());
+        let message = format!("{path}={} is {} values from {from} to {step}: {values}", span.place.text(), self.len());
+        let number = |k: usize| (from + step * i64::try_from(k).unwrap_or(0)).to_string();
+        let stepped = shown(usize::try_from(steps).unwrap_or(0) + 1, number);
+        let help = format!("it is FROM:TO:COUNT[:log]; for {stepped} write {path}={from}:{end}:{}", steps + 1);
+        Some(Remark::at(&span.place, message).help(help))
     }
 
     /// Value `k` of the parameter `at` as a node that carries `tag`.
@@ -54,7 +78,7 @@ impl Axis {
             Values::List(list) => Node { tag: Some(tag), ..Node::clone(&list[k]) },
             Values::Zipped(rows) => Node { tag: Some(tag), ..Node::clone(&rows[k][at]) },
             Values::Span(span) => {
-                let number = span.number(k);
+                let number = span.numbers.number(k);
                 let value = if span.unit.is_empty() {
                     Value::Number { value: number, integer: whole(number) }
                 } else {
@@ -65,31 +89,36 @@ impl Axis {
         }
     }
 
-    /// Index of every label of a list that the parameter `at` takes, for looking up many.
+    /// Index of every name, and of every label of a list that the parameter `at` takes, for looking up many; names come first.
     pub(crate) fn labels(&self, at: usize) -> HashMap<String, usize> {
-        match &self.values {
+        let mut labels: HashMap<String, usize> = match &self.values {
             Values::List(list) => list.iter().enumerate().rev().map(|(k, node)| (node.label(), k)).collect(),
             Values::Zipped(rows) => rows.iter().enumerate().rev().map(|(k, row)| (row[at].label(), k)).collect(),
             Values::Span(_) => HashMap::new(),
-        }
+        };
+        labels.extend(self.names.iter().flatten().enumerate().map(|(k, name)| (name.clone(), k)));
+        labels
     }
 
     /// Index of a number or quantity that is written like the ends of a span.
     pub(crate) fn index_in_span(&self, node: &Node) -> Option<usize> {
         let Values::Span(span) = &self.values else { return None };
         match &node.value {
-            Value::Number { value, .. } if span.unit.is_empty() => span.index(*value),
+            Value::Number { value, .. } if span.unit.is_empty() => span.numbers.index(*value),
             Value::Text(text) => {
                 let (number, unit) = units::split_quantity(text)?;
                 let number = units::parse_quantity(number, "", &|_| None).ok()?;
-                (unit == span.unit).then(|| span.index(number)).flatten()
+                (unit == span.unit).then(|| span.numbers.index(number)).flatten()
             }
             _ => None,
         }
     }
 
-    /// Value `k` for a legend, as written; of parameters that take their own, all of them.
+    /// Value `k` for a legend: its name, else as written; of parameters that take their own, all of them.
     pub(crate) fn label(&self, k: usize) -> String {
+        if let Some(names) = &self.names {
+            return names[k].clone();
+        }
         match &self.values {
             Values::Zipped(rows) => rows[k].iter().map(|node| node.label()).collect::<Vec<_>>().join(", "),
             _ => self.label_of(k, 0),
@@ -101,43 +130,17 @@ impl Axis {
         match &self.values {
             Values::List(list) => list[k].label(),
             Values::Zipped(rows) => rows[k][at].label(),
-            Values::Span(span) if span.unit.is_empty() => shortest(span.number(k)),
-            Values::Span(span) => format!("{} {}", shortest(span.number(k)), span.unit),
+            Values::Span(span) if span.unit.is_empty() => shortest(span.numbers.number(k)),
+            Values::Span(span) => format!("{} {}", shortest(span.numbers.number(k)), span.unit),
         }
     }
 }
 
-impl Span {
-    /// Index of the value that is `number`.
-    fn index(&self, number: f64) -> Option<usize> {
-        let part = if self.logarithmic {
-            (number / self.from).ln() / (self.to / self.from).ln()
-        } else {
-            (number - self.from) / (self.to - self.from)
-        };
-        let k = (part * (self.count - 1) as f64).round();
-        let inside = k >= 0.0 && k < self.count as f64;
-        let near = |k: usize| (self.number(k) - number).abs() <= 1e-12 * number.abs();
-        inside.then_some(k as usize).filter(|&k| near(k))
-    }
-
-    /// Number `k`; the ends are exact, what lies between is rounded to 15 digits so that 0.3 is 0.3.
-    fn number(&self, k: usize) -> f64 {
-        let last = self.count - 1;
-        if k == 0 {
-            return self.from;
-        }
-        if k >= last {
-            return self.to;
-        }
-        let part = k as f64 / last as f64;
-        let exact = if self.logarithmic {
-            self.from * (self.to / self.from).powf(part)
-        } else {
-            self.from * (1.0 - part) + self.to * part
-        };
-        format!("{exact:.14e}").parse().unwrap_or(exact)
-    }
+/// Values in a row; of many the first ones and the last.
+fn shown(len: usize, value: impl Fn(usize) -> String) -> String {
+    const SHOWN: usize = 8;
+    let all = |range: std::ops::Range<usize>| range.map(&value).collect::<Vec<_>>().join(", ");
+    if len <= SHOWN { all(0..len) } else { format!("{}, …, {}", all(0..3), value(len - 1)) }
 }
 
 /// Reads every `[[sweep]]`. The first block is the outer loop of the grid, the last runs fastest.
@@ -187,7 +190,32 @@ fn axis(root: &Table<'_>, item: &Field<'_>, i: usize) -> Read<Axis> {
     let values = values_field.as_ref().map_err(|refused| *refused).and_then(values);
     let (targets, values) = (targets?, values?);
     let values = zipped(values, targets.len(), &values_field?)?;
-    Ok(Axis { values, targets, place: item.node.place.clone() })
+    let mut axis = Axis { values, targets, names: None, place: item.node.place.clone() };
+    axis.names = table.get("names").map(|field| names(&field, axis.len())).transpose()?;
+    Ok(axis)
+}
+
+/// A name for each of `count` values.
+fn names(field: &Field<'_>, count: usize) -> Read<Vec<String>> {
+    let items = field.items("an array of texts, one for each value")?;
+    if items.len() != count {
+        let message = format!("holds {} names for {count} values", items.len());
+        return Err(field.refuse(RefusalKind::Rule, message, Some("write one for each value".to_owned())));
+    }
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    all(items.iter().enumerate().map(|(k, item)| {
+        let name = item.text()?;
+        let right = || Some("write a short text that tells the value from the others".to_owned());
+        if name.trim() != name || name.is_empty() || name.chars().any(char::is_control) {
+            let message = format!("holds {name:?}, which is no name: it is empty, or begins or ends with a blank");
+            return Err(item.refuse(RefusalKind::BadName, message, right()));
+        }
+        if let Some(earlier) = seen.insert(name, k) {
+            let message = format!("calls values {} and {} alike: {:?}", earlier + 1, k + 1, shorten(name));
+            return Err(item.refuse(RefusalKind::BadName, message, right()));
+        }
+        Ok(name.to_owned())
+    }))
 }
 
 fn targets(field: &Field<'_>, document: &Node) -> Read<Vec<Target>> {
@@ -206,6 +234,16 @@ fn targets(field: &Field<'_>, document: &Node) -> Read<Vec<Target>> {
                 let message = format!("is {:?}, which cannot be swept", shorten(&target.written));
                 let help = "names, figures and outputs are the same in every case".to_owned();
                 Err(field.refuse(RefusalKind::Rule, message, Some(help)))
+            }
+            ("constants", name) if path::get(document, &target).is_none() => {
+                let known = document.get("constants").and_then(|constants| constants.entries()).unwrap_or_default();
+                let message =
+                    format!("is {:?}, but there is no constant `{}`", shorten(&target.written), shorten(name));
+                let help = match known.is_empty() {
+                    true => format!("write it into the file, [constants] {name} = …, and use it there"),
+                    false => names::suggest(name, known.iter().map(|entry| entry.key.as_str())),
+                };
+                Err(field.refuse(RefusalKind::UnknownName, message, Some(help)))
             }
             _ => Ok(target),
         }
@@ -254,34 +292,17 @@ fn values(field: &Field<'_>) -> Read<Values> {
 fn span(field: &Field<'_>) -> Read<Span> {
     let table = field.table(&SPAN)?;
     let end = |key| table.require(key).and_then(|field| end_of_span(&field));
-    let (from, to) = (end("from"), end("to"));
-    let count = table.require("count").and_then(|field| field.whole());
-    let logarithmic = table.get("scale").map_or(Ok(false), |field| match field.text()? {
-        "linear" => Ok(false),
-        "log" => Ok(true),
-        other => {
-            let message = format!("is {:?}, which is no scale", shorten(other));
-            Err(field.refuse(RefusalKind::UnknownName, message, Some("write \"linear\" or \"log\"".to_owned())))
+    let ends = (|ends: [Read<(f64, String)>; 2]| {
+        let [from, to] = ends;
+        let ((from, unit), (to, to_unit)) = (from?, to?);
+        if unit != to_unit {
+            let message = format!("has a `from` in {} and a `to` in {}", unit_name(&unit), unit_name(&to_unit));
+            return Err(field.refuse(RefusalKind::Rule, message, Some("write both ends in one unit".to_owned())));
         }
-    });
-    let ((from, unit), (to, to_unit), count, logarithmic) = (from?, to?, count?, logarithmic?);
-    if unit != to_unit {
-        let message = format!("has a `from` in {} and a `to` in {}", unit_name(&unit), unit_name(&to_unit));
-        return Err(field.refuse(RefusalKind::Rule, message, Some("write both ends in one unit".to_owned())));
-    }
-    if logarithmic && (from == 0.0 || to == 0.0 || (from > 0.0) != (to > 0.0)) {
-        let message = format!("runs from {from} to {to}, which has no logarithmic scale");
-        let help = "both ends must be above zero, or both below".to_owned();
-        return Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)));
-    }
-    Ok(Span {
-        from,
-        to,
-        count: usize::try_from(count).unwrap_or(2),
-        logarithmic,
-        unit,
-        place: field.node.place.clone(),
-    })
+        Ok(([from, to], unit))
+    })([end("from"), end("to")]);
+    let (numbers, unit) = Spacing::read(field, &table, ends)?;
+    Ok(Span { numbers, unit, place: field.node.place.clone() })
 }
 
 fn unit_name(unit: &str) -> &str {

@@ -1,11 +1,13 @@
 //! From a plan to what the time loop runs.
 
-use super::plan::{EndStops, Plan};
+use super::plan::{ElementPlan, EndStops, Plan};
 use springpot::control::Control;
 use springpot::integrate::{Stop, System};
 use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::Course;
 use springpot::observe::Observables;
+use springpot::table::Column;
+use std::collections::HashMap;
 
 /// So much of a gripper path is solved where its start alone is wanted.
 const BEGINNING: f64 = 1e-9;
@@ -59,9 +61,35 @@ impl Plan {
         }
     }
 
-    /// What can be observed of the system, but for the energy lost in joints.
+    /// The columns of the rows of all cases, in order: those of elements that are not enabled are among them.
+    pub fn columns(&self) -> Vec<Column> {
+        let observables = self.observables();
+        if self.tells_joint_losses { observables.with_joint_losses() } else { observables }.columns()
+    }
+
+    /// For each of [`Self::columns`] its place in a row of `system`, which was made of this plan; `None` where a cell is empty. Nothing where
+    /// all elements are enabled: rows are as they are.
+    pub fn places(&self, system: &System) -> Option<Vec<Option<usize>>> {
+        if self.absent.is_empty() {
+            return None;
+        }
+        let own = system.columns();
+        let own: HashMap<&str, usize> = own.iter().enumerate().map(|(k, column)| (&*column.name, k)).collect();
+        Some(self.columns().iter().map(|column| own.get(&*column.name).copied()).collect())
+    }
+
+    /// What can be observed of all elements, but for the energy lost in joints.
     pub(crate) fn observables(&self) -> Observables {
-        let observables = Observables::new(&self.model, self.elements.iter().map(|plan| &plan.element));
+        self.observables_of(self.all_elements().into_iter())
+    }
+
+    /// As [`Self::observables`], without the elements that are not enabled: what the system has.
+    pub(crate) fn acting_observables(&self) -> Observables {
+        self.observables_of(self.elements.iter())
+    }
+
+    fn observables_of<'a>(&self, elements: impl Iterator<Item = &'a ElementPlan>) -> Observables {
+        let observables = Observables::new(&self.model, elements.map(|plan| &plan.element));
         let observables = if self.tells_leaves { observables.with_leaves() } else { observables };
         match self.gripper {
             Some(_) => observables.with_gripper(self.motion.has_path() || self.motion.has_controller()),

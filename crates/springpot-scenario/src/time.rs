@@ -1,17 +1,16 @@
 //! `[time]` and `[solver]`.
 
 use super::document::{Node, shorten};
-use super::keys::solver::{ADAPTIVE, FIXED, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
-use super::keys::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME};
+use super::keys::solver::{ADAPTIVE, FIXED, MAX_ROWS, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
+use super::keys::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
 use super::motion::MotionKind;
 use super::names;
 use super::reader::{Field, Read, Table};
 use super::refusal::RefusalKind;
+use super::spacing::Spacing;
 use springpot::integrate::fixed::Method;
 use springpot::integrate::{FixedStep, RowTimes, Settings};
 
-/// Most rows of one run.
-const MAX_ROWS: f64 = 2e7;
 /// Where nothing is said of the memory's kernel, its error is `rtol` divided by this.
 const MEMORY_SHARE: f64 = 100.0;
 
@@ -58,7 +57,10 @@ pub(crate) fn read(root: &Table<'_>) -> Read<Duration> {
 }
 
 fn output_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
-    let items = field.items("an array of times")?;
+    if field.node.entries().is_some() {
+        return spaced_times(field, end);
+    }
+    let items = field.items("an array of times, or a table with from, to, count")?;
     if items.is_empty() {
         return Err(field.refuse(RefusalKind::Missing, "is empty", Some("write times in 0 … end".to_owned())));
     }
@@ -78,6 +80,38 @@ fn output_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
             ));
         }
         times.push(time);
+    }
+    Ok(times)
+}
+
+/// Times at equal differences or equal ratios.
+fn spaced_times(field: &Field<'_>, end: f64) -> Read<Vec<f64>> {
+    let table = field.table(&TIMES)?;
+    let times = ["from", "to"].map(|key| table.require(key).and_then(|field| Ok((field.quantity()?, field))));
+    let ends = (|| {
+        let [from, to] = times;
+        let ((from, from_field), (to, to_field)) = (from?, to?);
+        let inside = || Some("write times in 0 … end".to_owned());
+        if from < 0.0 {
+            let message = format!("is {}, before the motion starts", from_field.node.label());
+            return Err(from_field.refuse(RefusalKind::OutOfRange, message, inside()));
+        }
+        if to > end {
+            let message = format!("is {}, beyond the end at {end} s", to_field.node.label());
+            return Err(to_field.refuse(RefusalKind::OutOfRange, message, inside()));
+        }
+        if from >= to {
+            let message = format!("runs from {from} s to {to} s");
+            let help = "write the earlier time as `from`".to_owned();
+            return Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)));
+        }
+        Ok(([from, to], ()))
+    })();
+    let (spacing, ()) = Spacing::read(field, &table, ends)?;
+    let times: Vec<f64> = (0..spacing.count).map(|k| spacing.number(k)).collect();
+    if times.windows(2).any(|pair| pair[1] <= pair[0]) {
+        let message = format!("holds {} times too close to one another to be told apart", times.len());
+        return Err(field.refuse(RefusalKind::OutOfRange, message, Some("write a smaller count".to_owned())));
     }
     Ok(times)
 }

@@ -6,7 +6,7 @@
 //!
 //! | | symbols |
 //! |---|---|
-//! | with prefixes p n u µ m c k M G | m g s rad N J W Pa Hz V A C F ohm K |
+//! | with prefixes p n u µ m c k M G | m g s rad N J W Pa Hz V A C F ohm K mol |
 //! | without | min h deg degC degF % 1 |
 //!
 //! A whole symbol wins over prefix + symbol: `min` is a minute. rad, deg, % and 1 have no dimension. `degC` and `degF`
@@ -95,6 +95,24 @@ impl Unit {
     /// SI = scale·number + shift; the SI value of the unit's zero: 273.15 for degC, 0 for all that is not affine.
     pub fn shift(&self) -> f64 {
         self.offset.map_or(0.0, |offset| offset.mul(self.up).div(self.down).to_f64())
+    }
+
+    /// The SI unit of its values: as written where that is one, else that of its dimension; angles are in rad, pure numbers have none.
+    pub fn si_name(&self) -> String {
+        let plain = self.dimension.to_string();
+        if self.text == "1" || self.text == "%" {
+            return String::new();
+        }
+        if self.scale() == 1.0 && !self.is_affine() {
+            return self.text.clone();
+        }
+        let ends = |name: &str| self.text.ends_with(name);
+        match plain.as_str() {
+            "1" if ends("deg") || ends("rad") => "rad".to_owned(),
+            "1" => String::new(),
+            "1/s" if ends("Hz") => "Hz".to_owned(),
+            _ => plain,
+        }
     }
 
     /// The SI value of `number` of this unit, rounded once. NaN and infinities pass through.

@@ -25,19 +25,21 @@ pub(crate) struct UrdfCache {
 
 #[derive(Debug)]
 struct Entry {
+    /// As the scenario names it: what is told of it is told elsewhere too.
+    written: String,
     file: PathBuf,
     options: UrdfOptions,
     robot: Arc<Urdf>,
 }
 
 impl UrdfCache {
-    fn read(&self, file: PathBuf, options: UrdfOptions) -> Result<Arc<Urdf>, UrdfError> {
+    fn read(&self, written: &str, file: PathBuf, options: UrdfOptions) -> Result<Arc<Urdf>, UrdfError> {
         let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(entry) = entries.iter().find(|entry| entry.file == file && entry.options == options) {
             return Ok(entry.robot.clone());
         }
         let robot = Arc::new(Urdf::read(&file, &options)?);
-        entries.push(Entry { file, options, robot: robot.clone() });
+        entries.push(Entry { written: written.to_owned(), file, options, robot: robot.clone() });
         Ok(robot)
     }
 
@@ -51,14 +53,14 @@ impl UrdfCache {
         kinds.into_iter().map(UrdfWarningKind::name).collect()
     }
 
-    /// What the files hold and the robots do without, each once, as `file: what`.
+    /// What the files hold and the robots do without, each once, as `file: what`, the file as the scenario names it.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
         let accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
         let mut seen = HashSet::new();
-        let all = entries.iter().flat_map(|Entry { file, robot, .. }| {
+        let all = entries.iter().flat_map(|Entry { written, robot, .. }| {
             let told = robot.warnings.iter().filter(|warning| !accepted.contains(&warning.kind));
-            told.map(move |warning| format!("{}: {warning}", file.display()))
+            told.map(move |warning| format!("{written}: {warning}"))
         });
         all.filter(|warning| seen.insert(warning.clone())).collect()
     }
@@ -81,7 +83,7 @@ pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>
         accept_inertia,
         package_path: package_path.iter().map(|folder| field.ctx.folder.join(folder)).collect(),
     };
-    let robot = field.ctx.robots.read(field.ctx.folder.join(&written), options);
+    let robot = field.ctx.robots.read(&written, field.ctx.folder.join(&written), options);
     let robot = robot.map_err(|error| refuse(field, &error))?;
     let model = robot.model(gravity?).map_err(|error| refuse(field, &error))?;
     if model.joint_count() == 0 {

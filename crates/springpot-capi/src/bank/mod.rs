@@ -7,7 +7,7 @@ use crate::status::{Problem, Status};
 use springpot::collocation::Nodes;
 use springpot::elements::{ElementBank, MemoryRange};
 use springpot::fractional::Form;
-use springpot::law::{Course, InputValue, Start};
+use springpot::law::{Course, Derivative, InputValue, Start};
 use springpot_scenario::LoneElement;
 
 /// Steps begin where the last one ended, to this share of their size and of the time.
@@ -172,7 +172,8 @@ impl Bank {
             .map(|(element, &stroke)| {
                 let (own, others) = rest.split_at(element.inputs.len());
                 rest = others;
-                Start { stroke, jump: stroke, inputs: own }
+                let jump = if element.plan.element.derivative == Derivative::RiemannLiouville { stroke } else { 0.0 };
+                Start { stroke, jump, inputs: own }
             })
             .collect();
         self.bank.begin(&starts, memory).map_err(|error| Problem::new(Status::Unsolved, error.to_string()))?;

@@ -77,8 +77,15 @@ fn base(name: &str) -> Option<String> {
     let own = exponents(name)?;
     // Angles have no dimension there: they are counted as what no such unit has.
     let turned = exponents(&name.replace("rad", "K"))?;
-    let counted =
-        [("kg", own[0]), ("m", own[1]), ("s", own[2]), ("A", own[3]), ("K", own[4]), ("rad", turned[4] - own[4])];
+    let counted = [
+        ("kg", own[0]),
+        ("m", own[1]),
+        ("s", own[2]),
+        ("A", own[3]),
+        ("K", own[4]),
+        ("mol", own[5]),
+        ("rad", turned[4] - own[4]),
+    ];
     let whole = counted.iter().all(|(_, exponent)| exponent.fract() == 0.0);
     let written = counted.iter().filter(|(_, exponent)| *exponent != 0.0);
     whole.then(|| written.map(|(unit, exponent)| format!(" {unit}=\"{exponent}\"")).collect())

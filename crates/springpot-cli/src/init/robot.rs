@@ -3,7 +3,7 @@
 use crate::arguments::InitOptions;
 use crate::{Ending, diagnostic};
 use springpot::law::Catalog;
-use springpot::model::urdf::{Urdf, UrdfOptions};
+use springpot::model::urdf::{Urdf, UrdfOptions, UrdfProblem};
 use springpot::model::{BodySpec, Dimension, JointKind, Limits, Model, Parent};
 use springpot_scenario::{Scenario, suggest, toml_key};
 use std::fmt::Write as _;
@@ -32,7 +32,13 @@ pub(super) fn scenario(robot: &Path, out: &Path, options: &InitOptions, catalog:
         Ok((urdf, model))
     });
     let (urdf, model) = read.map_err(|error| {
-        diagnostic::urdf_refused(&error);
+        match *error.problem {
+            UrdfProblem::NothingMoves { .. } => {
+                let help = format!("with `springpot init {} --floating-base` it floats", robot.display());
+                diagnostic::error_with_help(error.to_string(), help);
+            }
+            _ => diagnostic::urdf_refused(&error),
+        }
         Ending::Refused
     })?;
     if model.joint_count() == 0 {
@@ -42,7 +48,21 @@ pub(super) fn scenario(robot: &Path, out: &Path, options: &InitOptions, catalog:
         return Err(Ending::Refused);
     }
     let path = relative(robot, out);
-    let starter = Starter { urdf: &urdf, model: &model, catalog, path, folder: folder(out), floats };
+    let forward = options.forward;
+    let asked = [&options.from, &options.to, &options.gripper];
+    let names_root = !floats && asked.into_iter().flatten().any(|name| *name == urdf.root.name);
+    let mut starter = Starter {
+        urdf: &urdf,
+        model: &model,
+        catalog,
+        path,
+        folder: folder(out),
+        floats,
+        forward,
+        gripper: None,
+        names_root,
+    };
+    starter.gripper = options.gripper.as_deref().map(|name| starter.link(name)).transpose()?;
     let [from, to] =
         [&options.from, &options.to].map(|name| name.as_deref().map(|name| starter.link(name)).transpose());
     let pairs = starter.pairs_of(from?, to?)?;
@@ -69,6 +89,12 @@ struct Starter<'a> {
     folder: PathBuf,
     /// Whether the root link floats.
     floats: bool,
+    /// Whether it moves by forces.
+    forward: bool,
+    /// The link of the gripper.
+    gripper: Option<Parent>,
+    /// Whether the world is called as the root link is: where it was asked for by that name.
+    names_root: bool,
 }
 
 impl Starter<'_> {
@@ -78,10 +104,12 @@ impl Starter<'_> {
         if let Some(index) = known.clone().position(|own| own == name) {
             return Ok(Parent::Body(index));
         }
-        if name == "world" {
+        // The root link of a robot that does not float is the world.
+        if name == "world" || !self.floats && name == self.urdf.root.name {
             return Ok(Parent::World);
         }
-        let help = suggest(name, known.collect::<Vec<_>>());
+        let root = (!self.floats).then_some(self.urdf.root.name.as_str());
+        let help = suggest(name, root.into_iter().chain(known).collect::<Vec<_>>());
         diagnostic::error_with_help(format!("the robot has no link {name:?}"), help);
         Err(Ending::Refused)
     }
@@ -139,6 +167,15 @@ impl Starter<'_> {
         let pairs = from_ends.iter().flat_map(|from| to_ends.iter().map(|to| (*from, *to, self.between(*from, *to))));
         let mut pairs: Vec<Pair> = pairs.filter(|(.., joints)| !joints.is_empty()).collect();
         pairs.sort_by_key(|(.., joints)| joints.len().abs_diff(2));
+        if let (true, Some(from), Some(to)) = (pairs.is_empty(), from, to) {
+            let message = match from == to {
+                true => format!("--from and --to are one link, {:?}: an element joins two", self.name(from)),
+                false => format!("no joint moves between {:?} and {:?}", self.name(from), self.name(to)),
+            };
+            let help = "name links with a moving joint between them; `springpot info` shows links and joints";
+            diagnostic::error_with_help(message, help.to_owned());
+            return Err(Ending::Refused);
+        }
         if pairs.is_empty() {
             let names = [from, to].into_iter().flatten().map(|end| format!("{:?}", self.name(end))).collect::<Vec<_>>();
             let message = format!("no joint moves between {} and another link", names.join(" and "));
@@ -190,6 +227,7 @@ impl Starter<'_> {
 
     fn name(&self, link: Parent) -> &str {
         match link {
+            Parent::World if self.names_root => &self.urdf.root.name,
             Parent::World => "world",
             Parent::Body(index) => &self.bodies()[index].name,
         }
@@ -210,6 +248,7 @@ impl Starter<'_> {
              [robot]\n\
              urdf = {urdf}\n\
              {floating_base}{accept_inertia}\
+             {gripper}\
              \n\
              # A material between two points, each in the frame of its link.\n\
              # `springpot laws` lists the laws, `springpot laws --from DATA` reads a data sheet.\n\
@@ -221,13 +260,7 @@ impl Starter<'_> {
              law = \"fractional-kelvin-voigt\"   # F = k·x + c·D^alpha x\n\
              parameters = {{ k = \"2 N/cm\", c = \"50 N*s^alpha/m\", alpha = 0.4 }}\n\
              \n\
-             # Every joint follows a function of t; here those move that the strut crosses.\n\
-             # With kind = \"forward\" the robot moves by itself.\n\
-             [motion]\n\
-             kind = \"prescribed\"\n\
-             \n\
-             [motion.joints]\n\
-             {joints}\
+             {motion}\
              \n\
              [time]\n\
              end = \"2 s\"\n\
@@ -253,7 +286,32 @@ impl Starter<'_> {
             to = anchor(strut.to),
             floating_base = if self.floats { "floating_base = true\n" } else { "" },
             accept_inertia = if self.urdf.accept_inertia { "accept_inertia = true\n" } else { "" },
-            joints = self.joints(&strut.joints),
+            gripper = self.gripper.map_or_else(String::new, |link| {
+                let body = quoted(self.name(link));
+                format!("\n# A point whose coordinates are columns, and which a gripper path moves.\n[robot.gripper]\nbody = {body}\npoint = [0, 0, 0]\n")
+            }),
+            motion = match self.forward {
+                true => format!(
+                    "# The robot moves by itself from here, at rest: by gravity, the strut and what [motion.torque] says.\n\
+                     # With kind = \"prescribed\" every joint follows a function of t.\n\
+                     [motion]\n\
+                     kind = \"forward\"\n\
+                     \n\
+                     [motion.start.q]\n\
+                     {}",
+                    self.joints(&[])
+                ),
+                false => format!(
+                    "# Every joint follows a function of t; here those move that the strut crosses.\n\
+                     # With kind = \"forward\" the robot moves by itself.\n\
+                     [motion]\n\
+                     kind = \"prescribed\"\n\
+                     \n\
+                     [motion.joints]\n\
+                     {}",
+                    self.joints(&strut.joints)
+                ),
+            },
         )
     }
 

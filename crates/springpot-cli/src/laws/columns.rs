@@ -4,7 +4,9 @@ use super::sample::{ANGLES, Sample, is_angle, tangent};
 use super::{Refused, names};
 use crate::{diagnostic, frequency};
 use springpot::law::datasheet::{Measured, Quantity};
+use springpot_run::numbers::short;
 use springpot_scenario::csv::{CsvProblem, CsvRow, CsvRows, MAX_ROWS};
+use springpot_scenario::list;
 use springpot_scenario::units::Unit;
 use std::fs::File;
 use std::path::Path;
@@ -52,11 +54,20 @@ pub(super) fn read(file: &Path, sample: &Sample) -> Result<Table, Refused> {
         at(file, problem.line(), problem.to_string(), help)
     };
     let opened = File::open(file).map_err(|source| broken(&CsvProblem::Unreadable { source }))?;
-    let mut cells = CsvRows::new(opened).map_err(|problem| broken(&problem))?;
+    let mut cells = match CsvRows::new(opened) {
+        // Where commas are decimal points.
+        Err(CsvProblem::OtherSeparator { separator, .. }) => {
+            let again = File::open(file).map_err(|source| broken(&CsvProblem::Unreadable { source }))?;
+            CsvRows::separated(again, separator).map_err(|problem| broken(&problem))?
+        }
+        cells => cells.map_err(|problem| broken(&problem))?,
+    };
     let header_line = cells.header_line();
     let [omega, storage, loss] = columns(cells.headers(), sample)
         .map_err(|refused| Refused { message: place(file, Some(header_line), &refused.message), ..refused })?;
     let (mut rows, mut lines) = (Vec::new(), Vec::new());
+    let warmth = cells.headers().iter().position(|header| names::is_temperature(without_unit(header)));
+    let mut temperatures: Vec<(f64, u64)> = Vec::new();
     while let Some(row) = cells.next_row().map_err(|problem| broken(&problem))? {
         if rows.len() as u64 >= MAX_ROWS {
             return Err(broken(&CsvProblem::TooLarge { limit: MAX_ROWS, what: "rows" }));
@@ -65,13 +76,41 @@ pub(super) fn read(file: &Path, sample: &Sample) -> Result<Table, Refused> {
             |column: &Column| number(&row, column).map_err(|(message, help)| at(file, Some(row.line()), message, help));
         let (frequency, real) = (read(&omega)?, read(&storage)?);
         let imaginary = read(&loss)? * if loss.phase.is_some() { real } else { 1.0 };
+        if let Some(warmth) = warmth {
+            let number = row.number(warmth).map_err(|problem| broken(&problem))?;
+            if temperatures.iter().all(|(known, _)| (known - number).abs() > SAME_TEMPERATURE) {
+                temperatures.push((number, row.line()));
+            }
+        }
         rows.push(Measured { omega: frequency, storage: real, loss: imaginary });
         lines.push(row.line());
+    }
+    if let [first, second, ..] = temperatures[..] {
+        let told: Vec<String> = temperatures.iter().map(|(number, _)| short(*number)).collect();
+        let header = warmth.map_or("", |k| cells.headers()[k].as_str());
+        let message = format!(
+            "the rows were measured at several temperatures, {header:?}: {}",
+            list(told.iter().map(String::as_str))
+        );
+        let help = format!(
+            "a law is fitted at one temperature: leave the rows of one in the file (those of {} begin on line {}, of {} on line {}); `shift` of an \
+             element then takes the law to other temperatures",
+            told[0], first.1, told[1], second.1
+        );
+        return Err(at(file, Some(second.1), message, help));
     }
     if rows.is_empty() {
         lines.push(cells.line());
     }
     Ok(Table { rows, lines, columns: [omega, storage, loss].map(|column| column.header) })
+}
+
+/// Temperatures that differ by less are one, K.
+const SAME_TEMPERATURE: f64 = 2.0;
+
+/// The name before a unit in brackets.
+fn without_unit(header: &str) -> &str {
+    header.split(['[', '(', ',']).next().unwrap_or(header).trim()
 }
 
 /// `FILE:LINE: message`.
@@ -175,6 +214,7 @@ fn column(index: usize, header: &str, role: &Role, unit: &str, sample: &Sample) 
     let fits = |own: &Unit, wanted: &str| parsed(wanted).map(|wanted| wanted.dimension() == own.dimension());
     match role {
         Role::Frequency => {
+            let unit = if unit.is_empty() && names::is_angular(header) { "rad/s" } else { unit };
             let own = parsed(if unit.is_empty() { "Hz" } else { unit })?;
             if !fits(&own, "Hz")? {
                 return Err(no("Hz or rad/s"));

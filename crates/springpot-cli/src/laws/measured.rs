@@ -29,6 +29,11 @@ pub(super) fn text(
             Refused::new("no law of the catalog is k·x + c·D^alpha x", help)
         })?,
     };
+    if law.has_lists() {
+        let message = format!("the law {:?} is not fitted from data yet: how many terms it has is not known", law.name);
+        let help = "fit fractional-zener or fractional-maxwell; `springpot prony` then turns its springpot into springs and dampers";
+        return Err(Refused::new(message, help.to_owned()));
+    }
     let found = Found::of(law, &table.rows).map_err(|error| refused(&error, catalog, file, &table))?;
     match figure::write(&drawing, law, &*found.stiffness, &table.rows) {
         Ending::Done => {}

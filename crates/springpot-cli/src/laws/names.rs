@@ -10,7 +10,9 @@ pub(super) fn quantity(name: &str) -> Option<(Quantity, bool)> {
     Some(match &*plain(name) {
         "tan_delta" | "tan(delta)" | "loss_factor" | "loss_tangent" => (Quantity::LossFactor, false),
         "stiffness" | "dynamic_stiffness" | "|k*|" => (Quantity::Stiffness, false),
-        "dynamic_modulus" | "complex_modulus" | "|e*|" | "|g*|" => (Quantity::Stiffness, true),
+        "dynamic_modulus" | "complex_modulus" | "|e*|" | "|g*|" | "e" | "g" | "young's_modulus" | "shear_modulus" => {
+            (Quantity::Stiffness, true)
+        }
         "storage" | "storage_stiffness" | "k'" => (Quantity::Storage, false),
         "storage_modulus" | "e'" | "g'" => (Quantity::Storage, true),
         "loss" | "loss_stiffness" | "k''" => (Quantity::Loss, false),
@@ -21,7 +23,16 @@ pub(super) fn quantity(name: &str) -> Option<(Quantity, bool)> {
 }
 
 pub(super) fn is_frequency(name: &str) -> bool {
-    matches!(&*plain(name), "frequency" | "freq" | "f")
+    matches!(&*plain(name), "frequency" | "freq" | "f") || is_angular(name)
+}
+
+/// Whether a name is that of 2π times the frequency, in rad/s where nothing else is said.
+pub(super) fn is_angular(name: &str) -> bool {
+    matches!(&*plain(name), "angular_frequency" | "ang._frequency" | "ang_frequency" | "ang._freq" | "ang._freq.")
+}
+
+pub(super) fn is_temperature(name: &str) -> bool {
+    matches!(&*plain(name), "temperature" | "temp" | "temp.")
 }
 
 /// Small letters, words joined by `_`, primes as typewriters have them.
@@ -50,7 +61,8 @@ mod tests {
                 assert_eq!(quantity(name), Some((quantity_meant, is_modulus)), "{name}");
             }
         }
-        for name in ["tandelta", "E", "''", "", "modulus", "tan"] {
+        assert_eq!(quantity("E"), Some((Quantity::Stiffness, true)));
+        for name in ["tandelta", "''", "", "modulus", "tan"] {
             assert_eq!(quantity(name), None, "{name}");
         }
         assert!(is_frequency("Frequency") && is_frequency(" f") && !is_frequency("omega"));

@@ -15,6 +15,9 @@ use std::ops::Range;
 /// A deviation below this is that of the digits shown.
 const SHOWN: f64 = 1e-5;
 
+/// A deviation above this is worth a warning.
+const FAR_OFF: f64 = 0.5;
+
 /// One value and how it was written.
 struct Item {
     datum: Datum,
@@ -57,6 +60,15 @@ pub(super) fn text(
         })?,
     };
     let found = identify(law, &values).map_err(|error| refused(&error, law, &values, &names))?;
+    let deviation = found.deviation(&values);
+    if deviation > FAR_OFF {
+        let message = format!(
+            "{} misses the data by {} %: no values of its parameters meet them",
+            law.name,
+            rough(100.0 * deviation)
+        );
+        diagnostic::warning(message, Some("name another law, or none: the data then say which".to_owned()));
+    }
     Ok(if as_json { json(law, &found, &items) } else { page(law, &found, &items) })
 }
 

@@ -5,7 +5,7 @@ use super::table::{Sweep, Table};
 use crate::arguments::PlotOptions;
 use springpot::table::Column;
 use springpot_report::Plot;
-use springpot_run::figures::{Curves, DrawnCase, FigureColumn, Look};
+use springpot_run::figures::{Curves, DrawnCase, FigureColumn, Look, MeasuredPoints};
 use springpot_run::labels;
 use springpot_run::sweep::{KeptCurve, MAX_CURVES, is_within, most_points};
 use springpot_run::table::matches;
@@ -51,14 +51,13 @@ impl Wanted {
             Ok(FigureColumn { column, unit, label })
         };
         let window = options.look.window()?;
-        let mut places =
-            tables.iter().map(|table| Places::of(table, &options.x, columns)).collect::<Result<Vec<_>, _>>()?;
+        let mut places = Places::all(tables, &options.x, columns)?;
         let names = |table: &Table, places: &Places| -> Vec<String> {
             places.y.iter().map(|&at| table.columns[at].name.clone()).collect()
         };
         let first = names(table, &places[0]);
         for (other, places) in tables.iter().zip(&places).skip(1) {
-            if names(other, places) != first {
+            if !other.is_measured && names(other, places) != first {
                 let message = format!("{} and {} have other columns of these names", table.name(), other.name());
                 return Err(Refused::new(message, "name columns that all results have".to_owned()));
             }
@@ -78,14 +77,33 @@ impl Wanted {
 }
 
 impl Places {
+    /// Those of all tables: a column that only measured ones have is drawn of these.
+    fn all(tables: &[Table], x: &str, columns: &[String]) -> Result<Vec<Self>, Refused> {
+        let is_in = |table: &&Table, glob: &String| found(table, glob).is_ok();
+        let one = |table: &Table| {
+            let measured = || tables.iter().filter(|table| table.is_measured);
+            let own = columns.iter().filter(|glob| match table.is_measured {
+                true => is_in(&table, glob),
+                false => is_in(&table, glob) || !measured().any(|other| is_in(&other, glob)),
+            });
+            let own: Vec<String> = own.cloned().collect();
+            if own.is_empty() {
+                let help = "name a column of its own too".to_owned();
+                return Err(Refused::new(format!("{} has none of these columns", table.name()), help));
+            }
+            Self::of(table, x, &own)
+        };
+        tables.iter().map(one).collect()
+    }
+
     fn of(table: &Table, x: &str, columns: &[String]) -> Result<Self, Refused> {
-        let x = match found(table, x)?[..] {
+        let x = match found(table, x).map_err(|refused| refused.of_abscissa(table))?[..] {
             [only] => only,
             _ => return Err(Refused::new(format!("--x {x:?} matches several columns; it takes one"), None)),
         };
         let mut y = Vec::new();
         for glob in columns {
-            for at in found(table, glob)? {
+            for at in found(table, glob)?.into_iter().filter(|at| *at != x || !table.is_measured) {
                 if !y.contains(&at) {
                     y.push(at);
                 }
@@ -98,7 +116,7 @@ impl Places {
 
 /// Columns that a glob matches; at least one.
 pub(super) fn found(table: &Table, glob: &str) -> Result<Vec<usize>, Refused> {
-    let found: Vec<usize> = (0..table.columns.len()).filter(|&k| matches(glob, &table.columns[k].name)).collect();
+    let found: Vec<usize> = (0..table.columns.len()).filter(|&k| table.is_called(k, glob)).collect();
     if found.is_empty() {
         let help = suggest(glob, table.columns.iter().map(|column| column.name.as_str()));
         return Err(Refused::new(format!("{glob:?} matches no column of {}", table.name()), help));
@@ -196,7 +214,15 @@ pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Re
         let (cases, sweeps) = cases(table, places, wanted, &mut count)?;
         read.push((cases, sweeps));
     }
-    let drawn = read.iter().enumerate().flat_map(|(at, (cases, sweeps))| {
+    let Wanted { x, y, look, .. } = wanted;
+    let mut measured = Vec::new();
+    for ((table, places), (cases, _)) in tables.iter().zip(&wanted.places).zip(&read) {
+        if table.is_measured {
+            measured.extend(points(table, places, cases, (x, y)));
+        }
+    }
+    let of_runs = read.iter().enumerate().filter(|(at, _)| !tables[*at].is_measured);
+    let drawn = of_runs.flat_map(|(at, (cases, sweeps))| {
         let chosen = &wanted.places[at].chosen;
         let free: Vec<usize> = (0..sweeps.len()).filter(|&k| chosen[k].is_none()).collect();
         let source = source(tables, at);
@@ -206,15 +232,37 @@ pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Re
             DrawnCase { source: source.clone(), values: free.iter().map(value).collect(), points }
         })
     });
-    let Wanted { x, y, look, .. } = wanted;
-    Ok(Curves { title, x, y, look, is_marked: false }.plot(drawn))
+    Ok(Curves { title, x, y, look, is_marked: false, measured: &measured }.plot(drawn))
+}
+
+/// The points of a measured table, each column at the axis of the first ordinate in its unit.
+fn points(
+    table: &Table,
+    places: &Places,
+    cases: &[Case],
+    (x, y): (&FigureColumn, &[FigureColumn]),
+) -> Vec<MeasuredPoints> {
+    let Some(case) = cases.first() else { return Vec::new() };
+    let series = places.y.iter().zip(&case.curves).map(|(&at, curve)| {
+        let column = &table.columns[at];
+        let has_unit = !column.unit.is_empty();
+        let of =
+            y.iter().position(|y| if has_unit { y.column.unit == column.unit } else { y.column.name == column.name });
+        let of = of.unwrap_or(0);
+        let drawn = curve.points().iter().map(|[along, up]| (x.number(*along), y[of].number(*up)));
+        let label = if places.y.len() > 1 { format!("{}: {}", table.name(), column.name) } else { table.name() };
+        let (x, y) = drawn.unzip();
+        MeasuredPoints { label, of, x, y }
+    });
+    series.collect()
 }
 
 /// What the results at this place are called, where there are several.
 pub(super) fn source(tables: &[Table], at: usize) -> Option<String> {
     let is_alone = tables.iter().filter(|table| table.name() == tables[at].name()).count() == 1;
     let name = if is_alone { tables[at].name() } else { tables[at].folder.display().to_string() };
-    (tables.len() > 1).then_some(name)
+    let runs = tables.iter().filter(|table| !table.is_measured).count();
+    (runs > 1).then_some(name)
 }
 
 /// Title and labels of every sweep.
@@ -227,8 +275,9 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
     // As many curves as run.json says; a run draws them from as many points.
     let values = places.chosen.iter().zip(&table.sweeps);
     let counts = values.map(|(chosen, sweep)| if chosen.is_some() { 1 } else { sweep.labels.len().max(1) });
-    let share = counts.fold(wanted.y.len(), usize::saturating_mul);
+    let share = counts.fold(places.y.len(), usize::saturating_mul);
     let most = most_points(share, share);
+    let is_log = [wanted.look.asked.x.is_log, wanted.look.asked.y.is_log];
     let names: Vec<Vec<String>> = table.sweeps.iter().map(|sweep| sweep.labels.clone()).collect();
     let sweeps = table.visit(&mut |record, line, position| {
         let case = match &last {
@@ -239,7 +288,7 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
                         chosen.as_ref().is_none_or(|chosen| labels.get(at) == Some(chosen))
                     });
                 let case = drawn.then(|| {
-                    let curves = vec![KeptCurve::new(most); wanted.y.len()];
+                    let curves = vec![KeptCurve::on_axes(most, is_log); places.y.len()];
                     cases.push(Case { position: position.to_vec(), curves });
                     cases.len() - 1
                 });
@@ -248,7 +297,7 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
             }
         };
         let Some(case) = case else { return Ok(()) };
-        if *count + cases.len() * wanted.y.len() > MAX_CURVES {
+        if *count + cases.len() * places.y.len() > MAX_CURVES {
             let message = format!("the figure would hold more than {MAX_CURVES} curves");
             let help = "choose fewer columns, or some of the cases with --where PATH=VALUE".to_owned();
             return Err(Refused::new(message, help));
@@ -271,15 +320,14 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
     if wanted.window.is_some() && cases.iter().all(|case| case.curves.iter().all(|curve| curve.points().is_empty())) {
         return Err(Refused::new("--window: no row lies in it", "choose times that the run has".to_owned()));
     }
-    *count += cases.len() * wanted.y.len();
+    *count += cases.len() * places.y.len();
     Ok((cases, named(sweeps)))
 }
 
 /// Sweeps with names and values as legends show them.
 pub(super) fn named(sweeps: Vec<Sweep>) -> Sweeps {
-    let sweeps = sweeps.into_iter().map(|sweep| {
-        let names: Vec<String> = sweep.parameters.iter().map(|path| labels::parameter(path)).collect();
-        (names.join(", "), labels::values(&sweep.labels))
-    });
+    let sweeps = sweeps
+        .into_iter()
+        .map(|sweep| labels::sweep(sweep.parameters.iter().map(String::as_str), &sweep.labels, sweep.are_names));
     sweeps.collect()
 }

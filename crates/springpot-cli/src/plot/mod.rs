@@ -29,6 +29,12 @@ impl Refused {
         Self { message: message.into(), help: help.into() }
     }
 
+    /// The same of the abscissa of a table.
+    fn of_abscissa(self, table: &Table) -> Self {
+        let measured = "the abscissa of measured points is called as that of the run; `data` of a [[figure]] takes columns of other names";
+        if table.is_measured { Self { help: Some(measured.to_owned()), ..self } } else { self }
+    }
+
     fn show(self) {
         match self.help {
             Some(help) => diagnostic::error_with_help(self.message, help),
@@ -84,8 +90,10 @@ struct Figure {
 
 fn figure(options: &PlotOptions) -> Result<Figure, Refused> {
     let out = options.out.as_ref().map(|out| Ok((out.clone(), format(out)?))).transpose()?;
+    let formats = options.formats.iter().map(|word| format_named(word)).collect::<Result<Vec<_>, _>>()?;
     let (folders, columns) = results_and_columns(options)?;
-    let tables = folders.iter().map(|folder| Table::open(folder)).collect::<Result<Vec<_>, _>>()?;
+    let tables =
+        folders.iter().enumerate().map(|(at, folder)| Table::open(folder, at > 0)).collect::<Result<Vec<_>, _>>()?;
     let plot = match summary::asked(&columns)? {
         Some(asked) => summary::plot(&tables, options, &asked)?,
         None => curves::plot(&tables, &Wanted::new(&tables, options, &columns)?, options.title.as_deref())?,
@@ -95,7 +103,8 @@ fn figure(options: &PlotOptions) -> Result<Figure, Refused> {
         None => {
             let name = name(&tables, options, &columns);
             let folder = tables[0].folder.join("figures");
-            FigureFormat::DEFAULT.map(|format| (folder.join(format!("{name}.{}", format.name())), format)).to_vec()
+            let formats = if formats.is_empty() { FigureFormat::DEFAULT.to_vec() } else { formats };
+            formats.into_iter().map(|format| (folder.join(format!("{name}.{}", format.name())), format)).collect()
         }
     };
     Ok(Figure { plot, files })
@@ -117,6 +126,15 @@ fn results_and_columns(options: &PlotOptions) -> Result<(Vec<PathBuf>, Vec<Strin
     Ok((folders.collect(), columns.to_vec()))
 }
 
+/// The format of that name.
+fn format_named(word: &str) -> Result<FigureFormat, Refused> {
+    let found = FigureFormat::ALL.into_iter().find(|format| word.trim().eq_ignore_ascii_case(format.name()));
+    found.ok_or_else(|| {
+        let message = format!("--formats {word}: there is no such format of figures");
+        Refused::new(message, "write some of svg, png and pdf: --formats svg,pdf".to_owned())
+    })
+}
+
 /// The format that the name of a file says.
 fn format(out: &Path) -> Result<FigureFormat, Refused> {
     FigureFormat::ALL.into_iter().find(|format| has_ending(out, format.name())).ok_or_else(|| {
@@ -134,22 +152,33 @@ fn has_ending(file: &Path, wanted: &str) -> bool {
 /// Characters of the name of a file.
 const LONGEST_NAME: usize = 80;
 
+fn plain(c: char) -> char {
+    if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' }
+}
+
+/// A text as the name of a file: `max(strut.force)` is max-strut.force.
+fn file_name(text: &str) -> String {
+    text.replace('(', "-").replace(')', "").chars().map(plain).collect()
+}
+
 /// What is drawn, as the name of a file; other than those of the figures that the run drew.
 fn name(tables: &[Table], options: &PlotOptions, columns: &[String]) -> String {
-    let over = (options.x != "t").then(|| format!("over-{}", options.x));
+    let last = |path: &str| path.trim().trim_end_matches('"').rsplit('.').next().unwrap_or(path).to_owned();
+    // Of a swept parameter its last name says enough.
+    let is_swept = tables[0].sweeps.iter().any(|sweep| sweep.parameters.contains(&options.x));
+    let x = if is_swept { last(&options.x) } else { options.x.clone() };
+    let over = (options.x != "t").then(|| format!("over-{x}"));
     let chosen = options.selection.iter().map(|assignment| {
         let (path, value) =
             assignment.split_at(springpot_scenario::equals_sign(assignment).unwrap_or(assignment.len()));
-        let last = path.trim().trim_end_matches('"').rsplit('.').next().unwrap_or(path);
-        format!("{last}_{}", value.trim_start_matches('=').trim())
+        format!("{}_{}", last(path), value.trim_start_matches('=').trim())
     });
     let others = tables.iter().skip(1).map(|table| format!("with-{}", table.name()));
     let words: Vec<String> = columns.iter().cloned().chain(over).chain(chosen).chain(others).collect();
     let full = words.join("-");
-    let plain = |c: char| if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' };
-    let mut name: String = full.chars().map(plain).take(LONGEST_NAME).collect();
+    let mut name: String = file_name(&full).chars().take(LONGEST_NAME).collect();
     // What is cut off or replaced may be all that tells two figures apart.
-    let is_plain = |c: char| plain(c) == c || "*?, ".contains(c);
+    let is_plain = |c: char| plain(c) == c || "*?, ()".contains(c);
     if full.chars().count() > LONGEST_NAME || !full.chars().all(is_plain) {
         name.push_str(&format!("-{:08x}", crc32fast::hash(full.as_bytes())));
     }

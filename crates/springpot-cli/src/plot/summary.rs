@@ -120,7 +120,8 @@ pub(super) fn plot(tables: &[Table], options: &PlotOptions, asked: &[Asked]) -> 
         values: values.clone(),
         points: points.iter().map(Vec::as_slice).collect(),
     });
-    Ok(Curves { title: options.title.as_deref(), x: &x, y: &y, look: &look, is_marked: true }.plot(cases))
+    Ok(Curves { title: options.title.as_deref(), x: &x, y: &y, look: &look, is_marked: true, measured: &[] }
+        .plot(cases))
 }
 
 /// The swept path that is the abscissa; `t` stands for the only one.

@@ -1,11 +1,11 @@
 //! The rows of a run, and what run.json says of them.
 
 use super::Refused;
-use crate::{diagnostic, plain};
+use crate::{diagnostic, plain, results};
 use csv::{ByteRecord, Reader};
 use serde_json::Value;
 use springpot::table::Column;
-use springpot_run::table::push_number;
+use springpot_run::table::{matches, push_number};
 use springpot_scenario::RangeEnd;
 use springpot_scenario::units::Unit;
 use std::collections::HashMap;
@@ -27,6 +27,10 @@ pub(super) struct Table {
     pub(super) sweeps: Vec<Sweep>,
     /// Files that the run lists as its own.
     pub(super) drawn: Vec<String>,
+    /// Whether it is no run's: what was measured, beside a run.
+    pub(super) is_measured: bool,
+    /// By column, how its numbers become SI, where its heading has a unit.
+    units: Vec<Option<Unit>>,
 }
 
 /// A row of metrics.csv.
@@ -44,18 +48,28 @@ pub(super) struct MetricRow {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sweep {
     pub(super) parameters: Vec<String>,
-    /// Their values as written; as the rows have them where run.json says nothing.
+    /// Their values by name or as written; as the rows have them where run.json says nothing.
     pub(super) labels: Vec<String>,
+    /// Whether these are names.
+    pub(super) are_names: bool,
     /// Index of a value by its fields in a row.
     by_fields: HashMap<Vec<u8>, usize>,
 }
 
 impl Table {
-    pub(super) fn open(results: &Path) -> Result<Self, Refused> {
-        let (file, folder) = if results.is_dir() {
-            (rows_in(results)?, results.to_owned())
+    /// A table of a run, or, `beside` one, of anybody.
+    pub(super) fn open(at: &Path, beside: bool) -> Result<Self, Refused> {
+        if at.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) && at.is_file() {
+            let (file, stem) = (at.display(), at.file_stem().unwrap_or_default().to_string_lossy());
+            let help = format!(
+                "run it first, `springpot run {file}`, and name its results: springpot plot results/{stem} COLUMN"
+            );
+            return Err(Refused::new(format!("{file} is a scenario, and plot draws the results of a run"), help));
+        }
+        let (file, folder) = if at.is_dir() {
+            (rows_in(at)?, at.to_owned())
         } else {
-            (results.to_owned(), results.parent().unwrap_or(Path::new("")).to_owned())
+            (at.to_owned(), at.parent().unwrap_or(Path::new("")).to_owned())
         };
         let mut reader = reader(&file)?;
         let header = reader.headers().map_err(|error| unreadable(&file, &error))?;
@@ -65,16 +79,23 @@ impl Table {
         }
         let record = folder.join("run.json");
         let run = record.is_file().then(|| fs::read_to_string(record).ok()).flatten();
-        if run.is_none() {
+        let is_measured = beside && run.is_none();
+        if run.is_none() && !beside {
             let message = format!("there is no run.json beside {}: the labels have no units", file.display());
             diagnostic::warning(message, None);
         }
         let run: Value = run.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+        results::say_version(&folder, run["versions"]["springpot"].as_str().unwrap_or_default());
         let described = run["columns"].as_array().map_or(&[][..], Vec::as_slice);
-        let columns = names.iter().map(|name| {
-            let found = described.iter().find(|column| column["name"] == name.as_str());
+        let headings: Vec<(&str, Option<Unit>)> = names.iter().map(|name| heading(name, is_measured)).collect();
+        let columns = headings.iter().map(|(name, own)| {
+            if let Some(own) = own {
+                let unit = if own.dimension().is_none() { String::new() } else { own.dimension().to_string() };
+                return Column::new(*name, unit.as_str(), "");
+            }
+            let found = described.iter().find(|column| column["name"] == *name);
             let word = |key: &str| found.and_then(|column| column[key].as_str()).unwrap_or_default();
-            Column::new(name, word("unit"), word("meaning"))
+            Column::new(*name, word("unit"), word("meaning"))
         });
         let columns: Vec<Column> = columns.collect();
         let sweeps: Vec<Sweep> = run["sweeps"].as_array().into_iter().flatten().map(Sweep::of).collect();
@@ -82,12 +103,23 @@ impl Table {
         // A file beside another run's record has no sweeps that are known.
         let belongs = swept.clone().count() <= names.len() && swept.eq(names.iter().take(swept_count(&sweeps)));
         let drawn = run["files"].as_array().into_iter().flatten().filter_map(Value::as_str).map(str::to_owned);
-        Ok(Self { file, folder, columns, sweeps: if belongs { sweeps } else { Vec::new() }, drawn: drawn.collect() })
+        let (sweeps, drawn) = (if belongs { sweeps } else { Vec::new() }, drawn.collect());
+        let units = headings.into_iter().map(|(_, unit)| unit).collect();
+        Ok(Self { file, folder, columns, sweeps, drawn, is_measured, units })
+    }
+
+    /// Whether a glob means the column `k`: by its name, of a measured one with or without its unit.
+    pub(super) fn is_called(&self, k: usize, glob: &str) -> bool {
+        matches(glob, &self.columns[k].name) || self.is_measured && heading(glob, true).0 == self.columns[k].name
     }
 
     /// What the results are called.
     pub(super) fn name(&self) -> String {
-        let folder = self.folder.file_name().or_else(|| self.file.file_stem()).unwrap_or_default();
+        let folder = match self.is_measured {
+            true => self.file.file_stem(),
+            false => self.folder.file_name().or_else(|| self.file.file_stem()),
+        };
+        let folder = folder.unwrap_or_default();
         folder.to_string_lossy().into_owned()
     }
 
@@ -151,11 +183,22 @@ impl Table {
         let field = record.get(column).unwrap_or_default();
         let text = std::str::from_utf8(field).unwrap_or("?");
         let value = if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() };
-        value.ok_or_else(|| {
+        let unit = self.units[column].as_ref();
+        value.map(|value| unit.map_or(value, |unit| unit.to_si(value))).ok_or_else(|| {
             let (file, name, field) = (self.file.display(), &self.columns[column].name, plain::field(field));
             Refused::new(format!("{file}:{line}: {field} in column {name:?} is not a number"), None)
         })
     }
+}
+
+/// Name and unit of a measured column, `Force [kN]`; of another one all of it is the name.
+fn heading(written: &str, is_measured: bool) -> (&str, Option<Unit>) {
+    let parts = || {
+        let (name, rest) = written.trim().split_once('[')?;
+        let unit = Unit::parse(rest.strip_suffix(']')?.trim(), &|_| None).ok()?;
+        Some((name.trim(), Some(unit)))
+    };
+    is_measured.then(parts).flatten().unwrap_or((written, None))
 }
 
 fn swept_count(sweeps: &[Sweep]) -> usize {
@@ -168,8 +211,11 @@ impl Sweep {
         let texts = |key: &str| -> Vec<String> {
             value[key].as_array().into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect()
         };
-        let mut sweep = Self { parameters: texts("parameters"), labels: texts("labels"), ..Self::default() };
-        for (k, values) in value["values"].as_array().into_iter().flatten().enumerate() {
+        let are_names = value["names"].is_array();
+        let mut sweep = Self { parameters: texts("parameters"), labels: texts("labels"), are_names, ..Self::default() };
+        // What has no label there is listed as the rows have it.
+        let listed = value["values"].as_array().into_iter().flatten().take(sweep.labels.len());
+        for (k, values) in listed.enumerate() {
             let fields: Vec<Vec<u8>> = values.as_array().into_iter().flatten().map(field).collect();
             // Values that look alike in the rows cannot be told apart; the first stands for all.
             sweep.by_fields.entry(fields.join(&b'\n')).or_insert(k);
@@ -181,6 +227,10 @@ impl Sweep {
     pub(super) fn find(&self, value: &str) -> Option<&String> {
         if let Some(label) = self.labels.iter().find(|label| *label == value) {
             return Some(label);
+        }
+        // A text as the rows have it, where the values have names.
+        if let Some(k) = self.by_fields.get(value.as_bytes()).filter(|_| self.are_names) {
+            return self.labels.get(*k);
         }
         let wanted = RangeEnd::parse(value).ok()?;
         let unit = wanted.unit.as_ref().map(|unit| Unit::parse(unit, &|_| None)).transpose().ok()?;
@@ -230,7 +280,7 @@ fn rows_in(folder: &Path) -> Result<PathBuf, Refused> {
     Err(match other {
         Some(name) => Refused::new(
             format!("{} holds {name}, and plot reads CSV", folder.display()),
-            "run the scenario again with --format csv".to_owned(),
+            "view, report, export and metrics read it; for plot run the scenario with --format csv".to_owned(),
         ),
         None => Refused::new(
             format!("{} holds no results.csv", folder.display()),

@@ -1,6 +1,7 @@
 //! What is said of a run that came to an end.
 
 use super::{NAMED_LIMITS, in_cases};
+use crate::grid::{Grid, Set};
 use crate::{diagnostic, failures, plain, terminal};
 use springpot_run::Finished;
 use springpot_run::numbers::{brief, count, rough, short};
@@ -11,6 +12,9 @@ use std::time::Duration;
 const NAMED_EVENTS: usize = 12;
 /// So many metrics of a single case are told on the terminal.
 const NAMED_METRICS: usize = 12;
+/// Of several cases so many are told, with so many metrics.
+const NAMED_CASES: usize = 12;
+const NAMED_COLUMNS: usize = 4;
 
 /// What is said of it.
 pub(super) struct Said(pub(super) Finished);
@@ -159,28 +163,61 @@ impl Said {
         said
     }
 
-    /// The metrics, a line each where they are few and the run is one case.
+    /// The metrics, a line each where the run is one case, else a table of the first cases.
     fn metrics(&self, width: Option<usize>) -> String {
         let Finished { cases, outcome, metrics, .. } = &self.0;
-        let told = outcome.cases.first().filter(|_| cases.len() == 1 && metrics.len() <= NAMED_METRICS);
         let names: Vec<String> = metrics.iter().map(|[name, _]| plain::title(name)).collect();
-        let longest = names.iter().map(|name| name.chars().count()).max();
-        match (told, longest) {
-            (_, None) => String::new(),
-            (Some(case), Some(longest)) => {
-                let units = names.iter().zip(metrics).zip(&case.metrics.values).enumerate();
-                let line = |(k, ((name, [_, unit]), value)): (usize, ((&String, &[String; 2]), &f64))| {
-                    let value = if value.is_finite() { format!("{} {unit}", short(*value)) } else { "none".to_owned() };
-                    let before = if k == 0 { "metrics  " } else { "         " };
-                    format!("{before}{name:longest$}  {}\n", value.trim_end())
+        let Some(longest) = names.iter().map(|name| name.chars().count()).max() else { return String::new() };
+        let value = |value: &f64| if value.is_finite() { short(*value) } else { "none".to_owned() };
+        let lead = |k: usize| if k == 0 { "metrics  " } else { "         " };
+        if cases.len() > 1 {
+            let first: Vec<_> = outcome.cases.iter().take(NAMED_CASES).collect();
+            let units = metrics.iter().map(|[_, unit]| unit.as_str());
+            let title = |(name, unit): (&String, &str)| match unit {
+                "" => name.clone(),
+                unit => format!("{name}, {unit}"),
+            };
+            let titles = names.iter().zip(units).map(title).take(NAMED_COLUMNS);
+            let last = |path: &String| path.rsplit('.').next().unwrap_or(path).trim_matches('"').to_owned();
+            let mut brief: Vec<String> = cases.parameters().iter().map(last).collect();
+            let all = brief.len();
+            brief.sort();
+            brief.dedup();
+            let is_told = brief.len() == all;
+            let columns =
+                cases.parameters().iter().map(|path| (if is_told { last(path) } else { path.clone() }, Set::Name));
+            let mut grid = Grid::new(columns.chain(titles.map(|title| (title, Set::Number))));
+            for case in &first {
+                // A case without rows has none.
+                let values = (0..metrics.len().min(NAMED_COLUMNS))
+                    .map(|k| case.metrics.values.get(k).map_or_else(String::new, value));
+                grid.row(cases.labels(case.index).into_iter().chain(values).collect());
+            }
+            let mut left = Vec::new();
+            if let Some(more @ 1..) = outcome.cases.len().checked_sub(first.len()) {
+                left.push(count(more, "more case", "more cases"));
+            }
+            if let Some(more @ 1..) = metrics.len().checked_sub(NAMED_COLUMNS) {
+                left.push(count(more, "more metric", "more metrics"));
+            }
+            let room = width.map(|width| width.saturating_sub(9));
+            let told = grid.text(room);
+            let mut text: String = told.lines().enumerate().map(|(k, line)| format!("{}{line}\n", lead(k))).collect();
+            if !left.is_empty() {
+                let said = format!("{} in metrics.csv", left.join(" and "));
+                text.push_str(&terminal::hanging(lead(1), &said, width));
+            }
+            return text;
+        }
+        match outcome.cases.first().filter(|_| metrics.len() <= NAMED_METRICS) {
+            Some(case) => {
+                let line = |(k, ((name, [_, unit]), number)): (usize, ((&String, &[String; 2]), &f64))| {
+                    let told = if number.is_finite() { format!("{} {unit}", value(number)) } else { value(number) };
+                    format!("{}{name:longest$}  {}\n", lead(k), told.trim_end())
                 };
-                units.map(line).collect()
+                names.iter().zip(metrics).zip(&case.metrics.values).enumerate().map(line).collect()
             }
-            (None, Some(_)) => {
-                let each = if cases.len() == 1 { "" } else { " per case" };
-                let said = format!("{}{each}, in metrics.csv", metrics.len());
-                terminal::hanging("metrics  ", &said, width)
-            }
+            None => terminal::hanging(lead(0), &format!("{}, in metrics.csv", metrics.len()), width),
         }
     }
 

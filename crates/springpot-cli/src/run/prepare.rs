@@ -18,6 +18,8 @@ pub(super) enum Unprepared {
     Refused(Refusals),
     /// What is wrong was said.
     Shown,
+    /// Interrupted by the user.
+    Interrupted,
     /// No case can run to its end.
     Hopeless(Box<Cases>, Box<Survey>),
     /// The folder of the results takes none.
@@ -37,6 +39,7 @@ impl From<BeginError> for Unprepared {
         match error {
             BeginError::Refused(refusals) => Self::Refused(refusals),
             BeginError::Hopeless { cases, survey } => Self::Hopeless(cases, survey),
+            BeginError::Interrupted => Self::Interrupted,
             BeginError::Folder { folder, error } => Self::Folder(folder, error),
         }
     }
@@ -87,6 +90,7 @@ pub(super) fn merge(options: &MergeOptions, catalog: &Catalog, disk: &Disk) -> R
             MergeError::Part(CheckpointError::Folder(error)) => return Unprepared::Folder(PathBuf::new(), error),
             MergeError::Part(error) => return show(Path::new(""), error),
             MergeError::NoPart(_) => "name the folders of all parts, and nothing else".to_owned(),
+            MergeError::Twice(_) => "name every part once".to_owned(),
             MergeError::Different { .. } => "name the parts of one run".to_owned(),
             MergeError::Missing { unfinished: Some(part), .. } => {
                 format!("one part has not come to its end: springpot run --resume {}", part.display())

@@ -1,13 +1,17 @@
 //! As much of HTTP/1.1 as a browser on the same machine asks for (RFC 9112): one request a connection.
 
-use std::io::{self, BufRead as _, BufReader, Read as _, Write};
-use std::net::TcpStream;
+use std::io::{self, Read as _, Write};
+use std::net::{Shutdown, TcpStream};
 use std::time::{Duration, Instant};
 
 /// Bytes of a request that are read.
-const LONGEST: u64 = 16 << 10;
-/// A browser that says nothing for so long is left.
+const LONGEST: usize = 16 << 10;
+/// A browser that has not asked by then is left.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// One that has not taken a page by then is left too.
+const DELIVERY: Duration = Duration::from_secs(60);
+/// What is still coming is read for so long, so that an answer is not lost with it.
+const FAREWELL: Duration = Duration::from_secs(1);
 
 /// What is asked for.
 #[derive(Debug, PartialEq)]
@@ -23,51 +27,118 @@ pub(super) struct Request {
 #[derive(Debug, PartialEq)]
 pub(super) struct Bad(pub(super) &'static str);
 
-/// Reads a request; the outer error is the connection's.
-pub(super) fn request(stream: &TcpStream) -> io::Result<Result<Request, Bad>> {
-    stream.set_write_timeout(Some(PATIENCE))?;
-    let (mut lines, begun) = (Vec::new(), Instant::now());
-    let mut reader = BufReader::new(stream.take(LONGEST));
+/// Reads a request, all of it before one deadline; the outer error is the connection's.
+pub(super) fn request(stream: &mut TcpStream) -> io::Result<Result<Request, Bad>> {
+    request_until(stream, Instant::now() + PATIENCE)
+}
+
+fn request_until(stream: &mut TcpStream, until: Instant) -> io::Result<Result<Request, Bad>> {
+    let (mut bytes, mut piece) = (Vec::new(), [0; 4096]);
     loop {
-        // One that sends a byte now and then is left too.
-        let left = PATIENCE.checked_sub(begun.elapsed()).filter(|left| !left.is_zero());
-        let Some(left) = left else { return Ok(Err(Bad("408 Request Timeout"))) };
+        let Some(left) = left(until) else { return Ok(Err(Bad("408 Request Timeout"))) };
         stream.set_read_timeout(Some(left))?;
-        let mut line = Vec::new();
-        if reader.read_until(b'\n', &mut line)? == 0 {
-            return Ok(Err(Bad("400 Bad Request")));
+        let count = match stream.read(&mut piece) {
+            Ok(0) => return Ok(Err(Bad("400 Bad Request"))),
+            Ok(count) => count,
+            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => continue,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error),
+        };
+        // The end may have begun in the piece before.
+        let from = bytes.len().saturating_sub(3);
+        bytes.extend_from_slice(&piece[..count]);
+        if let Some(end) = end_of_head(&bytes, from) {
+            let text = String::from_utf8_lossy(&bytes[..end]);
+            return Ok(read(&text.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<_>>()));
         }
-        let line = String::from_utf8_lossy(&line).trim_end().to_owned();
-        if line.is_empty() {
-            return Ok(read(&lines));
+        if bytes.len() > LONGEST {
+            return Ok(Err(Bad("431 Request Header Fields Too Large")));
         }
-        lines.push(line);
+    }
+}
+
+/// Where the empty line is that ends the head of a request.
+fn end_of_head(bytes: &[u8], from: usize) -> Option<usize> {
+    (from..bytes.len()).find(|&at| bytes[at..].starts_with(b"\n\r\n") || bytes[at..].starts_with(b"\n\n"))
+}
+
+fn left(until: Instant) -> Option<Duration> {
+    until.checked_duration_since(Instant::now()).filter(|left| !left.is_zero())
+}
+
+/// Ends a connection once the other side has heard the answer: what it still sends is read, for a moment.
+pub(super) fn close(stream: &mut TcpStream) {
+    let (until, mut piece) = (Instant::now() + FAREWELL, [0; 4096]);
+    if stream.shutdown(Shutdown::Write).is_err() {
+        return;
+    }
+    while let Some(left) = left(until) {
+        let _ = stream.set_read_timeout(Some(left));
+        if !stream.read(&mut piece).is_ok_and(|count| count > 0) {
+            break;
+        }
+    }
+}
+
+/// A connection that takes what is written before one deadline.
+#[derive(Debug)]
+pub(super) struct Delivery<'a> {
+    stream: &'a TcpStream,
+    until: Instant,
+}
+
+impl<'a> Delivery<'a> {
+    /// Of a whole answer.
+    pub(super) fn of_page(stream: &'a TcpStream) -> Self {
+        Self { stream, until: Instant::now() + DELIVERY }
+    }
+
+    /// Of one of many messages.
+    pub(super) fn of_message(stream: &'a TcpStream) -> Self {
+        Self { stream, until: Instant::now() + PATIENCE }
+    }
+}
+
+impl Write for Delivery<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let left = left(self.until).ok_or(io::ErrorKind::TimedOut)?;
+        self.stream.set_write_timeout(Some(left))?;
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
     }
 }
 
 fn read(lines: &[String]) -> Result<Request, Bad> {
     let mut words = lines.first().map_or("", String::as_str).split(' ');
     let (method, target, version) = (words.next(), words.next(), words.next());
-    let header = |name: &str| {
-        lines.iter().skip(1).find_map(|line| {
-            let (own, value) = line.split_once(':')?;
-            own.eq_ignore_ascii_case(name).then(|| value.trim().to_owned())
-        })
+    let headers = |name: &str| {
+        let values = lines.iter().skip(1).filter_map(|line| line.split_once(':'));
+        values.filter(|(own, _)| own.eq_ignore_ascii_case(name)).map(|(_, value)| value.trim()).collect::<Vec<_>>()
     };
+    let header = |name: &str| headers(name).first().map(|value| (*value).to_owned());
     let wants_body = match (method, version) {
         (Some("GET"), Some(version)) if version.starts_with("HTTP/1.") => true,
         (Some("HEAD"), Some(version)) if version.starts_with("HTTP/1.") => false,
         (Some(_), Some(version)) if version.starts_with("HTTP/") => return Err(Bad("405 Method Not Allowed")),
         _ => return Err(Bad("400 Bad Request")),
     };
+    // Of two, a browser and its server may each take another.
+    let [host] = headers("Host")[..] else {
+        return Err(if headers("Host").is_empty() { Bad("403 Forbidden") } else { Bad("400 Bad Request") });
+    };
     // A page from elsewhere whose name was made to lead here is not answered.
-    if !header("Host").is_some_and(|host| is_here(&host)) {
+    if !is_here(host) {
         return Err(Bad("403 Forbidden"));
     }
-    // Nor does a page from elsewhere make this machine work; whoever follows a link does.
-    if header("Sec-Fetch-Site").is_some_and(|site| site == "cross-site")
-        && header("Sec-Fetch-Mode").is_none_or(|mode| mode != "navigate")
-    {
+    // Nor does a page from elsewhere make this machine work, or show what is here in a frame: the address is typed, or comes from this machine.
+    let is = |name: &str, values: &[&str]| header(name).is_some_and(|value| values.contains(&value.as_str()));
+    let is_foreign = is("Sec-Fetch-Site", &["cross-site"])
+        || (is("Sec-Fetch-Site", &["same-site"]) && !is("Sec-Fetch-Mode", &["navigate"]))
+        || header("Origin").is_some_and(|origin| !origin.split_once("://").is_some_and(|(_, host)| is_here(host)));
+    if is_foreign || is("Sec-Fetch-Dest", &["iframe", "frame", "embed", "object", "fencedframe"]) {
         return Err(Bad("403 Forbidden"));
     }
     let path = target.unwrap_or("/").split(['?', '#']).next().unwrap_or("/").to_owned();
@@ -117,7 +188,8 @@ pub(super) fn event(stream: &mut impl Write, data: &str, id: Option<&str>) -> io
     stream.flush()
 }
 
-const COMMON: &str = "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nConnection: close\r\n";
+const COMMON: &str = "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
+     X-Frame-Options: DENY\r\nContent-Security-Policy: frame-ancestors 'none'\r\nCross-Origin-Resource-Policy: same-origin\r\nConnection: close\r\n";
 
 #[cfg(test)]
 mod tests {
@@ -139,6 +211,40 @@ mod tests {
     }
 
     #[test]
+    fn one_byte_after_another_has_one_deadline() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (mut server, _) = listener.accept().unwrap();
+        let talker = std::thread::spawn(move || {
+            client.write_all(b"GET / HTTP/1.1\r\nX: ").unwrap();
+            // Until the other side hangs up; never a line.
+            while client.write_all(b"a").is_ok() {
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        });
+        let until = Instant::now() + Duration::from_millis(300);
+        assert_eq!(request_until(&mut server, until).unwrap(), Err(Bad("408 Request Timeout")));
+        drop(server);
+        talker.join().unwrap();
+    }
+
+    #[test]
+    fn a_request_in_pieces_is_read_whole() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        for pieces in
+            [&["GET /a HTTP/1.1\r\nHost: localhost\r\n\r", "\n"][..], &["GET /a HTTP/1.1\nHost: localhost\n\n"]]
+        {
+            let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+            let (mut server, _) = listener.accept().unwrap();
+            for piece in pieces {
+                client.write_all(piece.as_bytes()).unwrap();
+                client.flush().unwrap();
+            }
+            assert_eq!(request(&mut server).unwrap().unwrap().path, "/a");
+        }
+    }
+
+    #[test]
     fn only_this_machine_is_answered() {
         for host in ["localhost", "LocalHost:1", "127.0.0.1:65535", "[::1]:80", "[::1]"] {
             assert!(is_here(host), "{host}");
@@ -148,10 +254,25 @@ mod tests {
         }
         assert_eq!(of(&["GET / HTTP/1.1", "Host: example.org"]), Err(Bad("403 Forbidden")));
         assert_eq!(of(&["GET / HTTP/1.1"]), Err(Bad("403 Forbidden")));
-        let from = |mode: &str| {
-            of(&["GET / HTTP/1.1", "Host: localhost", "Sec-Fetch-Site: cross-site", &format!("Sec-Fetch-Mode: {mode}")])
-        };
-        assert_eq!(from("no-cors"), Err(Bad("403 Forbidden")));
-        assert!(from("navigate").is_ok());
+        let with = |headers: &[&str]| of(&[&["GET / HTTP/1.1", "Host: localhost"][..], headers].concat());
+        for foreign in [
+            &["Sec-Fetch-Site: cross-site", "Sec-Fetch-Mode: no-cors"][..],
+            &["Sec-Fetch-Site: cross-site", "Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: document"],
+            &["Sec-Fetch-Site: same-site", "Sec-Fetch-Mode: cors"],
+            &["Sec-Fetch-Site: same-origin", "Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: iframe"],
+            &["Origin: http://example.org"],
+            &["Origin: null"],
+        ] {
+            assert_eq!(with(foreign), Err(Bad("403 Forbidden")), "{foreign:?}");
+        }
+        for own in [
+            &["Sec-Fetch-Site: none", "Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: document"][..],
+            &["Sec-Fetch-Site: same-origin", "Sec-Fetch-Mode: cors", "Origin: http://127.0.0.1:80"],
+            &["Sec-Fetch-Site: same-site", "Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: document"],
+            &[],
+        ] {
+            assert!(with(own).is_ok(), "{own:?}");
+        }
+        assert_eq!(with(&["hOST: localhost"]), Err(Bad("400 Bad Request")));
     }
 }

@@ -1,9 +1,9 @@
 //! `springpot view --serve`: the page from a server on this machine, with the rows of a run under way as they come (server-sent events).
 
-use super::http::{self, Bad, Request};
+use super::http::{self, Bad, Delivery, Request};
 use super::of_results;
 use crate::arguments::ViewOptions;
-use crate::{Ending, diagnostic, terminal};
+use crate::{Ending, diagnostic, signals, terminal};
 use serde_json::{Value, json};
 use springpot_report::page::ViewCase;
 use springpot_run::table::disk::Disk;
@@ -18,8 +18,10 @@ use std::time::{Duration, Instant};
 
 /// Where the rows are asked for.
 const EVENTS: &str = "/events";
-/// Connections at a time.
+/// Connections at a time that are answered.
 const MOST: usize = 32;
+/// More than these are not even told that there are too many.
+const MOST_HEARD: usize = 2 * MOST;
 /// Between two looks at the rows.
 const PAUSE: Duration = Duration::from_millis(100);
 /// A line that says nothing is sent after so long, to see whether somebody listens.
@@ -55,6 +57,7 @@ pub(super) fn serve(options: &ViewOptions, disk: &Disk) -> Ending {
             return Ending::Failed;
         }
     };
+    signals::before_the_end(|| ());
     terminal::print(&format!("http://{address}/\n"));
     terminal::print_error("Ctrl-C ends it\n");
     let server = Arc::new(Server { options: options.clone(), disk: disk.clone(), open: AtomicUsize::new(0) });
@@ -65,12 +68,15 @@ pub(super) fn serve(options: &ViewOptions, disk: &Disk) -> Ending {
             continue;
         };
         let place = Place::of(&server);
-        if server.open.load(Ordering::Relaxed) > MOST {
-            let _ = http::answer(&mut stream, "503 Service Unavailable", "text/plain", b"too many at a time", true);
+        let open = server.open.load(Ordering::Relaxed);
+        if open > MOST_HEARD {
             continue;
         }
         // A browser that goes away is no error, and neither is one that no thread can be had for.
-        let _ = thread::Builder::new().spawn(move || place.server.answer(stream));
+        let _ = thread::Builder::new().spawn(move || {
+            let _ = place.server.answer(&mut stream, open > MOST);
+            http::close(&mut stream);
+        });
     }
     Ending::Failed
 }
@@ -94,51 +100,57 @@ impl Drop for Place {
 }
 
 impl Server {
-    fn answer(&self, mut stream: TcpStream) -> io::Result<()> {
-        let Request { path, wants_body, last_event } = match http::request(&stream)? {
+    fn answer(&self, stream: &mut TcpStream, is_one_too_many: bool) -> io::Result<()> {
+        let asked = http::request(stream)?;
+        let text = |status: &'static str, body: &[u8], wants_body| {
+            http::answer(&mut Delivery::of_page(stream), status, "text/plain", body, wants_body)
+        };
+        let Request { path, wants_body, last_event } = match asked {
+            _ if is_one_too_many => return text("503 Service Unavailable", b"too many at a time", true),
             Ok(request) => request,
-            Err(Bad(status)) => return http::answer(&mut stream, status, "text/plain", status.as_bytes(), true),
+            Err(Bad(status)) => return text(status, status.as_bytes(), true),
+        };
+        let html = |page: &str| {
+            http::answer(&mut Delivery::of_page(stream), "200 OK", "text/html", page.as_bytes(), wants_body)
         };
         let results: &Path = &self.options.results;
         let underway = Underway::open(&self.disk, results);
         match (path.as_str(), underway) {
-            ("/", Some(run)) => html(&mut stream, "200 OK", &run.view(EVENTS).html(), wants_body),
+            ("/", Some(run)) => html(&run.view(EVENTS).html()),
             ("/", None) => match of_results(results, &self.options.cases, &self.disk) {
-                Ok(view) => html(&mut stream, "200 OK", &view.html(), wants_body),
+                Ok(view) => html(&view.html()),
                 // Why, stands on the terminal.
-                Err(_) => http::answer(&mut stream, "404 Not Found", "text/plain", b"no results", wants_body),
+                Err(_) => text("404 Not Found", b"no results", wants_body),
             },
             (EVENTS, Some(run)) if wants_body => {
                 // Of another run, nothing was sent.
                 let of_run = |id: &str| id.strip_prefix(run.id())?.strip_prefix('@')?.parse().ok();
                 let sent = last_event.and_then(|id| of_run(&id)).unwrap_or(0);
-                events(&mut stream, &run, sent)
+                events(stream, &run, sent)
             }
             // It has ended in between.
             (EVENTS, None) if wants_body => {
-                http::begin_events(&mut stream)?;
                 let status =
                     of_results(results, &[], &self.disk).map_or_else(|_| "interrupted".to_owned(), |view| view.status);
-                http::event(&mut stream, &json!({ "status": status }).to_string(), None)
+                let mut delivery = Delivery::of_message(stream);
+                http::begin_events(&mut delivery)?;
+                http::event(&mut delivery, &json!({ "status": status }).to_string(), None)
             }
-            _ => http::answer(&mut stream, "404 Not Found", "text/plain", b"404 Not Found", wants_body),
+            _ => text("404 Not Found", b"404 Not Found", wants_body),
         }
     }
 }
 
-fn html(stream: &mut TcpStream, status: &str, page: &str, wants_body: bool) -> io::Result<()> {
-    http::answer(stream, status, "text/html", page.as_bytes(), wants_body)
-}
-
 /// Sends rows as they come, until the run or the connection ends.
-fn events(stream: &mut TcpStream, run: &Underway, sent: u64) -> io::Result<()> {
-    http::begin_events(stream)?;
+fn events(stream: &TcpStream, run: &Underway, sent: u64) -> io::Result<()> {
+    let message = || Delivery::of_message(stream);
+    http::begin_events(&mut message())?;
     let mut tail = run.tail(sent)?;
     let mut spoken = Instant::now();
     loop {
         let Some(news) = tail.news()? else {
             if spoken.elapsed() > QUIET {
-                stream.write_all(b":\n\n")?;
+                message().write_all(b":\n\n")?;
                 spoken = Instant::now();
             }
             thread::sleep(PAUSE);
@@ -152,18 +164,18 @@ fn events(stream: &mut TcpStream, run: &Underway, sent: u64) -> io::Result<()> {
                 News::Case(case) => {
                     let ViewCase { index, name, parameters, scene, .. } = *case;
                     let case = json!({ "index": index, "name": name, "parameters": parameters, "scene": scene });
-                    http::event(stream, &json!({ "cases": [case] }).to_string(), None)?;
+                    http::event(&mut message(), &json!({ "cases": [case] }).to_string(), None)?;
                 }
                 News::Rows(NewRows { case, rows, position }) => {
                     let rows: Vec<Value> = rows.iter().map(|row| row.iter().copied().map(number).collect()).collect();
                     http::event(
-                        stream,
+                        &mut message(),
                         &json!({ "case": case, "rows": rows }).to_string(),
                         Some(&format!("{}@{position}", run.id())),
                     )?;
                 }
                 News::Ended(status) => {
-                    return http::event(stream, &json!({ "status": status }).to_string(), None);
+                    return http::event(&mut message(), &json!({ "status": status }).to_string(), None);
                 }
             }
         }

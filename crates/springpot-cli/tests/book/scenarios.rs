@@ -24,8 +24,9 @@ const OWN_ROBOT: &str = "urdf = \"robots/arm.urdf\"";
 fn check(place: &str, text: &str) {
     let scenario = Scenario::parse(text, place, format!("{ROOT}/scenarios")).unwrap();
     let cases = scenario.cases(&Catalog::standard()).unwrap_or_else(|refusals| panic!("{place}: {refusals}\n{text}"));
-    let system = cases.plan(0).unwrap().system();
-    Layout::new(&cases, &system).unwrap_or_else(|refusals| panic!("{place}: {refusals}\n{text}"));
+    let plan = cases.plan(0).unwrap();
+    let system = plan.system();
+    Layout::new(&cases, &plan).unwrap_or_else(|refusals| panic!("{place}: {refusals}\n{text}"));
     system.element_starts().unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
 }
 

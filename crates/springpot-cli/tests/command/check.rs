@@ -113,6 +113,10 @@ fn what_cannot_start_is_an_error() {
         Place::with(&ARM.replace("point = [0, 0.3, 0]", "point = [0, 0.3, 0.5]").replace("0.05 - 0.05*cos(6*t)", "t"));
     let ended = place.springpot(&["check", "arm.toml"]);
     assert_eq!(ended.code, Some(1));
-    assert!(ended.stderr.starts_with("error: t = 0 s: element \"damper\" has no direction"), "{}", ended.stderr);
+    assert!(
+        ended.stderr.starts_with("error: arm.toml:22:8: t = 0 s: element \"damper\" has no direction"),
+        "{}",
+        ended.stderr
+    );
     assert!(ended.stdout.contains("element   damper"), "{}", ended.stdout);
 }

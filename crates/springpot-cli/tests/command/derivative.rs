@@ -330,7 +330,7 @@ fn wrong_arguments() {
     for (arguments, message) in [
         (&["--column", "x", "--order", "2.5"][..], "the order 2.5 must lie between -2 and 2"),
         (&["--column", "x", "--order", "NaN"], "the order NaN must lie between -2 and 2"),
-        (&["--column", "x", "--order", "half"], "invalid value 'half'"),
+        (&["--column", "x", "--order", "half"], "--order half: not a value that it takes"),
         (&["--column", "x", "--order", "1", "--order", "1"], "--order 1 is given twice"),
         (&["--column", "x", "--column", "x", "--order", "1"], "--column x is given twice"),
         (&["--column", "t", "--order", "1"], "`t` is the time"),
@@ -341,7 +341,7 @@ fn wrong_arguments() {
             "spline, hermite, exponential, grunwald-letnikov, grunwald-letnikov(N), l1",
         ),
         (&["--column", "x", "--order", "1", "--scheme", "exponential", "--error"], "estimated from all rows at once"),
-        (&["--order", "1"], "--column <NAME>"),
+        (&["--order", "1"], "`springpot derivative` lacks --column <NAME>"),
     ] {
         let ended = place.springpot(&[&["derivative", "x.csv"], arguments].concat());
         assert!(ended.code == Some(2) && ended.stderr.contains(message), "{arguments:?}: {}", ended.stderr);

@@ -2,7 +2,6 @@
 
 use crate::support::{ARM, Csv, Ended, Place};
 use std::process::Stdio;
-use std::time::{Duration, Instant};
 
 /// A file with one edit, which must hit exactly once.
 fn edited(from: &str, to: &str) -> String {
@@ -20,16 +19,17 @@ fn a_failing_case_does_not_stop_the_others() {
         assert_eq!(ended.code, Some(1), "{}", ended.stderr);
         let errors: Vec<&str> = ended.stderr.lines().collect();
         assert!(
-            errors[0].starts_with("error: element.damper.u = 1 - 20*t and 1 other case: t = 0.17")
+            errors[0].starts_with("error: arm.toml:38:18: element.damper.u = 1 - 20*t and 1 other case: t = 0.17")
                 && errors[0].contains("mu_0 + u·mu"),
             "{errors:?}"
         );
-        assert!(errors[1].starts_with("  help: arm.toml:38:18: change the input or the parameters"), "{errors:?}");
+        let help = errors[errors.len() - 2];
+        assert!(help.starts_with("  help: change the input or the parameters"), "{errors:?}");
         assert_eq!(
-            errors[2..],
+            errors[errors.len() - 1..],
             ["failed: 2 of 4 cases done, 2 failed, the earliest before the first row; all rows are complete"]
         );
-        assert!(ended.stdout.starts_with("4 cases, 12 rows, "), "{}", ended.stdout);
+        assert!(ended.stdout.contains("\n4 cases, 12 rows, "), "{}", ended.stdout);
 
         let results = place.table("results/arm/results.csv");
         let of = |u: &str| results.texts("element.damper.u").iter().filter(|text| **text == u).count();
@@ -56,12 +56,17 @@ fn a_single_run_that_fails_keeps_its_rows() {
     let place = Place::with(&text);
     let ended = place.springpot(&["run", "arm.toml"]);
     assert_eq!(ended.code, Some(1));
-    let [warning, _, error, help, how_far] = ended.stderr.lines().collect::<Vec<_>>()[..] else {
-        panic!("{}", ended.stderr)
-    };
+    let lines: Vec<&str> = ended.stderr.lines().collect();
+    let (warning, how_far) = (lines[0], lines[lines.len() - 1]);
+    let (error, help) = (lines[2], lines[lines.len() - 2]);
+    // Where its points stand.
+    assert!(lines.iter().any(|line| line.contains("22 │ from = {")), "{}", ended.stderr);
     assert!(warning.starts_with("warning: element \"damper\" starts with a stroke of -0.25 m"), "{warning}");
-    assert!(help.starts_with("  help: arm.toml:26:14: a force along a line needs a length"), "{help}");
-    assert!(error.starts_with("error: t = 0.2") && error.contains("element \"damper\" has no direction"), "{error}");
+    assert!(help.starts_with("  help: a force along a line needs a length"), "{help}");
+    assert!(
+        error.starts_with("error: arm.toml:22:8: t = 0.2") && error.contains("element \"damper\" has no direction"),
+        "{error}"
+    );
     assert_eq!(how_far, "failed after the row at t = 0.2 s of 0.35 s; all rows are complete");
     assert_eq!(place.table("results/arm/results.csv").numbers("t"), [0.0, 0.1, 0.2]);
     assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
@@ -81,7 +86,7 @@ fn a_path_out_of_reach_is_named_with_time_and_distance() {
     let place = Place::with(&unreachable());
     let ended = place.springpot(&["run", "arm.toml"]);
     assert_eq!(ended.code, Some(1));
-    assert!(ended.stderr.contains("error: the gripper cannot reach its path at t = 0.25"), "{}", ended.stderr);
+    assert!(ended.stderr.contains(": the gripper cannot reach its path at t = 0.25"), "{}", ended.stderr);
     assert!(
         ended.stderr.contains(" m and ") && ended.stderr.contains("after the row at t = 0.2 s of 1 s"),
         "{}",
@@ -90,7 +95,7 @@ fn a_path_out_of_reach_is_named_with_time_and_distance() {
     assert_eq!(place.table("results/arm/results.csv").numbers("t"), [0.0, 0.1, 0.2]);
     let check = place.springpot(&["check", "arm.toml"]);
     assert_eq!(check.code, Some(1));
-    assert!(check.stderr.contains("error: the gripper cannot reach its path at t = 0.25"), "{}", check.stderr);
+    assert!(check.stderr.contains(": the gripper cannot reach its path at t = 0.25"), "{}", check.stderr);
 }
 
 #[test]
@@ -110,7 +115,7 @@ fn a_controllers_path_out_of_reach_is_found_by_check() {
         let ended = place.springpot(&[command, "arm.toml"]);
         let said = &ended.stderr;
         assert_eq!(ended.code, Some(1), "{said}");
-        assert!(said.contains("error: the gripper cannot reach its path at t = 0.25"), "{said}");
+        assert!(said.contains(": the gripper cannot reach its path at t = 0.25"), "{said}");
         assert!(said.contains(&format!("arm.toml:{line}:13")), "{said}");
     }
 }
@@ -135,7 +140,7 @@ fn what_stops_a_run_names_its_place() {
         (
             &["motion.torque.q1=-30*sign(v.q1)", "robot.gravity=[0, 0, 0]"],
             "the expression \"-30*sign(v.q1)\" of tau.q1 switches again and again",
-            "look at --set:1:18",
+            "error: --set:1:18: ",
         ),
         (
             &[
@@ -146,7 +151,7 @@ fn what_stops_a_run_names_its_place() {
         ),
         (
             &[
-                "motion.controller={ kind = \"computed-torque\", kp = 1, reference = { kind = \"move\", to = { x = 0.2 }, duration = 1e-12 } }",
+                "motion.controller={ kind = \"computed-torque\", kp = 1, reference = { kind = \"move\", to = { x = 0.2 }, duration = 1e-30 } }",
             ],
             "times too much in joint",
             "a duration or a capacity that is too small",
@@ -157,7 +162,7 @@ fn what_stops_a_run_names_its_place() {
                 "element.damper.T=300 + 10*step(t - 0.1)",
             ],
             "it expands by a temperature that does not jump",
-            "look at --set:1:18",
+            "error: --set:1:18: ",
         ),
     ] {
         let sets = set.iter().flat_map(|set| ["--set", set]);
@@ -167,7 +172,11 @@ fn what_stops_a_run_names_its_place() {
         assert!(ended.code != Some(0) && said.contains(words) && said.contains(help), "{set:?}: {said}");
         assert!(!said.contains("stick = true") && !said.contains("0.00000000"), "{set:?}: {said}");
         if help == guard {
-            assert!(said.contains("help: --set:1:18: keep it") || said.contains("help: --set:1:17: keep it"), "{said}");
+            assert!(
+                said.contains("help: keep it")
+                    && (said.contains("error: --set:1:18: ") || said.contains("error: --set:1:17: ")),
+                "{said}"
+            );
         }
     }
 }
@@ -178,7 +187,7 @@ fn a_path_that_is_lost_at_once_keeps_its_start() {
     for command in ["run", "check"] {
         let ended = place.springpot(&[command, "arm.toml"]);
         assert_eq!(ended.code, Some(1));
-        assert!(ended.stderr.contains("error: the gripper cannot reach its path at t = "), "{}", ended.stderr);
+        assert!(ended.stderr.contains(": the gripper cannot reach its path at t = "), "{}", ended.stderr);
     }
     assert_eq!(place.table("results/arm/results.csv").numbers("t"), [0.0]);
     // Lengths beyond all numbers lead nowhere, and not for ever.
@@ -219,7 +228,7 @@ fn refusals_name_file_line_and_column_and_mark_the_place() {
     for (from, to, position, words) in cases {
         let place = Place::with(&edited(from, to));
         for command in ["run", "check"] {
-            let Ended { code, stdout, stderr } = place.springpot(&[command, "arm.toml"]);
+            let Ended { code, stdout, stderr, .. } = place.springpot(&[command, "arm.toml"]);
             assert_eq!((code, stdout.as_str()), (Some(2), ""), "{to}: {stderr}");
             assert!(stderr.contains(&format!("error: arm.toml:{position}: ")), "{to}: {stderr}");
             assert!(stderr.contains(words), "{to}: {stderr}");
@@ -241,7 +250,7 @@ fn overrides_are_refused_where_they_stand() {
         ("element.dumper.alpha=0.5", "did you mean `damper`?"),
         ("element.damper.alpha=2", "--set:1:22: `alpha` of `parameters` of element \"damper\""),
         ("element.damper.alpha", "has no `=`"),
-        ("element.damper.alpha=", "has no value"),
+        ("element.damper.alpha=", "needs the parameters alpha"),
         ("=3", "has no path"),
         ("time.end=1 m", "--set:1:12: "),
         ("motion.joints.q1=log(0.1 - t)", "is not finite at t = 0.1"),
@@ -423,20 +432,18 @@ fn absurd_counts_are_refused_at_once() {
     for (text, words) in cases {
         let place = Place::with(&text);
         for command in ["run", "check"] {
-            let begun = Instant::now();
             let ended = Ended::from(with_little_memory(&place, command).output().unwrap());
             assert_eq!(ended.code, Some(2), "{words}: {}", ended.stderr);
             assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
-            assert!(begun.elapsed() < Duration::from_secs(5), "{words}: {:?}", begun.elapsed());
         }
     }
 }
 
-/// The program with 400 MB of address space, most of which are the stacks of its threads.
+/// The program with 400 MB of address space, most of which are the stacks of its threads, and five seconds of work.
 #[cfg(unix)]
 fn with_little_memory(place: &Place, command: &str) -> std::process::Command {
     let mut shell = std::process::Command::new("sh");
-    shell.current_dir(place.path("")).args(["-c", "ulimit -v 400000 2>/dev/null; exec \"$0\" \"$@\""]);
+    shell.current_dir(place.path("")).args(["-c", "ulimit -v 400000 2>/dev/null; ulimit -t 5; exec \"$0\" \"$@\""]);
     shell.args([env!("CARGO_BIN_EXE_springpot"), command, "arm.toml"]);
     shell
 }

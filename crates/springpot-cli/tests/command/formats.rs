@@ -2,8 +2,8 @@
 //! that wrote them.
 
 #[cfg(unix)]
-use crate::support::ENDLESS;
 use crate::support::Place;
+use crate::support::{ENDLESS, length, signal, wait_for};
 use std::collections::BTreeMap;
 use std::fs;
 #[cfg(unix)]
@@ -345,7 +345,11 @@ fn many_rows_make_several_groups_and_pieces() {
 fn mistyped_formats_are_refused() {
     let place = Place::new();
     let refused = place.springpot(&["run", "arm.toml", "--format", "parket"]);
-    assert!(refused.code == Some(2) && refused.stderr.contains("'parquet'"), "{}", refused.stderr);
+    assert!(
+        refused.code == Some(2) && refused.stderr.contains("did you mean parquet? there is csv"),
+        "{}",
+        refused.stderr
+    );
     assert!(!place.path("results").exists());
     let refused = place.springpot(&["run", "--resume", "results/arm", "--format", "npz"]);
     assert!(refused.code == Some(2) && refused.stderr.contains("cannot be used with"), "{}", refused.stderr);
@@ -360,11 +364,8 @@ fn an_interrupted_run_has_its_rows_in_the_format() {
             [&["run", "arm.toml", "--out", "o", "--format", "npz", "--no-figures", "--quiet"], &ENDLESS[..], more]
                 .concat();
         let mut child = place.command(&arguments).stderr(Stdio::null()).spawn().unwrap();
-        while fs::metadata(place.path("o/results.csv.part")).map_or(0, |file| file.len()) < 1_500 {
-            std::thread::sleep(std::time::Duration::from_millis(20));
-        }
-        let id = child.id().to_string();
-        assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+        wait_for("rows", || length(place.path("o/results.csv.part")) >= 1_500);
+        signal(&child, "-INT");
         assert_eq!(child.wait().unwrap().code(), Some(130));
     };
     interrupted(&[]);

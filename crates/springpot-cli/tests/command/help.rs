@@ -128,16 +128,19 @@ fn mistyped_commands_get_a_suggestion() {
         (&["run", "arm.toml", "-v"], "has no option -v\n  help: there is --set, --sweep,"),
         (&["check", "arm.toml", "--where", "x=1"], "it is one of `springpot derivative`, `springpot plot`"),
         (&["run"], "<SCENARIO>"),
-        (&["run", "arm.toml", "--jobs", "0"], "invalid value '0' for '--jobs <N>'"),
-        (&["run", "arm.toml", "--jobs", "many"], "invalid value 'many' for '--jobs <N>'"),
-        (&["run", "arm.toml", "--out", ""], "a value is required for '--out <DIR>'"),
+        (
+            &["run", "arm.toml", "--jobs", "0"],
+            "--jobs 0: not a value that it takes\n  help: write how many cases run at a time",
+        ),
+        (&["run", "arm.toml", "--jobs", "many"], "--jobs many: not a value that it takes"),
+        (&["run", "arm.toml", "--out", ""], "--out has no value\n  help: write --out <DIR>"),
         (&["run", "arm.toml", "other.toml"], "`springpot run` takes no \"other.toml\" after"),
         (&["dynamics", "arm.toml"], "<--states <FILE>|--at <TIME>>"),
         (&["dynamics", "arm.toml", "--at", "1", "--states", "s.json"], "cannot be used with"),
         (&["dynamics", "arm.toml", "--at", "1", "--christoffel"], "cannot be used with"),
         (&["dynamics", "arm.toml", "--at", "1", "--frame", "arm"], "cannot be used with"),
         (&["dynamics", "arm.toml", "--states", "s.json", "--case", "1"], "cannot be used with"),
-        (&["dynamics", "arm.toml", "--at", "1", "--case", "-1"], "'-1'"),
+        (&["dynamics", "arm.toml", "--at", "1", "--case", "-1"], "--case -1: not a value that it takes"),
     ] {
         let ended = place.springpot(arguments);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{arguments:?}");

@@ -120,7 +120,7 @@ fn links_and_a_floating_base_are_chosen() {
         (&["--from", "panda_lnk1"][..], "no link \"panda_lnk1\"\n  help: did you mean `panda_link1`?"),
         (
             &["--from", "panda_link1", "--to", "panda_link1"],
-            "no joint moves between \"panda_link1\" and \"panda_link1\"",
+            "--from and --to are one link, \"panda_link1\": an element joins two",
         ),
     ] {
         let refused = place.springpot(&[&["init", &panda, "--out", "chosen.toml"][..], arguments].concat());

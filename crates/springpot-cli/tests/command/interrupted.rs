@@ -1,37 +1,16 @@
 //! Runs that are interrupted or killed: what they leave behind, and what they say.
 
-use crate::support::{ARM, Csv, ENDLESS, Ended, Place};
+use crate::support::{ARM, Csv, ENDLESS, Place, ended, length, signal, wait_for, worked};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
-
-/// Longest wait for rows, and for the end after a signal.
-const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Starts an endless run and waits for its first rows on the disk.
 fn started(place: &Place, arguments: &[&str]) -> Child {
     let arguments = [&["run", "arm.toml"], arguments, &ENDLESS].concat();
     let child = place.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let begun = Instant::now();
     let part = place.path("results/arm/results.csv.part");
-    while std::fs::metadata(&part).map_or(0, |file| file.len()) < 6_000 {
-        assert!(begun.elapsed() < PATIENCE, "no rows after {PATIENCE:?}");
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    wait_for("rows", || length(&part) >= 6_000);
     child
-}
-
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
-    assert!(sent.success());
-}
-
-fn ended(mut child: Child) -> Ended {
-    let begun = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        assert!(begun.elapsed() < PATIENCE, "still running {PATIENCE:?} after the signal");
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    Ended::from(child.wait_with_output().unwrap())
 }
 
 #[test]
@@ -66,11 +45,7 @@ fn an_interrupted_sweep_keeps_what_is_done() {
     place.write("arm.toml", step.replace("output_step = \"100 ms\"", "output_step = 0.0005"));
     let arguments = ["run", "arm.toml", "--jobs", "2", "--set", "solver.max_steps=1000000000000"];
     let child = place.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let begun = Instant::now();
-    while std::fs::metadata(place.path("results/arm/results.csv.part")).map_or(0, |file| file.len()) < 4_000 {
-        assert!(begun.elapsed() < PATIENCE);
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    wait_for("rows", || length(place.path("results/arm/results.csv.part")) >= 20_000);
     signal(&child, "-INT");
     let ended = ended(child);
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
@@ -148,13 +123,12 @@ fn a_run_under_nohup_outlives_its_terminal() {
     shell.current_dir(place.path("")).args(["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_springpot")]);
     let mut child = shell.args(["run", "arm.toml", "--quiet"]).args(ENDLESS).stderr(Stdio::piped()).spawn().unwrap();
     let part = place.path("results/arm/results.csv.part");
-    let rows = || std::fs::metadata(&part).map_or(0, |file| file.len());
+    let rows = || length(&part);
     let wait = |child: &mut Child, least: u64| {
-        let begun = Instant::now();
-        while rows() < least {
-            assert!(child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE);
-            std::thread::sleep(Duration::from_millis(10));
-        }
+        wait_for("rows", || {
+            assert!(child.try_wait().unwrap().is_none());
+            rows() >= least
+        });
     };
     wait(&mut child, 3_000);
     signal(&child, "-HUP");
@@ -186,6 +160,33 @@ fn a_second_run_into_a_folder_is_refused_and_the_first_is_named() {
     assert!(place.path("results/arm/.lock").exists());
     place.done(&["run", "arm.toml"]);
     assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
+}
+
+/// What was removed does not come back in part, and nothing is left that would refuse the next run.
+#[test]
+fn a_folder_that_is_removed_under_a_run_is_free_again() {
+    for options in [&[][..], &["--checkpoint-every", "0.001"]] {
+        let place = Place::with(&format!("{ARM}[[figure]]\ny = \"damper.force\"\n"));
+        let child = started(&place, options);
+        std::fs::remove_dir_all(place.path("results")).unwrap();
+        signal(&child, "-INT");
+        let ended = ended(child);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{}", ended.stderr);
+        let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.starts_with("error: results/arm was removed while the run wrote to it"), "{said}");
+        assert!(said.ends_with("run it again, into a folder that stays"), "{said}");
+        assert!(!place.path("results").exists());
+    }
+    // Another run may have made it anew.
+    let place = Place::new();
+    let child = started(&place, &[]);
+    std::fs::remove_dir_all(place.path("results")).unwrap();
+    place.done(&["run", "arm.toml"]);
+    let results = place.read("results/arm/results.csv");
+    signal(&child, "-INT");
+    assert_eq!(ended(child).code, Some(1));
+    assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
+    assert_eq!(place.read("results/arm/results.csv"), results);
 }
 
 /// Two at once, again and again: one of them runs, or both after each other, and rows and record are of one run.
@@ -235,22 +236,39 @@ fn two_runs_at_once_never_mix() {
     println!("{refused} of 12 turns refused one");
 }
 
+#[cfg(unix)]
 #[test]
 fn a_gripper_path_that_is_still_followed_hears_it() {
-    // Many seconds of inverse kinematics before the first step.
+    // A second of inverse kinematics for each of many cases: who does not hear it comes to its end minutes later.
     let at = ARM.find("[motion]").unwrap();
     let path = "[motion]\nkind = \"gripper-path\"\nx = \"0.4 + 0.1*sin(t)\"\ny = 0\nz = 0.5\nguess = { x = 0.1 }\n";
     let time = "[time]\nend = 45\noutput_step = 15\n[solver]\nmax_step = 1e-4\n";
-    let place = Place::with(&format!("{}{path}{time}", &ARM[..at]));
-    for (command, code) in [("run", Some(130)), ("check", None)] {
-        let child =
-            place.command(&[command, "arm.toml"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(150));
-        let begun = Instant::now();
-        signal(&child, "-INT");
-        let ended = ended(child);
-        assert!(begun.elapsed() < Duration::from_secs(5), "{command}: {:?}", begun.elapsed());
-        assert_eq!(ended.code, code, "{command}: {}", ended.stderr);
-        assert!(code.is_none() || ended.stderr.starts_with("interrupted before"), "{command}: {}", ended.stderr);
+    let sweep = "[[sweep]]\nparameter = \"motion.z\"\nvalues = { from = 0.5, to = 0.51, count = 200 }\n";
+    let place = Place::with(&format!("{}{path}{time}{sweep}", &ARM[..at]));
+    for (command, says) in [("run", "interrupted"), ("check", "interrupted\n")] {
+        hears(&place, command, says);
+    }
+}
+
+/// A command that works on `arm.toml` ends with 130 at SIGINT, and says so.
+#[cfg(unix)]
+fn hears(place: &Place, command: &str, says: &str) {
+    let mut started = place.command(&[command, "arm.toml"]);
+    let (mut child, begun) = (started.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap(), Instant::now());
+    wait_for("work", || worked(&child, begun) >= 0.2 || child.try_wait().unwrap().is_some());
+    signal(&child, "-INT");
+    let ended = ended(child);
+    assert_eq!((ended.code, ended.signal), (Some(130), None), "{command}: {}", ended.stderr);
+    assert!(ended.stderr.starts_with(says), "{command}: {}", ended.stderr);
+}
+
+/// While signals are looked through, Ctrl-C is an interrupt, not a refusal.
+#[cfg(unix)]
+#[test]
+fn signals_that_are_looked_through_hear_it() {
+    // Nearly as many kinks as a run may have: minutes.
+    let place = Place::with(&ARM.replace("x = \"0.05 - 0.05*cos(6*t)\"", "x = \"0.05*max(0.1, cos(29e6*t))\""));
+    for (command, says) in [("run", "interrupted before anything was run"), ("check", "interrupted\n")] {
+        hears(&place, command, says);
     }
 }

@@ -126,7 +126,7 @@ fn two_units_have_two_axes_and_more_have_panels() {
 fn several_columns_say_which_they_are_and_the_axis_their_quantity() {
     let (_, svg) = drawn("y = [\"q.*\"]\nwhere = { \"element.damper.alpha\" = 0.5 }\ny_range = [-1, 1]");
     // A turn and a shift have different units.
-    assert!(has(&svg, "q₁, rad") && has(&svg, "q of x, m"), "{:?}", texts(&svg));
+    assert!(has(&svg, "q₁, rad") && has(&svg, "x, m"), "{:?}", texts(&svg));
     let (_, svg) = drawn("y = [\"damper.stored\", \"energy.kinetic\"]\nwhere = { \"element.damper.alpha\" = 0.5 }");
     for text in ["energy, J", "energy stored in damper", "kinetic energy"] {
         assert!(has(&svg, text), "{text}: {:?}", texts(&svg));

@@ -2,6 +2,7 @@
 
 mod check;
 mod derivative;
+mod doubts;
 mod dynamics;
 mod dynamics_refusals;
 mod end_stops;
@@ -28,7 +29,9 @@ mod messages;
 mod metrics;
 mod modes;
 mod modulus;
+mod names;
 mod networks;
+mod other_hands;
 #[cfg(unix)]
 mod pages;
 mod pipes;
@@ -38,11 +41,14 @@ mod results;
 #[cfg(unix)]
 mod resume;
 mod robots;
+mod second_week;
 mod shapes;
 mod shards;
 mod staircases;
+mod strangers;
 mod studies;
 mod support;
+mod sweeps;
 #[cfg(target_os = "linux")]
 mod terminal;
 #[cfg(unix)]

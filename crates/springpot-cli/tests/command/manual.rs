@@ -13,7 +13,7 @@ fn every_shell_gets_a_script() {
         assert!(COMMANDS.iter().all(|command| known(command)) && known("checkpoint-every"), "{shell}: {script}");
     }
     let refused = place.springpot(&["completions", "tcsh"]);
-    assert!(refused.code == Some(2) && refused.stderr.contains("possible values: bash"), "{}", refused.stderr);
+    assert!(refused.code == Some(2) && refused.stderr.contains("there is bash"), "{}", refused.stderr);
 }
 
 #[test]

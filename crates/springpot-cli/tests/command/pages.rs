@@ -1,12 +1,12 @@
 //! Pages of results: `springpot view`, `springpot report`, and the server that shows a run under way.
 
-use crate::support::{ARM, Place};
+use crate::support::{ARM, Place, length, signal, wait_for};
 use serde_json::Value;
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const SWEPT: &str = "[[sweep]]\nparameter = \"element.damper.u\"\nvalues = [\"1 V\", \"4 V\"]\n";
 const FIGURES: &str =
@@ -280,7 +280,7 @@ impl Server {
 
     fn ask(&self, request: &str) -> TcpStream {
         let mut stream = TcpStream::connect(&self.address).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(900))).unwrap();
         stream.write_all(request.as_bytes()).unwrap();
         stream
     }
@@ -323,15 +323,14 @@ fn a_server_shows_a_run_while_it_is_under_way() {
     assert_ne!(longer, ARM);
     let place = Place::with(&format!("{longer}[solver]\nmax_step = \"0.05 ms\"\n{SWEPT}"));
     let mut run = place.command(&["run", "arm.toml", "--out", "o", "--jobs", "1", "-q"]).spawn().unwrap();
-    let begun = Instant::now();
-    while fs::metadata(place.path("o/results.csv.part")).map_or(0, |file| file.len()) < 4_000 {
-        assert!(begun.elapsed() < Duration::from_secs(60));
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for("rows", || length(place.path("o/results.csv.part")) >= 4_000);
+    // It waits until the page is asked for, however long that takes.
+    signal(&run, "-STOP");
     let server = Server::of(&place, "o");
     let page = server.get("/");
     let told = data(&page);
     assert_eq!((&told["status"], &told["follow"]), (&"running".into(), &"/events".into()));
+    signal(&run, "-CONT");
     let (messages, id) = server.events("");
     assert!(run.wait().unwrap().success());
     // Every row of every case, as the file has them.
@@ -360,4 +359,55 @@ fn a_server_shows_a_run_while_it_is_under_way() {
     let mut answer = String::new();
     server.ask("GET / HTTP/1.1\r\nHost: example.org\r\n\r\n").read_to_string(&mut answer).unwrap();
     assert!(answer.starts_with("HTTP/1.1 403 "), "{answer}");
+}
+
+#[test]
+fn a_server_survives_its_clients_and_bad_results() {
+    let place = swept();
+    let server = Server::of(&place, "o");
+    let answer = |request: &str| {
+        let mut answer = String::new();
+        server.ask(request).read_to_string(&mut answer).unwrap();
+        answer
+    };
+    let host = &server.address;
+    let page = server.get("/");
+    assert!(
+        page.contains("\r\nX-Frame-Options: DENY\r\n") && page.contains("frame-ancestors 'none'"),
+        "{}",
+        &page[..400]
+    );
+    for (headers, status) in [
+        (format!("Host: {host}\r\nHost: {host}\r\n"), "400"),
+        (format!("Host: {host}\r\nSec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: navigate\r\n"), "403"),
+        (format!("Host: {host}\r\nSec-Fetch-Dest: iframe\r\n"), "403"),
+        (format!("Host: {host}\r\nX: {}\r\n", "a".repeat(100_000)), "431"),
+    ] {
+        let answer = answer(&format!("GET / HTTP/1.1\r\n{headers}\r\n"));
+        assert!(answer.starts_with(&format!("HTTP/1.1 {status} ")), "{headers:.80}: {answer}");
+    }
+    // More than are answered at a time are told so, after their request was heard.
+    let waiting: Vec<TcpStream> = (0..32).map(|_| server.ask("GET / HTTP/1.1\r\nX: ")).collect();
+    let told = std::iter::repeat_with(|| {
+        answer(&format!("GET / HTTP/1.1\r\nHost: {host}\r\nX: {}\r\n\r\n", "a".repeat(9000)))
+    });
+    let told: Vec<String> = told.take(3).collect();
+    assert!(told.iter().all(|answer| answer.starts_with("HTTP/1.1 503 ")), "{:.80}", told[0]);
+    drop(waiting);
+    // What is no file is not waited for.
+    fs::remove_file(place.path("o/results.csv")).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(place.path("o/results.csv")).status().unwrap().success());
+    wait_for("404", || server.get("/").starts_with("HTTP/1.1 404 "));
+    assert!(place.springpot(&["view", "o"]).stderr.contains("it is no ordinary file"));
+}
+
+#[test]
+fn a_server_ends_as_one_that_was_interrupted() {
+    let place = swept();
+    for signal in ["-TERM", "-INT"] {
+        let mut server = Server::of(&place, "o");
+        let id = server.child.id().to_string();
+        assert!(std::process::Command::new("kill").args([signal, &id]).status().unwrap().success());
+        assert_eq!(server.child.wait().unwrap().code(), Some(130), "{signal}");
+    }
 }

@@ -148,7 +148,7 @@ fn mistakes_are_refused_with_what_would_be_right() {
     for (change, words) in [
         (&[("--order", "1")][..], "write an order above 0 and below 1"),
         (&[("--order", "nan")], "--order NaN: out of range"),
-        (&[("--order", "half")], "invalid value"),
+        (&[("--order", "half")], "--order half: not a value that it takes"),
         (&[("--coefficient", "50 N/m")], "write a positive coefficient such as"),
         (&[("--coefficient", "-50")], "--coefficient -50: not a positive number"),
         (&[("--from", "1 m")], "--from 1 m: `m` does not fit"),

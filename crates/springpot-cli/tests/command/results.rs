@@ -206,7 +206,7 @@ fn sweeps_come_in_grid_order_for_any_number_of_jobs() {
     let place = Place::with(&format!("{}{SWEEP}", crate::support::ARM));
     let run = |jobs: &str| {
         let ended = place.done(&["run", "arm.toml", "--jobs", jobs, "--out", jobs]);
-        assert!(ended.stdout.starts_with("6 cases, 30 rows, "), "{}", ended.stdout);
+        assert!(ended.stdout.contains("\n6 cases, 30 rows, "), "{}", ended.stdout);
         (place.read(format!("{jobs}/results.csv")), place.read(format!("{jobs}/summary.csv")))
     };
     let one = run("1");

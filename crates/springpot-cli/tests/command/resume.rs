@@ -1,14 +1,11 @@
 //! Runs that are killed or interrupted, by all sorts of signals, and go on: the same bytes as without a break.
 
-use crate::support::{ARM, Ended, Place};
+use crate::support::{ARM, Ended, Place, ended, length, signal, wait_for};
 use serde_json::Value;
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
-
-/// Longest wait for a program.
-const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A pendulum on a thermoviscoelastic strut under a torque with kinks, and a figure and a metric of what results.csv does not hold.
 const FALLING: &str = r#"
@@ -127,7 +124,7 @@ fn killed_and_equal(place: &Place, arguments: &[&str], every: &str, dice: &mut D
     let last = loop {
         let arguments = if head(place).exists() { &again } else { &first };
         // Longer each time: on a busy machine the first lives may all end before another checkpoint.
-        let life = (0.1 + 0.5 * dice.roll()) * (1.0 + 0.2 * f64::from(kills));
+        let life = (0.1 + 0.5 * dice.roll()) * 1.2_f64.powi(kills as i32);
         let signal = ["-KILL", "-TERM", "-KILL", "-INT", "-HUP"][kills as usize % 5];
         match live(start(place, arguments), length.mul_f64(life), signal) {
             // The machine was busier when the length was measured.
@@ -209,11 +206,7 @@ fn killed(place: &Place) {
     let endless = ["--set", "time.end=100000", "--set", "time.output_step=0.5"];
     let arguments = [&["run", "arm.toml", "--out", "out", "--checkpoint-every", "0.5"], &endless[..]].concat();
     let mut child = start(place, &arguments);
-    let begun = Instant::now();
-    while !place.path("out/checkpoint/case-0").exists() {
-        assert!(begun.elapsed() < PATIENCE, "no checkpoint after {PATIENCE:?}");
-        std::thread::sleep(Duration::from_millis(1));
-    }
+    wait_for("a checkpoint", || place.path("out/checkpoint/case-0").exists());
     child.kill().unwrap();
     child.wait().unwrap();
 }
@@ -273,11 +266,7 @@ fn what_cannot_go_on_is_refused() {
 fn a_damaged_checkpoint_is_refused() {
     let place = Place::with(&format!("{ARM}[[sweep]]\nparameter = \"time.end\"\nvalues = [0.2, 100000, 100001]\n"));
     let mut child = start(&place, &["run", "arm.toml", "--out", "out", "--checkpoint-every", "0.5", "--jobs", "2"]);
-    let begun = Instant::now();
-    while !place.path("out/checkpoint/case-1").exists() {
-        assert!(begun.elapsed() < PATIENCE, "no checkpoint after {PATIENCE:?}");
-        std::thread::sleep(Duration::from_millis(1));
-    }
+    wait_for("a checkpoint", || place.path("out/checkpoint/case-1").exists());
     child.kill().unwrap();
     child.wait().unwrap();
     let mut dice = Dice(4);
@@ -307,14 +296,17 @@ fn an_interrupted_run_says_how_to_go_on() {
     let place = Place::with(&format!("{FALLING}{sweep}"));
     place.done(&["run", "arm.toml", "--out", "whole"]);
     // No checkpoint is due before the end; the interrupt leaves one.
-    let child = start(&place, &["run", "arm.toml", "--out", "out", "--checkpoint-every", "1000", "--jobs", "2"]);
-    let begun = Instant::now();
-    while fs::metadata(place.path("out/results.csv.part")).map_or(0, |file| file.len()) < 30_000 {
-        assert!(begun.elapsed() < PATIENCE, "no rows");
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let ended = live(child, PATIENCE, "-KILL").unwrap();
+    let interrupted = || {
+        let _ = fs::remove_dir_all(place.path("out"));
+        let child = start(&place, &["run", "arm.toml", "--out", "out", "--checkpoint-every", "1000", "--jobs", "2"]);
+        wait_for("rows", || {
+            length(place.path("out/results.csv.part")) >= 30_000 || place.path("out/results.csv").exists()
+        });
+        signal(&child, "-INT");
+        ended(child)
+    };
+    // On a busy machine the signal may come after the end.
+    let ended = std::iter::repeat_with(interrupted).find(|ended| ended.code != Some(0)).unwrap();
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
     assert!(ended.stderr.ends_with("\nto go on: springpot run --resume out\n"), "{}", ended.stderr);
     assert_eq!(place.record("out")["status"], Value::from("interrupted"));
@@ -346,11 +338,10 @@ fn a_run_goes_on_from_elsewhere_and_without_its_scenario() {
     let mut command = place.command(&["run", "--resume", "../out"]);
     let mut child = command.current_dir(place.path("elsewhere")).stderr(Stdio::piped()).spawn().unwrap();
     let rows = fs::metadata(place.path("out/results.csv.part")).unwrap().len();
-    let begun = Instant::now();
-    while fs::metadata(place.path("out/results.csv.part")).unwrap().len() < rows + 2_000 {
-        assert!(child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE);
-        std::thread::sleep(Duration::from_millis(1));
-    }
+    wait_for("rows", || {
+        assert!(child.try_wait().unwrap().is_none());
+        length(place.path("out/results.csv.part")) >= rows + 2_000
+    });
     child.kill().unwrap();
     child.wait().unwrap();
 }

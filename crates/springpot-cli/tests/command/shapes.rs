@@ -242,7 +242,7 @@ fn half_a_turn_stops_a_run() {
     let ended = place.springpot(&[&["run", "arm.toml", "--quiet"][..], &set].concat());
     assert_eq!(ended.code, Some(1), "{}", ended.stderr);
     let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
-    for words in ["element \"mount.ry\" is turned by 3.1", "jumps at half a turn, pi", "error: t = 0."] {
+    for words in ["element \"mount.ry\" is turned by 3.1", "jumps at half a turn, pi", "error: arm.toml:", ": t = 0."] {
         assert!(said.contains(words), "{words}\n{said}");
     }
     assert_eq!(place.record("results/arm")["status"], json!("failed"));

@@ -5,7 +5,11 @@
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
+use std::time::{Duration, Instant};
+
+/// Longest wait for what must happen: on any machine, whatever else it does, only what hangs takes so long.
+const PATIENCE: Duration = Duration::from_secs(900);
 
 /// A robot of a turning and a sliding joint with one damper whose voltage varies; x(0) = 0.
 pub(crate) const ARM: &str = r#"title = "Damped arm"
@@ -130,6 +134,42 @@ impl Place {
     }
 }
 
+/// Waits until something has happened.
+pub(crate) fn wait_for(what: &str, mut has_happened: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !has_happened() {
+        assert!(begun.elapsed() < PATIENCE, "waited {PATIENCE:?} for {what}");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Bytes of a file; 0 where it is not there yet.
+pub(crate) fn length(file: impl AsRef<Path>) -> u64 {
+    fs::metadata(file).map_or(0, |file| file.len())
+}
+
+/// Sends a signal to a program.
+pub(crate) fn signal(child: &Child, name: &str) {
+    assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
+}
+
+/// Waits for the end of a program.
+pub(crate) fn ended(mut child: Child) -> Ended {
+    wait_for("the end of the program", || child.try_wait().unwrap().is_some());
+    Ended::from(child.wait_with_output().unwrap())
+}
+
+/// Processor time of a program that runs, s; wall time where the system does not list it.
+pub(crate) fn worked(child: &Child, begun: Instant) -> f64 {
+    let listed = fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap_or_default();
+    // Behind the name in parentheses: user and system time are the 12th and 13th, in hundredths of a second.
+    let ticks = listed.rsplit_once(')').map(|(_, rest)| {
+        let fields = rest.split_whitespace().skip(11).take(2);
+        fields.map(|field| field.parse::<f64>().unwrap()).sum::<f64>()
+    });
+    ticks.map_or_else(|| begun.elapsed().as_secs_f64(), |ticks| ticks / 100.0)
+}
+
 /// A file of testdata/.
 pub(crate) fn testdata(file: &str) -> String {
     format!("{}/../../testdata/{file}", env!("CARGO_MANIFEST_DIR"))
@@ -148,14 +188,21 @@ pub(crate) fn numbers(value: &Value) -> Vec<f64> {
 #[derive(Debug)]
 pub(crate) struct Ended {
     pub(crate) code: Option<i32>,
+    /// What killed it.
+    pub(crate) signal: Option<i32>,
     pub(crate) stdout: String,
     pub(crate) stderr: String,
 }
 
 impl From<Output> for Ended {
     fn from(output: Output) -> Self {
+        #[cfg(unix)]
+        let signal = std::os::unix::process::ExitStatusExt::signal(&output.status);
+        #[cfg(not(unix))]
+        let signal = None;
         let ended = Self {
             code: output.status.code(),
+            signal,
             stdout: String::from_utf8(output.stdout).unwrap(),
             stderr: String::from_utf8(output.stderr).unwrap(),
         };

@@ -1,15 +1,12 @@
 //! Files that commands write: whole or not there, through links, and into what is no file.
 
-use crate::support::{Ended, Place};
+use crate::support::{Ended, Place, ended, signal, wait_for};
 use std::fs;
 use std::io::Write as _;
 use std::os::unix::fs::{FileTypeExt, PermissionsExt, symlink};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
 
-/// Longest wait for what must not hang.
-const PATIENCE: Duration = Duration::from_secs(30);
 const PRONY: [&str; 11] =
     ["prony", "--order", "0.5", "--coefficient", "50", "--from", "1e-3", "--to", "10", "--format", "csv"];
 const DERIVATIVE: [&str; 6] = ["derivative", "x.csv", "--column", "x", "--order", "0.5"];
@@ -25,19 +22,6 @@ fn with_samples() -> Place {
 /// What the command prints without `--out`.
 fn printed(place: &Place, arguments: &[&str]) -> String {
     place.done(arguments).stdout
-}
-
-/// Waits for the end, but not for ever.
-fn ended(mut child: Child) -> Ended {
-    let begun = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        if begun.elapsed() > PATIENCE {
-            child.kill().unwrap();
-            panic!("still running after {PATIENCE:?}");
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    Ended::from(child.wait_with_output().unwrap())
 }
 
 fn in_time(place: &Place, arguments: &[&str]) -> Ended {
@@ -197,11 +181,7 @@ fn under_way(place: &Place) -> (Child, std::process::ChildStdin) {
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     input.write_all(place.read("x.csv").as_bytes()).unwrap();
-    let begun = Instant::now();
-    while !place.files(".").iter().any(|name| name.starts_with(".springpot-")) {
-        assert!(begun.elapsed() < PATIENCE, "nothing is written");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for("a file", || place.files(".").iter().any(|name| name.starts_with(".springpot-")));
     (child, input)
 }
 
@@ -211,8 +191,7 @@ fn an_end_on_the_way_leaves_what_was_there() {
     place.write("d.csv", "earlier");
     let before = place.files(".");
     let (child, input) = under_way(&place);
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(sent.success());
+    signal(&child, "-INT");
     assert_eq!(ended(child).code, Some(130));
     drop(input);
     assert_eq!((place.files("."), place.read("d.csv")), (before.clone(), "earlier".to_owned()));

@@ -17,11 +17,12 @@ array([-9.81])
 from collections.abc import Mapping as _Mapping
 
 from . import fractional, units
-from ._errors import ModelError, RunError, ScenarioError, SpringpotError
+from ._errors import ModelError, RunError, ScenarioError, SpringpotError, SpringpotWarning
+from ._case import Case
 from ._cluster import sweep
 from ._figure import Figure
 from ._law import datasheet, fit, law, laws, network, prony
-from ._run import Case, Run, run
+from ._run import Run, run
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
 
 _Mapping.register(Snapshot)
@@ -41,6 +42,7 @@ __all__ = [
     "SimulationState",
     "Snapshot",
     "SpringpotError",
+    "SpringpotWarning",
     "__version__",
     "datasheet",
     "fit",

@@ -1,22 +1,20 @@
-"""Sweeps on other people's workers: Dask, concurrent.futures, MPI, Ray, or whatever takes tasks by ``submit``."""
+"""Sweeps on other people's workers: Dask, concurrent.futures, MPI, or whatever takes tasks by ``submit``."""
 
 from __future__ import annotations
 
-import asyncio
-import concurrent.futures
+import contextlib
 import os
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Protocol
 
 from ._errors import RunError, SpringpotError
+from ._futures import Came, Executed, Failed, Remote, Scheduler
 from ._progress import Progress, shown
 from ._run import Run, Sweep, _jobs, _warn, checked, run
 from ._scenario import Scenario
 from ._springpot import Case, Study
 from ._sweeps import sweeps_of
-
-_TIMEOUTS = (TimeoutError, asyncio.TimeoutError, concurrent.futures.TimeoutError)
 
 PATIENCE = 0.1
 """How long a look at a worker takes at most, s."""
@@ -60,11 +58,12 @@ class Gathering:
         shared = -(-self._count // (workers * TASKS_PER_WORKER))
         self._chunk = chunk if chunk is not None else max(1, min(MOST_IN_TASK, shared))
         self._ahead = max(2, AHEAD * workers)
-        self._tasks: dict[int, Any] = {}
+        self._tasks: dict[int, Executed | Remote] = {}
         self._tries: dict[int, int] = {}
-        self._found: dict[int, bytes] = {}
+        self._found: dict[int, Case] = {}
+        self._scheduler = Scheduler(client) if _is_dask(client) else None
         # Dask knows work by what it is given: a case that is asked for again is to run again.
-        self._words = {"pure": False} if type(client).__module__.startswith("distributed") else {}
+        self._words = {"pure": False} if self._scheduler is not None else {}
 
     def get(self, index: int, patience: float | None = None) -> Case | None:
         """The case, or ``None`` where it has not come within so many seconds."""
@@ -73,49 +72,78 @@ class Gathering:
             for ahead in range(task, min(task + self._ahead, -(-self._count // self._chunk))):
                 if ahead not in self._tasks and ahead * self._chunk not in self._found:
                     self._submit(ahead)
-            try:
-                found = self._tasks[task].result(timeout=patience)
-            except _TIMEOUTS:
+            outcome = self._tasks[task].look(patience)
+            if outcome is None:
                 return None
-            except Exception as error:
-                self._again(task, error)
+            if isinstance(outcome, Came):
+                self._found.update(zip(self._indices(task), self._cases(task, outcome.value)))
+                del self._tasks[task]
+            elif isinstance(outcome, Failed):
+                self._again(task, outcome.error)
                 return None
-            del self._tasks[task]
-            self._found.update(zip(self._indices(task), found))
-        return Case.from_bytes(self._found.pop(index))
+            else:
+                self._submit(task)
+                return None
+        return self._found.pop(index)
 
     def _indices(self, task: int) -> range:
         start = task * self._chunk
         return range(start, min(start + self._chunk, self._count))
 
+    def _called(self, task: int) -> str:
+        cases = self._indices(task)
+        return f"case {cases.start}" if len(cases) == 1 else f"cases {cases.start} to {cases.stop - 1}"
+
+    def _cases(self, task: int, value: Any) -> list[Case]:
+        """What :func:`work` gave, and not what something else did."""
+        wanted = self._indices(task)
+        if not isinstance(value, list) or len(value) != len(wanted):
+            count = f" of {len(value)}" if isinstance(value, list) else ""
+            raise RunError(f"{self._called(task)}: the client gave {type(value).__name__}{count} in place of what work(…) returns")
+        try:
+            cases = [Case.from_bytes(bytes) for bytes in value]
+        except (TypeError, ValueError) as error:
+            raise RunError(f"{self._called(task)}: the client gave something else than what work(…) returns: {error}") from error
+        for index, case in zip(wanted, cases):
+            if case.index != index:
+                raise RunError(f"{self._called(task)}: the client gave case {case.index} in place of case {index}")
+        return cases
+
     def _submit(self, task: int) -> None:
         try:
-            self._tasks[task] = self._client.submit(work, self._payload, list(self._indices(task)), **self._words)
+            future = self._client.submit(work, self._payload, list(self._indices(task)), **self._words)
         except Exception as error:
             raise RunError(f"the client takes no more work: {error}") from error
+        self._tasks[task] = Executed(future) if self._scheduler is None else Remote(self._scheduler, future, self._retries)
 
-    def _again(self, task: int, error: Exception) -> None:
+    def _again(self, task: int, error: BaseException) -> None:
         """A worker that failed is asked again, or another one."""
         if isinstance(error, SpringpotError):
             raise error
         self._tries[task] = self._tries.get(task, 0) + 1
         if self._tries[task] > self._retries:
-            cases = self._indices(task)
-            raise RunError(f"cases {cases.start} to {cases.stop - 1} failed {self._tries[task]} times: {error}") from error
+            raise RunError(f"{self._called(task)} failed {self._tries[task]} times: {error}") from error
         self._submit(task)
 
     def cancel(self) -> None:
         """Takes back what has not begun."""
-        for future in self._tasks.values():
-            cancel = getattr(future, "cancel", None)
-            if cancel is not None:
-                cancel()
+        for task in self._tasks.values():
+            # A client that is broken takes nothing back, and has been told of already.
+            with contextlib.suppress(Exception):
+                task.cancel()
+
+
+def _is_dask(client: Client) -> bool:
+    return type(client).__module__.partition(".")[0] == "distributed"
 
 
 def _workers(client: Client) -> int:
     threads = getattr(client, "nthreads", None)
     if callable(threads):
-        return max(1, int(sum(threads().values())))
+        try:
+            return max(1, int(sum(threads().values())))
+        except Exception as error:
+            raise RunError(f"the client does not say how many workers it has: {error!r}") from error
     known = getattr(client, "_max_workers", None)
     return known if isinstance(known, int) and known > 0 else os.cpu_count() or 1
 
@@ -142,18 +170,21 @@ def sweep(
     Args:
         scenario, set, sweep, out, jobs, progress, format, figures: as for :func:`run`.
         client: a Dask ``Client``, a ``concurrent.futures`` executor, ``mpi4py.futures.MPIPoolExecutor``, or whatever has ``submit(work, *args)``
-            and gives futures with ``result(timeout)``; ``None``: threads here, as :func:`run`.
+            and gives futures with ``result(timeout)`` (and ``done()``, if it likes); ``None``: threads here, as :func:`run`.
         chunk: cases in one task; default as many as give every worker sixteen tasks, at most 64.
         retries: how often a task is sent again whose worker failed.
         resume: go on with the run in ``out`` that was interrupted or whose client broke: cases that are in its files are not run again.
 
     Raises:
-        RunError: a task failed ``retries`` times, or the client takes no more work; with ``out`` what has come is kept for ``resume``.
+        RunError: a task failed more than ``retries`` times, the client takes no more work, gave something else than was asked, or lost its
+            scheduler for good; with ``out`` what has come is kept for ``resume``.
     """
     if client is None and not resume:
         return run(scenario, set, sweep, out, jobs, progress, format=format, figures=figures)
     if client is not None and not callable(getattr(client, "submit", None)):
         raise TypeError(f"client has no submit(work, *args): {type(client).__name__}")
+    if getattr(client, "asynchronous", False) is True:
+        raise ValueError("the client is asynchronous, and a sweep waits: give a Client(…, asynchronous=False)")
     if chunk is not None and chunk < 1:
         raise ValueError(f"chunk is a number of cases, not {chunk!r}")
     if resume and out is None:

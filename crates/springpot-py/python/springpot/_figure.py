@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -34,6 +35,11 @@ class Figure:
             raise ValueError(f"{path}: a figure is saved as {', '.join(ending for ending, data in found.items() if data)}")
         path.write_bytes(found[path.suffix.lower()])
         return path
+
+    def __repr__(self) -> str:
+        size = re.search(r'<svg [^>]*?viewBox="0 0 ([\d.]+) ([\d.]+)"', self.svg)
+        drawn = f"{float(size[1]):.0f} x {float(size[2]):.0f} pt" if size else "empty"
+        return f"<Figure: {drawn}{''.join(f'; {remark}' for remark in self.remarks)}>"
 
     def _repr_svg_(self) -> str:
         return self.svg

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import RunError, SpringpotError
+from . import _html
+from ._case import Case, Column
+from ._errors import RunError, SpringpotError, SpringpotWarning
 from ._figure import Figure, Range, draw, drawn
 from ._progress import Progress, shown
 from ._scenario import Scenario
@@ -23,89 +25,21 @@ from ._springpot import Study
 from ._springpot import Case as _Case
 from ._springpot import export_bytes, report_page, view_page
 from ._sweeps import sweeps_of
-from ._tables import Metrics, Rows
+from ._tables import Metrics, Rows, unknown
 
 if TYPE_CHECKING:
     import matplotlib.axes
     import pandas
     import polars
 
-Column: TypeAlias = npt.NDArray[np.float64]
 Sweep: TypeAlias = "Mapping[str | tuple[str, ...], Any]"
-
-
-class Case(Mapping[str, Column]):
-    """One case of a run: its columns as read-only arrays ``(rows,)``, without a copy; NaN where a cell is empty."""
-
-    def __init__(self, study: Study, case: _Case, units: Mapping[str, str]) -> None:
-        # The columns of all cases are the same, and asked for once.
-        self._study, self._case, self._units = study, case, units
-        self._found: dict[str, Column] = {}
-
-    @property
-    def index(self) -> int:
-        """Index in the grid of the sweeps."""
-        return self._case.index
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """The swept values by path: numbers in SI units, or texts."""
-        return dict(zip(self._study.parameters, self._study.values(self.index)))
-
-    @property
-    def error(self) -> RunError | None:
-        """Why it failed; ``None`` where it did not. Its rows go up to there."""
-        if self._case.error is None:
-            return None
-        message, place, help = self._case.error
-        lines = [message, *(f"  {word}" for word in (place, help) if word)]
-        return RunError("\n".join(lines), t=self._case.t_reached)
-
-    @property
-    def report(self) -> dict[str, Any]:
-        """Steps, rows, energies, as in run.json."""
-        return self._case.report
-
-    @property
-    def limits(self) -> list[str]:
-        """The limits of joints that it passes, in words."""
-        return self._case.limits
-
-    @property
-    def units(self) -> dict[str, str]:
-        """The unit of every column."""
-        return dict(self._units)
-
-    def __getitem__(self, column: str) -> Column:
-        found = self._found.get(column)
-        if found is None:
-            names = list(self._units)
-            if column not in self._units:
-                raise KeyError(_unknown(column, names))
-            found = np.asarray(self._case.column(names.index(column)))
-            self._found[column] = found
-        return found
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._units)
-
-    def __len__(self) -> int:
-        return len(self._units)
-
-    def __repr__(self) -> str:
-        name = self._study.name(self.index)
-        of = f" {name}" if name else ""
-        failed = ", failed" if self._case.error is not None else ""
-        return f"<Case {self.index}{of}: {self._case.rows} rows, {len(self)} columns{failed}>"
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Case, (self._study, self._case, self._units)
 
 
 class Run:
     """What a scenario led to, in memory.
 
-    A column of the only case is ``run["strut.force"]``; those of several cases are ``run.case(k)["strut.force"]``.
+    A column of the only case is ``run["strut.force"]``; those of several cases are ``run.case(k)["strut.force"]``, and ``for case in run`` goes
+    through them. ``len(run)`` is the number of cases, ``"strut.force" in run`` asks for a column. Runs are equal where all their numbers are.
 
     >>> import springpot as sp
     >>> run = sp.run('''
@@ -135,9 +69,18 @@ class Run:
         """All cases, in the order of the grid: the last sweep runs fastest."""
         return list(self._cases)
 
-    def case(self, k: int) -> Case:
-        """Case number k."""
-        return self._cases[k]
+    def case(self, k: int | str) -> Case:
+        """Case number k, where −1 is the last one, or the one of that name."""
+        if isinstance(k, str):
+            named = {case.name: case for case in self._cases}
+            if k not in named:
+                raise KeyError(unknown("case", k, list(named)))
+            return named[k]
+        try:
+            return self._cases[k]
+        except IndexError:
+            count = len(self._cases)
+            raise IndexError(f"there is no case {k}: the run has {_cases(count)}, {'0' if count == 1 else f'0 to {count - 1}'}") from None
 
     @property
     def parameters(self) -> list[str]:
@@ -161,20 +104,43 @@ class Run:
 
     def __getitem__(self, column: str) -> Column:
         """A column ``(rows,)`` of the only case."""
+        if not isinstance(column, str):
+            raise TypeError(f"run[…] takes the name of a column, not {column!r}; a case is run.case(k)")
         if len(self._cases) != 1:
             raise SpringpotError(f"the run has {len(self._cases)} cases: run.case(k)[{column!r}] is a column of one of them")
         return self._cases[0][column]
 
+    def __iter__(self) -> Iterator[Case]:
+        """Its cases, in the order of the grid."""
+        return iter(self._cases)
+
     def __contains__(self, column: object) -> bool:
+        """Whether it has a column of that name."""
         return column in self.columns
 
     def __len__(self) -> int:
         return len(self._cases)
 
     def __repr__(self) -> str:
-        cases = "1 case" if len(self) == 1 else f"{len(self)} cases"
-        failed = f", {len(self.failures)} failed" if self.failures else ""
-        return f"<Run of {cases}{failed}: {len(self.columns)} columns>"
+        title = f" {self.title!r}" if self.title else ""
+        number = sum(case._case.has_failed for case in self._cases)
+        failed = f", {number} failed" if number else ""
+        return f"<Run{title} of {_cases(len(self))}{failed}: {len(self.columns)} columns>"
+
+    def _repr_html_(self) -> str:
+        return _html.run(self)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.columns
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both have the same cases, to the bit."""
+        if not isinstance(other, Run):
+            return NotImplemented
+        return self.title == other.title and self._cases == other._cases
+
+    def __hash__(self) -> int:
+        return hash((self.title, tuple(self._cases)))
 
     @property
     def failures(self) -> dict[int, RunError]:
@@ -347,7 +313,8 @@ class Run:
     ) -> matplotlib.axes.Axes:
         """Draws columns over another one with matplotlib, in the style of the figures of a scenario: a colour for each case, a dash for each column.
 
-        ``cases``: indices, default all; more than twelve share a colour bar's colours and have no legend."""
+        ``cases``: indices, default all. Up to twelve curves are named in a legend; more have a colour bar, of the swept value where the cases differ
+        by one number alone, else of the case."""
         from ._plot import plot
 
         return plot(self, [y] if isinstance(y, str) else list(y), x, cases, ax)
@@ -417,17 +384,14 @@ def _jobs(jobs: int | None) -> int:
     if jobs is None:
         return 0
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
-        raise ValueError(f"jobs is a number of cases at a time, not {jobs!r}")
+        raise ValueError(f"jobs is {jobs!r}; write a number of cases at a time from 1 on, or leave it out for all cores")
     return jobs
 
 
 def _warn(warnings: Sequence[tuple[str, str | None]]) -> None:
     for message, help in warnings:
-        _warnings.warn(f"{message}; {help}" if help else message, stacklevel=3)
+        _warnings.warn(f"{message}; {help}" if help else message, SpringpotWarning, stacklevel=3)
 
 
-def _unknown(column: str, names: Sequence[str]) -> str:
-    import difflib
-
-    near = difflib.get_close_matches(str(column), names, n=1)
-    return f"no column {column!r}" + (f"; did you mean {near[0]!r}?" if near else "")
+def _cases(count: int) -> str:
+    return "1 case" if count == 1 else f"{count} cases"

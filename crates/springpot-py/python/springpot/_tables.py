@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _html
+
 if TYPE_CHECKING:
     import pandas
+
+
+def unknown(what: str, name: object, names: Sequence[str]) -> str:
+    """What to say of a name that is none of these."""
+    near = difflib.get_close_matches(str(name), names, n=1)
+    if near:
+        return f"no {what} {name!r}; did you mean {near[0]!r}?"
+    return f"no {what} {name!r}; there {'is' if len(names) == 1 else 'are'} {', '.join(names) or 'none'}"
 
 
 class Rows(Sequence[dict[str, Any]]):
@@ -31,7 +42,7 @@ class Rows(Sequence[dict[str, Any]]):
 
     def _column(self, name: str) -> npt.NDArray[Any]:
         if self._rows and name not in self._rows[0]:
-            raise KeyError(name)
+            raise KeyError(unknown("column", name, self._names()))
         return np.asarray([row[name] for row in self._rows])
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
@@ -40,8 +51,29 @@ class Rows(Sequence[dict[str, Any]]):
     def __len__(self) -> int:
         return len(self._rows)
 
+    def _names(self) -> list[str]:
+        return list(self._rows[0]) if self._rows else []
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self._names()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Rows):
+            return NotImplemented
+        # A value that is not there is NaN, which is as good as another one.
+        return type(self) is type(other) and self._plain() == other._plain()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _plain(self) -> list[dict[str, Any]]:
+        return [{name: None if value != value else value for name, value in row.items()} for row in self._rows]
+
     def __repr__(self) -> str:
-        return f"<{len(self)} rows>"
+        count = "1 row" if len(self) == 1 else f"{len(self)} rows"
+        return f"<{type(self).__name__}: {count}{' of ' if self._rows else ''}{', '.join(self._names())}>"
+
+    def _repr_html_(self) -> str:
+        return _html.rows(self)
 
     def to_pandas(self) -> pandas.DataFrame:
         """The rows as a pandas frame."""
@@ -60,5 +92,17 @@ class Metrics(Rows):
     def _column(self, name: str) -> Any:
         values = [row["value"] for row in self._rows if row["metric"] == name]
         if not values:
+            if name not in super()._names():
+                raise KeyError(unknown("metric", name, self._called() or super()._names()))
             return super()._column(name)
         return values[0] if self._cases == 1 else np.asarray(values)
+
+    def _called(self) -> list[str]:
+        return list(dict.fromkeys(row["metric"] for row in self._rows))
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return [*self._called(), *self._names()]
+
+    def __repr__(self) -> str:
+        cases = "1 case" if self._cases == 1 else f"{self._cases} cases"
+        return f"<Metrics of {cases}: {', '.join(self._called()) or 'none'}>"

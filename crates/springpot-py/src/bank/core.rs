@@ -3,8 +3,11 @@
 use springpot::collocation::Nodes;
 use springpot::elements::{ElementBank, MemoryRange};
 use springpot::fractional::{Form, KernelError};
-use springpot::law::{Course, Entry, InputValue, Network, Start};
+use springpot::law::{Course, Derivative, Entry, InputValue, Network, Start};
 use std::sync::Arc;
+
+/// Steps begin where the last one ended, to this share of their size and of the time.
+const SAME_TIME: f64 = 1e-9;
 
 /// Shorter steps, s, have lags that are no numbers.
 const SHORTEST: f64 = 1e-200;
@@ -25,6 +28,8 @@ pub(super) enum BankError {
     NotEvaluated,
     OtherBank,
     Step(f64, f64),
+    /// A step from here, where the last one ended there.
+    Elsewhere(f64, f64),
     /// What, of which element, and the value.
     NotFinite(&'static str, usize, f64),
     /// The element whose rule an input breaks, and why.
@@ -46,6 +51,7 @@ pub(super) struct Core {
     /// For the rules of their inputs.
     laws: Vec<Network>,
     entries: Vec<Arc<Entry>>,
+    derivatives: Vec<Derivative>,
     /// Where the inputs of each element begin.
     firsts: Vec<usize>,
     settings: Settings,
@@ -61,8 +67,9 @@ pub(super) struct Core {
 }
 
 impl Core {
-    pub(super) fn new(laws: Vec<(Network, Arc<Entry>)>, settings: Settings) -> Self {
-        let (laws, entries): (Vec<Network>, Vec<_>) = laws.into_iter().unzip();
+    pub(super) fn new(laws: Vec<(Network, Arc<Entry>, Derivative)>, settings: Settings) -> Self {
+        let derivatives = laws.iter().map(|(.., derivative)| *derivative).collect();
+        let (laws, entries): (Vec<Network>, Vec<_>) = laws.into_iter().map(|(law, entry, _)| (law, entry)).unzip();
         let mut bank = ElementBank::new(laws.clone(), settings.nodes, settings.form);
         bank.set_course(settings.course);
         let mut firsts = vec![0];
@@ -70,7 +77,7 @@ impl Core {
             firsts.push(firsts[firsts.len() - 1] + entry.inputs.len());
         }
         let (begun, start, evaluated, values) = (None, Place::default(), None, Vec::new());
-        Self { bank, laws, entries, firsts, settings, begun, start, t: 0.0, evaluated, values }
+        Self { bank, laws, entries, derivatives, firsts, settings, begun, start, t: 0.0, evaluated, values }
     }
 
     pub(super) fn t(&self) -> f64 {
@@ -96,7 +103,9 @@ impl Core {
             .enumerate()
             .map(|(e, stroke)| {
                 let inputs = &values[self.firsts[e]..self.firsts[e + 1]];
-                Start { stroke: *stroke, jump: *stroke, inputs }
+                // What was held since ever was not stretched at t = 0.
+                let jump = if self.derivatives[e] == Derivative::RiemannLiouville { *stroke } else { 0.0 };
+                Start { stroke: *stroke, jump, inputs }
             })
             .collect();
         self.bank.begin(&starts, self.settings.memory).map_err(BankError::Kernel)?;
@@ -132,6 +141,9 @@ impl Core {
         self.begun.as_ref().ok_or(BankError::NotBegun)?;
         if !(t.is_finite() && h.is_finite() && h >= SHORTEST) {
             return Err(BankError::Step(t, h));
+        }
+        if (t - self.t).abs() > SAME_TIME * (h + self.t) {
+            return Err(BankError::Elsewhere(t, self.t));
         }
         let s = self.settings.nodes.count();
         finite("stroke", strokes, s)?;

@@ -5,7 +5,7 @@ mod told;
 
 use self::core::{Core, Settings};
 use crate::array::{Rows, numbers, written};
-use crate::error::{guarded, run_error_at, value_error};
+use crate::error::{guarded, run_error_at, type_error, value_error};
 use crate::law::{described, flat};
 use crate::quantity::number;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
@@ -178,7 +178,7 @@ impl PyBank {
             });
             let inputs: Vec<_> = inputs.collect();
             let core = Core::new(
-                laws.iter().map(|law| (law.network.clone(), law.entry.clone())).collect(),
+                laws.iter().map(|law| (law.network.clone(), law.entry.clone(), law.derivative)).collect(),
                 Settings { nodes, form, course, memory },
             );
             Ok(Self { core: Mutex::new(core), nodes, names, inputs })
@@ -266,7 +266,7 @@ impl PyBank {
     /// Forces of a step from t to t + h, at its nodes, and their tangents; pure.
     ///
     /// Args:
-    ///     t: s. h: s, positive.
+    ///     t: where the last step that was committed ended, s; 0 after :meth:`begin`. h: s, positive.
     ///     strokes: x at the nodes, shape ``(n, nodes)``, or ``(n,)`` with one node.
     ///     rates: x' there, in the same shape; left out: those of the polynomial through the strokes.
     ///     inputs: shape ``(m,)`` or ``(m, nodes)`` in the order of :attr:`inputs`, or a dict by name of numbers, texts with units, or arrays of
@@ -346,6 +346,12 @@ impl PyBank {
         self.names.len()
     }
 
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(type_error(
+            "a bank is not copied: keep its state(), and give it to set_state() of one of the same elements and settings",
+        ))
+    }
+
     fn __repr__(&self) -> String {
         format!("Bank({} elements, nodes={:?})", self.names.len(), self.nodes.positions())
     }
@@ -353,12 +359,13 @@ impl PyBank {
 
 impl PyBank {
     fn told(&self, py: Python<'_>, error: core::BankError, t: f64) -> PyErr {
-        use core::BankError::{Broken, Kernel, NotBegun, NotEvaluated, NotFinite, OtherBank, Step};
+        use core::BankError::{Broken, Elsewhere, Kernel, NotBegun, NotEvaluated, NotFinite, OtherBank, Step};
         match error {
             NotBegun => value_error("the bank has not begun; call begin(strokes) first"),
             NotEvaluated => value_error("no step was evaluated since the last commit"),
             OtherBank => value_error("the state is one of another bank"),
             Step(t, h) => value_error(format!("t = {t} s, h = {h} s: times must be finite, and h positive")),
+            Elsewhere(t, last) => value_error(format!("a step from t = {t} s, but the last one ended at {last} s")),
             NotFinite(what, e, value) => {
                 value_error(format!("{what} of element \"{}\" is {value}; it must be finite", self.names[e]))
             }

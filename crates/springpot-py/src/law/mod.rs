@@ -8,12 +8,14 @@ pub(crate) use self::read::{Description, described};
 
 use crate::array::numbers;
 use crate::error::{guarded, value_error};
+use crate::notebook;
 use crate::scenario::CATALOG;
 use numpy::{Complex64, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use springpot::fractional::prony::Relaxation as _;
 use springpot::law::{Derivative, Entry, InputValue, Network, Param, Point, Tangent};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -24,12 +26,14 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 /// A law with its parameters: the force of a stroke's history. :func:`springpot.law` and :func:`springpot.network` make them.
+///
+/// Two are equal where they are the same law, or the same network, with the same parameters and the same definition of the derivative.
 #[pyclass(frozen, name = "Law", module = "springpot._springpot")]
 #[derive(Debug)]
 pub(crate) struct PyLaw {
     pub(crate) entry: Arc<Entry>,
     pub(crate) network: Network,
-    derivative: Derivative,
+    pub(crate) derivative: Derivative,
     /// SI, in the order of the entry; of a list all of them.
     values: Vec<Vec<f64>>,
     /// What it was made of: `law` or `network`, that text, parameters and tables.
@@ -140,7 +144,7 @@ impl PyLaw {
         definition_name(self.derivative)
     }
 
-    /// Parameters, SI.
+    /// Parameters, SI; those that are tables as tuples of strokes and forces.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let words = PyDict::new(py);
@@ -150,6 +154,9 @@ impl PyLaw {
                 (all, _) => words.set_item(&*param.name, all)?,
             }
         }
+        for (name, x, force) in self.made_of.tables() {
+            words.set_item(name, (x, force))?;
+        }
         Ok(words)
     }
 
@@ -158,6 +165,7 @@ impl PyLaw {
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let words = PyDict::new(py);
         self.entry.params.iter().try_for_each(|param| words.set_item(&*param.name, &*param.unit))?;
+        self.made_of.tables().try_for_each(|(name, ..)| words.set_item(name, "m, N"))?;
         Ok(words)
     }
 
@@ -234,8 +242,26 @@ impl PyLaw {
                 ([only], false) => format!("{}={only}", param.name),
                 (all, _) => format!("{}={all:?}", param.name),
             });
-        let values = values.collect::<Vec<_>>().join(", ");
-        format!("Law(\"{}\", {values}, derivative=\"{}\")", self.entry.name, definition_name(self.derivative))
+        let tables = self.made_of.tables().map(|(name, x, _)| format!("{name}=<{} points>", x.len()));
+        let derivative = std::iter::once(format!("derivative=\"{}\"", definition_name(self.derivative)));
+        let words = values.chain(tables).chain(derivative).collect::<Vec<_>>().join(", ");
+        format!("Law(\"{}\", {words})", self.entry.name)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.made_of.is_same_law(&other.made_of)
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.entry.name.hash(&mut hasher);
+        // 0 and −0 are equal.
+        self.values.iter().flatten().for_each(|value| (value + 0.0).to_bits().hash(&mut hasher));
+        hasher.finish()
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        notebook::html("law", slf)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use super::{PyLaw, each};
 use crate::error::{guarded, value_error};
+use crate::notebook;
+use crate::pickle::{self, Reduced, reduced};
 use crate::quantity::number;
 use numpy::{Complex64, PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
@@ -14,9 +16,12 @@ pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(prony, module)?)
 }
 
+/// What the bytes of a series begin with.
+const TAG: &str = "springpot prony 1\n";
+
 /// G(t) ≈ G_e + Σ g_k e^{−t/tau_k}, all g_k > 0: a spring beside Maxwell branches. :func:`springpot.prony` makes them.
-#[pyclass(frozen, name = "Prony", module = "springpot._springpot")]
-#[derive(Debug)]
+#[pyclass(frozen, eq, name = "Prony", module = "springpot._springpot")]
+#[derive(Debug, PartialEq)]
 struct PyProny {
     series: PronySeries,
 }
@@ -140,6 +145,25 @@ impl PyProny {
 
     fn __len__(&self) -> usize {
         self.series.terms.len()
+    }
+
+    /// What ``__reduce__`` made.
+    #[staticmethod]
+    fn _from_bytes(bytes: &[u8]) -> PyResult<Self> {
+        pickle::of_bytes(TAG, "Prony series", bytes).map(|series| Self { series })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, "_from_bytes", pickle::to_bytes(py, TAG, &self.series)?)
+    }
+
+    fn __hash__(&self) -> u64 {
+        let PronySeries { equilibrium, terms, error, .. } = &self.series;
+        equilibrium.to_bits() ^ error.to_bits().rotate_left(17) ^ terms.len() as u64
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        notebook::html("prony", slf)
     }
 
     fn __repr__(&self) -> String {

@@ -29,7 +29,7 @@ pub(crate) struct Description {
     entry: Option<Arc<Entry>>,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 enum Value {
     One(f64),
     List(Vec<f64>),
@@ -179,6 +179,20 @@ fn column(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
 }
 
 impl Description {
+    /// Whether both describe one law, whatever the elements are called.
+    pub(super) fn is_same_law(&self, other: &Self) -> bool {
+        let of = |one: &Self| (one.is_network, one.derivative);
+        of(self) == of(other) && self.text == other.text && self.values == other.values
+    }
+
+    /// Names, strokes and forces of its tables.
+    pub(super) fn tables(&self) -> impl Iterator<Item = (&str, &[f64], &[f64])> {
+        self.values.iter().filter_map(|(name, value)| match value {
+            Value::Points(x, force) => Some((name.as_str(), &x[..], &force[..])),
+            _ => None,
+        })
+    }
+
     /// The law that it describes.
     pub(crate) fn build(self) -> PyResult<PyLaw> {
         let entry = match &self.entry {

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyTuple};
 use springpot::model::{Model, StateError};
 use std::array::from_fn;
+use std::fmt;
 use std::sync::OnceLock;
 
 /// States that are worth a thread.
@@ -47,6 +48,26 @@ impl Symbol {
             Self::V(_) if is_finite => Ok(()),
             Self::Q(_) => core.model.check_q(values),
             Self::V(name) => core.model.check_v(name, values),
+        }
+    }
+}
+
+/// Why a state has no result.
+#[derive(Debug, Clone)]
+enum NoResult {
+    State(StateError),
+    /// A number that the result holds where the state is finite.
+    NotFinite(f64),
+}
+
+impl fmt::Display for NoResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::State(error) => error.fmt(f),
+            Self::NotFinite(value) => {
+                let why = "numbers of the state are too large, its mass matrix has no inverse, or two points coincide";
+                write!(f, "the result holds {value}: {why}")
+            }
         }
     }
 }
@@ -107,7 +128,7 @@ fn one<const I: usize, const O: usize>(
     targets: &[Sink; O],
     row: usize,
     work: &impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]),
-) -> Result<(), StateError> {
+) -> Result<(), NoResult> {
     let mut scratch = core.scratch();
     let done = state(core, &mut scratch, symbols, rows, targets, row, work);
     core.give_back(scratch);
@@ -123,7 +144,7 @@ fn state<const I: usize, const O: usize>(
     targets: &[Sink; O],
     row: usize,
     work: &impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]),
-) -> Result<(), StateError> {
+) -> Result<(), NoResult> {
     let model = &*core.model;
     // Taken out for the time of the call: the work has the rest.
     let mut inputs = std::mem::take(&mut scratch.inputs);
@@ -132,15 +153,25 @@ fn state<const I: usize, const O: usize>(
         let width = symbols[k].width(model);
         inputs[k].resize(width, 0.0);
         let is_finite = rows[k].read_finite(row, &mut inputs[k]);
-        done = done.and_then(|()| symbols[k].check(core, &inputs[k], is_finite));
+        done = done.and_then(|()| symbols[k].check(core, &inputs[k], is_finite).map_err(NoResult::State));
     }
     if done.is_ok() {
         // SAFETY: each row is taken once, by one thread.
-        let outs = from_fn(|k| unsafe { targets[k].row(row) });
-        work(model, scratch, from_fn(|k| inputs[k].as_slice()), outs);
+        let mut outs = from_fn::<_, O, _>(|k| unsafe { targets[k].row(row) });
+        work(model, scratch, from_fn(|k| inputs[k].as_slice()), outs.each_mut().map(|out| &mut **out));
+        done = outs.iter().try_for_each(|out| finite(out));
     }
     scratch.inputs = inputs;
     done
+}
+
+/// Whether all numbers are finite, looked at without a branch for each.
+#[inline]
+fn finite(values: &[f64]) -> Result<(), NoResult> {
+    if values.iter().fold(true, |all, value| all & value.is_finite()) {
+        return Ok(());
+    }
+    values.iter().find(|value| !value.is_finite()).map_or(Ok(()), |bad| Err(NoResult::NotFinite(*bad)))
 }
 
 /// The first row that is no state, where there is one.
@@ -151,7 +182,7 @@ fn many<const I: usize, const O: usize>(
     targets: &[Sink; O],
     count: usize,
     work: &(impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]) + Sync),
-) -> Result<(), (usize, StateError)> {
+) -> Result<(), (usize, NoResult)> {
     let part = |from: usize, to: usize| {
         let mut scratch = core.scratch();
         let done = (from..to).try_for_each(|row| {

@@ -1,6 +1,7 @@
 //! What a model is: names, sizes, limits, masses.
 
 use super::PyModel;
+use crate::notebook;
 use numpy::{PyArray1, PyArray3};
 use pyo3::prelude::*;
 use springpot::model::{JointKind, Limits};
@@ -156,6 +157,10 @@ impl PyModel {
     #[getter]
     fn friction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_vec(py, self.by_joint(JointKind::nv, |j| self.core.model.friction()[j]))
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        notebook::html("model", slf)
     }
 
     fn __repr__(&self) -> String {

@@ -2,10 +2,10 @@
 
 use super::PyModel;
 use super::core::Core;
-use crate::error::{guarded, model_error, scenario_error, urdf_error, value_error};
+use crate::error::{guarded, missing_model, model_error, scenario_error, urdf_error};
+use crate::pickle::{self, Reduced, reduced};
 use crate::scenario::{CATALOG, asked};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 use serde::{Deserialize, Serialize};
 use springpot::model::urdf::{Urdf, UrdfOptions};
 use springpot::spatial::Rotation;
@@ -13,6 +13,9 @@ use springpot_run::Asked;
 use springpot_scenario::RobotPlan;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// What the bytes of a model begin with.
+const TAG: &str = "springpot model 1\n";
 
 /// Gravity of a URDF robot, m/s²; the file says nothing of it.
 const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
@@ -58,15 +61,16 @@ impl PyModel {
     ///
     /// Args:
     ///     path: the file.
-    ///     floating_base: whether the root link floats, on a joint called ``floating_base``: seven coordinates x y z qx qy qz qw, six velocities
-    ///         vx vy vz wx wy wz in its own axes.
+    ///     floating_base: whether the root link floats, on a joint called ``floating_base``: seven coordinates x y z qx qy qz qw, the real part of
+    ///         the quaternion last, and six velocities vx vy vz wx wy wz in its own axes: both as Pinocchio has them. MuJoCo has the real part
+    ///         first, and the linear velocity in the axes of the world.
     ///     ignore_mimic: whether joints that follow others have coordinates of their own.
     ///     accept_inertia: whether inertias that no distribution of mass has are taken.
     ///     package_path: folders that are packages or hold some.
     ///     gravity: m/s², shape ``(3,)``; (0, 0, −9.81) where left out.
     ///
     /// Raises:
-    ///     ModelError: what is wrong, with the file and the line.
+    ///     ModelError: what is wrong, with the file and the line; a FileNotFoundError too where there is no such file.
     #[staticmethod]
     #[pyo3(signature = (path, floating_base=false, *, ignore_mimic=false, accept_inertia=false, package_path=Vec::new(), gravity=None))]
     fn from_urdf(
@@ -79,7 +83,10 @@ impl PyModel {
         gravity: Option<[f64; 3]>,
     ) -> PyResult<Self> {
         guarded(py, || {
-            let text = Urdf::read_text(&path).map_err(|error| urdf_error(py, &error))?;
+            let text = Urdf::read_text(&path).map_err(|error| match path.try_exists() {
+                Ok(false) => missing_model(py, &error, &path),
+                _ => urdf_error(py, &error),
+            })?;
             let gravity = gravity.unwrap_or(STANDARD_GRAVITY);
             let options = UrdfOptions { floating_base, ignore_mimic, accept_inertia, package_path };
             Origin::Urdf { path, text, options, gravity }.model(py)
@@ -103,13 +110,12 @@ impl PyModel {
     /// What `__reduce__` made.
     #[staticmethod]
     fn _from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        let origin: Origin = postcard::from_bytes(bytes).map_err(|error| value_error(format!("no model: {error}")))?;
+        let origin: Origin = pickle::of_bytes(TAG, "model", bytes)?;
         guarded(py, || origin.model(py))
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let bytes = postcard::to_stdvec(&self.origin).map_err(|error| value_error(error.to_string()))?;
-        Ok((py.get_type::<Self>().getattr("_from_bytes")?, (PyBytes::new(py, &bytes),)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, "_from_bytes", pickle::to_bytes(py, TAG, &self.origin)?)
     }
 }
 

@@ -1,6 +1,7 @@
 //! A case that was run, and its columns without a copy.
 
-use crate::error::value_error;
+use crate::error::{case_error, value_error};
+use crate::pickle::{Reduced, reduced};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use springpot_run::sweep::Parcel;
@@ -23,8 +24,8 @@ impl Case {
         Ok(PyBytes::new(py, &py.detach(|| self.0.to_bytes())?))
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        Ok((py.get_type::<Self>().getattr("from_bytes")?, (self.to_bytes(py)?,)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, "from_bytes", self.to_bytes(py)?)
     }
 
     /// Index in the grid of the sweeps.
@@ -49,16 +50,16 @@ impl Case {
         }
     }
 
-    /// Why it failed, and what can be done; `None` where it did not.
+    /// Why it failed, as a `RunError`; `None` where it did not.
     #[getter]
-    fn error(&self) -> Option<(String, Option<String>, Option<String>)> {
-        self.0.error().map(|trouble| (trouble.message.clone(), trouble.place.clone(), trouble.help.clone()))
+    fn error<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
+        self.0.error().map(|trouble| case_error(py, trouble).value(py).clone().into_any())
     }
 
-    /// The time of its last row, s; `None` before the first.
+    /// Whether it failed.
     #[getter]
-    fn t_reached(&self) -> Option<f64> {
-        self.0.report().t_reached
+    fn has_failed(&self) -> bool {
+        self.0.error().is_some()
     }
 
     /// Steps, rows, energies: as in run.json.

@@ -2,8 +2,9 @@
 
 use super::case::Case;
 use super::source::{Called, Keeping, Known, is_same};
-use crate::error::{guarded, run_error_at, scenario_error, springpot_error, value_error};
+use crate::error::{case_error, guarded, run_error_at, scenario_error, springpot_error, value_error};
 use crate::interrupt::watched;
+use crate::pickle::{self, Reduced, reduced};
 use crate::scenario::{CATALOG, asked};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -18,6 +19,9 @@ use springpot_scenario::SweptValue;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// What the bytes of a study begin with.
+const TAG: &str = "springpot study 1\n";
 
 /// The cases of a scenario, each of which can be run in any process.
 #[pyclass(frozen, module = "springpot._springpot")]
@@ -41,18 +45,17 @@ impl Study {
     /// What `to_bytes` made; files that the scenario names must be there too.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        let asked = postcard::from_bytes(bytes).map_err(|error| value_error(format!("no study: {error}")))?;
+        let asked = pickle::of_bytes(TAG, "study", bytes)?;
         guarded(py, || Self::of(py, asked))
     }
 
     /// The scenario with all that was set and swept.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = postcard::to_stdvec(&self.asked).map_err(|error| value_error(error.to_string()))?;
-        Ok(PyBytes::new(py, &bytes))
+        pickle::to_bytes(py, TAG, &self.asked)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        Ok((py.get_type::<Self>().getattr("from_bytes")?, (self.to_bytes(py)?,)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, "from_bytes", self.to_bytes(py)?)
     }
 
     /// Number of cases.
@@ -101,7 +104,7 @@ impl Study {
     /// Names and columns of events.csv behind the swept parameters.
     #[getter]
     fn event_columns(&self) -> Vec<String> {
-        self.planned.system.observables().columns().iter().map(|column| column.name.clone()).collect()
+        self.planned.plan.columns().into_iter().map(|column| column.name).collect()
     }
 
     /// Name, column and unit of every metric.
@@ -354,9 +357,10 @@ fn begin_error(py: Python<'_>, error: BeginError) -> PyErr {
     match error {
         BeginError::Refused(refusals) => scenario_error(py, &refusals),
         BeginError::Hopeless { ref survey, .. } => {
-            let message = survey.failures.first().map_or_else(|| error.to_string(), |(_, why)| why.message.clone());
-            run_error_at(py, message, None)
+            let first = survey.failures.first();
+            first.map_or_else(|| run_error_at(py, &error, None), |(_, why)| case_error(py, why))
         }
+        BeginError::Interrupted => interrupted(py),
         BeginError::Folder { .. } => springpot_error(py, error),
     }
 }

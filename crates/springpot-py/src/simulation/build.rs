@@ -81,9 +81,11 @@ pub(super) fn build(
         urdf: plan.urdf,
         gripper: plan.gripper,
     };
+    let (columns, quantities) = Columns::new(&system.observables());
     Ok(PySimulation {
         robot: Py::new(py, PyModel::of(py, robot, Origin::Scenario(origin))?)?,
-        columns: Arc::new(Columns::new(&system.observables())),
+        columns: Arc::new(columns),
+        quantities,
         v_names: model.v_labels().into_iter().map(|label| label.name).collect(),
         inner: Mutex::new(Inner { simulation, callbacks, driven, own, control }),
         model,

@@ -10,7 +10,7 @@ use self::callback::Callback;
 use self::snapshot::Columns;
 use self::state::PyState;
 use crate::array::{Rows, numbers};
-use crate::error::{guarded, run_error, run_error_at, value_error};
+use crate::error::{guarded, run_error, run_error_at, type_error, value_error};
 use crate::model::PyModel;
 use crate::quantity::number;
 use numpy::PyArray1;
@@ -20,6 +20,7 @@ use pyo3::types::{PyDict, PyString};
 use springpot::Simulation;
 use springpot::integrate::RunError;
 use springpot::model::Model;
+use springpot::observe::Quantity;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -73,6 +74,8 @@ pub(crate) struct PySimulation {
     model: Arc<Model>,
     robot: Py<PyModel>,
     columns: Arc<Columns>,
+    /// How the values of the columns are found.
+    quantities: Vec<Quantity>,
     v_names: Vec<String>,
     end: f64,
 }
@@ -223,7 +226,7 @@ impl PySimulation {
     fn snapshot(&self, py: Python<'_>) -> PyResult<snapshot::PySnapshot> {
         self.with(py, |inner| {
             let taken = inner.simulation.snapshot().map_err(|error| failed(py, &error))?;
-            Ok(snapshot::PySnapshot::new(taken, self.columns.clone()))
+            Ok(snapshot::PySnapshot::new(&taken, self.columns.clone(), &self.quantities))
         })
     }
 
@@ -232,7 +235,7 @@ impl PySimulation {
         let t = number(t, "s", "t")?;
         self.with(py, |inner| {
             let taken = inner.simulation.interpolate(t).map_err(|error| failed(py, &error))?;
-            Ok(snapshot::PySnapshot::new(taken, self.columns.clone()))
+            Ok(snapshot::PySnapshot::new(&taken, self.columns.clone(), &self.quantities))
         })
     }
 
@@ -297,6 +300,12 @@ impl PySimulation {
             words.set_item("modes", report.modes)?;
             Ok(words)
         })
+    }
+
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(type_error(
+            "a simulation is not copied: keep its state(), and give it to set_state() of one of the same scenario and callables",
+        ))
     }
 
     fn __repr__(&self) -> String {

@@ -1,39 +1,47 @@
 //! All that is known at one time, by column.
 
+use crate::error::value_error;
+use crate::pickle::{self, Reduced, reduced};
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyList};
+use serde::{Deserialize, Serialize};
 use springpot::observe::{Observables, Quantity, Snapshot};
 use springpot_scenario::suggest;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What can be observed of a system.
+/// What the bytes of a snapshot begin with.
+const TAG: &str = "springpot snapshot 1\n";
+
+/// What a snapshot tells: names and units.
 #[derive(Debug)]
 pub(super) struct Columns {
-    all: Vec<(Quantity, String, String)>,
+    all: Vec<(String, String)>,
     places: HashMap<String, usize>,
 }
 
 impl Columns {
-    pub(super) fn new(observables: &Observables) -> Self {
-        let named = |quantity| {
-            let column = observables.column(quantity);
-            (quantity, column.name, column.unit)
-        };
-        let all: Vec<_> = observables.quantities().into_iter().map(named).collect();
-        let places = all.iter().enumerate().map(|(k, (_, name, _))| (name.clone(), k)).collect();
+    fn of(all: Vec<(String, String)>) -> Self {
+        let places = all.iter().enumerate().map(|(k, (name, _))| (name.clone(), k)).collect();
         Self { all, places }
     }
 
+    /// Those of a system, and how their values are found.
+    pub(super) fn new(observables: &Observables) -> (Self, Vec<Quantity>) {
+        let quantities = observables.quantities();
+        let columns = quantities.iter().map(|quantity| observables.column(*quantity));
+        (Self::of(columns.map(|column| (column.name, column.unit)).collect()), quantities)
+    }
+
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
-        self.all.iter().map(|(_, name, _)| name.as_str())
+        self.all.iter().map(|(name, _)| name.as_str())
     }
 
     pub(super) fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let units = PyDict::new(py);
-        self.all.iter().try_for_each(|(_, name, unit)| units.set_item(name, unit))?;
+        self.all.iter().try_for_each(|(name, unit)| units.set_item(name, unit))?;
         Ok(units)
     }
 }
@@ -42,22 +50,29 @@ impl Columns {
 #[pyclass(frozen, mapping, name = "Snapshot", module = "springpot._springpot")]
 #[derive(Debug)]
 pub(super) struct PySnapshot {
-    snapshot: Snapshot,
+    told: Told,
     columns: Arc<Columns>,
 }
 
+#[derive(Debug, Serialize, Deserialize)]
+struct Told {
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+    /// In the order of the columns.
+    values: Vec<f64>,
+}
+
 impl PySnapshot {
-    pub(super) fn new(snapshot: Snapshot, columns: Arc<Columns>) -> Self {
-        Self { snapshot, columns }
+    pub(super) fn new(snapshot: &Snapshot, columns: Arc<Columns>, quantities: &[Quantity]) -> Self {
+        let values = quantities.iter().map(|quantity| snapshot.value(*quantity)).collect();
+        let [q, v, a] = [snapshot.q(), snapshot.v(), snapshot.a()].map(<[f64]>::to_vec);
+        Self { told: Told { t: snapshot.t(), q, v, a, values }, columns }
     }
 
     fn value(&self, name: &str) -> Option<f64> {
-        let place = *self.columns.places.get(name)?;
-        Some(self.snapshot.value(self.columns.all[place].0))
-    }
-
-    fn values_in_order(&self) -> impl Iterator<Item = f64> + '_ {
-        self.columns.all.iter().map(|(quantity, ..)| self.snapshot.value(*quantity))
+        self.columns.places.get(name).map(|place| self.told.values[*place])
     }
 }
 
@@ -66,25 +81,25 @@ impl PySnapshot {
     /// Time, s.
     #[getter]
     fn t(&self) -> f64 {
-        self.snapshot.t()
+        self.told.t
     }
 
     /// Coordinates, shape ``(nq,)``.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.snapshot.q())
+        PyArray1::from_slice(py, &self.told.q)
     }
 
     /// Velocities, shape ``(nv,)``.
     #[getter]
     fn v<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.snapshot.v())
+        PyArray1::from_slice(py, &self.told.v)
     }
 
     /// Accelerations, shape ``(nv,)``; NaN at a singular start.
     #[getter]
     fn a<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.snapshot.a())
+        PyArray1::from_slice(py, &self.told.a)
     }
 
     /// SI units by column.
@@ -128,15 +143,33 @@ impl PySnapshot {
 
     /// Values in their order.
     fn values(&self) -> Vec<f64> {
-        self.values_in_order().collect()
+        self.told.values.clone()
     }
 
     /// Names and values.
     fn items(&self) -> Vec<(String, f64)> {
-        self.columns.names().map(str::to_owned).zip(self.values_in_order()).collect()
+        self.columns.names().map(str::to_owned).zip(self.told.values.iter().copied()).collect()
+    }
+
+    fn _ipython_key_completions_(&self) -> Vec<String> {
+        self.keys()
+    }
+
+    /// What ``__reduce__`` made.
+    #[staticmethod]
+    fn _from_bytes(bytes: &[u8]) -> PyResult<Self> {
+        let (told, columns): (Told, Vec<(String, String)>) = pickle::of_bytes(TAG, "snapshot", bytes)?;
+        if told.values.len() != columns.len() {
+            return Err(value_error("the bytes are no snapshot: values and columns are not as many"));
+        }
+        Ok(Self { told, columns: Arc::new(Columns::of(columns)) })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, "_from_bytes", pickle::to_bytes(py, TAG, &(&self.told, &self.columns.all))?)
     }
 
     fn __repr__(&self) -> String {
-        format!("Snapshot(t={}, {} columns)", self.snapshot.t(), self.columns.all.len())
+        format!("Snapshot(t={}, {} columns)", self.told.t, self.columns.all.len())
     }
 }

@@ -2,10 +2,16 @@
 
 use super::{Inner, failed};
 use crate::error::value_error;
+use crate::pickle::{self, Reduced, reduced};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde::{Deserialize, Serialize};
 use springpot::integrate::SimulationState;
+use std::sync::LazyLock;
+
+/// What the bytes of a state begin with: they hold what one build of the engine keeps.
+static TAG: LazyLock<String> =
+    LazyLock::new(|| format!("springpot {} state 1, build {}\n", env!("CARGO_PKG_VERSION"), springpot_run::BUILD));
 
 /// Where a simulation was between two steps; belongs to the scenario, values and callables that it was taken from.
 #[pyclass(frozen, name = "SimulationState", module = "springpot._springpot")]
@@ -28,17 +34,17 @@ impl PyState {
 
     /// As bytes, for files and other processes of the same build.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &postcard::to_stdvec(self).map_err(value_error)?))
+        pickle::to_bytes(py, &TAG, self)
     }
 
-    /// What :meth:`to_bytes` wrote.
+    /// What :meth:`to_bytes` wrote; ``ValueError`` where the bytes are damaged or of another build.
     #[staticmethod]
     fn from_bytes(bytes: &[u8]) -> PyResult<Self> {
-        postcard::from_bytes(bytes).map_err(|error| value_error(format!("no state of a simulation: {error}")))
+        pickle::of_bytes(&TAG, "state of a simulation", bytes)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        Ok((py.get_type::<Self>().getattr("from_bytes")?, (self.to_bytes(py)?,)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, "from_bytes", self.to_bytes(py)?)
     }
 
     fn __repr__(&self) -> String {

@@ -3,6 +3,7 @@
 use super::{Inner, failed};
 use crate::interrupt::PATIENCE;
 use pyo3::prelude::*;
+use springpot::Simulation;
 use springpot::integrate::RunError;
 use std::time::Instant;
 
@@ -11,10 +12,7 @@ impl Inner {
     pub(super) fn step(&mut self, py: Python<'_>) -> PyResult<bool> {
         self.take_samples(py)?;
         let until = self.next_sample();
-        let simulation = &mut self.simulation;
-        let moved = py.detach(|| simulation.step_until(until)).map_err(|error| failed(py, &error))?;
-        py.check_signals()?;
-        Ok(moved)
+        self.walk(py, |simulation, pauses| simulation.step_until_unless(until, pauses))
     }
 
     /// Steps until the time is t.
@@ -26,31 +24,32 @@ impl Inner {
         while self.simulation.t() < t {
             self.take_samples(py)?;
             let until = self.next_sample().min(t);
-            self.steps_until(py, until)?;
+            self.walk(py, |simulation, pauses| {
+                while simulation.t() < until {
+                    if !simulation.step_until_unless(until, pauses)? || pauses() {
+                        break;
+                    }
+                }
+                Ok(())
+            })?;
         }
         Ok(())
     }
 
-    /// Without the GIL, which is asked for now and then: Ctrl-C leaves the simulation between two steps.
-    fn steps_until(&mut self, py: Python<'_>, until: f64) -> PyResult<()> {
+    /// Takes steps without the GIL, which is asked for now and then: Ctrl-C leaves the simulation before, after or between the tries of a step.
+    fn walk<T: Send>(
+        &mut self,
+        py: Python<'_>,
+        mut steps: impl FnMut(&mut Simulation, &mut dyn FnMut() -> bool) -> Result<T, RunError> + Send,
+    ) -> PyResult<T> {
         let simulation = &mut self.simulation;
         loop {
-            let walk = || -> Result<bool, RunError> {
-                let begun = Instant::now();
-                while simulation.t() < until {
-                    if !simulation.step_until(until)? {
-                        break;
-                    }
-                    if begun.elapsed() > PATIENCE {
-                        return Ok(false);
-                    }
-                }
-                Ok(true)
-            };
-            let done = py.detach(walk).map_err(|error| failed(py, &error))?;
+            let begun = Instant::now();
+            let walked = py.detach(|| steps(simulation, &mut || begun.elapsed() > PATIENCE));
             py.check_signals()?;
-            if done {
-                return Ok(());
+            match walked {
+                Err(RunError::Interrupted { .. }) => {}
+                other => return other.map_err(|error| failed(py, &error)),
             }
         }
     }

@@ -22,6 +22,9 @@ const NO_DATA: Color = Color(0x80, 0x80, 0x80);
 /// Points that are drawn as dots, of one curve.
 const MOST_DOTS: usize = 2_000;
 
+/// Radius of a dot, widths of its stroke.
+pub(super) const DOT: f64 = 1.5;
+
 /// The data area of a panel in pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Area {
@@ -46,6 +49,7 @@ pub(super) struct Line<'a> {
     pub(super) stroke: Stroke,
     pub(super) is_right: bool,
     pub(super) is_marked: bool,
+    pub(super) is_points: bool,
 }
 
 /// Everything a panel shows, with the ranges and ticks settled.
@@ -122,8 +126,11 @@ impl Axes<'_> {
             let pixels = line.runs.iter().map(|run| run.iter().map(at).collect::<Vec<_>>());
             let (dots, mut lines): (Vec<_>, Vec<_>) = pixels.partition(|run| run.len() == 1);
             let mut dots: Vec<Point> = dots.into_iter().flatten().collect();
-            if line.is_marked {
+            if line.is_marked || line.is_points {
                 dots.extend(lines.iter().flatten());
+            }
+            if line.is_points {
+                lines.clear();
             }
             if self.clips {
                 lines = lines.iter().flat_map(|run| clip(run, area)).collect();
@@ -157,7 +164,7 @@ impl Axes<'_> {
                 scene.lines(lines, stroke);
             }
             for dot in dots {
-                scene.dot(dot, 1.5 * stroke.width, stroke.color);
+                scene.dot(dot, DOT * stroke.width, stroke.color);
             }
         }
         if self.curves.iter().all(|line| line.runs.is_empty()) {

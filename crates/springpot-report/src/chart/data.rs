@@ -171,10 +171,11 @@ fn widen((lo, hi): Extent, margin: f64) -> Extent {
     (lo - pad, hi + pad)
 }
 
-/// What curves are called, each name once, in order of appearance; unnamed ones too.
-pub(super) fn names<'a>(plot: &'a Plot, name: impl Fn(&'a Curve) -> &'a str) -> Vec<&'a str> {
+/// What curves are called, or points without lines, each name once, in order of appearance; unnamed ones too.
+pub(super) fn names<'a>(plot: &'a Plot, are_points: bool, name: impl Fn(&'a Curve) -> &'a str) -> Vec<&'a str> {
     let mut seen = std::collections::HashSet::new();
-    let all = plot.panels.iter().flat_map(|panel| &panel.curves).map(name);
+    let all =
+        plot.panels.iter().flat_map(|panel| &panel.curves).filter(|curve| curve.is_points == are_points).map(name);
     all.filter(|name| seen.insert(*name)).collect()
 }
 

@@ -108,14 +108,18 @@ struct Row {
 pub(super) fn scene(plot: &Plot, font: &Font) -> Result<Scene, ReportError> {
     let empty = [Panel::default()];
     let panels: &[Panel] = if plot.panels.is_empty() { &empty } else { &plot.panels };
-    let labels = data::names(plot, |curve| &curve.label);
-    let kinds = data::names(plot, |curve| &curve.kind);
+    let labels = data::names(plot, false, |curve| &curve.label);
+    let kinds = data::names(plot, false, |curve| &curve.kind);
+    let points = data::names(plot, true, |curve| &curve.label);
     let strokes = style::strokes(&labels, kinds.len());
     let mut layout = Layout::new(plot, panels, font);
-    let groups = legend_groups(plot, &labels, &kinds, &strokes);
+    let groups = legend_groups(plot, &labels, (&kinds, &points), &strokes);
     layout.place_legend(&groups);
     let settled = layout.settle()?;
     let look = |curve: &super::Curve| {
+        if curve.is_points {
+            return style::points(points.iter().position(|label| *label == curve.label).unwrap_or(0));
+        }
         let label = labels.iter().position(|label| *label == curve.label).unwrap_or(0);
         let kind = kinds.iter().position(|kind| *kind == curve.kind).unwrap_or(0);
         strokes[label][kind]
@@ -125,17 +129,23 @@ pub(super) fn scene(plot: &Plot, font: &Font) -> Result<Scene, ReportError> {
     Ok(scene)
 }
 
-/// Labels in their colours, then kinds in their dashes.
-fn legend_groups<'a>(plot: &'a Plot, labels: &[&'a str], kinds: &[&'a str], strokes: &[Vec<Stroke>]) -> Vec<Group<'a>> {
+/// Labels in their colours, then kinds in their dashes, then points.
+fn legend_groups<'a>(
+    plot: &'a Plot,
+    labels: &[&'a str],
+    (kinds, points): (&[&'a str], &[&'a str]),
+    strokes: &[Vec<Stroke>],
+) -> Vec<Group<'a>> {
     if plot.hides_legend {
         return Vec::new();
     }
     let named = |names: &[&'a str], stroke: &dyn Fn(usize) -> Stroke| -> Vec<(&'a str, Stroke)> {
         names.iter().enumerate().filter(|(_, name)| !name.is_empty()).map(|(k, name)| (*name, stroke(k))).collect()
     };
-    let values = Group { title: plot.legend_title.as_deref(), entries: named(labels, &|k| strokes[k][0]) };
-    let kinds = Group { title: None, entries: if kinds.len() > 1 { named(kinds, &style::dash) } else { Vec::new() } };
-    vec![values, kinds]
+    let group = |entries| Group { title: None, entries, are_points: false };
+    let values = Group { title: plot.legend_title.as_deref(), ..group(named(labels, &|k| strokes[k][0])) };
+    let kinds = group(if kinds.len() > 1 { named(kinds, &style::dash) } else { Vec::new() });
+    vec![values, kinds, Group { are_points: true, ..group(named(points, &style::points)) }]
 }
 
 impl<'a> Layout<'a> {
@@ -157,7 +167,7 @@ impl<'a> Layout<'a> {
             .zip(&group)
             .map(|(panel, group)| panel.curves.iter().map(|c| data::runs(c, scales(c.is_right, *group))).collect())
             .collect();
-        let has_marks = panels.iter().flat_map(|panel| &panel.curves).any(|curve| curve.is_marked);
+        let has_marks = panels.iter().flat_map(|panel| &panel.curves).any(|curve| curve.is_marked || curve.is_points);
         let x = data::x_range(runs.iter().flatten(), &plot.x, has_marks);
         let reaches = |is_right: bool, group: &[usize]| -> Vec<Reach<'_>> {
             let of = panels.iter().zip(&runs).zip(group);

@@ -1,5 +1,6 @@
 //! The legend, beside the panels or below them.
 
+use super::axes::DOT;
 use crate::draw::{Align, Font, INK, Point, Scene, Stroke, Text, wrap};
 
 /// Size of the legend's text, pixels.
@@ -22,6 +23,8 @@ const MOST_ENTRIES: usize = 96;
 pub(super) struct Group<'a> {
     pub(super) title: Option<&'a str>,
     pub(super) entries: Vec<(&'a str, Stroke)>,
+    /// Their samples are points.
+    pub(super) are_points: bool,
 }
 
 /// A legend that knows its size.
@@ -35,6 +38,7 @@ pub(super) struct Legend {
 struct Item {
     at: Point,
     stroke: Option<Stroke>,
+    is_point: bool,
     lines: Vec<String>,
     indent: f64,
 }
@@ -54,7 +58,7 @@ impl Legend {
                 if y > top && y + tall > top + budget.max(tall) {
                     (x, y, column) = (x + column + COLUMN_GAP, top, 0.0);
                 }
-                legend.put([x, y], stroke, lines, wide, tall);
+                legend.put([x, y], (stroke, group.are_points), lines, wide, tall);
                 (y, column) = (y + tall, column.max(wide));
             }
         }
@@ -91,7 +95,7 @@ impl Legend {
                 let tall = row.iter().map(|(_, lines)| entry_height(lines)).fold(0.0, f64::max);
                 for (column, (stroke, lines)) in row.iter().enumerate() {
                     let at = [left + column as f64 * (widest + COLUMN_GAP), y];
-                    legend.put(at, *stroke, lines.clone(), entry_width(font, lines), tall);
+                    legend.put(at, (*stroke, group.are_points), lines.clone(), entry_width(font, lines), tall);
                 }
                 y += tall;
             }
@@ -125,12 +129,12 @@ impl Legend {
 
     fn put_text(&mut self, at: Point, lines: Vec<String>, wide: f64) {
         let tall = lines.len() as f64 * LINE;
-        self.items.push(Item { at, stroke: None, lines, indent: 0.0 });
+        self.items.push(Item { at, stroke: None, is_point: false, lines, indent: 0.0 });
         (self.width, self.height) = (self.width.max(at[0] + wide), self.height.max(at[1] + tall));
     }
 
-    fn put(&mut self, at: Point, stroke: Option<Stroke>, lines: Vec<String>, wide: f64, tall: f64) {
-        self.items.push(Item { at, stroke, lines, indent: SAMPLE + BLANK });
+    fn put(&mut self, at: Point, (stroke, is_point): (Option<Stroke>, bool), lines: Vec<String>, wide: f64, tall: f64) {
+        self.items.push(Item { at, stroke, is_point, lines, indent: SAMPLE + BLANK });
         (self.width, self.height) = (self.width.max(at[0] + wide), self.height.max(at[1] + tall));
     }
 
@@ -140,7 +144,12 @@ impl Legend {
             let [left, top] = [at[0] + item.at[0], at[1] + item.at[1]];
             if let Some(stroke) = item.stroke {
                 let y = top + 0.5 * LINE;
-                scene.line(&[[left, y], [left + SAMPLE, y]], Stroke { width: stroke.width + 0.4, ..stroke.butt() });
+                if item.is_point {
+                    scene.dot([left + 0.5 * SAMPLE, y], DOT * stroke.width, stroke.color);
+                } else {
+                    let wider = Stroke { width: stroke.width + 0.4, ..stroke.butt() };
+                    scene.line(&[[left, y], [left + SAMPLE, y]], wider);
+                }
             }
             for (row, line) in item.lines.iter().enumerate() {
                 let at = [left + item.indent, top + (row as f64 + 0.5) * LINE + Font::middle(SIZE)];

@@ -89,6 +89,8 @@ pub struct Curve {
     pub is_right: bool,
     /// Its points are marked.
     pub is_marked: bool,
+    /// It is points without a line, as measured ones are: in black and grey, with legend entries behind all others.
+    pub is_points: bool,
     /// Abscissae, in any order: loops are fine.
     pub x: Vec<f64>,
     /// Ordinates, as many as x. A point of which a coordinate is NaN, infinite or beyond 1e300 is a gap in the line.

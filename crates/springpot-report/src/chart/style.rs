@@ -65,6 +65,14 @@ pub(super) fn dash(kind: usize) -> Stroke {
     Stroke::new(INK, 1.4).dashed(DASHES[kind % DASHES.len()])
 }
 
+/// What points without lines are drawn in.
+pub(super) fn points(k: usize) -> Stroke {
+    Stroke::new(if k == 0 { INK } else { GREYS[(k - 1) % GREYS.len()] }, 1.4)
+}
+
+/// Of further points, told apart by how light they are.
+const GREYS: [Color; 3] = [Color(0x8a, 0x8a, 0x8a), Color(0x5c, 0x5c, 0x5c), Color(0xb0, 0xb0, 0xb0)];
+
 fn plasma(place: f64) -> Color {
     let at = place * LIGHTEST;
     let i = (at.floor() as usize).min(PLASMA.len() - 2);

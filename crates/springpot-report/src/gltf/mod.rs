@@ -11,6 +11,7 @@ mod robot;
 mod solid;
 mod track;
 
+use crate::mesh::MeshFile;
 use crate::page::ViewColumn;
 use crate::scene::{Kinematics, Placement, Scene};
 use crate::surface;
@@ -36,6 +37,7 @@ const UPRIGHT: [f64; 4] = [-std::f64::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f64:
 #[derive(Debug)]
 pub struct Model<'a> {
     scene: &'a Scene,
+    meshes: &'a BTreeMap<String, MeshFile>,
     tree: Kinematics,
     time: Option<usize>,
     stride: usize,
@@ -48,12 +50,12 @@ pub struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// Of a robot, from so many rows.
-    pub fn new(scene: &'a Scene, columns: &[ViewColumn], rows: usize) -> Self {
+    /// Of a robot, from so many rows; `meshes`: where the files are that its meshes are called by.
+    pub fn new(scene: &'a Scene, meshes: &'a BTreeMap<String, MeshFile>, columns: &[ViewColumn], rows: usize) -> Self {
         let column = |name: &str| columns.iter().position(|column| column.name == name);
         let stride = rows.saturating_sub(1).div_ceil(MOST_KEYFRAMES - 1).max(1);
         let (tree, time) = (Kinematics::new(scene, column), column("t"));
-        Self { scene, tree, time, stride, seen: 0, times: Vec::new(), poses: Vec::new(), last: None }
+        Self { scene, meshes, tree, time, stride, seen: 0, times: Vec::new(), poses: Vec::new(), last: None }
     }
 
     /// Of so many rows one is a keyframe.
@@ -85,7 +87,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Writes the model; `facts` say what it is. Returns files of shapes that could not be read.
+    /// Writes the model; `facts` say what it is. Returns a word on files of shapes that could not be read.
     ///
     /// # Errors
     /// What `out` says.
@@ -96,14 +98,14 @@ impl<'a> Model<'a> {
         facts: &BTreeMap<String, String>,
         container: Container,
         out: &mut dyn Write,
-    ) -> io::Result<Vec<String>> {
+    ) -> io::Result<Option<String>> {
         if let Some((t, pose)) = self.last.take() {
             self.keep(t, pose);
         }
         if self.poses.is_empty() {
             self.keep(0.0, vec![Placement::IDENTITY; self.scene.bodies.len()]);
         }
-        let (surfaces, unread) = surface::read_all(std::slice::from_ref(self.scene));
+        let (surfaces, unread) = surface::read_all(std::slice::from_ref(self.scene), self.meshes);
         let worlds: Vec<Vec<Placement>> = self.poses.iter().map(|pose| self.tree.world(pose)).collect();
         let sizes = Sizes::new(self.scene, &worlds[0]);
         let mut document = Document::default();

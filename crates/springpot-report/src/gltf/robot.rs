@@ -3,8 +3,9 @@
 use super::document::Document;
 use super::paint::{self, Paint};
 use super::solid::{self, Solid};
+use crate::mesh::Part;
 use crate::scene::{Body, Freedom, Placement, Scene, SceneShape, Shape, Visual};
-use crate::surface::Surface;
+use crate::surface;
 use std::collections::HashMap;
 
 /// Parts of round things around their axis.
@@ -108,7 +109,7 @@ pub(super) fn body(
     scene: &Scene,
     index: usize,
     Sizes { radius: r, .. }: Sizes,
-    surfaces: &HashMap<&str, Surface>,
+    surfaces: &HashMap<&str, Vec<Part>>,
 ) -> Parts {
     let (body, mut parts) = (&scene.bodies[index], Parts::default());
     let shade = if index.is_multiple_of(2) { paint::BODY } else { paint::NEXT_BODY };
@@ -145,7 +146,7 @@ pub(super) fn world(
     document: &mut Document,
     scene: &Scene,
     Sizes { size, radius: r }: Sizes,
-    surfaces: &HashMap<&str, Surface>,
+    surfaces: &HashMap<&str, Vec<Part>>,
 ) -> Parts {
     let mut parts = Parts::default();
     let base = paint::BASE.material(document);
@@ -182,9 +183,9 @@ fn visuals(
     parts: &mut Parts,
     visuals: &[Visual],
     shade: Paint,
-    surfaces: &HashMap<&str, Surface>,
+    surfaces: &HashMap<&str, Vec<Part>>,
 ) {
-    for visual in visuals {
+    for visual in visuals.iter().filter(|visual| surface::is_drawable(visual)) {
         let placement = Placement::new(visual.origin, visual.rpy);
         let solid = match &visual.shape {
             Shape::Box(sizes) => Solid::cuboid(*sizes),
@@ -193,16 +194,27 @@ fn visuals(
                 let centred = Placement { shift: [0.0, 0.0, -0.5 * length], ..Placement::IDENTITY };
                 Solid::cylinder(*radius, *length, ROUND).placed(&centred)
             }
-            Shape::Mesh { path, scale } => match surfaces.get(path.as_str()) {
-                Some(surface) => Solid::faceted(&surface.vertices, &surface.triangles, *scale),
-                None => continue,
-            },
+            Shape::Mesh { path, scale } => {
+                for Part { color, surface } in surfaces.get(path.as_str()).into_iter().flatten() {
+                    // The file knows its parts better than the robot, which has one colour for all.
+                    let own =
+                        color.map(|[red, green, blue]| [red, green, blue, 255].map(|part| f64::from(part) / 255.0));
+                    let material = material(document, own.or(visual.color), shade);
+                    let solid = Solid::faceted(&surface.vertices, &surface.triangles, *scale);
+                    parts.add(material, solid.placed(&placement));
+                }
+                continue;
+            }
         };
-        let material = match visual.color {
-            Some(color) => paint::given(document, color),
-            None => shade.material(document),
-        };
+        let material = material(document, visual.color, shade);
         parts.add(material, solid.placed(&placement));
+    }
+}
+
+fn material(document: &mut Document, color: Option<[f64; 4]>, shade: Paint) -> usize {
+    match color {
+        Some(color) => paint::given(document, color),
+        None => shade.material(document),
     }
 }
 

@@ -6,7 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Serde, Value};
-use minijinja::{Environment, context};
+use minijinja::{Environment, context, escape_formatter};
 use serde::{Serialize, Serializer};
 
 const TEMPLATE: &str = include_str!("../../assets/report.html");
@@ -139,11 +139,30 @@ impl Report {
         let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
         let mut environment = Environment::new();
         environment.set_syntax(syntax.expect("the usual delimiters"));
+        environment.set_formatter(|out, state, value| {
+            let Some(text) = value.as_str().filter(|text| text.contains(is_unseen)) else {
+                return escape_formatter(out, state, value);
+            };
+            let text = text.replace(is_unseen, "\u{fffd}");
+            let shown = if value.is_safe() { Value::from_safe_string(text) } else { Value::from(text) };
+            escape_formatter(out, state, &shown)
+        });
         environment.add_filter("math", |line: &str| Value::from_safe_string(math::html(line)));
         environment.add_template(NAME, TEMPLATE).expect("the template is sound");
         let template = environment.get_template(NAME).expect("it was added above");
         let mark = Value::from_safe_string(MARK.to_owned());
         template.render(context! { mark, report => Value::from(Serde(self)) }).expect("the template fits its data")
+    }
+}
+
+/// What nobody would see, or what turns the direction of a text, so that a name looks like another.
+fn is_unseen(c: char) -> bool {
+    match c {
+        '\t' | '\n' | '\r' => false,
+        '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{feff}' => true,
+        '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' => true,
+        '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}' => true,
+        c => c.is_control(),
     }
 }
 
@@ -157,7 +176,7 @@ mod tests {
 
     #[test]
     fn text_is_text_wherever_it_stands() {
-        let bad = "</script><script>alert(1)</script><img src=x onerror=alert(1)>\"'`&";
+        let bad = "</script><script>alert(1)</script><img src=x onerror=alert(1)>\"'`&\u{202e}\u{200b}\u{7}\u{e0041}";
         let law = LawText {
             name: bad.to_owned(),
             law: bad.to_owned(),
@@ -204,6 +223,7 @@ mod tests {
         let html = report.html();
         assert!(!html.contains("alert(1)<") && !html.contains("<script") && !html.contains("<img src=x"), "{html}");
         assert!(html.contains(MARK));
+        assert!(html.contains("`&amp;\u{fffd}\u{fffd}\u{fffd}\u{fffd}") && !html.contains(is_unseen));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The page that shows a run in motion.
 
 use super::{MARK, in_script, mesh};
+use crate::mesh::MeshFile;
 use crate::scene::{LawText, Scene};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -30,6 +31,8 @@ pub struct View {
     pub columns: Vec<ViewColumn>,
     /// What is drawn.
     pub scenes: Vec<Scene>,
+    /// Where the files are that meshes of the scenes are called by; those that are not among them are not drawn.
+    pub meshes: BTreeMap<String, MeshFile>,
     /// What is said of the elements' laws.
     pub laws: Vec<LawText>,
     /// The cases shown.
@@ -107,13 +110,8 @@ impl View {
     ///
     /// Meshes are read from their files now; those that cannot be are left out, and a note says so.
     pub fn html(&self) -> String {
-        let (scenes, meshes, unread) = mesh::embed(&self.scenes);
-        let mut notes = self.notes.clone();
-        match &unread[..] {
-            [] => {}
-            [one] => notes.push(format!("{one} cannot be read as a mesh")),
-            [first, rest @ ..] => notes.push(format!("{first} and {} more cannot be read as meshes", rest.len())),
-        }
+        let (scenes, meshes, unread) = mesh::embed(&self.scenes, &self.meshes);
+        let notes: Vec<String> = self.notes.iter().cloned().chain(unread).collect();
         let data = json!({
             "title": self.title,
             "name": self.name,

@@ -127,11 +127,28 @@ export class App {
       scene.bodies ??= [];
       const tree = new Kinematics(scene, this.column);
       tree.place(one, 0, 0);
-      const robot = new RobotShape(scene, this.meshes, tree);
-      shared = { scene, tree, robot, elements: new ElementShapes(scene, tree, robot.radius, robot.size, robot.bodies.map((geometry) => geometry?.boundingBox)) };
+      const robot = new RobotShape(scene, this.meshes, tree, (body) => this.travel(one.scene, tree.drivers[body]));
+      shared = { scene, tree, robot, elements: new ElementShapes(scene, tree, robot.radius, robot.size, robot.bodies.map((geometry) => geometry?.boundingBox), robot.slides) };
       this.shared.set(one.scene, shared);
     }
     return shared;
+  }
+
+  /** Whether all shown cases have one motion, as far as rows tell it: only one robot is then to be seen. */
+  sameMotion() {
+    const [first, ...rest] = this.shownCases(), columns = this.data.columns.map((column, i) => ({ column, i })).filter(({ column }) => column.name.startsWith('q.'));
+    return columns.length > 0 && rest.every((one) => one.rows === first.rows && one.scene === first.scene && columns.every(({ i }) => {
+      const [low, high] = this.range(first, i), least = 1e-6 * Math.max(high - low, 1e-9), a = first.data[i], b = one.data[i];
+      for (let k = 0; k < first.rows; k++) if (Math.abs(a[k] - b[k]) > least) return false;
+      return true;
+    }));
+  }
+
+  /** Low and high of a joint's coordinate in all cases of a scene; 0 where no row tells it. @param {number} scene @param {{column: number, ratio: number, offset: number}|null} driver */
+  travel(scene, driver) {
+    const own = driver && driver.column >= 0 ? this.data.cases.filter((one) => one.scene === scene && one.rows > 0) : [];
+    const ends = own.flatMap((one) => this.range(one, driver.column)).filter(Number.isFinite).map((q) => driver.ratio * q + driver.offset);
+    return [Math.min(0, ...ends), Math.max(0, ...ends)];
   }
 
   /** The camera to the motion of all cases. */
@@ -140,7 +157,7 @@ export class App {
     if (!cases.length) return;
     const box = extent(cases.slice(0, MOST_SHOWN).map((one) => this.view(one)));
     const { ground } = this.data.scenes[cases[0].scene] ?? {};
-    this.stage.fit(box.middle, box.radius, ground ? ground[2] : box.low, box.cloud);
+    this.stage.fit(box.middle, box.radius, ground ? Math.min(ground[2], box.low) : box.low, box.cloud);
     setText(byId('grid-size'), `grid ${number(this.stage.ground.spacing)} m`);
   }
 

@@ -45,6 +45,7 @@ export class CaseList {
       else pick.removeAttribute('aria-current');
     });
     const n = app.data.cases.length;
+    byId('cases-same').hidden = app.shown.length < 2 || !app.sameMotion();
     this.note.textContent = n > MOST_SHOWN ? `${app.shown.length} of ${n} shown, ${MOST_SHOWN} at most` : `${app.shown.length} of ${n} shown`;
   }
 }

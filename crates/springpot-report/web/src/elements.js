@@ -2,6 +2,7 @@
 
 import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, MeshBasicMaterial, MeshDepthMaterial, MeshStandardMaterial, RGBADepthPacking } from 'three';
 import { cablePiece, ring, spiral, straight } from './signs.js';
+import { SIGN } from './slide.js';
 
 /** A material whose vertices follow the length and the twist of its element. */
 function follow(material, state) {
@@ -26,10 +27,12 @@ export const parts = (element) => (element.shape?.bushing?.parts?.length ? eleme
 
 /** Geometries of a scene's elements, shared by its cases. */
 export class ElementShapes {
-  /** @param {any} scene @param {import('./kinematics.js').Kinematics} tree placed at the first row @param {number} radius of the bars @param {number} size @param {any[]} boxes of the bodies */
-  constructor(scene, tree, radius, size, boxes) {
+  /** @param {any} scene @param {import('./kinematics.js').Kinematics} tree placed at the first row @param {number} radius of the bars @param {number} size @param {any[]} boxes of the bodies @param {Map<number, import('./slide.js').Slide>} slides */
+  constructor(scene, tree, radius, size, boxes, slides) {
     this.radius = radius;
     const a = [0, 0, 0], b = [0, 0, 0];
+    /** By body, how many elements are beside its joint already. */
+    const beside = new Map();
     this.list = (scene.elements ?? []).map((element) => {
       const { points, joint, bushing } = element.shape ?? {};
       if (points?.length === 2) {
@@ -40,9 +43,11 @@ export class ElementShapes {
         return { kind: 'straight', sign, geometry: straight(element.sign, length, sign) };
       }
       if (points) return { kind: 'cable', sign: 0.5 * radius, geometry: cablePiece(0.3 * radius) };
+      const slide = joint && !joint.turns ? slides.get(joint.body) : null;
+      if (slide) return { slide, kind: 'slide', sign: SIGN * radius, geometry: straight(element.sign, slide.length - 0.7 * radius, SIGN * radius) };
       // Beside a joint that a body's own shape would hide, as far out as that shape reaches.
       const box = joint ? boxes[joint.body] : null, k = joint ? joint.axis.reduce((best, v, i) => (Math.abs(v) > Math.abs(joint.axis[best]) ? i : best), 0) : 0;
-      let off = 0, beside = 0;
+      let off = 0, away = 0;
       if (joint) {
         tree.direction(joint.body, joint.axis, a);
         // On the side that is seen first.
@@ -50,10 +55,13 @@ export class ElementShapes {
         const wide = box ? Math.max(...[0, 1, 2].filter((c) => c !== k).map((c) => Math.min(-box.min.getComponent(c), box.max.getComponent(c)))) : 0;
         const drawn = scene.bodies[joint.body]?.visuals?.length > 0;
         off = side * Math.max(1.9 * radius, joint.turns ? Math.min(reach, 8 * radius) + 0.4 * radius : 0);
-        beside = Math.max(2.8 * radius, drawn ? Math.min(wide, 8 * radius) + 1.6 * radius : 0);
+        const before = beside.get(joint.body) ?? 0;
+        beside.set(joint.body, before + 1);
+        away = Math.max(2.8 * radius, drawn ? Math.min(wide, 8 * radius) + 1.6 * radius : 0) + 3.4 * radius * before;
+        off += side * 1.1 * radius * before;
       }
       if (joint?.turns) return { off, kind: 'spiral', sign: 3 * radius, geometry: spiral(1.6 * radius, 3.1 * radius, 0.24 * radius) };
-      if (joint) return { beside, kind: 'slide', sign: 1.1 * radius, geometry: straight(element.sign, 6 * radius, 1.1 * radius) };
+      if (joint) return { beside: away, kind: 'slide', sign: SIGN * radius, geometry: straight(element.sign, 6 * radius, SIGN * radius) };
       if (bushing) return { kind: 'bushing', sign: 2.4 * radius, geometry: ring(2.3 * radius, 0.62 * radius), second: ring(1.25 * radius, 0.34 * radius, 0.42) };
       return { kind: 'none', sign: 0, geometry: null };
     });
@@ -143,6 +151,11 @@ export class ElementView {
   orient() {
     this.reference[1] = 1;
     this.ends();
+    if (this.shape.slide) {
+      // Parts in parallel lie in the plane of the neighbours.
+      this.tree.direction(this.element.shape.joint.body, this.shape.slide.deep.toArray(), this.reference);
+      return;
+    }
     const d = this.line, n = d.length - 3;
     const across = Math.abs(d[n + 1] - d[1]), length = Math.hypot(d[n] - d[0], d[n + 1] - d[1], d[n + 2] - d[2]);
     if (across > 0.8 * length) { this.reference[1] = 0; this.reference[2] = 1; }
@@ -161,7 +174,17 @@ export class ElementView {
         for (let k = 0; k < 3; k++) line[3 + k] += line[k];
       } else {
         // Beside the joint: from where the body is at zero to where it is, both drawn out along the axis.
-        const r = this.shape.sign, q = tree.coordinates[i];
+        const r = this.shape.sign, q = tree.coordinates[i], { slide } = this.shape;
+        if (slide) {
+          // From the wall to the block, in its own place among its neighbours.
+          const to = -0.7 * slide.radius, from = Math.min(-q - slide.length, to - 0.5 * slide.radius), place = slide.places.get(this.name) ?? 0;
+          const { axis: a, across: c } = slide;
+          SCRATCH[0] = from * a.x + place * c.x; SCRATCH[1] = from * a.y + place * c.y; SCRATCH[2] = from * a.z + place * c.z;
+          tree.point(i, SCRATCH, line, 0);
+          SCRATCH[0] = to * a.x + place * c.x; SCRATCH[1] = to * a.y + place * c.y; SCRATCH[2] = to * a.z + place * c.z;
+          tree.point(i, SCRATCH, line, 3);
+          return;
+        }
         tree.direction(i, joint.axis, line, 3);
         const x = line[3], y = line[4], z = line[5];
         let sx = y, sy = -x, sz = 0;

@@ -28,7 +28,7 @@ const GREEK = { alpha: 'α', beta: 'β', gamma: 'γ', delta: 'δ', mu: 'μ', tau
 /** "N*s^alpha/m" as it is printed. @param {string} unit */
 export function unitText(unit) {
   if (!unit || unit === '1') return '';
-  return unit.replace(/\*/g, '·').replace(/\b(alpha|beta|gamma)\b/g, (w) => GREEK[w]).replace(/\^(-?\d)/g, (_, n) => superscript(n)).replace(/\^(α|β|γ)/g, (_, g) => ({ α: 'ᵅ', β: 'ᵝ', γ: 'ᵞ' })[g]);
+  return unit.replace(/\*/g, '·').replace(/\b(alpha|beta|gamma)\b/g, (w) => GREEK[w]).replace(/\^(-?\d)/g, (_, n) => superscript(n)).replace(/\^(α|β|γ|n\b)/g, (_, g) => ({ α: 'ᵅ', β: 'ᵝ', γ: 'ᵞ', n: 'ⁿ' })[g]);
 }
 
 /** A name with its unit. @param {{name: string, unit: string}} column */
@@ -38,7 +38,7 @@ export const label = (column) => (unitText(column.unit) ? `${column.name} / ${un
 export function formula(node, text) {
   node.replaceChildren();
   const cut = plain(text.length > 2000 ? `${text.slice(0, 2000)}…` : text);
-  const pattern = /([_^])(\([^()]{1,40}\)|[A-Za-z0-9,]+)|([A-Za-z]+)|([^A-Za-z_^]+|[_^])/g;
+  const pattern = /([_^])(\([^()]{1,40}\)|[A-Za-z0-9]+)|([A-Za-z]+)|([^A-Za-z_^]+|[_^])/g;
   for (const [, mark, small, word, rest] of cut.matchAll(pattern)) {
     if (mark) {
       const tag = document.createElement(mark === '_' ? 'sub' : 'sup');

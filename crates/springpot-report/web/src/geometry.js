@@ -6,7 +6,10 @@ import { bytes } from './data.js';
 /** Faces that meet at less than this angle look smooth. */
 const CREASE = Math.cos((38 * Math.PI) / 180);
 
-/** Triangles with normals, shared corners smoothed unless an edge is sharp. @param {any} mesh of the page's data @returns {BufferGeometry} */
+/** Triangles around one place that are looked at for a normal: a fan of very many would take the square of their number. */
+const MOST_AROUND = 64;
+
+/** Triangles with normals, shared corners smoothed unless an edge is sharp. @param {any} mesh of the page's data: what has one colour @returns {BufferGeometry} */
 export function meshGeometry(mesh) {
   const raw = bytes(mesh.positions), list = bytes(mesh.triangles);
   const packed = new Uint16Array(raw.buffer, raw.byteOffset, raw.byteLength >> 1);
@@ -44,7 +47,8 @@ export function meshGeometry(mesh) {
     for (let c = 0; c < 3; c++) {
       const v = weld[Math.min(triangles[3 * t + c], vertices - 1)];
       let x = 0, y = 0, z = 0;
-      for (let k = start[v]; k < start[v + 1]; k++) {
+      if (start[v + 1] - start[v] > MOST_AROUND) { x = faces[3 * t]; y = faces[3 * t + 1]; z = faces[3 * t + 2]; }
+      for (let k = start[v], last = Math.min(start[v + 1], k + MOST_AROUND); k < last; k++) {
         const o = around[k];
         const dot = (faces[3 * o] * faces[3 * t] + faces[3 * o + 1] * faces[3 * t + 1] + faces[3 * o + 2] * faces[3 * t + 2]) / (length[o] * length[t]);
         if (dot < CREASE && o !== t) continue;
@@ -143,12 +147,13 @@ export class Parts {
   }
 }
 
-/** The geometry of a visual's shape and its own placement. @param {any} shape @param {BufferGeometry[]} meshes */
+/** The geometries of a visual's shape, each with the colour that its file gives it, and its own placement. @param {any} shape @param {{geometry: BufferGeometry, color: Color|null}[][]} meshes */
 export function shapeGeometry(shape, meshes) {
-  if (shape.mesh) return { geometry: meshes[shape.mesh.index], scale: shape.mesh.scale ?? [1, 1, 1], turn: false };
-  if (shape.box) return { geometry: new BoxGeometry(...shape.box), scale: [1, 1, 1], turn: false };
-  if (shape.cylinder) return { geometry: new CylinderGeometry(shape.cylinder[0], shape.cylinder[0], shape.cylinder[1], 32), scale: [1, 1, 1], turn: true };
-  if (shape.sphere) return { geometry: new SphereGeometry(shape.sphere, 28, 18), scale: [1, 1, 1], turn: false };
+  const one = (geometry, turn = false) => ({ parts: [{ geometry, color: null }], scale: [1, 1, 1], turn });
+  if (shape.mesh) return { parts: meshes[shape.mesh.index] ?? [], scale: shape.mesh.scale ?? [1, 1, 1], turn: false };
+  if (shape.box) return one(new BoxGeometry(...shape.box));
+  if (shape.cylinder) return one(new CylinderGeometry(shape.cylinder[0], shape.cylinder[0], shape.cylinder[1], 32), true);
+  if (shape.sphere) return one(new SphereGeometry(shape.sphere, 28, 18));
   return null;
 }
 

@@ -6,6 +6,8 @@ import { formula, number, unitText } from './format.js';
 
 /** Numbers that change faster cannot be read. */
 const EVERY = 70;
+/** Of the largest value of a unit, what is its rounding. */
+const ROUNDING = 1e-13;
 
 export class Inspector {
   /** @param {any} app */
@@ -14,7 +16,7 @@ export class Inspector {
     this.list = byId('elements');
     this.host = byId('element');
     this.last = 0;
-    /** @type {{cell: HTMLElement, column: number}[]} */
+    /** @type {{cell: HTMLElement, column: number, least: number}[]} */
     this.values = [];
     this.bars = [];
     this.energies = [];
@@ -74,11 +76,14 @@ export class Inspector {
     }
     const own = data.columns.map((column, i) => ({ ...column, i, short: column.name.slice(name.length + 1) })).filter((column) => column.name.startsWith(`${name}.`));
     // Generalized forces come last, and only on joints that the element acts on.
-    const columns = [...own.filter((column) => !column.short.startsWith('Q.')), ...own.filter((column) => column.short.startsWith('Q.') && one && (one.status === 'running' || this.app.range(one, column.i).some((v) => Math.abs(v) > 0)))];
+    // What is rounding beside others of its unit is 0.
+    const most = (column) => (one ? Math.max(...this.app.range(one, column.i).map(Math.abs).filter(Number.isFinite), 0) : 0);
+    const least = (column) => ROUNDING * Math.max(...own.filter((other) => other.unit === column.unit).map(most));
+    const columns = [...own.filter((column) => !column.short.startsWith('Q.')), ...own.filter((column) => column.short.startsWith('Q.') && one && (one.status === 'running' || most(column) > least(column)))];
     if (columns.length) {
       node.append(h('table', { class: 'live' }, h('caption', { text: 'At this moment' }), h('tbody', {}, ...columns.slice(0, 60).map((column) => {
         const cell = h('td');
-        this.values.push({ cell, column: column.i });
+        this.values.push({ cell, column: column.i, least: least(column) });
         return h('tr', {}, h('th', { scope: 'row', text: column.short.length > 60 ? `${column.short.slice(0, 60)}…` : column.short, title: title(column.meaning || column.name) }), cell, h('td', { class: 'unit', text: unitText(column.unit) }));
       }))));
     }
@@ -121,7 +126,10 @@ export class Inspector {
     const { app } = this, one = app.primary();
     if (!one) return true;
     const row = one.rowAt(app.player.time), s = one.between(row, app.player.time);
-    for (const { cell, column } of this.values) setText(cell, number(one.value(column, row, s)));
+    for (const { cell, column, least } of this.values) {
+      const v = one.value(column, row, s);
+      setText(cell, number(Math.abs(v) <= least ? 0 : v));
+    }
     for (const { bar, value, column, group } of this.bars) {
       const most = Math.max(...group.map((c) => Math.max(...app.range(one, c).map(Math.abs)))) || 1, v = one.value(column, row, s);
       bar.style.transform = `scaleX(${Math.min(Math.abs(v) / most, 1) || 0})`;

@@ -4,6 +4,17 @@ import { byId, h, setText, title } from './dom.js';
 import { number, unitText } from './format.js';
 import { parts } from './elements.js';
 
+/** Where the cases stand beside the robot, as in the style. */
+const WIDE = '(min-width: 761px)';
+
+/** Names without the parts that all of them share: what is cut off is not what tells them apart. @param {string[]} names */
+export function shortened(names) {
+  const parts = names.map((name) => name.split(', ')), [first] = parts;
+  if (names.length < 2 || parts.some((one) => one.length !== first.length)) return names;
+  const differs = first.map((part, k) => parts.some((one) => one[k] !== part));
+  return differs.some(Boolean) ? parts.map((one) => one.filter((_, k) => differs[k]).join(', ')) : names;
+}
+
 export class Overlay {
   /** @param {any} app */
   constructor(app) {
@@ -35,10 +46,11 @@ export class Overlay {
   /** Names of the shown cases: in their viewports, or one below another. */
   names() {
     const { app } = this, { stage, data } = app;
+    const short = shortened(app.shown.map((i) => data.caseName(data.cases[i])));
     const chip = (i, at) => {
       const one = data.cases[i], swatch = h('span', { class: 'swatch' });
       swatch.style.background = app.caseColors[i];
-      const node = h('div', { class: 'case-name' }, swatch, h('span', { class: 'text', text: data.caseName(one), title: title(data.caseName(one)) }), one.status === 'done' || one.status === 'running' ? null : h('span', { class: `state ${one.status}`, text: one.status }));
+      const node = h('div', { class: 'case-name' }, swatch, h('span', { class: 'text', text: short[app.shown.indexOf(i)], title: title(data.caseName(one)) }), one.status === 'done' || one.status === 'running' ? null : h('span', { class: `state ${one.status}`, text: one.status }));
       if (at) {
         node.style.left = `${at.x + 10}px`;
         node.style.top = `${at.y + 10}px`;
@@ -47,9 +59,10 @@ export class Overlay {
       }
       return node;
     };
-    const single = data.cases.length < 2;
-    const nodes = stage.beside ? app.shown.map((i, k) => chip(i, stage.ports[k])) : single && !data.cases[0]?.error ? [] : app.shown.slice(0, 6).map((i) => chip(i, null));
-    if (!stage.beside && app.shown.length > 6) nodes.push(h('div', { class: 'case-name', text: `and ${app.shown.length - 6} more` }));
+    // Where the list of cases stands beside the robot, it says it already.
+    const single = data.cases.length < 2, listed = matchMedia(WIDE).matches;
+    const nodes = stage.beside ? app.shown.map((i, k) => chip(i, stage.ports[k])) : (single || listed) && !data.cases[0]?.error ? [] : app.shown.slice(0, 6).map((i) => chip(i, null));
+    if (!stage.beside && !listed && app.shown.length > 6) nodes.push(h('div', { class: 'case-name', text: `and ${app.shown.length - 6} more` }));
     for (const port of stage.beside ? stage.ports.slice(0, app.shown.length) : []) {
       const frame = h('div', { class: 'port' });
       Object.assign(frame.style, { left: `${port.x}px`, top: `${port.y}px`, width: `${port.w}px`, height: `${port.h}px` });

@@ -2,6 +2,7 @@
 
 import { BoxGeometry, BufferGeometry, Color, CylinderGeometry, TorusGeometry } from 'three';
 import { Parts, STAND, matrix, meshGeometry, shapeGeometry } from './geometry.js';
+import { bed, block, depth, slides } from './slide.js';
 
 const BODY = new Color('#d9dfe7');
 const BODY_FAR = new Color('#c3ccd7');
@@ -61,14 +62,16 @@ export function sceneSize(scene, tree) {
 /** Geometries of one scene, shared by all its cases. */
 export class RobotShape {
   /**
-   * @param {any} scene @param {BufferGeometry[]} meshes @param {import('./kinematics.js').Kinematics} tree placed at the first row
+   * @param {any} scene @param {{geometry: BufferGeometry, color: Color|null}[][]} meshes @param {import('./kinematics.js').Kinematics} tree placed at the first row
+   * @param {(body: number) => number[]} range low and high of the coordinate of a body
    */
-  constructor(scene, meshes, tree) {
+  constructor(scene, meshes, tree, range) {
     this.size = sceneSize(scene, tree);
     const bars = scene.bodies.filter((body) => !body.visuals?.length).length;
     // Many small members need thinner bars than three long ones.
     this.radius = this.size * (bars > 12 ? 0.014 : 0.019);
     const taken = holds(scene);
+    this.slides = slides(scene, tree, this.radius, range);
     /** @type {(BufferGeometry|null)[]} */
     this.bodies = scene.bodies.map((body, i) => this.body(scene, body, i, meshes, taken.filter(([b]) => b === i)));
     this.root = this.world(scene, meshes, taken.filter(([b]) => b === null));
@@ -78,11 +81,12 @@ export class RobotShape {
   visuals(parts, visuals, meshes, fallback) {
     for (const visual of visuals ?? []) {
       const made = shapeGeometry(visual.shape, meshes);
-      if (!made?.geometry) continue;
+      if (!made) continue;
       const place = matrix(visual.origin, visual.rpy, made.scale);
       if (made.turn) place.multiply(STAND);
       const color = visual.color ? new Color().setRGB(visual.color[0], visual.color[1], visual.color[2], 'srgb') : fallback;
-      parts.add(made.geometry, place, color);
+      // The file knows its parts better than the robot, which has one colour for all.
+      for (const part of made.parts) parts.add(part.geometry, place, part.color ?? color);
     }
   }
 
@@ -99,9 +103,11 @@ export class RobotShape {
       if (!far.length && body.com && distance(body.com, ZERO) > least) {
         ends.push(body.com);
         parts.bar(ZERO, body.com, r, shade).ball(body.com, 1.5 * r, shade);
-      } else if (!far.length) parts.ball(ZERO, 1.35 * r, shade);
+      } else if (!far.length && !this.slides.has(i) && !depth(this.slides, scene, i)) parts.ball(ZERO, 1.35 * r, shade);
     }
-    this.joint(parts, body, drawn);
+    if (this.slides.has(i)) block(parts, this.slides.get(i), shade);
+    else this.joint(parts, body, drawn, depth(this.slides, scene, i));
+    for (const [of, slide] of this.slides) if (scene.bodies[of].parent === i) bed(parts, slide, scene.bodies[of], shade, BRACKET);
     for (const [, point, ring] of taken) {
       const from = nearest(ends, point);
       if (!ring && distance(from, point) > 0.5 * r) parts.bar(from, point, 0.3 * r, BRACKET, 10);
@@ -111,14 +117,15 @@ export class RobotShape {
     return parts.merge();
   }
 
-  /** A joint's axis as a dark cylinder; a guide where it slides. */
-  joint(parts, body, drawn) {
+  /** A joint's axis as a dark cylinder; a guide where it slides, below the rail of another that it carries. */
+  joint(parts, body, drawn, below) {
     const kind = body.joint?.kind ?? 'fixed', r = this.radius;
     if (kind === 'fixed' || kind === 'floating') return;
     const axis = body.joint.axis ?? [0, 0, 1], length = Math.hypot(...axis) || 1;
     const unit = axis.map((v) => v / length);
     // A foot stands on the ground, its axis does not reach below.
-    const up = body.parent == null && Math.abs(unit[2]) > 0.7 ? unit.map((v) => 1.5 * r * v * Math.sign(unit[2])) : ZERO;
+    const down = below ? [0, 0, -below - 1.25 * r] : ZERO;
+    const up = body.parent == null && Math.abs(unit[2]) > 0.7 ? unit.map((v) => 1.5 * r * v * Math.sign(unit[2])) : down;
     if (kind === 'prismatic') parts.rod(up, unit, drawn ? 1.2 * r : 1.9 * r, drawn ? 0.3 * r : 1.25 * r, JOINT, drawn ? 12 : 4);
     else if (drawn) parts.rod(up, unit, 1.5 * r, 0.3 * r, JOINT, 12);
     else {
@@ -132,9 +139,15 @@ export class RobotShape {
     const parts = new Parts(), r = this.radius, floor = scene.ground?.[2];
     this.visuals(parts, scene.root?.visuals, meshes, BASE);
     if (!scene.root?.visuals?.length) {
-      for (const body of scene.bodies) {
+      for (const [i, body] of scene.bodies.entries()) {
         const kind = body.joint?.kind ?? 'fixed', at = body.origin ?? ZERO;
-        if (body.parent != null || kind === 'floating' || kind === 'fixed' || body.visuals?.length) continue;
+        if (body.parent != null || kind === 'floating' || kind === 'fixed' || body.visuals?.length || depth(this.slides, scene, i)) continue;
+        if (this.slides.has(i)) {
+          bed(parts, this.slides.get(i), body, BASE, BRACKET);
+          continue;
+        }
+        // A guide that stands over its element needs no foot through it.
+        if (kind === 'prismatic' && Math.abs(body.joint.axis?.[2] ?? 1) > 0.7) continue;
         const foot = floor !== undefined && at[2] - floor > -1e-6 && at[2] - floor < 0.6 * this.size ? floor : null;
         if (foot === null) {
           parts.add(new BoxGeometry(3 * r, 3 * r, 3 * r), matrix(at), BASE);
@@ -159,4 +172,4 @@ export class RobotShape {
 }
 
 /** Decodes the page's meshes once. @param {any[]} meshes */
-export const decodeMeshes = (meshes) => meshes.map(meshGeometry);
+export const decodeMeshes = (meshes) => meshes.map((parts) => parts.map((part) => ({ geometry: meshGeometry(part), color: part.color ? new Color(part.color) : null })));

@@ -393,8 +393,10 @@ describe('each page', { concurrency: 2 }, () => {
     check('the loop of force over stroke is hovered and sought along its curve', async (page, context) => {
       await page.waitForFunction(() => window.springpot.plots().every((plot) => plot.frame.width > 1));
       const found = await page.evaluate(() => {
-        const { data, plots, shown } = window.springpot, t = data.column('t'), k = plots().findIndex((plot) => plot.x >= 0 && plot.x !== t), plot = plots()[k], one = data.cases[shown()[0]];
+        const { data, plots, shown } = window.springpot, t = data.column('t'), k = plots().findIndex((plot) => plot.x >= 0 && plot.x !== t), plot = plots()[k];
         if (!plot) return null;
+        // A case may be without the element.
+        const one = shown().map((i) => data.cases[i]).find((each) => each.data[plot.x].some(Number.isFinite));
         const row = Math.round(0.6 * (one.rows - 1)), f = plot.frame, x = one.data[plot.x][row], y = one.data[plot.ys[0]][row];
         return { k, names: [data.columns[plot.x].name, data.columns[plot.ys[0]].name], px: f.left + ((x - f.x0) / (f.x1 - f.x0)) * f.width, py: f.top + ((f.y1 - y) / (f.y1 - f.y0)) * f.height };
       });
@@ -418,6 +420,33 @@ describe('each page', { concurrency: 2 }, () => {
       }, [found.k, found.px, found.py]);
       assert.ok(off < 3, `the row lies ${off} pixels beside`);
       await page.evaluate(() => window.springpot.seek(0));
+      return undefined;
+    });
+
+    check('elements at one sliding joint stand one beside another, from wall to body', async (page, context) => {
+      const lanes = await page.evaluate(() => {
+        const { data, seek, line, shown } = window.springpot, found = new Map();
+        for (const { name, shape } of data.scenes[0]?.elements ?? []) if (shape.joint && !shape.joint.turns) found.set(shape.joint.body, [...(found.get(shape.joint.body) ?? []), name]);
+        const at = [...found.values()].map((names) => [0, 0.37, 1].map((share) => {
+          seek(share * data.cases[shown()[0]].end);
+          return names.map((name) => line(shown()[0], name));
+        }));
+        seek(0);
+        return at;
+      });
+      if (!lanes.length) return context.skip('no element at a sliding joint');
+      for (const lines of lanes.flat()) {
+        const along = lines.map(([a, b, c, x, y, z]) => [x - a, y - b, z - c]), length = along.map((d) => Math.hypot(...d));
+        for (let i = 0; i < lines.length; i++) {
+          assert.ok(length[i] > 1e-4 && Number.isFinite(length[i]), `element ${i} has the length ${length[i]}`);
+          for (let j = 0; j < i; j++) {
+            // The distance of two parallel lines.
+            const to = [0, 1, 2].map((k) => lines[j][k] - lines[i][k]), dot = [0, 1, 2].reduce((sum, k) => sum + to[k] * along[i][k], 0) / length[i];
+            const apart = Math.sqrt(Math.max(to.reduce((sum, v) => sum + v * v, 0) - dot * dot, 0));
+            assert.ok(apart > 0.1 * length[i], `elements ${i} and ${j} are ${apart} apart at lengths of ${length[i]}`);
+          }
+        }
+      }
       return undefined;
     });
 
@@ -454,10 +483,15 @@ describe('each page', { concurrency: 2 }, () => {
           await drawn(page);
           await page.waitForTimeout(150);
           const values = await page.evaluate(([one, t]) => {
-            const s = window.springpot, of = s.data.cases[s.shown()[0]], row = of.rowAt(t);
-            return [...document.querySelectorAll('#element .law:first-child .live tr')].map((tr) => [tr.cells[0].textContent, tr.cells[1].textContent, of.data[s.data.column(`${one}.${tr.cells[0].textContent}`)]?.[row]]);
+            const s = window.springpot, of = s.data.cases[s.shown()[0]], row = of.rowAt(t), { columns } = s.data;
+            const most = (unit) => Math.max(...columns.map((column, i) => (column.name.startsWith(`${one}.`) && column.unit === unit ? of.data[i].reduce((m, v) => (Math.abs(v) > m ? Math.abs(v) : m), 0) : 0)));
+            return [...document.querySelectorAll('#element .law:first-child .live tr')].map((tr) => {
+              const i = s.data.column(`${one}.${tr.cells[0].textContent}`);
+              return [tr.cells[0].textContent, tr.cells[1].textContent, of.data[i]?.[row], i >= 0 ? most(columns[i].unit) : 0];
+            });
           }, [element, at]);
-          for (const [what, text, value] of values) if (Number.isFinite(value)) assert.ok(near(text, value), `${element.slice(0, 40)}.${what} is said to be ${text}, not ${value}`);
+          // What is rounding beside the largest value of its unit is told as 0.
+          for (const [what, text, value, most] of values) if (Number.isFinite(value)) assert.ok(near(text, Math.abs(value) <= 1e-13 * most ? 0 : value), `${element.slice(0, 40)}.${what} is said to be ${text}, not ${value}`);
           if (values.length) assert.ok(values.some(([what]) => what === 'force'), 'no force is told');
         }
         await page.evaluate(() => window.springpot.seek(0));
@@ -564,7 +598,7 @@ describe('all pages', () => {
 
   test('a frame of the humanoid takes at most 8 ms of script', { skip: !has('humanoid') }, async (context) => {
     const { page, close } = await open('humanoid');
-    const { moving, columns, rows, triangles } = await page.evaluate(() => { const { data } = window.springpot; return { moving: data.scenes[0].bodies.filter((body) => body.joint.kind !== 'fixed').length, columns: data.columns.length, rows: data.cases[0].rows, triangles: data.meshes.reduce((sum, mesh) => sum + (mesh.triangles.length * 3) / 4 / 12, 0) }; });
+    const { moving, columns, rows, triangles } = await page.evaluate(() => { const { data } = window.springpot; return { moving: data.scenes[0].bodies.filter((body) => body.joint.kind !== 'fixed').length, columns: data.columns.length, rows: data.cases[0].rows, triangles: data.meshes.flat().reduce((sum, part) => sum + (part.triangles.length * 3) / 4 / 12, 0) }; });
     await page.evaluate(() => { window.springpot.play(); });
     await page.waitForTimeout(1500);
     await page.evaluate(() => window.springpot.clearFrame());

@@ -10,7 +10,7 @@ mod source;
 mod summary;
 
 pub use look::{AskedAxis, AskedLook, Look, Misfit, Part};
-pub use panels::{Curves, DrawnCase, FigureColumn};
+pub use panels::{Curves, DrawnCase, FigureColumn, MeasuredPoints};
 pub use summary::swept_numbers;
 
 use crate::sweep::{FigureData, Layout, Outcome, Wanted};

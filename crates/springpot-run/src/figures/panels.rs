@@ -58,6 +58,21 @@ pub struct Curves<'a> {
     pub look: &'a Look,
     /// Points of curves are marked.
     pub is_marked: bool,
+    /// Measured points, which every panel shows.
+    pub measured: &'a [MeasuredPoints],
+}
+
+/// Points that no case has, in the units that are drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredPoints {
+    /// What they are called.
+    pub label: String,
+    /// Index of the ordinate whose axis is theirs.
+    pub of: usize,
+    /// Abscissae.
+    pub x: Vec<f64>,
+    /// Ordinates.
+    pub y: Vec<f64>,
 }
 
 /// A case of a figure of curves.
@@ -68,6 +83,11 @@ pub struct DrawnCase<'p> {
     pub values: Vec<(String, String)>,
     /// For each ordinate the points [x, y] of its curve, SI.
     pub points: Vec<&'p [[f64; 2]]>,
+}
+
+/// A swept value with what is swept, where that is told.
+fn said(name: &str, value: &str) -> String {
+    if name.is_empty() { value.to_owned() } else { format!("{name} = {value}") }
 }
 
 /// Ordinates of one unit each: indices.
@@ -96,20 +116,27 @@ impl Curves<'_> {
         let mut sweeps: Vec<String> = Vec::new();
         let mut cells: Vec<Cell> = Vec::new();
         for case in cases {
-            let key: Vec<String> =
-                case.values.iter().skip(1).map(|(name, value)| format!("{name} = {value}")).collect();
+            let key: Vec<String> = case.values.iter().skip(1).map(|(name, value)| said(name, value)).collect();
             let at = cells.iter().position(|cell| cell.key == key).unwrap_or_else(|| {
                 let title = (!key.is_empty()).then(|| key.join(", "));
                 cells.push(Cell { key, title, curves: vec![Vec::new(); groups.len()] });
                 cells.len() - 1
             });
             if let Some((sweep, _)) = case.values.first()
+                && !sweep.is_empty()
                 && !sweeps.contains(sweep)
             {
                 sweeps.push(sweep.clone());
             }
             for (group, members) in groups.iter().enumerate() {
-                cells[at].curves[group].extend(members.iter().map(|&k| self.curve(&case, k, groups.len(), group)));
+                let drawn = members.iter().filter(|k| !is_blank(case.points[**k]));
+                cells[at].curves[group].extend(drawn.map(|&k| self.curve(&case, k, groups.len(), group)));
+            }
+        }
+        for points in self.measured {
+            let group = groups.iter().position(|members| members.contains(&points.of)).unwrap_or(0);
+            for cell in &mut cells {
+                cell.curves[group].push(points.curve(groups.len() == 2 && group == 1));
             }
         }
         let is_stacked = groups.len() > 2;
@@ -157,13 +184,14 @@ impl Curves<'_> {
         let column = &self.y[k];
         // Where units differ, the name alone would not say which axis is meant; alone in its panel, a column has the axis.
         let is_alone = groups > 2 && self.y.iter().filter(|other| other.unit_name() == column.unit_name()).count() == 1;
-        let own = (self.y.len() > 1 && !is_alone).then(|| if groups > 1 { column.axis() } else { column.name() });
+        let is_told = self.y.len() > 1 && !is_alone || !self.measured.is_empty() && case.values.is_empty();
+        let own = is_told.then(|| if groups > 1 { column.axis() } else { column.name() });
         let mut names =
             case.values.first().map(|(_, value)| value.clone()).into_iter().chain(case.source.clone()).chain(own);
         let label = names.next().unwrap_or_default();
         let kind = names.collect::<Vec<_>>().join(": ");
         let (x, y) = case.points[k].iter().map(|[at, value]| (self.x.number(*at), column.number(*value))).unzip();
-        Curve { label, kind, is_right: groups == 2 && group == 1, is_marked: self.is_marked, x, y }
+        Curve { label, kind, is_right: groups == 2 && group == 1, is_marked: self.is_marked, is_points: false, x, y }
     }
 
     /// The axis of the ordinates of one unit.
@@ -185,6 +213,18 @@ impl Curves<'_> {
         let range = self.look.y_range.filter(|(at, _)| *at == group).map(|(_, range)| range);
         Axis { label, range, scale: scale(self.look.asked.y.is_log) }
     }
+}
+
+impl MeasuredPoints {
+    fn curve(&self, is_right: bool) -> Curve {
+        let Self { label, x, y, .. } = self.clone();
+        Curve { label, is_right, is_points: true, x, y, ..Curve::default() }
+    }
+}
+
+/// Whether there are rows and all their cells are empty, as of an element that is not enabled.
+fn is_blank(points: &[[f64; 2]]) -> bool {
+    !points.is_empty() && points.iter().all(|[_, y]| y.is_nan())
 }
 
 fn scale(is_log: bool) -> Scale {

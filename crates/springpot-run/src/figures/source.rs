@@ -35,7 +35,7 @@ impl<'a> Source<'a> {
         });
         let y: Vec<FigureColumn> = data.curves.iter().map(|curve| curve.y.clone()).collect();
         let title = figure.title.as_deref();
-        Ok(Curves { title, x, y: &y, look: &data.look, is_marked: false }.plot(drawn))
+        Ok(Curves { title, x, y: &y, look: &data.look, is_marked: false, measured: &data.measured }.plot(drawn))
     }
 
     /// What it draws, or why it is left out.
@@ -64,9 +64,9 @@ impl FreeSweeps {
         let Source { figure, cases, .. } = source;
         let is_free = |axis: &usize| Some(*axis) != other && figure.selection.iter().all(|s| s.axis != *axis);
         let sweep = |axis: usize| {
-            let name = cases.axis_parameters(axis).map(labels::parameter).collect::<Vec<_>>().join(", ");
             let written: Vec<String> = (0..cases.axis_len(axis)).map(|k| cases.axis_label(axis, k)).collect();
-            (axis, name, labels::values(&written))
+            let (name, values) = labels::sweep(cases.axis_parameters(axis), &written, cases.axis_names(axis).is_some());
+            (axis, name, values)
         };
         Self((0..cases.axis_count()).filter(is_free).map(sweep).collect())
     }

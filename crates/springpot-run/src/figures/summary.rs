@@ -109,7 +109,7 @@ pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
         values: values.clone(),
         points: points.iter().map(Vec::as_slice).collect(),
     });
-    let what = Curves { title, x: &over.column, y: &y, look: &data.look, is_marked: true };
+    let what = Curves { title, x: &over.column, y: &y, look: &data.look, is_marked: true, measured: &[] };
     what.plot(drawn).render().map_err(|error| error.to_string())
 }
 

@@ -106,6 +106,11 @@ impl Source {
         Ok(Self { rows, folder: folder.to_owned(), record, columns, swept })
     }
 
+    /// The folder that run.json is in, and the version of Springpot that wrote it.
+    pub fn origin(&self) -> (&Path, &str) {
+        (&self.folder, self.record.version())
+    }
+
     /// The columns of the run, swept parameters aside.
     pub fn columns(&self) -> &[Column] {
         &self.columns[self.swept..]

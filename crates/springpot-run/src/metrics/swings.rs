@@ -16,12 +16,14 @@ struct Turn {
     y: f64,
 }
 
-/// The largest swing past the target, as a fraction of |target − y_0|; 0 where it swings past it nowhere, NaN where it begins there.
+/// The largest excess over the target, at a row or a turning point, as a fraction of |target − y_0|; 0 where it stays on its side, NaN where it
+/// begins there.
 pub(super) fn overshoot(series: &Series, metric: &Metric) -> f64 {
     let (way, target) = (series.way(metric), series.target(metric));
     let Some(first) = series.y().first().filter(|_| way > 0.0) else { return f64::NAN };
-    let past = |turn: &Turn| (turn.y - target) * (target - first).signum();
-    turns(series, metric).iter().map(past).fold(0.0, f64::max) / way
+    let past = |y: f64| (y - target) * (target - first).signum();
+    let turns = turns(series, metric).into_iter().map(|turn| turn.y);
+    series.y().iter().copied().chain(turns).map(past).fold(0.0, f64::max) / way
 }
 
 /// (N − 1)/(2(τ_N − τ_1)), Hz; NaN below two turning points.
@@ -38,9 +40,10 @@ pub(super) fn log_decrement(series: &Series, metric: &Metric) -> f64 {
     2.0 * (first / last).ln() / (swings.len() - 1) as f64
 }
 
-/// ½ max S; NaN below two turning points.
+/// ½ max S; 0 where nothing swings, NaN where there is nothing.
 pub(super) fn residual(series: &Series, metric: &Metric) -> f64 {
-    0.5 * swings(&turns(series, metric)).into_iter().fold(f64::NAN, f64::max)
+    let none = if series.y().is_empty() { f64::NAN } else { 0.0 };
+    0.5 * swings(&turns(series, metric)).into_iter().fold(none, f64::max)
 }
 
 fn swings(turns: &[Turn]) -> Vec<f64> {
@@ -159,6 +162,34 @@ mod tests {
         let lag = rows(9.0, 100.0, |t| -(-t).exp_m1());
         assert_eq!(overshoot(&lag, &metric(None, None)), 0.0);
         assert!(overshoot(&rows(1.0, 10.0, |_| 4.0), &metric(None, None)).is_nan());
+    }
+
+    #[test]
+    fn a_run_that_ends_past_its_target_overshoots_without_turning() {
+        let plain = |target| metric(None, Some(target));
+        let rise = rows(1.0, 100.0, |t| 0.33 * t);
+        assert!((overshoot(&rise, &plain(0.3)) - 0.1).abs() < 1e-12);
+        assert_eq!(overshoot(&rise, &plain(0.5)), 0.0);
+        // To go down and to go further is the same; so is a window that ends before the turn.
+        let fall = rows(1.0, 100.0, |t| 1.0 - 0.9 * t);
+        assert!((overshoot(&fall, &plain(0.25)) - 0.2).abs() < 1e-12);
+        let swing = rows(4.0, 100.0, |t| 1.0 - (PI * t).cos());
+        let cut = Series::new(swing.t(), swing.y(), Some([0.0, 0.75]));
+        assert!((overshoot(&cut, &plain(1.0)) + (PI * 0.75).cos()).abs() < 1e-12);
+        // A turn between rows still counts by its parabola: rows at 0.7 s and 1.4 s lie beside the crest at 1 s.
+        let coarse = Series::new(&[0.0, 0.7, 1.4, 2.0], &[0.0, 1.588, 1.309, 0.0], None);
+        assert!(overshoot(&coarse, &plain(1.0)) > 0.588);
+    }
+
+    #[test]
+    fn what_does_not_vibrate_has_no_residual_vibration() {
+        for y in [|_: f64| 3.0, |t: f64| -(-t).exp_m1(), |t: f64| (t - 1.0) * (-t).exp()] {
+            assert_eq!(residual(&rows(9.0, 100.0, y), &metric(None, None)), 0.0);
+        }
+        // Nor does what stays within the band.
+        let small = rows(5.0, 200.0, |t| 1e-3 * (9.0 * t).sin());
+        assert_eq!(residual(&small, &metric(Some(Band::Width(0.01)), None)), 0.0);
+        assert!(residual(&Series::new(&[], &[], None), &metric(None, None)).is_nan());
     }
 
     #[test]

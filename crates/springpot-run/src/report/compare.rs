@@ -151,6 +151,7 @@ fn metrics(results: [&Results; 2], names: &[String; 2]) -> Option<Table> {
         .filter(|(_, fields)| fields.len() == 4)
         .map(|(lead, fields)| ((&**lead, &fields[..2]), &fields[..]))
         .collect();
+    let cases = results[0].record.names_by_lead();
     let difference = format!("#{} − {}", names[1], names[0]);
     let [first, second] = [0, 1].map(|k| format!("#{}", names[k]));
     let mut table = Table::new("", &["case", "metric", &first, &second, &difference, "#relative", "unit"]);
@@ -171,7 +172,7 @@ fn metrics(results: [&Results; 2], names: &[String; 2]) -> Option<Table> {
             (Some(x), Some(y)) => (brief(y - x), format!("{} %", brief(100.0 * (y - x) / x.abs()))),
             _ => ("–".to_owned(), "–".to_owned()),
         };
-        let case = lead.trim_end_matches(',').replace(',', ", ");
+        let case = cases.of(lead);
         let unit = labels::written_unit(unit);
         table.rows.push(vec![case, written::cut(name.clone()), shown(x), shown(y), change, share, unit]);
     }

@@ -81,7 +81,7 @@ pub(super) fn picture<'p>(
     let mut look = Look::default();
     // Many curves need room for their names.
     look.asked.size = (y.len() == 1).then_some(SIZE);
-    let plot = Curves { title: None, x: &x, y: &y, look: &look, is_marked: false }.plot(cases);
+    let plot = Curves { title: None, x: &x, y: &y, look: &look, is_marked: false, measured: &[] }.plot(cases);
     plot.render().ok().map(|rendered| rendered.svg.into_bytes())
 }
 

@@ -43,8 +43,8 @@ pub(super) fn figures(results: &Results) -> Vec<Block> {
 fn rows(results: &Results, name: &str, most: usize) -> (Vec<(String, Vec<String>)>, bool) {
     let all = results.texts(name);
     let is_cut = all.len() > most;
-    let named =
-        all.into_iter().take(most).map(|(lead, fields)| (lead.trim_end_matches(',').replace(',', ", "), fields));
+    let names = results.record.names_by_lead();
+    let named = all.into_iter().take(most).map(|(lead, fields)| (names.of(&lead), fields));
     (named.collect(), is_cut)
 }
 

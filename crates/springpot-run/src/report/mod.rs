@@ -8,8 +8,8 @@ mod written;
 
 pub use compare::comparison;
 
-use crate::labels;
 use crate::numbers::{brief, count, four, rough, short};
+use crate::record::Sweep;
 use crate::results::{Results, ResultsError};
 use curves::{Asked, Drawn};
 use springpot_report::page::{Block, Fact, Report, Section, Table};
@@ -193,9 +193,5 @@ fn energy(results: &Results, drawn: &Drawn) -> Vec<Block> {
 
 /// Values of a sweep for a reader, each parameter by its last name.
 fn swept(results: &Results) -> Vec<(String, Vec<String>)> {
-    let sweeps = results.record.sweeps.iter().map(|sweep| {
-        let names: Vec<String> = sweep.parameters.iter().map(|path| labels::parameter(path)).collect();
-        (names.join(", "), labels::values(&sweep.labels))
-    });
-    sweeps.collect()
+    results.record.sweeps.iter().map(Sweep::words).collect()
 }

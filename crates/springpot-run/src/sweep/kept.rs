@@ -39,8 +39,9 @@ impl<'a> Kept<'a> {
     pub(super) fn of(layout: &'a Layout, index: usize) -> Option<Self> {
         let columns = layout.kept(index)?;
         let most = layout.most_points();
-        let curves =
-            layout.drawn(index).map(|(curve, wanted)| (curve, (wanted.places, wanted.window, KeptCurve::new(most))));
+        let curves = layout
+            .drawn(index)
+            .map(|(curve, wanted)| (curve, (wanted.places, wanted.window, KeptCurve::on_axes(most, wanted.is_log))));
         let totals =
             layout.summed(index).map(|(total, wanted)| (total, (wanted.place, wanted.window, Totals::default())));
         Some(Self {

@@ -3,9 +3,8 @@
 use super::curve::most_points;
 use super::wanted::{FigureData, Total, Wanted, WantedCurve, WantedMetric, WantedTotal};
 use crate::{figures, metrics};
-use springpot::integrate::System;
 use springpot::table::Column;
-use springpot_scenario::{Cases, Refusals};
+use springpot_scenario::{Cases, Plan, Refusals};
 
 /// The columns of a sweep.
 #[derive(Debug, Clone)]
@@ -24,12 +23,12 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Lays out the columns of a sweep whose first case is `system`.
+    /// Lays out the columns of a sweep whose first case is `plan`.
     ///
     /// # Errors
     /// Globs that match no column, units that do not fit their column, metrics of columns that no case has.
-    pub fn new(cases: &Cases, system: &System) -> Result<Self, Refusals> {
-        let mut wanted = Wanted::new(system.observables().columns());
+    pub fn new(cases: &Cases, plan: &Plan) -> Result<Self, Refusals> {
+        let mut wanted = Wanted::new(plan.columns());
         let swept = cases.parameters().len();
         let selected = match cases.columns() {
             None => (0..wanted.columns().len()).collect(),
@@ -49,7 +48,7 @@ impl Layout {
         let figures =
             cases.figures().iter().map(|figure| figures::data(cases, figure, &mut wanted)).collect::<Result<_, _>>()?;
         let metrics = cases.metrics().iter().map(|plan| wanted.metric(plan)).collect::<Result<_, _>>()?;
-        let events = system.events.iter().map(|event| event.name.clone()).collect();
+        let events = plan.events.iter().map(|plan| plan.event.name.clone()).collect();
         Ok(Self { written, swept, selected, wanted, figures, events, metrics })
     }
 

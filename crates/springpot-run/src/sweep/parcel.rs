@@ -1,13 +1,13 @@
 //! A case that has come to its end, whole: what another process hands over, and what a run in memory keeps.
 
-use super::checkpoint::{CaseDone, Stretch, Written, bytes, value};
+use super::checkpoint::{CaseDone, Stretch, Written};
 use super::layout::Layout;
 use super::metrics::CaseMetrics;
 use super::simulate::{Ran, Sink, simulate};
 use super::taken::{Taken, push_row};
 use super::{Progress, events::Happened};
 use crate::table::Statistics;
-use crate::table::sealed::{CHECKPOINT, SealError};
+use crate::table::sealed::{CHECKPOINT, SealError, open, seal};
 use crate::trouble::Trouble;
 use serde::{Deserialize, Serialize};
 use springpot::integrate::{Checkpoint, PassedLimit, Report, Stop, System, Watch};
@@ -103,7 +103,7 @@ impl Parcel {
     /// # Errors
     /// More than memory holds.
     pub fn to_bytes(&self) -> io::Result<Vec<u8>> {
-        Ok([CHECKPOINT.as_bytes(), &bytes(self)?].concat())
+        seal(CHECKPOINT, self)
     }
 
     /// What [`Self::to_bytes`] made, in this process or in another one of the same build.
@@ -111,11 +111,12 @@ impl Parcel {
     /// # Errors
     /// [`ParcelError`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ParcelError> {
-        let Some(rest) = bytes.strip_prefix(CHECKPOINT.as_bytes()) else {
-            let theirs = crate::table::sealed::first_line(bytes).ok_or(ParcelError::Damaged)?.to_owned();
-            return Err(ParcelError::OtherBuild { theirs, ours: CHECKPOINT.trim_end().to_owned() });
-        };
-        value(rest).map_err(|_: SealError| ParcelError::Damaged)
+        open(CHECKPOINT, bytes).map_err(|error| match error {
+            SealError::OtherVersion(theirs) => {
+                ParcelError::OtherBuild { theirs, ours: CHECKPOINT.trim_end().to_owned() }
+            }
+            _ => ParcelError::Damaged,
+        })
     }
 
     /// Index in the grid.

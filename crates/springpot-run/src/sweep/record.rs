@@ -102,7 +102,7 @@ fn counts(layout: &Layout, happened: &Happened) -> Value {
 /// Values of a sweep that are listed.
 const MAX_VALUES: usize = 1_000;
 
-/// What is swept: the paths that move together, the values as written, and as the rows have them.
+/// What is swept: the paths that move together, the values by their names or as written, and as the rows have them.
 fn sweeps(cases: &Cases) -> Value {
     let mut stride = cases.len();
     let mut first = 0;
@@ -114,7 +114,12 @@ fn sweeps(cases: &Cases) -> Value {
         first = columns.end;
         let labels: Vec<String> = (0..shown).map(|k| cases.axis_label(axis, k)).collect();
         let values = (0..shown).map(|k| cases.values(k * stride)[columns.clone()].iter().map(value).collect::<Value>());
-        json!({ "parameters": parameters, "count": count, "labels": labels, "values": values.collect::<Value>() })
+        let mut sweep =
+            json!({ "parameters": parameters, "count": count, "labels": labels, "values": values.collect::<Value>() });
+        if let Some(names) = cases.axis_names(axis) {
+            sweep["names"] = json!(names[..shown]);
+        }
+        sweep
     });
     sweeps.collect()
 }
@@ -142,6 +147,10 @@ fn one(cases: &Cases, layout: &Layout, case: &CaseResult) -> Value {
         "wall_time": case.wall.as_secs_f64(),
     });
     if let (Value::Object(record), Ok(Value::Object(report))) = (&mut record, serde_json::to_value(case.report)) {
+        let name = cases.given_name(case.index);
+        if !name.is_empty() {
+            record.insert("name".to_owned(), name.into());
+        }
         if !layout.events().is_empty() {
             record.insert("events".to_owned(), counts(layout, &case.events));
             let stopped_by = case.events.stopped_by.map(|event| &layout.events()[event]);

@@ -69,7 +69,8 @@ pub(super) fn simulate(
     };
     let (system, settings) = (plan.system_unless(stop), plan.settings.clone());
     let watch = LimitWatch::new(&system);
-    let mut rows = CaseRows { sink, progress, watch, plan: &plan, system: &system };
+    let places = plan.places(&system);
+    let mut rows = CaseRows { sink, progress, watch, plan: &plan, system: &system, places, row: Vec::new() };
     let (report, outcome) = match resumed {
         None => integrate::run(&system, &settings, &mut rows, stop),
         Some(Resumed { run, watch }) => {
@@ -95,17 +96,33 @@ struct CaseRows<'a> {
     watch: LimitWatch,
     plan: &'a Plan,
     system: &'a System,
+    /// Where the cells of a row stand in a row of the system, if elsewhere.
+    places: Option<Vec<Option<usize>>>,
+    /// A row as all cases have it.
+    row: Vec<f64>,
+}
+
+impl CaseRows<'_> {
+    /// Fills in the empty cells of elements that are not enabled.
+    fn spread(&mut self, row: &[f64]) -> bool {
+        let Some(places) = &self.places else { return false };
+        self.row.clear();
+        self.row.extend(places.iter().map(|place| place.map_or(f64::NAN, |place| row[place])));
+        true
+    }
 }
 
 impl Rows for CaseRows<'_> {
     fn row(&mut self, row: &[f64]) -> io::Result<()> {
         self.watch.see(row);
         self.progress.rows.fetch_add(1, Ordering::Relaxed);
-        self.sink.row(row)
+        let is_spread = self.spread(row);
+        self.sink.row(if is_spread { &self.row } else { row })
     }
 
     fn event(&mut self, event: usize, row: &[f64]) -> io::Result<()> {
-        self.sink.event(self.system, event, row);
+        let is_spread = self.spread(row);
+        self.sink.event(self.system, event, if is_spread { &self.row } else { row });
         Ok(())
     }
 

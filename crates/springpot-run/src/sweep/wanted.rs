@@ -1,11 +1,14 @@
 //! What figures want of the rows: their curves, and the columns that those are made of.
 
 use super::curve::MAX_CURVES_IN_ALL;
-use crate::figures::{FigureColumn, Look};
+use crate::figures::{FigureColumn, Look, MeasuredPoints};
 use crate::table::matches;
 use springpot::table::Column;
 use springpot_scenario::units::Unit;
-use springpot_scenario::{Cases, ColumnGlob, FigurePlan, Metric, MetricPlan, RefusalKind, Refusals, Statistic};
+use springpot_scenario::{
+    Cases, ColumnGlob, FigureNumbers, FigurePlan, FigurePoints, Metric, MetricPlan, Place, RefusalKind, Refusals,
+    Statistic,
+};
 
 /// Most curves of one figure; a figure of more is left out with a word.
 pub const MAX_CURVES: usize = 64;
@@ -24,6 +27,8 @@ pub struct FigureData {
     pub totals: Vec<FigureTotal>,
     /// The abscissa of the statistics.
     pub over: Option<Abscissa>,
+    /// Measured points beside them.
+    pub measured: Vec<MeasuredPoints>,
     /// How it looks.
     pub look: Look,
     /// Why it is not drawn; it has no cases and no curves then.
@@ -111,6 +116,8 @@ pub fn is_within([from, to]: [f64; 2], t: f64) -> bool {
 pub(super) struct WantedCurve {
     pub(super) places: [usize; 2],
     pub(super) window: Option<Window>,
+    /// Whether the axes are logarithmic.
+    pub(super) is_log: [bool; 2],
 }
 
 /// Statistics of a column, by its place among the kept ones.
@@ -272,21 +279,22 @@ impl Wanted {
             }
             None => Look::default(),
         };
+        let measured = figure.data.iter().map(|data| measured(data, &columns)).collect::<Result<_, _>>()?;
         let fixed = |axis: usize| figure.selection.iter().find(|s| s.axis == axis).map(|s| s.value);
         let counts = (0..cases.axis_count()).map(|axis| if fixed(axis).is_some() { 1 } else { cases.axis_len(axis) });
         let count = counts.product::<usize>().saturating_mul(curves.len());
         if let Some(left_out) = self.count_in(count) {
             return Ok(FigureData { left_out: Some(left_out), ..FigureData::default() });
         }
-        let window = self.window(figure);
+        let (window, is_log) = (self.window(figure), [figure.look.x.is_log, figure.look.y.is_log]);
         let kept = curves.iter().map(|curve| curve.map(|k| place(&mut self.kept, k))).collect::<Vec<_>>();
         let curves = kept.into_iter().zip(columns).map(|(places, (x, y))| FigureCurve {
-            index: place(&mut self.curves, WantedCurve { places, window }),
+            index: place(&mut self.curves, WantedCurve { places, window, is_log }),
             x,
             y,
         });
         let (curves, cases) = (curves.collect(), selected_cases(cases, &fixed));
-        Ok(FigureData { curves, cases, look, ..FigureData::default() })
+        Ok(FigureData { curves, cases, measured, look, ..FigureData::default() })
     }
 
     /// Keeps, of every case that `figure` selects, these numbers, over a swept parameter.
@@ -387,6 +395,32 @@ fn figure_column(figure: &FigurePlan, column: &Column) -> Result<FigureColumn, R
     let label =
         labels.into_iter().find(|label| matches(&label.column.text, &column.name)).map(|label| label.text.clone());
     Ok(FigureColumn { column: column.clone(), unit, label })
+}
+
+/// Measured points in the units of the columns that are drawn: along y that of the first column that they fit.
+fn measured(data: &FigurePoints, columns: &[(FigureColumn, FigureColumn)]) -> Result<MeasuredPoints, Refusals> {
+    let fits = |unit: &Option<Unit>, column: &FigureColumn| match (unit, si_unit(&column.column)) {
+        (Some(unit), Some(own)) => unit.dimension() == own.dimension(),
+        (Some(_), None) => false,
+        (None, _) => true,
+    };
+    let refuse = |place: &Place, column: &FigureColumn| -> Refusals {
+        let unit = if column.column.unit.is_empty() { "pure numbers" } else { &column.column.unit };
+        let message = format!("measured points are drawn beside {}, which is in {unit}", column.column.name);
+        place.refuse(RefusalKind::BadQuantity, message).help("write a unit of the same dimension").into()
+    };
+    let Some((x, first)) = columns.first() else {
+        return Ok(MeasuredPoints { label: data.label.clone(), of: 0, x: Vec::new(), y: Vec::new() });
+    };
+    if !fits(&data.x.unit, x) {
+        return Err(refuse(&data.x.place, x));
+    }
+    let of = columns.iter().position(|(_, y)| fits(&data.y.unit, y)).ok_or_else(|| refuse(&data.y.place, first))?;
+    let drawn = |values: &FigureNumbers, column: &FigureColumn| {
+        let si = |value: &f64| values.unit.as_ref().map_or(*value, |unit| unit.to_si(*value));
+        values.numbers.iter().map(|value| column.number(si(value))).collect()
+    };
+    Ok(MeasuredPoints { label: data.label.clone(), of, x: drawn(&data.x, x), y: drawn(&data.y, &columns[of].1) })
 }
 
 /// Index of an item in a list, to which it is added where it is missing.

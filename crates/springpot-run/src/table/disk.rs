@@ -152,6 +152,11 @@ impl Disk {
     /// Opens a file to be read.
     pub(crate) fn open(&self, path: &Path) -> io::Result<DiskFile> {
         self.ask(Call::Open(path))?;
+        // A FIFO would be waited for, and a device has no end.
+        let about = fs::metadata(path)?;
+        if !about.is_file() && !about.is_dir() {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no ordinary file"));
+        }
         Ok(self.file(File::open(path)?, path))
     }
 
@@ -163,9 +168,18 @@ impl Disk {
     }
 
     /// Makes a folder, and those above it; one that is there is no error.
-    pub(crate) fn create_folder(&self, path: &Path) -> io::Result<()> {
+    pub(crate) fn create_folders(&self, path: &Path) -> io::Result<()> {
         self.ask(Call::CreateFolder(path))?;
         fs::create_dir_all(path)
+    }
+
+    /// Makes a folder in one that is there; one that is there itself is no error.
+    pub(crate) fn create_folder(&self, path: &Path) -> io::Result<()> {
+        self.ask(Call::CreateFolder(path))?;
+        match fs::create_dir(path) {
+            Err(error) if error.kind() != io::ErrorKind::AlreadyExists || !path.is_dir() => Err(error),
+            _ => Ok(()),
+        }
     }
 
     /// Makes an empty file; what stands there is removed first, so that no link is followed.
@@ -199,8 +213,7 @@ impl Disk {
 
     /// Whether somebody holds the lock of a file, which is shared for a moment to see it; where there are no locks, whether the file is there.
     pub(crate) fn is_locked(&self, path: &Path) -> bool {
-        let opened = self.ask(Call::Open(path)).and_then(|_| File::open(path));
-        opened.is_ok_and(|file| file.try_lock_shared().is_err())
+        self.open(path).is_ok_and(|opened| opened.file.try_lock_shared().is_err())
     }
 
     /// Gives a file another name, and replaces what had it.

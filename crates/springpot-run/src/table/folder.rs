@@ -47,6 +47,9 @@ pub enum FolderError {
         /// What is in the way.
         source: Box<FolderError>,
     },
+    /// It is not there any more, or another one has its name.
+    #[error("{} was removed while the run wrote to it", .0.display())]
+    Removed(PathBuf),
     /// The file system's reason.
     #[error(transparent)]
     File(#[from] io::Error),
@@ -85,7 +88,7 @@ impl Folder {
     /// # Errors
     /// [`FolderError`]; nothing was changed then, but for [`FolderError::Pending`].
     pub fn open(path: &Path, disk: Disk, holder: &str) -> Result<Self, FolderError> {
-        disk.create_folder(path)?;
+        disk.create_folders(path)?;
         let lock = match lock::take(&disk, path, holder)? {
             Taken::Lock(lock) => Some(lock),
             Taken::Unknown => None,
@@ -348,6 +351,12 @@ impl Folder {
         }
         self.disk.remove(&self.path.join(PART))?;
         owned::clear_unfinished(&self.disk, &self.path)
+    }
+
+    /// Whether it is still the one that was opened: what belongs to another run by now is not written to.
+    pub(crate) fn is_in_place(&self) -> bool {
+        let is_there = || matches!(self.disk.look(&self.path), Ok(Some(Entry::Folder)));
+        self.lock.as_ref().map_or_else(is_there, |lock| lock.is_in_place().unwrap_or(true))
     }
 
     /// Makes a file that waits for its place.

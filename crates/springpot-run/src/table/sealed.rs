@@ -1,6 +1,8 @@
-//! Files that are there as a whole or not at all, and whose damage is noticed.
+//! Bytes whose damage is noticed, in memory or in files that are there as a whole or not at all.
 
 use super::disk::{Disk, DiskFile};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -14,9 +16,9 @@ const TAGGED: [&str; 2] = [" checkpoint ", " commit "];
 /// Longest first line that is looked at.
 const LONGEST_TAG: usize = 100;
 
-/// Why a sealed file cannot be read.
+/// Why what was sealed cannot be read.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum SealError {
+pub enum SealError {
     /// The file system's reason.
     #[error(transparent)]
     File(#[from] io::Error),
@@ -28,12 +30,57 @@ pub(crate) enum SealError {
     Damaged,
 }
 
+/// `bytes` behind the line `tag`, so that their damage is noticed.
+pub(crate) fn sealed(tag: &str, bytes: &[u8]) -> io::Result<Vec<u8>> {
+    Ok([tag.as_bytes(), &frame(bytes)?, bytes].concat())
+}
+
+/// The bytes that [`sealed()`] put behind the line `tag`.
+pub(crate) fn opened<'a>(tag: &str, bytes: &'a [u8]) -> Result<&'a [u8], SealError> {
+    let Some(rest) = bytes.strip_prefix(tag.as_bytes()) else {
+        return Err(line(bytes).map_or(SealError::Damaged, |line| SealError::OtherVersion(line.to_owned())));
+    };
+    match rest.split_at_checked(FRAME) {
+        Some((frame, body)) if self::frame(body)? == frame => Ok(body),
+        _ => Err(SealError::Damaged),
+    }
+}
+
+/// A value as bytes behind the line `tag`, which says what it is and in which format.
+///
+/// # Errors
+/// More than 4 GiB.
+pub fn seal(tag: &str, value: &impl Serialize) -> io::Result<Vec<u8>> {
+    sealed(tag, &postcard::to_stdvec(value).map_err(io::Error::other)?)
+}
+
+/// The value that [`seal`] made bytes of, with the same `tag`.
+///
+/// ```
+/// use springpot_run::{open, seal};
+///
+/// let mut bytes = seal("springpot pair 1\n", &(1.5, 2.5))?;
+/// assert_eq!(open::<(f64, f64)>("springpot pair 1\n", &bytes)?, (1.5, 2.5));
+/// bytes[20] ^= 1;
+/// assert!(open::<(f64, f64)>("springpot pair 1\n", &bytes).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`SealError`].
+pub fn open<T: DeserializeOwned>(tag: &str, bytes: &[u8]) -> Result<T, SealError> {
+    match postcard::take_from_bytes(opened(tag, bytes)?) {
+        Ok((value, [])) => Ok(value),
+        _ => Err(SealError::Damaged),
+    }
+}
+
 /// Writes `bytes` to `path` behind the line `tag`. Whenever this is broken off, by the loss of power too, the file holds either these
 /// bytes or those before.
 pub(crate) fn write(disk: &Disk, path: &Path, tag: &str, bytes: &[u8]) -> io::Result<()> {
     let new = path.with_extension("new");
     let mut file = disk.create(&new)?;
-    file.write_all(&[tag.as_bytes(), &frame(bytes)?, bytes].concat())?;
+    file.write_all(&sealed(tag, bytes)?)?;
     file.sync()?;
     disk.rename(&new, path)?;
     path.parent().map_or(Ok(()), |folder| disk.sync_folder(folder))
@@ -41,21 +88,18 @@ pub(crate) fn write(disk: &Disk, path: &Path, tag: &str, bytes: &[u8]) -> io::Re
 
 /// The bytes that [`write()`] wrote behind the line `tag`.
 pub(crate) fn read(disk: &Disk, path: &Path, tag: &str) -> Result<Vec<u8>, SealError> {
-    let bytes = disk.read(path)?;
-    let Some(rest) = bytes.strip_prefix(tag.as_bytes()) else {
-        return Err(first_line(&bytes).map_or(SealError::Damaged, |line| SealError::OtherVersion(line.to_owned())));
-    };
-    match take_record(&mut &*rest)? {
-        Taken::Record(record) if record.len() + FRAME == rest.len() => Ok(record),
-        _ => Err(SealError::Damaged),
-    }
+    opened(tag, &disk.read(path)?).map(<[u8]>::to_vec)
 }
 
 /// The first line of a sealed file, whoever sealed it; `None` where it is something else.
 pub(crate) fn first_line(bytes: &[u8]) -> Option<&str> {
+    line(bytes).filter(|line| TAGGED.iter().any(|word| line.contains(word)))
+}
+
+/// The first line of anything that was sealed.
+fn line(bytes: &[u8]) -> Option<&str> {
     let end = bytes.iter().take(LONGEST_TAG).position(|byte| *byte == b'\n')?;
-    let line = std::str::from_utf8(&bytes[..end]).ok()?;
-    (line.starts_with("springpot ") && TAGGED.iter().any(|word| line.contains(word))).then_some(line)
+    std::str::from_utf8(&bytes[..end]).ok().filter(|line| line.starts_with("springpot "))
 }
 
 /// Length, its complement, and CRC-32.

@@ -4,7 +4,7 @@ use crate::keys::{ANCHOR, BETWEEN, BUSHING, END};
 use crate::names;
 use crate::plan::{FramePlan, ShapePlan};
 use crate::reader::{Field, Read, Table, all};
-use crate::refusal::RefusalKind;
+use crate::refusal::{Place, RefusalKind};
 use crate::robot::Robot;
 use springpot::elements::{Bushing, Cable, CableError, Component, Joint, JointMeasureError, Line, Measure};
 use springpot::model::{Anchor, Frame, Site};
@@ -14,6 +14,8 @@ use springpot::spatial::Rotation;
 pub(super) struct Shape {
     pub(super) measure: Measure,
     pub(super) plan: ShapePlan,
+    /// Where its points stand, or its joint.
+    pub(super) ends: Vec<Place>,
 }
 
 /// A body by the name that the file gives it, and what is said of it.
@@ -38,8 +40,9 @@ pub(super) fn between_points(table: &Table<'_>, robot: &Robot) -> Read<Shape> {
     let [from, to] = [&ends[0].1.anchor, &ends[1].1.anchor];
     let points: Vec<Anchor> = [*from].into_iter().chain(via.iter().map(|(_, anchor)| *anchor)).chain([*to]).collect();
     let plan = ShapePlan::Points(points);
+    let places = places_of(table);
     if via.is_empty() {
-        return Ok(Shape { measure: Line { from: site(from), to: site(to) }.into(), plan });
+        return Ok(Shape { measure: Line { from: site(from), to: site(to) }.into(), plan, ends: places });
     }
     let ShapePlan::Points(points) = &plan else { unreachable!("made of points") };
     let sites: Vec<Site> = points.iter().map(site).collect();
@@ -64,7 +67,14 @@ pub(super) fn between_points(table: &Table<'_>, robot: &Robot) -> Read<Shape> {
         let message = format!("{}: {why}", table.what);
         table.ctx.refuse(place.refuse(RefusalKind::Rule, message).help(help))
     })?;
-    Ok(Shape { measure: cable.into(), plan })
+    Ok(Shape { measure: cable.into(), plan, ends: places })
+}
+
+/// Where the points of an element stand, from one end to the other.
+fn places_of(table: &Table<'_>) -> Vec<Place> {
+    let one = |key: &'static str| table.get(key).map(|field| field.node.place.clone());
+    let via = table.get("via").and_then(|field| field.node.items()).unwrap_or_default();
+    one("from").into_iter().chain(via.iter().map(|item| item.place.clone())).chain(one("to")).collect()
 }
 
 /// Reads `joint`.
@@ -82,7 +92,7 @@ pub(super) fn on_joint(table: &Table<'_>, robot: &Robot) -> Read<Shape> {
             field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, known)))
         }
     })?;
-    Ok(Shape { measure: joint.into(), plan: ShapePlan::Joint(name.to_owned()) })
+    Ok(Shape { measure: joint.into(), plan: ShapePlan::Joint(name.to_owned()), ends: vec![field.node.place.clone()] })
 }
 
 /// The joints that an element can act on.
@@ -97,6 +107,7 @@ fn other_joints(robot: &Robot) -> Option<String> {
 pub(super) struct Frames {
     from: (FramePlan, Frame),
     to: (FramePlan, Frame),
+    ends: Vec<Place>,
 }
 
 /// Reads `from` and `to` of a bushing.
@@ -110,14 +121,15 @@ pub(super) fn frames(table: &Table<'_>, robot: &Robot) -> Read<Frames> {
         let frame = robot.model().resolve_frame(&plan.anchor, &Rotation::from_rpy(plan.rpy));
         (plan, frame.expect("an anchor that was read"))
     };
-    Ok(Frames { from: resolved(from?), to: resolved(to?) })
+    Ok(Frames { from: resolved(from?), to: resolved(to?), ends: places_of(table) })
 }
 
 impl Frames {
     pub(super) fn shape(&self, robot: &Robot, component: Component) -> Shape {
-        let Self { from: (from, first), to: (to, second) } = self;
+        let Self { from: (from, first), to: (to, second), ends } = self;
         let measure = Bushing::new(robot.model(), *first, *second, component).into();
-        Shape { measure, plan: ShapePlan::Bushing { from: *from, to: *to, component } }
+        let ends = ends.clone();
+        Shape { measure, plan: ShapePlan::Bushing { from: *from, to: *to, component }, ends }
     }
 }
 

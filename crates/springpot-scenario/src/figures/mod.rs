@@ -5,12 +5,16 @@
 
 mod columns;
 mod curves;
+mod data;
 mod look;
 mod selection;
 mod summary;
 
 pub(crate) use columns::read_columns;
 pub use columns::{ColumnGlob, FigureUnit};
+#[cfg(test)]
+pub(crate) use data::POINTS;
+pub use data::{FigureNumbers, FigurePoints};
 pub use look::{AxisLook, AxisRange, FigureFormat, FigureLabel, Look, RangeEnd};
 pub use selection::Selection;
 pub use summary::{Statistic, Summarised, SweptAxis};
@@ -97,6 +101,7 @@ pub(crate) static FIGURE: Keys = Keys {
         key("title", Shape::Text, Need::Said("none"), "Title."),
         summary::X.only(&DRAWN),
         curves::Y,
+        data::DATA,
         key("units", Shape::TextsByName, Need::Said("SI"), "Units to draw columns in, by column or glob.").only(&DRAWN),
         key("where", Shape::ByName, Need::Said("all cases"), "Only the cases with these values, by swept path."),
         key(
@@ -133,6 +138,8 @@ pub struct FigurePlan {
     pub title: Option<String>,
     /// What is drawn.
     pub kind: FigureKind,
+    /// Measured points beside the columns.
+    pub data: Vec<FigurePoints>,
     /// Units to draw columns in.
     pub units: Vec<FigureUnit>,
     /// Ranges, scales, size, words.
@@ -196,6 +203,7 @@ fn figure(whole: &Whole<'_>, item: &Field<'_>, i: usize) -> Read<FigurePlan> {
     let title = table.get("title").map(|field| field.text().map(str::to_owned)).transpose();
     let kind = kind(&Reading { root, item, table: &table, axes });
     let units = table.get("units").map_or(Ok(Vec::new()), |field| columns::units(&field));
+    let data = table.get("data").map_or(Ok(Vec::new()), |field| data::read(&field));
     let selection = table.get("where").map_or(Ok(Vec::new()), |field| selection::selection(root, &field, axes, find));
     let kind = kind?;
     let look = look::read(&table, kind == FigureKind::Robot, end);
@@ -211,6 +219,7 @@ fn figure(whole: &Whole<'_>, item: &Field<'_>, i: usize) -> Read<FigurePlan> {
         name: name?,
         title: title?,
         kind,
+        data: data?,
         units: units?,
         look: look?,
         selection,
@@ -249,6 +258,9 @@ impl FigurePlan {
         if let Value::Object(record) = &mut record {
             record.extend(own);
             record.extend(self.look.record());
+            if !self.data.is_empty() {
+                record.insert("data".to_owned(), self.data.iter().map(FigurePoints::record).collect());
+            }
         }
         record
     }

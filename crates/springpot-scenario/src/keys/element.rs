@@ -88,6 +88,12 @@ pub(crate) static ELEMENT: Keys = Keys {
             "Name of the element; begins the names of its columns.",
         ),
         key(
+            "enabled",
+            Shape::Flag,
+            Need::Flag(true),
+            "false: it is not there; its cells are empty, and it is not drawn.",
+        ),
+        key(
             "from",
             Shape::Table(&END),
             Need::Required("from = { body = \"NAME\", point = [x, y, z] }"),

@@ -38,9 +38,9 @@ pub(crate) static SHIFT: Keys = Keys {
         .only(&[WLF]),
         key(
             "energy",
-            Shape::Number("", Bound::NotNegative),
-            Need::Required("energy = 8e4, in J/mol"),
-            "Activation energy, J/mol.",
+            Shape::Number("J/mol", Bound::NotNegative),
+            Need::Required("energy = \"80 kJ/mol\""),
+            "Activation energy.",
         )
         .only(&[ARRHENIUS]),
         temperature("T_ref", Need::Required("T_ref = \"20 degC\""), "Temperature at which a_T is 1."),

@@ -34,7 +34,7 @@ pub(crate) use motion::{
 };
 pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, END_STOPS, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, keys_of};
-pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME};
+pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
 pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
 
@@ -94,8 +94,8 @@ pub(crate) enum Shape {
     Pair(&'static str),
     /// Two numbers or quantities of what is drawn.
     Range,
-    /// Any number of numbers in a unit, zero and above.
-    Numbers(&'static str),
+    /// Any number of numbers in a unit, zero and above, or a table that says them.
+    NumbersOr(&'static str, &'static Keys),
     /// An end of a span: a number in the unit of what is swept.
     SweptNumber,
     /// A number in the unit of a column.
@@ -116,6 +116,8 @@ pub(crate) enum Shape {
     Columns,
     /// A table.
     Table(&'static Keys),
+    /// A table, or an array of them.
+    TableOrTables(&'static Keys),
     /// An array of tables, so many at most where that is said.
     Tables(&'static Keys, Option<usize>),
     /// A number that belongs to a joint as above, or a table.

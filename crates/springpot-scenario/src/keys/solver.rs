@@ -1,5 +1,6 @@
 //! `[time]` and `[solver]`, and where the numbers of `[solver]` go.
 
+use super::sweep::SCALE;
 use super::{Bound, Field, Keys, Need, Shape, Slot, key};
 use springpot::integrate::Settings;
 use springpot::integrate::fixed::Method;
@@ -19,7 +20,27 @@ pub(crate) static TIME: Keys = Keys {
             Need::OneOf,
             "Rows at its multiples, and one at the end.",
         ),
-        key("output_times", Shape::Numbers("s"), Need::OneOf, "Rows at these increasing times and nowhere else."),
+        key(
+            "output_times",
+            Shape::NumbersOr("s", &TIMES),
+            Need::OneOf,
+            "Rows at these increasing times and nowhere else.",
+        ),
+    ],
+};
+
+/// Most rows of one run.
+pub(crate) const MAX_ROWS: f64 = 2e7;
+
+const TIMES_KEYS: &str = "from, to and count";
+
+pub(crate) static TIMES: Keys = Keys {
+    words: "Times from one to another.",
+    keys: &[
+        key("from", Shape::Number("s", Bound::NotNegative), Need::Written(TIMES_KEYS), "The first."),
+        key("to", Shape::Number("s", Bound::Positive), Need::Written(TIMES_KEYS), "The last, not beyond `end`."),
+        key("count", Shape::Whole(2, Some(MAX_ROWS as i64)), Need::Written(TIMES_KEYS), "How many."),
+        SCALE,
     ],
 };
 

@@ -1,6 +1,6 @@
 //! `[[sweep]]`.
 
-use super::{Keys, Need, Shape, key};
+use super::{Key, Keys, Need, Shape, key};
 
 /// Most values of one sweep, and most cases of a grid.
 pub const MAX_CASES: usize = 10_000_000;
@@ -24,6 +24,12 @@ pub(crate) static SWEEP: Keys = Keys {
             Need::Written("values = [ … ] or values = { from = …, to = …, count = … }"),
             "An array of values, or a table with from, to and count.",
         ),
+        key(
+            "names",
+            Shape::TextList,
+            Need::Optional,
+            "What the values are called in legends, pages, reports and summaries, one for each.",
+        ),
     ],
 };
 
@@ -35,11 +41,10 @@ pub(crate) static SPAN: Keys = Keys {
         key("from", Shape::SweptNumber, Need::Written(SPAN_KEYS), "First value."),
         key("to", Shape::SweptNumber, Need::Written(SPAN_KEYS), "Last value."),
         key("count", Shape::Whole(2, Some(MAX_CASES as i64)), Need::Written(SPAN_KEYS), "Number of values."),
-        key(
-            "scale",
-            Shape::Words(|| vec!["linear", "log"]),
-            Need::Word("linear"),
-            "Equal differences or equal ratios.",
-        ),
+        SCALE,
     ],
 };
+
+/// How numbers lie between two ends.
+pub(super) const SCALE: Key =
+    key("scale", Shape::Words(|| vec!["linear", "log"]), Need::Word("linear"), "Equal differences or equal ratios.");

@@ -2,7 +2,7 @@
 
 mod reference;
 
-use super::super::figures::FIGURE;
+use super::super::figures::{FIGURE, POINTS};
 use super::super::motion::{MOTION, MotionKind};
 use super::super::root::SCENARIO;
 use super::*;
@@ -13,7 +13,9 @@ fn inner(key: &Key) -> Option<&'static Keys> {
     match key.shape {
         Shape::Table(keys)
         | Shape::Tables(keys, _)
+        | Shape::TableOrTables(keys)
         | Shape::ValuesOr(keys)
+        | Shape::NumbersOr(_, keys)
         | Shape::WordsOr(_, keys)
         | Shape::TableWithJoints(keys)
         | Shape::JointNumberOr(_, _, keys) => Some(keys),
@@ -114,7 +116,7 @@ fn unit_of(key: &Key) -> String {
         Shape::Number(unit, _)
         | Shape::Vector(unit)
         | Shape::Pair(unit)
-        | Shape::Numbers(unit)
+        | Shape::NumbersOr(unit, _)
         | Shape::Signal(unit) => unit,
         Shape::JointNumber([turning, _], _)
         | Shape::JointNumberOr([turning, _], ..)
@@ -187,8 +189,20 @@ fn the_document_has_the_same_keys() {
     }
     assert!(compared > 50, "{compared}");
     // Keys that stand in sentences.
-    for keys in [&SIGNAL, &INERTIA, &ANCHOR, &SPAN, &POSE, &START_VELOCITIES, &OUTPUT, &ACTION, &END_STOPS, &REFERENCE]
-    {
+    for keys in [
+        &SIGNAL,
+        &INERTIA,
+        &ANCHOR,
+        &SPAN,
+        &TIMES,
+        &POINTS,
+        &POSE,
+        &START_VELOCITIES,
+        &OUTPUT,
+        &ACTION,
+        &END_STOPS,
+        &REFERENCE,
+    ] {
         for key in keys.keys {
             let named = [
                 format!("`{}`", key.name),

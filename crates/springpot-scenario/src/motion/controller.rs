@@ -7,7 +7,7 @@ use crate::feedback;
 use crate::keys::{self, CONTROLLER, REFERENCE};
 use crate::names;
 use crate::reader::{Field, Read, Table, all};
-use crate::refusal::{Place, RefusalKind};
+use crate::refusal::{Place, RefusalKind, Remark};
 use crate::robot::{OwnJoint, Robot};
 use crate::signals::Wanted;
 use serde_json::{Map, Value, json};
@@ -35,6 +35,8 @@ pub(super) struct ControllerPlan {
     sample: Option<Place>,
     /// In place of the reference, where it has to be solved for.
     path: Option<Arc<gripper_path::Path>>,
+    /// Where its limits stand.
+    limits: Option<Place>,
     /// Where it stands, and its reference.
     place: Place,
     reference: Place,
@@ -48,6 +50,13 @@ impl ControllerPlan {
     /// Where the time between two samples stands, and what it is, s.
     pub(super) fn sample(&self) -> Option<(&Place, f64)> {
         self.sample.as_ref().zip(self.controlled.sampling.map(|sampling| sampling.period))
+    }
+
+    /// Largest forces by joint, N·m or N, and where they are said.
+    pub(super) fn limits(&self) -> Option<(&Place, Vec<(String, f64)>)> {
+        let listed = self.record["limits"].as_object()?;
+        let each = listed.iter().filter_map(|(joint, value)| Some((joint.clone(), value.as_f64()?)));
+        Some((self.limits.as_ref()?, each.collect()))
     }
 
     /// Its kind, what it follows, when it acts.
@@ -155,7 +164,17 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
     record.insert("reference".to_owned(), referred);
     let controlled = Controlled { law, reference, limits, anti_windup, sampling };
     let sample = table.get("sample").map(|field| field.node.place.clone());
-    Ok(ControllerPlan { controlled, sample, path, place: own, reference: to, has_orientation, record: record.into() })
+    let limits = table.get("limits").map(|field| field.node.place.clone());
+    Ok(ControllerPlan {
+        limits,
+        controlled,
+        sample,
+        path,
+        place: own,
+        reference: to,
+        has_orientation,
+        record: record.into(),
+    })
 }
 
 /// The word under `kind` of a table.
@@ -201,6 +220,7 @@ fn law(
             return Err(table.lacks("kp"));
         }
         let (kp, kd) = (gain("kp", "N/m")?, gain("kd", "N*s/m")?);
+        warn_of_no_gain(table, kind, [&[kp][..], &[kd]]);
         record.extend([("kp".to_owned(), json!(kp)), ("kd".to_owned(), json!(kd))]);
         return Ok(Arc::new(Impedance { kp, kd }));
     }
@@ -236,6 +256,8 @@ fn law(
         })
     };
     let (kp, kd) = (gain("kp", 0)?, gain("kd", 1)?);
+    let ki = if matches!(kind, keys::PID | keys::FRACTIONAL_PID) { gain("ki", 2)? } else { Vec::new() };
+    warn_of_no_gain(table, kind, [&kp[..], &kd, &ki]);
     let listed = |values: &[f64]| -> Value {
         joints.driven().map(|(k, joint)| (joint.name.to_owned(), json!(values[k]))).collect::<Map<_, _>>().into()
     };
@@ -248,7 +270,6 @@ fn law(
             Arc::new(ComputedTorque { kp, kd, compensate_elements })
         }
         _ => {
-            let ki = gain("ki", 2)?;
             record.insert("ki".to_owned(), listed(&ki));
             if kind == keys::FRACTIONAL_PID {
                 record.extend([("lambda".to_owned(), listed(&lambda)), ("mu".to_owned(), listed(&mu))]);
@@ -256,6 +277,21 @@ fn law(
             Arc::new(Pid { kp, ki, kd, lambda, mu })
         }
     })
+}
+
+/// Says that a controller does not look at the error.
+fn warn_of_no_gain<const N: usize>(table: &Table<'_>, kind: &str, gains: [&[f64]; N]) {
+    if gains.iter().any(|gains| gains.iter().any(|gain| *gain != 0.0)) {
+        return;
+    }
+    let left = match kind {
+        keys::PID | keys::FRACTIONAL_PID => "it gives no force at all",
+        keys::COMPUTED_TORQUE => "nothing brings the robot back to where it should be",
+        _ => "it carries the weight and follows nothing",
+    };
+    let place = table.get("kp").map_or(&table.node.place, |field| &field.node.place);
+    let remark = Remark::at(place, format!("all gains of [motion.controller] are 0: {left}"));
+    table.ctx.warn(remark.help("write kp and kd above 0, or leave [motion.controller] out"));
 }
 
 /// Units of kp, kd and ki of joints that turn and that slide.

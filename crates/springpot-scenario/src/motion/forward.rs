@@ -1,15 +1,16 @@
 //! Forward dynamics: where the robot starts and what drives its joints.
 
 use super::controller::{self, ControllerPlan, Joints};
+use super::idle;
 use super::joints::{open_joints, path_of_joint, signal, zero};
 use super::{Made, ready};
-use crate::document::shorten;
+use crate::document::{shorten, shortest};
 use crate::feedback::{self, TorqueTexts};
 use crate::keys::{FORCES, START, START_POSE, START_VELOCITIES};
 use crate::names;
 use crate::plan::SignalPlan;
 use crate::reader::{Field, Read, Table, all};
-use crate::refusal::RefusalKind;
+use crate::refusal::{RefusalKind, Remark};
 use crate::robot::{OwnJoint, Robot};
 use crate::signals::Wanted;
 use serde_json::{Map, Value, json};
@@ -32,6 +33,20 @@ pub(super) fn read(
     let (torque, prescribed, locked) = (torque?, prescribed?, locked?);
     let place = &table.node.place;
     let mut feedback = TorqueTexts::new();
+    let is_idle = |joint: &str| {
+        let given = |table: &Option<Table<'_>>| table.as_ref().is_some_and(|table| table.get(joint).is_some());
+        !given(&torque) && !given(&prescribed) && !locked.contains(joint)
+    };
+    let is_led =
+        |joint: &str| locked.contains(joint) || prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
+    let still = idle::joints(robot, start.as_ref().ok().and_then(Option::as_ref), is_led, is_idle);
+    if !still.is_empty() {
+        let which = names::list(still.iter().map(|&j| robot.model().joint_names()[j].as_str()));
+        let message = format!(
+            "nothing says how joints move that carry no mass, or point masses that others move alike; they stay where they start: {which}"
+        );
+        table.ctx.warn(Remark::new(message).help("give what they carry an inertia"));
+    }
     let drives = all(robot.own_joints().map(|joint| {
         let given = |table: &Option<Table<'_>>| table.as_ref().and_then(|table| table.get(joint.name)).is_some();
         let is_locked = locked.contains(joint.name);
@@ -49,6 +64,9 @@ pub(super) fn read(
         if let Some(field) = prescribed.as_ref().and_then(|table| table.get(joint.name)) {
             let (path, record) = path_of_joint(&field, &joint, end)?;
             return Ok((Drive::Prescribed(path), json!({ "prescribed": record })));
+        }
+        if still.contains(&index_of(robot, joint.name)) {
+            return Ok((Drive::Locked, json!("locked, since nothing says how it moves")));
         }
         let forces = match torque.as_ref().and_then(|table| table.get(joint.name)) {
             Some(field) => force(&field, &joint, end)?,
@@ -110,6 +128,7 @@ fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
                 start_pose(&field, q)?;
             } else {
                 q[0] = field.number(joint.unit())?;
+                must_be_near(&field, q[0], joint.unit())?;
             }
         }
         if let Some(field) = velocities.as_ref().and_then(|table| table.get(joint.name)) {
@@ -128,11 +147,33 @@ fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
     Ok((q, v))
 }
 
+/// Farther away, rad or m, numbers are more than 1e-7 apart: no motion of a robot can be told there.
+const FARTHEST: f64 = 1e9;
+
+fn must_be_near(field: &Field<'_>, q: f64, unit: &str) -> Read<()> {
+    if q.abs() <= FARTHEST {
+        return Ok(());
+    }
+    let message = format!(
+        "is {} {unit}, outside ±1e9 {unit}: numbers there are {:.1e} apart",
+        shortest(q),
+        q.abs().next_up() - q.abs()
+    );
+    let help = match unit {
+        "rad" => "take whole turns off it: the joint is at the same place",
+        _ => "place the robot near the world's origin",
+    };
+    Err(field.refuse(RefusalKind::OutOfRange, message, Some(help.to_owned())))
+}
+
 /// `{ x = …, y = …, z = …, rpy = […] }`, all numbers.
 fn start_pose(field: &Field<'_>, q: &mut [f64]) -> Read<()> {
     let table = field.table(&START_POSE)?;
     for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
         q[k] = table.number(axis)?;
+        if let Some(field) = table.get(axis) {
+            must_be_near(&field, q[k], "m")?;
+        }
     }
     let [roll, pitch, yaw] = table.vector("rpy")?;
     q[3..].copy_from_slice(&Quaternion::from_rpy([roll, pitch, yaw]).0);

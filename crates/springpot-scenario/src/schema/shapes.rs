@@ -72,10 +72,11 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         Shape::Vector(unit) => several(3, unit, &words),
         Shape::Pair(unit) => several(2, unit, &words),
         Shape::Range => several(2, "the unit that is drawn", &words),
-        Shape::Numbers(unit) => json!({
-            "type": "array", "items": bounded(quantity(unit, "A number."), Bound::NotNegative), "minItems": 1,
-            "description": words,
-        }),
+        Shape::NumbersOr(unit, keys) => {
+            let items = bounded(quantity(unit, "A number."), Bound::NotNegative);
+            let array = json!({ "type": "array", "items": items, "minItems": 1 });
+            json!({ "description": words, "anyOf": [array, object(keys.words, keys, catalog)] })
+        }
         Shape::SweptNumber => quantity("the unit of the parameter", &words),
         Shape::OfColumn => quantity("the unit of the column", &words),
         Shape::Signal(unit) => signal(unit, &words),
@@ -97,6 +98,11 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             json!({ "description": words, "allOf": [{ "$ref": "#/definitions/component" }] })
         }
         Shape::Table(keys) => object(&words, keys, catalog),
+        Shape::TableOrTables(keys) => {
+            let table = object(keys.words, keys, catalog);
+            let tables = json!({ "type": "array", "items": table, "minItems": 1 });
+            json!({ "description": words, "anyOf": [table, tables] })
+        }
         Shape::Tables(keys, most) => {
             let items = object(keys.words, keys, catalog);
             let mut schema = json!({ "type": "array", "items": items, "description": words });

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-const NAMES: [&str; 5] = ["kg", "m", "s", "A", "K"];
+const NAMES: [&str; 6] = ["kg", "m", "s", "A", "K", "mol"];
 const TOLERANCE: f64 = 1e-9;
 
 /// Names that a reader recognises, tried before anything is composed: exponents of kg, m, s, A, K.
@@ -21,12 +21,12 @@ const KNOWN: [(&str, [f64; 5]); 12] = [
     ("kg", [1.0, 0.0, 0.0, 0.0, 0.0]),
 ];
 
-/// A physical dimension kg^a·m^b·s^c·A^d·K^e with real exponents; angles, percent and 1 have none.
+/// A physical dimension kg^a·m^b·s^c·A^d·K^e·mol^f with real exponents; angles, percent and 1 have none.
 ///
 /// Its text is the shortest recognisable SI unit of that dimension: `N`, `N*m`, `N*s^0.3/m`, `m/K`, `1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dimension {
-    exponents: [f64; 5],
+    exponents: [f64; 6],
 }
 
 impl Dimension {
@@ -34,12 +34,17 @@ impl Dimension {
     pub const NONE: Self = Self::new([0.0; 5]);
 
     /// The dimension with these exponents of kilogram, metre, second, ampere and kelvin.
-    pub const fn new(exponents: [f64; 5]) -> Self {
+    pub const fn new([kg, m, s, a, k]: [f64; 5]) -> Self {
+        Self { exponents: [kg, m, s, a, k, 0.0] }
+    }
+
+    /// The dimension with these exponents of kilogram, metre, second, ampere, kelvin and mole.
+    pub const fn with_amount(exponents: [f64; 6]) -> Self {
         Self { exponents }
     }
 
-    /// Exponents of kilogram, metre, second, ampere and kelvin.
-    pub const fn exponents(&self) -> [f64; 5] {
+    /// Exponents of kilogram, metre, second, ampere, kelvin and mole.
+    pub const fn exponents(&self) -> [f64; 6] {
         self.exponents
     }
 
@@ -70,14 +75,17 @@ impl Dimension {
 
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.agrees_with(&Self::with_amount([1.0, 2.0, -2.0, 0.0, 0.0, -1.0])) {
+            return f.write_str("J/mol");
+        }
         if let Some((name, _)) = KNOWN.iter().find(|(_, exponents)| self.agrees_with(&Self::new(*exponents))) {
             return f.write_str(name);
         }
-        let [mass, length, time, current, temperature] = self.exponents;
+        let [mass, length, time, current, temperature, amount] = self.exponents;
         // Anything with kg·s^-1 … kg·s^-2 in it is read more easily as a force over something.
         let force = (mass - 1.0).abs() <= TOLERANCE && time <= -1.0 + TOLERANCE;
         let factors = if force {
-            [("N", 1.0), ("m", length - 1.0), ("s", time + 2.0), ("A", current), ("K", temperature)]
+            [("N", 1.0), ("m", length - 1.0), ("s", time + 2.0), ("A", current), ("K", temperature), ("mol", amount)]
         } else {
             std::array::from_fn(|i| (NAMES[i], self.exponents[i]))
         };

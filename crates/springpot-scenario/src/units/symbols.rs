@@ -16,7 +16,7 @@ pub(super) struct Meaning {
 
 struct Row {
     name: &'static str,
-    /// Exponents of kg, m, s, A, K.
+    /// Exponents of kg, m, s, A, K; the mole has none of them.
     dimension: [i8; 5],
     up: u16,
     down: u16,
@@ -32,7 +32,7 @@ const fn scaled(name: &'static str, dimension: [i8; 5], up: u16, down: u16, deci
     Row { name, dimension, up, down, decimal, prefixes: false }
 }
 
-const ROWS: [Row; 22] = [
+const ROWS: [Row; 23] = [
     si("m", [0, 1, 0, 0, 0]),
     Row { name: "g", dimension: [1, 0, 0, 0, 0], up: 1, down: 1, decimal: -3, prefixes: true },
     si("s", [0, 0, 1, 0, 0]),
@@ -52,11 +52,15 @@ const ROWS: [Row; 22] = [
     si("F", [-1, -2, 4, 2, 0]),
     si("ohm", [1, 2, -3, -2, 0]),
     si("K", [0, 0, 0, 0, 1]),
+    si(MOLE, [0; 5]),
     scaled("degC", [0, 0, 0, 0, 1], 1, 1, 0),
     scaled("degF", [0, 0, 0, 0, 1], 5, 9, 0),
     scaled("%", [0; 5], 1, 1, -2),
     scaled("1", [0; 5], 1, 1, 0),
 ];
+
+/// The symbol whose dimension is none of those five.
+const MOLE: &str = "mol";
 
 const PREFIXES: [(&str, i32); 10] = [
     ("p", -12),
@@ -100,7 +104,7 @@ const OTHER_SPELLINGS: [(&str, &str); 24] = [
 ];
 
 /// All symbols, for messages.
-pub(super) const LIST: &str = "m g s min h rad deg N J W Pa Hz V A C F ohm K degC degF % 1";
+pub(super) const LIST: &str = "m g s min h rad deg N J W Pa Hz V A C F ohm K mol degC degF % 1";
 
 /// The meaning of a whole symbol, or else of prefix + symbol.
 pub(super) fn lookup(symbol: &str) -> Option<Meaning> {
@@ -114,7 +118,7 @@ pub(super) fn lookup(symbol: &str) -> Option<Meaning> {
     let up = Twofold::from_f64(f64::from(row.up));
     let hundredths = |n: u32| Twofold::from_f64(f64::from(n)).scaled_by_ten(-2);
     Some(Meaning {
-        dimension: Dimension::new(row.dimension.map(f64::from)),
+        dimension: dimension(row),
         up: if row.name == "deg" { up.mul(Twofold::PI) } else { up },
         down: Twofold::from_f64(f64::from(row.down)),
         decimal: i32::from(row.decimal) + prefix,
@@ -124,6 +128,11 @@ pub(super) fn lookup(symbol: &str) -> Option<Meaning> {
             _ => None,
         },
     })
+}
+
+fn dimension(row: &Row) -> Dimension {
+    let [kg, m, s, a, k] = row.dimension.map(f64::from);
+    Dimension::with_amount([kg, m, s, a, k, if row.name == MOLE { 1.0 } else { 0.0 }])
 }
 
 /// What was probably meant by an unknown symbol.

@@ -22,7 +22,7 @@ fn sweeps_are_refused() {
                 "`element.strut` has no `alfa`\n  help: did you mean `alpha`?",
             ),
             (&[(parameter, "parameter = ‸\"solver.rtoll\"")], UnknownKey, "did you mean `rtol`?"),
-            (&[(parameter, "parameter = ‸\"solvr.rtol\"")], UnknownKey, "did you mean `solver`?"),
+            (&[(parameter, "parameter = ‸\"solvr.rtol\"")], UnknownName, "did you mean solver.rtol?"),
             (&[(parameter, "parameter = ‸\"element..alpha\"")], BadName, "is not a path"),
             (&[(parameter, "parameter = ‸\"element.strut\"")], WrongType, "leads to a whole table"),
             (

@@ -206,6 +206,17 @@ fn output_times_and_columns_are_taken() {
 }
 
 #[test]
+fn output_times_have_equal_ratios_or_differences() {
+    let rows = |table: &str| {
+        let text = edited(&single(), &[("output_step = \"10 ms\"  ", &format!("output_times = {table}"))]);
+        cases(&text).unwrap().plan(0).unwrap().settings.rows
+    };
+    let decades = rows("{ from = \"1 ms\", to = 10, count = 5, scale = \"log\" }");
+    assert_eq!(decades, RowTimes::Times([1e-3, 0.01, 0.1, 1.0, 10.0].into()));
+    assert_eq!(rows("{ from = 0, to = 1, count = 5 }"), RowTimes::Times([0.0, 0.25, 0.5, 0.75, 1.0].into()));
+}
+
+#[test]
 fn figures_get_names_units_and_kinds() {
     let text = edited(
         &single(),

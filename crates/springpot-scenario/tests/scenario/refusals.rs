@@ -108,6 +108,9 @@ fn unknown_names_are_refused_with_the_nearest_one() {
             (&[("\"0.1*sin(8*t)\"", "\"0.1*‸sn(8*t)\"")], BadQuantity, "sin"),
             (&[("\"0.1*sin(8*t)\"", "\"0.1*sin(8*‸x)\"")], BadQuantity, "unknown name `x`"),
             (&[("\"70 cm\"", "\"70 ‸cmm\"")], BadQuantity, "unknown unit `cmm`"),
+            // Where escapes or signs of several bytes hide a place, the whole value is it.
+            (&[("\"0.1*sin(8*t)\"", "‸\"0.1*ö*\\\"\\\"\\\"\\\"\"")], BadQuantity, "ö"),
+            (&[("\"0.1*sin(8*t)\"", "‸\"€€€*sn(t)\\u00e9\"")], BadQuantity, "€"),
             (&[("x = \"t\" ", "kind = ‸\"curve\" ")], UnknownName, "did you mean `curves`?"),
             (&[("x = \"t\" ", "units = { \"strut.Q.q2\" = \"‸Nn\" } ")], BadQuantity, "unknown unit `Nn`"),
             (
@@ -352,6 +355,46 @@ fn values_outside_their_range_are_refused() {
             (&[("output_step = \"10 ms\"", "output_times = [0, ‸11]")], OutOfRange, "outside 0 … 10 s"),
             (&[("output_step = \"10 ms\"", "output_times = [‸-1]")], OutOfRange, "outside 0 … 10 s"),
             (&[("output_step = \"10 ms\"", "output_times = [1, ‸1]")], Rule, "increasing order"),
+            (
+                &[("output_step = \"10 ms\"", "output_times = { from = 0.1, to = ‸\"20 s\", count = 5 }")],
+                OutOfRange,
+                "is 20 s, beyond the end at 10 s",
+            ),
+            (
+                &[("output_step = \"10 ms\"", "output_times = ‸{ from = 0, to = 1, count = 5, scale = \"log\" }")],
+                OutOfRange,
+                "runs from 0 to 1, which has no logarithmic scale",
+            ),
+            (
+                &[("output_step = \"10 ms\"", "output_times = { from = ‸-1, to = 1, count = 5 }")],
+                OutOfRange,
+                "is -1, before the motion starts",
+            ),
+            (
+                &[("output_step = \"10 ms\"", "output_times = ‸{ from = 2, to = 1, count = 5 }")],
+                OutOfRange,
+                "runs from 2 s to 1 s",
+            ),
+            (
+                &[("output_step = \"10 ms\"", "output_times = ‸{ from = 0.1, to = 1 }")],
+                Missing,
+                "write from, to and count",
+            ),
+            (
+                &[("output_step = \"10 ms\"", "output_times = { from = 0.1, to = 1, count = ‸1 }")],
+                OutOfRange,
+                "outside 2 … 20000000",
+            ),
+            (
+                &[("output_step = \"10 ms\"", "output_times = { from = 0.1, to = 1, count = 3, scale = ‸\"lin\" }")],
+                UnknownName,
+                "is \"lin\", which is no scale",
+            ),
+            (
+                &[("output_step = \"10 ms\"", "output_times = ‸{ from = 1, to = 1.0000000000000002, count = 9 }")],
+                OutOfRange,
+                "too close to one another to be told apart",
+            ),
             (&[("mass = 6.0", "mass = ‸nan")], OutOfRange, "`mass` of body \"column\" is nan, not a finite number"),
             (&[("mass = 6.0", "mass = ‸inf")], OutOfRange, "is inf, not a finite number"),
             (&[("mass = 6.0", "mass = ‸-inf")], OutOfRange, "is -inf, not a finite number"),

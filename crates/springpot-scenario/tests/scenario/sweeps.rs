@@ -1,9 +1,10 @@
 //! Sweeps, grids and overrides.
 
-use crate::support::{EXAMPLE, cases, catalog, edited, parameter, parse, single};
+use crate::support::{EXAMPLE, assert_all_refused, assert_refused, cases, catalog, edited, parameter, parse, single};
 use springpot::fractional::scheme::Scheme;
-use springpot::integrate::RowTimes;
+use springpot::integrate::{Action, RowTimes};
 use springpot::law::Catalog;
+use springpot_scenario::RefusalKind::{BadName, BadQuantity, Rule, WrongType};
 use springpot_scenario::{Cases, Plan, Refusals, Selection, ShapePlan, SweptValue};
 
 /// The single run with these blocks behind it.
@@ -237,7 +238,7 @@ fn overrides_are_refused_in_their_own_text() {
         ("element.strut.alpha=1.5", 21, "is 1.5, outside 0 … 1"),
         ("element.strut.alpha = nan", 23, "is nan, not a finite number"),
         ("element.strut.alfa=1", 1, "has no `alfa`"),
-        ("elemnt.strut.alpha=1", 1, "did you mean `element`?"),
+        ("elemnt.strut.alpha=1", 1, "did you mean element.strut.alpha?"),
         ("element.strutt.alpha=1", 1, "did you mean `strut`?"),
         ("solver.rtoll=1", 1, "did you mean `rtol`?"),
         ("element.strut.T=25", 17, "25 K? write \"25 degC\""),
@@ -247,7 +248,6 @@ fn overrides_are_refused_in_their_own_text() {
         ("sweep.x=1", 1, "a [[sweep]] has no name"),
         ("a b=1", 1, "is not a path"),
         ("element=1", 1, "leads to a whole table"),
-        ("time.end=", 1, "has no value"),
         ("=1", 1, "has no path"),
         ("time.end", 1, "has no `=`"),
     ] {
@@ -272,4 +272,111 @@ fn the_standard_catalog_is_not_needed_to_parse() {
     if Catalog::standard().get("thermoviscoelastic").is_none() {
         assert!(refusals.unwrap_err().to_string().contains("is no law"));
     }
+}
+
+#[test]
+fn values_have_names_where_the_file_says_so() {
+    let swept =
+        "[[sweep]]\nparameter = \"element.strut.alpha\"\nvalues = [0.1, 0.3]\nnames = [\"nearly a spring\", \"0.1\"]\n";
+    let cases = grid(&format!(
+        "{swept}[[sweep]]\nparameter = [\"element.strut.T\", \"solver.rtol\"]\nvalues = [[\"0 degC\", 1e-8], [\"25 degC\", 1e-9]]"
+    ));
+    assert_eq!(cases.axis_names(0), Some(&["nearly a spring".to_owned(), "0.1".to_owned()][..]));
+    assert_eq!((cases.axis_names(1), cases.axis_label(0, 1)), (None, "0.1".to_owned()));
+    assert_eq!(cases.name(0), "nearly a spring, element.strut.T = 0 degC, solver.rtol = 1e-8");
+    assert_eq!((cases.given_name(3), cases.labels(3)[0].as_str()), ("0.1".to_owned(), "0.3"));
+    // A figure finds values by name first, by value else.
+    let with_figure = |chosen: &str| {
+        let text = edited(
+            &with_blocks(swept),
+            &[("[[figure]]", &format!("[[figure]]\nwhere = {{ \"element.strut.alpha\" = {chosen} }}"))],
+        );
+        cases_of(&text).figures()[0].selection.clone()
+    };
+    for (chosen, value) in [("\"nearly a spring\"", 0), ("\"0.1\"", 1), ("0.3", 1)] {
+        assert_eq!(with_figure(chosen), [Selection { axis: 0, value }], "{chosen}");
+    }
+    let span = grid(
+        "[[sweep]]\nparameter = \"element.strut.alpha\"\nvalues = { from = 0.1, to = 0.9, count = 3 }\nnames = [\"low\", \"middle\", \"high\"]",
+    );
+    assert_eq!(
+        (span.name(1), span.axis_label_of(0, "element.strut.alpha", 1)),
+        ("middle".to_owned(), "0.5".to_owned())
+    );
+}
+
+fn cases_of(text: &str) -> Cases {
+    cases(text).unwrap()
+}
+
+#[test]
+fn names_of_values_are_refused_where_they_tell_none_apart() {
+    let base =
+        with_blocks("[[sweep]]\nparameter = \"element.strut.alpha\"\nvalues = [0.1, 0.3]\nnames = [\"a\", \"b\"]");
+    let names = "names = [\"a\", \"b\"]";
+    assert_all_refused(
+        &base,
+        &[
+            (&[(names, "names = ‸[\"a\"]")], Rule, "holds 1 names for 2 values"),
+            (&[(names, "names = ‸\"a\"")], WrongType, "an array of texts, one for each value"),
+            (&[(names, "names = [\"a\", ‸\"a\"]")], BadName, "calls values 1 and 2 alike: \"a\""),
+            (&[(names, "names = [\"a\", ‸\"\"]")], BadName, "is no name"),
+            (&[(names, "names = [\"a\", ‸\" b\"]")], BadName, "begins or ends with a blank"),
+            (&[(names, "names = [\"a\", ‸2]")], WrongType, "must be a text"),
+        ],
+    );
+}
+
+#[test]
+fn elements_that_are_not_enabled_keep_their_columns() {
+    let cases = grid("[[sweep]]\nparameter = \"element.strut.enabled\"\nvalues = [true, false]");
+    let [with, without] = [0, 1].map(|k| cases.plan(k).unwrap());
+    assert_eq!((with.elements.len(), without.elements.len(), without.absent.len()), (1, 0, 1));
+    assert_eq!(with.columns(), without.columns());
+    let system = without.system();
+    assert!(system.elements.is_empty() && with.places(&with.system()).is_none());
+    let (places, columns, own) = (without.places(&system).unwrap(), without.columns(), system.columns());
+    for (place, column) in places.iter().zip(&columns) {
+        match place {
+            Some(place) => assert_eq!(own[*place].name, column.name),
+            None => assert!(column.name.starts_with("strut."), "{}", column.name),
+        }
+    }
+    assert_eq!(places.iter().flatten().count(), own.len());
+    let elements = &without.resolved()["elements"];
+    assert_eq!((&elements[0]["enabled"], &elements[0]["name"]), (&false.into(), &"strut".into()));
+    assert!(with.resolved()["elements"][0].get("enabled").is_none());
+    assert_all_refused(
+        &single(),
+        &[(&[("name = \"strut\"", "name = \"strut\"\nenabled = ‸\"no\"")], WrongType, "must be true or false")],
+    );
+}
+
+#[test]
+fn what_names_an_element_that_is_not_enabled() {
+    let forward = |torque: &str, more: &str| {
+        let text = edited(&single(), &[("name = \"strut\"", "name = \"strut\"\nenabled = false")]);
+        let start = text.find("[motion]").unwrap();
+        let end = text.find("[time]").unwrap();
+        format!(
+            "{}[motion]\nkind = \"forward\"\ntorque = {{ q2 = {torque} }}\n{more}\n{}",
+            &text[..start],
+            &text[end..]
+        )
+    };
+    assert_refused(
+        &forward("\"-3*strut.rate\"", ""),
+        &(&[("-3*strut", "-3*‸strut")], BadQuantity, "strut.rate is of an element that is not enabled"),
+    );
+    // An event never happens, and what it sets there counts for nothing.
+    let event = "[[event]]\nname = \"taut\"\nwhen = \"strut.force - 1\"\n\
+                 [[event]]\nname = \"cold\"\nwhen = \"t - 1\"\naction = { set = { \"strut.T\" = \"20 degC\", \"tau.q1\" = 0 } }\n";
+    let plan = cases_of(&forward("0", event)).plan(0).unwrap();
+    assert!(plan.events[0].event.when.is_constant().is_some() && plan.events[0].event.columns.is_empty());
+    let Action::Set(settings) = &plan.events[1].event.action else { panic!("it sets") };
+    assert_eq!(settings.len(), 1);
+    assert_eq!(plan.resolved()["events"][0]["when"], "strut.force - 1");
+    // What it may not name at all is refused all the same.
+    let text = forward("0", "[[event]]\nname = \"taut\"\nwhen = \"strut.farce - 1\"\n");
+    assert_refused(&text, &(&[("\"strut.farce", "\"‸strut.farce")], BadQuantity, "did you mean `strut.force`?"));
 }

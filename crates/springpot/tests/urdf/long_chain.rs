@@ -1,9 +1,10 @@
 //! Robots of very many links: no recursion, and time in proportion to their length.
 
 use crate::support::parse_with;
+use crate::work::Work;
 use springpot::model::urdf::UrdfOptions;
 use std::fmt::Write;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A chain of `count` joints, the last link first.
 fn chain(count: usize, joint: impl Fn(usize) -> String) -> String {
@@ -27,12 +28,12 @@ fn chain(count: usize, joint: impl Fn(usize) -> String) -> String {
     text + "</robot>"
 }
 
-/// Time to read, the shortest of three.
+/// Work to read it, the least of three times.
 fn time(text: &str) -> Duration {
     let read = || {
-        let start = Instant::now();
+        let work = Work::begin();
         assert!(parse_with(text, &UrdfOptions::default()).is_ok());
-        start.elapsed()
+        work.done()
     };
     read().min(read()).min(read())
 }

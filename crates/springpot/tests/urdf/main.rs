@@ -12,3 +12,5 @@ mod packages;
 mod robots;
 mod support;
 mod unused;
+#[path = "../support/work.rs"]
+mod work;

@@ -18,8 +18,15 @@ fn folder(files: &[&str]) -> TempDir {
     folder
 }
 
-/// The mesh files that are not found by the robot at `urdf`.
+/// The mesh files that are not found by the robot at `urdf`; none is outside.
 fn missing(urdf: &Path, files: &[&str], package_path: &[PathBuf]) -> Vec<String> {
+    let (missing, outside) = looked_for(urdf, files, package_path);
+    assert_eq!(outside, [""; 0]);
+    missing
+}
+
+/// The mesh files that are not found by the robot at `urdf`, and those that are outside.
+fn looked_for(urdf: &Path, files: &[&str], package_path: &[PathBuf]) -> (Vec<String>, Vec<String>) {
     let meshes: String = files
         .iter()
         .map(|file| format!("\n<visual><geometry><mesh filename=\"{file}\"/></geometry></visual>"))
@@ -27,8 +34,14 @@ fn missing(urdf: &Path, files: &[&str], package_path: &[PathBuf]) -> Vec<String>
     let text = ARM.replace("<link name=\"base\"/>", &format!("<link name=\"base\">{meshes}</link>"));
     let options = UrdfOptions { package_path: package_path.to_vec(), ..UrdfOptions::default() };
     let urdf = Urdf::parse(&text, Some(urdf), &options).unwrap();
-    assert!(urdf.warnings.iter().all(|warning| warning.kind == UrdfWarningKind::MeshNotFound));
-    urdf.warnings.iter().flat_map(|warning| &warning.places).map(|place| place.what.clone()).collect()
+    let of = |kind: UrdfWarningKind| {
+        let places = urdf.warnings.iter().filter(|warning| warning.kind == kind).flat_map(|warning| &warning.places);
+        places.map(|place| place.what.clone()).collect::<Vec<_>>()
+    };
+    let (missing, outside) = (of(UrdfWarningKind::MeshNotFound), of(UrdfWarningKind::MeshOutside));
+    let all: usize = urdf.warnings.iter().map(|warning| warning.places.len()).sum();
+    assert_eq!(all, missing.len() + outside.len());
+    (missing, outside)
 }
 
 #[test]
@@ -71,14 +84,70 @@ fn a_package_is_in_the_package_path_or_one_of_it() {
 
 #[test]
 fn plain_paths_count_from_the_file() {
-    let root = folder(&["robot/arm.urdf", "robot/a.stl", "meshes/b.stl"]);
+    let root = folder(&["robot/arm.urdf", "robot/a.stl", "meshes/b.stl", "robot/shapes/c.stl"]);
     let urdf = root.path().join("robot/arm.urdf");
-    let absolute = root.path().join("meshes/b.stl");
+    let absolute = root.path().join("robot/a.stl");
     let absolute = absolute.to_str().unwrap();
-    let found = ["a.stl", "../meshes/b.stl", absolute, &format!("file://{absolute}"), "http://example.org/x.stl"];
-    assert_eq!(missing(&urdf, &found, &[]), [""; 0]);
-    let not_found = ["b.stl", "", "..", "file:///none/b.stl", "a.stl/b"];
-    assert_eq!(missing(&urdf, &not_found, &[]), not_found);
+    let found = ["a.stl", "shapes/../a.stl", absolute, &format!("file://{absolute}"), "http://example.org/x.stl"];
+    assert_eq!(looked_for(&urdf, &found, &[]), (vec![], vec![]));
+    let not_found = ["b.stl", "", "a.stl/b", "file://none/b.stl"].map(str::to_owned).to_vec();
+    assert_eq!(missing(&urdf, &not_found.iter().map(String::as_str).collect::<Vec<_>>(), &[]), not_found);
+}
+
+#[test]
+fn what_is_outside_the_robot_and_its_packages_is_not_read() {
+    let root = folder(&[
+        "ws/arm/urdf/arm.urdf",
+        "ws/arm/meshes/a.stl",
+        "ws/flat/arm.urdf",
+        "ws/secret.stl",
+        "ws/deep/package.xml <package><name>deep</name></package>",
+        "ws/deep/a/b/arm.urdf",
+        "ws/deep/c.stl",
+        "far/x.stl",
+        "far/package.xml <package><name>far</name></package>",
+    ]);
+    let path = |name: &str| root.path().join(name);
+    let secret = path("ws/secret.stl").display().to_string();
+    let of_file = format!("file://{secret}");
+    let outside = |urdf: &str, files: &[&str], package_path: &[PathBuf]| {
+        let files = files.iter().map(|file| (*file).to_owned()).collect::<Vec<_>>();
+        let names: Vec<&str> = files.iter().map(String::as_str).collect();
+        assert_eq!(looked_for(&path(urdf), &names, package_path), (vec![], files));
+    };
+    let ways = [
+        "../secret.stl",
+        "../../../etc/passwd",
+        &secret,
+        &of_file,
+        "/etc/passwd",
+        "file:///etc/passwd",
+        "..",
+        "package://../secret.stl",
+        "package://./secret.stl",
+        "package://flat/../secret.stl",
+        "model://flat/a/../../secret.stl",
+    ];
+    outside("ws/flat/arm.urdf", &ways, &[]);
+    outside("ws/flat/arm.urdf", &ways, &[path("ws/arm"), path("ws/flat")]);
+    // The folder above one that is called urdf, a package.xml above, and what is given.
+    assert_eq!(looked_for(&path("ws/arm/urdf/arm.urdf"), &["../meshes/a.stl"], &[]), (vec![], vec![]));
+    assert_eq!(looked_for(&path("ws/deep/a/b/arm.urdf"), &["../../c.stl"], &[]), (vec![], vec![]));
+    assert_eq!(looked_for(&path("ws/flat/arm.urdf"), &["../secret.stl"], &[path("ws")]), (vec![], vec![]));
+    outside("ws/deep/a/b/arm.urdf", &["../../../secret.stl"], &[]);
+    // Far above, what is no package is not taken for one; the root of the file system holds none.
+    fs::create_dir_all(path("ws/deep/a/b/c/d")).unwrap();
+    fs::write(path("ws/deep/a/b/c/d/arm.urdf"), "").unwrap();
+    let far = path("ws/deep/a/b/c/d/arm.urdf");
+    let plain = ["package://arm/meshes/a.stl", "package://ws/secret.stl", "package://etc/passwd", "package://tmp/x"];
+    assert_eq!(missing(&far, &plain, &[]), plain);
+    assert_eq!(looked_for(&far, &["package://far/x.stl", "package://deep/c.stl"], &[]), (vec![], vec![]));
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(path("ws/secret.stl"), path("ws/flat/link.stl")).unwrap();
+        std::os::unix::fs::symlink(path("far"), path("ws/flat/folder")).unwrap();
+        outside("ws/flat/arm.urdf", &["link.stl", "folder/x.stl", "package://flat/link.stl"], &[]);
+    }
 }
 
 #[test]

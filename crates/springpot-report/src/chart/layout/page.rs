@@ -80,6 +80,7 @@ impl Layout<'_> {
                     stroke: look(curve),
                     is_right: has_right && curve.is_right,
                     is_marked: curve.is_marked,
+                    is_points: curve.is_points,
                 })
                 .collect(),
             clips: [&self.plot.x, self.axes[self.group[panel]]]

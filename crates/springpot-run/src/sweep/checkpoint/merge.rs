@@ -25,6 +25,9 @@ pub enum MergeError {
     /// A folder holds no part.
     #[error("{} holds no part of a run: run --shard writes one", .0.display())]
     NoPart(PathBuf),
+    /// A folder is named twice.
+    #[error("{} is named twice", .0.display())]
+    Twice(PathBuf),
     /// Two folders hold parts of different runs.
     #[error("{} and {} hold parts of different runs: {what} is not the same", first.display(), other.display())]
     Different {
@@ -94,7 +97,11 @@ impl Shards {
     /// [`MergeError`].
     pub fn read(folders: &[PathBuf], disk: &Disk, holder: &str) -> Result<Self, MergeError> {
         let mut parts: Vec<Part> = Vec::new();
-        for path in folders {
+        let place = |path: &PathBuf| path.canonicalize().unwrap_or_else(|_| path.clone());
+        for (k, path) in folders.iter().enumerate() {
+            if folders[..k].iter().any(|earlier| place(earlier) == place(path)) {
+                return Err(MergeError::Twice(path.clone()));
+            }
             let Unfinished { folder, head } = match Unfinished::read(path, disk.clone(), holder) {
                 Ok(part) if part.head.origin.shard.is_some() => part,
                 Ok(_) | Err(CheckpointError::Missing(_) | CheckpointError::Finished(_)) => {

@@ -37,12 +37,16 @@ pub fn most_points(figure: usize, all: usize) -> usize {
 ///   others pass all of its cells. Cells are at most 1/(16·√`most`) of the extent in x and in y, and neither curve is farther than
 ///   three of them from the other. Where the lines would be more than it may keep, cells are larger.
 ///
+/// Along a logarithmic axis the extent is that of the logarithms, and what is not above zero is a gap.
+///
 /// With 65 536 points and the largest panel that figures have, 440 by 290 pixels, columns and cells are 0.11 pixels at most. A point
 /// with a coordinate that is NaN, infinite or beyond 1e300 is a gap; gaps are kept. What is kept follows from the points alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeptCurve {
     points: Vec<Point>,
     most: usize,
+    /// Whether x and y are drawn on logarithmic axes.
+    is_log: [bool; 2],
     thinned: Thinned,
 }
 
@@ -59,7 +63,12 @@ enum Thinned {
 impl KeptCurve {
     /// A curve without points that will keep at most `most`, no fewer than 1024.
     pub fn new(most: usize) -> Self {
-        Self { points: Vec::new(), most: most.max(LEAST), thinned: Thinned::Columns(0.0) }
+        Self::on_axes(most, [false; 2])
+    }
+
+    /// As [`Self::new`], for a picture whose x and y may be logarithmic.
+    pub fn on_axes(most: usize, is_log: [bool; 2]) -> Self {
+        Self { points: Vec::new(), most: most.max(LEAST), is_log, thinned: Thinned::Columns(0.0) }
     }
 
     /// Adds a point.
@@ -75,25 +84,40 @@ impl KeptCurve {
         &self.points
     }
 
+    /// Thins it as it is drawn.
     fn thin(&mut self) {
-        let Some(extent) = Extent::of(&self.points) else {
-            self.points.truncate(1);
+        let drawn = self.is_log.contains(&true).then(|| self.drawn());
+        let whole = std::mem::take(&mut self.points);
+        let points = drawn.as_ref().unwrap_or(&whole);
+        let Some(extent) = Extent::of(points) else {
+            self.points = whole.into_iter().take(1).collect();
             return;
         };
         let wanted = self.most / 2;
         let by_columns = match self.thinned {
-            Thinned::Columns(width) if extent.runs_on => self.columns(&extent, width, wanted),
+            Thinned::Columns(width) if extent.runs_on => self.columns(points, &extent, width, wanted),
             _ => None,
         };
-        self.points = by_columns.unwrap_or_else(|| self.cells(&extent, wanted));
+        let kept = by_columns.unwrap_or_else(|| self.cells(points, &extent, wanted));
+        self.points = if drawn.is_some() { undrawn(&kept, points, &whole) } else { kept };
+    }
+
+    /// The points where they are drawn; what a logarithmic axis has no place for is a gap.
+    fn drawn(&self) -> Vec<Point> {
+        let along = |axis: usize, value: f64| match self.is_log[axis] {
+            true if value > 0.0 => value.ln(),
+            true => f64::NAN,
+            false => value,
+        };
+        self.points.iter().map(|point| [along(0, point[0]), along(1, point[1])]).collect()
     }
 
     /// In the finest columns that leave no more than `wanted` points; `None` where all are too fine.
-    fn columns(&mut self, extent: &Extent, width: f64, wanted: usize) -> Option<Vec<Point>> {
+    fn columns(&mut self, points: &[Point], extent: &Extent, width: f64, wanted: usize) -> Option<Vec<Point>> {
         let mut width = width.max(extent.step(0, self.most / 4));
         let coarsest = extent.step(0, self.most / 32);
         loop {
-            if let Some(points) = columns::thin(&self.points, width, extent, wanted) {
+            if let Some(points) = columns::thin(points, width, extent, wanted) {
                 self.thinned = Thinned::Columns(width);
                 return Some(points);
             }
@@ -105,7 +129,7 @@ impl KeptCurve {
     }
 
     /// In the finest cells that leave no more than `wanted` points; fewer than `wanted`/4 cells always do.
-    fn cells(&mut self, extent: &Extent, wanted: usize) -> Vec<Point> {
+    fn cells(&mut self, points: &[Point], extent: &Extent, wanted: usize) -> Vec<Point> {
         let finest = [0, 1].map(|axis| extent.step(axis, 16 * self.most.isqrt()));
         let (before, mut settled) = match self.thinned {
             Thinned::Cells(size, settled) => (size, settled),
@@ -114,18 +138,38 @@ impl KeptCurve {
         let mut size = [0, 1].map(|axis| before[axis].max(finest[axis]));
         let double = |size: [f64; 2]| size.map(|step| 2.0 * step);
         // A bound of the time that one thinning takes.
-        while cells::passed(&self.points, size) > 64.0 * self.most as f64 {
+        while cells::passed(points, size) > 64.0 * self.most as f64 {
             size = double(size);
         }
         loop {
             if size != before {
                 settled = Settled::default();
             }
-            if let Some((points, settled)) = cells::thin(&self.points, settled, size, extent, wanted) {
+            if let Some((points, settled)) = cells::thin(points, settled, size, extent, wanted) {
                 self.thinned = Thinned::Cells(size, settled);
                 return points;
             }
             size = double(size);
         }
     }
+}
+
+/// The points that are drawn at `kept`, which are some of `drawn` in order and gaps between them; `whole` are all, one for each of `drawn`.
+fn undrawn(kept: &[Point], drawn: &[Point], whole: &[Point]) -> Vec<Point> {
+    let mut at = 0;
+    let point = |point: &Point| {
+        if is_gap(point) {
+            // A gap of the curve itself stays what it was.
+            let own = [at, at + 1].into_iter().find(|k| drawn.get(*k).is_some_and(is_gap));
+            return own.map_or([f64::NAN; 2], |own| {
+                at = own;
+                whole[own]
+            });
+        }
+        while drawn[at] != *point {
+            at += 1;
+        }
+        whole[at]
+    };
+    kept.iter().map(point).collect()
 }

@@ -18,9 +18,11 @@ const TRIES: usize = 100;
 #[derive(Debug)]
 pub(super) struct Lock {
     /// Holds the lock as long as it is open.
-    _file: DiskFile,
+    file: DiskFile,
     path: PathBuf,
     disk: Disk,
+    /// Whether the file is a run's, and goes with the lock; what somebody else wrote there stays as it is.
+    is_ours: bool,
 }
 
 /// What became of taking a lock.
@@ -29,19 +31,19 @@ pub(super) enum Taken {
     Lock(Lock),
     /// Somebody else has it; what the file says of them.
     Held(String),
-    /// The file of the lock is something else's.
+    /// What has the name of the lock is no file.
     Foreign(PathBuf),
     /// The file system knows no locks.
     Unknown,
 }
 
-/// Takes the lock on `folder` for `holder`.
+/// Takes the lock on `folder` for `holder`: one that nobody holds is free, whatever its file says.
 pub(super) fn take(disk: &Disk, folder: &Path, holder: &str) -> io::Result<Taken> {
     let path = folder.join(LOCK);
     for _ in 0..TRIES {
         match disk.look(&path)? {
             None => {}
-            Some(Entry::File(_)) if is_ours(&said(disk, &path)) => {}
+            Some(Entry::File(_)) => {}
             Some(_) => return Ok(Taken::Foreign(path)),
         }
         let mut file = match disk.lock(&path) {
@@ -54,9 +56,14 @@ pub(super) fn take(disk: &Disk, folder: &Path, holder: &str) -> io::Result<Taken
         if !file.is_in_place()? {
             continue;
         }
-        let lock = |file| Lock { _file: file, path: path.clone(), disk: disk.clone() };
-        let written = file.set_length(0).and_then(|()| file.write_all(text(holder).as_bytes()));
-        let lock = lock(file);
+        let is_ours = is_ours(&said(disk, &path));
+        let written = match is_ours {
+            true => {
+                file.set_length(0).and_then(|()| file.write_all(text(holder).as_bytes())).and_then(|()| file.sync())
+            }
+            false => Ok(()),
+        };
+        let lock = Lock { file, path, disk: disk.clone(), is_ours };
         return written.map(|()| Taken::Lock(lock));
     }
     Err(io::Error::new(io::ErrorKind::ResourceBusy, format!("{}: others take it all the time", path.display())))
@@ -67,10 +74,19 @@ pub(crate) fn is_held(disk: &Disk, folder: &Path) -> bool {
     disk.is_locked(&folder.join(LOCK))
 }
 
+impl Lock {
+    /// Whether its file is still there, so that others meet it.
+    pub(super) fn is_in_place(&self) -> io::Result<bool> {
+        self.file.is_in_place()
+    }
+}
+
 impl Drop for Lock {
     fn drop(&mut self) {
-        // One that stays locks nobody out.
-        let _ = self.disk.remove(&self.path);
+        // One that stays locks nobody out; another run's may have its name by now.
+        if self.is_ours && self.is_in_place().unwrap_or(true) {
+            let _ = self.disk.remove(&self.path);
+        }
     }
 }
 
@@ -81,8 +97,9 @@ fn said(disk: &Disk, path: &Path) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A run that was just about to write it leaves nothing, or its beginning.
+/// A run that was just about to write it leaves nothing, or its beginning; a loss of power may leave zeros instead.
 fn is_ours(text: &str) -> bool {
+    let text = text.trim_end_matches('\0');
     text.starts_with(LEAD) || LEAD.starts_with(text)
 }
 
@@ -151,13 +168,19 @@ mod tests {
     fn what_the_dead_leave_locks_nobody_out_and_what_is_not_ours_stays() {
         let (folder, disk) = (tempfile::tempdir().unwrap(), Disk::default());
         let path = folder.path().join(LOCK);
-        for left in ["locked by springpot run b.toml, process 1 on x, since then\n", "locked", ""] {
+        for left in ["locked by springpot run b.toml, process 1 on x, since then\n", "locked", "", "\0\0\0", "lock\0\0"]
+        {
             fs::write(&path, left).unwrap();
             assert!(matches!(take(&disk, folder.path(), "me").unwrap(), Taken::Lock(_)), "{left:?}");
+            assert!(!path.exists(), "{left:?}");
         }
-        fs::write(&path, "mine\n").unwrap();
-        assert!(matches!(take(&disk, folder.path(), "me").unwrap(), Taken::Foreign(file) if file == path));
-        assert_eq!(fs::read_to_string(&path).unwrap(), "mine\n");
+        for mine in ["mine\n", "\0mine"] {
+            fs::write(&path, mine).unwrap();
+            let Taken::Lock(first) = take(&disk, folder.path(), "me").unwrap() else { panic!() };
+            assert!(matches!(take(&disk, folder.path(), "you").unwrap(), Taken::Held(_)));
+            drop(first);
+            assert_eq!(fs::read_to_string(&path).unwrap(), mine);
+        }
     }
 
     #[test]

@@ -72,7 +72,6 @@ fn what_no_run_wrote_is_refused_and_stays() {
         "checkpoint/run",
         "checkpoint/case-7",
         ".unfinished/summary.csv",
-        ".lock",
     ] {
         let temporary = tempfile::tempdir().unwrap();
         let path = temporary.path();

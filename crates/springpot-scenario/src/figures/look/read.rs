@@ -142,7 +142,7 @@ fn window(field: &Field<'_>, end: Option<f64>) -> Read<[f64; 2]> {
 }
 
 fn formats(field: &Field<'_>) -> Read<Vec<FigureFormat>> {
-    let items = field.items("an array of formats")?;
+    let items = field.items("an array of formats, of \"svg\", \"png\" and \"pdf\"")?;
     if items.is_empty() {
         return Err(field.refuse(
             RefusalKind::Missing,

@@ -137,7 +137,7 @@ fn takes(key: &Key, sections: &[Section]) -> String {
         Shape::Vector(of) => format!("three numbers{}", unit(of)),
         Shape::Pair(of) => format!("two numbers{}", unit(of)),
         Shape::Range => "two numbers in the unit that is drawn".to_owned(),
-        Shape::Numbers(of) => format!("numbers{}, ≥ 0", unit(of)),
+        Shape::NumbersOr(of, keys) => format!("array of numbers{}, ≥ 0, or {}", unit(of), link("table", keys)),
         Shape::SweptNumber => "number in the unit of the parameter".to_owned(),
         Shape::OfColumn => "number in the unit of the column".to_owned(),
         Shape::Signal(of) => format!("{}{}", link("signal", &SIGNAL), unit(of)),
@@ -151,6 +151,7 @@ fn takes(key: &Key, sections: &[Section]) -> String {
         Shape::TableWithJoints(keys) => {
             format!("{}, of the kind `\"joints\"` with a {} by joint", link("table", keys), link("signal", &SIGNAL))
         }
+        Shape::TableOrTables(keys) => format!("{}, or array of them", link("table", keys)),
         Shape::Tables(keys, None) => link("tables", keys),
         Shape::Tables(keys, Some(most)) => format!("{}, {most} at most", link("tables", keys)),
         Shape::WordsOr(_, keys) => format!("{}, or {}", words(key.choices()), link("table", keys)),

@@ -48,6 +48,7 @@ use std::path::{Path, PathBuf};
 
 pub use error::{Owner, UrdfError};
 pub use link::Inertial;
+pub use package::MeshPlace;
 pub use problem::UrdfProblem;
 pub use visual::{Visual, VisualShape};
 pub use warning::{UrdfPlace, UrdfWarning, UrdfWarningKind};

@@ -48,8 +48,13 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
     if let Some(packages) = &mut packages {
         for link in &links {
             let owner = Owner::Link(link.name.to_owned());
-            for mesh in link.meshes.iter().filter(|mesh| packages.find(mesh.file) == Found::Nowhere) {
-                reader.warnings.add(UrdfWarningKind::MeshNotFound, &owner, mesh.line, mesh.file);
+            for mesh in &link.meshes {
+                let kind = match packages.find(mesh.file) {
+                    Found::At(_) | Found::Elsewhere => continue,
+                    Found::Nowhere => UrdfWarningKind::MeshNotFound,
+                    Found::Outside => UrdfWarningKind::MeshOutside,
+                };
+                reader.warnings.add(kind, &owner, mesh.line, mesh.file);
             }
         }
     }

@@ -1,9 +1,8 @@
 //! `<visual>`: what a link looks like. It has no part in the dynamics, so that what cannot be read is left out.
 
-use super::package::{Found, Packages};
+use super::package::{Found, MeshPlace, Packages};
 use super::reader::{Node, Reader};
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 /// A shape on a link.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +25,7 @@ pub enum VisualShape {
         /// As written.
         file: String,
         /// Where it was found, if it was.
-        path: Option<PathBuf>,
+        place: Option<MeshPlace>,
         /// Factors along its axes.
         scale: [f64; 3],
     },
@@ -82,11 +81,11 @@ fn visual<'a>(
     let shape = match reader.name(own)? {
         "mesh" => {
             let file = reader.text(own, "filename")?.to_owned();
-            let path = match packages.map(|packages| packages.find(&file)) {
-                Some(Found::At(path)) => Some(path),
+            let place = match packages.map(|packages| packages.find(&file)) {
+                Some(Found::At(place)) => Some(place),
                 _ => None,
             };
-            VisualShape::Mesh { file, path, scale: reader.text(own, "scale").and_then(numbers).unwrap_or([1.0; 3]) }
+            VisualShape::Mesh { file, place, scale: reader.text(own, "scale").and_then(numbers).unwrap_or([1.0; 3]) }
         }
         "box" => VisualShape::Box(reader.text(own, "size").and_then(numbers)?),
         "cylinder" => VisualShape::Cylinder { radius: number("radius")?, length: number("length")? },

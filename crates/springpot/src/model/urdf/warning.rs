@@ -75,6 +75,8 @@ pub enum UrdfWarningKind {
     StrayText,
     /// Files of shapes that are not found. The dynamics need none.
     MeshNotFound,
+    /// Files of shapes outside the folder of the robot and its packages, which are not read.
+    MeshOutside,
     /// What is known and has no part in the dynamics.
     NotUsed,
 }
@@ -93,7 +95,7 @@ enum Style {
 
 impl UrdfWarningKind {
     /// Every kind.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::NoInertial,
         Self::ZeroMass,
         Self::PointMass,
@@ -114,6 +116,7 @@ impl UrdfWarningKind {
         Self::UnknownAttribute,
         Self::StrayText,
         Self::MeshNotFound,
+        Self::MeshOutside,
         Self::NotUsed,
     ];
 
@@ -140,6 +143,7 @@ impl UrdfWarningKind {
             Self::UnknownAttribute => "unknown-attribute",
             Self::StrayText => "stray-text",
             Self::MeshNotFound => "mesh-not-found",
+            Self::MeshOutside => "mesh-outside",
             Self::NotUsed => "not-used",
         }
     }
@@ -166,6 +170,9 @@ impl UrdfWarningKind {
             Self::UnknownElement | Self::UnknownAttribute => ("not known, not used", Style::Elements),
             Self::StrayText => ("text between elements, not used", Style::Elements),
             Self::MeshNotFound => ("mesh files not found, not needed for the dynamics", Style::Files),
+            Self::MeshOutside => {
+                ("mesh files outside the folder of the robot and its packages (package_path), not read", Style::Files)
+            }
             Self::NotUsed => ("not used", Style::Numbers),
         }
     }

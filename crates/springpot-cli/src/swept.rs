@@ -1,0 +1,32 @@
+//! What is swept, in words.
+
+use crate::terminal;
+use springpot_scenario::Cases;
+
+/// Values of a sweep that are printed.
+const PRINTED: usize = 12;
+
+/// What a run is about to go through: a line for each sweep; nothing where nothing is swept.
+pub(crate) fn lines(cases: &Cases, width: Option<usize>) -> String {
+    (0..cases.axis_count()).map(|axis| terminal::hanging("sweep    ", &words(cases, axis), width)).collect()
+}
+
+/// `PATH = value, value, …`: paths that move together, and values as written, or `PATH, PATH: name, name, …`; of many the first ones and the
+/// last.
+pub(crate) fn words(cases: &Cases, axis: usize) -> String {
+    let parameters: Vec<&str> = cases.axis_parameters(axis).collect();
+    let moved = match cases.axis_names(axis) {
+        Some(_) => format!("{}:", parameters.join(", ")),
+        None => format!("{} =", parameters.join(" = ")),
+    };
+    format!("{moved} {}", values(cases, axis))
+}
+
+fn values(cases: &Cases, axis: usize) -> String {
+    let len = cases.axis_len(axis);
+    if len <= PRINTED {
+        return (0..len).map(|k| cases.axis_label(axis, k)).collect::<Vec<_>>().join(", ");
+    }
+    let first: Vec<String> = (0..3).map(|k| cases.axis_label(axis, k)).collect();
+    format!("{}, …, {} ({len} values)", first.join(", "), cases.axis_label(axis, len - 1))
+}
