@@ -1,72 +1,114 @@
 #!/usr/bin/env bash
 # Everything that must hold before a change is kept: format, lints, documentation, tests, and every scenario run.
+#   ./check.sh              all of it
+#   ./check.sh STEP ...     some of it: format lints engine oldest crates documentation book tests pages engines python scenarios
+#   ./check.sh quick        while working: format, and lints and tests of the crates that differ from main (BASE names another commit)
 set -euo pipefail
 cd "$(dirname "$0")"
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+command=$target/debug/springpot
 
-step() { printf '\n== %s\n' "$1"; }
+# What is built is built once: all steps take the profile dev, and the command and the C library that the tests have built.
+build() { cargo test --workspace --no-run --quiet; }
 
-step "format"
-cargo fmt --all --check
+format() { cargo fmt --all --check; }
 
-step "lints"
-cargo clippy --workspace --all-targets --quiet -- -D warnings
+lints() { cargo clippy --workspace --all-targets --quiet -- -D warnings; }
 
-step "the engine without URDF files"
-cargo clippy --package springpot --no-default-features --quiet -- -D warnings
+# Without URDF files.
+engine() { cargo clippy --package springpot --no-default-features --quiet -- -D warnings; }
 
-# Nothing is downloaded here: what is not at hand is said, not checked.
-msrv=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
-step "Rust $msrv, the oldest that is promised"
-oldest=$(rustup toolchain list 2>/dev/null | grep -oE "^${msrv//./\\.}(\.[0-9]+)?-[^ ]+" | head -n 1 || true)
-if [ -n "$oldest" ]; then
-    cargo "+$oldest" check --workspace --quiet --target-dir target/oldest
-else
-    echo "not installed; clippy's incompatible_msrv has looked at the calls to std"
-fi
+# The oldest Rust that is promised. Nothing is downloaded here: what is not at hand is said, not checked.
+oldest() {
+    local msrv oldest
+    msrv=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+    oldest=$(rustup toolchain list 2>/dev/null | grep -oE "^${msrv//./\\.}(\.[0-9]+)?-[^ ]+" | head -n 1 || true)
+    if [ -n "$oldest" ]; then
+        cargo "+$oldest" check --workspace --quiet --target-dir "$target/oldest"
+    else
+        echo "Rust $msrv is not installed; clippy's incompatible_msrv has looked at the calls to std"
+    fi
+}
 
-step "licences, versions and sources of the crates"
-if ! cargo deny --version >/dev/null 2>&1; then
-    echo "cargo-deny is not installed: not checked"
-elif ! cargo metadata --offline --locked --format-version 1 >/dev/null 2>&1; then
-    echo "not all crates are downloaded (cargo fetch): not checked"
-else
+# Licences, versions, sources of the crates, and what is known against them.
+crates() {
+    if ! cargo deny --version >/dev/null 2>&1; then
+        echo "cargo-deny is not installed: not checked"
+        return
+    elif ! cargo metadata --offline --locked --format-version 1 >/dev/null 2>&1; then
+        echo "not all crates are downloaded (cargo fetch): not checked"
+        return
+    fi
     cargo deny --offline --log-level warn check licenses bans sources
-fi
+    if compgen -G "${CARGO_HOME:-$HOME/.cargo}/advisory-dbs/*" >/dev/null; then
+        cargo deny --offline --log-level warn check advisories
+    else
+        echo "no advisories are downloaded (cargo deny fetch): not checked"
+    fi
+}
 
-step "documentation"
-RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+documentation() { RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet; }
 
 # Its commands, links and programs are among the tests.
-step "the book"
-if mdbook --version >/dev/null 2>&1; then
-    book=$(mktemp -d)
-    said=$(mdbook build docs -d "$book" 2>&1) || { echo "$said"; exit 1; }
-    rm -rf "$book"
-    if grep -E 'WARN|ERROR' <<<"$said"; then
-        exit 1
+book() {
+    if ! mdbook --version >/dev/null 2>&1; then
+        echo "mdbook is not installed: not built"
+        return
     fi
-else
-    echo "mdbook is not installed: not built"
-fi
+    local book said
+    book=$(mktemp -d)
+    said=$(mdbook build docs -d "$book" 2>&1) || { echo "$said"; return 1; }
+    rm -rf "$book"
+    ! grep -E 'WARN|ERROR' <<<"$said"
+}
 
-step "tests"
-cargo test --workspace --quiet
+tests() { cargo test --workspace --quiet; }
 
-step "pages in a browser"
-crates/springpot-report/web/check.sh
+pages() { build && SPRINGPOT=$command crates/springpot-report/web/check.sh; }
 
-step "engines in C and FMUs"
-crates/springpot-capi/check.sh
+engines() { build && SPRINGPOT=$command crates/springpot-capi/check.sh; }
 
-step "Python"
-crates/springpot-py/check.sh
+python() { crates/springpot-py/check.sh; }
 
-step "scenarios"
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-for scenario in scenarios/*.toml; do
-    echo "$scenario"
-    cargo run --quiet -- run "$scenario" --out "$out/$(basename "$scenario" .toml)"
+scenarios() {
+    build
+    local out
+    out=$(mktemp -d)
+    for scenario in scenarios/*.toml; do
+        echo "$scenario"
+        "$command" run "$scenario" --out "$out/$(basename "$scenario" .toml)" || { rm -rf "$out"; return 1; }
+    done
+    rm -rf "$out"
+}
+
+quick() {
+    local base packages=()
+    base=$(git merge-base HEAD "${BASE:-main}")
+    format
+    while read -r crate; do
+        [ -d "crates/$crate" ] && packages+=(--package "$crate")
+    done < <({ git diff --name-only "$base"; git ls-files --others --exclude-standard; } | sed -n 's|^crates/\([^/]*\)/.*|\1|p' | sort -u)
+    if [ "${#packages[@]}" -eq 0 ]; then
+        echo "no crate differs from $base"
+        return
+    fi
+    echo "${packages[@]}"
+    cargo clippy "${packages[@]}" --all-targets --quiet -- -D warnings
+    cargo test "${packages[@]}" --quiet
+}
+
+all=(format lints engine oldest crates documentation book tests pages engines python scenarios)
+if [ "$#" -gt 0 ]; then steps=("$@"); else steps=("${all[@]}"); fi
+for step in "${steps[@]}"; do
+    case " ${all[*]} quick " in
+    *" $step "*) ;;
+    *) echo "no step $step: there are quick ${all[*]}" >&2 && exit 2 ;;
+    esac
+done
+for step in "${steps[@]}"; do
+    printf '\n== %s\n' "$step"
+    TIMEFORMAT="$step: %0R s, %0U s of work"
+    time "$step"
 done
 
 printf '\nall checks passed\n'
