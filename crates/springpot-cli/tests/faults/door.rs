@@ -19,6 +19,8 @@ pub(crate) enum Fault {
 #[derive(Debug, Clone)]
 pub(crate) enum Change {
     Folder,
+    /// Makes a file where none is.
+    Touch(PathBuf),
     Create(PathBuf),
     Write(PathBuf, u64, Vec<u8>),
     SetLength(PathBuf, u64),
@@ -77,8 +79,8 @@ fn change(call: &Call<'_>) -> Option<Change> {
         Call::Rename { from, to } => Change::Rename(own(from), own(to)),
         Call::Remove(path) => Change::Remove(own(path)),
         Call::RemoveFolder(_) => Change::RemoveFolder,
-        // The file of the lock says nothing that counts once its holder is gone.
-        Call::Lock(_) | Call::Look(_) | Call::List(_) | Call::Open(_) | Call::Read(_) | Call::Edit(_) => return None,
+        Call::Lock(path) => Change::Touch(own(path)),
+        Call::Look(_) | Call::List(_) | Call::Open(_) | Call::Read(_) | Call::Edit(_) => return None,
     })
 }
 

@@ -43,7 +43,8 @@ impl Model {
 
     fn apply(&mut self, change: &Change) {
         match change {
-            Change::Create(path) => {
+            Change::Touch(path) if self.names.contains_key(path) => {}
+            Change::Touch(path) | Change::Create(path) => {
                 self.names.insert(path.clone(), self.inodes.len());
                 self.inodes.push(Inode::default());
             }

@@ -1,0 +1,138 @@
+//! Robots that are let go: at rest, tilted, thrown, on the ground and floating, under two gravities.
+
+use crate::ran::{ROOT, Tried, cases, ran};
+use springpot::model::{JointKind, Model};
+use std::fmt::Write as _;
+
+/// Every URDF file that the project holds.
+pub(crate) fn robots() -> Vec<String> {
+    let mut found = Vec::new();
+    for folder in ["testdata/multibody", "scenarios/robots"] {
+        for entry in std::fs::read_dir(format!("{ROOT}/{folder}")).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            if name.ends_with(".urdf") {
+                found.push(format!("{folder}/{name}"));
+            }
+        }
+    }
+    found.sort();
+    assert!(found.len() >= 7, "{found:?}");
+    found
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Start {
+    Rest,
+    Tilted,
+    Thrown(f64),
+}
+
+/// The joints of one degree of freedom that a start may name, with a coordinate within their limits.
+fn joints(model: &Model) -> Vec<(String, f64)> {
+    let own = model.own_joints().filter(|&joint| {
+        let turns = matches!(model.joint_kind(joint), JointKind::Revolute | JointKind::Prismatic);
+        turns && model.followed(joint).is_none()
+    });
+    own.map(|joint| {
+        let limits = model.limits(joint);
+        let or = |limit: f64, other: f64| if limit.is_finite() { limit } else { other };
+        let (lower, upper) = (or(limits.lower, -1.0), or(limits.upper, 1.0));
+        let middle = 0.5 * (lower + upper);
+        let q = middle + 0.2 * (upper - lower) * (1.7 * joint as f64 + 0.4).sin();
+        (model.joint_names()[joint].clone(), q)
+    })
+    .collect()
+}
+
+/// A scenario of one of them and nothing else.
+fn text(robot: &str, is_floating: bool, gravity: [f64; 3], start: Start, end: f64) -> String {
+    let mut text = format!(
+        "[robot]\nurdf = \"{robot}\"\nfloating_base = {is_floating}\naccept_inertia = true\ngravity = {gravity:?}\n\
+         [time]\nend = {end}\noutput_step = {}\n[motion]\nkind = \"forward\"\n",
+        end / 10.0
+    );
+    let joints = joints(&cases(&text).plan(0).unwrap().system().model);
+    let (key, values): (_, Vec<f64>) = match start {
+        Start::Rest => return text,
+        Start::Tilted => ("q", joints.iter().map(|(_, q)| *q).collect()),
+        Start::Thrown(v) => ("v", (0..joints.len()).map(|k| if k % 2 == 0 { v } else { -v }).collect()),
+    };
+    let _ = writeln!(text, "[motion.start.{key}]");
+    for ((name, _), value) in joints.iter().zip(values) {
+        let _ = writeln!(text, "{name:?} = {value:?}");
+    }
+    text
+}
+
+const DOWN: [f64; 3] = [0.0, 0.0, -9.81];
+/// Hung on a wall, on the Moon.
+const ASIDE: [f64; 3] = [0.3, 1.5, -0.4];
+
+fn let_go(gravities: &[[f64; 3]], end: f64) {
+    let mut tried = Tried::default();
+    for robot in robots() {
+        for is_floating in [false, true] {
+            for &gravity in gravities {
+                let mut go = |start| {
+                    let what = format!("{robot}, floating {is_floating}, gravity {gravity:?}, {start:?}");
+                    tried.one(&what, ran(&text(&robot, is_floating, gravity, start, end)))
+                };
+                let (rest, nudged) = (go(Start::Rest), go(Start::Thrown(1e-3)));
+                go(Start::Tilted);
+                go(Start::Thrown(0.5));
+                // Nothing happens at rest that a nudge would not do, too.
+                if let Some((rest, nudged)) = rest.zip(nudged) {
+                    let enough = if rest.steps <= 2 * nudged.steps {
+                        Ok(())
+                    } else {
+                        Err(format!("{} steps from rest, and {} after a nudge", rest.steps, nudged.steps))
+                    };
+                    tried.one(&format!("{robot}, floating {is_floating}, gravity {gravity:?}"), enough);
+                }
+            }
+        }
+    }
+    tried.end(robots().len() * 2 * gravities.len() * 4);
+}
+
+#[test]
+fn every_robot_is_thrown() {
+    let mut tried = Tried::default();
+    for robot in robots() {
+        for is_floating in [false, true] {
+            for start in [Start::Thrown(1e-3), Start::Thrown(0.5)] {
+                tried.one(
+                    &format!("{robot}, floating {is_floating}, {start:?}"),
+                    ran(&text(&robot, is_floating, DOWN, start, 0.1)),
+                );
+            }
+        }
+    }
+    tried.end(28);
+}
+
+#[test]
+fn every_robot_is_let_go() {
+    let_go(&[DOWN], 0.1);
+}
+
+#[test]
+#[ignore = "some minutes"]
+fn every_robot_is_let_go_for_a_second_under_two_gravities() {
+    let_go(&[DOWN, ASIDE], 1.0);
+}
+
+#[test]
+#[ignore = "some minutes"]
+fn every_robot_floats_and_rests_without_gravity() {
+    let mut tried = Tried::default();
+    for robot in robots() {
+        for is_floating in [false, true] {
+            for start in [Start::Rest, Start::Tilted, Start::Thrown(0.5)] {
+                let what = format!("{robot}, floating {is_floating}, {start:?}");
+                tried.one(&what, ran(&text(&robot, is_floating, [0.0; 3], start, 1.0)));
+            }
+        }
+    }
+    tried.end(42);
+}
