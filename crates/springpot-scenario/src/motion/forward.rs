@@ -17,6 +17,8 @@ use serde_json::{Map, Value, json};
 use springpot::actuation::{Drive, Forward};
 use springpot::law::Range;
 use springpot::model::JointKind;
+use springpot::motion::JointPath;
+use springpot::signal::{Expression, Signal};
 use springpot::spatial::Quaternion;
 use std::collections::HashSet;
 
@@ -31,6 +33,13 @@ pub(super) fn read(
     let prescribed = table.get("prescribed").map(|field| open_joints(&field, robot)).transpose();
     let locked = table.get("locked").map_or_else(|| Ok(HashSet::new()), |field| locked(&field, robot));
     let (torque, prescribed, locked) = (torque?, prescribed?, locked?);
+    if let Some(field) = table.get("start") {
+        let is_moved = |joint: &str| prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
+        warn_of_led(&field.table(&START)?, robot, |joint| match locked.contains(joint) {
+            true => Some("locked"),
+            false => is_moved(joint).then_some("prescribed"),
+        })?;
+    }
     let place = &table.node.place;
     let mut feedback = TorqueTexts::new();
     let is_idle = |joint: &str| {
@@ -39,11 +48,12 @@ pub(super) fn read(
     };
     let is_led =
         |joint: &str| locked.contains(joint) || prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
-    let still = idle::joints(robot, start.as_ref().ok().and_then(Option::as_ref), is_led, is_idle);
+    let started = start.as_ref().ok().and_then(Option::as_ref);
+    let still = idle::joints(robot, started.map(|(q, _)| &q[..]), is_led, is_idle);
     if !still.is_empty() {
         let which = names::list(still.iter().map(|&j| robot.model().joint_names()[j].as_str()));
         let message = format!(
-            "nothing says how joints move that carry no mass, or point masses that others move alike; they stay where they start: {which}"
+            "nothing says how joints move that carry no mass, or point masses that others move alike; they go on as they start: {which}"
         );
         table.ctx.warn(Remark::new(message).help("give what they carry an inertia"));
     }
@@ -66,7 +76,7 @@ pub(super) fn read(
             return Ok((Drive::Prescribed(path), json!({ "prescribed": record })));
         }
         if still.contains(&index_of(robot, joint.name)) {
-            return Ok((Drive::Locked, json!("locked, since nothing says how it moves")));
+            return Ok(coast(robot, index_of(robot, joint.name), started));
         }
         let forces = match torque.as_ref().and_then(|table| table.get(joint.name)) {
             Some(field) => force(&field, &joint, end)?,
@@ -102,6 +112,36 @@ pub(super) fn read(
 /// The joint of that name, of a robot that has it.
 fn index_of(robot: &Robot, joint: &str) -> usize {
     robot.model().joint_index(joint).expect("a joint of its own")
+}
+
+/// A joint of one degree that keeps its velocity, and the record of it.
+fn coast(robot: &Robot, joint: usize, start: Option<&(Vec<f64>, Vec<f64>)>) -> (Drive, Value) {
+    let model = robot.model();
+    let (q, v) = start.map_or((0.0, 0.0), |(q, v)| (q[model.q_range(joint).start], v[model.v_range(joint).start]));
+    if v == 0.0 {
+        return (Drive::Locked, json!("locked, since nothing says how it moves"));
+    }
+    let time = Signal::expression(Expression::parse("t").expect("an expression"));
+    let path = JointPath::Coordinate(Signal::scaled(time, v, q));
+    (Drive::Prescribed(path), json!({ "prescribed": format!("{} + {}*t", shortest(q), shortest(v)) }))
+}
+
+/// Warns of what `start` says of joints that [motion] leads.
+fn warn_of_led(start: &Table<'_>, robot: &Robot, led: impl Fn(&str) -> Option<&'static str>) -> Read<()> {
+    for key in ["q", "v"] {
+        let Some(field) = start.get(key) else { continue };
+        let table = open_joints(&field, robot)?;
+        for joint in robot.own_joints() {
+            // Locked joints stay where they start.
+            let Some((field, how)) = table.get(joint.name).zip(led(joint.name)) else { continue };
+            if key == "v" || how == "prescribed" {
+                let message =
+                    format!("{key} of joint {:?} at the start says nothing: [motion] has it {how}", joint.name);
+                start.ctx.warn(Remark::at(&field.node.place, message));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A joint that forces drive, and the record of it.

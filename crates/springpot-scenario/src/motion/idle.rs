@@ -13,15 +13,14 @@ const NOTHING: f64 = 1e-10;
 /// They are the pivots that vanish where M is eliminated from the tips to the root.
 pub(super) fn joints(
     robot: &Robot,
-    start: Option<&(Vec<f64>, Vec<f64>)>,
+    start: Option<&[f64]>,
     is_led: impl Fn(&str) -> bool,
     is_idle: impl Fn(&str) -> bool,
 ) -> Vec<usize> {
     let model = robot.model();
-    let neutral = (model.neutral(), vec![0.0; model.nv()]);
-    let (q, v) = start.unwrap_or(&neutral);
+    let neutral = model.neutral();
     let n = model.nv();
-    let mut mass = crba(model, &Kinematics::at_position(model, q));
+    let mut mass = crba(model, &Kinematics::at_position(model, start.unwrap_or(&neutral)));
     let diagonal: Vec<f64> = (0..n).map(|k| mass[k * n + k]).collect();
     let mut still = Vec::new();
     for (j, joint) in model.own_joints().zip(robot.own_joints()).collect::<Vec<_>>().into_iter().rev() {
@@ -31,7 +30,7 @@ pub(super) fn joints(
                 continue;
             }
             if pivot.abs() <= NOTHING * diagonal[k] {
-                if joint.kind.nv() == 1 && v[k] == 0.0 && is_idle(joint.name) {
+                if joint.kind.nv() == 1 && is_idle(joint.name) {
                     still.push(j);
                 }
                 continue;

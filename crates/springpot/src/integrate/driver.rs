@@ -477,6 +477,13 @@ impl Driver {
         Ok(Some(theta))
     }
 
+    /// How stiff element `e` is over a step, N/m or N·m/rad; 0 where it takes no steps.
+    pub(super) fn stiffness(&self, cx: Context, e: usize) -> f64 {
+        let bank = &self.recorder.bank;
+        let stiffness = cx.system.elements[e].law.stiffness(&bank.point(e, 0), bank.size().recip());
+        if stiffness.is_finite() { stiffness } else { 0.0 }
+    }
+
     /// As [`Self::read`], for what `needs` say alone.
     ///
     /// # Errors

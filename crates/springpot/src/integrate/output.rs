@@ -14,6 +14,9 @@ use crate::observe::{Quantity, Snapshot};
 const IMBALANCE: f64 = 1e3;
 const LEAST_IMBALANCE: f64 = 1e-4;
 
+/// What rounding does to a balance, in units of the energies and of the works that it is made of.
+const ROUNDING: f64 = 256.0 * f64::EPSILON;
+
 /// Writes the rows of a run.
 pub(super) struct Output<'a> {
     pub(super) rows: &'a mut dyn Rows,
@@ -73,7 +76,7 @@ impl<'a> Output<'a> {
     }
 
     fn write(&mut self, cx: Context, driver: &Driver) -> Result<(), RunError> {
-        self.take_residual(driver);
+        self.take_residual(cx, driver);
         self.take_row(cx, driver)?;
         self.rows.row(&self.row)?;
         self.written.rows += 1;
@@ -99,18 +102,20 @@ impl<'a> Output<'a> {
     }
 
     /// Takes in how far the balance is off, and what rounding makes of it.
-    fn take_residual(&mut self, driver: &Driver) {
+    fn take_residual(&mut self, cx: Context, driver: &Driver) {
         let (Snapshot { evaluation, elements, residual, .. }, written) = (&self.snapshot, &mut self.written);
         if residual.abs() > written.residual {
             written.residual_at = evaluation.t;
         }
         written.residual = if residual.is_nan() { f64::NAN } else { written.residual.max(residual.abs()) };
         // Strokes are differences of coordinates, heights of bodies are counted from the world's origin.
-        let forces = elements.iter().zip(&evaluation.elements);
-        let forces = forces.map(|(row, at)| (row.observation.force() * at.reading.coordinate).abs());
+        let forces = elements.iter().zip(&evaluation.elements).enumerate().map(|(e, (row, at))| {
+            let coordinate = at.reading.coordinate.abs();
+            (row.observation.force().abs() + ROUNDING * driver.stiffness(cx, e) * coordinate) * coordinate
+        });
         let origin = driver.recorder.potential_origin().abs();
         let sizes = evaluation.potential.abs() + origin + forces.filter(|x| x.is_finite()).sum::<f64>();
-        written.rounding = written.rounding.max(64.0 * f64::EPSILON * sizes);
+        written.rounding = written.rounding.max(ROUNDING * sizes);
     }
 
     /// Whether the run may be believed; to be asked at its end.

@@ -7,6 +7,7 @@ mod networks;
 mod pulses;
 mod random;
 mod scales;
+mod slider;
 #[path = "../support/mod.rs"]
 mod support;
 mod switched;

@@ -266,7 +266,7 @@ impl ControlRun {
         let (theta, node) = if is_end { (1.0, STAGES) } else { (0.0, 0) };
         let changes = std::mem::take(&mut self.changes);
         let Some(&last) = changes.last() else { return Ok(()) };
-        for guard in changes {
+        for &guard in &changes {
             let drift = match guard {
                 Guard::Reaches { joint, .. } | Guard::Returns { joint } | Guard::Catches { joint } => {
                     Some(self.drift(joint, theta))
@@ -276,6 +276,7 @@ impl ControlRun {
             self.leave(guard, node, drift);
         }
         let (t, span) = (self.nodes[node].t, CHATTER * end);
+        self.left = (t, changes);
         let (first, count) = &mut self.together;
         (*first, *count) = if t - *first <= span && *count > 0 { (*first, *count + 1) } else { (t, 1) };
         let count = *count;
@@ -444,8 +445,9 @@ impl ControlRun {
         for law in 0..self.laws.len() {
             let mut wrong = None;
             self.branch_guards(law, 0, &mut |bit, value| {
-                if value < 0.0 && wrong.is_none() {
-                    wrong = Some(Guard::Branch { law, bit });
+                let guard = Guard::Branch { law, bit };
+                if value < 0.0 && wrong.is_none() && !self.has_just_left(guard) {
+                    wrong = Some(guard);
                 }
             });
             if wrong.is_some() {
@@ -456,6 +458,12 @@ impl ControlRun {
             Guard::Outruns { .. } | Guard::Empties { .. } | Guard::Fills { .. } => false,
             _ => self.value(*guard, 0) < -ROUNDING * self.size(*guard),
         })
+    }
+
+    /// Whether a guard was left at the start: it may stand before its change by the rounding of the time.
+    fn has_just_left(&self, guard: Guard) -> bool {
+        let (t, left) = &self.left;
+        self.nodes[0].t - t <= 8.0 * f64::EPSILON * t && left.contains(&guard)
     }
 
     /// What a guard belongs to, for messages, and the column of what an expression says.

@@ -51,6 +51,8 @@ pub(super) struct ControlRun {
     input_slopes: Vec<InputSlopes>,
     /// Changes of the branch at the end of the step.
     changes: Vec<Guard>,
+    /// What was left last, and when, s.
+    left: (f64, Vec<Guard>),
     /// When the first of the changes happened that lie close together, and how many they are.
     together: (f64, u32),
     spare: Vec<f64>,
@@ -201,6 +203,7 @@ impl ControlRun {
             slopes: TorqueSlopes { d_q: square(), d_v: square() },
             input_slopes: Vec::new(),
             changes: Vec::new(),
+            left: (0.0, Vec::new()),
             together: (0.0, 0),
             spare: Vec::new(),
             ends: Default::default(),

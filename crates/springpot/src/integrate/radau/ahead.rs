@@ -13,6 +13,9 @@ use crate::linalg::Lu;
 /// How far a joint may turn while a robot is thought to go on as it begins, rad.
 const TURN: f64 = 0.3;
 
+/// Share of the largest acceleration that rounding may make of none.
+const ROUNDED: f64 = 1e-12;
+
 /// Where in the stretch ahead forces are looked at.
 const PLACES: [f64; 5] = [0.01, 0.09, 0.31, 0.66, 1.0];
 
@@ -36,17 +39,11 @@ impl RadauStep {
         if !(varies || rests) || free.is_empty() || !mass.factor_part(n, &self.slopes.d_a, free) {
             return Ok(largest);
         }
-        let mut take = |change: &[f64]| {
-            let mut x: Vec<f64> = free.iter().map(|&k| change[k]).collect();
-            mass.solve(&mut x);
-            for (&k, a) in free.iter().zip(x).filter(|(_, a)| a.is_finite()) {
-                largest[k] = f64::max(largest[k], a.abs());
-            }
-        };
         if rests {
-            take(&self.drift(cx, bank));
+            self.accelerate(&mut mass, &self.drift(cx, bank), &mut largest);
         }
         if !varies {
+            self.spread(cx, bank, &mut mass, stretch, &mut largest);
             return Ok(largest);
         }
         let t = self.origin.t;
@@ -71,9 +68,54 @@ impl RadauStep {
                 let led = row.iter().zip(then.accelerations.iter().zip(&now.accelerations));
                 *sum -= led.map(|(m, (then, now))| m * (then - now)).sum::<f64>();
             }
-            take(&change);
+            self.accelerate(&mut mass, &change, &mut largest);
         }
+        self.spread(cx, bank, &mut mass, stretch, &mut largest);
         Ok(largest)
+    }
+
+    /// Takes in the accelerations that forces `change` on the free velocities lead to.
+    fn accelerate(&self, mass: &mut Lu, change: &[f64], largest: &mut [f64]) {
+        let mut x: Vec<f64> = self.free.iter().map(|&k| change[k]).collect();
+        mass.solve(&mut x);
+        for (&k, a) in self.free.iter().zip(x).filter(|(_, a)| a.is_finite()) {
+            largest[k] = f64::max(largest[k], a.abs());
+        }
+    }
+
+    /// What moves within `stretch` seconds takes others along that rest till then, one after another: through springs, inertia and feedback.
+    fn spread(&self, cx: Context, bank: &ElementBank, mass: &mut Lu, stretch: f64, largest: &mut [f64]) {
+        let (n, a, slopes) = (self.model.nv(), &self.origin.a, &self.slopes);
+        for _ in &self.free {
+            let unmoved = |k: usize| largest[k] == 0.0 && a[k] == 0.0 && self.sizes.rests(k);
+            let unmoved: Vec<usize> = self.free.iter().copied().filter(|&k| unmoved(k)).collect();
+            let speed: Vec<f64> = largest.iter().zip(a).map(|(ahead, a)| stretch * (ahead + a.abs())).collect();
+            if unmoved.is_empty() || speed.iter().all(|speed| *speed == 0.0) {
+                return;
+            }
+            let mut change: Vec<f64> = (0..n)
+                .map(|k| {
+                    let rows = slopes.d_q[k * n..][..n].iter().zip(&slopes.d_v[k * n..][..n]);
+                    rows.zip(&speed).map(|((by_q, by_v), speed)| -(0.5 * stretch * by_q + by_v) * speed).sum()
+                })
+                .collect();
+            for (e, element) in self.elements.iter().enumerate() {
+                let rate: f64 = element.gradient.iter().zip(&speed).map(|(g, speed)| g * speed).sum();
+                if rate != 0.0 {
+                    let stiffness = cx.system.elements[e].law.stiffness(&bank.point(e, 0), stretch.recip());
+                    let pull = stiffness * 0.5 * stretch * rate;
+                    change.iter_mut().zip(&element.gradient).for_each(|(sum, g)| *sum -= g * pull);
+                }
+            }
+            let mut taken = vec![0.0; n];
+            self.accelerate(mass, &change, &mut taken);
+            let least = ROUNDED * taken.iter().fold(0.0, |largest: f64, a| largest.max(*a));
+            let along: Vec<usize> = unmoved.into_iter().filter(|&k| taken[k] > least).collect();
+            if along.is_empty() {
+                return;
+            }
+            along.into_iter().for_each(|k| largest[k] = taken[k]);
+        }
     }
 
     /// By how much the forces on all velocities change while the robot goes on with the accelerations at the origin: what joints at rest are

@@ -32,6 +32,12 @@ enum Worst {
     Newton(usize),
 }
 
+/// Whether no step of a run that ends at `end` may be as short as `h` where `tried` was not short enough, or ends where that one did.
+pub(super) fn is_too_short(tried: &Target, h: f64, end: f64) -> bool {
+    let [of_run, of_time] = SHORTEST_STEP;
+    h < (of_run * end).max(of_time * tried.from) || tried.from + h >= tried.to
+}
+
 impl Radau {
     /// Tries the step `target`: `Ok` holds the factor for the next step, `Err` the size to try instead.
     pub(super) fn attempt(
@@ -73,8 +79,7 @@ impl Radau {
             {
                 smaller = smaller.max((1.01 * theta).min(0.9) * h);
             }
-            let [of_run, of_time] = SHORTEST_STEP;
-            if smaller < (of_run * recorder.settings.end).max(of_time * t) {
+            if is_too_short(target, smaller, recorder.settings.end) {
                 return Err(self.step_too_small(cx, t, h, error, worst));
             }
             return Ok(Err(smaller));

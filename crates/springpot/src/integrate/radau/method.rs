@@ -1,5 +1,6 @@
 //! The method behind the driver.
 
+use super::attempt::is_too_short;
 use super::dense::{Dense, Scratch};
 use super::drives::drive;
 use super::events::Settled;
@@ -61,12 +62,17 @@ impl Radau {
         let rtol = settings.rtol;
         let mapped = ESTIMATE_SHARE * rtol.powf(2.0 / 3.0);
         let tolerance = Tolerance { rtol: mapped, atol: settings.atol.unwrap_or(0.0) * mapped / rtol };
+        let has_inner_strokes = cx.system.elements.iter().any(|element| element.law.hidden_errors() == usize::MAX);
+        let mut step = RadauStep::new(cx, forward, tolerance, rtol);
+        if has_inner_strokes {
+            step.sizes.set_steep();
+        }
         Self {
-            step: RadauStep::new(cx, forward, tolerance, rtol),
+            step,
             has_paths: forward.has_paths(),
             last: None,
             has_inner_variables: cx.system.elements.iter().any(|element| element.law.hidden_errors() > 0),
-            has_inner_strokes: cx.system.elements.iter().any(|element| element.law.hidden_errors() == usize::MAX),
+            has_inner_strokes,
             newton_iterations: 0,
             kinks: Kinks::of(cx.system),
             is_at_kink: false,
@@ -163,6 +169,10 @@ impl Stepper for Radau {
             Ok(factor) => factor,
         };
         let step = match self.settle(cx, recorder, target)? {
+            // At a start the first motion may be as small as it likes.
+            Settled::Shorter(size) if is_too_short(&target, size, 0.0) => {
+                return Err(self.settles_nowhere(&target));
+            }
             Settled::Shorter(size) => return Ok(Trial::Rejected { size }),
             Settled::AtStart => {
                 // What expressions alone change is counted with them.

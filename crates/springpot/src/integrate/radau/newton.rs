@@ -93,7 +93,7 @@ impl RadauStep {
                 return Ok(Outcome::Diverged { iterations, worst });
             }
             let theta = self.contraction.clamp(1e-3, 0.9);
-            if size * theta / (1.0 - theta) <= self.enough(h) {
+            if size * theta / (1.0 - theta) <= 1.0 {
                 break;
             }
             if iterations == MOST_ITERATIONS {
@@ -191,16 +191,16 @@ impl RadauStep {
         })
     }
 
-    /// rms over stages and velocities of |h Σ_j A_ij Δa_j| in units of the velocities' tolerance, and the velocity with the largest
-    /// share; Δa is what `residual` holds.
+    /// rms over stages and velocities of |h Σ_j A_ij Δa_j| in units of what the iteration may leave, and the velocity with the largest
+    /// share; Δa is what `residual` holds. Each velocity has its own rounding: one that is all rounding says nothing of the others.
     fn velocity_change(&self, h: f64) -> (f64, usize) {
-        let count = self.free.len();
+        let (count, enough) = (self.free.len(), self.enough(h));
         let (mut sum, mut worst, mut largest) = (0.0, self.free[0], 0.0);
         for (r, &k) in self.free.iter().enumerate() {
-            let [tolerance, _] = self.allowed[r];
+            let left = enough * self.allowed[r][0] + ROUNDED * self.noise[r];
             for row in &A {
                 let moved: f64 = (0..STAGES).map(|j| row[j] * self.residual[j * count + r]).sum();
-                let square = (h * moved / tolerance).powi(2);
+                let square = (h * moved / left).powi(2);
                 sum += square;
                 if square > largest {
                     (worst, largest) = (k, square);
@@ -210,12 +210,12 @@ impl RadauStep {
         ((sum / (STAGES * count) as f64).sqrt(), worst)
     }
 
-    /// When the iteration may stop: a share of the tolerance, not below rounding.
+    /// The share of the tolerance that the iteration may leave, not below rounding.
     fn enough(&self, h: f64) -> f64 {
         let end = &self.stages[STAGES - 1];
         let moved = |k: usize| end.v[k].abs().max(self.origin.v[k].abs()) + h * end.a[k].abs();
         let largest = self.free.iter().zip(&self.allowed).fold(0.0, |m: f64, (&k, [v, _])| m.max(moved(k) / v));
-        self.rtol.sqrt().min(0.03) + 2e-14 * largest + ROUNDED * self.noisy
+        self.rtol.sqrt().min(0.03) + 2e-14 * largest
     }
 }
 

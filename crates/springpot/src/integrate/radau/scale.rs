@@ -15,13 +15,13 @@ impl RadauStep {
         let (tolerance, sized) = (self.tolerance, std::mem::take(&mut self.sized));
         self.round(cx, bank, control, h, |r| tolerance.of(sized[r][0]));
         self.allowed.clear();
-        self.noisy = 0.0;
+        self.noise.clear();
         for (r, (&k, [speed, travel])) in self.free.iter().zip(&sized).enumerate() {
             let noise = h * self.rounding.accelerations[r];
             let place = self.model.coordinate_of(k).map_or(1.0, |c| self.origin.q[c]);
             let rounding = 4.0 * f64::EPSILON * place.abs();
             let allowed = (tolerance.of(*speed) + noise).max(f64::MIN_POSITIVE);
-            self.noisy = self.noisy.max(noise / allowed);
+            self.noise.push(noise);
             self.allowed.push([allowed, (tolerance.of(*travel) + rounding + h * noise).max(f64::MIN_POSITIVE)]);
         }
         self.sized = sized;

@@ -3,6 +3,7 @@
 use super::events::{Change, Look, Settled};
 use super::method::Radau;
 use super::stick::CHATTER;
+use crate::collocation::STAGES;
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::kinks::FROM_BEHIND;
@@ -81,6 +82,13 @@ impl Radau {
                 }
             }
         }
+    }
+
+    /// No step is short enough to tell what changes in it: what moves fastest is named.
+    pub(super) fn settles_nowhere(&self, step: &Target) -> RunError {
+        let speeds = self.step.stages[STAGES - 1].v.iter().map(|v| v.abs());
+        let fastest = speeds.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(k, _)| k);
+        RunError::NoConvergence { t: step.from, h: step.size, joint: self.step.model.v_labels()[fastest].name.clone() }
     }
 
     /// Brings to rest what stops at the origin.

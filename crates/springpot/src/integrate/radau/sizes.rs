@@ -20,6 +20,9 @@ impl Tolerance {
 /// How much less than expected a motion may come to before nothing more is expected of it.
 const SHORTFALL: f64 = 0.1;
 
+/// Share of the time in which a system answers that no force of a series is resolved below.
+const ONSET: f64 = 1e-6;
+
 /// The largest travel |q − q(0)| and speed |v| of every velocity, so far and as the forces at a start or restart let expect.
 ///
 /// Accelerations a that a system answers at the rate ω lead to the speed a·min(t, 1/ω), and so far; what falls short of that, since forces
@@ -40,6 +43,8 @@ pub(super) struct Sizes {
     /// comes to soon.
     ahead: Vec<f64>,
     stretch: f64,
+    /// Share of 1/ω below which no time is told from another.
+    onset: f64,
 }
 
 impl Sizes {
@@ -56,7 +61,13 @@ impl Sizes {
             to_speed: zero.clone(),
             ahead: zero,
             stretch: 0.0,
+            onset: 0.0,
         }
+    }
+
+    /// Forces may begin like no power of t, alike on every scale of time: what they lead to at first is measured by what it soon is.
+    pub(super) fn set_steep(&mut self) {
+        self.onset = ONSET;
     }
 
     /// Takes a state of the run in.
@@ -126,6 +137,8 @@ impl Sizes {
 
     /// For how long accelerations have led to speed until `t`, s.
     fn elapsed(&self, t: f64) -> f64 {
-        (t - self.since).max(0.0).min(self.omega.recip())
+        let response = self.omega.recip();
+        let least = if self.onset > 0.0 && response.is_finite() { self.onset * response } else { 0.0 };
+        (t - self.since).max(least).min(response)
     }
 }

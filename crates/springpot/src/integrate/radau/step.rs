@@ -140,8 +140,8 @@ pub(super) struct RadauStep {
     pub(super) rounding: Rounding,
     /// Errors that are allowed in this step, of each free velocity and of its coordinate.
     pub(super) allowed: Vec<[f64; 2]>,
-    /// The largest share of them that rounding takes up.
-    pub(super) noisy: f64,
+    /// What rounding makes of each free velocity in this step.
+    pub(super) noise: Vec<f64>,
     pub(super) scratch: EstimateScratch,
 }
 
@@ -208,7 +208,7 @@ impl RadauStep {
             sized: Vec::new(),
             rounding: Rounding::default(),
             allowed: Vec::new(),
-            noisy: 0.0,
+            noise: Vec::new(),
             scratch: EstimateScratch::default(),
         }
     }

@@ -17,6 +17,9 @@ const BEGUN: f64 = 1e-3;
 /// Energies below this count as none, J.
 const TINY_ENERGY: f64 = 1e-280;
 
+/// What rounding of strokes does to work, in units of stroke times force.
+const WORK_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// Share of rtol^⅔ that the energy ledger may err in one step, in units of the energy turned over.
 const ENERGY_SHARE: f64 = 0.01;
 
@@ -152,6 +155,7 @@ impl Recorder {
             return 0.0;
         }
         let allowed = self.settings.rtol.powf(2.0 / 3.0);
+        let rounding = self.rounding_of_work();
         let mut defect = work_defect(&self.powers.actuators, h) + work_defect(&self.powers.joints, h);
         let mut worst_account = 0.0f64;
         for e in 0..self.bank.len() {
@@ -161,12 +165,22 @@ impl Recorder {
             defect += own + work_defect(&input, h);
             // Of NaN the larger is the other one.
             let size = dissipated.abs() + (ACCOUNT_FLOOR * allowed).min(1.0) * turned_over;
-            worst_account = worst_account.max(own / (ACCOUNT_SHARE * allowed * size));
+            worst_account = worst_account.max(own / (ACCOUNT_SHARE * allowed * size + rounding));
         }
         if defect.is_nan() {
             // What is no number is no step to keep, but where no account is kept.
             return if self.knows_energies() { f64::INFINITY } else { 0.0 };
         }
-        worst_account.max(defect / (ENERGY_SHARE * allowed * turned_over))
+        worst_account.max(defect / (ENERGY_SHARE * allowed * turned_over + rounding))
+    }
+
+    /// What rounding of the strokes does to the work of the elements in a step, J: what has relaxed is known no better.
+    fn rounding_of_work(&self) -> f64 {
+        let works = (0..self.bank.len()).map(|e| {
+            let [strokes, _] = self.bank.told(e);
+            let largest = |values: &[f64]| values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+            largest(strokes) * largest(&self.bank.response(e).force)
+        });
+        WORK_ROUNDING * works.filter(|work| work.is_finite()).sum::<f64>()
     }
 }

@@ -36,6 +36,9 @@ const ONSET: f64 = 6.0;
 const ROUNDING: f64 = 40.0;
 const OF_MEMORIES: f64 = 6.0;
 
+/// The largest share of a step in which what its strokes move may count as rounding.
+const NEAR: f64 = 1e-6;
+
 /// Iterations of nonlinear parts, and how often one of them is halved.
 const MOST_ITERATIONS: usize = 60;
 const MOST_HALVINGS: usize = 30;
@@ -181,6 +184,12 @@ pub(super) fn guards(parts: &[Network], step: &Step, state: &mut StateRef, guard
 
 /// Inside a step: as a shorter one that ends there, so that rows are as good as ends of steps.
 pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: &mut StateRef, take: Take) -> Reported {
+    if is_near(step, theta) {
+        let force = between(parts, step, theta, *state);
+        let mut told = now(parts, at, state, take);
+        told.observation.regular = force;
+        return told;
+    }
     let known = (theta < 1.0 && step.nodes == Nodes::Radau && step.course == Course::Sought)
         .then(|| between(parts, step, theta, *state));
     let ready = state.take_ready();
@@ -201,7 +210,14 @@ pub(super) fn at(parts: &[Network], step: &Step, theta: f64, at: &Point, state: 
     sum
 }
 
-/// The force at θ of a step whose strokes were sought: the polynomial through that at its start and at the nodes, on which its accelerations rest.
+/// Whether θ is so near to the start that rates, as differences of strokes over θh, are of their rounding: what moves till then is less.
+fn is_near(step: &Step, theta: f64) -> bool {
+    let (Nodes::Radau | Nodes::Inner, [start, nodes @ ..]) = (step.nodes, step.stroke) else { return false };
+    let moved = nodes.iter().fold(0.0f64, |moved, stroke| moved.max((stroke - start).abs()));
+    step.t > 0.0 && theta < NEAR.min((step.resolution.max(f64::EPSILON * start.abs()) / moved).sqrt())
+}
+
+/// The force at θ: the polynomial through that at its start and at the nodes, on which accelerations rest where strokes are sought.
 fn between(parts: &[Network], step: &Step, theta: f64, mut state: StateRef) -> f64 {
     let start = now(parts, &step.point(0), &mut state.clone(), &mut |_| ()).observation.regular;
     let (_, Solved { force, .. }) = solved(parts, step, &mut state);

@@ -1,0 +1,130 @@
+//! A mass or a given motion on a slider: rows beside ends of steps, remnants, motions without bound, kinks that name a state, followers.
+
+use crate::cases::holds;
+use crate::support::{Run, try_run};
+
+const SLIDER: &str = r#"
+[robot]
+gravity = [0, 0, 0]
+[[robot.body]]
+name = "b"
+joint = { name = "x", kind = "prismatic", axis = [1, 0, 0] }
+mass = 1
+"#;
+
+const SPRING: &str =
+    "[[element]]\nname = \"e\"\njoint = \"x\"\nlaw = \"kelvin-voigt\"\nparameters = { k = 4, c = 0.3 }\n";
+
+fn ran(parts: &[&str]) -> Run {
+    try_run(&[&[SLIDER], parts].concat().concat())
+}
+
+fn column_of(run: &Run, column: &str) -> Vec<(f64, f64)> {
+    assert!(run.error.is_none(), "{}", run.error.as_ref().unwrap());
+    run.column("t").into_iter().zip(run.column(column)).collect()
+}
+
+/// Rows that lie beside ends of steps by rounding alone: rates of parts are no differences of rounded strokes.
+#[test]
+fn a_series_behind_a_kink_is_right_in_every_row() {
+    let element =
+        "[[element]]\nname = \"e\"\njoint = \"x\"\nlaw = \"jeffreys\"\nparameters = { c_1 = 1, k = 2, c_2 = 3 }\n";
+    let motion = "[motion]\nkind = \"prescribed\"\njoints = { x = \"1 + 0.01*max(0, t - 0.3)\" }\n";
+    for step in ["0.02", "0.01", "0.007", "0.1"] {
+        let run = ran(&[element, motion, "[time]\nend = 2\noutput_step = ", step, "\n"]);
+        let times = run.column("t");
+        let force = |t: f64| if t > 0.3 { 0.01 * (1.0 - 0.25 * (-(t - 0.3) / 2.0).exp()) } else { 0.0 };
+        let expected: Vec<_> = times.iter().filter(|t| (**t - 0.3).abs() > 1e-9).map(|t| (*t, force(*t))).collect();
+        holds(&run, "e.force", &expected, 1e-9);
+    }
+}
+
+/// What has relaxed is known to the rounding of spring times stroke, and no better by shorter steps.
+#[test]
+fn a_remnant_is_no_work_for_ever() {
+    let motion = "[motion]\nkind = \"prescribed\"\njoints = { x = 0.5 }\n[time]\nend = 2\noutput_step = 0.5\n";
+    for held in [18.0, 22.0, 25.0, 33.0, 60.0] {
+        let element = format!(
+            "[[element]]\nname = \"e\"\njoint = \"x\"\nlaw = \"maxwell\"\nparameters = {{ k = 1, c = 1 }}\npast = {{ held = {held} }}\n"
+        );
+        let run = ran(&[&element, motion]);
+        for (t, force) in column_of(&run, "e.force") {
+            assert!((force - 0.5 * (-held - t).exp()).abs() < 5e-14, "held {held}, {t}: {force}");
+        }
+        assert!(run.report.steps < 2000, "held {held}: {} steps", run.report.steps);
+    }
+}
+
+/// The end is told where a motion grows without bound, kinks of the state in its expression or none.
+#[test]
+fn a_motion_without_bound_ends_the_run() {
+    for torque in ["max(0, t - 2) + 20*q.x^3", "max(0, t - 2) + 20*abs(q.x)^3", "1 + q.x^2*step(q.x)"] {
+        let run = ran(&[
+            "[motion]\nkind = \"forward\"\ntorque = { x = \"",
+            torque,
+            "\" }\n[time]\nend = 10\noutput_step = 0.5\n",
+        ]);
+        let error = run.error.as_ref().unwrap_or_else(|| panic!("{torque} has no bound"));
+        assert!(error.time().is_some_and(|t| (1.0..9.0).contains(&t)), "{torque}: {error}");
+        assert!(run.effort() < 10_000, "{torque}");
+    }
+}
+
+/// A kink whose place does not hang on the state that it names is crossed once.
+#[test]
+fn a_kink_that_names_a_state_in_vain_switches_once() {
+    let motion = |torque: &str| {
+        format!(
+            "[motion]\nkind = \"forward\"\nstart = {{ q = {{ x = 0.3 }} }}\ntorque = {{ x = \"{torque}\" }}\n[time]\nend = 10\noutput_step = 0.5\n"
+        )
+    };
+    for at in ["3.52", "2.84", "6.42", "0.7", "5.1"] {
+        let plain = ran(&[SPRING, &motion(&format!("step(t - {at})"))]);
+        for torque in
+            ["step(t - @ + 0*q.x)", "step((t - @)*(1 + q.x^2))", "0.5 + 0.5*sign(t - @ - min(0.1, q.x + 9) + 0.1)"]
+        {
+            let run = ran(&[SPRING, &motion(&torque.replace('@', at))]);
+            holds(&run, "q.x", &column_of(&plain, "q.x"), 1e-7);
+        }
+    }
+}
+
+/// What rests until a feedback from another joint moves it, which itself only begins.
+#[test]
+fn a_follower_starts() {
+    let second = "[[robot.body]]\nname = \"c\"\nparent = \"world\"\njoint = { name = \"y\", kind = \"prismatic\", axis = [0, 1, 0] }\nmass = 1\n";
+    let motion = |x: &str, y: &str| {
+        format!(
+            "[motion]\nkind = \"forward\"\ntorque = {{ x = \"{x}\", y = \"{y}\" }}\n[time]\nend = 5\noutput_step = 0.5\n"
+        )
+    };
+    // The leader's torque, and its place and speed.
+    for (y, [q, v]) in [
+        ("t", ["t^3/6", "t^2/2"]),
+        ("max(0, t - 1)", ["max(0, t - 1)^3/6", "max(0, t - 1)^2/2"]),
+        ("max(0, t - 1)^2", ["max(0, t - 1)^4/12", "max(0, t - 1)^3/3"]),
+        ("1 - cos(t)", ["t^2/2 + cos(t) - 1", "t - sin(t)"]),
+    ] {
+        for x in ["10*(q.y - q.x) + 2*(v.y - v.x)", "q.y", "v.y - q.x"] {
+            let run = ran(&[second, &motion(x, y)]);
+            let told = x.replace("q.y", &format!("({q})")).replace("v.y", &format!("({v})"));
+            let plain = ran(&[second, &motion(&told, y)]);
+            holds(&run, "q.x", &column_of(&plain, "q.x"), 1e-6);
+        }
+    }
+}
+
+/// Forces of a series begin like a power of t below one where a stroke is there at once.
+#[test]
+fn an_unloaded_zener_of_low_order_starts() {
+    for alpha in ["0.05", "0.1", "0.2", "0.3", "0.5"] {
+        let parts = |rtol: &str| {
+            format!(
+                "[[element]]\nname = \"e\"\njoint = \"x\"\nlaw = \"fractional-zener\"\nparameters = {{ k_e = 2, k_m = 5, c = 1, alpha = {alpha} }}\n\
+                 past = \"unloaded\"\n[motion]\nkind = \"forward\"\nstart = {{ q = {{ x = 0.4 }} }}\n[time]\nend = 5\noutput_step = 0.5\n[solver]\nrtol = {rtol}\n"
+            )
+        };
+        let [rough, fine] = ["1e-6", "1e-9"].map(|rtol| ran(&[&parts(rtol)]));
+        holds(&rough, "q.x", &column_of(&fine, "q.x"), 1e-5);
+    }
+}
