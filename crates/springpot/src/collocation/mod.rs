@@ -118,6 +118,46 @@ pub fn lagrange_row(k: usize) -> [f64; 4] {
     std::array::from_fn(|p| TABLEAU.rates[p][k])
 }
 
+/// The cubic in θ through values at the start and at the Radau nodes of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Cubic {
+    /// Of θ^p, p = 0…3.
+    pub(crate) coefficients: [f64; STAGES + 1],
+    end: f64,
+}
+
+impl Cubic {
+    pub(crate) fn through(values: &[f64]) -> Self {
+        let coefficients = TABLEAU.rates.map(|row| row.iter().zip(values).map(|(weight, value)| weight * value).sum());
+        Self { coefficients, end: values[STAGES] }
+    }
+
+    /// At θ; at 1 the value itself.
+    pub(crate) fn at(&self, theta: f64) -> f64 {
+        if theta == 1.0 { self.end } else { self.coefficients.iter().rev().fold(0.0, |sum, c| sum * theta + c) }
+    }
+
+    /// Its derivative by θ.
+    pub(crate) fn slope(&self, theta: f64) -> f64 {
+        (1..=STAGES).rev().fold(0.0, |sum, p| sum * theta + p as f64 * self.coefficients[p])
+    }
+
+    /// Whether it is positive on all of 0 ≤ θ ≤ 1 as the hull of its control points tells.
+    pub(crate) fn is_clear(&self) -> bool {
+        let [a, b, c, d] = self.coefficients;
+        let hull = [a, a + b / 3.0, a + (2.0 * b + c) / 3.0, a + b + c + d, self.end];
+        hull.iter().all(|point| *point > 0.0)
+    }
+}
+
+impl std::ops::Neg for Cubic {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { coefficients: self.coefficients.map(|c| -c), end: -self.end }
+    }
+}
+
 /// Embedded error estimate of the quadrature at Radau nodes in units of h, from the values at 0 and at the nodes: γ_0 times the distance
 /// of the value at 0 from the polynomial through the nodes (Hairer & Wanner, IV.8). Of the order s; 0 with one node.
 pub fn quadrature_defect(nodes: Nodes, values: &[f64]) -> f64 {

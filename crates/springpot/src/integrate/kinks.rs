@@ -1,8 +1,8 @@
 //! Kinks of the elements' forces within a step, such as the engagement of a stop: steps end on them.
 
 use super::system::System;
-use super::zero::{cubic, first_zero};
-use crate::collocation::STAGES;
+use super::zero::first_zero_of;
+use crate::collocation::{Cubic, STAGES};
 use crate::elements::{Element, ElementBank};
 use crate::law::{Guard, InputValue, Point};
 
@@ -85,8 +85,10 @@ impl Kinks {
                     continue;
                 }
                 let on_it = values[0].abs() <= noise;
-                let sign = if on_it { cubic(values, EARLY) } else { values[0] }.signum();
-                let found = first_zero(|theta| sign * cubic(values, if on_it { theta.max(EARLY) } else { theta }));
+                let cubic = Cubic::through(values);
+                let sign = if on_it { cubic.at(EARLY) } else { values[0] }.signum();
+                let ahead = if sign < 0.0 { -cubic } else { cubic };
+                let found = first_zero_of(&ahead, if on_it { EARLY } else { 0.0 });
                 let Some(theta) = found.filter(|theta| *theta > 0.0) else { continue };
                 let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
                 let behind = -sign * values[STAGES];
@@ -108,6 +110,6 @@ impl Kinks {
     pub(super) fn value(&mut self, bank: &ElementBank, kink: Kink, theta: f64) -> f64 {
         self.guards.clear();
         bank.guards(kink.element, &mut self.guards);
-        kink.sign * cubic(&self.guards[kink.guard], theta)
+        kink.sign * Cubic::through(&self.guards[kink.guard]).at(theta)
     }
 }

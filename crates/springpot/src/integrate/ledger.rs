@@ -1,7 +1,7 @@
 //! The energy accounts of a run: kinetic + potential + stored + dissipated − input − actuators stays what it was at t = 0.
 
 use crate::collocation::Nodes;
-use crate::collocation::{STAGES, lagrange_row, quadrature, quadrature_defect};
+use crate::collocation::{Cubic, STAGES, quadrature, quadrature_defect};
 use serde::{Deserialize, Serialize};
 
 /// Gauss–Legendre rule on [−1, 1], 12 points: positive nodes and weights.
@@ -31,7 +31,7 @@ pub(super) fn work_defect(power: &[f64], h: f64) -> f64 {
 /// ∫ s^−alpha g(s) ds from t_n to t_n + θh for g given at the start and at the nodes: the work of a singular force.
 pub(super) fn singular_work(g: &NodePower, t: f64, h: f64, theta: f64, alpha: f64) -> f64 {
     let end = theta * h;
-    let polynomial: [f64; 4] = std::array::from_fn(|p| (0..=STAGES).map(|k| lagrange_row(k)[p] * g[k]).sum());
+    let polynomial = Cubic::through(g).coefficients;
     if t == 0.0 {
         let terms = polynomial.iter().enumerate().rev();
         return end.powf(1.0 - alpha) * terms.fold(0.0, |sum, (p, c)| sum * theta + c / (p as f64 + 1.0 - alpha));

@@ -1,14 +1,10 @@
 //! Zeros of functions on a step, θ from 0 to 1.
 
-use crate::collocation::{STAGES, lagrange_row};
+use crate::collocation::Cubic;
 
-/// The cubic at θ through values at the start and at the nodes of a step.
-pub(super) fn cubic(values: &[f64], theta: f64) -> f64 {
-    if theta == 1.0 {
-        return values[STAGES];
-    }
-    let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
-    (0..4).rev().fold(0.0, |sum, p| sum * theta + (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>())
+/// The first zero of a cubic that is positive at 0, or at `early` where it begins on a zero.
+pub(super) fn first_zero_of(cubic: &Cubic, early: f64) -> Option<f64> {
+    if cubic.is_clear() { None } else { first_zero(|theta| cubic.at(theta.max(early))) }
 }
 
 /// Places at which a step is looked at.

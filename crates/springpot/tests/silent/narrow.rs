@@ -17,13 +17,18 @@ impl Pulse {
         Self { at: random.within(0.05, 0.95) * end, half: 0.5 * end * random.log(1e-6, 1e-3) }
     }
 
-    /// ∫ shape((s − at)/half) answer(t − s) ds; every shape has gone to 1e-17 at `reach` halves. The trapezoidal rule is exact to
-    /// rounding for shapes that vanish smoothly.
-    fn convolved(self, shape: &impl Fn(f64) -> f64, reach: f64, t: f64, answer: impl Fn(f64) -> f64) -> f64 {
-        let step = reach / 60.0;
-        (-60..=60).map(|k| f64::from(k) * step).map(|x| shape(x) * answer(t - self.at - self.half * x)).sum::<f64>()
-            * step
-            * self.half
+    /// ∫ shape((s − at)/half) answer(t − s) ds; every shape has gone to 1e-17 at `reach` halves. The trapezoidal rule with `count` points on
+    /// either side is exact to rounding for shapes that vanish smoothly.
+    fn convolved(
+        self,
+        shape: &impl Fn(f64) -> f64,
+        (reach, count): (f64, i32),
+        t: f64,
+        answer: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let step = reach / f64::from(count);
+        let points = (-count..=count).map(|k| f64::from(k) * step);
+        points.map(|x| shape(x) * answer(t - self.at - self.half * x)).sum::<f64>() * step * self.half
     }
 
     /// The largest error of a column at rows outside the pulse, in units of the largest value there.
@@ -60,7 +65,7 @@ fn narrow_torques_move_as_impulses_do() {
         let z = |t: f64| -c * t.powf(2.0 - alpha);
         let answer = |t: f64| if t <= 0.0 { 0.0 } else { speed.real(z(t)) };
         let travel = |t: f64| if t <= 0.0 { 0.0 } else { t * shift.real(z(t)) };
-        let force = |t: f64, answer: &dyn Fn(f64) -> f64| pulse.convolved(&shape, reach, t, answer) / half / end;
+        let force = |t: f64, answer: &dyn Fn(f64) -> f64| pulse.convolved(&shape, (reach, 30), t, answer) / half / end;
         for (column, error) in [
             ("v.q", pulse.error(&run, "v.q", reach, |t| force(t, &answer))),
             ("e.stroke", pulse.error(&run, "e.stroke", reach, |t| force(t, &travel))),
@@ -85,7 +90,7 @@ fn narrow_jolts_of_a_motion_are_remembered() {
         let shape = |x: f64| x.cosh().powi(-2);
         let scale = gamma(1.0 - alpha);
         let answer = |t: f64| if t <= 0.0 { 0.0 } else { 0.1 / pulse.half * t.powf(-alpha) / scale };
-        let error = pulse.error(&run, "e.derivative", 20.0, |t| pulse.convolved(&shape, 20.0, t, answer));
+        let error = pulse.error(&run, "e.derivative", 20.0, |t| pulse.convolved(&shape, (20.0, 60), t, answer));
         assert!(error < 1e-6, "{error:e} at {alpha}, width {:e} of the run", 2.0 * pulse.half / end);
     }
 }

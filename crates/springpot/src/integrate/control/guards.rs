@@ -4,11 +4,11 @@ use super::eye::Eye;
 use super::mode::{Bound, Guard, Slew};
 use super::term::Integrand;
 use super::{ControlRun, LawRun, Node};
-use crate::collocation::{RADAU_NODES, STAGES, lagrange_row};
+use crate::collocation::{Cubic, RADAU_NODES, STAGES};
 use crate::control::Aim;
 use crate::integrate::error::RunError;
 use crate::integrate::system::System;
-use crate::integrate::zero::{cubic, first_zero};
+use crate::integrate::zero::first_zero_of;
 
 /// Where a step is first looked at that starts where a branch begins.
 const EARLY: f64 = 1.0 / 64.0;
@@ -40,13 +40,6 @@ pub(in crate::integrate) enum ControlSeen {
 }
 
 type Values = [f64; STAGES + 1];
-
-/// Derivative by θ of the cubic through values at the start and at the nodes.
-fn slope(values: &Values, theta: f64) -> f64 {
-    let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
-    let coefficient = |p: usize| (0..=STAGES).map(|k| rows[k][p] * values[k]).sum::<f64>();
-    (1..4).rev().fold(0.0, |sum, p| sum * theta + p as f64 * coefficient(p))
-}
 
 impl ControlRun {
     /// Whether no branch is ever left.
@@ -186,9 +179,9 @@ impl ControlRun {
 
     /// dτ/dt of the force that is wanted of a joint, at θ of the step.
     fn drift(&self, joint: usize, theta: f64) -> f64 {
-        let values = std::array::from_fn(|node| self.nodes[node].wanted[joint]);
+        let values: Values = std::array::from_fn(|node| self.nodes[node].wanted[joint]);
         let h = self.nodes[STAGES].t - self.nodes[0].t;
-        slope(&values, theta) / h
+        Cubic::through(&values).slope(theta) / h
     }
 
     /// The first change in the step that was solved.
@@ -205,10 +198,11 @@ impl ControlRun {
             }
             let noise = ROUNDING * largest.max(self.size(guard));
             let on_it = values[0] <= noise;
-            if values[0] < -noise || (on_it && cubic(&values, EARLY) < -noise) {
+            let cubic = Cubic::through(&values);
+            if values[0] < -noise || (on_it && cubic.at(EARLY) < -noise) {
                 return ControlSeen::Within(0.0, guard);
             }
-            let found = first_zero(|theta| cubic(&values, if on_it { theta.max(EARLY) } else { theta }));
+            let found = first_zero_of(&cubic, if on_it { EARLY } else { 0.0 });
             let Some(theta) = found.filter(|theta| *theta > 0.0) else { continue };
             let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
             let behind = -values[STAGES];
@@ -243,7 +237,7 @@ impl ControlRun {
 
     /// How far a change is away at θ; negative behind it.
     pub(in crate::integrate) fn guard_at(&self, guard: Guard, theta: f64) -> f64 {
-        cubic(&self.values(guard), theta)
+        Cubic::through(&self.values(guard)).at(theta)
     }
 
     /// Notes a change that is here.

@@ -1,7 +1,7 @@
 //! The columns of events over a step, as its nodes tell them: enough to see that a function stays away from zero.
 
 use super::Event;
-use crate::collocation::{STAGES, lagrange_row};
+use crate::collocation::{Cubic, STAGES};
 use crate::integrate::context::Context;
 use crate::integrate::driver::Driver;
 use crate::integrate::error::RunError;
@@ -65,10 +65,9 @@ impl Nodes {
                 }
             }
         }
-        let rows: [[f64; 4]; STAGES + 1] = std::array::from_fn(lagrange_row);
         for (column, end) in self.columns.iter_mut().zip(&mut self.end) {
             *end = column[STAGES];
-            *column = std::array::from_fn(|p| (0..=STAGES).map(|k| rows[k][p] * column[k]).sum());
+            *column = Cubic::through(column).coefficients;
         }
         self.is_read = true;
         Ok(())

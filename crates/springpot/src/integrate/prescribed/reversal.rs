@@ -1,13 +1,13 @@
 //! Where joints turn round against friction that sticks: its power |v|·F has a kink there, on which steps end.
 
 use super::Prescribed;
-use crate::collocation::{STAGES, lagrange_row};
+use crate::collocation::{Cubic, STAGES};
 use crate::integrate::context::Context;
 use crate::integrate::error::RunError;
 use crate::integrate::recorder::Recorder;
 use crate::integrate::resistance::holding_forces;
 use crate::integrate::stepper::Target;
-use crate::integrate::zero::{first_zero, zero_between};
+use crate::integrate::zero::{first_zero_of, zero_between};
 use crate::model::Model;
 
 /// A velocity below this share of the step's largest is at rest.
@@ -35,14 +35,13 @@ impl Prescribed {
         for &k in &self.rubbing {
             let values: [f64; STAGES + 1] = std::array::from_fn(|node| recorder.evaluations[node].v[k]);
             let largest = values.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
-            let cubic: [f64; 4] =
-                std::array::from_fn(|p| (0..=STAGES).map(|node| lagrange_row(node)[p] * values[node]).sum());
-            let foreseen = |theta: f64| cubic.iter().rev().fold(0.0, |sum, c| sum * theta + c);
-            let sign = foreseen(EARLY).signum();
+            let cubic = Cubic::through(&values);
+            let sign = cubic.at(EARLY).signum();
             if values[STAGES].abs() <= AT_REST * largest {
                 continue;
             }
-            let Some(near) = first_zero(|theta| sign * foreseen(theta.max(EARLY))) else { continue };
+            let ahead = if sign < 0.0 { -cubic } else { cubic };
+            let Some(near) = first_zero_of(&ahead, EARLY) else { continue };
             // The velocity itself, from a place before the zero to one behind it.
             let [_, .., end] = &recorder.evaluations;
             let (mut q, mut v, mut a) = (end.q.clone(), end.v.clone(), end.a.clone());

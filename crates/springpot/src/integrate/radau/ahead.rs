@@ -35,7 +35,7 @@ impl RadauStep {
         let (n, free) = (self.model.nv(), &self.free);
         let mut largest = vec![0.0; n];
         let mut mass = Lu::default();
-        let (varies, rests) = (cx.system.varies(), free.iter().any(|&k| self.sizes.rests(k)));
+        let (varies, rests) = (cx.system.varies(), self.rests());
         if !(varies || rests) || free.is_empty() || !mass.factor_part(n, &self.slopes.d_a, free) {
             return Ok(largest);
         }
@@ -72,6 +72,11 @@ impl RadauStep {
         }
         self.spread(cx, bank, &mut mass, stretch, &mut largest);
         Ok(largest)
+    }
+
+    /// Whether any free velocity has been 0 so far.
+    pub(super) fn rests(&self) -> bool {
+        self.free.iter().any(|&k| self.sizes.rests(k))
     }
 
     /// Takes in the accelerations that forces `change` on the free velocities lead to.

@@ -105,8 +105,12 @@ impl Radau {
         self.step.sizes.take(&self.step.model, t, &self.step.origin.q, &self.step.origin.v);
         self.step.expect(cx, bank, 1.0 / recorder.settings.end);
         let stretch = self.longest_step(cx, &recorder.settings).min(self.step.sizes.response());
+        // What moves has a size; samples and breaks come by the thousand.
+        if t < 2.0 * self.step.sizes.looked() && !self.step.rests() {
+            return Ok(());
+        }
         let ahead = self.step.look_ahead(cx, bank, recorder.control.as_deref(), stretch)?;
-        self.step.sizes.look_ahead(ahead, stretch);
+        self.step.sizes.look_ahead(ahead, t + stretch);
         Ok(())
     }
 

@@ -28,9 +28,9 @@ pub(super) struct Rounding {
     pulls: Vec<f64>,
     /// Of each free velocity, N or N·m.
     forces: Vec<f64>,
-    /// |M⁻¹| over the free velocities, where it was asked for since the last linearisation.
-    inverse: Vec<f64>,
-    column: Vec<f64>,
+    /// Rows of |M⁻¹| over the free velocities that were asked for since the last linearisation, none being empty; nothing where M is singular.
+    inverse: Vec<Vec<f64>>,
+    is_factored: Option<bool>,
     /// Of each free velocity, m/s² or rad/s².
     pub(super) accelerations: Vec<f64>,
 }
@@ -38,7 +38,8 @@ pub(super) struct Rounding {
 impl Rounding {
     /// What is known of the mass matrix holds no longer.
     pub(super) fn forget(&mut self) {
-        self.inverse.clear();
+        self.inverse.iter_mut().for_each(Vec::clear);
+        self.is_factored = None;
     }
 }
 
@@ -64,11 +65,11 @@ impl RadauStep {
         let own = self.free.iter().zip(&rounding.forces).map(|(&k, f)| if mass(k) > 0.0 { f / mass(k) } else { 0.0 });
         rounding.accelerations.clear();
         rounding.accelerations.extend(own);
-        let is_close = rounding.accelerations.iter().enumerate().any(|(r, a)| allowed(r) <= CLOSE * h * a);
-        if is_close || rounding.forces.iter().zip(&rounding.accelerations).any(|(f, a)| *f > 0.0 && *a == 0.0) {
-            self.invert_mass(&mut rounding);
-            for (row, sum) in rounding.inverse.chunks_exact(count.max(1)).zip(&mut rounding.accelerations) {
-                *sum = row.iter().zip(&rounding.forces).map(|(m, f)| m * f).sum();
+        for r in 0..count {
+            let (force, own) = (rounding.forces[r], rounding.accelerations[r]);
+            if (allowed(r) <= CLOSE * h * own || (force > 0.0 && own == 0.0)) && self.invert_row(&mut rounding, r) {
+                let row = rounding.inverse[r].iter().zip(&rounding.forces);
+                rounding.accelerations[r] = row.map(|(m, f)| m * f).sum();
             }
         }
         self.rounding = rounding;
@@ -130,22 +131,23 @@ impl RadauStep {
         }
     }
 
-    /// |M⁻¹| over the free velocities; nothing where M is singular.
-    fn invert_mass(&mut self, rounding: &mut Rounding) {
+    /// Row `r` of |M⁻¹| over the free velocities; `false` where M is singular.
+    fn invert_row(&mut self, rounding: &mut Rounding, r: usize) -> bool {
         let (n, count) = (self.model.nv(), self.free.len());
-        let Rounding { inverse, column, .. } = rounding;
-        if inverse.len() == count * count || !self.mass.factor_part(n, &self.slopes.d_a, &self.free) {
-            return;
+        let Rounding { inverse, is_factored, .. } = rounding;
+        if !*is_factored.get_or_insert_with(|| self.mass.factor_part(n, &self.slopes.d_a, &self.free)) {
+            return false;
         }
-        inverse.resize(count * count, 0.0);
-        for c in 0..count {
-            column.clear();
-            column.resize(count, 0.0);
-            column[c] = 1.0;
-            self.mass.solve(column);
-            for (r, entry) in column.iter().enumerate() {
-                inverse[r * count + c] = entry.abs();
-            }
+        inverse.resize_with(count.max(inverse.len()), Vec::new);
+        let row = &mut inverse[r];
+        if row.len() != count {
+            // M is symmetric: its columns are rows.
+            row.clear();
+            row.resize(count, 0.0);
+            row[r] = 1.0;
+            self.mass.solve(row);
+            row.iter_mut().for_each(|entry| *entry = entry.abs());
         }
+        true
     }
 }

@@ -39,10 +39,9 @@ pub(super) struct Sizes {
     is_singular: bool,
     to_travel: Vec<f64>,
     to_speed: Vec<f64>,
-    /// Accelerations that come within a stretch of time from then, s, until it is over: what begins as a power of t is measured by what it
-    /// comes to soon.
+    /// Accelerations that come until a time, s, that was looked at: what begins as a power of t is measured by what it comes to soon.
     ahead: Vec<f64>,
-    stretch: f64,
+    looked: f64,
     /// Share of 1/ω below which no time is told from another.
     onset: f64,
 }
@@ -60,7 +59,7 @@ impl Sizes {
             to_travel: zero.clone(),
             to_speed: zero.clone(),
             ahead: zero,
-            stretch: 0.0,
+            looked: 0.0,
             onset: 0.0,
         }
     }
@@ -76,7 +75,7 @@ impl Sizes {
         for (largest, value) in self.travel.iter_mut().zip(&travel).chain(self.speed.iter_mut().zip(v)) {
             *largest = largest.max(value.abs());
         }
-        if t >= self.since + self.stretch {
+        if t >= self.looked {
             self.ahead.fill(0.0);
         }
         let time = self.elapsed(t);
@@ -95,9 +94,14 @@ impl Sizes {
         self.to_speed = self.to_travel.clone();
     }
 
-    /// Changes of the accelerations by `ahead` are to come within `stretch` seconds, until which nothing falls short of them.
-    pub(super) fn look_ahead(&mut self, ahead: Vec<f64>, stretch: f64) {
-        (self.ahead, self.stretch) = (ahead, stretch);
+    /// Changes of the accelerations by `ahead` are to come until the time `looked`, till which nothing falls short of them.
+    pub(super) fn look_ahead(&mut self, ahead: Vec<f64>, looked: f64) {
+        (self.ahead, self.looked) = (ahead, looked);
+    }
+
+    /// Until when what comes is known, s.
+    pub(super) fn looked(&self) -> f64 {
+        self.looked
     }
 
     /// When what acts began last, s.

@@ -5,7 +5,7 @@ use super::sizes::{Sizes, Tolerance};
 use super::stick::{Sliding, Stick};
 use crate::actuation::Forward;
 use crate::collocation::radau::A;
-use crate::collocation::{STAGES, lagrange_row};
+use crate::collocation::{STAGES, TABLEAU};
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{Element, ElementBank, Forces, NoDirection, Reading};
 use crate::integrate::context::Context;
@@ -222,7 +222,7 @@ impl RadauStep {
     pub(super) fn fit(&mut self) {
         let is_one_degree = self.model.is_one_degree();
         for p in 0..=STAGES {
-            let row: [f64; STAGES + 1] = std::array::from_fn(|k| lagrange_row(k)[p]);
+            let row = TABLEAU.rates[p];
             for j in 0..self.model.nv() {
                 self.cubic[p][j] = row.iter().zip(&self.regular).map(|(l, a)| l * a[j]).sum();
                 if !is_one_degree {

@@ -3,7 +3,7 @@
 use super::events::{Change, Look};
 use super::method::Radau;
 use crate::actuation::Drive;
-use crate::collocation::{STAGES, lagrange_row};
+use crate::collocation::{Cubic, STAGES};
 use crate::integrate::context::Context;
 use crate::integrate::control::ControlSeen;
 use crate::integrate::error::RunError;
@@ -30,8 +30,7 @@ const START: f64 = 1e-9;
 
 /// A holding force at the start and at the nodes of a step.
 struct Holding {
-    /// Coefficients of θ^p of the cubic through the values.
-    cubic: [f64; STAGES + 1],
+    cubic: Cubic,
     /// The force that breaks it, and how near a change has to be.
     breaking: f64,
     tolerance: f64,
@@ -163,10 +162,9 @@ impl Radau {
         if !values[0].is_finite() {
             values[0] = values[1];
         }
-        let cubic = std::array::from_fn(|p| (0..=STAGES).map(|i| lagrange_row(i)[p] * values[i]).sum());
         let stick = &self.step.stick;
         let tolerance = SHARE * recorder.settings.rtol * stick.limit(k);
-        Holding { cubic, breaking: stick.breaking(k, size) + 0.5 * tolerance, tolerance }
+        Holding { cubic: Cubic::through(&values), breaking: stick.breaking(k, size) + 0.5 * tolerance, tolerance }
     }
 
     /// The forces (nv) with which friction would hold every velocity, between the nodes.
@@ -220,7 +218,7 @@ impl Radau {
 
 impl Holding {
     fn at(&self, theta: f64) -> f64 {
-        self.cubic.iter().rev().fold(0.0, |sum, c| sum * theta + c)
+        self.cubic.at(theta)
     }
 
     /// What is missing to break away in a direction.
