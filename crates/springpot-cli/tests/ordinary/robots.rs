@@ -135,6 +135,22 @@ fn every_robot_is_let_go() {
     let_go(&[DOWN], 0.1);
 }
 
+/// Joints that rest on their stops while all of the robot falls are pressed against them by rounding alone.
+#[test]
+fn every_robot_is_let_go_on_its_stops() {
+    let mut tried = Tried::default();
+    for (robot, is_floating) in robots() {
+        let text = text(&robot, is_floating, DOWN, Start::Rest, 0.1);
+        let limited = text.replacen("[time]", "limits = { stiffness = 1e4, damping = 10 }\n[time]", 1);
+        let read = Scenario::parse(&limited, "ordinary.toml", ROOT).and_then(|s| s.cases(&Catalog::standard()));
+        // Robots without limits refuse the key.
+        if read.is_ok_and(|cases| cases.plan(0).is_ok()) {
+            tried.one(&format!("{robot}, floating {is_floating}"), ran(&limited));
+        }
+    }
+    tried.end(8);
+}
+
 #[test]
 #[ignore = "some minutes"]
 fn every_robot_is_let_go_for_a_second_under_two_gravities() {

@@ -269,6 +269,18 @@ impl History {
         self.take_modes(&z);
     }
 
+    /// The same with the faster modes that lags down to `lag` need; nothing where it has them.
+    pub(super) fn extended(&self, lag: f64) -> Option<Self> {
+        if self.kernel.missing(lag) == 0 {
+            return None;
+        }
+        let (kernel, last) = (self.kernel.clone(), self.last.clone());
+        let (lambda, weight, z) = (self.lambda.clone(), self.weight.clone(), self.z.clone());
+        let mut longer = Self { kernel, last, lambda, weight, z, tables: Vec::new(), ..*self };
+        longer.extend(lag);
+        Some(longer)
+    }
+
     /// Drops modes that are faster than lags of `lag` and longer need, once there are many of them.
     pub(super) fn drop_surplus(&mut self, lag: f64) {
         let surplus = ((lag / self.kernel.delta).ln() / self.kernel.eta).floor();

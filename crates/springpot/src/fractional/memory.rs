@@ -462,6 +462,9 @@ impl Memory {
         if theta == 0.0 && past.is_empty() {
             return Energy::default();
         }
+        // A step behind a kink is shorter than those before it: what its fast modes take in is not settled.
+        let longer = if step.h > 0.0 { past.extended(Nodes::Radau.positions()[0] * step.h) } else { None };
+        let past = longer.as_ref().unwrap_or(past);
         let mut power = 1.0;
         let scaled = step.u.map(|u| {
             let coefficient = power * u;
@@ -472,7 +475,11 @@ impl Memory {
         let [d1, d2, d3] = past.fast_tail();
         let bend = step.bend(theta);
         Energy {
-            stored: 0.5 * (weighted + d2 * rate * rate),
+            // What is stored at the start of a step is what was stored at the end of the one before.
+            stored: match &longer {
+                Some(_) if theta == 0.0 => self.stored(stroke, rate),
+                _ => 0.5 * (weighted + d2 * rate * rate),
+            },
             dissipation: with_rates + rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend,
         }
     }

@@ -71,12 +71,12 @@ impl Kinks {
         self.elements.is_empty()
     }
 
-    /// The first kink of the step that the bank was told.
-    pub(super) fn look(&mut self, bank: &ElementBank) -> Seen {
+    /// The first kink of the step that the bank was told; `noise` is what a motion that follows from forces rounds each stroke by.
+    pub(super) fn look(&mut self, bank: &ElementBank, noise: impl Fn(usize) -> f64) -> Seen {
         let mut first: Option<(f64, Kink)> = None;
         let mut is_at_end = false;
         for &element in &self.elements {
-            let noise = ROUNDINGS * bank.resolution(element);
+            let noise = ROUNDINGS * (bank.resolution(element) + noise(element));
             self.guards.clear();
             bank.guards(element, &mut self.guards);
             for (guard, values) in self.guards.iter().enumerate() {

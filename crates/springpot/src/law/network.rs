@@ -602,7 +602,7 @@ impl Network {
     }
 
     /// Whether a part of a series has a memory.
-    pub(super) fn has_memories_in_series(&self) -> bool {
+    pub(crate) fn has_memories_in_series(&self) -> bool {
         match self {
             Self::Leaf(_) => false,
             Self::Parallel(parts) => parts.iter().any(Self::has_memories_in_series),

@@ -128,3 +128,78 @@ fn an_unloaded_zener_of_low_order_starts() {
         holds(&rough, "q.x", &column_of(&fine, "q.x"), 1e-5);
     }
 }
+
+/// What rests until late in a long run is measured by what it does in the time in which it answers, not in the longest step: the same
+/// motion begins a short run at once.
+#[test]
+fn a_late_start_is_as_good_as_an_early_one() {
+    let chain = "[[robot.body]]\nname = \"c\"\njoint = { name = \"y\", kind = \"prismatic\", axis = [1, 0, 0] }\nmass = 0.01\n\
+                 [[element]]\nname = \"f\"\njoint = \"y\"\nlaw = \"kelvin-voigt\"\nparameters = { k = 40, c = 0.1 }\n";
+    for (end, forces) in [(1e4, ["@", "@^2", "@^3"]), (1e5, ["@^1.5", "@^2", "@^3"]), (1e6, ["@", "@^2", "1 - cos(@)"])]
+    {
+        let late = end - 12.0;
+        for force in forces {
+            for bodies in ["", chain] {
+                let run = |from: f64, end: f64| {
+                    let times: Vec<String> = [0.5, 1.0, 5.0, 10.0].iter().map(|t| (from + t).to_string()).collect();
+                    let torque = force.replace('@', &format!("max(0, t - {from})"));
+                    ran(&[
+                        bodies,
+                        SPRING,
+                        &format!(
+                            "[motion]\nkind = \"forward\"\ntorque = {{ x = \"{torque}\" }}\n[time]\nend = {end}\noutput_times = [{}]\n",
+                            times.join(", ")
+                        ),
+                    ])
+                };
+                let early = run(0.0, 12.0);
+                let expected: Vec<_> =
+                    column_of(&early, "q.x").into_iter().map(|(t, value)| (t + late, value)).collect();
+                // The time itself is known to 1e-10 s there.
+                holds(&run(late, end), "q.x", &expected, 1e-8);
+            }
+        }
+    }
+}
+
+/// The part that takes a jump at once tells the force behind it, wherever it stands in the series.
+#[test]
+fn an_unloaded_series_starts_in_any_order() {
+    let run = |network: &str| {
+        ran(&[&format!(
+            "[[element]]\nname = \"e\"\njoint = \"x\"\nnetwork = \"{network}\"\nparameters = {{ k = 2, c = 3, alpha = 0.5 }}\npast = \"unloaded\"\n\
+             [motion]\nkind = \"forward\"\nstart = {{ q = {{ x = 0.1 }} }}\n[time]\nend = 5\noutput_step = 0.5\n"
+        )])
+    };
+    let expected = run("series(spring(k), springpot(c, alpha))");
+    holds(&run("series(springpot(c, alpha), spring(k))"), "q.x", &column_of(&expected, "q.x"), 1e-9);
+    assert!(column_of(&expected, "q.x").len() == 11);
+}
+
+/// Energies of springpots in series behind a kink: a step there is much shorter than the lags that are kept.
+#[test]
+fn springpots_in_series_lose_at_a_kink_what_they_should() {
+    for (mass, end) in [("1", "2"), ("2000", "10"), ("1e5", "100")] {
+        let run = try_run(
+            &[
+                &SLIDER.replace("mass = 1", &format!("mass = {mass}")),
+                "[[element]]\nname = \"e\"\njoint = \"x\"\nnetwork = \"series(springpot(p, a), springpot(q, b))\"\n",
+                "parameters = { p = 50, a = 0.5, q = 0.1, b = 0.7 }\n[motion]\nkind = \"prescribed\"\n",
+                "joints = { x = \"max(0, 1 - abs(t - 0.8)/0.5)\" }\n[time]\nend = ",
+                end,
+                "\noutput_times = [0.799, 0.801, 1.31, ",
+                end,
+                "]\n",
+            ]
+            .concat(),
+        );
+        assert!(run.error.is_none(), "{mass}: {}", run.error.as_ref().unwrap());
+        let lost = run.column("e.dissipated");
+        let stored = run.column("e.stored");
+        let work = run.column("energy.actuators");
+        // Once the joint has come back, what the actuators did to the mass is 0.
+        let last = lost.len() - 1;
+        assert!((lost[last] + stored[last] - work[last]).abs() < 1e-9, "{mass}: {} {}", lost[last], work[last]);
+        assert!((work[last] - 0.213_447_448).abs() < 2e-8, "{mass}: {}", work[last]);
+    }
+}

@@ -53,6 +53,8 @@ pub(super) struct Prescribed {
     energy_floor: f64,
     /// The largest stroke of each element, m, seen beforehand.
     largest: Vec<f64>,
+    /// When a signal had its last kink, s.
+    since: f64,
     /// Velocities at which friction sticks: their power has a kink where they turn round.
     rubbing: Vec<usize>,
     /// Kinks of the elements' forces.
@@ -68,6 +70,7 @@ pub(super) struct Prescribed {
 pub(super) struct StepperState {
     energy_floor: f64,
     largest: Vec<f64>,
+    since: f64,
 }
 
 /// Error of a step in units of its tolerance, by what it comes from.
@@ -102,12 +105,12 @@ impl Prescribed {
         let rubbing = reversal::rubbing(&cx.system.model);
         let kinks = Kinks::of(cx.system);
         let (trajectory, largest) = (trajectory.clone(), vec![0.0; cx.system.elements.len()]);
-        Self { trajectory, energy_floor: 0.0, largest, rubbing, kinks, behind: None, refused: None }
+        Self { trajectory, energy_floor: 0.0, largest, since: 0.0, rubbing, kinks, behind: None, refused: None }
     }
 
     /// What the next step takes over from those before.
     pub(super) fn save(&self) -> StepperState {
-        StepperState { energy_floor: self.energy_floor, largest: self.largest.clone() }
+        StepperState { energy_floor: self.energy_floor, largest: self.largest.clone(), since: self.since }
     }
 
     /// Goes on from what was saved.
@@ -115,7 +118,7 @@ impl Prescribed {
     /// # Errors
     /// What a named scheme refuses.
     pub(super) fn load(&mut self, cx: Context, recorder: &mut Recorder, state: StepperState) -> Result<(), RunError> {
-        (self.energy_floor, self.largest) = (state.energy_floor, state.largest);
+        (self.energy_floor, self.largest, self.since) = (state.energy_floor, state.largest, state.since);
         let rows = recorder.settings.rows.clone();
         recorder.grid = on_grid::derivatives(cx, &self.trajectory, &rows, &mut recorder.scratch)?;
         Ok(())
@@ -180,7 +183,7 @@ impl Prescribed {
                 // A law that finds no force asks for a shorter step.
                 return Ok(StepError { memory: 1e3, alpha: 0.0, element: Some(e), energy: 0.0 });
             }
-            let (share, alpha) = recorder.memory_error(e);
+            let (share, alpha) = recorder.memory_error(e, usize::MAX, 0.0, self.since);
             if share > error.memory {
                 error = StepError { memory: share, alpha, element: Some(e), ..error };
             }
@@ -200,7 +203,7 @@ impl Prescribed {
         let (mut step, mut error, t) = (whole, error, whole.from);
         let (mut low, mut high, mut wanted, mut from_behind) = (t, f64::INFINITY, None, 0);
         for _ in 0..MOST_TRIES {
-            let next = match (self.kinks.look(&recorder.bank), wanted) {
+            let next = match (self.kinks.look(&recorder.bank, |_| 0.0), wanted) {
                 (Seen::AtEnd, _) | (Seen::Nothing, None) => break,
                 (Seen::Nothing, Some(kink)) => {
                     (low, from_behind) = (step.to, 0);
@@ -380,6 +383,7 @@ impl Stepper for Prescribed {
             _ => self.look_across(cx, recorder, 0, after)?,
         };
         recorder.jump(cx, right)?;
+        self.since = after;
         Ok(())
     }
 }

@@ -4,6 +4,7 @@ use super::drives::{force_at, take_path};
 use super::step::RadauStep;
 use crate::actuation::Drive;
 use crate::elements::{ElementBank, Forces};
+use crate::fractional::Kind as Derivative;
 use crate::integrate::context::Context;
 use crate::integrate::control::ControlRun;
 use crate::integrate::error::RunError;
@@ -16,16 +17,42 @@ const TURN: f64 = 0.3;
 /// Share of the largest acceleration that rounding may make of none.
 const ROUNDED: f64 = 1e-12;
 
+/// How often the stretch that is looked at is brought nearer to the time in which the system answers what comes.
+const MOST_LOOKS: usize = 12;
+
 /// Where in the stretch ahead forces are looked at.
 const PLACES: [f64; 5] = [0.01, 0.09, 0.31, 0.66, 1.0];
 
 impl RadauStep {
+    /// The accelerations that come within `stretch` seconds at most, and the time in which the system answers them, s, which no look goes beyond.
+    ///
+    /// # Errors
+    /// Where what drives the robot is not finite.
+    pub(super) fn foresee(
+        &self,
+        cx: Context,
+        bank: &ElementBank,
+        control: Option<&ControlRun>,
+        mut stretch: f64,
+    ) -> Result<(Vec<f64>, f64), RunError> {
+        let mut ahead = self.look_ahead(cx, bank, control, stretch)?;
+        for _ in 0..MOST_LOOKS {
+            let answer = self.answering_rate(cx, bank, &ahead, 0.0).recip();
+            if answer >= 0.5 * stretch {
+                break;
+            }
+            stretch = answer;
+            ahead = self.look_ahead(cx, bank, control, stretch)?;
+        }
+        Ok((ahead.into_iter().map(f64::abs).collect(), stretch))
+    }
+
     /// By how much the accelerations of all velocities change most within `stretch` seconds from the origin, m/s² or rad/s², were the robot to
     /// stay where it is: M Δa = Δτ − Σ g ΔF − M_fp Δa_p, where torques, inputs and prescribed joints go on.
     ///
     /// # Errors
     /// Where what drives the robot is not finite.
-    pub(super) fn look_ahead(
+    fn look_ahead(
         &self,
         cx: Context,
         bank: &ElementBank,
@@ -41,6 +68,7 @@ impl RadauStep {
         }
         if rests {
             self.accelerate(&mut mass, &self.drift(cx, bank), &mut largest);
+            self.accelerate(&mut mass, &self.jolt(cx, bank, stretch), &mut largest);
         }
         if !varies {
             self.spread(cx, bank, &mut mass, stretch, &mut largest);
@@ -84,7 +112,9 @@ impl RadauStep {
         let mut x: Vec<f64> = self.free.iter().map(|&k| change[k]).collect();
         mass.solve(&mut x);
         for (&k, a) in self.free.iter().zip(x).filter(|(_, a)| a.is_finite()) {
-            largest[k] = f64::max(largest[k], a.abs());
+            if a.abs() > largest[k].abs() {
+                largest[k] = a;
+            }
         }
     }
 
@@ -94,7 +124,7 @@ impl RadauStep {
         for _ in &self.free {
             let unmoved = |k: usize| largest[k] == 0.0 && a[k] == 0.0 && self.sizes.rests(k);
             let unmoved: Vec<usize> = self.free.iter().copied().filter(|&k| unmoved(k)).collect();
-            let speed: Vec<f64> = largest.iter().zip(a).map(|(ahead, a)| stretch * (ahead + a.abs())).collect();
+            let speed: Vec<f64> = largest.iter().zip(a).map(|(ahead, a)| stretch * (ahead.abs() + a.abs())).collect();
             if unmoved.is_empty() || speed.iter().all(|speed| *speed == 0.0) {
                 return;
             }
@@ -114,8 +144,8 @@ impl RadauStep {
             }
             let mut taken = vec![0.0; n];
             self.accelerate(mass, &change, &mut taken);
-            let least = ROUNDED * taken.iter().fold(0.0, |largest: f64, a| largest.max(*a));
-            let along: Vec<usize> = unmoved.into_iter().filter(|&k| taken[k] > least).collect();
+            let least = ROUNDED * taken.iter().fold(0.0, |largest: f64, a| largest.max(a.abs()));
+            let along: Vec<usize> = unmoved.into_iter().filter(|&k| taken[k].abs() > least).collect();
             if along.is_empty() {
                 return;
             }
@@ -143,6 +173,23 @@ impl RadauStep {
             }
         }
         change
+    }
+
+    /// The forces on all velocities by which series answer a stroke that is there at once at t = 0, soon after: at first they may be nothing, or
+    /// without bound.
+    fn jolt(&self, cx: Context, bank: &ElementBank, stretch: f64) -> Vec<f64> {
+        let mut forces = vec![0.0; self.model.nv()];
+        if self.origin.t > 0.0 {
+            return forces;
+        }
+        for (e, (element, stage)) in cx.system.elements.iter().zip(&self.elements).enumerate() {
+            let point = bank.point(e, 0);
+            if element.derivative == Derivative::RiemannLiouville && element.law.has_memories_in_series() {
+                let pull = element.law.stiffness(&point, stretch.recip()) * point.stroke;
+                forces.iter_mut().zip(&stage.gradient).for_each(|(sum, g)| *sum -= g * pull);
+            }
+        }
+        forces
     }
 
     /// How fast the stroke of element `e` may be at the end of a step of size `h` by what was seen ahead, m/s or rad/s.

@@ -75,7 +75,7 @@ impl Radau {
                 h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
             // Where a kink makes the error, a step up to it has none of that.
             if error.is_finite()
-                && let Seen::Within(theta, _) = self.kinks.look(&recorder.bank)
+                && let Seen::Within(theta, _) = self.kinks.look(&recorder.bank, |e| self.step.stroke_noise(e, h))
             {
                 smaller = smaller.max((1.01 * theta).min(0.9) * h);
             }
@@ -124,8 +124,7 @@ impl Radau {
             if errors == 0 {
                 continue;
             }
-            let (share, order) =
-                recorder.memory_error_of(e, errors, self.step.coming_rate(e, h), self.step.sizes.since());
+            let (share, order) = recorder.memory_error(e, errors, self.step.coming_rate(e, h), self.step.sizes.since());
             let memory = share.powf(1.0 / (EXPONENT * (4.0 - order)));
             if memory > error {
                 (error, worst) = (memory, Worst::Element(e));

@@ -109,8 +109,8 @@ impl Radau {
         if t < 2.0 * self.step.sizes.looked() && !self.step.rests() {
             return Ok(());
         }
-        let ahead = self.step.look_ahead(cx, bank, recorder.control.as_deref(), stretch)?;
-        self.step.sizes.look_ahead(ahead, t + stretch);
+        let (ahead, stretch) = self.step.foresee(cx, bank, recorder.control.as_deref(), stretch)?;
+        self.step.sizes.look_ahead(ahead, stretch);
         Ok(())
     }
 

@@ -27,6 +27,12 @@ impl RadauStep {
         self.sized = sized;
     }
 
+    /// What rounding of the accelerations does to the stroke of element `e` in a step of size `h`, m or rad.
+    pub(super) fn stroke_noise(&self, e: usize, h: f64) -> f64 {
+        let noise = self.free.iter().zip(&self.noise);
+        noise.map(|(&k, noise)| self.elements[e].gradient[k].abs() * h * noise).sum()
+    }
+
     /// How fast and how far each free velocity moves until the end of a step of size `h`.
     fn size_up(&mut self, cx: Context, bank: &ElementBank, control: Option<&ControlRun>, h: f64) {
         let (n, sizes) = (self.model.nv(), &self.sizes);
@@ -59,10 +65,10 @@ impl RadauStep {
         }
     }
 
-    /// The rate ω at which the system answers its accelerations at the origin, rad/s: the Rayleigh quotient of stiffness and mass along
+    /// The rate ω at which the system answers accelerations `a` from the origin, rad/s: the Rayleigh quotient of stiffness and mass along
     /// them, with ω² aᵀMa = |aᵀKa| + Σ (k + c ω^α)(g·a)². Not below `slowest` and |a|/|v|, by the mass matrix.
-    pub(super) fn answering_rate(&self, cx: Context, bank: &ElementBank, slowest: f64) -> f64 {
-        let (n, a, slopes) = (self.model.nv(), &self.origin.a, &self.slopes);
+    pub(super) fn answering_rate(&self, cx: Context, bank: &ElementBank, a: &[f64], slowest: f64) -> f64 {
+        let (n, slopes) = (self.model.nv(), &self.slopes);
         let along = |matrix: &[f64], x: &[f64]| -> f64 {
             let rows =
                 self.free.iter().map(|&r| x[r] * self.free.iter().map(|&c| matrix[r * n + c] * x[c]).sum::<f64>());
@@ -96,7 +102,7 @@ impl RadauStep {
 
     /// Expects what the accelerations at the origin begin.
     pub(super) fn expect(&mut self, cx: Context, bank: &ElementBank, slowest: f64) {
-        let omega = self.answering_rate(cx, bank, slowest);
+        let omega = self.answering_rate(cx, bank, &self.origin.a, slowest);
         self.sizes.expect(self.origin.t, &self.origin.a, omega, self.is_singular);
     }
 }

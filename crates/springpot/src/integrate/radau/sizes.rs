@@ -39,8 +39,10 @@ pub(super) struct Sizes {
     is_singular: bool,
     to_travel: Vec<f64>,
     to_speed: Vec<f64>,
-    /// Accelerations that come until a time, s, that was looked at: what begins as a power of t is measured by what it comes to soon.
+    /// Accelerations that come within a stretch of time, s, in which the system answers them, until it is over: what begins as a power of t is
+    /// measured by what it comes to soon.
     ahead: Vec<f64>,
+    stretch: f64,
     looked: f64,
     /// Share of 1/ω below which no time is told from another.
     onset: f64,
@@ -59,6 +61,7 @@ impl Sizes {
             to_travel: zero.clone(),
             to_speed: zero.clone(),
             ahead: zero,
+            stretch: 0.0,
             looked: 0.0,
             onset: 0.0,
         }
@@ -94,9 +97,9 @@ impl Sizes {
         self.to_speed = self.to_travel.clone();
     }
 
-    /// Changes of the accelerations by `ahead` are to come until the time `looked`, till which nothing falls short of them.
-    pub(super) fn look_ahead(&mut self, ahead: Vec<f64>, looked: f64) {
-        (self.ahead, self.looked) = (ahead, looked);
+    /// Changes of the accelerations by `ahead` are to come within `stretch` seconds from what began last, till which nothing falls short of them.
+    pub(super) fn look_ahead(&mut self, ahead: Vec<f64>, stretch: f64) {
+        (self.ahead, self.stretch, self.looked) = (ahead, stretch, self.since + stretch);
     }
 
     /// Until when what comes is known, s.
@@ -126,12 +129,12 @@ impl Sizes {
 
     /// The speed of velocity `k` until `t` by what was seen ahead.
     pub(super) fn coming(&self, k: usize, t: f64) -> f64 {
-        self.ahead[k] * self.elapsed(t)
+        self.ahead[k] * self.elapsed(t).min(self.stretch)
     }
 
     /// The largest travel of velocity `k` until `t`.
     pub(super) fn travel(&self, k: usize, t: f64) -> f64 {
-        let ahead = self.ahead[k] * self.elapsed(t).powi(2);
+        let ahead = self.ahead[k] * self.elapsed(t).min(self.stretch).powi(2);
         self.travel[k].max(self.to_travel[k] * self.time(t).powi(2)).max(ahead)
     }
 

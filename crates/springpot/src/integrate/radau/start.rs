@@ -253,7 +253,7 @@ pub(super) fn first_step(
 ) -> f64 {
     let RadauStep { model, origin, free, sizes, tolerance, .. } = step;
     let kinematics = Kinematics::at_velocity(model, &origin.q, &origin.v);
-    let mut h = (tolerance.rtol.powf(0.25) / step.answering_rate(cx, bank, 1.0 / end)).min(0.1 * end);
+    let mut h = (tolerance.rtol.powf(0.25) / step.answering_rate(cx, bank, &origin.a, 1.0 / end)).min(0.1 * end);
     for (e, (element, start)) in cx.system.elements.iter().zip(elements).enumerate() {
         let mut inputs = vec![Default::default(); element.inputs.len()];
         cx.inputs_at(e, 0.0, &mut inputs);

@@ -87,7 +87,7 @@ impl Radau {
         if let Some(theta) = self.first_reversal(h) {
             note(theta, Change::Reversal);
         }
-        match self.kinks.look(&recorder.bank) {
+        match self.kinks.look(&recorder.bank, |e| self.step.stroke_noise(e, h)) {
             Seen::Nothing => {}
             Seen::Within(theta, kink) => note(theta, Change::Kink(kink)),
             Seen::AtEnd => self.is_at_kink = true,

@@ -119,14 +119,10 @@ impl Recorder {
         (0..self.bank.len()).any(|e| !self.bank.takes_part(e))
     }
 
-    /// The largest of the local errors of element `e` in units of their tolerances, and its order.
-    pub(in crate::integrate) fn memory_error(&self, e: usize) -> (f64, f64) {
-        self.memory_error_of(e, usize::MAX, 0.0, 0.0)
-    }
-
-    /// As [`Self::memory_error`], of so many of them, the first ones, where the stroke is about to be as fast as `rate` and what acts began at the
-    /// time `since`: what has only begun is not looked at more closely than a share of what that leads to in the step.
-    pub(in crate::integrate) fn memory_error_of(&self, e: usize, first: usize, rate: f64, since: f64) -> (f64, f64) {
+    /// The largest of the first so many local errors of element `e` in units of their tolerances, and its order, where the stroke is about to be as
+    /// fast as `rate` and what acts began at the time `since`: what has only begun is not looked at more closely than a share of what that leads
+    /// to in the step.
+    pub(in crate::integrate) fn memory_error(&self, e: usize, first: usize, rate: f64, since: f64) -> (f64, f64) {
         let settings = &self.settings;
         let mut worst = (0.0, 0.0);
         // Strokes inside a series may begin like no power of t, alike on every scale of time: the very first steps err by what is soon nothing.

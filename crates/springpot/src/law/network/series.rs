@@ -238,21 +238,25 @@ pub(super) fn now(parts: &[Network], at: &Point, state: &mut StateRef, take: Tak
     let (mut rates, mut whole) = ([1.0; MOST_IN_SERIES], f64::NAN);
     let iterations = if parts.iter().all(Network::is_linear) { 1 } else { MOST_SECANTS };
     for _ in 0..iterations {
-        let (mut follows, mut yielding, mut owed) = (None, 0.0, 0.0);
+        let (mut follows, mut yielding, mut owed): (Option<(f64, f64)>, _, _) = (None, 0.0, 0.0);
         let (mut ahead, before) = (*state, whole);
         let mut lines = [[0.0; 2]; MOST_IN_SERIES];
         for (k, (part, &stroke)) in parts.iter().zip(strokes).enumerate() {
             let rest = force(part, stroke, 0.0, &ahead);
             let slope = (force(part, stroke, rates[k], &ahead) - rest) / rates[k];
             if slope == 0.0 {
-                follows.get_or_insert(rest);
+                // What springpots have not begun to tell springs know.
+                let order = part.asymptote(at, Onset::Short).order;
+                if follows.is_none_or(|(least, _)| order < least) {
+                    follows = Some((order, rest));
+                }
             } else {
                 (yielding, owed) = (yielding + slope.recip(), owed + rest / slope);
             }
             lines[k] = [rest, slope];
             part.pass(&mut ahead);
         }
-        whole = follows.unwrap_or((at.rate + owed) / yielding);
+        whole = follows.map_or((at.rate + owed) / yielding, |(_, rest)| rest);
         for (rate, [rest, slope]) in rates.iter_mut().zip(lines) {
             *rate = if slope == 0.0 { 0.0 } else { (whole - rest) / slope };
         }
