@@ -139,6 +139,19 @@ impl Element {
         past::settle(&self.law, start, state, tolerance, horizon)
     }
 
+    /// What a jump at t = 0 does that [`Self::settled`] does not tell ([`past::jolt`]).
+    ///
+    /// # Errors
+    /// As [`Self::begin`].
+    pub(crate) fn jolt(
+        &self,
+        start: &Start,
+        tolerance: f64,
+        horizon: f64,
+    ) -> Result<Option<(State, f64)>, KernelError> {
+        past::jolt(&self.law, start, tolerance, horizon)
+    }
+
     /// The range of its memories in their own time, under the inputs at t = 0 and what its signals say of the rest of the run.
     pub fn memory_range(&self, range: MemoryRange, inputs: &[InputValue]) -> MemoryRange {
         let Some(heated) = self.law.as_heated() else { return range };

@@ -536,6 +536,21 @@ impl Network {
         }
     }
 
+    /// Whether the force is without bound behind a stroke that is there at once, by what stands in series.
+    pub(super) fn jolts(&self, at: &Point) -> bool {
+        match self {
+            Self::Leaf(_) | Self::Heated(_) => false,
+            Self::Parallel(parts) => parts.iter().any(|part| part.jolts(at)),
+            Self::Series(_) => self.asymptote(at, Onset::Short).order > 0.0,
+        }
+    }
+
+    /// The coefficient of the dashpot that it is like at short times; 0 where it is like none.
+    pub(super) fn dashed(&self, at: &Point) -> f64 {
+        let Term { coefficient, order } = self.asymptote(at, Onset::Short);
+        if order == 1.0 { coefficient } else { 0.0 }
+    }
+
     /// Hands over s and alpha of every share s·t^−alpha of a singular start in F.
     pub fn for_each_singularity(&self, inputs: &[InputValue], state: &State, take: &mut dyn FnMut(Term)) {
         if state.is_singular() {
@@ -602,7 +617,7 @@ impl Network {
     }
 
     /// Whether a part of a series has a memory.
-    pub(crate) fn has_memories_in_series(&self) -> bool {
+    pub(super) fn has_memories_in_series(&self) -> bool {
         match self {
             Self::Leaf(_) => false,
             Self::Parallel(parts) => parts.iter().any(Self::has_memories_in_series),

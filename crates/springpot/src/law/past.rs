@@ -248,6 +248,36 @@ pub(crate) fn settle(
     Ok(later.behind(state))
 }
 
+/// The state soon after a jump at t = 0 as [`settle`] has it, and how much more impulse than by that the force has until then, N·s: what a motion
+/// that follows from forces must be given at once. Nothing where the force is finite from the first, or the law not linear.
+///
+/// With ages a_i, weights w_i and K the modulus it is x(0) Σ w_i L⁻¹[K/s²](a_i), less the impulse at t = 0 itself of what is like a dashpot there.
+///
+/// # Errors
+/// [`KernelError`] where a memory cannot be.
+pub(crate) fn jolt(
+    law: &Network,
+    start: &Start,
+    tolerance: f64,
+    horizon: f64,
+) -> Result<Option<(State, f64)>, KernelError> {
+    let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
+    if start.jump == 0.0 || !law.jolts(&at) || !shares_by_modulus(law, start.inputs) {
+        return Ok(None);
+    }
+    let ages = TOGETHER.map(|[age, share]| [age * SOON * horizon, share]);
+    let state = stretched(law, start, ages.into_iter(), tolerance, horizon)?;
+    let impulse = |[age, share]: [f64; 2]| {
+        let terms = contour().map(|[z, weight]| {
+            let s = z / age;
+            law.modulus(&at, s) / (s * s) * weight / age
+        });
+        share * 2.0 * terms.sum::<Complex64>().re
+    };
+    let owed = ages.into_iter().map(impulse).sum::<f64>() - law.dashed(&at);
+    Ok(Some((state, start.jump * owed)))
+}
+
 /// Whether strokes inside follow from moduli alone: those of a linear law that gives no force where nothing was ever stretched.
 fn shares_by_modulus(law: &Network, inputs: &[InputValue]) -> bool {
     let origin = Start { stroke: 0.0, jump: 0.0, inputs };

@@ -203,3 +203,40 @@ fn springpots_in_series_lose_at_a_kink_what_they_should() {
         assert!((work[last] - 0.213_447_448).abs() < 2e-8, "{mass}: {}", work[last]);
     }
 }
+
+/// Series whose force is without bound behind a jump push a mass from the first; right is an inverse Laplace transform of
+/// (s m + c₁) x(0)/(m s² + K), c₁ being the impulse of a dashpot, which is not told (Weideman's contour, 40 digits, two depths agree).
+#[test]
+fn series_that_jolt_push_a_mass() {
+    for (network, expected) in [
+        (
+            "series(springpot(c, a), springpot(k, b))",
+            [0.099994616937247, 0.098535345864047, 0.066935795902471, -0.01377310884473, -0.003426951712594],
+        ),
+        (
+            "series(springpot(c, a), dashpot(k))",
+            [0.099993082388307, 0.097957307226432, 0.061049072412213, -0.0022815484171528, -0.001599129799396],
+        ),
+        (
+            "series(parallel(springpot(c, a), dashpot(k)), parallel(springpot(k_2, b), dashpot(c_2)))",
+            [0.099994016648461, 0.098574859734678, 0.072514042482326, 0.032788061692983, 0.026360930863227],
+        ),
+        (
+            "parallel(springpot(c_2, b_2), series(springpot(c, a), springpot(k, b)))",
+            [0.099962250840138, 0.093452679433682, 0.012830735247207, -0.0037672669981968, -0.00071233819818743],
+        ),
+    ] {
+        let known = [("c", 3.0), ("a", 0.5), ("k", 2.0), ("b", 0.7), ("c_2", 3.0), ("k_2", 2.0), ("b_2", 0.7)];
+        let named = known
+            .iter()
+            .filter(|(name, _)| network.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == *name));
+        let parameters: Vec<String> = named.map(|(name, value)| format!("{name} = {value}")).collect();
+        let run = ran(&[&format!(
+            "[[element]]\nname = \"e\"\njoint = \"x\"\nnetwork = \"{network}\"\nparameters = {{ {} }}\npast = \"unloaded\"\n\
+             [motion]\nkind = \"forward\"\nstart = {{ q = {{ x = 0.1 }} }}\n[time]\nend = 5\noutput_times = [0.001, 0.05, 0.5, 2, 5]\n",
+            parameters.join(", ")
+        )]);
+        let rows: Vec<_> = [0.001, 0.05, 0.5, 2.0, 5.0].into_iter().zip(expected).collect();
+        holds(&run, "q.x", &rows, 2e-9);
+    }
+}

@@ -4,7 +4,6 @@ use super::drives::{force_at, take_path};
 use super::step::RadauStep;
 use crate::actuation::Drive;
 use crate::elements::{ElementBank, Forces};
-use crate::fractional::Kind as Derivative;
 use crate::integrate::context::Context;
 use crate::integrate::control::ControlRun;
 use crate::integrate::error::RunError;
@@ -68,7 +67,6 @@ impl RadauStep {
         }
         if rests {
             self.accelerate(&mut mass, &self.drift(cx, bank), &mut largest);
-            self.accelerate(&mut mass, &self.jolt(cx, bank, stretch), &mut largest);
         }
         if !varies {
             self.spread(cx, bank, &mut mass, stretch, &mut largest);
@@ -173,23 +171,6 @@ impl RadauStep {
             }
         }
         change
-    }
-
-    /// The forces on all velocities by which series answer a stroke that is there at once at t = 0, soon after: at first they may be nothing, or
-    /// without bound.
-    fn jolt(&self, cx: Context, bank: &ElementBank, stretch: f64) -> Vec<f64> {
-        let mut forces = vec![0.0; self.model.nv()];
-        if self.origin.t > 0.0 {
-            return forces;
-        }
-        for (e, (element, stage)) in cx.system.elements.iter().zip(&self.elements).enumerate() {
-            let point = bank.point(e, 0);
-            if element.derivative == Derivative::RiemannLiouville && element.law.has_memories_in_series() {
-                let pull = element.law.stiffness(&point, stretch.recip()) * point.stroke;
-                forces.iter_mut().zip(&stage.gradient).for_each(|(sum, g)| *sum -= g * pull);
-            }
-        }
-        forces
     }
 
     /// How fast the stroke of element `e` may be at the end of a step of size `h` by what was seen ahead, m/s or rad/s.

@@ -149,11 +149,14 @@ impl Stepper for Radau {
         drive(cx, &forward, 0.0, evaluation);
         cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
         recorder.take_inputs_at_start(cx);
+        let jolts = start::jolts(cx, &recorder.evaluations[0], &settings)?;
+        recorder.jolts = jolts.iter().map(Option::is_some).collect();
         recorder.begin(cx)?;
         if let (Some(control), [evaluation, ..]) = (&recorder.control, &mut recorder.evaluations) {
             control.add_torques(cx, 0, evaluation);
         }
         self.step.origin = origin;
+        start::kick(cx, &elements, &jolts, &self.step.free, &mut self.step.origin);
         self.step.is_singular = recorder.bank.has_singular();
         if self.step.is_singular {
             let [evaluation, ..] = &mut recorder.evaluations;

@@ -11,8 +11,10 @@ use crate::elements::{ElementBank, Forces, Pull};
 use crate::integrate::context::Context;
 use crate::integrate::control::{ControlRun, Eye};
 use crate::integrate::error::RunError;
+use crate::integrate::evaluate::Evaluation;
 use crate::integrate::jump::refuse_jumps;
 use crate::integrate::resistance::add_smooth_resistance;
+use crate::integrate::settings::Settings;
 use crate::law::{Derivative, InputValue, Point, State, Term};
 use crate::linalg::Lu;
 
@@ -53,6 +55,53 @@ pub(super) fn origin(
         Ok(system.elements[e].law.now(point, &begin(cx, e, point, coordinate)?).regular)
     })?;
     Ok((origin, elements))
+}
+
+/// What jumps at t = 0 do at once, of each element ([`crate::law::past::jolt`]).
+///
+/// # Errors
+/// Where a memory cannot be.
+pub(super) fn jolts(
+    cx: Context,
+    evaluation: &Evaluation,
+    settings: &Settings,
+) -> Result<Vec<Option<(State, f64)>>, RunError> {
+    let elements = cx.system.elements.iter().zip(&evaluation.elements);
+    let jolts = elements.map(|(element, at)| {
+        let start = element.start(at.reading.coordinate, &at.inputs);
+        let jolt = element.jolt(&start, settings.memory_rtol, settings.end);
+        jolt.map_err(RunError::of_kernel(&element.name))
+    });
+    jolts.collect()
+}
+
+/// Goes from t = 0 to soon after, where `jolts` have pushed the free velocities.
+pub(super) fn kick(
+    cx: Context,
+    elements: &[ElementStart],
+    jolts: &[Option<(State, f64)>],
+    free: &[usize],
+    origin: &mut Origin,
+) {
+    let kinematics = Kinematics::at_velocity(&cx.system.model, &origin.q, &origin.v);
+    let push = |gradient: &[f64], size: f64, pushed: &mut [f64]| {
+        let mut share: Vec<f64> = free.iter().map(|&k| -gradient[k] * size).collect();
+        solve_mass(cx, &kinematics, free, &mut share);
+        free.iter().zip(share).for_each(|(&k, share)| pushed[k] += share);
+    };
+    let jolted = || elements.iter().zip(jolts).enumerate().filter_map(|(e, (at, jolt))| Some((e, at, jolt.as_ref()?)));
+    for (_, element, (_, impulse)) in jolted() {
+        push(&element.gradient, *impulse, &mut origin.v);
+    }
+    for (e, element, (state, _)) in jolted() {
+        let mut inputs = vec![InputValue::default(); cx.system.elements[e].inputs.len()];
+        cx.inputs_at(e, 0.0, &mut inputs);
+        let rate = element.gradient.iter().zip(&origin.v).map(|(g, v)| g * v).sum();
+        let point = Point { t: 0.0, stroke: element.stroke, rate, inputs: &inputs };
+        let force = cx.system.elements[e].law.now(&point, state).force();
+        push(&element.gradient, force - origin.forces[e], &mut origin.a);
+        origin.forces[e] = force;
+    }
 }
 
 /// The state of a law at t = 0, before its first step is chosen.

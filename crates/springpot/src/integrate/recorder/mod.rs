@@ -48,6 +48,8 @@ pub(super) struct Recorder {
     pub(super) powers: StepPowers,
     /// Whether actuators move the elements, as along kinematics given in advance.
     pub(super) takes_elements_work: bool,
+    /// Whether the force of each element is without bound behind a jump at t = 0, and its impulse is given at once.
+    pub(super) jolts: Vec<bool>,
     /// Of elements with named schemes.
     pub(super) grid: GridDerivatives,
     /// Elements that warm themselves.
@@ -97,6 +99,7 @@ impl Recorder {
             control: ControlRun::of(cx.system, settings.fixed_step.is_some()),
             powers: StepPowers::default(),
             takes_elements_work: true,
+            jolts: vec![false; cx.system.elements.len()],
             grid: vec![None; cx.system.elements.len()],
             thermal: (0..cx.system.elements.len()).filter(|&e| cx.system.elements[e].law.is_thermal()).collect(),
             ledger: Ledger::default(),
@@ -160,8 +163,8 @@ impl Recorder {
             let mut state = begun.map_err(RunError::of_kernel(&element.name))?;
             element.check_start(&state)?;
             let start = element.start(at.reading.coordinate, &at.inputs);
-            // Where the motion is sought, what the force does until then counts too.
-            if self.takes_elements_work {
+            // Where the motion is sought, what the force does until then counts too, unless that is given to it at once.
+            if self.takes_elements_work || self.jolts[e] {
                 let range = MemoryRange { tolerance, shortest: 0.0, horizon };
                 state = element.settled(&start, state, range).map_err(RunError::of_kernel(&element.name))?;
             }
