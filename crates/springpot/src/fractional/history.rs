@@ -18,6 +18,9 @@ use serde::{Deserialize, Serialize};
 /// Lags that are kept ready: the nodes of two alternating step sizes, four at most.
 const SLOTS: usize = 8;
 
+/// Share of the shortest lag of a kernel down to which its tail tells what the modes above do.
+const SETTLED: f64 = 0.25;
+
 /// Modes faster than the pieces need are dropped once there are this many.
 const SURPLUS: usize = 16;
 
@@ -269,9 +272,9 @@ impl History {
         self.take_modes(&z);
     }
 
-    /// The same with the faster modes that lags down to `lag` need; nothing where it has them.
+    /// The same with the faster modes that lags down to `lag` need; nothing where it has them, or nearly: under a smooth rate the tail is as good.
     pub(super) fn extended(&self, lag: f64) -> Option<Self> {
-        if self.kernel.missing(lag) == 0 {
+        if lag >= SETTLED * self.kernel.delta {
             return None;
         }
         let (kernel, last) = (self.kernel.clone(), self.last.clone());

@@ -128,7 +128,8 @@ impl Recorder {
         // Strokes inside a series may begin like no power of t, alike on every scale of time: the very first steps err by what is soon nothing.
         let is_onset = self.bank.from() + self.bank.size() - since <= SHORTEST_LEDGER_STEP * settings.end;
         for (m, error) in self.bank.errors(e).iter().enumerate().take(first) {
-            let scale = self.bank.scale(e, m).max(BEGUN * rate * self.bank.size().powf(1.0 - error.order));
+            let soon = if rate > 0.0 { BEGUN * rate * self.bank.size().powf(1.0 - error.order) } else { 0.0 };
+            let scale = self.bank.scale(e, m).max(soon);
             let allowed = settings.atol.unwrap_or(0.0).max(settings.rtol * scale);
             let share = match error.share(scale, allowed) {
                 share if is_onset && share.is_finite() => share.min(1.0),
