@@ -46,6 +46,9 @@ pub(crate) fn refused(error: &ResultsError) -> Ending {
 fn help(error: &ResultsError) -> String {
     match error {
         ResultsError::File { .. } | ResultsError::NoRecord(_) => "name the folder of the results of a run".to_owned(),
+        ResultsError::Damaged { .. } => {
+            "what a run wrote was changed or damaged since: take it from a copy, or run the scenario again".to_owned()
+        }
         ResultsError::NoScene(_) => "run the scenario again".to_owned(),
         ResultsError::NoCase(_) => "cases are counted from 0, as run.json lists them".to_owned(),
         ResultsError::NoRow(_) => "run.json says why each case ended".to_owned(),

@@ -24,9 +24,14 @@ pub(crate) fn words(cases: &Cases, axis: usize) -> String {
 
 fn values(cases: &Cases, axis: usize) -> String {
     let len = cases.axis_len(axis);
+    // A name with a comma would read as two.
+    let label = |k: usize| match cases.axis_label(axis, k) {
+        name if cases.axis_names(axis).is_some() && name.contains(',') => format!("{name:?}"),
+        label => label,
+    };
     if len <= PRINTED {
-        return (0..len).map(|k| cases.axis_label(axis, k)).collect::<Vec<_>>().join(", ");
+        return (0..len).map(label).collect::<Vec<_>>().join(", ");
     }
-    let first: Vec<String> = (0..3).map(|k| cases.axis_label(axis, k)).collect();
-    format!("{}, …, {} ({len} values)", first.join(", "), cases.axis_label(axis, len - 1))
+    let first: Vec<String> = (0..3).map(label).collect();
+    format!("{}, …, {} ({len} values)", first.join(", "), label(len - 1))
 }

@@ -71,22 +71,60 @@ pub(crate) struct Recorded {
 
 /// Parameters that are swept together.
 #[derive(Debug, Deserialize)]
+#[serde(try_from = "ReadSweep")]
 pub(crate) struct Sweep {
     pub(crate) parameters: Vec<String>,
-    #[serde(default)]
     pub(crate) count: usize,
     /// The values by their names, or as they were written.
-    #[serde(default)]
     pub(crate) labels: Vec<String>,
     /// Whether these are names.
-    #[serde(default, rename = "names")]
-    given: Option<Vec<String>>,
+    are_names: bool,
+    /// By parameter, its values as a reader wants them; nothing where only numbers of the rows are known.
+    shown: Vec<Vec<String>>,
+}
+
+/// A sweep as it stands there.
+#[derive(Debug, Deserialize)]
+struct ReadSweep {
+    parameters: Vec<String>,
+    #[serde(default)]
+    count: usize,
+    #[serde(default)]
+    labels: Vec<String>,
+    #[serde(default)]
+    names: Option<Vec<String>>,
+    #[serde(default)]
+    written: Vec<Vec<String>>,
+}
+
+impl TryFrom<ReadSweep> for Sweep {
+    type Error = String;
+
+    fn try_from(read: ReadSweep) -> Result<Self, String> {
+        let ReadSweep { parameters, count, labels, names, written } = read;
+        match &names {
+            Some(names) if *names != labels => {
+                let swept = parameters.join(", ");
+                Err(format!("the sweep of {swept} has {} labels and other names, {}", labels.len(), names.len()))
+            }
+            None if parameters.len() == 1 => {
+                let shown = vec![labels::values(&labels)];
+                Ok(Self { parameters, count, labels, are_names: false, shown })
+            }
+            _ => {
+                let column =
+                    |at| written.iter().map(|row: &Vec<String>| row.get(at).cloned()).collect::<Option<Vec<_>>>();
+                let shown = (0..parameters.len()).map(|at| labels::values(&column(at).unwrap_or_default())).collect();
+                Ok(Self { parameters, count, labels, are_names: names.is_some(), shown })
+            }
+        }
+    }
 }
 
 impl Sweep {
     /// What it and its values are called: nothing and their names, or its parameters and values as a reader writes them.
     pub(crate) fn words(&self) -> (String, Vec<String>) {
-        labels::sweep(self.parameters.iter().map(String::as_str), &self.labels, self.given.is_some())
+        labels::sweep(self.parameters.iter().map(String::as_str), &self.labels, self.are_names)
     }
 }
 
@@ -120,9 +158,13 @@ fn first_scene() -> Option<usize> {
 }
 
 impl Record {
-    /// The record in a folder of results; `None` where there is none that can be read.
-    pub(crate) fn read(disk: &Disk, folder: &Path) -> Option<Self> {
-        disk.read(&folder.join("run.json")).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok())
+    /// The record in a folder of results.
+    ///
+    /// # Errors
+    /// There is none that can be read: nothing, or what is wrong with the one that is there.
+    pub(crate) fn read(disk: &Disk, folder: &Path) -> Result<Self, Option<String>> {
+        let bytes = disk.read(&folder.join("run.json")).map_err(|_| None)?;
+        serde_json::from_slice(&bytes).map_err(|error| Some(error.to_string()))
     }
 
     /// What the file of the rows is called.
@@ -165,13 +207,14 @@ impl Record {
             let count = sweep.count.max(1);
             stride = (stride / count).max(1);
             let at = case.index / stride % count;
-            if let (Some(names), Some(name)) = (&sweep.given, sweep.labels.get(at)) {
-                debug_assert_eq!(names.get(at), Some(name));
+            if let Some(name) = sweep.labels.get(at).filter(|_| sweep.are_names) {
                 words.push(name.clone());
                 continue;
             }
-            words.extend(sweep.parameters.iter().filter_map(|path| {
-                Some(format!("{} = {}", labels::parameter(path), written_value(case.parameters.get(path)?)))
+            words.extend(sweep.parameters.iter().enumerate().filter_map(|(k, path)| {
+                let shown = sweep.shown.get(k).and_then(|values| values.get(at)).cloned();
+                let value = shown.or_else(|| case.parameters.get(path).map(written_value))?;
+                Some(format!("{} = {value}", labels::parameter(path)))
             }));
         }
         words.join(", ")
@@ -179,7 +222,7 @@ impl Record {
 
     /// What cases are called, by the swept values that lead their lines.
     pub(crate) fn names_by_lead(&self) -> NamesByLead {
-        let is_named = self.sweeps.iter().any(|sweep| sweep.given.is_some());
+        let is_named = self.sweeps.iter().any(|sweep| sweep.are_names);
         let named = self.cases.iter().filter(|_| is_named);
         NamesByLead(named.map(|case| (self.lead(case), self.case_name(case))).collect())
     }

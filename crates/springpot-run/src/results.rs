@@ -28,6 +28,14 @@ pub enum ResultsError {
     /// There is no record of a run.
     #[error("{} has no run.json that says what its rows are", .0.display())]
     NoRecord(PathBuf),
+    /// There is a record, which is damaged.
+    #[error("{}: {why}", folder.join("run.json").display())]
+    Damaged {
+        /// The folder.
+        folder: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
     /// An earlier version wrote them, without what is drawn.
     #[error("the run.json of {} does not say what is drawn: an earlier version wrote it", .0.display())]
     NoScene(PathBuf),
@@ -77,7 +85,10 @@ impl Results {
             }
             Err(error) => return Err(failed(folder, error)),
         }
-        let record = Record::read(disk, folder).ok_or_else(|| ResultsError::NoRecord(folder.to_owned()))?;
+        let record = Record::read(disk, folder).map_err(|why| match why {
+            None => ResultsError::NoRecord(folder.to_owned()),
+            Some(why) => ResultsError::Damaged { folder: folder.to_owned(), why },
+        })?;
         if record.scenes.is_empty() {
             return Err(ResultsError::NoScene(folder.to_owned()));
         }

@@ -159,7 +159,8 @@ impl Survey {
             false => reference_ends(system, plan.settings.end),
         };
         let failure = match depth {
-            Depth::Paths => ends_early().or_else(|| system.look_for_jumps(&plan.settings, stop).err()),
+            // A path that jumps is told as such, as a run tells it, before it is followed.
+            Depth::Paths => system.look_for_jumps(&plan.settings, stop).err().or_else(ends_early),
             Depth::Starts => system.look_for_jumps(&plan.settings, stop).err(),
         };
         match failure {

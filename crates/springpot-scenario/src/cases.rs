@@ -13,6 +13,7 @@ use super::robot::Robot;
 use super::root::SCENARIO;
 use super::signals::CsvCache;
 use super::sweep::{self, Axis};
+use super::units::Unit;
 use super::urdf::UrdfCache;
 use super::{Scenario, constants, elements, events, feedback, motion, overrides, past, robot, time};
 use springpot::control::Control;
@@ -400,10 +401,14 @@ impl Cases {
                 if k < TRIED {
                     known.push(self.noted(&ctx, axis));
                 }
-                if k == 0 {
-                    let first = self.first_tag(axis);
-                    for (tag, unit) in units.iter_mut().enumerate().skip(first).take(values.targets.len()) {
-                        *unit = ctx.swept_unit(tag).unwrap_or_default();
+                let first = self.first_tag(axis);
+                for (at, (tag, unit)) in units.iter_mut().enumerate().skip(first).take(values.targets.len()).enumerate()
+                {
+                    let own = ctx.swept_unit(tag).unwrap_or_default();
+                    match k {
+                        0 => *unit = own,
+                        _ if own != *unit => self.refuse_unit((axis, at), k, &ctx, [unit, &own]),
+                        _ => {}
                     }
                 }
                 ctx.finish(read)?;
@@ -415,6 +420,33 @@ impl Cases {
         self.metrics = first.metrics;
         self.tell_joint_losses = losses.get();
         Ok(())
+    }
+
+    /// Refuses a value of a swept constant in another SI unit than the first: a constant has any, and a column one.
+    fn refuse_unit(&self, (axis, at): (usize, usize), k: usize, ctx: &Context<'_>, [first, own]: [&str; 2]) {
+        let values = &self.axes[axis];
+        let target = &values.targets[at];
+        if !matches!(target.ends(), ("constants", _)) || ctx.swept(self.first_tag(axis) + at).is_none() {
+            return;
+        }
+        let read = |unit: &str| Unit::parse(unit, &|_| None).map(|unit| unit.dimension());
+        // Of one dimension, but not one quantity: Hz and rad/s, rad and pure numbers.
+        let is_told = |unit: &&str| unit.contains("Hz") || unit.contains("rad");
+        if read(first) == read(own) && ![first, own].iter().any(is_told) {
+            return;
+        }
+        let named = |unit: &str| if unit.is_empty() { "a pure number".to_owned() } else { format!("in {unit}") };
+        let message = format!(
+            "{} is swept through {}, which is {}, and {}, which is {}",
+            target.written,
+            values.label_of(0, at),
+            named(first),
+            values.label_of(k, at),
+            named(own)
+        );
+        let place = values.node(k, at, 0).place;
+        let help = "write all values of a constant in units of one kind, or all without";
+        _ = ctx.refuse(place.refuse(RefusalKind::BadQuantity, message).help(help));
     }
 
     #[allow(clippy::type_complexity)]

@@ -6,6 +6,7 @@ mod rows;
 pub use error::{CsvError, CsvProblem};
 pub use rows::{CsvRow, CsvRows};
 
+use crate::units::Unit;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -120,6 +121,18 @@ impl CsvTable {
             Some((line, text)) => Err(with_file(not_a_number(text, *line, index, name))),
         }
     }
+}
+
+/// Name and unit of a column of measured numbers, where its heading tells one: `Force [kN]`.
+pub fn heading(written: &str) -> Option<(&str, Unit)> {
+    let (name, unit) = bracket(written)?;
+    Some((name, Unit::parse(unit, &|_| None).ok()?))
+}
+
+/// What stands before brackets at the end of a heading, and in them.
+pub(crate) fn bracket(written: &str) -> Option<(&str, &str)> {
+    let (name, rest) = written.trim().split_once('[')?;
+    Some((name.trim(), rest.strip_suffix(']')?.trim()))
 }
 
 /// The numbers of the columns of these names of a file with `most` rows at most, whatever else is in it.

@@ -77,7 +77,7 @@ impl Plan {
                 let help = "velocities may jump, coordinates may not: ramp it, as in 0.1*min(max((t - 1)/0.01, 0), 1)";
                 (Some(self.motion.place_of(joint).clone()), Some(help.to_owned()))
             }
-            RunError::ReferenceJump { .. } => (Some(self.motion.place_of("").clone()), None),
+            RunError::ReferenceJump { what, .. } => (Some(self.motion.place_of_reference(what).clone()), None),
             RunError::Path(_) => {
                 let help = self
                     .motion

@@ -234,6 +234,11 @@ impl MotionPlan {
         self.controller.as_ref().and_then(ControllerPlan::path_place).unwrap_or(&self.place)
     }
 
+    /// Where the reference of a controller stands that says what `what` is to do; its own place where there is none.
+    pub(crate) fn place_of_reference(&self, what: &str) -> &Place {
+        self.controller.as_ref().map_or(&self.place, |controller| controller.reference_place(what))
+    }
+
     /// Where the force on a joint stands: its torque, else the controller.
     pub(crate) fn place_of_force(&self, joint: &str) -> Option<&Place> {
         let own = self.torques.iter().find(|(name, _)| name == joint).map(|(_, place)| place);

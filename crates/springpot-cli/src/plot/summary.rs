@@ -79,10 +79,9 @@ pub(super) fn plot(tables: &[Table], options: &PlotOptions, asked: &[Asked]) -> 
         let what = what(table, asked)?;
         let (cases, sweeps) = cases(table, (&path, axis), &what, chosen, window)?;
         let sweep = &table.sweeps[axis];
-        // Of several that move together, and beyond the values that run.json lists, the rows have the numbers.
-        let listed = if sweep.parameters.len() == 1 { &sweep.labels[..] } else { &[] };
-        let (column, values) =
-            swept_numbers(&path, listed).map_err(|(message, help)| Refused::new(message, help.to_owned()))?;
+        // Beyond the values that run.json lists, the rows have the numbers.
+        let (column, values) = swept_numbers(&path, &sweep.written(&path))
+            .map_err(|(message, help)| Refused::new(message, help.to_owned()))?;
         x.get_or_insert(column);
         if y.is_none() {
             y = Some(ordinates(table, &what, &names, &units)?);
@@ -228,6 +227,7 @@ fn cases(
             .all(|((chosen, at), labels)| chosen.as_ref().is_none_or(|chosen| labels.get(*at) == Some(chosen)))
     };
     let mut cases: Vec<Case> = Vec::new();
+    let listed = table.sweeps[axis].written(path).len();
     let sweeps = table.visit(&mut |record, line, position| {
         let number = |at: usize| table.number(record, at, line);
         if cases.last().is_none_or(|case| case.position != position) {
@@ -235,8 +235,7 @@ fn cases(
                 return Ok(());
             }
             // The field may be a text where it is not needed.
-            let sweep = &table.sweeps[axis];
-            let is_listed = sweep.parameters.len() == 1 && position[axis] < sweep.labels.len();
+            let is_listed = position[axis] < listed;
             let field = if is_listed { f64::NAN } else { at_x.map_or(Ok(f64::NAN), number)? };
             let (totals, metrics) = (vec![Totals::default(); columns.len()], vec![f64::NAN; named.len()]);
             cases.push(Case { position: position.to_vec(), field, totals, metrics });

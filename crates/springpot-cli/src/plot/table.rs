@@ -2,12 +2,12 @@
 
 use super::Refused;
 use crate::{diagnostic, plain, results};
-use csv::{ByteRecord, Reader};
+use ::csv::{ByteRecord, Reader};
 use serde_json::Value;
 use springpot::table::Column;
 use springpot_run::table::{matches, push_number};
-use springpot_scenario::RangeEnd;
 use springpot_scenario::units::Unit;
+use springpot_scenario::{RangeEnd, csv};
 use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -52,6 +52,8 @@ pub(super) struct Sweep {
     pub(super) labels: Vec<String>,
     /// Whether these are names.
     pub(super) are_names: bool,
+    /// By value, each parameter as written, where labels do not say it.
+    written: Vec<Vec<String>>,
     /// Index of a value by its fields in a row.
     by_fields: HashMap<Vec<u8>, usize>,
 }
@@ -139,7 +141,7 @@ impl Table {
                     (*at, fields) = (sweep.index(own), rest);
                 }
             }
-            visit(&record, record.position().map_or(0, csv::Position::line), &position)?;
+            visit(&record, record.position().map_or(0, ::csv::Position::line), &position)?;
         }
         Ok(sweeps)
     }
@@ -193,11 +195,7 @@ impl Table {
 
 /// Name and unit of a measured column, `Force [kN]`; of another one all of it is the name.
 fn heading(written: &str, is_measured: bool) -> (&str, Option<Unit>) {
-    let parts = || {
-        let (name, rest) = written.trim().split_once('[')?;
-        let unit = Unit::parse(rest.strip_suffix(']')?.trim(), &|_| None).ok()?;
-        Some((name.trim(), Some(unit)))
-    };
+    let parts = || csv::heading(written).map(|(name, unit)| (name, Some(unit)));
     is_measured.then(parts).flatten().unwrap_or((written, None))
 }
 
@@ -213,6 +211,10 @@ impl Sweep {
         };
         let are_names = value["names"].is_array();
         let mut sweep = Self { parameters: texts("parameters"), labels: texts("labels"), are_names, ..Self::default() };
+        let each = |value: &Value| -> Vec<String> {
+            value.as_array().into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect()
+        };
+        sweep.written = value["written"].as_array().into_iter().flatten().map(each).collect();
         // What has no label there is listed as the rows have it.
         let listed = value["values"].as_array().into_iter().flatten().take(sweep.labels.len());
         for (k, values) in listed.enumerate() {
@@ -221,6 +223,16 @@ impl Sweep {
             sweep.by_fields.entry(fields.join(&b'\n')).or_insert(k);
         }
         sweep
+    }
+
+    /// The values of a parameter as written; nothing where that is not told.
+    pub(super) fn written(&self, path: &str) -> Vec<String> {
+        if self.parameters.len() == 1 && !self.are_names {
+            return self.labels.clone();
+        }
+        let at = self.parameters.iter().position(|parameter| parameter == path);
+        let one = |value: &Vec<String>| at.and_then(|at| value.get(at)).cloned();
+        self.written.iter().map(one).collect::<Option<_>>().unwrap_or_default()
     }
 
     /// The label of the value that is meant by a text: one as written, or a number or quantity that has the value of the rows.
@@ -302,13 +314,13 @@ fn reader(file: &Path) -> Result<Reader<BufReader<File>>, Refused> {
     Ok(Reader::from_reader(BufReader::with_capacity(CHUNK, open)))
 }
 
-fn unreadable(file: &Path, error: &csv::Error) -> Refused {
+fn unreadable(file: &Path, error: &::csv::Error) -> Refused {
     let line = error.position().map_or_else(String::new, |position| format!(":{}", position.line()));
     let what = match error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+        ::csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("{len} fields where the header has {expected_len}")
         }
-        csv::ErrorKind::Utf8 { .. } => "not UTF-8".to_owned(),
+        ::csv::ErrorKind::Utf8 { .. } => "not UTF-8".to_owned(),
         _ => error.to_string(),
     };
     Refused::new(format!("{}{line}: {what}", file.display()), None)

@@ -184,14 +184,29 @@ impl Said {
             brief.sort();
             brief.dedup();
             let is_told = brief.len() == all;
-            let columns =
-                cases.parameters().iter().map(|path| (if is_told { last(path) } else { path.clone() }, Set::Name));
+            let called = |path: &String| if is_told { last(path) } else { path.clone() };
+            // Values that have names are told by these, under all that they move.
+            let columns = (0..cases.axis_count()).flat_map(|axis| {
+                let paths: Vec<String> = cases.axis_parameters(axis).map(|path| called(&path.to_owned())).collect();
+                match cases.axis_names(axis) {
+                    Some(_) => vec![(paths.join(", "), Set::Name)],
+                    None => paths.into_iter().map(|path| (path, Set::Name)).collect(),
+                }
+            });
             let mut grid = Grid::new(columns.chain(titles.map(|title| (title, Set::Number))));
             for case in &first {
                 // A case without rows has none.
                 let values = (0..metrics.len().min(NAMED_COLUMNS))
                     .map(|k| case.metrics.values.get(k).map_or_else(String::new, value));
-                grid.row(cases.labels(case.index).into_iter().chain(values).collect());
+                let at = cases.position(case.index);
+                let swept = (0..cases.axis_count()).flat_map(|axis| match cases.axis_names(axis) {
+                    Some(names) => vec![names[at[axis]].clone()],
+                    None => {
+                        let paths = cases.axis_parameters(axis);
+                        paths.map(|path| cases.axis_label_of(axis, path, at[axis])).collect()
+                    }
+                });
+                grid.row(swept.chain(values).collect());
             }
             let mut left = Vec::new();
             if let Some(more @ 1..) = outcome.cases.len().checked_sub(first.len()) {

@@ -51,5 +51,6 @@ mod support;
 mod sweeps;
 #[cfg(target_os = "linux")]
 mod terminal;
+mod third_week;
 #[cfg(unix)]
 mod written;

@@ -140,19 +140,23 @@ impl Report {
         let mut environment = Environment::new();
         environment.set_syntax(syntax.expect("the usual delimiters"));
         environment.set_formatter(|out, state, value| {
-            let Some(text) = value.as_str().filter(|text| text.contains(is_unseen)) else {
-                return escape_formatter(out, state, value);
-            };
-            let text = text.replace(is_unseen, "\u{fffd}");
-            let shown = if value.is_safe() { Value::from_safe_string(text) } else { Value::from(text) };
-            escape_formatter(out, state, &shown)
+            // What is safe was written here, of text that was cleaned: its unseen characters are operators of formulas.
+            match value.as_str().filter(|text| !value.is_safe() && text.contains(is_unseen)) {
+                Some(text) => escape_formatter(out, state, &Value::from(cleaned(text))),
+                None => escape_formatter(out, state, value),
+            }
         });
-        environment.add_filter("math", |line: &str| Value::from_safe_string(math::html(line)));
+        environment.add_filter("math", |line: &str| Value::from_safe_string(math::html(&cleaned(line))));
         environment.add_template(NAME, TEMPLATE).expect("the template is sound");
         let template = environment.get_template(NAME).expect("it was added above");
         let mark = Value::from_safe_string(MARK.to_owned());
         template.render(context! { mark, report => Value::from(Serde(self)) }).expect("the template fits its data")
     }
+}
+
+/// The text with what nobody would see made visible.
+fn cleaned(text: &str) -> String {
+    text.replace(is_unseen, "\u{fffd}")
 }
 
 /// What nobody would see, or what turns the direction of a text, so that a name looks like another.
@@ -224,6 +228,22 @@ mod tests {
         assert!(!html.contains("alert(1)<") && !html.contains("<script") && !html.contains("<img src=x"), "{html}");
         assert!(html.contains(MARK));
         assert!(html.contains("`&amp;\u{fffd}\u{fffd}\u{fffd}\u{fffd}") && !html.contains(is_unseen));
+    }
+
+    #[test]
+    fn signs_that_formulas_need_stay_and_the_same_in_names_do_not() {
+        let mut table = Table::new("Laws", &["law", "$equation"]);
+        table.rows.push(vec!["springpot".to_owned(), "F = c·D^alpha x + k x(t)".to_owned()]);
+        let report = |table| {
+            let sections = vec![Section { title: "Laws".to_owned(), blocks: vec![Block::Table(table)] }];
+            Report { sections, ..Report::default() }.html()
+        };
+        let html = report(table);
+        assert!(html.contains("<mo>\u{2062}</mo>") && !html.contains('\u{fffd}'), "{html}");
+        let mut table = Table::new("Laws", &["law", "$equation"]);
+        table.rows.push(vec!["a\u{2062}b".to_owned(), "F = k\u{2062}x".to_owned()]);
+        let html = report(table);
+        assert!(html.contains("a\u{fffd}b") && html.contains("k\u{fffd}x") && !html.contains('\u{2062}'), "{html}");
     }
 
     #[test]

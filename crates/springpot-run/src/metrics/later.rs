@@ -90,7 +90,11 @@ impl Source {
     pub fn open(disk: &Disk, results: &Path) -> Result<Self, LaterError> {
         let is_folder = disk.is_folder(results);
         let folder = if is_folder { results } else { results.parent().unwrap_or(Path::new("")) };
-        let record = Record::read(disk, folder).ok_or_else(|| match disk.look(results) {
+        let record = Record::read(disk, folder).map_err(|why| match disk.look(results) {
+            Ok(Some(_)) if let Some(why) = why => {
+                let error = io::Error::new(io::ErrorKind::InvalidData, why);
+                LaterError::File { file: folder.join("run.json"), error }
+            }
             Ok(None) => {
                 let error = io::Error::new(io::ErrorKind::NotFound, "there is no such file or folder");
                 LaterError::File { file: results.to_owned(), error }

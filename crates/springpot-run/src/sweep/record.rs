@@ -119,6 +119,11 @@ fn sweeps(cases: &Cases) -> Value {
         if let Some(names) = cases.axis_names(axis) {
             sweep["names"] = json!(names[..shown]);
         }
+        // Where labels do not say it, the values of each parameter as written.
+        if cases.axis_names(axis).is_some() || parameters.len() > 1 {
+            let written = |k| parameters.iter().map(|path| cases.axis_label_of(axis, path, k)).collect::<Vec<_>>();
+            sweep["written"] = (0..shown).map(written).collect();
+        }
         sweep
     });
     sweeps.collect()

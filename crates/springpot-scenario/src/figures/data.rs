@@ -22,8 +22,18 @@ pub(crate) static POINTS: Keys = Keys {
         key("x", Shape::Text, Need::Written("x = \"COLUMN\""), "Name of the column of the abscissae."),
         key("y", Shape::Text, Need::Written("y = \"COLUMN\""), "Name of the column of the ordinates."),
         key("label", Shape::Text, Need::Said("the name in `y`"), "What the legend calls them."),
-        key("x_unit", Shape::Text, Need::Said("SI"), "Unit of the abscissae in the file."),
-        key("y_unit", Shape::Text, Need::Said("SI"), "Unit of the ordinates in the file."),
+        key(
+            "x_unit",
+            Shape::Text,
+            Need::Said("that in brackets behind the name, else SI"),
+            "Unit of the abscissae in the file.",
+        ),
+        key(
+            "y_unit",
+            Shape::Text,
+            Need::Said("that in brackets behind the name, else SI"),
+            "Unit of the ordinates in the file.",
+        ),
         SEPARATOR,
     ],
 };
@@ -70,6 +80,8 @@ fn points(field: &Field<'_>) -> Read<FigurePoints> {
     let separator = table.word("separator", "separator")?.chars().next().unwrap_or(',');
     let ((name, file), (x, x_field), (y, y_field), label) = (file?, x?, y?, label?);
     let [x_unit, y_unit] = units;
+    let x_unit = x_unit.and_then(|unit| unit.map_or_else(|| told(&x_field, "x_unit"), |unit| Ok(Some(unit))));
+    let y_unit = y_unit.and_then(|unit| unit.map_or_else(|| told(&y_field, "y_unit"), |unit| Ok(Some(unit))));
     let (x_unit, y_unit) = (x_unit?, y_unit?);
     let path = field.ctx.folder.join(name);
     let columns = csv::separated_columns(&path, &[x, y], (MAX_POINTS, separator)).map_err(|error| {
@@ -87,6 +99,21 @@ fn points(field: &Field<'_>) -> Read<FigurePoints> {
     let x = FigureNumbers { column: x.to_owned(), numbers: along, unit: x_unit, place: place("x_unit", &x_field) };
     let y_numbers = FigureNumbers { column: y.to_owned(), numbers: up, unit: y_unit, place: place("y_unit", &y_field) };
     Ok(FigurePoints { label: label.unwrap_or(y).to_owned(), x, y: y_numbers, csv: name.to_owned() })
+}
+
+/// The unit that the name of a column tells, `t [ms]`; `key` is where it stands else.
+fn told(column: &Field<'_>, key: &str) -> Read<Option<Unit>> {
+    let Some((_, text)) = csv::bracket(column.text()?) else { return Ok(None) };
+    match Unit::parse(text, &|_| None) {
+        Ok(unit) => Ok(Some(unit)),
+        // An index is no unit.
+        Err(_) if !text.contains(char::is_alphabetic) => Ok(None),
+        Err(error) => {
+            let message = format!("is {:?}, and its brackets tell no unit: {error}", shorten(column.text()?));
+            let help = format!("say the unit, as in {key} = \"ms\"; {key} = \"1\" is none");
+            Err(column.refuse(RefusalKind::BadQuantity, message, Some(help)))
+        }
+    }
 }
 
 fn unit(field: &Field<'_>) -> Read<Unit> {

@@ -40,6 +40,8 @@ pub(super) struct ControllerPlan {
     /// Where it stands, and its reference.
     place: Place,
     reference: Place,
+    /// Where the reference says something of each joint.
+    signals: Vec<(String, Place)>,
     /// Whether the reference says how the gripper is to be turned.
     pub(super) has_orientation: bool,
     /// As the record of a run has it.
@@ -80,6 +82,12 @@ impl ControllerPlan {
     /// Where it stands.
     pub(super) fn place(&self) -> &Place {
         &self.place
+    }
+
+    /// Where its reference says what `what` is to do, `joint "elbow"`; where the reference stands, if it says it of none alone.
+    pub(super) fn reference_place(&self, what: &str) -> &Place {
+        let own = self.signals.iter().find(|(joint, _)| what == format!("joint \"{joint}\""));
+        own.map_or(&self.reference, |(_, place)| place)
     }
 
     /// Where its reference stands, if it is a path of the gripper.
@@ -156,6 +164,8 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
     let (law, (reference, path, referred), limits, sampling) = (law?, reference?, limits?, sampling?);
     let (own, written) = (field.node.place.clone(), table.get("reference"));
     let has_orientation = written.as_ref().is_some_and(|field| field.node.get("rpy").is_some());
+    let entries = written.as_ref().and_then(|field| field.node.entries()).unwrap_or_default();
+    let signals = entries.iter().map(|entry| (entry.key.clone(), entry.node.place.clone())).collect();
     let to = written.map_or_else(|| own.clone(), |field| field.node.place.clone());
     if kind == keys::PID || kind == keys::FRACTIONAL_PID {
         let word = if anti_windup == AntiWindup::None { keys::NONE } else { keys::CONDITIONAL };
@@ -172,6 +182,7 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
         path,
         place: own,
         reference: to,
+        signals,
         has_orientation,
         record: record.into(),
     })

@@ -1,0 +1,167 @@
+//! What a reader met who came without knowing anything: pages, named values, units of measured points, damaged records.
+
+use crate::support::{ARM, Ended, Place};
+
+fn said(ended: &Ended) -> String {
+    ended.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+}
+
+#[track_caller]
+fn says(ended: &Ended, code: i32, words: &[&str]) {
+    assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
+    for words in words {
+        assert!(said(ended).contains(words), "{words:?} is not in {}", ended.stderr);
+    }
+}
+
+/// The arm with what is swept, measured and drawn.
+fn with(more: &str) -> Place {
+    Place::with(&format!("{ARM}\n{more}"))
+}
+
+const NAMED: &str = r#"
+[[sweep]]
+parameter = "element.damper.E_c"
+values = ["0.1 N/cm", "0.2 N/cm", "0.3 N/cm"]
+names = ["soft, as bought", "medium", "stiff"]
+"#;
+
+#[test]
+fn formulas_of_a_report_hold_what_they_were_written_with() {
+    let place = Place::with(ARM);
+    place.done(&["run", "arm.toml", "--quiet", "--out", "o"]);
+    place.done(&["report", "o"]);
+    let page = place.read("o/report.html");
+    assert!(page.contains("<mo>\u{2062}</mo>") && !page.contains('\u{fffd}'));
+}
+
+#[test]
+fn a_record_whose_names_are_not_its_labels_is_refused() {
+    let place = with(NAMED);
+    place.done(&["run", "arm.toml", "--quiet", "--out", "o"]);
+    let mut record = place.record("o");
+    record["sweeps"][0]["names"].as_array_mut().unwrap().pop();
+    place.write("o/run.json", record.to_string());
+    for arguments in [&["view", "o"][..], &["view", "o", "--serve"], &["report", "o"], &["export", "o", "a.glb"]] {
+        let words = ["o/run.json: the sweep of element.damper.E_c has 3 labels and other names, 2", "damaged"];
+        says(&place.springpot(arguments), 2, &words);
+    }
+    says(&place.springpot(&["metrics", "o", "--metric", "max(damper.force)"]), 2, &["has 3 labels and other names"]);
+}
+
+#[test]
+fn named_values_are_told_by_their_names_and_drawn_over_their_numbers() {
+    let figure = "[[metric]]\nname = \"peak\"\nof = \"damper.force\"\nkind = \"max\"\n\n\
+                  [[figure]]\nname = \"over\"\nkind = \"summary\"\nx = \"element.damper.E_c\"\ny = \"max(damper.force)\"\n";
+    let place = with(&format!("{NAMED}\n{figure}"));
+    let ended = place.done(&["run", "arm.toml", "--out", "o", "--sweep", "element.damper.mu=4,5"]);
+    assert!(ended.stdout.contains("element.damper.E_c: \"soft, as bought\", medium, stiff"), "{}", ended.stdout);
+    let lines: Vec<&str> = ended.stdout.lines().filter(|line| line.contains("soft, as bought ")).collect();
+    assert_eq!(lines.len(), 2, "{}", ended.stdout);
+    assert!(!ended.stdout.contains("N/cm"), "{}", ended.stdout);
+    let x = ["max(damper.force)", "--x", "element.damper.E_c", "--out", "p.svg"];
+    place.done(&[&["plot", "o"][..], &x].concat());
+    let texts = |file: &str| -> Vec<String> {
+        let text = place.read(file);
+        text.split("<text").skip(1).filter_map(|text| Some(text.split('>').nth(1)?.to_owned())).collect()
+    };
+    let (drawn, figure) = (texts("p.svg"), texts("o/figures/over.svg"));
+    // In the unit that they are written in.
+    assert!(
+        drawn.iter().any(|text| text.starts_with("0.10")) && !drawn.iter().any(|text| text.starts_with("10")),
+        "{drawn:?}"
+    );
+    assert_eq!(drawn, figure);
+    // Pages call cases by what was written, not by numbers of SI.
+    place.done(&["run", "arm.toml", "--out", "v", "--quiet", "--view", "--sweep", "element.damper.u=0.5 V,1500 mV"]);
+    let page = place.read("v/view.html");
+    assert!(page.contains("\"name\":\"soft, as bought, u = 1500 mV\""));
+}
+
+#[test]
+fn a_constant_is_swept_in_one_unit() {
+    let place = with("[constants]\nf = \"1 Hz\"\n");
+    let check =
+        |values: &str| place.springpot(&["check", "arm.toml", "--quiet", "--sweep", &format!("constants.f={values}")]);
+    for (values, at, words) in [
+        ("1 Hz,2 N", "--sweep:1:18", "1 Hz, which is in Hz, and 2 N, which is in N"),
+        ("1,2 rad/s", "--sweep:1:15", "1, which is a pure number, and 2 rad/s, which is in rad/s"),
+        ("1 Hz,2 rad/s", "--sweep:1:18", "units of one kind"),
+        ("1 rad,2", "--sweep:1:19", "2, which is a pure number"),
+    ] {
+        says(&check(values), 2, &[at, words]);
+    }
+    for values in ["1,2", "1 Hz,2 kHz", "1 rad,90 deg", "1 N/m,2 kg/s^2"] {
+        says(&check(values), 0, &[]);
+    }
+}
+
+#[test]
+fn brackets_behind_a_name_are_the_unit_of_measured_points() {
+    let figure = |data: &str| {
+        format!("[[figure]]\nname = \"f\"\ny = \"damper.force\"\ndata = {{ csv = \"rig.csv\", {data} }}\n")
+    };
+    let draw = |data: &str| {
+        let place = with(&figure(data));
+        place.write("rig.csv", "t [ms],F [kN],F [weird],F [2]\n0,0,0,0\n300,0.002,2,2\n");
+        let ended = place.springpot(&["run", "arm.toml", "--quiet", "--out", "o"]);
+        (place, ended)
+    };
+    let figure_of = |data: &str| {
+        let (place, ended) = draw(data);
+        says(&ended, 0, &[]);
+        place.read("o/figures/f.svg")
+    };
+    let told = figure_of("x = \"t [ms]\", y = \"F [kN]\", label = \"rig\"");
+    let said = figure_of("x = \"t [ms]\", x_unit = \"ms\", y = \"F [kN]\", y_unit = \"kN\", label = \"rig\"");
+    let plain = figure_of("x = \"t [ms]\", y = \"F [2]\", label = \"rig\"");
+    assert_eq!(told, said);
+    assert_eq!(told, plain);
+    let (_, refused) = draw("x = \"t [ms]\", y = \"F [weird]\"");
+    says(&refused, 2, &["arm.toml:", "its brackets tell no unit", "weird", "y_unit = \"ms\""]);
+    let (_, refused) = draw("x = \"t [ms]\", y = \"F [kN]\", x_unit = \"mm\"");
+    says(&refused, 2, &["measured points are drawn beside t, which is in s"]);
+}
+
+const CONTROLLED: &str = r#"
+[robot]
+gravity = [0, 0, 0]
+
+[robot.gripper]
+body = "arm"
+point = [0.5, 0, 0]
+
+[[robot.body]]
+name = "arm"
+joint = { name = "q1", kind = "revolute", axis = [0, 0, 1] }
+mass = 2
+com = [0.2, 0, 0]
+inertia = { xx = 0.01, yy = 0.05, zz = 0.05 }
+
+[motion]
+kind = "forward"
+
+[motion.controller]
+kind = "computed-torque"
+kp = 100
+kd = 20
+reference = { kind = "joints", q1 = "0.5*step(t - 0.2)" }
+
+[time]
+end = 1
+output_step = "100 ms"
+"#;
+
+#[test]
+fn references_that_jump_are_marked_themselves() {
+    let place = Place::with(CONTROLLED);
+    let path = "reference = { kind = \"gripper-path\", x = \"0.5*cos(0.3*step(t - 0.2))\", y = \"0.5*sin(0.3*step(t - 0.2))\", z = 0 }";
+    place.write("path.toml", CONTROLLED.replace("reference = { kind = \"joints\", q1 = \"0.5*step(t - 0.2)\" }", path));
+    for command in ["check", "run"] {
+        says(&place.springpot(&[command, "arm.toml"]), 2, &["arm.toml:23:37", "jumps by 5e-1"]);
+        says(&place.springpot(&[command, "path.toml"]), 2, &["path.toml:23:13", "jumps by"]);
+        // Where a case can run, both tell the one that cannot.
+        let sweep = ["--sweep", "motion.controller.kind=pd-gravity,computed-torque"];
+        says(&place.springpot(&[&[command, "arm.toml"][..], &sweep].concat()), 1, &["arm.toml:23:37"]);
+    }
+}
