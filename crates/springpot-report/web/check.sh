@@ -69,6 +69,8 @@ for name in falling_piezo panda_drop tendon_finger torsional_coupling humanoid; 
     model "$name"
 done
 
+node --test --test-reporter=spec test/shape.test.mjs >"$tmp/tests" || { cat "$tmp/tests" >&2; exit 1; }
+grep -E '^ℹ (tests|pass|fail)' "$tmp/tests"
 REPORTS="$tmp/reports" node --test --test-reporter=spec test/report.test.mjs >"$tmp/tests" || { cat "$tmp/tests" >&2; exit 1; }
 grep -E '^ℹ (tests|pass|fail)' "$tmp/tests"
 MODELS="$tmp/models" node --test --test-reporter=spec test/gltf.test.mjs >"$tmp/tests" || { cat "$tmp/tests" >&2; exit 1; }

@@ -1,6 +1,6 @@
 /** @file What a scene's bodies look like: their visuals, or bars from joint to joint, with joints and brackets. */
 
-import { BoxGeometry, BufferGeometry, Color, CylinderGeometry, TorusGeometry } from 'three';
+import { BoxGeometry, BufferGeometry, Color, CylinderGeometry, TorusGeometry, Vector3 } from 'three';
 import { Parts, STAND, matrix, meshGeometry, shapeGeometry } from './geometry.js';
 import { bed, block, depth, slides } from './slide.js';
 
@@ -37,8 +37,25 @@ function holds(scene) {
   return out;
 }
 
-/** How long the robot's members are: sizes of signs follow from it. @param {any} scene @param {import('./kinematics.js').Kinematics} tree placed */
-export function sceneSize(scene, tree) {
+/** The corners of what a visual shows, in the frame of its body. @param {any} visual @param {{geometry: BufferGeometry}[][]} meshes */
+function corners(visual, meshes) {
+  const made = shapeGeometry(visual.shape, meshes), out = [];
+  if (!made) return out;
+  const place = matrix(visual.origin, visual.rpy, made.scale), corner = new Vector3();
+  if (made.turn) place.multiply(STAND);
+  for (const { geometry } of made.parts) {
+    if (!geometry.boundingBox) geometry.computeBoundingBox();
+    const { min, max } = geometry.boundingBox;
+    for (let c = 0; c < 8; c++) out.push(corner.set(c & 1 ? max.x : min.x, c & 2 ? max.y : min.y, c & 4 ? max.z : min.z).applyMatrix4(place).toArray());
+  }
+  return out;
+}
+
+/** Of the heaviest body: what weighs less and shows nothing is a frame among bodies that show something. */
+const FRAME = 0.01;
+
+/** How long the robot's members are: sizes of signs follow from it. @param {any} scene @param {{geometry: BufferGeometry}[][]} meshes @param {import('./kinematics.js').Kinematics} tree placed */
+export function sceneSize(scene, meshes, tree) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], p = [0, 0, 0];
   const take = (body, point) => {
     tree.point(body, point, p);
@@ -51,7 +68,7 @@ export function sceneSize(scene, tree) {
   scene.bodies.forEach((body, i) => {
     take(i, ZERO);
     if (body.com) take(i, body.com);
-    for (const visual of body.visuals ?? []) take(i, visual.origin ?? ZERO);
+    for (const visual of body.visuals ?? []) for (const corner of corners(visual, meshes)) take(i, corner);
   });
   if (scene.gripper) take(scene.gripper.body, scene.gripper.point);
   for (const [body, point] of holds(scene)) take(body, point);
@@ -66,11 +83,12 @@ export class RobotShape {
    * @param {(body: number) => number[]} range low and high of the coordinate of a body
    */
   constructor(scene, meshes, tree, range) {
-    this.size = sceneSize(scene, tree);
+    this.size = sceneSize(scene, meshes, tree);
     const bars = scene.bodies.filter((body) => !body.visuals?.length).length;
     // Many small members need thinner bars than three long ones.
     this.radius = this.size * (bars > 12 ? 0.014 : 0.019);
-    const taken = holds(scene);
+    const taken = holds(scene), heaviest = Math.max(0, ...scene.bodies.map((body) => body.mass ?? 0));
+    this.lightest = bars < scene.bodies.length ? FRAME * heaviest : 0;
     this.slides = slides(scene, tree, this.radius, range);
     /** @type {(BufferGeometry|null)[]} */
     this.bodies = scene.bodies.map((body, i) => this.body(scene, body, i, meshes, taken.filter(([b]) => b === i)));
@@ -99,11 +117,13 @@ export class RobotShape {
     if (drawn) this.visuals(parts, body.visuals, meshes, shade);
     else {
       const far = ends.filter((end) => distance(end, ZERO) > least);
-      for (const end of far) parts.bar(ZERO, end, r, shade);
-      if (!far.length && body.com && distance(body.com, ZERO) > least) {
+      // Frames of sensors and tools are no members: where they are matters to those alone who put something there.
+      const frame = (body.joint?.kind ?? 'fixed') === 'fixed' && (body.mass ?? 0) < this.lightest;
+      for (const end of far) parts.bar(ZERO, end, frame ? 0.3 * r : r, shade);
+      if (!frame && !far.length && body.com && distance(body.com, ZERO) > least) {
         ends.push(body.com);
         parts.bar(ZERO, body.com, r, shade).ball(body.com, 1.5 * r, shade);
-      } else if (!far.length && !this.slides.has(i) && !depth(this.slides, scene, i)) parts.ball(ZERO, 1.35 * r, shade);
+      } else if (!frame && !far.length && !this.slides.has(i) && !depth(this.slides, scene, i)) parts.ball(ZERO, 1.35 * r, shade);
     }
     if (this.slides.has(i)) block(parts, this.slides.get(i), shade);
     else this.joint(parts, body, drawn, depth(this.slides, scene, i));

@@ -236,7 +236,7 @@ function visuals() {
   }
   const law = (name, kind) => ({ name, law: kind, equation: 'F = k·x + c·D^alpha x', source: 'data sheet', parameters: [{ name: 'k', value: 900, unit: 'N/m' }] });
   return {
-    title: null, columns: columns(names), meshes: [housing()],
+    title: null, columns: columns(names), meshes: [[housing()]],
     scenes: [{ bodies, root: { name: 'base', visuals: [{ origin: [0, 0, 0.06], rpy: [0, 0, 0], color: [0.3, 0.33, 0.38, 1], shape: { cylinder: [0.12, 0.12] } }] }, ground: [0, 0, 0], gripper, elements, wanted: null }],
     elements: [law('linear drive', 'kelvin-voigt'), law('mount.x', 'fractional-kelvin-voigt'), law('mount.z', 'fractional-kelvin-voigt')],
     cases: [{ index: 0, name: '', parameters: {}, status: 'done', error: null, scene: 0, table, events: [], metrics: [] }],
