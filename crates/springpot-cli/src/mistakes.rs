@@ -19,6 +19,7 @@ pub(crate) fn told(error: &clap::Error, arguments: &[OsString]) -> bool {
         ErrorKind::InvalidSubcommand => said(ContextKind::InvalidSubcommand).is_some_and(|name| command(&name)),
         ErrorKind::UnknownArgument => said(ContextKind::InvalidArg).is_some_and(|name| option(&name, arguments)),
         ErrorKind::MissingRequiredArgument => missing(error, arguments),
+        ErrorKind::ArgumentConflict => conflict(error, arguments),
         ErrorKind::InvalidValue | ErrorKind::ValueValidation => {
             let (value, argument) = (said(ContextKind::InvalidValue), said(ContextKind::InvalidArg));
             value.zip(argument).is_some_and(|(value, argument)| wrong(error, &value, &argument))
@@ -66,9 +67,80 @@ fn missing(error: &clap::Error, arguments: &[OsString]) -> bool {
     let Some(chosen) = chosen else { return false };
     let of = chosen.get_name();
     let lacking: Vec<&str> = lacking.iter().map(String::as_str).collect();
-    let help = format!("write springpot {of} {} …; `springpot {of} --help` shows examples", lacking.join(" "));
+    let at = arguments.iter().position(|argument| argument == of).map_or(arguments.len(), |at| at + 1);
+    let given = arguments[at..].iter().map(|argument| quoted(&argument.to_string_lossy()));
+    let wanted = lacking.iter().map(|name| name.replace(['<', '>'], "").trim_end_matches("...").to_owned());
+    let words = given.chain(wanted).collect::<Vec<_>>().join(" ");
+    let help = format!("write springpot {of} {words}; `springpot {of} --help` shows examples");
     diagnostic::error_with_help(format!("`springpot {of}` lacks {}", list(lacking.iter().copied())), help);
     true
+}
+
+/// An argument as a shell takes it.
+fn quoted(argument: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
+    match !argument.is_empty() && argument.chars().all(is_plain) {
+        true => argument.to_owned(),
+        false => format!("'{}'", argument.replace('\'', "'\\''")),
+    }
+}
+
+/// Arguments that exclude one another, and why.
+const EXCLUDE: [(&str, &str, &str, &str); 8] = [
+    ("plot", "--out", "--formats", "the ending of --out says the format: leave --formats out"),
+    ("view", "--serve", "--out", "--serve shows the page and writes none: leave one of them out"),
+    ("run", "SCENARIO", "--resume", "--resume goes on with the scenario that its folder holds: name the folder alone"),
+    ("run", "--resume", "", "a run goes on as it began: leave it out, or begin anew with springpot run SCENARIO"),
+    ("check", "--schema", "", "--schema describes all scenarios, and looks at none: leave one of them out"),
+    (
+        "prony",
+        "--law",
+        "",
+        "--law takes the place of a springpot, whose numbers are its parameters: --parameter NAME=VALUE",
+    ),
+    ("dynamics", "--at", "", "--at is a time along a scenario's motion, --states are states of their own: choose one"),
+    (
+        "dynamics",
+        "--states",
+        "--case",
+        "--case is one of a scenario, which --at goes along: leave it out beside --states",
+    ),
+];
+
+/// Two arguments that do not stand together.
+fn conflict(error: &clap::Error, arguments: &[OsString]) -> bool {
+    let all = Arguments::command();
+    let chosen = arguments.iter().filter_map(|argument| argument.to_str()).find_map(|text| all.find_subcommand(text));
+    let Some(of) = chosen.map(clap::Command::get_name) else { return false };
+    let (one, other) = match (error.get(ContextKind::InvalidArg), error.get(ContextKind::PriorArg)) {
+        (Some(ContextValue::String(one)), Some(ContextValue::String(other))) => (one, other),
+        (Some(ContextValue::String(one)), Some(ContextValue::Strings(others))) if !others.is_empty() => {
+            (one, &others[0])
+        }
+        _ => return false,
+    };
+    let bare = |name: &str| name.split_whitespace().next().unwrap_or(name).replace(['<', '>', '[', ']'], "");
+    let (one, other) = (bare(one), bare(other));
+    if one == other {
+        diagnostic::error_with_help(format!("{one} is given twice"), "write it once".to_owned());
+        return true;
+    }
+    let names = |name: &str| name.is_empty() || name == one || name == other;
+    let why = EXCLUDE.iter().find(|(command, first, second, _)| *command == of && names(first) && names(second));
+    let help = why.map_or_else(
+        || format!("leave one of them out; `springpot {of} --help` explains both"),
+        |(.., why)| (*why).to_owned(),
+    );
+    diagnostic::error_with_help(format!("{one} cannot be used with {other}"), help);
+    true
+}
+
+/// A scenario where a table of numbers belongs.
+pub(crate) fn table_is_scenario(file: &Path) -> Option<(String, String)> {
+    let is_toml = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    let (name, stem) = (file.display(), file.file_stem().unwrap_or_default().to_string_lossy());
+    let help = || format!("run it first, `springpot run {name}`: its rows are then in results/{stem}/results.csv");
+    (is_toml && file.is_file()).then(|| (format!("{name} is a scenario, not a table of numbers (CSV)"), help()))
 }
 
 /// `--set PATH=VALUE` for `--set PATH VALUE`.

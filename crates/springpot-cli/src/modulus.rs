@@ -37,6 +37,12 @@ pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
             return Ending::Refused;
         }
     };
+    if plan.absent.iter().any(|(_, absent)| absent.element.name == options.element) {
+        let message = format!("element {:?} is not enabled, and has no modulus here", options.element);
+        let help = format!("write enabled = true, or --set element.{}.enabled=true", options.element);
+        diagnostic::error_with_help(message, help);
+        return Ending::Refused;
+    }
     let Some(element) = plan.elements.iter().find(|element| element.element.name == options.element) else {
         let names = plan.elements.iter().map(|element| &*element.element.name);
         let help = suggest(&options.element, names);

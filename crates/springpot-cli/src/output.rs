@@ -109,6 +109,12 @@ pub(crate) fn is_taken(path: &Path) -> bool {
     path.symlink_metadata().is_ok() && !matches!(goal(path), Ok(Goal::Stream(_) | Goal::Descriptor(_)))
 }
 
+/// Whether two paths lead to one file.
+pub(crate) fn is_same_file(one: &Path, other: &Path) -> bool {
+    let is_file = |path: &Path| path.metadata().is_ok_and(|found| found.is_file());
+    is_file(one) && is_file(other) && fs::canonicalize(one).ok() == fs::canonicalize(other).ok()
+}
+
 /// Writes a whole text where nothing is yet; returns whether it went into a file.
 ///
 /// # Errors

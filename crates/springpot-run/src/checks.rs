@@ -8,6 +8,8 @@ use springpot_scenario::{Plan, Remark, ShapePlan};
 
 /// An anchor farther from the robot than so many times its size is hardly meant.
 const FAR: f64 = 10.0;
+/// A body longer than so many times the others' median is hardly meant.
+const LONG: f64 = 30.0;
 /// No material has a parameter beyond this, SI.
 const BEYOND: f64 = 1e30;
 /// A gradient below this share of the lengths at hand is 0.
@@ -29,7 +31,34 @@ pub(crate) fn sizes(plan: &Plan, system: &System) -> Vec<Remark> {
                 .help("no material has so much, and forces and energies leave the range of numbers")
         })
     });
-    far.into_iter().chain(beyond).collect()
+    far.into_iter().chain(beyond).chain(long_members(plan)).collect()
+}
+
+/// Bodies that are much larger than the others, as where one is written in mm.
+fn long_members(plan: &Plan) -> Vec<Remark> {
+    let length = |vector: [f64; 3]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let sizes: Vec<f64> = plan.bodies.iter().map(|body| length(body.com).max(length(body.joint.origin))).collect();
+    let mut remarks = Vec::new();
+    for (k, (body, places)) in plan.bodies.iter().zip(&plan.body_places).enumerate() {
+        let mut others: Vec<f64> = sizes.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, size)| *size).collect();
+        others.retain(|size| *size > 0.0);
+        others.sort_by(f64::total_cmp);
+        let Some(median) = others.get(others.len() / 2) else { continue };
+        for (key, said, vector) in [("com", "centre of mass", body.com), ("joint.origin", "joint", body.joint.origin)] {
+            // A file of a robot is not written by hand.
+            let Some((_, place)) = places.fields.iter().find(|(field, _)| field == key) else { continue };
+            if length(vector) > LONG * median {
+                let message = format!(
+                    "body \"{}\": its {said} is {} m away, where other bodies are {} m long",
+                    body.name,
+                    two_digits(length(vector)),
+                    two_digits(*median)
+                );
+                remarks.push(Remark::at(place, message).help("plain numbers are metres: \"200 mm\" or 0.2"));
+            }
+        }
+    }
+    remarks
 }
 
 /// The smallest box that holds points.

@@ -1,6 +1,7 @@
 //! What is known of the cases before any of them is run: where elements start, and which cases cannot.
 
 use crate::checks;
+use crate::numbers::short;
 use crate::sweep::LimitTally;
 use crate::trouble::Trouble;
 use springpot::control::Aim;
@@ -19,6 +20,8 @@ const PATHS_FOLLOWED: usize = 50;
 /// A revolute joint that turns faster on average, rad/s, and farther, rad, may have been given in degrees; and at how many times it is looked at.
 const FAST_TURN: f64 = 10.0;
 const FAR_TURN: f64 = 12.0;
+/// As an angle of a scenario, rad, at the start.
+const FAR_START: f64 = 4.0 * std::f64::consts::PI;
 const TURNS_LOOKED_AT: u32 = 257;
 
 /// So many warnings are enough.
@@ -118,7 +121,10 @@ impl Survey {
                 break;
             }
             if index == 0 {
-                let along = checks::elements(plan, system).into_iter().chain(fast_turns(plan, system));
+                let along = checks::elements(plan, system)
+                    .into_iter()
+                    .chain(fast_turns(plan, system))
+                    .chain(far_starts(plan, system));
                 survey.remark(0, plan.warnings.iter().cloned().chain(checks::sizes(plan, system)).chain(along));
                 survey.look(index, plan, system, depth, stop);
                 continue;
@@ -252,6 +258,28 @@ fn short_run(plan: &Plan) -> Option<[f64; 2]> {
         RowTimes::Step { step, end } if step > end => Some([*end, *step]),
         _ => None,
     }
+}
+
+/// Joints whose own motion begins many turns away, in an expression without a unit.
+fn far_starts(plan: &Plan, system: &System) -> Vec<Remark> {
+    let Ok(state) = system.state(0.0) else { return Vec::new() };
+    let turning = system.model.own_joints().filter(|j| system.model.joint_kind(*j) == JointKind::Revolute);
+    let remarks = turning.filter_map(|j| {
+        let (name, angle) = (&system.model.joint_names()[j], state.q[system.model.q_range(j).start]);
+        let place = plan.motion.place_of(name);
+        // Without a motion of its own the place is that of all; with a unit, what is written is meant.
+        let is_own =
+            place != plan.motion.place_of("") && !["deg", "rad"].iter().any(|unit| place.text().contains(unit));
+        (is_own && angle.abs() > FAR_START).then(|| {
+            let turns = angle.abs() / std::f64::consts::TAU;
+            let message =
+                format!("joint \"{name}\" starts at {} without a unit: rad, and so {turns:.1} turns", short(angle));
+            let help =
+                "if its motion is in degrees, write { expression = \"…\", unit = \"deg\" }; if not, unit = \"rad\"";
+            Remark::at(place, message).help(help)
+        })
+    });
+    remarks.collect()
 }
 
 /// Joints that turn by tens of radians per second over the whole run, as where degrees are taken for radians.

@@ -29,9 +29,18 @@ impl fmt::Display for Warning {
 
 /// What the robot's files hold that is not used, or lack and is assumed; the last one says how to accept all of them.
 pub fn robot_warnings(cases: &Cases) -> Vec<Warning> {
-    let mut warnings: Vec<Warning> = cases.warnings().into_iter().map(Warning::from).collect();
+    let with_cure = |message: String| Warning { help: missing_package(&message), message };
+    let mut warnings: Vec<Warning> = cases.warnings().into_iter().map(with_cure).collect();
     if let Some(last) = warnings.last_mut() {
-        last.help = Some(format!("once they are read: accept = {:?} in [robot]", cases.warning_kinds()));
+        let accept = format!("once they are read: accept = {:?} in [robot]", cases.warning_kinds());
+        last.help = Some(last.help.take().map_or(accept.clone(), |cure| format!("{cure}; {accept}")));
     }
     warnings
+}
+
+/// What finds the meshes of a robot that is away from its package.
+fn missing_package(message: &str) -> Option<String> {
+    let (_, found) = message.split_once("mesh files not found")?;
+    let name = found.split_once("package://")?.1.split(['/', '"']).next().filter(|name| !name.is_empty())?;
+    Some(format!("package_path = \"FOLDER\" in [robot], the folder {name} or the one that holds it, finds them"))
 }

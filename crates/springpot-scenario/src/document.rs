@@ -244,7 +244,70 @@ fn syntax_help(text: &str, span: &Range<usize>, message: &str) -> Option<String>
     if let Some(right) = with_equals_sign(line).filter(|_| message.contains("expected `=`") || letter == ':') {
         return Some(format!("write {}", shorten(&right)));
     }
-    names::greek(letter).map(|name| format!("write {name} for {letter}"))
+    if let Some(name) = names::greek(letter) {
+        return Some(format!("write {name} for {letter}"));
+    }
+    mistaken_value(span, start, line)
+}
+
+/// What is likely meant by a line of which a value is none of TOML: a comment, a number, a word.
+fn mistaken_value(span: &Range<usize>, start: usize, line: &str) -> Option<String> {
+    let (before, at) = (line.get(..span.start - start)?, line.get(span.start - start..)?);
+    let outside = |text: &str| text.matches('"').count() % 2 == 0;
+    if let Some(comment) = line.find("//").filter(|comment| outside(&line[..*comment])) {
+        let (kept, words) = (&line[..comment], line[comment + 2..].trim());
+        return Some(format!("a comment begins with #: write {}", shorten(format!("{kept}# {words}").trim())));
+    }
+    let heading = line.split('#').next().unwrap_or(line).trim();
+    if heading.starts_with('[') && !heading.contains('=') {
+        let (open, close) = if heading.starts_with("[[") { ("[[", "]]") } else { ("[", "]") };
+        let name = heading.trim_matches(['[', ']']);
+        return (!heading.ends_with(close)).then(|| format!("write {open}{}{close}", shorten(name)));
+    }
+    // The value that the place lies in: from the sign or bracket before it to the one behind.
+    let from = before.rfind(['=', '[', '{']).map_or(0, |at| at + 1);
+    let comma = before.rfind(',').filter(|comma| *comma >= from).map_or(from, |comma| comma + 1);
+    let to = |from: usize| line[from..].find([',', ']', '}', '#']).map_or(line.len(), |length| from + length);
+    let key = before.split('=').next().map(str::trim).filter(|_| before.contains('='))?;
+    let whole = |value: &str| match before.matches('=').count() == 1 && !before.contains(['[', '{']) {
+        true => format!("write {key} = {value}"),
+        false => format!("write {value}"),
+    };
+    if let Some(behind) = at.strip_prefix(',')
+        && let Some(digits) = behind.find(|c: char| !c.is_ascii_digit()).or(Some(behind.len())).filter(|n| *n > 0)
+    {
+        let (unit, number) =
+            (behind[digits..].split(['#', ']', '}']).next().unwrap_or("").trim(), before[from..].trim());
+        let number = format!("{number}.{}", &behind[..digits]);
+        let value = if unit.is_empty() { number } else { format!("\"{number} {unit}\"") };
+        return Some(format!("{}: numbers have a decimal point", whole(&value)));
+    }
+    let value = line[comma..to(comma)].trim();
+    match value.to_lowercase().as_str() {
+        "" => return None,
+        "true" | "yes" | "on" => return Some(whole("true")),
+        "false" | "no" | "off" => return Some(whole("false")),
+        "none" | "null" | "nil" | "nan" => {
+            return Some(format!("leave {key} out: a key without a value is not written"));
+        }
+        _ => {}
+    }
+    if value.contains(';') {
+        return Some("write commas between values, and points in numbers, as in [0.1, 0, 0]".to_owned());
+    }
+    let sign = value.strip_prefix(['-', '+']).map_or("", |_| &value[..1]);
+    let digits = &value[sign.len()..];
+    let is_number = |text: &str| text.parse::<f64>().is_ok() && text.contains(|c: char| c.is_ascii_digit());
+    if let Some(fraction) = digits.strip_prefix('.').filter(|_| is_number(digits)) {
+        return Some(format!("{}: a digit stands before the point", whole(&format!("{sign}0.{fraction}"))));
+    }
+    if digits.ends_with('.') && is_number(digits) {
+        return Some(format!("{}: a digit stands behind the point", whole(&format!("{sign}{digits}0"))));
+    }
+    // What is half quoted is something else.
+    (!value.contains(['"', '\''])).then(|| {
+        format!("{}: quantities, words and expressions stand in quotes", whole(&format!("\"{}\"", shorten(value))))
+    })
 }
 
 /// Runs `read` on a thread whose stack holds the deepest tree the parser lets through.

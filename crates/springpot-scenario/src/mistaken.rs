@@ -7,6 +7,9 @@ use std::path::Path;
 /// So much of a text tells what it is.
 const BEGINNING: usize = 4096;
 
+/// So many of the scenarios in a folder are named.
+const MOST_NAMED: usize = 8;
+
 /// What a `text` is that is no scenario, and what to do with it; `None` where it does not look like anything else.
 pub(crate) fn instead(path: &Path, text: &str) -> Option<(&'static str, String)> {
     let name = path.display();
@@ -38,10 +41,21 @@ pub(crate) fn meant(path: &Path) -> Option<String> {
         return Some(format!("did you mean {}?", with_ending.display()));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+        return Some(format!("there is no folder {}", folder.display()));
+    }
     let scenarios = scenarios(folder.unwrap_or(Path::new(".")));
-    let right = nearest(path.file_name()?.to_str()?, scenarios.iter().map(String::as_str))?;
-    let right = folder.map_or(Path::new(right).to_owned(), |folder| folder.join(right));
-    Some(format!("did you mean {}?", right.display()))
+    let within = |name: &str| folder.map_or(Path::new(name).to_owned(), |folder| folder.join(name));
+    if let Some(right) = nearest(path.file_name()?.to_str()?, scenarios.iter().map(String::as_str)) {
+        return Some(format!("did you mean {}?", within(right).display()));
+    }
+    let here = folder.map_or_else(|| "the current folder".to_owned(), |folder| folder.display().to_string());
+    let first = scenarios.iter().take(MOST_NAMED).map(String::as_str);
+    Some(match scenarios.len() {
+        0 => format!("{here} holds no .toml file; `springpot init` writes a scenario to start from"),
+        1..=MOST_NAMED => format!("{here} holds {}", names::list(first)),
+        more => format!("{here} holds {} and {} more", first.collect::<Vec<_>>().join(", "), more - MOST_NAMED),
+    })
 }
 
 /// What a folder is that stands where a scenario should.

@@ -78,9 +78,7 @@ pub(crate) struct Wanted<'u> {
 pub(crate) fn read(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
     let plan = match &field.node.value {
         Value::Number { .. } => constant(field, wanted)?,
-        Value::Text(text) if text.trim().parse::<f64>().is_ok() || units::split_quantity(text).is_some() => {
-            constant(field, wanted)?
-        }
+        Value::Text(text) if text.trim().parse::<f64>().is_ok() || reads_as_quantity(text) => constant(field, wanted)?,
         Value::Text(text) => SignalPlan {
             signal: Signal::expression(expression(field, text)?),
             constant: None,
@@ -93,6 +91,12 @@ pub(crate) fn read(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {
     };
     probe(field, wanted, &plan)?;
     Ok(plan)
+}
+
+/// Whether a text is a number with something behind it that could be a unit; a condition, `0 if t < 1 else 20`, is none.
+fn reads_as_quantity(text: &str) -> bool {
+    let is_condition = |unit: &str| unit.contains(['<', '>', '?']) || unit.starts_with("if ") || unit.contains(" if ");
+    units::split_quantity(text).is_some_and(|(_, unit)| !is_condition(unit))
 }
 
 fn constant(field: &Field<'_>, wanted: Wanted<'_>) -> Read<SignalPlan> {

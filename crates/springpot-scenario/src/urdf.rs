@@ -2,7 +2,7 @@
 
 use super::plan::{BodyPlaces, UrdfPlan};
 use super::reader::{Field, Read, Refused, Table, all};
-use super::refusal::RefusalKind;
+use super::refusal::{RefusalKind, Remark};
 use super::robot::Parts;
 use springpot::model::urdf::{Urdf, UrdfError, UrdfOptions, UrdfProblem, UrdfWarningKind};
 use springpot::model::{Label, Model};
@@ -116,17 +116,28 @@ fn accepted(field: &Field<'_>) -> Read<Vec<UrdfWarningKind>> {
     }))
 }
 
-/// One folder, or an array of them.
+/// One folder, or an array of them; says which are not there.
 fn folders(field: &Field<'_>) -> Read<Vec<String>> {
+    let folder = |item: &Field<'_>| -> Read<String> {
+        let written = item.text()?.to_owned();
+        let folder = item.ctx.folder.join(&written);
+        if !folder.is_dir() {
+            let message =
+                format!("`package_path` of [robot] names {written:?}, and there is no folder {}", folder.display());
+            let help = "it is relative to the scenario; meshes are looked for in it";
+            item.ctx.warn(Remark::at(&item.node.place, message).help(help));
+        }
+        Ok(written)
+    };
     if field.node.text().is_some() {
-        return Ok(vec![field.text()?.to_owned()]);
+        return Ok(vec![folder(field)?]);
     }
     let items = field.items("the path of a folder, or an array of them")?;
     if items.len() > MAX_FOLDERS {
         let message = format!("holds {} folders; at most {MAX_FOLDERS} are taken", items.len());
         return Err(field.refuse(RefusalKind::TooLarge, message, None));
     }
-    all(items.iter().map(|item| item.text().map(str::to_owned)))
+    all(items.iter().map(folder))
 }
 
 /// Refuses a file, with its own place in the words of the reader of URDF files.

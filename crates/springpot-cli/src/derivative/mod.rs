@@ -8,7 +8,7 @@ mod whole;
 use crate::arguments::DerivativeOptions;
 use crate::output::{self, Output};
 use crate::plain::Plain;
-use crate::{Ending, diagnostic, printed};
+use crate::{Ending, diagnostic, mistakes, printed};
 use sheet::{Layout, Sheet};
 use springpot::fractional::{DerivativeError, Method};
 use springpot_scenario::csv::{CsvProblem, CsvRows};
@@ -80,6 +80,17 @@ pub(crate) fn derivative(options: &DerivativeOptions) -> Ending {
     let name = file.map_or_else(|| "standard input".to_owned(), |file| file.display().to_string());
     if options.file.is_none() && io::stdin().is_terminal() {
         diagnostic::error_with_help("no file to read", "name a CSV file, or pipe one in".to_owned());
+        return Ending::Refused;
+    }
+    if let Some((message, help)) = file.and_then(mistakes::table_is_scenario) {
+        diagnostic::error_with_help(message, help);
+        return Ending::Refused;
+    }
+    if let (Some(file), Some(out)) = (file, &options.out)
+        && output::is_same_file(file, out)
+    {
+        let message = format!("--out {} is the file that is read, which would be lost", out.display());
+        diagnostic::error_with_help(message, "name another file".to_owned());
         return Ending::Refused;
     }
     let ended = Input::open(file).map_err(|source| CsvProblem::Unreadable { source }.into());

@@ -13,6 +13,14 @@ const STARTER: &str = include_str!("starter.toml");
 
 pub(crate) fn init(options: &InitOptions, catalog: &Catalog) -> Ending {
     let out = options.out.clone().unwrap_or_else(|| default_file(options.robot.as_deref()));
+    let others = ["urdf", "xacro", "xml", "json", "csv", "py"];
+    if let Some(ending) = out.extension().filter(|ending| others.iter().any(|other| ending.eq_ignore_ascii_case(other)))
+    {
+        let message = format!("--out {}: init writes a scenario (TOML), no .{}", out.display(), ending.display());
+        let help = format!("write --out {}", out.with_extension("toml").display());
+        diagnostic::error_with_help(message, help);
+        return Ending::Refused;
+    }
     // Before anything is read: a file that is there is its author's.
     if output::is_taken(&out) {
         return is_there(&out);

@@ -2,7 +2,7 @@
 
 use super::sample::{ANGLES, Sample, is_angle, tangent};
 use super::{Refused, names};
-use crate::{diagnostic, frequency};
+use crate::{diagnostic, frequency, mistakes};
 use springpot::law::datasheet::{Measured, Quantity};
 use springpot_run::numbers::short;
 use springpot_scenario::csv::{CsvProblem, CsvRow, CsvRows, MAX_ROWS};
@@ -53,6 +53,9 @@ pub(super) fn read(file: &Path, sample: &Sample) -> Result<Table, Refused> {
         };
         at(file, problem.line(), problem.to_string(), help)
     };
+    if let Some((message, help)) = mistakes::table_is_scenario(file) {
+        return Err(Refused::new(message, help));
+    }
     let opened = File::open(file).map_err(|source| broken(&CsvProblem::Unreadable { source }))?;
     let mut cells = match CsvRows::new(opened) {
         // Where commas are decimal points.

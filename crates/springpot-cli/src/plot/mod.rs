@@ -90,7 +90,13 @@ struct Figure {
 
 fn figure(options: &PlotOptions) -> Result<Figure, Refused> {
     let out = options.out.as_ref().map(|out| Ok((out.clone(), format(out)?))).transpose()?;
-    let formats = options.formats.iter().map(|word| format_named(word)).collect::<Result<Vec<_>, _>>()?;
+    let mut formats: Vec<FigureFormat> = Vec::with_capacity(options.formats.len());
+    for word in &options.formats {
+        let format = format_named(word)?;
+        if !formats.contains(&format) {
+            formats.push(format);
+        }
+    }
     let (folders, columns) = results_and_columns(options)?;
     let tables =
         folders.iter().enumerate().map(|(at, folder)| Table::open(folder, at > 0)).collect::<Result<Vec<_>, _>>()?;

@@ -165,3 +165,98 @@ fn references_that_jump_are_marked_themselves() {
         says(&place.springpot(&[&[command, "arm.toml"][..], &sweep].concat()), 1, &["arm.toml:23:37"]);
     }
 }
+
+/// The arm with one text in place of another that it holds once.
+fn edited(from: &str, to: &str) -> Place {
+    assert_eq!(ARM.matches(from).count(), 1, "{from}");
+    Place::with(&ARM.replace(from, to))
+}
+
+#[test]
+fn values_that_are_none_of_toml_are_written_right() {
+    for (from, to, words) in [
+        ("end = 0.35", "end = 1 s", "write end = \"1 s\""),
+        ("law = \"magnetorheological\"", "law = magnetorheological", "write law = \"magnetorheological\""),
+        ("end = 0.35", "end = 0,35", "write end = 0.35: numbers have a decimal point"),
+        ("end = 0.35", "end = 0,35 s # long", "write end = \"0.35 s\""),
+        ("end = 0.35", "end = .35", "write end = 0.35: a digit stands before the point"),
+        ("end = 0.35", "end = -5.", "write end = -5.0"),
+        ("end = 0.35", "end = None", "leave end out"),
+        ("point = [0.1, 0, 0]", "point = [10 cm, 0, 0]", "write \"10 cm\""),
+        ("point = [0.1, 0, 0]", "point = [0.1; 0; 0]", "write commas between values"),
+        ("[motion]", "[motion]\ngravity_compensation = True", "write gravity_compensation = true"),
+        ("mass = 2", "mass = 2 // kg", "a comment begins with #: write mass = 2 # kg"),
+        ("mass = 2", "// mass\nmass = 2", "a comment begins with #: write # mass"),
+        ("[time]", "[time", "write [time]"),
+        ("[[element]]", "[[element]", "write [[element]]"),
+        ("1 + 0.5*sin(20*t)", "0 if t<1 else 20", "an expression has no conditions; step(t - 1) is 0 before t = 1"),
+    ] {
+        says(&edited(from, to).springpot(&["check", "arm.toml"]), 2, &["arm.toml:", words]);
+    }
+}
+
+#[test]
+fn arguments_are_told_with_what_was_given() {
+    let place = Place::with(ARM);
+    place.write("tt.csv", "t,x\n0,0\n1,1\n2,3\n3,5\n");
+    place.write("other.toml", ARM);
+    place.done(&["run", "arm.toml", "--quiet", "--out", "o"]);
+    for (arguments, words) in [
+        (&["plot", "o", "q.x", "--out", "x.pdf", "--formats", "svg"][..], &["leave --formats out"][..]),
+        (&["view", "o", "--serve", "--out", "x.html"], &["--serve shows the page and writes none"]),
+        (&["run", "arm.toml", "--resume", "o"], &["SCENARIO cannot be used with --resume", "name the folder alone"]),
+        (&["run", "arm.toml", "--out", "a", "--out", "b"], &["--out is given twice", "write it once"]),
+        (&["modulus", "arm.toml"], &["write springpot modulus arm.toml ELEMENT"]),
+        (&["export", "o"], &["write springpot export o FILE"]),
+        (&["plot", "o"], &["write springpot plot o COLUMN"]),
+        (&["derivative", "arm.toml", "--column", "x", "--order", "0.5"], &["arm.toml is a scenario, not a table"]),
+        (&["laws", "--from", "arm.toml"], &["arm.toml is a scenario, not a table", "run it first"]),
+        (&["run", "nosuch.toml"], &["the current folder holds arm.toml and other.toml"]),
+        (&["run", "sub/nosuch.toml"], &["there is no folder sub"]),
+        (&["run", "am.toml"], &["did you mean arm.toml?"]),
+        (
+            &["modulus", "arm.toml", "damper", "--set", "element.damper.enabled=false"],
+            &["element \"damper\" is not enabled", "--set element.damper.enabled=true"],
+        ),
+        (&["init", "--out", "a.urdf"], &["init writes a scenario (TOML), no .urdf", "write --out a.toml"]),
+        (
+            &["derivative", "tt.csv", "--column", "x", "--order", "0.5", "--out", "./tt.csv"],
+            &["--out ./tt.csv is the file that is read", "name another file"],
+        ),
+    ] {
+        let ended = place.springpot(arguments);
+        says(&ended, 2, words);
+        assert!(!ended.stderr.contains("Usage:"), "{}", ended.stderr);
+    }
+    assert!(!place.path("a.urdf").exists() && place.read("tt.csv").starts_with("t,x\n"));
+    let drawn = place.done(&["plot", "o", "q.x", "--formats", "svg,svg"]);
+    assert_eq!(drawn.stdout, "o/figures/q.x.svg\n");
+}
+
+#[test]
+fn numbers_in_other_units_are_warned_of() {
+    let warned = |place: Place, words: &[&str]| says(&place.springpot(&["check", "arm.toml", "--quiet"]), 0, words);
+    warned(
+        edited("\"0.3*sin(4*t)\"", "\"40 + 0.1*sin(t)\""),
+        &["arm.toml:31:17: joint \"q1\" starts at 40 without a unit: rad, and so 6.4 turns", "unit = \"deg\""],
+    );
+    warned(edited("com = [0.05,", "com = [50,"), &["arm.toml:18:7: body \"slide\": its centre of mass is 50 m away"]);
+    warned(
+        edited("origin = [0.4,", "origin = [400,"),
+        &["body \"slide\": its joint is 400 m away, where other bodies"],
+    );
+    for text in ["\"12 + 0.1*sin(t)\"", "{ expression = \"2000 + sin(t)\", unit = \"deg\" }"] {
+        let ended = edited("\"0.3*sin(4*t)\"", text).springpot(&["check", "arm.toml", "--quiet"]);
+        assert!(!ended.stderr.contains("without a unit"), "{}", ended.stderr);
+    }
+    let robot = "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>\
+                 <visual><geometry><mesh filename=\"package://shop/b.stl\"/></geometry></visual></link>\
+                 <joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 0 1\"/></joint></robot>";
+    let place = Place::with(
+        "[robot]\nurdf = \"r.urdf\"\npackage_path = [\"nowhere\"]\n[motion]\nkind = \"prescribed\"\njoints = { j = \"sin(t)\" }\n[time]\nend = 1\noutput_step = 0.1\n",
+    );
+    place.write("r.urdf", robot);
+    let words =
+        ["arm.toml:3:17", "there is no folder nowhere", "package_path = \"FOLDER\" in [robot], the folder shop"];
+    says(&place.springpot(&["check", "arm.toml", "--quiet"]), 0, &words);
+}
