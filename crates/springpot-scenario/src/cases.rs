@@ -378,6 +378,8 @@ impl Cases {
         for (axis, values) in self.axes.iter().enumerate() {
             let count = values.len();
             let mut position = vec![0; self.axes.len()];
+            // By target the first value that tells its unit.
+            let mut told = vec![None; values.targets.len()];
             let mut known = Vec::with_capacity(count.min(TRIED));
             let last = (count > TRIED).then_some(count - 1);
             for k in (0..count.min(TRIED)).chain(last) {
@@ -402,13 +404,18 @@ impl Cases {
                     known.push(self.noted(&ctx, axis));
                 }
                 let first = self.first_tag(axis);
-                for (at, (tag, unit)) in units.iter_mut().enumerate().skip(first).take(values.targets.len()).enumerate()
-                {
-                    let own = ctx.swept_unit(tag).unwrap_or_default();
-                    match k {
-                        0 => *unit = own,
-                        _ if own != *unit => self.refuse_unit((axis, at), k, &ctx, [unit, &own]),
-                        _ => {}
+                for at in 0..values.targets.len() {
+                    let own = ctx.swept_unit(first + at).unwrap_or_default();
+                    // 0 is one of all units.
+                    let is_bare_zero = own.is_empty() && ctx.swept(first + at) == Some(0.0);
+                    match told[at] {
+                        None if is_bare_zero => {}
+                        None => {
+                            told[at] = Some(k);
+                            units[first + at] = own;
+                        }
+                        Some(_) if is_bare_zero || own == units[first + at] => {}
+                        Some(earlier) => self.refuse_unit((axis, at), [earlier, k], &ctx, [&units[first + at], &own]),
                     }
                 }
                 ctx.finish(read)?;
@@ -423,7 +430,13 @@ impl Cases {
     }
 
     /// Refuses a value of a swept constant in another SI unit than the first: a constant has any, and a column one.
-    fn refuse_unit(&self, (axis, at): (usize, usize), k: usize, ctx: &Context<'_>, [first, own]: [&str; 2]) {
+    fn refuse_unit(
+        &self,
+        (axis, at): (usize, usize),
+        [earlier, k]: [usize; 2],
+        ctx: &Context<'_>,
+        [first, own]: [&str; 2],
+    ) {
         let values = &self.axes[axis];
         let target = &values.targets[at];
         if !matches!(target.ends(), ("constants", _)) || ctx.swept(self.first_tag(axis) + at).is_none() {
@@ -439,7 +452,7 @@ impl Cases {
         let message = format!(
             "{} is swept through {}, which is {}, and {}, which is {}",
             target.written,
-            values.label_of(0, at),
+            values.label_of(earlier, at),
             named(first),
             values.label_of(k, at),
             named(own)

@@ -42,7 +42,7 @@ fn names_stand_wherever_cases_are_told_apart() {
     }
     let checked = place.done(&["check", "arm.toml"]);
     let said = checked.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
-    let swept = "element.spring.enabled, element.damper.u: both, damper, no voltage, damper alone";
+    let swept = "element.spring.enabled, element.damper.u: both, \"damper, no voltage\", damper alone";
     assert!(said.contains(swept), "{}", checked.stdout);
 }
 

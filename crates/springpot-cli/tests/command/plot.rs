@@ -274,7 +274,10 @@ fn statistics_over_a_swept_parameter_as_a_run_draws_them() {
     refused(&["r", "metric(peek)", "--x", "element.damper.u"], "peak");
     refused(&["r", "max(damper.force)", "--x", "damper.force"], "it is not swept in r");
     refused(&["one", "metric(peak)"], "holds no metrics.csv");
-    refused(&["two", "max(damper.force)", "--x", "element.damper.u"], "is not a number");
+    refused(
+        &["two", "max(damper.force)", "--x", "element.damper.u"],
+        "a summary over element.damper.u needs numbers, and t is none",
+    );
     place.done(&["run", "arm.toml", "--out", "p", "--set", "time.end=0.1", "--quiet"]);
     fs::remove_file(place.path("p/run.json")).unwrap();
     refused(&["p", "max(damper.force)"], "has no sweep");

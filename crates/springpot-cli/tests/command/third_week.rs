@@ -91,7 +91,7 @@ fn a_constant_is_swept_in_one_unit() {
     ] {
         says(&check(values), 2, &[at, words]);
     }
-    for values in ["1,2", "1 Hz,2 kHz", "1 rad,90 deg", "1 N/m,2 kg/s^2"] {
+    for values in ["1,2", "0,2 V/mm,0,1 kV/mm", "1 Hz,2 kHz", "1 rad,90 deg", "1 N/m,2 kg/s^2"] {
         says(&check(values), 0, &[]);
     }
 }
