@@ -253,7 +253,7 @@ fn syntax_help(text: &str, span: &Range<usize>, message: &str) -> Option<String>
 /// What is likely meant by a line of which a value is none of TOML: a comment, a number, a word.
 fn mistaken_value(span: &Range<usize>, start: usize, line: &str) -> Option<String> {
     let (before, at) = (line.get(..span.start - start)?, line.get(span.start - start..)?);
-    let outside = |text: &str| text.matches('"').count() % 2 == 0;
+    let outside = |text: &str| text.matches('"').count().is_multiple_of(2);
     if let Some(comment) = line.find("//").filter(|comment| outside(&line[..*comment])) {
         let (kept, words) = (&line[..comment], line[comment + 2..].trim());
         return Some(format!("a comment begins with #: write {}", shorten(format!("{kept}# {words}").trim())));

@@ -91,8 +91,8 @@ impl Source {
         let is_folder = disk.is_folder(results);
         let folder = if is_folder { results } else { results.parent().unwrap_or(Path::new("")) };
         let record = Record::read(disk, folder).map_err(|why| match disk.look(results) {
-            Ok(Some(_)) if let Some(why) = why => {
-                let error = io::Error::new(io::ErrorKind::InvalidData, why);
+            Ok(Some(_)) if why.is_some() => {
+                let error = io::Error::new(io::ErrorKind::InvalidData, why.unwrap_or_default());
                 LaterError::File { file: folder.join("run.json"), error }
             }
             Ok(None) => {
