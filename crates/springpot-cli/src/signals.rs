@@ -2,7 +2,7 @@
 
 use springpot::integrate::Stop;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The flag that Ctrl-C, SIGTERM and SIGHUP set; a second one ends the process at once.
 ///
@@ -36,8 +36,19 @@ fn install(stop: &Arc<AtomicBool>) -> std::io::Result<()> {
 /// The exit code of what was interrupted.
 const INTERRUPTED: i32 = 130;
 
+/// What is called before a signal ends the process.
+static CLEAN: Mutex<Vec<Box<dyn Fn() + Send>>> = Mutex::new(Vec::new());
+
 /// Has `clean` called when Ctrl-C, SIGTERM or SIGHUP end the process. Where no handler can be installed they end it without.
 pub(crate) fn before_the_end(clean: impl Fn() + Send + 'static) {
+    let mut all = CLEAN.lock().unwrap_or_else(PoisonError::into_inner);
+    all.push(Box::new(clean));
+    // One handler hears for all that a process does.
+    if all.len() > 1 {
+        return;
+    }
+    drop(all);
+    let clean = || CLEAN.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(|clean| clean());
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

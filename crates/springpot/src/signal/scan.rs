@@ -14,8 +14,8 @@ const SHORT: f64 = 512.0;
 /// The narrowest cell in which kinks are told apart, as a share of the run.
 const FINEST_KINK: f64 = 1.0 / (1u64 << 42) as f64;
 
-/// Cells after which a signal is given up: a run would take as many steps.
-const MOST_CELLS: u64 = 20_000_000;
+/// Cells after which a signal is given up, seconds of work: a run would take as many steps. Where fewer steps are allowed, fewer cells.
+const MOST_CELLS: u64 = 700_000;
 
 /// What may be added to them for every kink found.
 const CELLS_PER_KINK: u64 = 64;
@@ -155,7 +155,8 @@ impl<'a> Scan<'a> {
             self.used = Scale { integral: self.integral_scale(), ..self.seen };
             let outcome = self.look_through();
             let grew = self.seen.range() > 4.0 * self.used.range() || self.integral_scale() > 4.0 * self.used.integral;
-            if !grew || attempt == 3 || outcome == Err(AgendaError::Interrupted) {
+            let gives_up = outcome == Err(AgendaError::Interrupted) || (outcome.is_err() && attempt > 0);
+            if !grew || attempt == 3 || gives_up {
                 return outcome;
             }
         }
@@ -201,15 +202,15 @@ impl<'a> Scan<'a> {
             open.push(Cell::new(self.expression, self.many.as_ref(), [a, b], sides));
             left = right;
             while let Some(cell) = open.pop() {
-                self.count_cell()?;
+                self.count_cell(cell.a)?;
                 self.look_at(cell, &mut open);
             }
         }
         Ok(())
     }
 
-    /// Counts the next cell, and gives up where there are too many.
-    fn count_cell(&mut self) -> Result<(), AgendaError> {
+    /// Counts the next cell, which begins at `a`, and gives up where there are too many.
+    fn count_cell(&mut self, a: f64) -> Result<(), AgendaError> {
         self.cells += 1;
         if self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
             return Err(AgendaError::Interrupted);
@@ -219,8 +220,11 @@ impl<'a> Scan<'a> {
         if kinks > self.most {
             return too_busy(kinks as f64);
         }
-        if self.cells > MOST_CELLS + CELLS_PER_KINK * kinks {
-            return too_busy(self.cells as f64);
+        let most_cells = MOST_CELLS.min(CELLS_PER_KINK.saturating_mul(self.most).max(ESTIMATED_AT));
+        if self.cells > most_cells + CELLS_PER_KINK * kinks {
+            // As many as there would be until the end.
+            let share = (a / self.end).max(f64::EPSILON);
+            return too_busy(self.cells as f64 / share);
         }
         if self.cells == ESTIMATED_AT {
             let estimate = self.estimate()?;
