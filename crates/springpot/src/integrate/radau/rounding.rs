@@ -28,8 +28,9 @@ pub(super) struct Rounding {
     pulls: Vec<f64>,
     /// Of each free velocity, N or N·m.
     forces: Vec<f64>,
-    /// Rows of |M⁻¹| over the free velocities that were asked for since the last linearisation, none being empty; nothing where M is singular.
+    /// Rows of |M⁻¹| over the free velocities; empty where not asked for since the last linearisation.
     inverse: Vec<Vec<f64>>,
+    /// Whether M was regular, where it was factored since then.
     is_factored: Option<bool>,
     /// Of each free velocity, m/s² or rad/s².
     pub(super) accelerations: Vec<f64>,
