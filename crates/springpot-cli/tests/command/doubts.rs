@@ -1,18 +1,7 @@
 //! What `check` and `run` warn of though it may be run: numbers that their author hardly meant. Nothing of it is said of scenarios that are right.
 
-use crate::support::{ARM, Ended, Place};
+use crate::support::{ARM, Place, edited};
 use std::fs;
-
-fn said(ended: &Ended) -> String {
-    ended.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
-}
-
-fn edited(edits: &[(&str, &str)]) -> String {
-    edits.iter().fold(ARM.to_owned(), |text, (from, to)| {
-        assert_eq!(text.matches(from).count(), 1, "{from}");
-        text.replace(from, to)
-    })
-}
 
 const FORWARD: (&str, &str) = (
     "kind = \"prescribed\"\njoints = { q1 = \"0.3*sin(4*t)\", x = \"0.05 - 0.05*cos(6*t)\" }",
@@ -66,12 +55,12 @@ fn what_is_hardly_meant_is_told_with_its_place() {
     ] {
         let scenario = Place::with(&text);
         let checked = scenario.springpot(&["check", "arm.toml", "-q"]);
-        assert!(said(&checked).contains(words), "{words:?} is not in {}\n{text}", checked.stderr);
+        assert!(checked.said().contains(words), "{words:?} is not in {}\n{text}", checked.stderr);
         assert!(checked.stderr.contains(&format!("warning: {place}")), "{place} is not in {}", checked.stderr);
-        assert!(said(&checked).contains("help: "), "{}", checked.stderr);
+        assert!(checked.said().contains("help: "), "{}", checked.stderr);
         if !text.contains("1e300") {
             let ran = scenario.springpot(&["run", "arm.toml", "-q", "--no-figures"]);
-            assert!(said(&ran).contains(words), "{words:?} is not in {}", ran.stderr);
+            assert!(ran.said().contains(words), "{words:?} is not in {}", ran.stderr);
         }
     }
 }
@@ -120,8 +109,8 @@ fn a_controller_at_its_limit_all_along_is_told() {
     let text = controlled("kind = \"pid\"\nkp = 60\nlimits = { q1 = \"1 mN*m\" }").replace("\"0.1*sin(t)\"", "-0.1");
     let place = Place::with(&text);
     let ran = place.done(&["run", "arm.toml", "-q", "--no-figures", "--set", "element.damper.rest_length=start"]);
-    assert!(said(&ran).contains("tau.q1 is at its limit, 0.001 N*m, in every row"), "{}", ran.stderr);
-    assert!(said(&ran).contains("arm.toml:36:"), "{}", ran.stderr);
+    assert!(ran.said().contains("tau.q1 is at its limit, 0.001 N*m, in every row"), "{}", ran.stderr);
+    assert!(ran.said().contains("arm.toml:36:"), "{}", ran.stderr);
     let free = place.done(&[
         "run",
         "arm.toml",
@@ -139,6 +128,6 @@ fn a_controller_at_its_limit_all_along_is_told() {
 fn an_amplitude_beyond_the_element_is_told() {
     let place = Place::new();
     let told = place.done(&["modulus", "arm.toml", "damper", "--amplitude", "2"]);
-    assert!(said(&told).contains("--amplitude 2 of element \"damper\": its rest length is 0.5 m"), "{}", told.stderr);
+    assert!(told.said().contains("--amplitude 2 of element \"damper\": its rest length is 0.5 m"), "{}", told.stderr);
     assert_eq!(place.done(&["modulus", "arm.toml", "damper", "--amplitude", "2 mm"]).stderr, "");
 }

@@ -168,7 +168,7 @@ fn what_stops_a_run_names_its_place() {
         let sets = set.iter().flat_map(|set| ["--set", set]);
         let arguments: Vec<&str> = ["run", "arm.toml", "--quiet"].into_iter().chain(sets).collect();
         let ended = place.springpot(&arguments);
-        let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = ended.said();
         assert!(ended.code != Some(0) && said.contains(words) && said.contains(help), "{set:?}: {said}");
         assert!(!said.contains("stick = true") && !said.contains("0.00000000"), "{set:?}: {said}");
         if help == guard {

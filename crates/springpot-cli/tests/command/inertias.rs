@@ -41,17 +41,9 @@ fn place(xx: &str, zz: &str, start: &str) -> Place {
 }
 
 #[track_caller]
-fn says(ended: &Ended, words: &[&str]) {
-    let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
-    for words in words {
-        assert!(said.contains(words), "{words:?} is not in {}", ended.stderr);
-    }
-}
-
-#[track_caller]
 fn refused(ended: &Ended, words: &[&str]) {
     assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
-    says(ended, words);
+    ended.says(words);
 }
 
 const HELP: &str = "take it as it is: --accept-inertia, in a scenario accept_inertia = true in [robot]";
@@ -71,7 +63,7 @@ fn a_broken_triangle_is_refused_with_the_cure_and_can_be_accepted() {
     }
     refused(&with("init", &["--out", "refused.toml"]), &[message, HELP]);
     let listed = "<inertia> that no distribution of mass has: link \"blade\" (line 7: moment 3.0 above the sum 1.1 of the other two)";
-    says(&with("dynamics", &["--accept-inertia"]), &[listed]);
+    with("dynamics", &["--accept-inertia"]).says(&[listed]);
     let info = with("info", &["--accept-inertia"]);
     let told = info.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(info.code == Some(0) && told.contains(listed), "{info:?}");
@@ -79,11 +71,11 @@ fn a_broken_triangle_is_refused_with_the_cure_and_can_be_accepted() {
     // What `init` writes has the key, and runs.
     place.done(&["init", "mixer.urdf", "--accept-inertia", "--out", "begun.toml"]);
     assert!(place.read("begun.toml").contains("\naccept_inertia = true\n"));
-    says(&place.done(&["run", "begun.toml", "--quiet"]), &[listed]);
+    place.done(&["run", "begun.toml", "--quiet"]).says(&[listed]);
     assert_eq!(place.record("results/begun")["plan"]["urdf"]["accept_inertia"], true);
 
     // It is one of the warnings that a scenario accepts, and without the key the scenario is refused.
-    says(&place.done(&["check", "mixer.toml"]), &[listed, "accept = [\"triangle-inequality\"] in [robot]"]);
+    place.done(&["check", "mixer.toml"]).says(&[listed, "accept = [\"triangle-inequality\"] in [robot]"]);
     let text = place.read("mixer.toml");
     place.write("told.toml", text.replace("[motion]", "accept = [\"triangle-inequality\"]\n[motion]"));
     assert_eq!(place.done(&["run", "told.toml", "--quiet"]).stderr, "");
@@ -103,20 +95,20 @@ fn a_negative_moment_is_accepted_as_long_as_the_mass_matrix_is_positive() {
     refused(&place.springpot(&["info", "mixer.urdf"]), &[message, HELP]);
     let listed = "<inertia> with a negative principal moment: link \"blade\" (line 7: -0.01 kg*m^2, used as it is)";
     let check = place.done(&["check", "mixer.toml", "--quiet"]);
-    says(&check, &[listed, "accept = [\"not-positive\"] in [robot]"]);
+    check.says(&[listed, "accept = [\"not-positive\"] in [robot]"]);
 
     // The run ends where the blade has turned so far, and keeps the rows before.
     let indefinite = "the mass matrix is not positive definite at joint \"roll\"";
     for more in [&[][..], &["--set", "solver.method=\"backward-euler\"", "--set", "solver.step=0.01"]] {
         let ended = place.springpot(&[&["run", "mixer.toml", "--quiet", "--out", "r"][..], more].concat());
         assert_eq!(ended.code, Some(1), "{}", ended.stderr);
-        says(&ended, &[indefinite]);
+        ended.says(&[indefinite]);
         let t = place.table("r/results.csv").numbers("t");
         let last = t.last().unwrap();
         assert!((1.3..=1.6).contains(last), "{last}");
     }
     let short = ["run", "mixer.toml", "--quiet", "--out", "s", "--set", "time.end=1"];
-    says(&place.done(&short), &[listed]);
+    place.done(&short).says(&[listed]);
 
     // A start there is refused before anything runs.
     let there = ["--set", "motion.start.q.spin=0"];
@@ -124,13 +116,13 @@ fn a_negative_moment_is_accepted_as_long_as_the_mass_matrix_is_positive() {
     refused(&run, &["t = 0 s: the mass matrix is not positive definite at joint \"roll\"", "nothing was run"]);
     let check = place.springpot(&[&["check", "mixer.toml", "--quiet"][..], &there].concat());
     assert_eq!(check.code, Some(1));
-    says(&check, &[indefinite]);
+    check.says(&[indefinite]);
 
     let state = |spin: &str| format!("{{\"q\": [0, {spin}], \"v\": [0, 0], \"a\": [0, 0], \"tau\": [1, 1]}}");
     place.write("states.json", format!("{{\"states\": [{}, {}]}}", state("1.5"), state("0")));
     let ended = place.springpot(&["dynamics", "mixer.urdf", "--accept-inertia", "--states", "states.json"]);
     assert_eq!(ended.code, Some(1));
-    says(&ended, &["states[1]: the mass matrix is not positive definite at joint \"roll\": an accepted inertia is"]);
+    ended.says(&["states[1]: the mass matrix is not positive definite at joint \"roll\": an accepted inertia is"]);
     assert!(!ended.stderr.contains("states[0]"), "{}", ended.stderr);
 }
 

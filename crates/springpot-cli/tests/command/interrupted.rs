@@ -149,7 +149,7 @@ fn a_second_run_into_a_folder_is_refused_and_the_first_is_named() {
         let before = rows();
         let second = place.springpot(arguments);
         assert_eq!((second.code, second.stdout.as_str()), (Some(1), ""), "{}", second.stderr);
-        let said = second.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = second.said();
         assert!(said.starts_with("error: another run writes to results/arm: ") && said.contains(&process), "{said}");
         assert!(said.contains(", since 2") && said.contains("name another folder with --out"), "{said}");
         assert!(rows() >= before && place.path("results/arm/.lock").exists());
@@ -172,7 +172,7 @@ fn a_folder_that_is_removed_under_a_run_is_free_again() {
         signal(&child, "-INT");
         let ended = ended(child);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{}", ended.stderr);
-        let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = ended.said();
         assert!(said.starts_with("error: results/arm was removed while the run wrote to it"), "{said}");
         assert!(said.ends_with("run it again, into a folder that stays"), "{said}");
         assert!(!place.path("results").exists());

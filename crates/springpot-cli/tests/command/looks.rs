@@ -265,7 +265,7 @@ fn looks_that_make_no_sense_are_refused() {
         for command in ["run", "check"] {
             let ended = place.springpot(&[command, "arm.toml"]);
             assert_eq!(ended.code, Some(2), "{figure}");
-            let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+            let said = ended.said();
             assert!(said.starts_with("error: arm.toml:4"), "{figure}: {said}");
             for words in words {
                 assert!(said.contains(words), "{figure}: no {words:?} in {said}");

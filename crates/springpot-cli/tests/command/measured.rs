@@ -36,7 +36,7 @@ fn parameter(answer: &Value, name: &str) -> f64 {
 fn refused(place: &Place, arguments: &[&str], words: &[&str]) {
     let ended = place.springpot(&[&["laws"], arguments].concat());
     assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{arguments:?}");
-    let told = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    let told = ended.said();
     assert!(words.iter().all(|word| told.contains(word)), "{arguments:?}: {}", ended.stderr);
 }
 

@@ -63,7 +63,7 @@ fn what_it_cannot_do_is_refused() {
     ] {
         let all: Vec<&str> = ["modulus", "arm.toml"].into_iter().chain(arguments.iter().copied()).collect();
         let refused = place.springpot(&all);
-        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = refused.said();
         assert_eq!(refused.code, Some(2), "{arguments:?}: {}", refused.stderr);
         words.iter().for_each(|words| assert!(said.contains(words), "{arguments:?}: {words:?}: {}", refused.stderr));
     }

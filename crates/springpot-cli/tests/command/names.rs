@@ -144,7 +144,7 @@ fn measured_points_stand_beside_columns() {
         assert_eq!(text.matches(from).count(), 1, "{from}");
         place.write("bad.toml", text.replace(from, to));
         let refused = place.springpot(&["check", "bad.toml"]);
-        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = refused.said();
         assert!(refused.code == Some(2) && said.contains(words), "{to}: {said}");
     }
 

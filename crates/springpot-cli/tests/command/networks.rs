@@ -171,7 +171,7 @@ fn leaves_that_yield_stand_beside_others() {
 
 fn refused(place: &Place, set: &str, words: &[&str]) {
     let refused = place.springpot(&["check", "arm.toml", "--set", &format!("element.damper.{set}")]);
-    let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = refused.said();
     assert_eq!(refused.code, Some(2), "{set}: {}", refused.stderr);
     words.iter().for_each(|words| assert!(said.contains(words), "{set}: {words:?} is not in {}", refused.stderr));
 }
@@ -292,7 +292,7 @@ fn pasts_are_said_and_judged() {
         ),
     ] {
         let refused = run(past);
-        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = refused.said();
         assert_eq!(refused.code, Some(2), "{past}: {}", refused.stderr);
         words.iter().for_each(|words| assert!(said.contains(words), "{past}: {words:?} is not in {}", refused.stderr));
     }
@@ -312,7 +312,7 @@ fn a_jump_is_infinite_only_where_nothing_yields() {
             "--set",
             "element.damper.past=unloaded",
         ]);
-        let words = said.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let words = said.said();
         assert!(words.contains("its energy is not known") && words.contains("past = { held"), "{words}");
         assert_eq!(words.contains("its force is infinite"), is_infinite, "{words}");
     }

@@ -55,7 +55,7 @@ fn a_part_that_is_named_twice_is_refused() {
     for second in ["p1", "./p1", "p2/../p1"] {
         let refused = place.springpot(&["merge", "p1", "p2", second, "--out", "whole"]);
         assert_eq!(refused.code, Some(2), "{}", refused.stderr);
-        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = refused.said();
         assert!(said.contains(&format!("{second} is named twice")) && said.contains("name every part once"), "{said}");
     }
     place.done(&["merge", "p2", "p1", "--out", "whole"]);

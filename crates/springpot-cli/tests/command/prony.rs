@@ -211,7 +211,7 @@ fn whole_laws_relax_too() {
         ("thermoviscoelastic", &["E_c=1", "E_kv=1", "E_d=1", "alpha=0.5", "a_kv=0"], "has inputs"),
     ] {
         let refused = ask(law, parameters);
-        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = refused.said();
         assert!(refused.code == Some(2) && said.contains(words), "{law} {parameters:?}: {}", refused.stderr);
     }
 }

@@ -1,25 +1,6 @@
 //! Mistakes of people who know other programs: each is told with its place, its value and what would be right.
 
-use crate::support::{ARM, Ended, Place, testdata};
-
-fn said(ended: &Ended) -> String {
-    ended.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
-}
-
-#[track_caller]
-fn says(ended: &Ended, code: i32, words: &[&str]) {
-    assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
-    for words in words {
-        assert!(said(ended).contains(words), "{words:?} is not in {}", ended.stderr);
-    }
-}
-
-fn edited(edits: &[(&str, &str)]) -> String {
-    edits.iter().fold(ARM.to_owned(), |text, (from, to)| {
-        assert_eq!(text.matches(from).count(), 1, "{from}");
-        text.replace(from, to)
-    })
-}
+use crate::support::{ARM, Place, edited, testdata};
 
 const MOTION: &str = "kind = \"prescribed\"\njoints = { q1 = \"0.3*sin(4*t)\", x = \"0.05 - 0.05*cos(6*t)\" }";
 
@@ -33,12 +14,11 @@ fn expressions_of_other_languages() {
         ("if t<1 then 0 else 1", &["`if`: an expression has no conditions"]),
         ("where(t > 1, 0, 1)", &["an expression has no conditions"]),
     ] {
-        says(&place.springpot(&["check", "arm.toml", "--set", &format!("motion.joints.q1={signal}")]), 2, words);
+        place.springpot(&["check", "arm.toml", "--set", &format!("motion.joints.q1={signal}")]).ends(2, words);
     }
     let forward = edited(&[(MOTION, "kind = \"forward\"\n\n[[event]]\nname = \"far\"\nwhen = \"q1 > 0.2\"\n")]);
     place.write("arm.toml", &forward);
-    says(
-        &place.springpot(&["check", "arm.toml"]),
+    place.springpot(&["check", "arm.toml"]).ends(
         2,
         &[
             "arm.toml:34:12",
@@ -46,17 +26,16 @@ fn expressions_of_other_languages() {
         ],
     );
     place.write("arm.toml", forward.replace("q1 > 0.2", "q.q1 < -0.2"));
-    says(&place.springpot(&["check", "arm.toml"]), 2, &["write \"q.q1 - (-0.2)\" and direction = \"falling\""]);
+    place.springpot(&["check", "arm.toml"]).ends(2, &["write \"q.q1 - (-0.2)\" and direction = \"falling\""]);
 }
 
 #[test]
 fn names_without_their_beginning() {
     let place = Place::new();
     place.done(&["run", "arm.toml", "--out", "r"]);
-    says(&place.springpot(&["metrics", "r", "--metric", "max(q1)"]), 2, &["did you mean `q.q1`?"]);
-    says(&place.springpot(&["plot", "r", "q1"]), 2, &["q.q1"]);
-    says(
-        &place.springpot(&["plot", "arm.toml", "q.x"]),
+    place.springpot(&["metrics", "r", "--metric", "max(q1)"]).ends(2, &["did you mean `q.q1`?"]);
+    place.springpot(&["plot", "r", "q1"]).ends(2, &["q.q1"]);
+    place.springpot(&["plot", "arm.toml", "q.x"]).ends(
         2,
         &[
             "arm.toml is a scenario, and plot draws the results of a run",
@@ -65,7 +44,7 @@ fn names_without_their_beginning() {
         ],
     );
     place.done(&["run", "arm.toml", "--format", "parquet", "--out", "p"]);
-    says(&place.springpot(&["plot", "p", "q.x"]), 2, &["view, report, export and metrics read it", "--format csv"]);
+    place.springpot(&["plot", "p", "q.x"]).ends(2, &["view, report, export and metrics read it", "--format csv"]);
 }
 
 #[test]
@@ -78,13 +57,10 @@ fn files_of_samples() {
         let signal = format!("element.damper.u={{ csv = \"{file}\", column = \"T\" }}");
         place.springpot(&["check", "arm.toml", "--set", &signal])
     };
-    says(&with("T.csv"), 2, &["no column `t`; did you mean `time`?", "write time = \"time\""]);
-    says(
-        &with("back.csv"),
-        2,
-        &["back.csv:4: times must increase, but 1 follows 1", "sort the rows by t", "look at line 4"],
-    );
-    says(&with("bare.csv"), 2, &["write the names of the columns above the numbers"]);
+    with("T.csv").ends(2, &["no column `t`; did you mean `time`?", "write time = \"time\""]);
+    with("back.csv")
+        .ends(2, &["back.csv:4: times must increase, but 1 follows 1", "sort the rows by t", "look at line 4"]);
+    with("bare.csv").ends(2, &["write the names of the columns above the numbers"]);
 }
 
 #[test]
@@ -99,17 +75,13 @@ fn measurements() {
     place.write("two.csv", format!("{header}{}{}", rows("20"), rows("40")));
     place.done(&["laws", "--from", "one.csv"]);
     for law in [&["laws", "--from", "two.csv"][..], &["laws", "fractional-zener", "--from", "two.csv"]] {
-        says(
-            &place.springpot(law),
-            2,
-            &["two.csv:6: the rows were measured at several temperatures", "20 and 40", "line 6"],
-        );
+        place
+            .springpot(law)
+            .ends(2, &["two.csv:6: the rows were measured at several temperatures", "20 and 40", "line 6"]);
     }
-    says(
-        &place.springpot(&["laws", "prony", "--from", "one.csv"]),
-        2,
-        &["is not fitted from data yet", "springpot prony"],
-    );
+    place
+        .springpot(&["laws", "prony", "--from", "one.csv"])
+        .ends(2, &["is not fitted from data yet", "springpot prony"]);
     // Other habits of instruments.
     let comma = "Ang. frequency (rad/s);E' (MPa);Tan Delta\n0,62832;2,0;0,2\n6,2832;2,5;0,2\n62,832;3,1;0,2\n";
     place.write("comma.csv", comma);
@@ -123,7 +95,7 @@ fn measurements() {
         place.done(&["laws", "--from", "E = 2 MPa at 10 Hz, tan_delta = 0.2 at 10 Hz, area = 4 cm^2, length = 10 mm"]);
     assert!(plain.stdout.contains("springpot"), "{}", plain.stdout);
     let far = place.done(&["laws", "spring", "--from", "tan_delta = 0.3 at 10 Hz, stiffness = 5 kN/m"]);
-    says(&far, 0, &["spring misses the data by 100 %", "name another law, or none"]);
+    far.ends(0, &["spring misses the data by 100 %", "name another law, or none"]);
 }
 
 #[test]
@@ -135,7 +107,7 @@ fn laws_in_other_words() {
     ] {
         place.write("arm.toml", edited(&[edit]));
         let ended = place.springpot(&["check", "arm.toml"]);
-        says(&ended, 2, words);
+        ended.ends(2, words);
         assert!(!ended.stderr.contains("needs the parameters"), "{}", ended.stderr);
     }
     place.write(
@@ -146,8 +118,7 @@ fn laws_in_other_words() {
             ("inputs = { u = \"1 + 0.5*sin(20*t)\" }\n", ""),
         ]),
     );
-    says(
-        &place.springpot(&["check", "arm.toml"]),
+    place.springpot(&["check", "arm.toml"]).ends(
         2,
         &[
             "is \"50 N*s^alpha/m\", but stands in the network where an order does",
@@ -161,28 +132,24 @@ fn laws_in_other_words() {
     place.done(&["run", "arm.toml", "-q", "--no-figures", "--out", "kilo"]);
     place.done(&["run", "arm.toml", "-q", "--no-figures", "--out", "bare", "--set", "element.damper.shift.energy=6e4"]);
     assert_eq!(place.read("kilo/results.csv"), place.read("bare/results.csv"));
-    says(&place.springpot(&["check", "arm.toml", "--set", "element.damper.shift.energy=60 kJ"]), 2, &["`J/mol`"]);
+    place.springpot(&["check", "arm.toml", "--set", "element.damper.shift.energy=60 kJ"]).ends(2, &["`J/mol`"]);
     place.write("arm.toml", edited(&[("axis = [0, 1, 0],", "axis = [0, 1, 0], lower = -1,")]));
-    says(
-        &place.springpot(&["check", "arm.toml"]),
-        2,
-        &["`lower` of", "limits of joints are those of a URDF file", "stop(k, lower, upper)"],
-    );
+    place
+        .springpot(&["check", "arm.toml"])
+        .ends(2, &["`lower` of", "limits of joints are those of a URDF file", "stop(k, lower, upper)"]);
 }
 
 #[test]
 fn toml_in_other_dress() {
     let place = Place::new();
     place.write("arm.toml", edited(&[("mass = \"500 g\"", "mass = “500 g”")]));
-    says(
-        &place.springpot(&["check", "arm.toml"]),
-        2,
-        &["arm.toml:17:8", "“ is a quote of running text", "write straight quotes: mass = \"500 g\""],
-    );
+    place
+        .springpot(&["check", "arm.toml"])
+        .ends(2, &["arm.toml:17:8", "“ is a quote of running text", "write straight quotes: mass = \"500 g\""]);
     place.write("arm.toml", edited(&[("end = 0.35", "end: 3 s")]));
-    says(&place.springpot(&["check", "arm.toml"]), 2, &["arm.toml:34", "write end = \"3 s\""]);
+    place.springpot(&["check", "arm.toml"]).ends(2, &["arm.toml:34", "write end = \"3 s\""]);
     place.write("arm.toml", format!("{ARM}[[figure]]\nname = \"f\"\ny = \"q.x\"\nformats = \"all\"\n"));
-    says(&place.springpot(&["check", "arm.toml"]), 2, &["\"svg\", \"png\" and \"pdf\"", "\"all\""]);
+    place.springpot(&["check", "arm.toml"]).ends(2, &["\"svg\", \"png\" and \"pdf\"", "\"all\""]);
 }
 
 #[test]
@@ -190,7 +157,7 @@ fn failures_show_their_line() {
     let place = Place::new();
     let busy = place.springpot(&["run", "arm.toml", "--set", "motion.joints.q1=0.001*sin(1e12*t)"]);
     assert!(busy.code != Some(0), "{}", busy.stderr);
-    says(&busy, busy.code.unwrap(), &["--set:1:18", "q1", "changes too often", "look at its frequency"]);
+    busy.ends(busy.code.unwrap(), &["--set:1:18", "q1", "changes too often", "look at its frequency"]);
     // Its points meet on the way: what is shown is where they stand.
     place.write(
         "arm.toml",
@@ -202,14 +169,12 @@ fn failures_show_their_line() {
             ("\"50 cm\"", "\"10 cm\""),
         ]),
     );
-    says(
-        &place.springpot(&["run", "arm.toml"]),
-        1,
-        &["arm.toml:22:8", "its points met", "from = { body = \"world\", point = [0.4, 0, 0.5] }"],
-    );
+    place
+        .springpot(&["run", "arm.toml"])
+        .ends(1, &["arm.toml:22:8", "its points met", "from = { body = \"world\", point = [0.4, 0, 0.5] }"]);
     place.write("arm.toml", edited(&[("\"0.3*sin(4*t)\"", "\"0.3*step(t - 0.2)\"")]));
     let jumped = place.springpot(&["run", "arm.toml"]);
-    says(&jumped, jumped.code.unwrap(), &["arm.toml:31:17", "0.3*step(t - 0.2)", "coordinates may not: ramp it"]);
+    jumped.ends(jumped.code.unwrap(), &["arm.toml:31:17", "0.3*step(t - 0.2)", "coordinates may not: ramp it"]);
     assert_ne!(jumped.code, Some(0));
 }
 
@@ -242,7 +207,7 @@ fn words_of_the_command_line() {
         (&["plot", "r", "q.x", "--formats", "all"], &["--formats all", "write some of svg, png and pdf"]),
     ] {
         let ended = place.springpot(arguments);
-        says(&ended, 2, words);
+        ended.ends(2, words);
         assert!(ended.stderr.starts_with("error: ") && !ended.stderr.contains("invalid"), "{}", ended.stderr);
     }
     assert!(!place.path("a.txt").exists());
@@ -255,11 +220,8 @@ fn starters() {
     let place = Place::new();
     let ur5 = testdata("multibody/ur5.urdf");
     let from = |from: &str, to: &str| place.springpot(&["init", &ur5, "--from", from, "--to", to, "--out", "a.toml"]);
-    says(
-        &from("wrist_1_link", "wrist_1_link"),
-        2,
-        &["--from and --to are one link, \"wrist_1_link\": an element joins two"],
-    );
+    from("wrist_1_link", "wrist_1_link")
+        .ends(2, &["--from and --to are one link, \"wrist_1_link\": an element joins two"]);
     let link = |name: &str| {
         format!(
             "<link name=\"{name}\"><inertial><origin xyz=\"0 0 0.2\"/><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>"
@@ -268,11 +230,9 @@ fn starters() {
     let joint = "<joint name=\"hip\" type=\"continuous\"><parent link=\"base\"/><child link=\"upper\"/><axis xyz=\"0 1 0\"/></joint>";
     place.write("one.urdf", format!("<robot name=\"one\">{}</robot>", link("base")));
     place.write("two.urdf", format!("<robot name=\"two\">{}{}{joint}</robot>", link("base"), link("upper")));
-    says(
-        &place.springpot(&["init", "one.urdf"]),
-        2,
-        &["the single link \"base\"", "springpot init one.urdf --floating-base"],
-    );
+    place
+        .springpot(&["init", "one.urdf"])
+        .ends(2, &["the single link \"base\"", "springpot init one.urdf --floating-base"]);
     place.done(&["init", "one.urdf", "--floating-base"]);
     place.done(&["init", "two.urdf", "--from", "base", "--gripper", "upper"]);
     let text = place.read("two.toml");

@@ -74,7 +74,7 @@ fn refused(elements: &[&str], set: &[&str], words: &[&str]) {
     let place = place(elements);
     let ended = place.springpot(&[&["check", "arm.toml"][..], &set].concat());
     assert_eq!(ended.code, Some(2), "{}", ended.stdout);
-    let text = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = ended.said();
     for words in words {
         assert!(text.contains(words), "{words}\nis not in\n{}", ended.stderr);
     }
@@ -227,7 +227,7 @@ fn what_cannot_be_is_refused() {
     let motion = MOTION.replace("q1 = 0.1, ", "");
     let place = Place::with(&[&base, &floating, &motion].map(String::as_str).concat());
     let ended = place.springpot(&["check", "arm.toml"]);
-    let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = ended.said();
     assert_eq!(ended.code, Some(2), "{}", ended.stdout);
     assert!(
         said.contains("joint \"base\" is floating") && said.contains("joints with one coordinate are q2"),
@@ -241,7 +241,7 @@ fn half_a_turn_stops_a_run() {
     let set = ["--set", "motion.start.v={ q2 = 60 }", "--set", "element.mount.ry.k=0", "--set", "element.mount.x.k=1"];
     let ended = place.springpot(&[&["run", "arm.toml", "--quiet"][..], &set].concat());
     assert_eq!(ended.code, Some(1), "{}", ended.stderr);
-    let said = ended.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = ended.said();
     for words in ["element \"mount.ry\" is turned by 3.1", "jumps at half a turn, pi", "error: arm.toml:", ": t = 0."] {
         assert!(said.contains(words), "{words}\n{said}");
     }

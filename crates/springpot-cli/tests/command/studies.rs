@@ -66,7 +66,7 @@ fn what_is_wrong_with_constants_is_said() {
         ("motion.joints.x=B*sin(t)", &["unknown name `B`"]),
     ] {
         let refused = place.springpot(&["check", "arm.toml", "--set", set]);
-        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = refused.said();
         assert_eq!(refused.code, Some(2), "{set}: {}", refused.stderr);
         words.iter().for_each(|words| assert!(said.contains(words), "{set}: {words:?} is not in {}", refused.stderr));
     }

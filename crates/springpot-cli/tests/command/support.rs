@@ -212,6 +212,34 @@ impl From<Output> for Ended {
     }
 }
 
+impl Ended {
+    /// What it said on stderr, without the ends and the bars of the terminal's lines.
+    pub(crate) fn said(&self) -> String {
+        self.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+    }
+
+    #[track_caller]
+    pub(crate) fn says(&self, words: &[&str]) {
+        let said = self.said();
+        words.iter().for_each(|words| assert!(said.contains(words), "{words:?} is not in {}", self.stderr));
+    }
+
+    #[track_caller]
+    pub(crate) fn ends(&self, code: i32, words: &[&str]) {
+        assert_eq!(self.code, Some(code), "{}{}", self.stdout, self.stderr);
+        self.says(words);
+    }
+}
+
+/// The arm with words in the place of others, which it has once.
+#[track_caller]
+pub(crate) fn edited(edits: &[(&str, &str)]) -> String {
+    edits.iter().fold(ARM.to_owned(), |text, (from, to)| {
+        assert_eq!(text.matches(from).count(), 1, "{from}");
+        text.replace(from, to)
+    })
+}
+
 /// A CSV file without quotes.
 #[derive(Debug)]
 pub(crate) struct Csv {

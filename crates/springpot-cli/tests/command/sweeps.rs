@@ -1,20 +1,16 @@
 //! Sweeps of the command line: how they are written, what is said of them, and what takes them out again.
 
-use crate::support::{ARM, Ended, Place};
+use crate::support::{ARM, Place};
 
 const FORM: &str = "PATH=FROM:TO:COUNT[:log]";
 
 /// What was said, its lines joined.
-fn said(ended: &Ended) -> String {
-    ended.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
-}
-
 #[track_caller]
 fn refused(place: &Place, arguments: &[&str], words: &[&str]) {
     let ended = place.springpot(&[&["check", "arm.toml"][..], arguments].concat());
     assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{arguments:?}: {}", ended.stderr);
     for words in words {
-        assert!(said(&ended).contains(words), "{arguments:?}: {words:?} is not in {}", ended.stderr);
+        assert!(ended.said().contains(words), "{arguments:?}: {words:?} is not in {}", ended.stderr);
     }
 }
 
@@ -74,7 +70,7 @@ fn three_numbers_that_may_be_from_step_and_end_are_told() {
     let place = Place::new();
     let warned = |sweep: &str| {
         let ended = place.done(&["check", "arm.toml", "--quiet", "--sweep", sweep]);
-        said(&ended).contains("FROM:TO:COUNT").then(|| said(&ended))
+        ended.said().contains("FROM:TO:COUNT").then(|| ended.said())
     };
     let told = warned("element.damper.mu_0=30:10:60").expect("a warning");
     assert!(told.contains("is 60 values from 30 to 10: 30, 29.6610169491525, "), "{told}");
@@ -106,7 +102,7 @@ fn values_are_printed_before_a_run_and_equal_ones_are_told() {
     );
     let twice = place.done(&["check", "arm.toml", "-q", "--sweep", "element.damper.rest_length=0.5,40 cm,50 cm"]);
     let told = "the sweep of element.damper.rest_length holds 0.5 and 50 cm, which are the same";
-    assert!(said(&twice).contains(told), "{}", twice.stderr);
+    assert!(twice.said().contains(told), "{}", twice.stderr);
     let once = place.done(&["check", "arm.toml", "-q", "--sweep", "element.damper.rest_length=0.45,46 cm,50 cm"]);
     assert!(!once.stderr.contains("same"), "{}", once.stderr);
 }
@@ -121,7 +117,7 @@ fn an_empty_value_takes_a_key_out() {
     let all = place.done(&["run", "arm.toml", "--set", "sweep=", "--out", "all"]);
     assert!(all.stdout.contains("\n") && !all.stdout.contains("sweep "), "{}", all.stdout);
     assert!(
-        said(&all).contains("figures one and sum are not drawn: they speak of values that are no longer swept"),
+        all.said().contains("figures one and sum are not drawn: they speak of values that are no longer swept"),
         "{}",
         all.stderr
     );
@@ -130,7 +126,7 @@ fn an_empty_value_takes_a_key_out() {
     // What is swept anew is spoken of again.
     let anew =
         place.done(&["run", "arm.toml", "--set", "sweep=", "--sweep", "element.damper.alpha=0.2,0.7", "--out", "anew"]);
-    assert!(said(&anew).contains("figure sum is not drawn") && !said(&anew).contains("one"), "{}", anew.stderr);
+    assert!(anew.said().contains("figure sum is not drawn") && !anew.said().contains("one"), "{}", anew.stderr);
     // A key, an item by its name, a table.
     let controlled = ARM.replace("kind = \"prescribed\"\njoints = { q1 = \"0.3*sin(4*t)\", x = \"0.05 - 0.05*cos(6*t)\" }", "kind = \"forward\"\n\
         [motion.controller]\nkind = \"pid\"\nkp = 60\nki = 80\nkd = 6\nreference = { kind = \"joints\", q1 = \"0.1*sin(t)\", x = 0 }\n");
@@ -168,6 +164,6 @@ fn an_empty_value_takes_a_key_out() {
         assert_eq!(ended.code, Some(2), "{set}: {}", ended.stderr);
         words
             .iter()
-            .for_each(|words| assert!(said(&ended).contains(words), "{set}: {words:?} is not in {}", ended.stderr));
+            .for_each(|words| assert!(ended.said().contains(words), "{set}: {words:?} is not in {}", ended.stderr));
     }
 }

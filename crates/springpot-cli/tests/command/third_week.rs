@@ -1,18 +1,6 @@
 //! What a reader met who came without knowing anything: pages, named values, units of measured points, damaged records.
 
-use crate::support::{ARM, Ended, Place};
-
-fn said(ended: &Ended) -> String {
-    ended.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
-}
-
-#[track_caller]
-fn says(ended: &Ended, code: i32, words: &[&str]) {
-    assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
-    for words in words {
-        assert!(said(ended).contains(words), "{words:?} is not in {}", ended.stderr);
-    }
-}
+use crate::support::{ARM, Place};
 
 /// The arm with what is swept, measured and drawn.
 fn with(more: &str) -> Place {
@@ -44,9 +32,9 @@ fn a_record_whose_names_are_not_its_labels_is_refused() {
     place.write("o/run.json", record.to_string());
     for arguments in [&["view", "o"][..], &["view", "o", "--serve"], &["report", "o"], &["export", "o", "a.glb"]] {
         let words = ["o/run.json: the sweep of element.damper.E_c has 3 labels and other names, 2", "damaged"];
-        says(&place.springpot(arguments), 2, &words);
+        place.springpot(arguments).ends(2, &words);
     }
-    says(&place.springpot(&["metrics", "o", "--metric", "max(damper.force)"]), 2, &["has 3 labels and other names"]);
+    place.springpot(&["metrics", "o", "--metric", "max(damper.force)"]).ends(2, &["has 3 labels and other names"]);
 }
 
 #[test]
@@ -89,10 +77,10 @@ fn a_constant_is_swept_in_one_unit() {
         ("1 Hz,2 rad/s", "--sweep:1:18", "units of one kind"),
         ("1 rad,2", "--sweep:1:19", "2, which is a pure number"),
     ] {
-        says(&check(values), 2, &[at, words]);
+        check(values).ends(2, &[at, words]);
     }
     for values in ["1,2", "0,2 V/mm,0,1 kV/mm", "1 Hz,2 kHz", "1 rad,90 deg", "1 N/m,2 kg/s^2"] {
-        says(&check(values), 0, &[]);
+        check(values).ends(0, &[]);
     }
 }
 
@@ -109,7 +97,7 @@ fn brackets_behind_a_name_are_the_unit_of_measured_points() {
     };
     let figure_of = |data: &str| {
         let (place, ended) = draw(data);
-        says(&ended, 0, &[]);
+        ended.ends(0, &[]);
         place.read("o/figures/f.svg")
     };
     let told = figure_of("x = \"t [ms]\", y = \"F [kN]\", label = \"rig\"");
@@ -118,9 +106,9 @@ fn brackets_behind_a_name_are_the_unit_of_measured_points() {
     assert_eq!(told, said);
     assert_eq!(told, plain);
     let (_, refused) = draw("x = \"t [ms]\", y = \"F [weird]\"");
-    says(&refused, 2, &["arm.toml:", "its brackets tell no unit", "weird", "y_unit = \"ms\""]);
+    refused.ends(2, &["arm.toml:", "its brackets tell no unit", "weird", "y_unit = \"ms\""]);
     let (_, refused) = draw("x = \"t [ms]\", y = \"F [kN]\", x_unit = \"mm\"");
-    says(&refused, 2, &["measured points are drawn beside t, which is in s"]);
+    refused.ends(2, &["measured points are drawn beside t, which is in s"]);
 }
 
 const CONTROLLED: &str = r#"
@@ -158,11 +146,11 @@ fn references_that_jump_are_marked_themselves() {
     let path = "reference = { kind = \"gripper-path\", x = \"0.5*cos(0.3*step(t - 0.2))\", y = \"0.5*sin(0.3*step(t - 0.2))\", z = 0 }";
     place.write("path.toml", CONTROLLED.replace("reference = { kind = \"joints\", q1 = \"0.5*step(t - 0.2)\" }", path));
     for command in ["check", "run"] {
-        says(&place.springpot(&[command, "arm.toml"]), 2, &["arm.toml:23:37", "jumps by 5e-1"]);
-        says(&place.springpot(&[command, "path.toml"]), 2, &["path.toml:23:13", "jumps by"]);
+        place.springpot(&[command, "arm.toml"]).ends(2, &["arm.toml:23:37", "jumps by 5e-1"]);
+        place.springpot(&[command, "path.toml"]).ends(2, &["path.toml:23:13", "jumps by"]);
         // Where a case can run, both tell the one that cannot.
         let sweep = ["--sweep", "motion.controller.kind=pd-gravity,computed-torque"];
-        says(&place.springpot(&[&[command, "arm.toml"][..], &sweep].concat()), 1, &["arm.toml:23:37"]);
+        place.springpot(&[&[command, "arm.toml"][..], &sweep].concat()).ends(1, &["arm.toml:23:37"]);
     }
 }
 
@@ -191,7 +179,7 @@ fn values_that_are_none_of_toml_are_written_right() {
         ("[[element]]", "[[element]", "write [[element]]"),
         ("1 + 0.5*sin(20*t)", "0 if t<1 else 20", "an expression has no conditions; step(t - 1) is 0 before t = 1"),
     ] {
-        says(&edited(from, to).springpot(&["check", "arm.toml"]), 2, &["arm.toml:", words]);
+        edited(from, to).springpot(&["check", "arm.toml"]).ends(2, &["arm.toml:", words]);
     }
 }
 
@@ -225,7 +213,7 @@ fn arguments_are_told_with_what_was_given() {
         ),
     ] {
         let ended = place.springpot(arguments);
-        says(&ended, 2, words);
+        ended.ends(2, words);
         assert!(!ended.stderr.contains("Usage:"), "{}", ended.stderr);
     }
     assert!(!place.path("a.urdf").exists() && place.read("tt.csv").starts_with("t,x\n"));
@@ -235,7 +223,7 @@ fn arguments_are_told_with_what_was_given() {
 
 #[test]
 fn numbers_in_other_units_are_warned_of() {
-    let warned = |place: Place, words: &[&str]| says(&place.springpot(&["check", "arm.toml", "--quiet"]), 0, words);
+    let warned = |place: Place, words: &[&str]| place.springpot(&["check", "arm.toml", "--quiet"]).ends(0, words);
     warned(
         edited("\"0.3*sin(4*t)\"", "\"40 + 0.1*sin(t)\""),
         &["arm.toml:31:17: joint \"q1\" starts at 40 without a unit: rad, and so 6.4 turns", "unit = \"deg\""],
@@ -258,5 +246,5 @@ fn numbers_in_other_units_are_warned_of() {
     place.write("r.urdf", robot);
     let words =
         ["arm.toml:3:17", "there is no folder nowhere", "package_path = \"FOLDER\" in [robot], the folder shop"];
-    says(&place.springpot(&["check", "arm.toml", "--quiet"]), 0, &words);
+    place.springpot(&["check", "arm.toml", "--quiet"]).ends(0, &words);
 }
