@@ -149,6 +149,7 @@ pub(super) struct ControlState {
     wanted: Vec<f64>,
     shaped: Vec<f64>,
     torque: Vec<f64>,
+    left: (f64, Vec<Guard>),
     together: (f64, u32),
 }
 
@@ -237,6 +238,7 @@ impl ControlRun {
     pub(super) fn begin(&mut self, system: &System, q: &[f64], v: &[f64], end: f64) -> Result<(), RunError> {
         self.terms.clear();
         self.changes.clear();
+        self.left.1.clear();
         (self.has_branches, self.has_aim) = (false, false);
         let Some(controlled) = self.control.controller.clone() else { return Ok(()) };
         for k in (0..=LOOKS).rev() {
@@ -293,13 +295,14 @@ impl ControlRun {
             wanted: self.nodes[0].wanted.clone(),
             shaped: self.nodes[0].shaped.clone(),
             torque: self.nodes[0].torque.clone(),
+            left: self.left.clone(),
             together: self.together,
         }
     }
 
     /// Goes on from a state of the same system, after [`Self::begin`]; `false` where it is of another one.
     pub(super) fn go_on(&mut self, state: ControlState) -> bool {
-        let ControlState { branches, largest, modes, terms, wanted, shaped, torque, together } = state;
+        let ControlState { branches, largest, modes, terms, wanted, shaped, torque, left, together } = state;
         let fits = [branches.len(), largest.len()] == [self.laws.len(); 2] && modes.len() == self.joints.len();
         if !fits || terms.len() != self.terms.len() || torque.len() != self.nodes[0].torque.len() {
             return false;
@@ -310,7 +313,8 @@ impl ControlRun {
         self.terms.iter_mut().zip(terms).for_each(|(term, kept)| term.kept = kept);
         let start = &mut self.nodes[0];
         (start.wanted, start.shaped, start.torque) = (wanted, shaped, torque);
-        (self.together, self.has_branches, self.has_aim) = (together, true, false);
+        (self.left, self.together) = (left, together);
+        (self.has_branches, self.has_aim) = (true, false);
         true
     }
 

@@ -31,7 +31,7 @@ pub(super) enum Slew {
 }
 
 /// A function that is positive on the branch and passes zero where it is left.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(in crate::integrate) enum Guard {
     /// Kink `bit` of an expression.
     Branch { law: usize, bit: u32 },
