@@ -6,10 +6,17 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
-command=$target/debug/springpot
+command=$target/suite/springpot
 
-# What is built is built once: all steps take the profile dev, and the command and the C library that the tests have built.
-build() { cargo test --workspace --no-run --quiet; }
+# What is built is built once: all steps take the profile suite, and the command and the C library that the tests have built.
+build() { cargo test --workspace --profile suite --no-run --quiet; }
+
+# What steps take from PyPI and npm comes while the tests are built; they say themselves what they cannot have.
+tools() {
+    for script in crates/springpot-{report/web,capi,py}/check.sh; do
+        "$script" --tools >/dev/null 2>&1 || true
+    done
+}
 
 format() { cargo fmt --all --check; }
 
@@ -62,7 +69,7 @@ book() {
     ! grep -E 'WARN|ERROR' <<<"$said"
 }
 
-tests() { cargo test --workspace --quiet; }
+tests() { cargo test --workspace --profile suite --quiet; }
 
 pages() { build && SPRINGPOT=$command crates/springpot-report/web/check.sh; }
 
@@ -97,18 +104,40 @@ quick() {
     cargo test "${packages[@]}" --quiet
 }
 
-all=(format lints engine oldest crates documentation book tests pages engines python scenarios)
-if [ "$#" -gt 0 ]; then steps=("$@"); else steps=("${all[@]}"); fi
-for step in "${steps[@]}"; do
-    case " ${all[*]} quick " in
+# What shares no build with the tests, and what does.
+beside=(lints engine oldest crates documentation book)
+tested=(tests pages engines python scenarios)
+for step in "$@"; do
+    case " format ${beside[*]} ${tested[*]} quick " in
     *" $step "*) ;;
-    *) echo "no step $step: there are quick ${all[*]}" >&2 && exit 2 ;;
+    *) echo "no step $step: there are quick format ${beside[*]} ${tested[*]}" >&2 && exit 2 ;;
     esac
 done
-for step in "${steps[@]}"; do
-    printf '\n== %s\n' "$step"
-    TIMEFORMAT="$step: %0R s, %0U s of work"
-    time "$step"
-done
+
+steps() {
+    local TIMEFORMAT step
+    for step in "$@"; do
+        printf '\n== %s\n' "$step"
+        TIMEFORMAT="$step: %0R s, %0U s of work"
+        time "$step"
+    done
+}
+
+if [ "$#" -gt 0 ]; then
+    steps "$@"
+else
+    steps format
+    said=$(mktemp)
+    trap 'kill $(jobs -p) 2>/dev/null || true; rm -f "$said"' EXIT
+    tools &
+    fetching=$!
+    (steps "${beside[@]}") >"$said" 2>&1 &
+    others=$!
+    steps tests
+    wait "$fetching"
+    steps "${tested[@]:1}"
+    wait "$others" || { cat "$said"; exit 1; }
+    cat "$said"
+fi
 
 printf '\nall checks passed\n'

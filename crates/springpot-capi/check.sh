@@ -1,12 +1,17 @@
 #!/usr/bin/env bash
 # What needs more than Rust: the header against cbindgen, FMUs in FMPy. What is not at hand is said, not checked.
+# --write renews the header; --tools only gets what FMUs take.
 set -euo pipefail
 cd "$(dirname "$0")"
 target=${CARGO_TARGET_DIR:-$PWD/../../target}
 mkdir -p "$target"
 
-# The header is made of the two files that C sees; --write renews it.
-if command -v cbindgen >/dev/null; then
+# The header is made of the two files that C sees.
+header() {
+    if ! command -v cbindgen >/dev/null; then
+        echo "cbindgen is not installed (cargo install cbindgen): the header is not compared"
+        return
+    fi
     made=$(mktemp -d)
     trap 'rm -rf "$made"' EXIT
     sed '/^\/\/!/d' src/status.rs src/c.rs >"$made/c.rs"
@@ -15,9 +20,9 @@ if command -v cbindgen >/dev/null; then
         cp "$made/springpot.h" include/springpot.h
     fi
     diff -u include/springpot.h "$made/springpot.h" || { echo "include/springpot.h is not what cbindgen makes: run $0 --write"; exit 1; }
-else
-    echo "cbindgen is not installed (cargo install cbindgen): the header is not compared"
-fi
+}
+
+[ "${1:-}" = --tools ] || header "$@"
 
 python=$(command -v python3 || true)
 venv=$target/fmu-venv
@@ -31,6 +36,8 @@ if ! "$venv/bin/python" -c "import fmpy, pytest" 2>/dev/null; then
         exit 0
     fi
 fi
+[ "${1:-}" != --tools ] || exit 0
+
 # SPRINGPOT names a command that is built already, beside its library.
 if [ -z "${SPRINGPOT:-}" ]; then
     cargo build --quiet -p springpot-capi -p springpot-cli

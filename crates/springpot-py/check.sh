@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs the package into a virtual environment of its own and runs all that must hold of it: tests with doctests and types, examples.
+# --tools: only gets what they take.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -39,11 +40,12 @@ fi
 if ! "$venv/bin/python" -c 'import mcap, mcap_ros2' 2>/dev/null; then
     pip install --timeout 10 --retries 1 'mcap>=1.2' 'mcap-ros2-support>=0.5' 2>/dev/null || echo "springpot-py: mcap cannot be had, its tests are skipped"
 fi
+[ "${1:-}" != --tools ] || exit 0
 if [ -n "${WHEEL:-}" ]; then
     pip install --force-reinstall --no-deps "$WHEEL"
 else
-    # The profile dev, which is optimised: the engine is built already, by the tests in Rust.
-    MATURIN_PEP517_ARGS=${MATURIN_PEP517_ARGS:---profile dev} pip install --no-build-isolation --force-reinstall --no-deps .
+    # The profile of the tests in Rust, which have built the engine already.
+    MATURIN_PEP517_ARGS=${MATURIN_PEP517_ARGS:---profile suite} pip install --no-build-isolation --force-reinstall --no-deps .
 fi
 
 # Not from here: what was installed is what is tested.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Builds the page anew, makes pages, reports and models of runs with the command itself, uses them in a browser and validates the models. SPRINGPOT names the command, BROWSER the browser.
+# --tools: only gets what it takes.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -26,6 +27,7 @@ if ! cmp -s package-lock.json node_modules/.of-lock; then
         skip "the npm registry is out of reach, and what package-lock.json names is not in node_modules"
     cp package-lock.json node_modules/.of-lock
 fi
+[ "${1:-}" != --tools ] || exit 0
 
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT

@@ -44,8 +44,18 @@ impl Pulse {
 /// m q'' + c D^alpha q = f(t) from rest: an impulse gives the speed E_{2−alpha,1}(−(c/m) t^{2−alpha}).
 #[test]
 fn narrow_torques_move_as_impulses_do() {
+    torques(12);
+}
+
+#[test]
+#[ignore = "half a minute"]
+fn forty_narrow_torques_move_as_impulses_do() {
+    torques(40);
+}
+
+fn torques(count: usize) {
     let mut random = Random(0x8CB9_2BA7_2F3D_8DD7);
-    for k in 0..40 {
+    for k in 0..count {
         let (alpha, c) = (random.within(0.1, 0.9), random.log(0.1, 10.0));
         let end = random.log(1e-2, 1e3);
         let pulse = Pulse::new(&mut random, end);

@@ -52,28 +52,36 @@ fn case(random: &mut Random) {
     agrees_with_tiny_steps(&slider(&law, &motion, end, 40), width / 50.0, columns);
 }
 
-/// 200 of them in four shares, for as many threads.
-fn share(seed: u64) {
+/// Each stream of random numbers is a share, for as many threads.
+const SEEDS: [u64; 4] = [0x2545_F491_4F6C_DD1D, 0x9FB2_1C65_1E98_DF25, 0xC2B2_AE3D_27D4_EB4F, 0x1656_67B1_9E37_79F9];
+
+fn share(seed: u64, count: usize) {
     let mut random = Random(seed);
-    (0..50).for_each(|_| case(&mut random));
+    (0..count).for_each(|_| case(&mut random));
 }
 
 #[test]
 fn pulses_first_share() {
-    share(0x2545_F491_4F6C_DD1D);
+    share(SEEDS[0], 20);
 }
 
 #[test]
 fn pulses_second_share() {
-    share(0x9FB2_1C65_1E98_DF25);
+    share(SEEDS[1], 20);
 }
 
 #[test]
 fn pulses_third_share() {
-    share(0xC2B2_AE3D_27D4_EB4F);
+    share(SEEDS[2], 20);
 }
 
 #[test]
 fn pulses_fourth_share() {
-    share(0x1656_67B1_9E37_79F9);
+    share(SEEDS[3], 20);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn two_hundred_pulses() {
+    SEEDS.iter().for_each(|&seed| share(seed, 50));
 }
