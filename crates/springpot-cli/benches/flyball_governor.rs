@@ -5,8 +5,9 @@
 mod median;
 
 use median::median;
-use springpot::integrate::{RowTimes, Settings, Stop, System, run};
+use springpot::driver::run;
 use springpot::law::Catalog;
+use springpot::system::{RowTimes, Settings, Stop, System};
 use springpot_scenario::Scenario;
 use std::io::Write;
 use std::process::{Command, Stdio};

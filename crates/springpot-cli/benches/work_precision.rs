@@ -14,13 +14,14 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use springpot::actuation::{Drive, Forward};
+use springpot::driver::run;
 use springpot::dynamics::{Kinematics, PairForce, RneaDerivatives, Workspace, pair, rnea_derivatives_into, rnea_into};
 use springpot::elements::{Line, Measure};
 use springpot::fractional::{Kernel, gamma::gamma};
-use springpot::integrate::{RowTimes, Settings, Stop, System, run};
 use springpot::law::Catalog;
 use springpot::observe::Quantity;
 use springpot::signal::Signal;
+use springpot::system::{RowTimes, Settings, Stop, System};
 use springpot_report::{Panel, Plot};
 use springpot_scenario::Scenario;
 

@@ -3,8 +3,9 @@
 use crate::arguments::CheckOptions;
 use crate::{Ending, diagnostic, failures, plain, printed, signals, starts, swept, terminal};
 use springpot::elements::Element;
-use springpot::integrate::{ElementStart, RowTimes, Stop};
+use springpot::equations::ElementStart;
 use springpot::law::{Catalog, Entry, Expansion, Heat, Shift, Thermal};
+use springpot::system::{RowTimes, Stop};
 use springpot_run::numbers::{count, short};
 use springpot_run::sweep::Layout;
 use springpot_run::{Depth, Survey, Trouble};

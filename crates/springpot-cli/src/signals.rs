@@ -1,6 +1,6 @@
 //! What the system tells a run: to stop, or that a file is as large as it may be.
 
-use springpot::integrate::Stop;
+use springpot::system::Stop;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 

@@ -3,8 +3,9 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
-use springpot::integrate::{Report, RunError, Settings, run as simulate};
+use springpot::driver::{Report, run as simulate};
 use springpot::law::Catalog;
+use springpot::system::{RunError, Settings};
 use springpot_scenario::Scenario;
 use std::cell::Cell;
 use std::fmt::Write as _;

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use springpot::fractional::mittag_leffler::MittagLeffler;
 use springpot::fractional::scheme::Samples;
 use springpot::fractional::{Definition, Method, derivative, derivative_with_error};
-use springpot::integrate::Stop;
+use springpot::system::Stop;
 use std::sync::atomic::Ordering;
 
 /// So many samples take longer than a thread of their own does to start.

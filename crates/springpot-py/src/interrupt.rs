@@ -1,7 +1,7 @@
 //! Long work that Ctrl-C ends.
 
 use pyo3::prelude::*;
-use springpot::integrate::Stop;
+use springpot::system::Stop;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};

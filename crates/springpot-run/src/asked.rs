@@ -4,8 +4,8 @@ use crate::sweep::Layout;
 use crate::warning::{Warn, robot_warnings};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use springpot::integrate::{Stop, System};
 use springpot::law::Catalog;
+use springpot::system::{Stop, System};
 use springpot_scenario::{Cases, Plan, RefusalKind, Refusals, Scenario};
 use std::path::{Path, PathBuf};
 

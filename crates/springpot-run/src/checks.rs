@@ -2,8 +2,8 @@
 
 use crate::numbers::short;
 use springpot::dynamics::Kinematics;
-use springpot::integrate::System;
 use springpot::model::{Anchor, JointKind, Parent};
+use springpot::system::System;
 use springpot_scenario::{Plan, Remark, ShapePlan};
 
 /// An anchor farther from the robot than so many times its size is hardly meant.

@@ -8,7 +8,7 @@ use crate::sweep::{self, Options, Outcome, Progress, Status, SweepError};
 use crate::table::Format;
 use crate::table::folder::{Folder, FolderError};
 use crate::warning::{Warn, Warning};
-use springpot::integrate::Stop;
+use springpot::system::Stop;
 use springpot_scenario::Cases;
 use std::sync::atomic::Ordering;
 

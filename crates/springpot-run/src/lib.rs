@@ -16,7 +16,7 @@
 //!
 //! ```no_run
 //! use springpot::law::Catalog;
-//! use springpot::integrate::Stop;
+//! use springpot::system::Stop;
 //! use springpot_run::sweep::{Progress, Status};
 //! use springpot_run::table::disk::Disk;
 //! use springpot_run::{Asked, NewRun, Prepared, Surroundings, Warning};

@@ -5,10 +5,11 @@ use crate::parts::Part;
 use crate::record::MOST_SHOWN;
 use serde_json::{Map, Value, json};
 use springpot::elements::Element;
-use springpot::integrate::{Pose, System};
+use springpot::equations::Pose;
 use springpot::law::{InputValue, Network, Point, Term};
 use springpot::model::urdf::{self, VisualShape};
 use springpot::model::{Anchor, JointKind, Parent};
+use springpot::system::System;
 use springpot_report::ElementSign;
 use springpot_report::scene::{
     Body, Driven, Follows, Freedom, Joint, LawText, Parameter, Path, Placed, Root, Scene, SceneElement, SceneShape,

@@ -5,9 +5,11 @@ use crate::numbers::short;
 use crate::sweep::LimitTally;
 use crate::trouble::Trouble;
 use springpot::control::Aim;
+use springpot::driver::LimitWatch;
 use springpot::dynamics::Kinematics;
-use springpot::integrate::{ElementStart, LimitWatch, RowTimes, RunError, Stop, System};
+use springpot::equations::ElementStart;
 use springpot::model::JointKind;
+use springpot::system::{RowTimes, RunError, Stop, System};
 use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, Remark, ShapePlan};
 use std::ops::RangeInclusive;
 

@@ -1,7 +1,7 @@
 //! Why a case has no complete run, for those who read it.
 
 use serde::{Deserialize, Serialize};
-use springpot::integrate::RunError;
+use springpot::system::RunError;
 use springpot_scenario::{Cure, Place, Plan};
 
 /// Why a case has no complete run, where the cause stands, and what can be done.

@@ -1,8 +1,8 @@
 //! The placements of a scene, which know nothing of the engine, agree with the engine's own.
 
 use serde_json::Value;
-use springpot::integrate::Stop;
 use springpot::law::Catalog;
+use springpot::system::Stop;
 use springpot_report::scene::{Kinematics, Scene};
 use springpot_run::sweep::Progress;
 use springpot_run::table::disk::Disk;

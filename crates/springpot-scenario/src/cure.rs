@@ -2,8 +2,8 @@
 
 use super::plan::{ElementPlan, Plan, SignalPlan};
 use super::refusal::Place;
-use springpot::integrate::RunError;
 use springpot::law::heat;
+use springpot::system::RunError;
 
 /// What an error calls the force of a controller.
 const CONTROLLER: &str = "the force of the controller";

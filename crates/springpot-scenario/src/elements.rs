@@ -17,8 +17,8 @@ use super::time::Duration;
 use shape::Shape;
 use springpot::elements::{Component, Element};
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
-use springpot::integrate::RowTimes;
 use springpot::law::{Derivative, Past, RuleError};
+use springpot::system::RowTimes;
 use std::collections::HashMap;
 
 /// Most elements of a robot.

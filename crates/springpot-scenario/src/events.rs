@@ -11,11 +11,11 @@ use super::robot::{checked_name, unique};
 use super::signals::Wanted;
 use serde_json::{Map, Value, json};
 use springpot::actuation::Drive;
-use springpot::integrate::{Action, Direction, Event, Motion, Setting};
 use springpot::law::Range;
 use springpot::observe::{ElementQuantity, Observables, Quantity};
 use springpot::signal::ColumnExpression;
 use springpot::signal::expression::ExpressionError;
+use springpot::system::{Action, Direction, Event, Motion, Setting};
 use std::collections::HashMap;
 
 /// Most of them.

@@ -12,11 +12,11 @@ use super::refusal::{Place, RefusalKind, Remark};
 use super::signals::{self, Wanted};
 use super::units;
 use springpot::control::{Control, Feedback, InputFeedback, Sampling, Sense, TorqueFeedback};
-use springpot::integrate::Settings;
 use springpot::law::Range;
 use springpot::observe::Axis;
 use springpot::signal::expression::{ExpressionError, is_of_module};
 use springpot::signal::{ColumnExpression, Signal};
+use springpot::system::Settings;
 
 /// Feedback as it is written.
 #[derive(Debug, Clone)]

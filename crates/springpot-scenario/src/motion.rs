@@ -19,9 +19,9 @@ use super::robot::Robot;
 use controller::ControllerPlan;
 use serde_json::{Map, Value, json};
 use springpot::control::Controlled;
-use springpot::integrate::Motion;
 use springpot::model::Model;
 use springpot::motion::gripper_path::Course;
+use springpot::system::Motion;
 use std::fmt;
 use std::sync::Arc;
 

@@ -9,10 +9,10 @@ use super::past::PastPlan;
 use super::refusal::{Place, Remark};
 use springpot::control::Control;
 use springpot::elements::{Component, Element};
-use springpot::integrate::Settings;
 use springpot::model::urdf::Urdf;
 use springpot::model::{Anchor, BodySpec, Model};
 use springpot::signal::Signal;
+use springpot::system::Settings;
 use std::sync::Arc;
 
 /// One run, ready to be started.

@@ -6,8 +6,8 @@ use super::keys::solver::ADAPTIVE;
 use super::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
 use super::plan::{ElementPlan, EndStops, FramePlan, Plan, ShapePlan, SignalPlan, UrdfPlan};
 use serde_json::{Map, Value, json};
-use springpot::integrate::RowTimes;
 use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
+use springpot::system::RowTimes;
 
 /// Most output times that are listed one by one.
 const LISTED_TIMES: usize = 10_000;

@@ -2,10 +2,10 @@
 
 use super::plan::{ElementPlan, EndStops, Plan};
 use springpot::control::Control;
-use springpot::integrate::{Stop, System};
 use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::Course;
 use springpot::observe::Observables;
+use springpot::system::{Stop, System};
 use springpot::table::Column;
 use std::collections::HashMap;
 

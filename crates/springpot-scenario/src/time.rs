@@ -8,8 +8,8 @@ use super::names;
 use super::reader::{Field, Read, Table};
 use super::refusal::RefusalKind;
 use super::spacing::Spacing;
-use springpot::integrate::fixed::Method;
-use springpot::integrate::{FixedStep, RowTimes, Settings};
+use springpot::methods::fixed::Method;
+use springpot::system::{FixedStep, RowTimes, Settings};
 
 /// Where nothing is said of the memory's kernel, its error is `rtol` divided by this.
 const MEMORY_SHARE: f64 = 100.0;

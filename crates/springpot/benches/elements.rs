@@ -1,8 +1,9 @@
 //! What elements cost: the same leaves in series and in parallel, and many elements on one robot.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use springpot::integrate::{Report, Stop, System, run};
+use springpot::driver::{Report, run};
 use springpot::law::Catalog;
+use springpot::system::{Stop, System};
 use springpot_scenario::{Plan, Scenario};
 
 const ARM: &str = r#"

@@ -2,9 +2,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use springpot::Simulation;
-use springpot::integrate::fixed::{Loop, MemorySettings, Method};
-use springpot::integrate::{FixedStep, RowTimes, Settings, Stop, System, run};
+use springpot::driver::run;
 use springpot::law::Catalog;
+use springpot::methods::fixed::{Loop, MemorySettings, Method};
+use springpot::system::{FixedStep, RowTimes, Settings, Stop, System};
 use springpot_scenario::Scenario;
 use std::hint::black_box;
 

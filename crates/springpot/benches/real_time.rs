@@ -2,9 +2,9 @@
 //!
 //! `cargo bench -p springpot --bench real_time [-- STEPS]`; 10⁶ steps where none are said. It prints the percentiles and a histogram.
 
-use springpot::integrate::System;
-use springpot::integrate::fixed::{Loop, MemorySettings, Method};
 use springpot::law::Catalog;
+use springpot::methods::fixed::{Loop, MemorySettings, Method};
+use springpot::system::System;
 use springpot_scenario::Scenario;
 use std::time::Instant;
 

@@ -3,9 +3,10 @@
 //! `cargo run --release -p springpot --example network` prints the force of the element and a coordinate at every tenth of a second, and the
 //! force of the same law built the other way round; the last number on stderr is that of the inner steps.
 
-use springpot::integrate::{Report, Settings, Stop, System, run};
+use springpot::driver::{Report, run};
 use springpot::law::{Catalog, Derivative, Network};
 use springpot::observe::Table;
+use springpot::system::{Settings, Stop, System};
 use springpot_scenario::Scenario;
 
 /// The robot, the anchors and the motion of the arm; its element gets the law below.

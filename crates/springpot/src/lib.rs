@@ -20,8 +20,11 @@
 //! | [`motion`] | kinematics given in advance: signals, gripper paths | `dynamics`, `signal` |
 //! | [`actuation`] | forward dynamics: start, torques, prescribed and locked joints | `model`, `motion` |
 //! | [`observe`] | what can be observed: quantities with names, units and values; the table in memory | `elements`, `table` |
-//! | [`integrate`] | runs and simulations: steps, rows, energy | all above |
-//! | [`linear`] | small motions about rest: equilibria, eigenvalues, answers to sines | `integrate` |
+//! | [`system`] | what is simulated, and how: settings, times of rows, events, errors | all above |
+//! | [`equations`] | the equations of motion at one time; states without a run | `system` |
+//! | [`methods`] | how steps are taken: prescribed motions, Radau IIA(5), steps of one size | `equations` |
+//! | [`driver`] | runs and simulations: steps, rows, energy | `methods` |
+//! | [`linear`] | small motions about rest: equilibria, eigenvalues, answers to sines | `driver` |
 //! | [`table`] | the columns of rows | nothing |
 //!
 //! It knows numbers only: no files but URDF, no threads, no terminal. Scenario files are read by the crate `springpot-scenario`, sweeps,
@@ -35,7 +38,8 @@
 //! use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
 //! use springpot::motion::{JointPath, Trajectory};
 //! use springpot::signal::{Expression, Signal};
-//! use springpot::integrate::{RowTimes, Settings, Stop, System, run};
+//! use springpot::system::{RowTimes, Settings, Stop, System};
+//! use springpot::driver::run;
 //!
 //! let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
 //! let arm = builder.push(BodySpec {
@@ -71,22 +75,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod account;
 pub mod actuation;
 pub mod collocation;
 pub mod control;
+pub mod driver;
 pub mod dynamics;
 pub mod elements;
+pub mod equations;
 pub mod fractional;
-pub mod integrate;
 pub mod law;
 mod linalg;
 pub mod linear;
+pub mod methods;
 pub mod model;
 pub mod motion;
 pub mod names;
 pub mod observe;
 pub mod signal;
 pub mod spatial;
+pub mod system;
 pub mod table;
 
-pub use integrate::Simulation;
+pub use driver::Simulation;

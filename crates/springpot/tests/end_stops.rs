@@ -1,12 +1,13 @@
 //! Limits of joints as end stops, against closed forms.
 
 use springpot::actuation::{Drive, Forward};
-use springpot::integrate::fixed::Method;
-use springpot::integrate::{FixedStep, Motion, Report, RowTimes, Settings, Stop, System, run};
+use springpot::driver::{Report, run};
+use springpot::methods::fixed::Method;
 use springpot::model::{BodySpec, JointSpec, Limits, ModelBuilder, Parent};
 use springpot::motion::{JointPath, Trajectory};
 use springpot::observe::Table;
 use springpot::signal::{Expression, Signal};
+use springpot::system::{FixedStep, Motion, RowTimes, Settings, Stop, System};
 
 const MASS: f64 = 2.0;
 const UPPER: f64 = 0.5;

@@ -2,7 +2,8 @@
 
 mod support;
 
-use springpot::integrate::{Checkpoint, Report, Rows, RunError, Stop, resume, run};
+use springpot::driver::{Checkpoint, Report, Rows, resume, run};
+use springpot::system::{RunError, Stop};
 use springpot_scenario::Plan;
 use support::cases;
 use support::forward::{every, slider, state};

@@ -4,7 +4,7 @@ use super::build::Setup;
 use super::instance::Mode;
 use crate::sealed;
 use serde::{Deserialize, Serialize};
-use springpot::integrate::SimulationState;
+use springpot::driver::SimulationState;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the bytes begin with.

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 use springpot::Simulation;
-use springpot::integrate::{Motion, System};
 use springpot::observe::{ElementQuantity, EnergyQuantity, Quantity};
+use springpot::system::{Motion, System};
 use springpot_scenario::{Plan, ShapePlan, toml_key};
 
 /// One variable, a real number. Its value reference is its place in the list.

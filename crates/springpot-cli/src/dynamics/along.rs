@@ -7,8 +7,9 @@ use crate::run::in_case;
 use crate::{Ending, diagnostic, plain, printed, terminal};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use springpot::integrate::{Equation, EquationError, System};
+use springpot::driver::{Equation, EquationError};
 use springpot::law::Catalog;
+use springpot::system::System;
 use springpot_scenario::units::parse_quantity;
 use springpot_scenario::{Cases, Refusals, SweptValue};
 
@@ -109,7 +110,7 @@ fn json(cases: &Cases, index: usize, system: &System, equation: &Equation) -> St
         SweptValue::Text(text) => json!(text),
     });
     let rows = |matrix| -> Vec<&[f64]> { <[f64]>::chunks(matrix, n).collect() };
-    let element = |(term, element): (&springpot::integrate::ElementTerm, &springpot::elements::Element)| {
+    let element = |(term, element): (&springpot::driver::ElementTerm, &springpot::elements::Element)| {
         let inputs: Map<String, Value> = element
             .entry
             .inputs

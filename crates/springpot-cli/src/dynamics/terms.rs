@@ -3,8 +3,9 @@
 use crate::grid::{Grid, Set, width_of};
 use crate::plain;
 use crate::terminal;
+use springpot::driver::{ElementTerm, Equation};
 use springpot::elements::{Element, Measure};
-use springpot::integrate::{ElementTerm, Equation, System};
+use springpot::system::System;
 use springpot_run::numbers::{brief, rough, short};
 
 /// Most velocities for which a_ab, and Γ_ab,c, are printed.
@@ -120,7 +121,7 @@ fn square(matrix: &[f64], n: usize) -> Vec<Vec<String>> {
 
 /// q, q̇ and q̈, with the labels of the other tables; floating joints have more numbers in q than in q̇.
 fn state(system: &System, equation: &Equation, names: &[String], labels: &[String], page: &Page) -> String {
-    let springpot::integrate::State { q, v, a } = &equation.state;
+    let springpot::equations::State { q, v, a } = &equation.state;
     let number = |x: &f64| shown(*x, 0.0);
     let columns = ["q", "q\u{307}", "q\u{308}"].map(str::to_owned);
     let pad = labels.last().map_or(0, |label| width_of(label));

@@ -1,6 +1,6 @@
 //! One case, run to its end: what must hold of every ordinary run.
 
-use springpot::integrate::{Report, run};
+use springpot::driver::{Report, run};
 use springpot::law::Catalog;
 use springpot_scenario::{Cases, Plan, Scenario};
 use std::sync::atomic::AtomicBool;

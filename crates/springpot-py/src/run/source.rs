@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use pyo3::prelude::*;
-use springpot::integrate::Stop;
+use springpot::system::Stop;
 use springpot_run::sweep::{Parcel, Progress, Source};
 use springpot_run::{Asked, Planned};
 use std::io;

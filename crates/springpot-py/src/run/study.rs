@@ -8,7 +8,7 @@ use crate::pickle::{self, Reduced, reduced};
 use crate::scenario::{CATALOG, asked};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
-use springpot::integrate::Stop;
+use springpot::system::Stop;
 use springpot_run::sweep::{
     CheckpointError, Outcome, Parcel, Progress, Shards, Source, Status, SweepError, Unfinished,
 };

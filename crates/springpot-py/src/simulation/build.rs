@@ -14,9 +14,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use springpot::Simulation;
 use springpot::actuation::Drive;
-use springpot::integrate::{Motion, RunError, System};
 use springpot::motion::{JointPath, Trajectory};
 use springpot::signal::Signal;
+use springpot::system::{Motion, RunError, System};
 use springpot_scenario::{Plan, RobotPlan, suggest};
 use std::sync::{Arc, Mutex};
 

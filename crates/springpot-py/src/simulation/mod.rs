@@ -18,9 +18,9 @@ use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use springpot::Simulation;
-use springpot::integrate::RunError;
 use springpot::model::Model;
 use springpot::observe::Quantity;
+use springpot::system::RunError;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

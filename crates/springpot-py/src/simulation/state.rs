@@ -6,7 +6,7 @@ use crate::pickle::{self, Reduced, reduced};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde::{Deserialize, Serialize};
-use springpot::integrate::SimulationState;
+use springpot::driver::SimulationState;
 use std::sync::LazyLock;
 
 /// What the bytes of a state begin with: they hold what one build of the engine keeps.

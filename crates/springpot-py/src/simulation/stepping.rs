@@ -4,7 +4,7 @@ use super::{Inner, failed};
 use crate::interrupt::PATIENCE;
 use pyo3::prelude::*;
 use springpot::Simulation;
-use springpot::integrate::RunError;
+use springpot::system::RunError;
 use std::time::Instant;
 
 impl Inner {

@@ -16,7 +16,7 @@ pub use summary::swept_numbers;
 use crate::sweep::{FigureData, Layout, Outcome, Wanted};
 use crate::table::folder::Folder;
 use source::Source;
-use springpot::integrate::System;
+use springpot::system::System;
 use springpot_report::Rendered;
 use springpot_scenario::{Cases, FigureFormat, FigureKind, FigurePlan, Plan, Refusals};
 use std::io;

@@ -3,8 +3,9 @@
 use super::look::millimetres;
 use super::source::Source;
 use crate::scene::{ground, sign_of};
-use springpot::integrate::{Pose, System};
+use springpot::equations::Pose;
 use springpot::model::{Anchor, Dimension, JointKind, Parent};
+use springpot::system::System;
 use springpot_report::{ElementMark, ElementShape, JointMark, Link, Rendered, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan, ShapePlan};
 

@@ -3,7 +3,7 @@
 use super::panels::{Curves, DrawnCase, FigureColumn};
 use crate::labels;
 use crate::sweep::{CaseResult, FigureCurve, FigureData, KeptCurve, Outcome};
-use springpot::integrate::System;
+use springpot::system::System;
 use springpot_report::Plot;
 use springpot_scenario::{Cases, FigurePlan, Plan};
 

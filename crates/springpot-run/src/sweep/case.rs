@@ -12,7 +12,7 @@ use super::{Options, Sweep};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::trouble::Trouble;
-use springpot::integrate::{PassedLimit, Report};
+use springpot::driver::{PassedLimit, Report};
 use std::io::{self, ErrorKind};
 use std::sync::atomic::Ordering;
 use std::time::Duration;

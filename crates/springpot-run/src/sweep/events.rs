@@ -2,7 +2,7 @@
 
 use crate::table::{push_fields, push_text};
 use serde::{Deserialize, Serialize};
-use springpot::integrate::{Action, System};
+use springpot::system::{Action, System};
 
 /// The events of a case so far. They are few, and wait in memory for the end of their case.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

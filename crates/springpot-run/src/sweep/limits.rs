@@ -1,6 +1,6 @@
 //! Limits of joints that cases pass, gathered over the cases.
 
-use springpot::integrate::{LimitKind, PassedLimit};
+use springpot::driver::{LimitKind, PassedLimit};
 use std::collections::HashMap;
 
 /// A limit that one or more cases pass.

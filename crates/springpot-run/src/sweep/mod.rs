@@ -35,7 +35,7 @@ use crate::table::folder::Folder;
 use crate::table::ordered::Ordered;
 use crate::table::push_text;
 use case::Sections;
-use springpot::integrate::Stop;
+use springpot::system::Stop;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Refusals};
 use std::fmt;

@@ -3,7 +3,8 @@
 use super::Progress;
 use super::metrics::CaseMetrics;
 use crate::trouble::Trouble;
-use springpot::integrate::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, RunError, Stop, System, Watch};
+use springpot::driver::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, Watch};
+use springpot::system::{RunError, Stop, System};
 use springpot_scenario::{Cases, MetricPlan, Plan};
 use std::io;
 use std::sync::atomic::Ordering;
@@ -72,10 +73,10 @@ pub(super) fn simulate(
     let places = plan.places(&system);
     let mut rows = CaseRows { sink, progress, watch, plan: &plan, system: &system, places, row: Vec::new() };
     let (report, outcome) = match resumed {
-        None => integrate::run(&system, &settings, &mut rows, stop),
+        None => driver::run(&system, &settings, &mut rows, stop),
         Some(Resumed { run, watch }) => {
             rows.watch.go_on(watch);
-            integrate::resume(&system, &settings, run, &mut rows, stop)
+            driver::resume(&system, &settings, run, &mut rows, stop)
         }
     };
     let limits = rows.watch.passed();

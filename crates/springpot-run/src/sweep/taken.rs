@@ -5,7 +5,7 @@ use super::events::CaseEvents;
 use super::kept::Kept;
 use super::metrics::CaseMetrics;
 use crate::table::{Statistics, push_fields, push_number, push_text};
-use springpot::integrate::System;
+use springpot::system::System;
 use springpot_scenario::{Cases, MetricPlan, SweptValue};
 
 /// Statistics, events, and what figures and metrics keep of a case.

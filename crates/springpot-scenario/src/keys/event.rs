@@ -1,7 +1,7 @@
 //! `[[event]]`.
 
 use super::{Keys, Need, Shape, key};
-use springpot::integrate::Direction;
+use springpot::system::Direction;
 
 /// The actions that are a word.
 pub(crate) const RECORD: &str = "record";

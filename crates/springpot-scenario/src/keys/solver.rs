@@ -2,8 +2,8 @@
 
 use super::sweep::SCALE;
 use super::{Bound, Field, Keys, Need, Shape, Slot, key};
-use springpot::integrate::Settings;
-use springpot::integrate::fixed::Method;
+use springpot::methods::fixed::Method;
+use springpot::system::Settings;
 
 pub(crate) static TIME: Keys = Keys {
     words: "Duration and rows.",

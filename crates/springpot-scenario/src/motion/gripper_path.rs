@@ -7,11 +7,11 @@ use crate::reader::{Field, Read, Refused, Table, all};
 use crate::refusal::RefusalKind;
 use crate::robot::Robot;
 use serde_json::{Map, Value, json};
-use springpot::integrate::Motion;
 use springpot::model::Model;
 use springpot::model::urdf::FLOATING_BASE;
 use springpot::motion::gripper_path::{Course, Task};
 use springpot::motion::{GripperPath, Trajectory};
+use springpot::system::Motion;
 use std::sync::Arc;
 
 /// A path that is followed from near a guess.

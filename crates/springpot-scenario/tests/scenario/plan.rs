@@ -1,9 +1,9 @@
 //! The example of the format, whole: what its plan holds.
 
 use crate::support::{EXAMPLE, cases, catalog, coordinates, edited, parameter, parse, single};
-use springpot::integrate::RowTimes;
 use springpot::law::Derivative;
 use springpot::model::{Anchor, JointKind, Parent};
+use springpot::system::RowTimes;
 use springpot_scenario::{FigureKind, ShapePlan, SweptValue};
 
 #[test]

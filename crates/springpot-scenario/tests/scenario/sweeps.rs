@@ -2,8 +2,8 @@
 
 use crate::support::{EXAMPLE, assert_all_refused, assert_refused, cases, catalog, edited, parameter, parse, single};
 use springpot::fractional::scheme::Scheme;
-use springpot::integrate::{Action, RowTimes};
 use springpot::law::Catalog;
+use springpot::system::{Action, RowTimes};
 use springpot_scenario::RefusalKind::{BadName, BadQuantity, Rule, WrongType};
 use springpot_scenario::{Cases, Plan, Refusals, Selection, ShapePlan, SweptValue};
 

@@ -2,8 +2,8 @@
 
 use super::error::LinearError;
 use super::statics::Statics;
-use crate::integrate::System;
 use crate::linalg::Lu;
+use crate::system::System;
 
 /// Steps after which there is no equilibrium.
 const MOST_STEPS: usize = 3000;

@@ -3,9 +3,9 @@
 use super::error::LinearError;
 use super::statics::ElementAtRest;
 use crate::dynamics::point_jacobian;
-use crate::integrate::System;
 use crate::law::{Heated, Tangent};
 use crate::model::{FrictionLaw, Model};
+use crate::system::System;
 use std::sync::Arc;
 
 /// A system about a configuration at rest: M s² + D s + K + Σ K_e*(s) g_e g_eᵀ. Matrices are nv × nv, row-major.
@@ -75,7 +75,7 @@ impl System {
             free.iter().for_each(|&k| left_over[k] = statics.holding[k] - torques[k]);
         }
         let mut damping = vec![0.0; model.nv() * model.nv()];
-        crate::integrate::add_resistance_slopes(model, &vec![0.0; model.nv()], &mut damping);
+        crate::equations::resistance::add_tangents(model, &vec![0.0; model.nv()], &mut damping);
         let sticks = |&j: &usize| model.friction()[j] > 0.0 && model.friction_laws()[j] == FrictionLaw::Sticking;
         let sticking = (0..model.joint_count()).filter(sticks).map(|j| model.joint_names()[j].clone()).collect();
         let linear = |(element, at): (&crate::elements::Element, ElementAtRest)| LinearElement {

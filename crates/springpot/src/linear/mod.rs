@@ -7,7 +7,7 @@
 //! ```
 //! use springpot::elements::{Element, Joint};
 //! use springpot::actuation::{Drive, Forward};
-//! use springpot::integrate::System;
+//! use springpot::system::System;
 //! use springpot::law::{Catalog, Derivative};
 //! use springpot::model::{BodySpec, JointSpec, ModelBuilder, Parent};
 //! use springpot::signal::Signal;

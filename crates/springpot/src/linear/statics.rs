@@ -4,8 +4,8 @@ use super::error::LinearError;
 use crate::actuation::Drive;
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{Forces, Pull};
-use crate::integrate::{Motion, System};
 use crate::law::{AtRest, InputValue, Point};
+use crate::system::{Motion, System};
 
 /// A system at rest in one configuration.
 pub(super) struct Statics {

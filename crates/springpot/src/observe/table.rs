@@ -5,14 +5,15 @@ use super::quantity::Quantity;
 use crate::table::Column;
 use std::collections::HashMap;
 
-/// Rows in memory, columns by name or by [`Quantity`]. As [`crate::integrate::Rows`] it takes those of a run.
+/// Rows in memory, columns by name or by [`Quantity`]. As [`crate::driver::Rows`] it takes those of a run.
 ///
 /// ```
 /// use springpot::model::{BodySpec, JointSpec, ModelBuilder, Parent};
 /// use springpot::motion::{JointPath, Trajectory};
 /// use springpot::observe::Quantity;
 /// use springpot::signal::{Expression, Signal};
-/// use springpot::integrate::{RowTimes, Settings, Stop, System, run};
+/// use springpot::system::{RowTimes, Settings, Stop, System};
+/// use springpot::driver::run;
 ///
 /// let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
 /// builder.push(BodySpec {

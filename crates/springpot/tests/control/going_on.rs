@@ -6,7 +6,8 @@ use super::support::{
     forward::{every, slider, state},
 };
 use springpot::Simulation;
-use springpot::integrate::{Checkpoint, Rows, Stop, resume, run};
+use springpot::driver::{Checkpoint, Rows, resume, run};
+use springpot::system::Stop;
 
 /// Rows, and states with how many rows were written before them.
 #[derive(Debug, Default)]

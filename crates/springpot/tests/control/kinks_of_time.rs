@@ -3,7 +3,7 @@
 use super::support::forward::{distance, every, largest, slider, state};
 use super::support::{Run, run, try_run};
 use springpot::Simulation;
-use springpot::integrate::RunError;
+use springpot::system::RunError;
 
 const ELEMENT: &str = "law = \"kelvin-voigt\"\nparameters = { k = 4, c = 0.2 }";
 

@@ -1,7 +1,7 @@
 //! What independent readers of the contract found, each as it should be.
 
 use super::support::{cases, relative_difference, run, run_case, try_run};
-use springpot::integrate::RunError;
+use springpot::system::RunError;
 use springpot_scenario::Scenario;
 
 /// A slide of 1.5 kg without gravity along it; `element`, then all that follows.
@@ -206,7 +206,7 @@ fn a_robot_that_is_held_takes_few_steps() {
 
 #[test]
 fn references_and_temperatures_that_jump_are_seen_before_the_run() {
-    let stop = springpot::integrate::Stop::new(false);
+    let stop = springpot::system::Stop::new(false);
     let controlled = |kind: &str, more: &str| {
         format!(
             "{ARM}[motion]\nkind = \"forward\"\n[motion.controller]\nkind = \"{kind}\"\nkp = 25\nkd = 10\n{more}\n\

@@ -4,10 +4,10 @@
 
 use crate::loops::*;
 use springpot::elements::{Bushing, Cable, Component, Joint};
-use springpot::integrate::System;
-use springpot::integrate::fixed::Loop;
+use springpot::methods::fixed::Loop;
 use springpot::model::{Anchor, Parent};
 use springpot::spatial::Rotation;
+use springpot::system::System;
 use std::alloc::{GlobalAlloc, Layout};
 use std::cell::Cell;
 use std::time::Instant;

@@ -2,9 +2,9 @@
 
 use crate::loops::*;
 use springpot::dynamics::{Kinematics, crba};
-use springpot::integrate::System;
-use springpot::integrate::fixed::{Loop, Method};
+use springpot::methods::fixed::{Loop, Method};
 use springpot::spatial::{Quaternion, Rotation, Vec3};
+use springpot::system::System;
 
 /// Largest departure of kinetic + potential energy from the start in the first and in the last tenth of 10⁵ steps, in units of `scale`.
 fn drift(system: &System, method: Method, step: f64, scale: f64) -> [f64; 2] {

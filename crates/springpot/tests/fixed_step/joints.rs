@@ -1,7 +1,7 @@
 //! Joints that are prescribed, locked, driven, that follow others, that float: against runs with error control.
 
 use crate::loops::*;
-use springpot::integrate::fixed::{Loop, Method};
+use springpot::methods::fixed::{Loop, Method};
 
 fn check(text: &str, end: f64, largest: f64) {
     let system = system(text);

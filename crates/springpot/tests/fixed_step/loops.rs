@@ -3,9 +3,10 @@
 use crate::support::robots::{self, ARM};
 use crate::support::run_system;
 pub(crate) use crate::support::{robots::strut, system};
-use springpot::integrate::fixed::{Loop, MemorySettings, Method};
-use springpot::integrate::{FixedStep, Report, RowTimes, RunError, Settings, System};
+use springpot::driver::Report;
+use springpot::methods::fixed::{Loop, MemorySettings, Method};
 use springpot::observe::Quantity;
+use springpot::system::{FixedStep, RowTimes, RunError, Settings, System};
 
 pub(crate) const METHODS: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
 

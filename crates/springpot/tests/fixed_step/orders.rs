@@ -1,9 +1,9 @@
 //! Errors against runs with error control, and how they fall with the step.
 
 use crate::loops::*;
-use springpot::integrate::FixedStep;
-use springpot::integrate::fixed::Method;
+use springpot::methods::fixed::Method;
 use springpot::observe::{ElementQuantity, Quantity};
+use springpot::system::FixedStep;
 
 const START: &str = "start = { q = { q2 = 0.1 }, v = { q1 = 0.5, q2 = 1 } }";
 

@@ -2,11 +2,11 @@
 
 use crate::loops::*;
 use springpot::actuation::{Drive, Forward};
-use springpot::integrate::fixed::{Loop, LoopError, Method};
-use springpot::integrate::{RowTimes, RunError, Settings, System};
 use springpot::law::Catalog;
+use springpot::methods::fixed::{Loop, LoopError, Method};
 use springpot::model::{BodySpec, JointSpec, ModelBuilder, Parent};
 use springpot::signal::Signal;
+use springpot::system::{RowTimes, RunError, Settings, System};
 use springpot::{Simulation, dynamics};
 use springpot_scenario::Scenario;
 
@@ -23,7 +23,7 @@ fn steps_must_be_positive_and_motions_free() {
     let error = Loop::new(&given, Method::Midpoint, 1e-3, MEMORY).unwrap_err();
     assert!(matches!(error, LoopError::MotionGiven), "{error}");
     let elastic = system(&arm(&(thermoviscoelastic(0.5, "caputo") + &free(""))));
-    let forgetful = springpot::integrate::fixed::MemorySettings { tolerance: 0.0, ..MEMORY };
+    let forgetful = springpot::methods::fixed::MemorySettings { tolerance: 0.0, ..MEMORY };
     let error = Loop::new(&elastic, Method::Midpoint, 1e-3, forgetful).unwrap_err();
     assert!(matches!(error, LoopError::Run(RunError::Kernel { .. })), "{error}");
 }

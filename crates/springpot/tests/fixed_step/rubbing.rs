@@ -1,8 +1,8 @@
 //! Friction that sticks in steps of one size.
 
 use crate::loops::*;
-use springpot::integrate::FixedStep;
-use springpot::integrate::fixed::Loop;
+use springpot::methods::fixed::Loop;
+use springpot::system::FixedStep;
 
 /// Sliders along x, one on the other.
 fn sliders(joints: &[(&str, &str)], motion: &str, more: &str) -> String {

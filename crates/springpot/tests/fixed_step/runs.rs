@@ -1,9 +1,9 @@
 //! Whole runs: rows, the last step, the ledger.
 
 use crate::loops::*;
-use springpot::integrate::fixed::Method;
-use springpot::integrate::{FixedStep, Settings};
 use springpot::law::Catalog;
+use springpot::methods::fixed::Method;
+use springpot::system::{FixedStep, Settings};
 use springpot_scenario::Scenario;
 
 const START: &str = "start = { q = { q2 = 0.1 }, v = { q1 = 0.5 } }";

@@ -1,8 +1,8 @@
 //! Stiff elements, elements that cannot make energy, friction.
 
 use crate::loops::*;
-use springpot::integrate::System;
-use springpot::integrate::fixed::{Loop, Method};
+use springpot::methods::fixed::{Loop, Method};
+use springpot::system::System;
 
 /// The swinging arm, its strut unloaded at the start.
 fn unloaded(law: &str) -> System {

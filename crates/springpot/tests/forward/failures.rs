@@ -2,8 +2,8 @@
 
 use crate::support::forward::{at, every, largest, slider, state};
 use crate::support::{Run, run, try_run};
-use springpot::integrate::RunError;
 use springpot::law::Catalog;
+use springpot::system::RunError;
 use springpot_scenario::Scenario;
 
 const SPRINGPOT: &str = "law = \"springpot\"\nparameters = { c = 30, alpha = 0.5 }";

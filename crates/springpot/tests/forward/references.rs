@@ -5,10 +5,10 @@ use crate::support::{Run, run, run_case, run_system, shipped};
 use serde_json::Value;
 use springpot::actuation::{Drive, Forward};
 use springpot::elements::{Element, Line};
-use springpot::integrate::{RowTimes, Settings, System};
 use springpot::law::{Catalog, Derivative};
 use springpot::model::{Anchor, BodySpec, JointSpec, ModelBuilder, Parent};
 use springpot::signal::Signal;
+use springpot::system::{RowTimes, Settings, System};
 
 fn read(path: &str) -> Value {
     let file = format!("{}/../../testdata/{path}", env!("CARGO_MANIFEST_DIR"));

@@ -2,7 +2,7 @@
 
 use crate::support::forward::{every, falling, largest, slider, state};
 use crate::support::{cases, run_case, scenarios, shipped};
-use springpot::integrate::Motion;
+use springpot::system::Motion;
 use std::time::Instant;
 
 #[test]
@@ -55,8 +55,8 @@ fn an_hour_costs_the_same_from_minute_to_minute() {
         marks.push(begun.elapsed().as_secs_f64());
         Ok(())
     };
-    let stop = springpot::integrate::Stop::new(false);
-    let (report, outcome) = springpot::integrate::run(&system, &settings, &mut keep, &stop);
+    let stop = springpot::system::Stop::new(false);
+    let (report, outcome) = springpot::driver::run(&system, &settings, &mut keep, &stop);
     outcome.unwrap();
     let tenths: Vec<f64> = marks.windows(2).map(|pair| pair[1] - pair[0]).collect();
     println!("{report:?}\nseconds of each tenth: {tenths:.2?}");

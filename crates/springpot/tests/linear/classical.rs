@@ -4,7 +4,7 @@ use crate::support::system;
 use crate::{arm, linear, modes, on_joints, slider};
 use num_complex::Complex64;
 use springpot::dynamics::{Kinematics, crba, nonlinear_effects};
-use springpot::integrate::System;
+use springpot::system::System;
 
 /// A law on a joint, as a table and as k beside c beside branches of (k, c) in series.
 struct Law {

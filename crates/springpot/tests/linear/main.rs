@@ -8,8 +8,8 @@ mod runs;
 #[path = "../support/mod.rs"]
 mod support;
 
-use springpot::integrate::System;
 use springpot::linear::{Linearisation, Modes};
+use springpot::system::System;
 use support::robots::ARM;
 
 /// The arm under forces: `elements` are tables, `motion` what follows the kind.

@@ -4,9 +4,9 @@ use crate::support::largest;
 use crate::systems::*;
 use springpot::elements::Line;
 use springpot::fractional::mittag_leffler::MittagLeffler;
-use springpot::integrate::fixed::{Loop, MemorySettings, Method};
-use springpot::integrate::{Settings, System};
+use springpot::methods::fixed::{Loop, MemorySettings, Method};
 use springpot::model::{Anchor, JointKind, Parent};
+use springpot::system::{Settings, System};
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 const LAWS: [(&str, &[f64]); 3] = [("spring", &[40.0]), ("dashpot", &[3.0]), ("springpot", &[20.0, 0.4])];
@@ -51,7 +51,7 @@ fn check_rows(system: &System, settings: &Settings, rest: f64, (law, parameters)
 fn act_against_the_joint_alone() {
     for (name, velocity, slope) in JOINTS {
         for (law, parameters) in LAWS {
-            let of = |motion: springpot::integrate::Motion| {
+            let of = |motion: springpot::system::Motion| {
                 let model = arm(GRAVITY);
                 let e = element("e", joint(&model, name), 0.2, law, parameters);
                 system(model, vec![e], motion)
@@ -178,7 +178,7 @@ fn the_balance_closes() {
         ("spring", &[90.0]),
     ];
     for turn in 0..4 {
-        let build = |motion: springpot::integrate::Motion| {
+        let build = |motion: springpot::system::Motion| {
             let model = arm(GRAVITY);
             let site = |body, point| model.resolve(&Anchor { body, point }).unwrap();
             let line = Line { from: site(Parent::World, [0.1, 0.3, -0.4]), to: site(Parent::Body(2), [0.2, 0.1, 0.1]) };

@@ -2,9 +2,9 @@
 
 use crate::systems::*;
 use springpot::elements::{Joint, JointMeasureError, Line, Measure};
-use springpot::integrate::fixed::{Loop, LoopError, MemorySettings, Method};
-use springpot::integrate::{Motion, RunError};
+use springpot::methods::fixed::{Loop, LoopError, MemorySettings, Method};
 use springpot::model::{Anchor, JointKind, JointSpec, ModelBuilder, Parent};
+use springpot::system::{Motion, RunError};
 
 #[test]
 fn joints_without_one_coordinate_are_refused() {

@@ -6,10 +6,10 @@ use crate::systems::*;
 use proptest::prelude::*;
 use springpot::dynamics::Kinematics;
 use springpot::elements::{Bushing, Cable, CableError, Component, Element, Line, Measure};
-use springpot::integrate::fixed::Method;
-use springpot::integrate::{Motion, RunError, Settings, System};
+use springpot::methods::fixed::Method;
 use springpot::model::{Anchor, BodySpec, Frame, JointKind, JointSpec, Model, ModelBuilder, Parent, Site};
 use springpot::spatial::{Rotation, Vec3};
+use springpot::system::{Motion, RunError, Settings, System};
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 

@@ -3,10 +3,10 @@
 use crate::support::largest;
 use crate::systems::*;
 use springpot::elements::{Line, Measure};
-use springpot::integrate::fixed::Method;
-use springpot::integrate::{Motion, Settings};
 use springpot::law::Derivative;
+use springpot::methods::fixed::Method;
 use springpot::model::{Anchor, BodySpec, JointSpec, Model, ModelBuilder, Parent};
+use springpot::system::{Motion, Settings};
 
 /// Distance of the slider from the world's origin where its joint stands at 0.
 const REACH: f64 = 2.0;

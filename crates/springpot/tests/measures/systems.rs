@@ -3,12 +3,12 @@
 use crate::support::{Run, run_system};
 use springpot::actuation::{Drive, Forward};
 use springpot::elements::{Element, Joint, Measure};
-use springpot::integrate::fixed::Method;
-use springpot::integrate::{FixedStep, Motion, RowTimes, Settings, System};
 use springpot::law::{Catalog, Derivative};
+use springpot::methods::fixed::Method;
 use springpot::model::{BodySpec, JointKind, JointSpec, Mimic, Model, ModelBuilder, Parent};
 use springpot::motion::{JointPath, Trajectory};
 use springpot::signal::{Expression, Signal};
+use springpot::system::{FixedStep, Motion, RowTimes, Settings, System};
 
 pub(crate) fn signal(text: &str) -> Signal {
     Signal::expression(Expression::parse(text).unwrap())

@@ -1,12 +1,13 @@
 //! A network along a motion, run as any system.
 
 use crate::make::{Motion, Past, Shape, Tree, entry};
+use springpot::driver::run;
 use springpot::elements::{Element, Joint};
-use springpot::integrate::{RowTimes, RunError, Settings, Stop, System, run};
 use springpot::law::Periodic;
 use springpot::model::{BodySpec, JointSpec, ModelBuilder, Parent};
 use springpot::motion::{JointPath, Trajectory};
 use springpot::signal::{Expression, Signal};
+use springpot::system::{RowTimes, RunError, Settings, Stop, System};
 use std::f64::consts::TAU;
 
 /// Steps after which a run counts as failed.

@@ -2,7 +2,8 @@
 
 use crate::support::robots::{ARM, PATH, every, magnetorheological, prescribed, springpot, strut, thermoviscoelastic};
 use crate::support::{cases, shipped};
-use springpot::integrate::{Checkpoint, Report, Rows, RunError, Settings, Stop, System, resume, run};
+use springpot::driver::{Checkpoint, Report, Rows, resume, run};
+use springpot::system::{RunError, Settings, Stop, System};
 use springpot_scenario::Cases;
 use std::io;
 use std::sync::atomic::Ordering;

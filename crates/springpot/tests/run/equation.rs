@@ -2,8 +2,9 @@
 
 use crate::support::robots::{ARM, SWING, every, springpot};
 use crate::support::{cases, scenarios, shipped};
-use springpot::integrate::Motion;
-use springpot::integrate::{Equation, EquationError, RowTimes, Settings, Stop, run as simulate};
+use springpot::driver::{Equation, EquationError, run as simulate};
+use springpot::system::Motion;
+use springpot::system::{RowTimes, Settings, Stop};
 use springpot_scenario::Cases;
 
 /// Times of a motion as shares of its duration; all but the end are no multiples of a step.

@@ -4,10 +4,10 @@ use crate::support::robots::{ARM, every, springpot};
 use crate::support::truth::derivatives;
 use crate::support::{Run, cases, largest, relative_difference, run, run_case, shipped, system};
 use springpot::dynamics::{Kinematics, angular_jacobian, angular_jacobian_rate, point_jacobian, point_jacobian_rate};
-use springpot::integrate::{RunError, System};
 use springpot::model::Parent;
 use springpot::motion::PathError;
 use springpot::spatial::{Rotation, Vec3};
+use springpot::system::{RunError, System};
 use std::fmt::Write as _;
 
 /// An arm of `joints` revolute joints with axes in turn about z, y, y, x, y, x and a gripper at its end.

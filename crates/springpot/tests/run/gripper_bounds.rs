@@ -1,10 +1,10 @@
 //! Gripper paths with loops and pulses that are short against the run; how much a path may take, and its interruption.
 
 use crate::support::{cases, run, run_case};
-use springpot::integrate::{RunError, Stop};
 use springpot::motion::gripper_path::{Course, GripperPath, Task};
 use springpot::motion::{PathError, Source};
 use springpot::signal::{Expression, Signal};
+use springpot::system::{RunError, Stop};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 

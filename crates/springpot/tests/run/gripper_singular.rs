@@ -2,8 +2,8 @@
 
 use crate::support::robots::{ARM, springpot};
 use crate::support::{Run, cases, run, run_case};
-use springpot::integrate::RunError;
 use springpot::motion::PathError;
+use springpot::system::RunError;
 use std::f64::consts::PI;
 
 /// Links of the arm that turns about y in the plane of x and z.

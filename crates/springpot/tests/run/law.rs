@@ -454,7 +454,7 @@ output_step = 0.5
     let system = plan.system();
     let mut table = system.table();
     let (report, outcome) =
-        springpot::integrate::run(&system, &plan.settings, &mut table, &springpot::integrate::Stop::new(false));
+        springpot::driver::run(&system, &plan.settings, &mut table, &springpot::system::Stop::new(false));
     outcome.unwrap();
     let forces = table.column("e.force").unwrap();
     assert_eq!(report.modes, 0);

@@ -2,7 +2,8 @@
 
 use crate::support::robots::every;
 use crate::support::{Run, cases, largest, relative_difference, run, run_case, shipped};
-use springpot::integrate::{FRICTION_SPEED, LimitKind, LimitWatch, PassedLimit};
+use springpot::driver::{LimitKind, LimitWatch, PassedLimit};
+use springpot::model::FRICTION_SPEED;
 use std::path::PathBuf;
 
 const ARM: [&str; 7] =

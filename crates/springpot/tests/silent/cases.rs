@@ -1,8 +1,8 @@
 //! The scenarios of `testdata/silent/`, against values found by other means.
 
 use crate::support::{Run, run_system};
-use springpot::integrate::RunError;
 use springpot::law::Catalog;
+use springpot::system::RunError;
 use springpot_scenario::Scenario;
 use std::path::PathBuf;
 

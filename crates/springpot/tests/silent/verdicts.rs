@@ -2,8 +2,8 @@
 
 use crate::random::slider;
 use crate::support::{cases, run_system, try_run};
-use springpot::integrate::{RunError, Settings};
 use springpot::signal::Signal;
+use springpot::system::{RunError, Settings};
 
 const SPRINGPOT: &str = "law = \"springpot\"\nparameters = { c = 1, alpha = 0.5 }";
 

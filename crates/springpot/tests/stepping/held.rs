@@ -4,7 +4,8 @@ use crate::support::forward::{every, falling};
 use crate::support::robots::{ARM, magnetorheological, prescribed, thermoviscoelastic};
 use crate::support::{cases, run, run_system};
 use springpot::Simulation;
-use springpot::integrate::{FixedStep, Settings, fixed::Method};
+use springpot::methods::fixed::Method;
+use springpot::system::{FixedStep, Settings};
 
 /// The rows of a text, and a simulation of another one.
 fn beside(truth: &str, text: &str) -> (crate::support::Run, Simulation) {

@@ -8,8 +8,9 @@ mod states;
 mod support;
 
 use springpot::Simulation;
-use springpot::integrate::{FixedStep, RunError, Settings, System, fixed::Method};
+use springpot::methods::fixed::Method;
 use springpot::observe::Snapshot;
+use springpot::system::{FixedStep, RunError, Settings, System};
 use support::forward::{every, falling};
 use support::robots::{ARM, PATH, magnetorheological, prescribed, springpot, strut, thermoviscoelastic};
 use support::{cases, run_system};
@@ -149,7 +150,7 @@ fn pauses_between_tries_change_no_bit() {
 
 #[test]
 fn samples_end_steps() {
-    use springpot::integrate::RowTimes;
+    use springpot::system::RowTimes;
     for (name, system, settings) in systems() {
         let mut simulation = start(&system, &settings);
         let samples = RowTimes::Step { step: 0.013, end: settings.end };

@@ -5,7 +5,9 @@ use crate::support::forward::{every, falling};
 use crate::support::robots::{ARM, prescribed, springpot};
 use crate::support::{cases, system};
 use springpot::Simulation;
-use springpot::integrate::{FixedStep, RunError, Settings, Stop, fixed::Method, run};
+use springpot::driver::run;
+use springpot::methods::fixed::Method;
+use springpot::system::{FixedStep, RunError, Settings, Stop};
 
 #[test]
 fn states_of_other_systems_and_settings_are_refused() {

@@ -1,7 +1,7 @@
 //! States: what goes on from one does so to the bit.
 
 use super::{bits, start, systems};
-use springpot::integrate::SimulationState;
+use springpot::driver::SimulationState;
 
 #[test]
 fn what_goes_on_from_a_state_does_so_to_the_bit() {

@@ -7,9 +7,10 @@ pub(crate) mod oracle;
 pub(crate) mod robots;
 pub(crate) mod truth;
 
-use springpot::integrate::{Report, RunError, Settings, Stop, System, run as simulate};
+use springpot::driver::{Report, run as simulate};
 use springpot::law::Catalog;
 use springpot::observe::Table;
+use springpot::system::{RunError, Settings, Stop, System};
 use springpot_scenario::{Cases, Scenario};
 use std::path::PathBuf;
 

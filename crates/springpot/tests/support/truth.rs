@@ -5,10 +5,11 @@
 
 use springpot::dynamics::{Kinematics, pair};
 use springpot::elements::{Element, Measure};
+use springpot::equations::State;
 use springpot::fractional::Kind;
 use springpot::fractional::gamma::gamma;
-use springpot::integrate::{State, System};
 use springpot::law::{InputValue, Point};
+use springpot::system::System;
 use std::f64::consts::PI;
 
 /// Nodes and weights on [−1, 1].

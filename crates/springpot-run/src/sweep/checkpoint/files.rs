@@ -5,7 +5,7 @@ use super::rows::copy_aside;
 use super::{CaseDone, CaseState, Checkpoints};
 use crate::table::disk::{Disk, DiskFile};
 use crate::table::sealed::{self, CHECKPOINT};
-use springpot::integrate::System;
+use springpot::system::System;
 use springpot_scenario::Plan;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;

@@ -10,7 +10,7 @@ use crate::sweep::parcel::{Parcel, Source};
 use crate::table::disk::Disk;
 use crate::table::folder::{Folder, FolderError, JOURNAL, checkpoint_folder};
 use crate::table::sealed;
-use springpot::integrate::System;
+use springpot::system::System;
 use springpot_scenario::{Cases, Plan, Refusals};
 use std::collections::BTreeMap;
 use std::io::{self, Seek as _, SeekFrom};

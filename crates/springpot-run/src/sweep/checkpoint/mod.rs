@@ -25,7 +25,7 @@ use crate::table::folder::{CASE, Folder, HEAD, JOURNAL, Targets, checkpoint_fold
 use crate::table::sealed::{self, CHECKPOINT, Journal, Recorded, SealError};
 use error::at;
 use record::{Head, digest, digest_of};
-use springpot::integrate::System;
+use springpot::system::System;
 use springpot_scenario::{Cases, Plan};
 use std::collections::BTreeMap;
 use std::io;

@@ -2,10 +2,10 @@
 
 #![allow(dead_code, reason = "each test uses its share")]
 
-use springpot::integrate::Motion;
 use springpot::law::Catalog;
 use springpot::motion::{JointPath, PosePath, Trajectory};
 use springpot::signal::Signal;
+use springpot::system::Motion;
 use springpot_scenario::{Cases, Plan, RefusalKind, Refusals, Scenario};
 
 /// The example of the format, as the documentation shows it.

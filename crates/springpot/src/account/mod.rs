@@ -1,0 +1,4 @@
+//! What a run keeps book of: evaluations of its nodes, energies, and whether they balance.
+
+mod ledger;
+pub(crate) mod recorder;

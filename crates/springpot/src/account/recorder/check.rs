@@ -1,0 +1,60 @@
+//! Whether the steps of a run saw what the motion does.
+
+use super::Recorder;
+use crate::collocation::{STAGES, lagrange_row};
+use crate::equations::context::Context;
+use crate::equations::control::Misread;
+use crate::observe::Snapshot;
+
+/// How much more than the tolerance a row may depart from its step, and what it may in any case: steps err less than the
+/// tolerance by far where they see the motion.
+const DEPARTURE: f64 = 1e3;
+const LEAST_DEPARTURE: f64 = 1e-5;
+
+impl Recorder {
+    /// The first expression of the state that the step at hand took on the wrong side of a kink, where a row shows it.
+    pub(crate) fn misread(&mut self, cx: Context, snapshot: &Snapshot) -> Option<Misread> {
+        let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
+        self.control.as_mut()?.misread(cx, allowed, &snapshot.evaluation)
+    }
+
+    /// Compares the rates at θ of the step with what its memories were told, the cubic through its nodes: the first element that departs too
+    /// far, and how far in units of D^alpha x.
+    ///
+    /// A departure δx' that lasts a step adds up to δx'·h^{1−alpha} to D^alpha x.
+    pub(crate) fn departure(&self, theta: f64, snapshot: &Snapshot) -> Option<(usize, f64)> {
+        let (_, h) = self.span();
+        if theta >= 1.0 || h <= 0.0 {
+            return None;
+        }
+        let mut cubic = [0.0; STAGES + 1];
+        for (k, weight) in cubic.iter_mut().enumerate() {
+            *weight = lagrange_row(k).iter().rev().fold(0.0, |sum, c| sum * theta + c);
+        }
+        let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
+        let taking_part = (0..self.bank.len()).filter(|&e| self.bank.takes_part(e));
+        for e in taking_part {
+            let [_, rates] = self.bank.told(e);
+            let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
+            let is = snapshot.evaluation.elements[e].reading.rate;
+            // Parts in series share the stroke: what is little of all of it is no departure of any of them.
+            let fastest = rates.iter().fold(is.abs(), |fastest, rate| fastest.max(rate.abs()));
+            if (is - told).abs() <= allowed * fastest {
+                continue;
+            }
+            let derivative = snapshot.elements[e].observation.derivative.abs();
+            // D^alpha x and its share of a step are those of the time of the memories.
+            let pace = self.bank.pace(e);
+            for (m, error) in self.bank.errors(e).iter().enumerate().filter(|(_, error)| error.order > 0.0) {
+                let departure = (is - told).abs() * h * (h * pace).powf(-error.order);
+                let scale = self.bank.scale(e, m).max(if derivative.is_finite() { derivative } else { 0.0 });
+                let resolution = 8.0 * self.bank.resolution(e) * (h * pace).powf(-error.order);
+                let floor = self.settings.atol.unwrap_or(0.0) + resolution;
+                if departure > allowed * scale + floor {
+                    return Some((e, departure / scale));
+                }
+            }
+        }
+        None
+    }
+}

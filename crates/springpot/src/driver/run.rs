@@ -1,0 +1,102 @@
+//! Whole runs: rows and a report.
+
+use super::events::{Next, Watch, WatchState};
+use super::output::Output;
+use super::report::Report;
+use super::rows::Rows;
+use super::state::Checkpoint;
+use super::time_loop::{Driver, RowsAhead};
+use super::written::Written;
+use crate::equations::context::{Context, Held};
+use crate::system::System;
+use crate::system::error::RunError;
+use crate::system::settings::{Settings, Stop};
+use std::sync::atomic::Ordering;
+
+/// Runs `system` as its motion says and hands every row to `rows`.
+///
+/// The report is true also where the run stops early: all rows up to `t_reached` were handed over.
+pub fn run(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
+    let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
+    let driver = Driver::new(system.context(), settings, stop, looked_ahead);
+    go(system, driver, rows, (Written::default(), WatchState::default()), stop)
+}
+
+/// Goes on with a run of this very `system` and these `settings` from where its `checkpoint` was taken: rows that are still to
+/// come, and the report at the end, are those of a run that was never interrupted, bit by bit.
+pub fn resume(
+    system: &System,
+    settings: &Settings,
+    checkpoint: Checkpoint,
+    rows: &mut dyn Rows,
+    stop: &Stop,
+) -> (Report, Result<(), RunError>) {
+    let Checkpoint { driver, written, events } = checkpoint;
+    let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
+    let cx = Context { system, held: &events.held, sampled: Held::NONE };
+    let driver = Driver::resume(cx, settings, driver, stop, looked_ahead);
+    go(system, driver, rows, (written, events), stop)
+}
+
+fn go(
+    system: &System,
+    driver: Result<Driver, RunError>,
+    rows: &mut dyn Rows,
+    (written, events): (Written, WatchState),
+    stop: &Stop,
+) -> (Report, Result<(), RunError>) {
+    let mut driver = match driver {
+        Ok(driver) => driver,
+        Err(error) => return (Report::default(), Err(error)),
+    };
+    let mut output = Output::new(system.context(), rows, written);
+    let events = Watch::new(system, &driver.recorder.settings, events, stop);
+    let outcome = events.and_then(|events| to_the_end(&mut driver, &mut output, events, stop));
+    (output.report(&driver), outcome)
+}
+
+/// Takes step after step, `output` writing the rows.
+fn to_the_end(driver: &mut Driver, output: &mut Output, mut events: Watch, stop: &Stop) -> Result<(), RunError> {
+    output.emit(events.cx(), driver)?;
+    events.start(driver)?;
+    loop {
+        while driver.settle(events.cx())? {
+            output.emit(events.cx(), driver)?;
+            events.look_now(driver)?;
+            if events.happen(driver, output)? == Next::Stops {
+                return end(events.cx(), driver, output);
+            }
+        }
+        if driver.has_ended() {
+            return verdict(events.cx(), driver, output);
+        }
+        let (t, stopped) = (driver.reached(), stop.load(Ordering::Relaxed));
+        if output.rows.wants_checkpoint(t, stopped) {
+            let (driver, written) = (driver.state(events.cx()), output.written);
+            output.rows.checkpoint(Checkpoint { driver, written, events: events.state().clone() })?;
+        }
+        if stopped {
+            return Err(RunError::Interrupted { t });
+        }
+        let next = output.next(&driver.recorder.settings);
+        let rows = next.map(|next| RowsAhead { next, last: output.written.last.unwrap_or(0.0) });
+        let before = driver.mark();
+        driver.advance(events.cx(), f64::INFINITY, rows, &mut || false)?;
+        events.look(driver, before, rows)?;
+        output.emit(events.cx(), driver)?;
+        if events.happen(driver, output)? == Next::Stops {
+            return end(events.cx(), driver, output);
+        }
+    }
+}
+
+/// Ends a run before its time.
+fn end(cx: Context, driver: &mut Driver, output: &mut Output) -> Result<(), RunError> {
+    output.end_here(cx, driver)?;
+    driver.close(cx)?;
+    verdict(cx, driver, output)
+}
+
+fn verdict(cx: Context, driver: &Driver, output: &Output) -> Result<(), RunError> {
+    if driver.has_fixed_steps() { Ok(()) } else { output.verdict(cx, driver) }
+}

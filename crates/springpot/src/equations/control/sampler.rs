@@ -1,0 +1,337 @@
+//! Sampled laws: when they are due, what they say, and when it acts.
+
+use super::eye::Eye;
+use super::{ControlRun, Target};
+use crate::control::{Aim, At, Control, Feedback, Sampling, Scratch, Sense};
+use crate::equations::context::Held;
+use crate::observe::Snapshot;
+use crate::system::System;
+use crate::system::error::RunError;
+use crate::system::row_times::multiple;
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// Times that differ by less than this share of them are one.
+const ONE_TIME: f64 = 1e-12;
+
+/// Share of it by which a period may miss a whole number of steps.
+const WHOLE: f64 = 1e-9;
+
+/// What follows from forces, just before a sample.
+pub(crate) trait Shown {
+    /// Force of an element, N or N·m.
+    fn force(&self, e: usize) -> f64;
+
+    /// D^alpha x of an element.
+    fn derivative(&self, e: usize) -> f64;
+
+    /// An acceleration, rad/s² or m/s².
+    fn acceleration(&self, k: usize) -> f64;
+
+    /// Adds Σ F·∂y/∂q of all elements (nv).
+    fn add_pull(&self, tau: &mut [f64]);
+}
+
+/// The sampled laws of a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Sampler {
+    control: Arc<Control>,
+    laws: Vec<Law>,
+    /// The velocities that a controller drives.
+    driven: Vec<usize>,
+    state: SamplerState,
+    /// What acts.
+    acting: Arc<Held>,
+    aim: Aim,
+    scratch: Scratch,
+    /// Of every law, whether it is due, and what it says.
+    due: Vec<bool>,
+    said: Vec<Vec<f64>>,
+    seen: Vec<f64>,
+}
+
+/// A law that is sampled.
+#[derive(Debug, Clone, Copy)]
+struct Law {
+    what: What,
+    sampling: Sampling,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum What {
+    /// Which of the torques by feedback.
+    Torque(usize),
+    /// Which of the inputs by feedback.
+    Input(usize),
+    Controller,
+}
+
+/// What outlasts a step.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct SamplerState {
+    /// Of every law, how many samples were taken, and what does not act yet.
+    counts: Vec<u64>,
+    waiting: Vec<VecDeque<Vec<f64>>>,
+    /// What acts; of a run under way it is with the sampler.
+    acting: Held,
+    /// What the controller said last before its limits (nv), whether it has, and on which side of its limit each force was.
+    said: Vec<f64>,
+    has_said: bool,
+    sides: Vec<i8>,
+}
+
+impl Sampler {
+    /// Of a system that has some; steps of one size take what is continuous at the start of each.
+    ///
+    /// # Errors
+    /// [`RunError::SampleBetweenSteps`] where samples are due inside steps of one size.
+    pub(crate) fn of(system: &System, fixed_step: Option<f64>) -> Result<Option<Box<Self>>, RunError> {
+        let control = system.control.clone();
+        let every = fixed_step.map(|period| Sampling { period, delay: 0 });
+        let mut laws: Vec<Law> = Vec::new();
+        let mut add = |what: What, sampling: Option<Sampling>| {
+            laws.extend(sampling.or(every).map(|sampling| Law { what, sampling }));
+        };
+        control.torques.iter().enumerate().for_each(|(k, own)| add(What::Torque(k), own.sampling));
+        control.inputs.iter().enumerate().for_each(|(k, own)| add(What::Input(k), own.sampling));
+        if let Some(controlled) = &control.controller {
+            add(What::Controller, controlled.sampling);
+        }
+        if laws.is_empty() {
+            return Ok(None);
+        }
+        let period = |law: &Law| law.sampling.period;
+        if let (Some(step), Some(law)) =
+            (fixed_step, laws.iter().find(|law| fixed_step.is_some_and(|step| !is_multiple(period(law), step))))
+        {
+            let what = named(&control, law.what, system);
+            return Err(RunError::SampleBetweenSteps { what, period: period(law), step });
+        }
+        let nv = system.model.nv();
+        let mut held = Held::default();
+        held.torques_mut(nv);
+        for law in &laws {
+            if let What::Input(k) = law.what {
+                let own = &control.inputs[k];
+                // What its place takes where 0 is none, as of a temperature.
+                let before = system.elements[own.element].inputs[own.input].value(0.0);
+                held.hold_input(system, own.element, own.input, Some(before)).expect("an input of the system");
+            }
+        }
+        let state = SamplerState {
+            counts: vec![0; laws.len()],
+            waiting: vec![VecDeque::new(); laws.len()],
+            acting: Held::default(),
+            said: vec![0.0; nv],
+            has_said: false,
+            sides: vec![0; nv],
+        };
+        let size = |law: &Law| if matches!(law.what, What::Controller) { nv } else { 1 };
+        let driven = system.driven_velocities();
+        Ok(Some(Box::new(Self {
+            said: laws.iter().map(|law| vec![0.0; size(law)]).collect(),
+            due: vec![false; laws.len()],
+            driven: driven.into_iter().filter(|&k| system.model.coordinate_of(k).is_some()).collect(),
+            control,
+            laws,
+            state,
+            acting: Arc::new(held),
+            aim: Aim::default(),
+            scratch: Scratch::new(&system.model),
+            seen: Vec::new(),
+        })))
+    }
+
+    /// When the next sample is due, s.
+    pub(crate) fn next(&self) -> f64 {
+        let times = self.laws.iter().zip(&self.state.counts);
+        times.map(|(law, count)| multiple(*count, law.sampling.period)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a sample is due at t.
+    pub(crate) fn is_due(&self, t: f64) -> bool {
+        self.next() <= t * (1.0 + ONE_TIME)
+    }
+
+    /// What acts now.
+    pub(crate) fn acting(&self) -> &Arc<Held> {
+        &self.acting
+    }
+
+    /// On which side of its limit each force of a sampled controller is (nv).
+    pub(crate) fn sides(&self) -> &[i8] {
+        &self.state.sides
+    }
+
+    /// Takes all samples that are due at t, from what the robot shows just before.
+    ///
+    /// # Errors
+    /// Where the reference cannot be followed, or a law says no number.
+    pub(crate) fn take(&mut self, eye: &Eye, shown: &dyn Shown, run: &ControlRun) -> Result<(), RunError> {
+        let t = eye.t;
+        // All of one instant see what was before any of them acts.
+        for k in 0..self.laws.len() {
+            let at = multiple(self.state.counts[k], self.laws[k].sampling.period);
+            let is_due = at <= t * (1.0 + ONE_TIME);
+            self.due[k] = is_due;
+            if !is_due {
+                continue;
+            }
+            match self.laws[k].what {
+                What::Torque(i) => {
+                    self.said[k][0] = value(&self.control.torques[i].law, at, eye, shown, &mut self.seen)
+                }
+                What::Input(i) => self.said[k][0] = value(&self.control.inputs[i].law, at, eye, shown, &mut self.seen),
+                What::Controller => self.ask(k, at, eye, shown, run)?,
+            }
+            if let Some(value) = self.said[k].iter().copied().find(|value| !value.is_finite()) {
+                return Err(RunError::NotFinite { t, what: self.named(k, eye.system), value });
+            }
+        }
+        let mut changed = false;
+        for k in (0..self.laws.len()).filter(|k| self.due[*k]) {
+            self.state.counts[k] += 1;
+            let waiting = &mut self.state.waiting[k];
+            if self.laws[k].sampling.delay > 0 {
+                // What waited longest makes room for what was said now.
+                let full = waiting.len() >= self.laws[k].sampling.delay;
+                let first = if full { waiting.pop_front() } else { None };
+                let size = self.said[k].len();
+                let now = std::mem::replace(&mut self.said[k], first.unwrap_or_else(|| vec![0.0; size]));
+                waiting.push_back(now);
+                if !full {
+                    continue;
+                }
+            }
+            changed = true;
+        }
+        if !changed {
+            return Ok(());
+        }
+        let acting = Arc::make_mut(&mut self.acting);
+        let nv = eye.system.model.nv();
+        for k in (0..self.laws.len()).filter(|k| self.due[*k]) {
+            let delay = self.laws[k].sampling.delay as u64;
+            if self.state.counts[k] <= delay {
+                continue;
+            }
+            let said = &self.said[k];
+            match self.laws[k].what {
+                What::Torque(i) => acting.torques_mut(nv)[self.control.torques[i].velocity] = said[0],
+                What::Input(i) => {
+                    let own = &self.control.inputs[i];
+                    let held = acting.hold_input(eye.system, own.element, own.input, Some(said[0]));
+                    held.expect("an input of the system");
+                }
+                What::Controller => {
+                    for &k in &self.driven {
+                        acting.torques_mut(nv)[k] = said[k];
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Works out what the controller says (nv), all limits included.
+    fn ask(&mut self, law: usize, t: f64, eye: &Eye, shown: &dyn Shown, run: &ControlRun) -> Result<(), RunError> {
+        let (system, period) = (eye.system, self.laws[law].sampling.period);
+        let Self { control, aim, scratch, said, state, driven, .. } = self;
+        let (tau, controlled) = (&mut said[law], control.controller.as_ref().expect("a controller that is sampled"));
+        let site = system.gripper.as_ref();
+        controlled.reference.at_into(&system.model, site, t, &mut scratch.kinematics, aim)?;
+        let at =
+            At { model: &system.model, gripper: site, t, q: eye.q, v: eye.v, kinematics: eye.kinematics, aim: &*aim };
+        controlled.law.torque(&at, scratch, tau);
+        if controlled.law.compensates_elements() {
+            shown.add_pull(tau);
+        }
+        for &k in &*driven {
+            let tau = &mut tau[k];
+            *tau += run.terms_now(k, at.error(k));
+            let limit = controlled.limits.get(k).copied().unwrap_or_default();
+            if state.has_said {
+                let reach = limit.rate * period;
+                *tau = tau.clamp(state.said[k] - reach, state.said[k] + reach);
+            }
+            let is_above = *tau > limit.torque;
+            state.sides[k] = if is_above { 1 } else { -i8::from(*tau < -limit.torque) };
+            // Rates are those of the force before its limit, which acts last.
+            state.said[k] = *tau;
+            *tau = tau.clamp(-limit.torque, limit.torque);
+        }
+        state.has_said = true;
+        Ok(())
+    }
+
+    fn named(&self, law: usize, system: &System) -> String {
+        named(&self.control, self.laws[law].what, system)
+    }
+
+    /// What outlasts the steps.
+    pub(crate) fn state(&self) -> SamplerState {
+        SamplerState { acting: (*self.acting).clone(), ..self.state.clone() }
+    }
+
+    /// Goes on from a state of the same system; `false` where it is of another one.
+    pub(crate) fn go_on(&mut self, state: SamplerState) -> bool {
+        let fits = state.counts.len() == self.laws.len() && state.waiting.len() == self.laws.len();
+        if fits {
+            self.acting = state.acting.clone().into();
+            self.state = state;
+        }
+        fits
+    }
+}
+
+/// What a law says, as a column is called.
+fn named(control: &Control, what: What, system: &System) -> String {
+    match what {
+        What::Torque(i) => Target::Torque(control.torques[i].velocity).column(system),
+        What::Input(i) => {
+            let own = &control.inputs[i];
+            Target::Input(own.element, own.input).column(system)
+        }
+        What::Controller => "the force of the controller".to_owned(),
+    }
+}
+
+/// Whether a period is a whole number of steps, but for rounding.
+fn is_multiple(period: f64, step: f64) -> bool {
+    let count = (period / step).round();
+    count >= 1.0 && (period / step - count).abs() <= WHOLE * count
+}
+
+/// What an expression says of what is shown.
+fn value(law: &Feedback, t: f64, eye: &Eye, shown: &dyn Shown, seen: &mut Vec<f64>) -> f64 {
+    seen.clear();
+    seen.extend(law.senses().iter().map(|sense| match *sense {
+        Sense::Acceleration(k) => shown.acceleration(k),
+        Sense::Force(e) => shown.force(e),
+        Sense::Derivative(e) => shown.derivative(e),
+        sense => eye.value(sense),
+    }));
+    law.value(t, seen)
+}
+
+impl Shown for Snapshot {
+    fn force(&self, e: usize) -> f64 {
+        Self::force(self, e)
+    }
+
+    fn derivative(&self, e: usize) -> f64 {
+        self.elements[e].observation.derivative
+    }
+
+    fn acceleration(&self, k: usize) -> f64 {
+        self.evaluation.a[k]
+    }
+
+    fn add_pull(&self, tau: &mut [f64]) {
+        for (e, element) in self.evaluation.elements.iter().enumerate() {
+            let force = Self::force(self, e);
+            tau.iter_mut().zip(&element.gradient).for_each(|(tau, slope)| *tau += force * slope);
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! What drives the joints: checked where it is asked for.
+
+use super::context::Context;
+use super::evaluate::Evaluation;
+use crate::actuation::{Drive, Forward};
+use crate::model::Model;
+use crate::motion::JointPath;
+use crate::signal::Signal;
+use crate::system::error::RunError;
+
+/// The actuator force on velocity `k` at t.
+pub(crate) fn force_at(cx: Context, k: usize, signal: &Signal, t: f64) -> Result<f64, RunError> {
+    finite(cx, k, t, cx.force(k, signal, t))
+}
+
+/// The force `value` on velocity `k` at t.
+pub(crate) fn finite(cx: Context, k: usize, t: f64, value: f64) -> Result<f64, RunError> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(RunError::NotFinite { t, what: format!("tau.{}", cx.system.model.v_labels()[k].name), value })
+}
+
+/// The coordinates, velocities and accelerations of joint `j`, which `path` prescribes, at t; `q`, `v` and `a` are those of the
+/// whole robot.
+pub(crate) fn take_path(
+    model: &Model,
+    j: usize,
+    path: &JointPath,
+    t: f64,
+    q: &mut [f64],
+    v: &mut [f64],
+    a: &mut [f64],
+) -> Result<(), RunError> {
+    let (places, rates) = (model.q_range(j), model.v_range(j));
+    path.at(t, &mut q[places.clone()], &mut v[rates.clone()], &mut a[rates.clone()]);
+    for (symbol, values, range) in [("q", q, places), ("v", v, rates.clone()), ("a", a, rates)] {
+        if let Some(k) = range.clone().find(|&k| !values[k].is_finite()) {
+            let labels = if symbol == "q" { model.q_labels() } else { model.v_labels() };
+            return Err(RunError::NotFinite { t, what: format!("{symbol}.{}", labels[k].name), value: values[k] });
+        }
+    }
+    Ok(())
+}
+
+/// What drives the joints at t, and the places of those that signals move.
+pub(crate) fn drive(cx: Context, forward: &Forward, t: f64, evaluation: &mut Evaluation) {
+    let model = &cx.system.model;
+    for (j, drive) in model.own_joints().zip(&forward.drives) {
+        let (q, v) = (model.q_range(j), model.v_range(j));
+        match drive {
+            Drive::Force(signals) => {
+                for (k, signal) in v.zip(signals) {
+                    evaluation.driven[k] = Some(cx.force(k, signal, t));
+                }
+            }
+            Drive::Prescribed(path) => {
+                path.at(t, &mut evaluation.q[q], &mut evaluation.v[v.clone()], &mut evaluation.a[v]);
+            }
+            Drive::Locked => {
+                evaluation.q[q.clone()].copy_from_slice(&forward.q[q]);
+                evaluation.v[v.clone()].fill(0.0);
+                evaluation.a[v].fill(0.0);
+            }
+        }
+    }
+}

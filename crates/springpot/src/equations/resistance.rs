@@ -1,0 +1,117 @@
+//! Damping and friction of the joints, on the side of the actuators, in joints of one degree: d·v + f·tanh(v/v_0), or
+//! d·v + f·sign(v) where friction sticks ([`FrictionLaw`]).
+
+use crate::model::{FrictionLaw, Model};
+
+/// A joint that resists.
+struct Resisting {
+    /// Its velocity is ratio · v\[index\].
+    index: usize,
+    ratio: f64,
+    speed: f64,
+    damping: f64,
+    friction: f64,
+    law: FrictionLaw,
+}
+
+impl Resisting {
+    fn resistance(&self) -> f64 {
+        let direction = match self.law {
+            FrictionLaw::Smooth { speed } => (self.speed / speed).tanh(),
+            FrictionLaw::Sticking => sign(self.speed),
+        };
+        self.damping * self.speed + self.friction * direction
+    }
+}
+
+fn resisting<'a>(model: &'a Model, v: &'a [f64]) -> impl Iterator<Item = Resisting> + 'a {
+    (0..model.joint_count()).filter_map(move |j| {
+        let (damping, friction) = (model.damping()[j], model.friction()[j]);
+        if model.joint_kind(j).nv() != 1 || (damping == 0.0 && friction == 0.0) {
+            return None;
+        }
+        let (index, ratio) = (model.v_range(j).start, model.followed(j).map_or(1.0, |(_, ratio, _)| ratio));
+        let law = model.friction_laws()[j];
+        Some(Resisting { index, ratio, speed: ratio * v[index], damping, friction, law })
+    })
+}
+
+/// −1, 0 or 1.
+fn sign(v: f64) -> f64 {
+    if v == 0.0 { 0.0 } else { v.signum() }
+}
+
+/// Adds what the joints ask of the actuators at the velocities `v` (nv) to `tau` (nv); returns the power that they take, W.
+///
+/// Friction that sticks is f·sign(v) here, 0 at rest: what holds a joint there is no matter of its velocity.
+pub(crate) fn add_resistance(model: &Model, v: &[f64], tau: &mut [f64]) -> f64 {
+    let mut power = 0.0;
+    for joint in resisting(model, v) {
+        let resistance = joint.resistance();
+        tau[joint.index] += joint.ratio * resistance;
+        power += resistance * joint.speed;
+    }
+    power
+}
+
+/// The power that damping and friction of the joints take at the velocities `v` (nv), W.
+pub(crate) fn joint_loss(model: &Model, v: &[f64]) -> f64 {
+    resisting(model, v).map(|joint| joint.resistance() * joint.speed).sum()
+}
+
+/// [`add_resistance`] without the friction that sticks.
+pub(crate) fn add_smooth_resistance(model: &Model, v: &[f64], tau: &mut [f64]) {
+    for Resisting { index, ratio, speed, damping, friction, law } in resisting(model, v) {
+        let resistance = match law {
+            FrictionLaw::Smooth { speed: width } => damping * speed + friction * (speed / width).tanh(),
+            FrictionLaw::Sticking => damping * speed,
+        };
+        tau[index] += ratio * resistance;
+    }
+}
+
+/// Adds the derivatives of [`add_smooth_resistance`] by v to ∂τ/∂v (nv × nv).
+pub(crate) fn add_tangents(model: &Model, v: &[f64], d_v: &mut [f64]) {
+    let n = model.nv();
+    for Resisting { index, ratio, speed, damping, friction, law } in resisting(model, v) {
+        let slope = match law {
+            FrictionLaw::Smooth { speed: width } => {
+                let sign = (speed / width).tanh();
+                damping + friction * (1.0 - sign * sign) / width
+            }
+            FrictionLaw::Sticking => damping,
+        };
+        d_v[index * n + index] += ratio * ratio * slope;
+    }
+}
+
+/// Adds resistance/velocity, the secants through rest, to ∂τ/∂v (nv × nv): for an iteration of fixed length.
+///
+/// Where friction brings a joint to rest within a step, tangents lead to and fro across rest; secants, which are never smaller,
+/// lead towards it from one side, so that an iteration cut short never makes energy. Friction that sticks has no part in them.
+pub(crate) fn add_secants(model: &Model, v: &[f64], d_v: &mut [f64]) {
+    let n = model.nv();
+    for Resisting { index, ratio, speed, damping, friction, law } in resisting(model, v) {
+        let slope = match law {
+            FrictionLaw::Smooth { speed: width } => {
+                let share = speed / width;
+                let secant = if share == 0.0 { 1.0 } else { share.tanh() / share };
+                damping + friction / width * secant
+            }
+            FrictionLaw::Sticking => damping,
+        };
+        d_v[index * n + index] += ratio * ratio * slope;
+    }
+}
+
+/// Of every velocity what friction can hold at rest, Σ |ratio|·f over the joints that it moves and that stick, N·m or N (nv).
+pub(crate) fn holding_forces(model: &Model) -> Vec<f64> {
+    let mut forces = vec![0.0; model.nv()];
+    let still = forces.clone();
+    for Resisting { index, ratio, friction, law, .. } in resisting(model, &still) {
+        if law == FrictionLaw::Sticking {
+            forces[index] += ratio.abs() * friction;
+        }
+    }
+    forces
+}

@@ -1,0 +1,389 @@
+//! Kinematics given in advance: every step is evaluated where the motion is.
+//!
+//! Inner steps are chosen for the memories and for the energy ledger. Steps end on break points and kinks of the signals, where joints
+//! turn round against friction that sticks, and where forces of elements have kinks.
+
+mod reversal;
+
+use crate::account::recorder::{Recorder, StepPowers};
+use crate::collocation::{RADAU_NODES, RADAU_WEIGHTS, STAGES};
+use crate::elements::NoDirection;
+use crate::equations::context::Context;
+use crate::equations::evaluate::Evaluation;
+use crate::equations::kinks::{FROM_BEHIND, Kinks, Seen};
+use crate::equations::on_grid;
+use crate::methods::stepper::{Behind, Stepper, Target, Trial};
+use crate::motion::Trajectory;
+use crate::signal::Agenda;
+use crate::system::error::RunError;
+use crate::system::jump::refuse_jumps;
+use crate::system::settings::Settings;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The longest inner step is this share of the motion, so that nothing in it is stepped over.
+const LONGEST_STEP: f64 = 1.0 / 500.0;
+
+/// The first inner step is this share of the longest.
+const FIRST_STEP: f64 = 1.0 / 64.0;
+
+/// Shortest step as a share of the motion.
+const SHORTEST_STEP: f64 = 1e-13;
+
+/// Steps that shrink to nothing this near the end of what the gripper can reach shrink because of it; share of the motion.
+const NEAR: f64 = 1e-3;
+
+/// A step that is shorter by 0.7 leaves less than this share where the motion is smooth.
+const SHRINKS: f64 = 0.5;
+
+/// Rounding of a stroke, in units of its largest value: signals that begin at nothing are differences of what is that large.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Tries to end a step on a kink of a force.
+const MOST_TRIES: usize = 40;
+
+/// Exponent of the energy estimate, whose order is that of the third difference.
+const ENERGY_EXPONENT: f64 = 0.25;
+
+/// Steps along a trajectory.
+#[derive(Debug)]
+pub(crate) struct Prescribed {
+    trajectory: Arc<Trajectory>,
+    /// A lower bound of the energy turned over, estimated beforehand.
+    energy_floor: f64,
+    /// The largest stroke of each element, m, seen beforehand.
+    largest: Vec<f64>,
+    /// When a signal had its last kink, s.
+    since: f64,
+    /// Velocities at which friction sticks: their power has a kink where they turn round.
+    rubbing: Vec<usize>,
+    /// Kinks of the elements' forces.
+    kinks: Kinks,
+    /// The first evaluation behind the step that was worked out.
+    behind: Option<Evaluation>,
+    /// Where the last step that was refused starts, and how far each stroke was then from the integral of its rates, m.
+    refused: Option<(f64, Vec<f64>)>,
+}
+
+/// What the next step takes over from those before.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct StepperState {
+    energy_floor: f64,
+    largest: Vec<f64>,
+    since: f64,
+}
+
+/// Error of a step in units of its tolerance, by what it comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct StepError {
+    /// The worst memory: its error and order alpha.
+    memory: f64,
+    alpha: f64,
+    /// Index of the worst element.
+    element: Option<usize>,
+    /// The energy ledger.
+    energy: f64,
+}
+
+impl StepError {
+    fn accepted(&self) -> bool {
+        self.memory <= 1.0 && self.energy <= 1.0
+    }
+
+    /// By how much the next step may be longer; below 1 after a rejection.
+    fn factor(&self) -> f64 {
+        let memory = 0.85 * self.memory.powf(-1.0 / (4.0 - self.alpha));
+        let energy = 0.85 * self.energy.powf(-ENERGY_EXPONENT);
+        let factor = memory.min(energy).clamp(0.1, 6.0);
+        // A step that changes little keeps its size, and with it the tables of the exponentials.
+        if (1.0..1.25).contains(&factor) { 1.0 } else { factor }
+    }
+}
+
+impl Prescribed {
+    pub(crate) fn new(cx: Context, trajectory: &Arc<Trajectory>) -> Self {
+        let rubbing = reversal::rubbing(&cx.system.model);
+        let kinks = Kinks::of(cx.system);
+        let (trajectory, largest) = (trajectory.clone(), vec![0.0; cx.system.elements.len()]);
+        Self { trajectory, energy_floor: 0.0, largest, since: 0.0, rubbing, kinks, behind: None, refused: None }
+    }
+
+    /// What the next step takes over from those before.
+    pub(crate) fn save(&self) -> StepperState {
+        StepperState { energy_floor: self.energy_floor, largest: self.largest.clone(), since: self.since }
+    }
+
+    /// Goes on from what was saved.
+    ///
+    /// # Errors
+    /// What a named scheme refuses.
+    pub(crate) fn load(&mut self, cx: Context, recorder: &mut Recorder, state: StepperState) -> Result<(), RunError> {
+        (self.energy_floor, self.largest, self.since) = (state.energy_floor, state.largest, state.since);
+        let rows = recorder.settings.rows.clone();
+        recorder.grid = on_grid::derivatives(cx, &self.trajectory, &rows, &mut recorder.scratch)?;
+        Ok(())
+    }
+
+    /// Takes a lower bound of the energy that the motion turns over, and the largest strokes, from 65 samples of it.
+    fn look_ahead(&mut self, cx: Context, recorder: &mut Recorder) {
+        let end = recorder.settings.end;
+        let mut evaluation = Evaluation::new(cx.system);
+        let (mut potential, mut kinetic) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0f64);
+        let mut strokes = vec![[f64::INFINITY, f64::NEG_INFINITY]; cx.system.elements.len()];
+        let mut forces = vec![0.0f64; cx.system.elements.len()];
+        for k in 0..=64 {
+            let t = end * k as f64 / 64.0;
+            if cx.evaluate(&self.trajectory, t, t, &mut recorder.scratch, &mut evaluation).is_err() {
+                break;
+            }
+            let widen = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
+            kinetic = kinetic.max(evaluation.kinetic);
+            widen(&mut potential, evaluation.potential);
+            for (e, state) in evaluation.elements.iter().enumerate() {
+                widen(&mut strokes[e], state.stroke);
+                let element = &cx.system.elements[e];
+                if let Ok(law) = element.law.begin(&element.start(element.rest, &state.inputs)) {
+                    forces[e] = forces[e].max(element.law.estimate(&state.point(t), &law, 1.0 / end).abs());
+                }
+            }
+        }
+        let elements: f64 = strokes.iter().zip(forces).map(|(range, force)| (range[1] - range[0]) * force).sum();
+        self.energy_floor = kinetic + (potential[1] - potential[0]).max(0.0) + elements.max(0.0);
+        self.largest = strokes.iter().map(|[low, high]| low.abs().max(high.abs())).collect();
+    }
+
+    /// Evaluates the step without keeping it; an element that turns over on the way is asked for a shorter one.
+    fn evaluate(&self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<StepError, RunError> {
+        let (t, h) = (step.from, step.size);
+        for (k, c) in RADAU_NODES.into_iter().enumerate() {
+            let at = if c == 1.0 { step.to } else { t + c * h };
+            let inputs_at = if c == 1.0 { step.end_inputs() } else { at };
+            cx.evaluate(&self.trajectory, at, inputs_at, &mut recorder.scratch, &mut recorder.evaluations[k + 1])?;
+        }
+        recorder.is_whole[1] = true;
+        if let Some(element) = turned_over(cx, recorder, t, h)? {
+            return Ok(StepError { memory: 1e3, alpha: 0.0, element: Some(element), energy: 0.0 });
+        }
+        recorder.powers = StepPowers::default();
+        for (k, evaluation) in recorder.evaluations.iter().enumerate() {
+            recorder.powers.actuators[k] = evaluation.rigid_power();
+            recorder.powers.joints[k] = evaluation.joint_loss;
+        }
+        let mut error = StepError { memory: 0.0, alpha: 0.0, element: None, energy: 0.0 };
+        recorder.bank.start(t, h);
+        for e in 0..cx.system.elements.len() {
+            recorder.tell(cx, e);
+            let noise = self.noise(recorder, e, t) + self.rounding(recorder, e);
+            recorder.bank.set_resolution(e, recorder.bank.resolution(e) + noise);
+            if !recorder.bank.account(e) {
+                continue;
+            }
+            recorder.add_actuator_power(e);
+            if !recorder.bank.response(e).force.iter().all(|force| force.is_finite()) {
+                // A law that finds no force asks for a shorter step.
+                return Ok(StepError { memory: 1e3, alpha: 0.0, element: Some(e), energy: 0.0 });
+            }
+            let (share, alpha) = recorder.memory_error(e, usize::MAX, 0.0, self.since);
+            if share > error.memory {
+                error = StepError { memory: share, alpha, element: Some(e), ..error };
+            }
+        }
+        error.energy = recorder.energy_error(h, self.energy_floor);
+        Ok(error)
+    }
+
+    /// The step that was evaluated with `error`, or the part of it up to the first kink of a force.
+    fn end_on_kink(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        whole: Target,
+        error: StepError,
+    ) -> Result<(Target, StepError), RunError> {
+        let (mut step, mut error, t) = (whole, error, whole.from);
+        let (mut low, mut high, mut wanted, mut from_behind) = (t, f64::INFINITY, None, 0);
+        for _ in 0..MOST_TRIES {
+            let next = match (self.kinks.look(&recorder.bank, |_| 0.0), wanted) {
+                (Seen::AtEnd, _) | (Seen::Nothing, None) => break,
+                (Seen::Nothing, Some(kink)) => {
+                    (low, from_behind) = (step.to, 0);
+                    let [at_end, before] = [1.0, 0.999].map(|theta| self.kinks.value(&recorder.bank, kink, theta));
+                    step.to + 0.001 * step.size * at_end / (before - at_end)
+                }
+                (Seen::Within(theta, kink), _) => {
+                    (high, wanted, from_behind) = (step.to, Some(kink), from_behind + 1);
+                    // Where the time is too short to tell, a few bits on.
+                    (t + theta * step.size).max(t + 4.0 * f64::EPSILON * t)
+                }
+            };
+            if high - low <= 4.0 * f64::EPSILON * high {
+                break;
+            }
+            // Behind a kink a guard may hardly move, and tells little of where it is.
+            let to = if from_behind < FROM_BEHIND && low < next && next < high { next } else { 0.5 * (low + high) };
+            step = Target { to, size: to - t, behind: Behind::Step, ..step };
+            error = self.evaluate(cx, recorder, &step)?;
+        }
+        Ok((step, error))
+    }
+
+    /// Noise of stroke `e`, m: what does not shrink with the step, within what the path is solved to. Near singular configurations its
+    /// solutions lose many digits.
+    fn noise(&self, recorder: &Recorder, e: usize, t: f64) -> f64 {
+        let Some((_, before)) = self.refused.as_ref().filter(|(from, _)| *from == t) else { return 0.0 };
+        let left = gap(recorder, e);
+        let gradient = recorder.evaluations[0].elements[e].gradient.iter();
+        let solved: f64 = gradient.map(|g| g.abs() * self.trajectory.solved_to()).sum();
+        if left > SHRINKS * before[e] { (2.0 * left).min(solved) } else { 0.0 }
+    }
+
+    /// What rounding of the signals, and of the time that they are told, does to stroke `e`, m.
+    fn rounding(&self, recorder: &Recorder, e: usize) -> f64 {
+        let [_, rates] = recorder.bank.told(e);
+        let fastest = rates.iter().fold(0.0f64, |fastest, rate| fastest.max(rate.abs()));
+        ROUNDING * (self.largest[e] + recorder.bank.from() * fastest)
+    }
+
+    /// The first evaluation behind a kink, to which coordinates must not jump from that at index `from` of the recorder.
+    fn look_across(
+        &self,
+        cx: Context,
+        recorder: &mut Recorder,
+        from: usize,
+        after: f64,
+    ) -> Result<Evaluation, RunError> {
+        let mut right = recorder.evaluations[from].clone();
+        cx.evaluate(&self.trajectory, after, after, &mut recorder.scratch, &mut right)?;
+        let (left, model) = (&recorder.evaluations[from], &cx.system.model);
+        if left.t == after {
+            return Ok(right);
+        }
+        let (mut v, mut a) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
+        let speed = |k: usize| left.v[k].abs() + right.v[k].abs();
+        refuse_jumps(model, (left.t, &left.q), (after, &right.q), speed, self.trajectory.solved_to(), |t, q| {
+            self.trajectory.at(model, t, q, &mut v, &mut a)?;
+            Ok(())
+        })?;
+        Ok(right)
+    }
+
+    fn step_too_small(&self, cx: Context, step: &Target, error: &StepError, end: f64) -> RunError {
+        // At the limit of its reach the robot's rates are infinite, so that the steps shrink before the path ends.
+        let near_the_end = self.trajectory.failure().filter(|failure| failure.t() - step.from < NEAR * end);
+        if let Some(failure) = near_the_end {
+            return failure.into();
+        }
+        let subject = match error.element {
+            Some(e) if error.memory >= error.energy => format!("element \"{}\"", cx.system.elements[e].name),
+            _ => "the energy ledger".into(),
+        };
+        RunError::StepTooSmall { t: step.from, h: step.size, error: error.memory.max(error.energy), subject }
+    }
+}
+
+/// How far stroke `e` at the end of the step is from the integral of its rates, m: of order h⁶ where the motion is smooth.
+fn gap(recorder: &Recorder, e: usize) -> f64 {
+    let [strokes, rates] = recorder.bank.told(e);
+    let travel: f64 = rates[1..].iter().zip(RADAU_WEIGHTS).map(|(rate, weight)| rate * weight).sum();
+    (strokes[STAGES] - strokes[0] - recorder.bank.size() * travel).abs()
+}
+
+/// An element whose points passed each other between two nodes, or that passed half a turn.
+fn turned_over(cx: Context, recorder: &Recorder, t: f64, h: f64) -> Result<Option<usize>, RunError> {
+    for pair in recorder.evaluations.windows(2) {
+        for (e, (a, b)) in pair[0].elements.iter().zip(&pair[1].elements).enumerate() {
+            let Some(why) = a.reading.lost_until(&b.reading) else { continue };
+            let element = &cx.system.elements[e];
+            let length = a.reading.coordinate.min(b.reading.coordinate);
+            let met = !matches!(why, NoDirection::HalfTurn { .. }) && length < 1e-9 * element.rest;
+            if h < 1e-9 * recorder.settings.end || met {
+                return Err(element.without_direction(t + 0.5 * h, why));
+            }
+            return Ok(Some(e));
+        }
+    }
+    Ok(None)
+}
+
+impl Stepper for Prescribed {
+    fn longest_step(&self, _: Context, settings: &Settings) -> f64 {
+        settings.max_step.unwrap_or(settings.end * LONGEST_STEP).min(settings.end)
+    }
+
+    fn start(&mut self, cx: Context, recorder: &mut Recorder, agenda: &Agenda) -> Result<f64, RunError> {
+        let settings = recorder.settings.clone();
+        cx.evaluate(&self.trajectory, 0.0, 0.0, &mut recorder.scratch, &mut recorder.evaluations[0])?;
+        recorder.grid = on_grid::derivatives(cx, &self.trajectory, &settings.rows, &mut recorder.scratch)?;
+        self.look_ahead(cx, recorder);
+        recorder.begin(cx)?;
+        let first = settings.first_step.unwrap_or(self.longest_step(cx, &settings) * FIRST_STEP);
+        Ok(agenda.reach(0.0, first.min(settings.end)))
+    }
+
+    fn reach(&self, t: f64, h: f64) -> f64 {
+        self.trajectory.reach(t, h)
+    }
+
+    fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError> {
+        let mut step = target;
+        let mut error = self.evaluate(cx, recorder, &step)?;
+        if let Some(to) = self.first_reversal(cx, recorder, &step)? {
+            step = Target { to, size: to - step.from, behind: Behind::Step, ..step };
+            error = self.evaluate(cx, recorder, &step)?;
+        }
+        (step, error) = self.end_on_kink(cx, recorder, step, error)?;
+        let next = step.size * error.factor();
+        if !error.accepted() {
+            self.refused = Some((step.from, (0..cx.system.elements.len()).map(|e| gap(recorder, e)).collect()));
+            let size = next.min(0.7 * step.size);
+            let end = recorder.settings.end;
+            return if size < SHORTEST_STEP * end {
+                Err(self.step_too_small(cx, &step, &error, end))
+            } else {
+                Ok(Trial::Rejected { size })
+            };
+        }
+        // Before any row is written, since a jump must leave none behind.
+        self.behind = match step.behind {
+            Behind::Kink(after) => Some(self.look_across(cx, recorder, STAGES, after)?),
+            _ => None,
+        };
+        Ok(Trial::Accepted { step, next })
+    }
+
+    fn place(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        theta: f64,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError> {
+        self.interpolate(cx, recorder, at, theta, evaluation)
+    }
+
+    fn interpolate(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        at: f64,
+        _: f64,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), RunError> {
+        cx.evaluate(&self.trajectory, at, at, &mut recorder.scratch, evaluation)
+    }
+
+    fn accept(&mut self, _: Context, _: &Recorder, _: &Target) -> Result<(), RunError> {
+        Ok(())
+    }
+
+    fn cross(&mut self, cx: Context, recorder: &mut Recorder, after: f64) -> Result<(), RunError> {
+        let right = match self.behind.take() {
+            Some(right) if right.t == after => right,
+            _ => self.look_across(cx, recorder, 0, after)?,
+        };
+        recorder.jump(cx, right)?;
+        self.since = after;
+        Ok(())
+    }
+}

@@ -1,0 +1,156 @@
+//! One step tried: its errors, the size of the next one, and what to say where no step is small enough.
+
+use super::method::Radau;
+use super::newton::Outcome;
+use crate::account::recorder::Recorder;
+use crate::collocation::STAGES;
+use crate::elements::NoDirection;
+use crate::equations::context::Context;
+use crate::equations::kinks::Seen;
+use crate::methods::stepper::Target;
+use crate::system::error::RunError;
+
+/// Shortest step as a share of the run, and of the time that has passed.
+const SHORTEST_STEP: [f64; 2] = [1e-20, 2.0 * f64::EPSILON];
+
+/// Velocities whose squares are finite.
+const FASTEST: f64 = 1e150;
+
+/// Growth that is not worth a new size.
+const KEPT: f64 = 1.2;
+
+/// 1/(order of the estimate + 1).
+const EXPONENT: f64 = 0.25;
+
+/// What makes most of the error of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Worst {
+    Velocity(usize),
+    Element(usize),
+    Energy,
+    /// The iteration did not converge, for this velocity least of all.
+    Newton(usize),
+}
+
+/// Whether no step of a run that ends at `end` may be as short as `h` where `tried` was not short enough, or ends where that one did.
+pub(super) fn is_too_short(tried: &Target, h: f64, end: f64) -> bool {
+    let [of_run, of_time] = SHORTEST_STEP;
+    h < (of_run * end).max(of_time * tried.from) || tried.from + h >= tried.to
+}
+
+impl Radau {
+    /// Tries the step `target`: `Ok` holds the factor for the next step, `Err` the size to try instead.
+    pub(super) fn attempt(
+        &mut self,
+        cx: Context,
+        recorder: &mut Recorder,
+        target: &Target,
+    ) -> Result<Result<f64, f64>, RunError> {
+        let Target { from: t, size: h, .. } = *target;
+        self.step.energy = recorder.turned_over();
+        let outcome =
+            self.step.attempt(cx, &mut recorder.bank, recorder.control.as_deref_mut(), h, target.end_inputs())?;
+        let (mut error, mut worst, iterations) = match outcome {
+            Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
+            Outcome::Converged { iterations } => {
+                let (error, worst) = self.step.estimate(&recorder.bank, recorder.control.as_deref(), h);
+                (error, Worst::Velocity(worst), iterations)
+            }
+        };
+        self.newton_iterations += u64::from(iterations);
+        if let Some((e, _)) = self.lost() {
+            (error, worst) = (f64::INFINITY, Worst::Element(e));
+        }
+        self.refuse_overflow(t, h)?;
+        if error <= 1.0 {
+            self.evaluate_step(cx, recorder, target)?;
+            let whole = self.has_paths || self.step.stick.holds_any();
+            if whole || self.has_inner_variables {
+                (error, worst) = self.recorder_error(cx, recorder, h, whole, (error, worst));
+            }
+        }
+        let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
+        if error > 1.0 || error.is_nan() {
+            let mut smaller =
+                h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
+            // Where a kink makes the error, a step up to it has none of that.
+            if error.is_finite()
+                && let Seen::Within(theta, _) = self.kinks.look(&recorder.bank, |e| self.step.stroke_noise(e, h))
+            {
+                smaller = smaller.max((1.01 * theta).min(0.9) * h);
+            }
+            if is_too_short(target, smaller, recorder.settings.end) {
+                return Err(self.step_too_small(cx, t, h, error, worst));
+            }
+            return Ok(Err(smaller));
+        }
+        let error = error.max(1e-10);
+        let mut factor = safety * error.powf(-EXPONENT);
+        if let Some((size, before)) = self.last {
+            factor = factor.min(safety * (h / size) * (before.max(1e-2) / (error * error)).powf(EXPONENT));
+        }
+        self.last = Some((h, error));
+        // A step that changes little keeps its size, and with it the tables of the exponentials.
+        Ok(Ok(if (1.0..KEPT).contains(&factor) { 1.0 } else { factor.clamp(0.2, 8.0) }))
+    }
+
+    /// Velocities whose energy is beyond double precision.
+    fn refuse_overflow(&self, t: f64, h: f64) -> Result<(), RunError> {
+        let overflow = self.step.stages[STAGES - 1].v.iter().position(|v| v.abs() > FASTEST);
+        let Some(k) = overflow else { return Ok(()) };
+        let what = format!("v.{}", self.step.model.v_labels()[k].name);
+        Err(RunError::NotFinite { t: t + h, what, value: f64::INFINITY })
+    }
+
+    /// The largest of `error` and of what the estimate of the free joints may not see: the errors of the energy ledger, and of D^alpha x of
+    /// laws with inner variables, of all laws where `whole`, other joints being prescribed. In units of their tolerances, brought to the
+    /// order of that estimate.
+    fn recorder_error(
+        &self,
+        cx: Context,
+        recorder: &Recorder,
+        h: f64,
+        whole: bool,
+        (mut error, mut worst): (f64, Worst),
+    ) -> (f64, Worst) {
+        // Beside a singular start there is no ledger, and what the actuators do against it is integrated by its moments.
+        let counts = !self.step.is_singular && (whole || self.has_inner_strokes);
+        let energy = if counts { recorder.energy_error(h, 0.0) } else { 0.0 };
+        if energy > error {
+            (error, worst) = (energy, Worst::Energy);
+        }
+        for (e, element) in cx.system.elements.iter().enumerate() {
+            let errors = if whole { usize::MAX } else { element.law.hidden_errors() };
+            if errors == 0 {
+                continue;
+            }
+            let (share, order) = recorder.memory_error(e, errors, self.step.coming_rate(e, h), self.step.sizes.since());
+            let memory = share.powf(1.0 / (EXPONENT * (4.0 - order)));
+            if memory > error {
+                (error, worst) = (memory, Worst::Element(e));
+            }
+        }
+        (error, worst)
+    }
+
+    /// The first element that lost its direction in the step.
+    fn lost(&self) -> Option<(usize, NoDirection)> {
+        self.step.elements.iter().enumerate().find_map(|(e, element)| Some((e, element.lost()?)))
+    }
+
+    fn step_too_small(&self, cx: Context, t: f64, h: f64, error: f64, worst: Worst) -> RunError {
+        let system = cx.system;
+        let joint = |k: usize| system.model.v_labels()[k].name.clone();
+        if let Some((e, why)) = self.lost() {
+            return system.elements[e].without_direction(t, why);
+        }
+        match worst {
+            Worst::Velocity(k) => RunError::StepTooSmall { t, h, error, subject: format!("joint \"{}\"", joint(k)) },
+            Worst::Element(e) => {
+                RunError::StepTooSmall { t, h, error, subject: format!("element \"{}\"", system.elements[e].name) }
+            }
+            Worst::Energy => RunError::StepTooSmall { t, h, error, subject: "the energy ledger".to_owned() },
+            Worst::Newton(k) => RunError::NoConvergence { t, h, joint: joint(k) },
+        }
+    }
+}
