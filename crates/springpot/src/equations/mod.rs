@@ -10,6 +10,7 @@ pub(crate) mod on_grid;
 mod pose;
 pub(crate) mod resistance;
 mod steady;
+pub(crate) mod tangent;
 pub(crate) mod zero;
 
 pub use pose::{ElementStart, Pose, State};

@@ -255,9 +255,12 @@ impl ControlRun {
 
     /// Whether elements count for nothing in the force balance of velocity `k`, since its actuator takes their forces off.
     pub(crate) fn takes_off_elements(&self, k: usize) -> bool {
-        self.compensates
-            && self.is_continuous
-            && self.joints.iter().any(|joint| joint.velocity == k && joint.mode.follows())
+        self.takes_off_any() && self.joints.iter().any(|joint| joint.velocity == k && joint.mode.follows())
+    }
+
+    /// Whether there may be such a velocity.
+    pub(crate) fn takes_off_any(&self) -> bool {
+        self.compensates && self.is_continuous
     }
 
     /// Solves for what integrals take that keep their force at its limit, once the step is solved; `false` where there is nothing.

@@ -5,6 +5,7 @@ use crate::collocation::radau::{ESTIMATE, GAMMA, LEFT, RIGHT};
 use crate::collocation::{MAX_NODES, STAGES};
 use crate::elements::ElementBank;
 use crate::equations::control::ControlRun;
+use crate::equations::tangent::couplings;
 
 impl RadauStep {
     /// Accelerations without what a singular start adds: a_i − s σ_i with s σ = −M⁻¹ Σ g F_singular.
@@ -53,31 +54,9 @@ impl RadauStep {
         let along = |m: &[[f64; MAX_NODES]; MAX_NODES]| -> f64 {
             (0..3).map(|i| LEFT[i] * (0..3).map(|j| m[i][j] * RIGHT[j]).sum::<f64>()).sum()
         };
-        let counts = |k: usize| !control.is_some_and(|control| control.takes_off_elements(k));
-        for (e, element) in self.elements.iter().enumerate() {
-            let response = bank.response(e);
-            let k = along(&response.d_stroke) + along(&response.d_rate) / step;
-            let g = &element.gradient;
-            for r in (0..count).filter(|r| counts(free[*r])) {
-                for c in 0..count {
-                    scratch.stiffness[r * count + c] += k * g[free[r]] * g[free[c]];
-                }
-            }
-        }
-        for (k, response) in control.into_iter().flat_map(ControlRun::responses) {
-            if let Some(r) = free.iter().position(|free| *free == k) {
-                let k = along(&response.d_stroke) + along(&response.d_rate) / step;
-                scratch.stiffness[r * count + r] += k;
-            }
-        }
-        for input in control.map_or(&[][..], ControlRun::inputs) {
-            let ([by_q, by_v], k) = (&input.by_state, along(&input.force));
-            let g = &self.elements[input.element].gradient;
-            for r in (0..count).filter(|r| counts(free[*r])) {
-                for c in 0..count {
-                    scratch.stiffness[r * count + c] += k * g[free[r]] * (by_q[free[c]] + by_v[free[c]] / step);
-                }
-            }
+        for coupling in couplings(self.elements.iter().map(|element| &element.gradient[..]), bank, control) {
+            let [stroke, rate] = coupling.gain.each_ref().map(along);
+            coupling.add([stroke, rate / step], free, &mut scratch.stiffness, |r| r * count);
         }
         scratch.error.clear();
         for r in 0..count {

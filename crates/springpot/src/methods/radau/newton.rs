@@ -7,7 +7,7 @@ use crate::elements::{ElementBank, Pull};
 use crate::equations::context::Context;
 use crate::equations::control::ControlRun;
 use crate::equations::resistance::add_smooth_resistance;
-use crate::law::Response;
+use crate::equations::tangent::couplings;
 use crate::system::error::RunError;
 
 /// Newton iterations after which a step is given up.
@@ -129,15 +129,12 @@ impl RadauStep {
         }
     }
 
-    /// I⊗M + hA⊗D + h²A²⊗K + Σ (h² G A² + h P A)⊗ggᵀ over the free velocities.
+    /// I⊗M + hA⊗D + h²A²⊗K + Σ on ⊗ (h² G A² by_q + h P A by_v) of all couplings, over the free velocities.
     fn factor(&mut self, bank: &ElementBank, control: Option<&ControlRun>, h: f64) -> bool {
         let (n, count, free) = (self.model.nv(), self.free.len(), &self.free);
-        let (slopes, elements) = (&self.slopes, &self.elements);
+        let slopes = &self.slopes;
         let size = STAGES * count;
-        let takes_off: Vec<bool> =
-            free.iter().map(|&k| control.is_some_and(|control| control.takes_off_elements(k))).collect();
-        let terms: Vec<(usize, Response)> = control.into_iter().flat_map(ControlRun::responses).collect();
-        let inputs = control.map_or(&[][..], ControlRun::inputs);
+        let couplings = couplings(self.elements.iter().map(|element| &element.gradient[..]), bank, control);
         let product = |x: &[[f64; MAX_NODES]; MAX_NODES], y: &[[f64; STAGES]; STAGES], i: usize, j: usize| -> f64 {
             (0..STAGES).map(|m| x[i][m] * y[m][j]).sum()
         };
@@ -145,9 +142,9 @@ impl RadauStep {
             for i in 0..STAGES {
                 for j in 0..STAGES {
                     let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
+                    let line = |r: usize| (i * count + r) * size + j * count;
                     for (r, &row) in free.iter().enumerate() {
-                        let line = &mut matrix[(i * count + r) * size + j * count..][..count];
-                        for (entry, &column) in line.iter_mut().zip(free) {
+                        for (entry, &column) in matrix[line(r)..][..count].iter_mut().zip(free) {
                             let at = row * n + column;
                             *entry = damping * slopes.d_v[at] + stiffness * slopes.d_q[at];
                             if i == j {
@@ -155,36 +152,10 @@ impl RadauStep {
                             }
                         }
                     }
-                    for (e, element) in elements.iter().enumerate() {
-                        let response = bank.response(e);
-                        let factor = h * h * product(&response.d_stroke, &A_SQUARED, i, j)
-                            + h * product(&response.d_rate, &A, i, j);
-                        let g = &element.gradient;
-                        for (r, &row) in free.iter().enumerate().filter(|(r, _)| !takes_off[*r]) {
-                            let line = &mut matrix[(i * count + r) * size + j * count..][..count];
-                            for (entry, &column) in line.iter_mut().zip(free) {
-                                *entry += factor * g[row] * g[column];
-                            }
-                        }
-                    }
-                    for (k, response) in &terms {
-                        let factor = h * h * product(&response.d_stroke, &A_SQUARED, i, j)
-                            + h * product(&response.d_rate, &A, i, j);
-                        if let Some(r) = free.iter().position(|free| free == k) {
-                            matrix[(i * count + r) * size + j * count + r] += factor;
-                        }
-                    }
-                    for input in inputs {
-                        let [by_q, by_v] = &input.by_state;
-                        let stroke = h * h * product(&input.force, &A_SQUARED, i, j);
-                        let rate = h * product(&input.force, &A, i, j);
-                        let g = &elements[input.element].gradient;
-                        for (r, &row) in free.iter().enumerate().filter(|(r, _)| !takes_off[*r]) {
-                            let line = &mut matrix[(i * count + r) * size + j * count..][..count];
-                            for (entry, &column) in line.iter_mut().zip(free) {
-                                *entry += g[row] * (stroke * by_q[column] + rate * by_v[column]);
-                            }
-                        }
+                    for coupling in &couplings {
+                        let [stroke, rate] = &coupling.gain;
+                        let share = [h * h * product(stroke, &A_SQUARED, i, j), h * product(rate, &A, i, j)];
+                        coupling.add(share, free, matrix, line);
                     }
                 }
             }
