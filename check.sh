@@ -104,13 +104,14 @@ quick() {
     cargo test "${packages[@]}" --quiet
 }
 
-# What shares no build with the tests, and what does.
-beside=(lints engine oldest crates documentation book)
-tested=(tests pages engines python scenarios)
+# What shares no build with the tests, what waits for a browser most of the time, and what else stands on the build of the tests.
+without=(lints engine oldest crates documentation book)
+waiting=(pages engines)
+rest=(python scenarios)
 for step in "$@"; do
-    case " format ${beside[*]} ${tested[*]} quick " in
+    case " quick format ${without[*]} tests ${waiting[*]} ${rest[*]} " in
     *" $step "*) ;;
-    *) echo "no step $step: there are quick format ${beside[*]} ${tested[*]}" >&2 && exit 2 ;;
+    *) echo "no step $step: there are quick format ${without[*]} tests ${waiting[*]} ${rest[*]}" >&2 && exit 2 ;;
     esac
 done
 
@@ -123,21 +124,29 @@ steps() {
     done
 }
 
+# Steps beside those that follow; what they say comes in one piece, when they are joined.
+declare -A lanes
+beside() {
+    (steps "${@:2}") >"$said/$1" 2>&1 &
+    lanes[$1]=$!
+}
+join() { wait "${lanes[$1]}" && cat "$said/$1" || { cat "$said/$1"; exit 1; }; }
+
 if [ "$#" -gt 0 ]; then
     steps "$@"
 else
+    said=$(mktemp -d)
+    trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$said"' EXIT
     steps format
-    said=$(mktemp)
-    trap 'kill $(jobs -p) 2>/dev/null || true; rm -f "$said"' EXIT
     tools &
     fetching=$!
-    (steps "${beside[@]}") >"$said" 2>&1 &
-    others=$!
+    beside without "${without[@]}"
     steps tests
     wait "$fetching"
-    steps "${tested[@]:1}"
-    wait "$others" || { cat "$said"; exit 1; }
-    cat "$said"
+    beside waiting "${waiting[@]}"
+    steps "${rest[@]}"
+    join without
+    join waiting
 fi
 
 printf '\nall checks passed\n'
