@@ -54,6 +54,34 @@ def test_rows_of_a_run_are_its_snapshots(tmp_path: object) -> None:
     assert abs(two.interpolate(0.5)["q.q2"] - one.q[1]) < 1e-7
 
 
+def test_events_happen_as_in_a_run() -> None:
+    events = """
+    [[event]]
+    name = "on"
+    when = "t - 0.3"
+    action = { set = { "strut.u" = "3 V" } }
+    [[event]]
+    name = "low"
+    when = "q.q1 - 0.3"
+    [[event]]
+    name = "half"
+    when = "t - 0.55"
+    action = "stop"
+    """
+    text = ARM + events
+    ran = sp.run(text)
+    wanted = [(str(name), float(t)) for name, t in zip(ran.events["event"], ran.events["t"], strict=True)]
+    arm = sp.Simulation(text)
+    passed = []
+    while arm.step():
+        passed += arm.passed
+    assert [name for name, _ in passed] == [name for name, _ in wanted] and len(passed) >= 2
+    assert np.allclose([t for _, t in passed], [t for _, t in wanted], rtol=0, atol=1e-6)
+    assert (arm.t, arm.stopped_by, arm.snapshot()["strut.u"]) == (0.55, "half", 3.0)
+    arm.step_to(1.0)
+    assert arm.t == 0.55
+
+
 def test_torques_and_inputs() -> None:
     arm = sp.Simulation(ARM)
     arm.set_torque("q1", "2 N*m")

@@ -2,6 +2,7 @@
 
 mod support;
 
+use springpot::Simulation;
 use springpot::driver::{Checkpoint, Report, Rows, resume, run};
 use springpot::system::{RunError, Stop};
 use springpot_scenario::Plan;
@@ -280,6 +281,73 @@ fn going_on_keeps_every_bit() {
             assert!(rest.rows == run.kept.rows[written..] && rest.events == run.kept.events[*seen..]);
         }
     }
+}
+
+/// When events happen in a simulation that is driven to its end, and what it says of a stop.
+fn driven(robot: &mut Simulation) -> (Vec<(String, f64)>, Option<String>) {
+    let mut passed = Vec::new();
+    while robot.step().unwrap() {
+        passed.extend(robot.passed().map(|(event, t)| (event.name.clone(), t)));
+    }
+    assert!(!robot.step().unwrap());
+    (passed, robot.stopped_by().map(|event| event.name.clone()))
+}
+
+#[test]
+fn simulations_have_the_events_of_runs() {
+    let motion = "torque = { q1 = \"2*sign(sin(9*t))\", q2 = \"abs(sin(5*t))\" }";
+    let text = format!("{ARM}{}\n[motion]\nkind = \"forward\"\n{motion}\n", thermoviscoelastic(0.5, 25.0, "caputo"))
+        + &event("zero", "when = \"q.q1 - 0.002\"\naction = { set = { \"tau.q1\" = 3 } }")
+        + &event("back", "when = \"v.q2\"\naction = { set = { \"strut.T\" = \"60 degC\", \"tau.q2\" = -1 } }")
+        + &event("row", "when = \"sin(17*t) - 0.5 + q.q1\"")
+        + &event("late", "when = \"t - 0.45 + 0.01*q.q1\"\naction = \"stop\"");
+    for (solver, ends) in [("rtol = 1e-8", 0.6), ("method = \"midpoint\"\nstep = 0.002", 0.6), ("rtol = 1e-8", 0.2)] {
+        // Rows so dense that no step ends on one.
+        let text = format!("{text}\n[time]\nend = {ends}\noutput_step = 1e-4\n[solver]\n{solver}\n");
+        let run = done(&text);
+        let plan = plan(&text);
+        let names: Vec<_> = plan.events.iter().map(|event| event.event.name.clone()).collect();
+        let wanted: Vec<_> = run.kept.events.iter().map(|(k, row)| (names[*k].clone(), row[0])).collect();
+        let mut robot = Simulation::new(plan.system(), plan.settings.clone()).unwrap();
+        robot.step_to(0.01).unwrap();
+        let before = robot.state().unwrap();
+        let mut robot = Simulation::new(plan.system(), plan.settings.clone()).unwrap();
+        let (passed, stopped) = driven(&mut robot);
+        near(&[robot.t()], &[run.report.t_reached.unwrap()], 1e-12, "reached");
+        assert_eq!(stopped.is_some(), ends > 0.5, "{stopped:?}");
+        let of = |events: &[(String, f64)]| -> (Vec<_>, Vec<_>) { events.iter().cloned().unzip() };
+        let ((names, times), (wanted_names, wanted_times)) = (of(&passed), of(&wanted));
+        assert_eq!(names, wanted_names, "{solver}");
+        near(&times, &wanted_times, 1e-12, solver);
+        let t = robot.t();
+        robot.set_state(&before).unwrap();
+        assert_eq!(robot.stopped_by(), None);
+        let (again, _) = driven(&mut robot);
+        robot.set_state(&before).unwrap();
+        assert_eq!((driven(&mut robot).0, robot.t()), (again, robot.t()));
+        assert!((robot.t() - t).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn what_an_event_sets_holds_until_somebody_else_does() {
+    // 4 N until x = 1 at t = 1, then -4 N, and 1 N more from t = 1.5 on.
+    let events = event("brake", "when = \"q.q - 1\"\ndirection = \"rising\"\naction = { set = { \"tau.q\" = -4 } }");
+    let plan = plan(&mass("torque = { q = \"4\" }", &events, 4.0, "rtol = 1e-10"));
+    let mut robot = Simulation::new(plan.system(), plan.settings.clone()).unwrap();
+    robot.step_to(1.5).unwrap();
+    assert!((robot.v()[0] - 1.0).abs() < 1e-9, "{}", robot.v()[0]);
+    robot.set_torque(0, 1.0).unwrap();
+    robot.step_to(2.5).unwrap();
+    assert!((robot.v()[0] + 0.5).abs() < 1e-9, "{}", robot.v()[0]);
+    // A step that ends where an event acts can be looked into before it does.
+    let mut robot = Simulation::new(plan.system(), plan.settings).unwrap();
+    while robot.passed().next().is_none() {
+        robot.step().unwrap();
+    }
+    assert!((robot.t() - 1.0).abs() < 1e-9 && robot.t_before() < robot.t());
+    let middle = 0.5 * (robot.t() + robot.t_before());
+    assert_eq!(robot.interpolate(middle).unwrap().t(), middle);
 }
 
 #[test]

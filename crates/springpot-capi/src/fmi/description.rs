@@ -20,7 +20,7 @@ pub(super) struct Head<'a> {
 
 /// The categories of messages.
 pub(super) const CATEGORIES: [(&str, &str); 3] = [
-    ("logStatusDiscard", "steps beyond the end of the scenario"),
+    ("logStatusDiscard", "steps beyond the end of the scenario, or beyond an event that ends it"),
     ("logStatusError", "what was refused, and why"),
     ("logAll", "all messages"),
 ];

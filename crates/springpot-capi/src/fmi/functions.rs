@@ -494,7 +494,8 @@ pub extern "C" fn fmi2GetRealOutputDerivatives(
     with(component, |_| refuse("derivatives of outputs are not provided"))
 }
 
-/// Goes from a communication point to the next one, s; inputs hold in between. `fmi2Discard`, and nothing done, where it lies beyond the end.
+/// Goes from a communication point to the next one, s; inputs hold in between. `fmi2Discard`, and nothing done, where it lies
+/// beyond the end; where an event ends the simulation on the way, it stays there.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2DoStep(component: Component, point: f64, size: f64, _: Boolean) -> Status {
     with(component, |slot| slot.instance.do_step(point, size))

@@ -32,7 +32,7 @@ pub enum Fault {
     /// In words.
     #[error("{0}")]
     Error(String),
-    /// The step leads beyond the end of the scenario.
+    /// The step leads beyond the end of the scenario, or beyond an event that ends it.
     #[error("{0}")]
     Discard(String),
 }
@@ -53,7 +53,7 @@ pub struct Instance {
     torques: BTreeMap<u32, f64>,
     /// Inputs of elements that were set since the start.
     held: BTreeSet<u32>,
-    /// A step was to lead beyond the end.
+    /// A step was to lead beyond the end, or beyond an event that ends it.
     has_ended: bool,
     live: Option<Live>,
 }
@@ -75,7 +75,7 @@ impl Instance {
         self.live.as_ref().map_or(0.0, |live| live.simulation.t())
     }
 
-    /// Whether a step was to lead beyond the end of the scenario.
+    /// Whether a step was to lead beyond the end of the scenario, or beyond an event that ends it.
     pub fn has_ended(&self) -> bool {
         self.has_ended
     }
@@ -228,7 +228,7 @@ impl Instance {
     /// Goes from a communication point to the next one, s.
     ///
     /// # Errors
-    /// [`Fault::Discard`] where that is beyond the end. Where no step leads on, the instance has [`Mode::Failed`].
+    /// [`Fault::Discard`] where that is beyond the end, which is left as it is, or beyond an event that ends it, where it then is. Where no step leads on, the instance has [`Mode::Failed`].
     pub fn do_step(&mut self, point: f64, size: f64) -> Result<(), Fault> {
         self.must_be("fmi2DoStep", &[Mode::Stepping])?;
         let live = self.live()?;
@@ -253,11 +253,21 @@ impl Instance {
         if target <= t {
             return Ok(());
         }
-        let stepped = live.changed().step_to(target);
-        stepped.map_err(|error| {
-            self.mode = Mode::Failed;
-            Fault::Error(error.to_string())
-        })
+        let simulation = live.changed();
+        match simulation.step_to(target) {
+            Err(error) => {
+                self.mode = Mode::Failed;
+                Err(Fault::Error(error.to_string()))
+            }
+            Ok(()) => match simulation.stopped_by().filter(|_| simulation.t() < target) {
+                None => Ok(()),
+                Some(event) => {
+                    let message = format!("event {:?} ends the simulation at {} s", event.name, simulation.t());
+                    self.has_ended = true;
+                    Err(Fault::Discard(message))
+                }
+            },
+        }
     }
 
     /// Ends the simulation.

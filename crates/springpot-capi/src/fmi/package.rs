@@ -28,14 +28,6 @@ pub enum PackageError {
         /// How many.
         cases: usize,
     },
-    /// It has an event that does something.
-    #[error(
-        "event {event:?} acts, which the master of an FMU does: take its `action` out, and let the master stop or set inputs"
-    )]
-    Event {
-        /// Its name.
-        event: String,
-    },
     /// It has an element with a named scheme.
     #[error("element {element:?} has a named scheme, which needs the whole motion in advance: leave its `scheme` out")]
     Scheme {
@@ -86,7 +78,7 @@ impl Package {
     /// The FMU of a scenario with what is set in it, whose file is called `name`.
     ///
     /// # Errors
-    /// [`PackageError`]: several cases, events that act, named schemes, what keeps a run from starting, files that cannot be read.
+    /// [`PackageError`]: several cases, named schemes, what keeps a run from starting, files that cannot be read.
     pub fn new(scenario: &Scenario, name: &str) -> Result<Self, PackageError> {
         let catalog = Catalog::standard();
         let cases = scenario.cases(&catalog)?;
@@ -94,14 +86,11 @@ impl Package {
             return Err(PackageError::Cases { cases: cases.len() });
         }
         let plan = cases.plan(0)?;
-        let acts = |event: &&springpot_scenario::EventPlan| event.event.action != Action::Record;
-        if let Some(acting) = plan.events.iter().find(acts) {
-            return Err(PackageError::Event { event: acting.event.name.clone() });
-        }
         if let Some(planned) = plan.elements.iter().find(|planned| planned.element.scheme.is_some()) {
             return Err(PackageError::Scheme { element: planned.element.name.clone() });
         }
-        let events = plan.events.iter().map(|event| event.event.name.clone()).collect();
+        let recorded = plan.events.iter().filter(|event| event.event.action == Action::Record);
+        let events = recorded.map(|event| event.event.name.clone()).collect();
         let variables = variables_of(scenario, &plan)?;
         let Portable { text, set, files } = scenario.portable();
         let mut resources = vec![

@@ -162,13 +162,20 @@ fn a_second_run_into_a_folder_is_refused_and_the_first_is_named() {
     assert_eq!(place.files("results/arm"), ["results.csv", "run.json", "summary.csv"]);
 }
 
+/// Takes the results away, whatever is written into them meanwhile.
+fn removed(place: &Place) {
+    while let Err(error) = std::fs::remove_dir_all(place.path("results")) {
+        assert_eq!(error.kind(), std::io::ErrorKind::DirectoryNotEmpty, "{error}");
+    }
+}
+
 /// What was removed does not come back in part, and nothing is left that would refuse the next run.
 #[test]
 fn a_folder_that_is_removed_under_a_run_is_free_again() {
     for options in [&[][..], &["--checkpoint-every", "0.001"]] {
         let place = Place::with(&format!("{ARM}[[figure]]\ny = \"damper.force\"\n"));
         let child = started(&place, options);
-        std::fs::remove_dir_all(place.path("results")).unwrap();
+        removed(&place);
         signal(&child, "-INT");
         let ended = ended(child);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{}", ended.stderr);
@@ -180,7 +187,7 @@ fn a_folder_that_is_removed_under_a_run_is_free_again() {
     // Another run may have made it anew.
     let place = Place::new();
     let child = started(&place, &[]);
-    std::fs::remove_dir_all(place.path("results")).unwrap();
+    removed(&place);
     place.done(&["run", "arm.toml"]);
     let results = place.read("results/arm/results.csv");
     signal(&child, "-INT");

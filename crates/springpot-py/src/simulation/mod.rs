@@ -47,7 +47,8 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 ///
 /// Callables of one instant see what was before any of them acts, and none is asked at the end. An exception that one raises comes through as
 /// it is; the simulation is then where it was. A step ends at the next sample at the latest. Whoever calls a simulation that is at work, from
-/// another thread or from one of its callables, gets a ``RunError``. Events of the scenario are left to the caller.
+/// another thread or from one of its callables, gets a ``RunError``. Events of the scenario happen as in :func:`springpot.run`: ``passed`` tells those of
+/// the last step, and where one stops, ``step`` is False and ``step_to`` ends there.
 ///
 /// >>> import springpot as sp
 /// >>> arm = sp.Simulation('''
@@ -211,12 +212,12 @@ impl PySimulation {
         self.with(py, |inner| Ok(inner.simulation.system().elements.iter().map(|e| e.name.clone()).collect()))
     }
 
-    /// Takes one step, which ends at the next sample at the latest; ``False``, and nothing done, at the end.
+    /// Takes one step, which ends at the next sample and at the next event that acts at the latest; ``False``, and nothing done, at the end.
     fn step(&self, py: Python<'_>) -> PyResult<bool> {
         self.with(py, |inner| inner.step(py))
     }
 
-    /// Takes steps until the time is t, s, where the last one ends. Ctrl-C stops it between two steps.
+    /// Takes steps until the time is t, s, where the last one ends, or until an event stops it. Ctrl-C stops it between two steps.
     fn step_to(&self, py: Python<'_>, t: &Bound<'_, PyAny>) -> PyResult<()> {
         let t = number(t, "s", "t")?;
         self.with(py, |inner| inner.step_to(py, t))
@@ -300,6 +301,18 @@ impl PySimulation {
             words.set_item("modes", report.modes)?;
             Ok(words)
         })
+    }
+
+    /// The events of the last step in their order: pairs of a name and when it happened, s. What one sets acts with the next step.
+    #[getter]
+    fn passed(&self, py: Python<'_>) -> PyResult<Vec<(String, f64)>> {
+        self.with(py, |inner| Ok(inner.simulation.passed().map(|(event, t)| (event.name.clone(), t)).collect()))
+    }
+
+    /// The name of the event that ended the simulation where it is, or None: no step leads on from there.
+    #[getter]
+    fn stopped_by(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        self.with(py, |inner| Ok(inner.simulation.stopped_by().map(|event| event.name.clone())))
     }
 
     fn __reduce__(&self) -> PyResult<()> {

@@ -21,7 +21,7 @@ impl Inner {
         if !(from <= t && t <= to) {
             return Err(failed(py, &RunError::Outside { t, from, to }));
         }
-        while self.simulation.t() < t {
+        while self.simulation.t() < t && self.simulation.stopped_by().is_none() {
             self.take_samples(py)?;
             let until = self.next_sample().min(t);
             self.walk(py, |simulation, pauses| {

@@ -51,28 +51,34 @@ fn go(
     };
     let mut output = Output::new(system.context(), rows, written);
     let events = Watch::new(system, &driver.recorder.settings, events, stop);
-    let outcome = events.and_then(|events| to_the_end(&mut driver, &mut output, events, stop));
+    let outcome = events.and_then(|events| to_the_end(system, &mut driver, &mut output, events, stop));
     (output.report(&driver), outcome)
 }
 
 /// Takes step after step, `output` writing the rows.
-fn to_the_end(driver: &mut Driver, output: &mut Output, mut events: Watch, stop: &Stop) -> Result<(), RunError> {
-    output.emit(events.cx(), driver)?;
-    events.start(driver)?;
+fn to_the_end(
+    system: &System,
+    driver: &mut Driver,
+    output: &mut Output,
+    mut events: Watch,
+    stop: &Stop,
+) -> Result<(), RunError> {
+    output.emit(events.cx(system), driver)?;
+    events.start(system, driver)?;
     loop {
-        while driver.settle(events.cx())? {
-            output.emit(events.cx(), driver)?;
-            events.look_now(driver)?;
-            if events.happen(driver, output)? == Next::Stops {
-                return end(events.cx(), driver, output);
+        while driver.settle(events.cx(system))? {
+            output.emit(events.cx(system), driver)?;
+            events.look_now(system, driver)?;
+            if happen(system, driver, output, &mut events)? == Next::Stops {
+                return end(events.cx(system), driver, output);
             }
         }
         if driver.has_ended() {
-            return verdict(events.cx(), driver, output);
+            return verdict(events.cx(system), driver, output);
         }
         let (t, stopped) = (driver.reached(), stop.load(Ordering::Relaxed));
         if output.rows.wants_checkpoint(t, stopped) {
-            let (driver, written) = (driver.state(events.cx()), output.written);
+            let (driver, written) = (driver.state(events.cx(system)), output.written);
             output.rows.checkpoint(Checkpoint { driver, written, events: events.state().clone() })?;
         }
         if stopped {
@@ -81,13 +87,18 @@ fn to_the_end(driver: &mut Driver, output: &mut Output, mut events: Watch, stop:
         let next = output.next(&driver.recorder.settings);
         let rows = next.map(|next| RowsAhead { next, last: output.written.last.unwrap_or(0.0) });
         let before = driver.mark();
-        driver.advance(events.cx(), f64::INFINITY, rows, &mut || false)?;
-        events.look(driver, before, rows)?;
-        output.emit(events.cx(), driver)?;
-        if events.happen(driver, output)? == Next::Stops {
-            return end(events.cx(), driver, output);
+        driver.advance(events.cx(system), f64::INFINITY, rows, &mut || false)?;
+        events.look(system, driver, before, rows)?;
+        output.emit(events.cx(system), driver)?;
+        if happen(system, driver, output, &mut events)? == Next::Stops {
+            return end(events.cx(system), driver, output);
         }
     }
+}
+
+/// Writes the rows of events, and does what they do.
+fn happen(system: &System, driver: &mut Driver, output: &mut Output, events: &mut Watch) -> Result<Next, RunError> {
+    events.happen(system, driver, &mut |cx, driver, event, t| output.event(cx, driver, event, t))
 }
 
 /// Ends a run before its time.

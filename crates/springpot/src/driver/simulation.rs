@@ -1,17 +1,18 @@
 //! A run that somebody else drives, step by step.
 
+use super::events::{Next, Watch, WatchState};
 use super::report::Report;
 use super::state::SimulationState;
 use super::time_loop::Driver;
 use crate::actuation::Drive;
 use crate::collocation::STAGES;
-use crate::equations::context::{Context, Held};
+use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::observe::Snapshot;
 use crate::system::error::RunError;
 use crate::system::row_times::RowTimes;
 use crate::system::settings::{Settings, Stop};
-use crate::system::{Motion, System};
+use crate::system::{Event, Motion, System};
 use std::sync::Arc;
 
 /// A system on its way, driven step by step by whoever owns it: a controller, another engine, a notebook.
@@ -52,8 +53,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Simulation {
     system: Arc<System>,
-    held: Held,
     driver: Driver,
+    events: Watch,
     samples: Option<RowTimes>,
     /// Number of the next sample.
     sample: usize,
@@ -68,8 +69,11 @@ impl Simulation {
     pub fn new(system: impl Into<Arc<System>>, settings: Settings) -> Result<Self, RunError> {
         let system: Arc<System> = system.into();
         system.refuse_schemes()?;
-        let driver = Driver::new(system.context(), &settings, &Stop::new(false), |_| {})?;
-        Ok(Self { system, held: Held::default(), driver, samples: None, sample: 0 })
+        let stop = Stop::new(false);
+        let mut driver = Driver::new(system.context(), &settings, &stop, |_| {})?;
+        let mut events = Watch::new(&system, &settings, WatchState::default(), &stop)?;
+        events.start(&system, &mut driver)?;
+        Ok(Self { system, driver, events, samples: None, sample: 0 })
     }
 
     /// Takes one step, which ends at the next sample at the latest: `false`, and nothing done, where the end is reached.
@@ -93,11 +97,17 @@ impl Simulation {
     /// # Errors
     /// As there, and [`RunError::Interrupted`]: asked again it goes on as if it had not been.
     pub fn step_until_unless(&mut self, until: f64, pauses: &mut dyn FnMut() -> bool) -> Result<bool, RunError> {
-        let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
         let before = self.driver.steps();
-        // What changes at the start of a step is crossed first.
+        // What changes at the start of a step is crossed first, and so is what an event does at the end of the last one.
         while self.driver.steps() == before {
-            while self.driver.settle(cx)? {
+            if self.happen()? {
+                return Ok(false);
+            }
+            while self.driver.settle(self.events.cx(&self.system))? {
+                self.events.look_now(&self.system, &mut self.driver)?;
+                if self.happen()? {
+                    return Ok(false);
+                }
                 if pauses() {
                     return Err(RunError::Interrupted { t: self.driver.reached() });
                 }
@@ -116,20 +126,38 @@ impl Simulation {
                 }
                 (self.sample < times.count()).then(|| times.at(self.sample))
             });
-            self.driver.advance(cx, sample.map_or(until, |sample| sample.min(until)), None, pauses)?;
+            let (until, mark) = (sample.map_or(until, |sample| sample.min(until)), self.driver.mark());
+            self.driver.advance(self.events.cx(&self.system), until, None, pauses)?;
+            self.events.look(&self.system, &mut self.driver, mark, None)?;
         }
         Ok(true)
     }
 
-    /// Takes steps until the time is t, s, where the last one ends.
+    /// Does what events do at the present time: `true` where one of them ends it.
+    fn happen(&mut self) -> Result<bool, RunError> {
+        if self.events.has_stopped() {
+            return Ok(true);
+        }
+        Ok(self.events.happen(&self.system, &mut self.driver, &mut |_, _, _, _| Ok(()))? == Next::Stops)
+    }
+
+    /// The event that ended it at [`Self::t`].
+    pub fn stopped_by(&self) -> Option<&Event> {
+        self.events.stopped(&self.system).map(|event| &self.system.events[event])
+    }
+
+    /// The events of the last step, in their order, and when they happened, s.
+    pub fn passed(&self) -> impl Iterator<Item = (&Event, f64)> {
+        self.events.passed().map(|(event, t)| (&self.system.events[event], t))
+    }
+
+    /// Takes steps until the time is t, s, where the last one ends, or until an event ends it.
     ///
     /// # Errors
     /// [`RunError::Outside`] where t is before the present time or beyond the end, and those of [`Self::step`].
     pub fn step_to(&mut self, t: f64) -> Result<(), RunError> {
         self.check_time(t, self.t(), self.end())?;
-        while self.t() < t {
-            self.step_until(t)?;
-        }
+        while self.t() < t && self.step_until(t)? {}
         Ok(())
     }
 
@@ -192,7 +220,7 @@ impl Simulation {
     /// As there.
     pub fn interpolate_into(&mut self, t: f64, snapshot: &mut Snapshot) -> Result<(), RunError> {
         self.check_time(t, self.t_before(), self.t())?;
-        let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
+        let cx = self.events.cx(&self.system);
         while self.driver.is_disturbed() {
             self.driver.settle(cx)?;
         }
@@ -225,9 +253,9 @@ impl Simulation {
             return Err(RunError::NotFinite { t, what, value: torque });
         }
         let nv = model.nv();
-        if (Context { system: &self.system, held: &self.held, sampled: Held::NONE }).torque(velocity) != torque {
+        if self.events.cx(&self.system).torque(velocity) != torque {
             self.disturb()?;
-            self.held.torques_mut(nv)[velocity] = torque;
+            self.events.held_mut().torques_mut(nv)[velocity] = torque;
         }
         Ok(())
     }
@@ -238,23 +266,24 @@ impl Simulation {
     /// [`RunError::NoInput`] where there is no such element or input, [`RunError::InputRange`], [`RunError::Rule`] and [`RunError::NotFinite`]
     /// where the law does not take the value.
     pub fn set_input(&mut self, element: usize, input: usize, value: Option<f64>) -> Result<(), RunError> {
-        let mut held = self.held.clone();
+        self.happen()?;
+        let mut held = self.events.held_mut().clone();
         held.hold_input(&self.system, element, input, value).ok_or(RunError::NoInput { element, input })?;
         let t = self.t();
         let of = &self.system.elements[element];
         let mut values = vec![Default::default(); of.inputs.len()];
-        Context { system: &self.system, held: &held, sampled: Held::NONE }.inputs_at(element, t, &mut values);
+        Context { held: &held, ..self.system.context() }.inputs_at(element, t, &mut values);
         of.check_inputs(t, &values)?;
-        if held != self.held {
+        if held != *self.events.held_mut() {
             self.disturb()?;
-            self.held = held;
+            *self.events.held_mut() = held;
         }
         Ok(())
     }
 
     fn disturb(&mut self) -> Result<(), RunError> {
-        let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
-        self.driver.disturb(cx)
+        self.happen()?;
+        self.driver.disturb(self.events.cx(&self.system))
     }
 
     /// What it takes to go on from here, to the bit. The last step is in the past then and can no longer be looked into.
@@ -262,9 +291,10 @@ impl Simulation {
     /// # Errors
     /// [`RunError::Chatter`] where nothing follows.
     pub fn state(&mut self) -> Result<SimulationState, RunError> {
-        let cx = Context { system: &self.system, held: &self.held, sampled: Held::NONE };
+        self.happen()?;
+        let cx = self.events.cx(&self.system);
         self.driver.close(cx)?;
-        Ok(SimulationState { driver: self.driver.state(cx), held: self.held.clone() })
+        Ok(SimulationState { driver: self.driver.state(cx), events: self.events.state().clone() })
     }
 
     /// Goes on from a state of the same system and settings, later or earlier.
@@ -272,9 +302,9 @@ impl Simulation {
     /// # Errors
     /// [`RunError::OtherRun`] where it is of another system; nothing is changed then.
     pub fn set_state(&mut self, state: &SimulationState) -> Result<(), RunError> {
-        let SimulationState { driver, held } = state.clone();
-        self.driver.go_on(Context { system: &self.system, held: &held, sampled: Held::NONE }, driver)?;
-        self.held = held;
+        let SimulationState { driver, events } = state.clone();
+        self.driver.go_on(Context { held: &events.held, ..self.system.context() }, driver)?;
+        self.events.go_on(events);
         self.sample = 0;
         Ok(())
     }

@@ -3,7 +3,6 @@
 use super::driver_state::DriverState;
 use super::events::WatchState;
 use super::written::Written;
-use crate::equations::context::Held;
 use serde::{Deserialize, Serialize};
 
 /// The state of a run between two steps, memories included; see [`super::Rows::checkpoint`] and [`super::resume`].
@@ -18,13 +17,13 @@ pub struct Checkpoint {
     pub(super) events: WatchState,
 }
 
-/// The state of a [`super::Simulation`] between two steps, memories and what is held from outside included.
+/// The state of a [`super::Simulation`] between two steps, memories, the sides of events and what is held included.
 ///
 /// As with a [`Checkpoint`], it belongs to the system and settings that it was taken from, and what goes on from it does so to the bit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SimulationState {
     pub(super) driver: DriverState,
-    pub(super) held: Held,
+    pub(super) events: WatchState,
 }
 
 impl Checkpoint {

@@ -42,8 +42,7 @@ pub struct System {
     pub tells_joint_losses: bool,
     /// Whether the rows tell the leaves of the elements' laws.
     pub tells_leaves: bool,
-    /// What is watched in forward runs, in the order in which it is done where several happen at one time. [`crate::driver::run`] watches, a
-    /// [`crate::driver::Simulation`] leaves that to its owner.
+    /// What is watched in forward runs, in the order in which it is done where several happen at one time.
     pub events: Vec<Event>,
     /// What follows from the state in forward runs.
     pub control: Arc<Control>,

@@ -7,7 +7,7 @@ use crate::equations::context::Context;
 use crate::equations::zero::{SAMPLES, lowest_between, zero_within};
 use crate::methods::stepper::Target;
 use crate::observe::{Needs, Snapshot};
-use crate::system::Motion;
+use crate::system::System;
 use crate::system::error::RunError;
 use crate::system::event::Event;
 use crate::system::settings::{Settings, Stop};
@@ -46,9 +46,7 @@ impl Sides {
 
 /// What is asked for values.
 #[derive(Debug)]
-pub(crate) struct Functions<'s> {
-    pub(crate) cx: Context<'s>,
-    pub(crate) events: &'s [Event],
+pub(crate) struct Functions {
     /// What is known of them before the run.
     times: Times,
     /// What must be known for each.
@@ -69,29 +67,21 @@ pub(crate) struct Sides {
     seen: Vec<f64>,
 }
 
-impl<'s> Functions<'s> {
+impl Functions {
     /// # Errors
     /// As [`Times::of`].
-    pub(crate) fn new(cx: Context<'s>, settings: &Settings, stop: &Stop) -> Result<Self, RunError> {
-        let events: &[Event] = match cx.system.motion {
-            Motion::Given(_) => &[],
-            Motion::Forward(_) => &cx.system.events,
-        };
+    pub(crate) fn new(system: &System, settings: &Settings, stop: &Stop) -> Result<Self, RunError> {
+        let events = system.watched_events();
         let times = Times::of(events, settings, stop)?;
         let needs = |event: &Event| event.columns.iter().map(|quantity| quantity.needs()).max();
         let needs = events.iter().map(|event| needs(event).unwrap_or(Needs::Places)).collect();
-        let (nodes, snapshot) = (Nodes::of(events), Snapshot::new(cx.system));
-        Ok(Self { cx, events, times, needs, nodes, snapshot, columns: Vec::new() })
-    }
-
-    /// Whether a passage is in the direction of its event.
-    pub(crate) fn counts(&self, passage: &Passage) -> bool {
-        self.events[passage.event].direction.counts(passage.rises)
+        let (nodes, snapshot) = (Nodes::of(events), Snapshot::new(system));
+        Ok(Self { times, needs, nodes, snapshot, columns: Vec::new() })
     }
 
     /// The events whose passages are not known beforehand.
     fn of_state(&self) -> Vec<usize> {
-        (0..self.events.len()).filter(|&event| !self.times.knows(event)).collect()
+        (0..self.needs.len()).filter(|&event| !self.times.knows(event)).collect()
     }
 
     /// Goes to a time of the step at hand, or to the present one, for the functions of these events.
@@ -101,17 +91,17 @@ impl<'s> Functions<'s> {
     }
 
     /// The function of an event there.
-    fn value(&mut self, event: usize) -> f64 {
-        let Event { when, columns, .. } = &self.events[event];
+    fn value(&mut self, event: &Event) -> f64 {
+        let Event { when, columns, .. } = event;
         self.columns.clear();
         self.columns.extend(columns.iter().map(|quantity| self.snapshot.value(*quantity)));
         when.value(self.snapshot.t(), &self.columns)
     }
 
     /// Its side there: 0 where it is zero but for rounding, or no number.
-    fn clear_side(&mut self, event: usize) -> i8 {
+    fn clear_side(&mut self, event: &Event) -> i8 {
         let value = self.value(event);
-        let (when, t) = (&self.events[event].when, self.snapshot.t());
+        let (when, t) = (&event.when, self.snapshot.t());
         let off = |x: f64| x + ROUNDING * x.abs() + LEAST;
         let mut noise = (when.value(off(t), &self.columns) - value).abs();
         for k in 0..self.columns.len() {
@@ -131,8 +121,9 @@ impl<'s> Functions<'s> {
         Sides { signs, values, seen }: &mut Sides,
     ) -> Result<Vec<Passage>, RunError> {
         let t = driver.reached();
-        signs.resize(self.events.len(), 0);
-        values.resize(self.events.len(), 0.0);
+        let all = cx.system.watched_events();
+        signs.resize(all.len(), 0);
+        values.resize(all.len(), 0.0);
         let mut passages = self.times.take(seen, t);
         let events = self.of_state();
         if events.is_empty() {
@@ -140,15 +131,15 @@ impl<'s> Functions<'s> {
         }
         self.go_to(cx, driver, t, &events)?;
         for &event in &events {
-            let (now, sign) = (self.clear_side(event), &mut signs[event]);
+            let (now, sign) = (self.clear_side(&all[event]), &mut signs[event]);
             if *sign != 0 && now == -*sign {
                 passages.push(Passage { event, t, rises: now > 0 });
             }
             // Where a step ends at an event, the function is as near to zero as times can be told.
-            if now != 0 && (*sign != 0 || self.value(event).abs() > 2.0 * values[event].abs()) {
+            if now != 0 && (*sign != 0 || self.value(&all[event]).abs() > 2.0 * values[event].abs()) {
                 *sign = now;
             }
-            values[event] = self.finite_value(event)?;
+            values[event] = self.finite_value(&all[event])?;
         }
         Ok(passages)
     }
@@ -157,10 +148,10 @@ impl<'s> Functions<'s> {
     ///
     /// # Errors
     /// [`RunError::NotFinite`] of a function whose columns are numbers, but for t = 0.
-    fn finite_value(&mut self, event: usize) -> Result<f64, RunError> {
+    fn finite_value(&mut self, event: &Event) -> Result<f64, RunError> {
         let (value, t) = (self.value(event), self.snapshot.t());
         if !value.is_finite() && t > 0.0 && self.columns.iter().all(|column| column.is_finite()) {
-            let what = format!("`when` of event \"{}\"", self.events[event].name);
+            let what = format!("`when` of event \"{}\"", event.name);
             return Err(RunError::NotFinite { t, what, value });
         }
         Ok(value)
@@ -188,14 +179,15 @@ impl<'s> Functions<'s> {
             places.push(step.to);
             places.sort_by(f64::total_cmp);
             places.dedup();
+            let all = cx.system.watched_events();
             // What stays away from zero need not be asked more closely.
             let apart = |functions: &mut Self, event: usize, sides: &mut Sides, driver: &mut Driver| {
                 let known = functions.needs[event] < Needs::Forces && sides.signs[event] != 0;
                 if !known {
                     return Ok(false);
                 }
-                functions.nodes.read(cx, driver, functions.events, &functions.needs, &mut functions.snapshot)?;
-                let end = functions.nodes.end_where_apart(functions.events, event, &places, step, sides.signs[event]);
+                functions.nodes.read(cx, driver, all, &functions.needs, &mut functions.snapshot)?;
+                let end = functions.nodes.end_where_apart(all, event, &places, step, sides.signs[event]);
                 sides.values[event] = end.unwrap_or(sides.values[event]);
                 Ok::<_, RunError>(end.is_some())
             };
@@ -225,7 +217,7 @@ impl<'s> Functions<'s> {
         Sides { signs, values: start, .. }: &mut Sides,
         passages: &mut Vec<Passage>,
     ) -> Result<(), RunError> {
-        let close = close(step) * (step.to - step.from);
+        let (all, close) = (cx.system.watched_events(), close(step) * (step.to - step.from));
         let early = EARLY.into_iter().filter(|_| events.iter().any(|&event| signs[event] == 0));
         let mut places: Vec<f64> =
             early.map(|theta| step.from + theta * (step.to - step.from)).chain(places.iter().copied()).collect();
@@ -235,12 +227,12 @@ impl<'s> Functions<'s> {
         let mut before = [(f64::NAN, vec![f64::NAN; events.len()]), (step.from, starts)];
         for t in places.into_iter().filter(|t| *t > step.from) {
             self.go_to(cx, driver, t, events)?;
-            let values = events.iter().map(|&event| self.finite_value(event)).collect::<Result<Vec<_>, _>>()?;
+            let values = events.iter().map(|&event| self.finite_value(&all[event])).collect::<Result<Vec<_>, _>>()?;
             for (k, &event) in events.iter().enumerate() {
                 let sign = &mut signs[event];
                 if *sign == 0 {
                     self.go_to(cx, driver, t, &[event])?;
-                    *sign = self.clear_side(event);
+                    *sign = self.clear_side(&all[event]);
                     continue;
                 }
                 let side = f64::from(*sign);
@@ -248,7 +240,7 @@ impl<'s> Functions<'s> {
                 let here = (t, side * values[k]);
                 let mut failed = None;
                 let mut at = |t: f64| match self.go_to(cx, driver, t.max(step.from + 0.5 * close), &[event]) {
-                    Ok(()) => side * self.value(event),
+                    Ok(()) => side * self.value(&all[event]),
                     Err(error) => {
                         failed.get_or_insert(error);
                         f64::NAN
@@ -293,9 +285,10 @@ impl<'s> Functions<'s> {
         }
         let short = SHORT * (step.to - step.from);
         self.go_to(cx, driver, (step.to - short).max(step.from.next_up()), &[event])?;
-        let before = self.value(event);
+        let function = &cx.system.watched_events()[event];
+        let before = self.value(function);
         self.go_to(cx, driver, step.to, &[event])?;
-        let end = self.value(event);
+        let end = self.value(function);
         Ok(short * end / (before - end))
     }
 }

@@ -111,14 +111,19 @@ fn named(event: &Event) -> String {
 }
 
 impl System {
+    /// The events of a motion that follows from forces; of one that is given in advance none happens.
+    pub(super) fn watched_events(&self) -> &[Event] {
+        match self.motion {
+            Motion::Given(_) => &[],
+            Motion::Forward(_) => &self.events,
+        }
+    }
+
     /// Looks through what of events hangs on t alone, as a run does before its first row.
     ///
     /// # Errors
     /// As [`Times::of`].
     pub(crate) fn look_at_events(&self, settings: &Settings, stop: &Stop) -> Result<(), RunError> {
-        match self.motion {
-            Motion::Given(_) => Ok(()),
-            Motion::Forward(_) => Times::of(&self.events, settings, stop).map(|_| ()),
-        }
+        Times::of(self.watched_events(), settings, stop).map(|_| ())
     }
 }

@@ -1,7 +1,6 @@
-//! The events of a run: steps end where they act, rows are told where they happen.
+//! The events of a run or simulation: steps end where they act, somebody is told where they happen.
 
 use super::sides::{Functions, Passage, Sides};
-use crate::driver::output::Output;
 use crate::driver::time_loop::{Driver, Mark, RowsAhead};
 use crate::equations::context::{Context, Held};
 use crate::methods::stepper::Target;
@@ -23,8 +22,8 @@ const MOST_AT_ONCE: u32 = 1000;
 
 /// Watches the events of a run.
 #[derive(Debug)]
-pub(crate) struct Watch<'s> {
-    functions: Functions<'s>,
+pub(crate) struct Watch {
+    functions: Functions,
     state: WatchState,
     /// What happens in the step at hand, or at the present time.
     passages: Vec<Passage>,
@@ -34,11 +33,16 @@ pub(crate) struct Watch<'s> {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct WatchState {
     sides: Sides,
-    /// What events have set.
+    /// What is held, by events or from outside.
     pub(crate) held: Held,
+    /// The event that ended it.
+    stopped: Option<usize>,
     /// When the first of the events acted that lie close together, and how many they are.
     together: (f64, u32),
 }
+
+/// Is told of an event at a time, s, of the step at hand.
+pub(crate) type Tell<'a> = dyn FnMut(Context, &mut Driver, usize, f64) -> Result<(), RunError> + 'a;
 
 /// What becomes of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,16 +52,11 @@ pub(crate) enum Next {
     Stops,
 }
 
-impl<'s> Watch<'s> {
+impl Watch {
     /// # Errors
     /// Of a function of t alone that changes more often than a run can follow; [`RunError::Interrupted`].
-    pub(crate) fn new(
-        system: &'s System,
-        settings: &Settings,
-        state: WatchState,
-        stop: &Stop,
-    ) -> Result<Self, RunError> {
-        let functions = Functions::new(system.context(), settings, stop)?;
+    pub(crate) fn new(system: &System, settings: &Settings, state: WatchState, stop: &Stop) -> Result<Self, RunError> {
+        let functions = Functions::new(system, settings, stop)?;
         Ok(Self { functions, state, passages: Vec::new() })
     }
 
@@ -66,34 +65,58 @@ impl<'s> Watch<'s> {
     }
 
     /// The system, and what events have set.
-    pub(crate) fn cx(&self) -> Context<'_> {
-        Context { held: &self.state.held, ..self.functions.cx }
+    pub(crate) fn cx<'a>(&'a self, system: &'a System) -> Context<'a> {
+        Context { held: &self.state.held, ..system.context() }
     }
 
-    fn is_idle(&self) -> bool {
-        self.functions.events.is_empty()
+    /// What is held from outside, to be changed.
+    pub(crate) fn held_mut(&mut self) -> &mut Held {
+        &mut self.state.held
+    }
+
+    /// Whether an event has ended it.
+    pub(crate) fn has_stopped(&self) -> bool {
+        self.state.stopped.is_some()
+    }
+
+    /// The event that ended it, or does so where it is.
+    pub(crate) fn stopped(&self, system: &System) -> Option<usize> {
+        let stops = |event: &usize| system.watched_events()[*event].action == Action::Stop;
+        self.state.stopped.or_else(|| self.passages.iter().map(|passage| passage.event).find(stops))
+    }
+
+    /// What happens in the step at hand, or at the present time, in the order in which it does: events with their times.
+    pub(crate) fn passed(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.passages.iter().map(|passage| (passage.event, passage.t))
+    }
+
+    /// Goes on from another state.
+    pub(crate) fn go_on(&mut self, state: WatchState) {
+        self.state = state;
+        self.passages.clear();
     }
 
     /// Looks at the start of a run.
     ///
     /// # Errors
     /// What a row there may show.
-    pub(crate) fn start(&mut self, driver: &mut Driver) -> Result<(), RunError> {
-        if self.state.sides.is_known() { Ok(()) } else { self.look_now(driver) }
+    pub(crate) fn start(&mut self, system: &System, driver: &mut Driver) -> Result<(), RunError> {
+        if self.state.sides.is_known() { Ok(()) } else { self.look_now(system, driver) }
     }
 
     /// Looks at the present time, between two steps: at the start of a run, and behind what was crossed.
     ///
     /// # Errors
     /// What a row there may show.
-    pub(crate) fn look_now(&mut self, driver: &mut Driver) -> Result<(), RunError> {
-        if self.is_idle() {
+    pub(crate) fn look_now(&mut self, system: &System, driver: &mut Driver) -> Result<(), RunError> {
+        if system.watched_events().is_empty() {
             return Ok(());
         }
         let mut sides = std::mem::take(&mut self.state.sides);
-        let cx = Context { held: &self.state.held, ..self.functions.cx };
+        let cx = Context { held: &self.state.held, ..system.context() };
         let passages = self.functions.look_now(cx, driver, &mut sides)?;
-        self.take(passages, sides)
+        self.take(system, passages, sides);
+        Ok(())
     }
 
     /// Looks through the step at hand, and has it end at the first event that acts in it.
@@ -103,8 +126,16 @@ impl<'s> Watch<'s> {
     ///
     /// # Errors
     /// Where no step leads on.
-    pub(crate) fn look(&mut self, driver: &mut Driver, before: Mark, rows: Option<RowsAhead>) -> Result<(), RunError> {
-        if self.is_idle() {
+    pub(crate) fn look(
+        &mut self,
+        system: &System,
+        driver: &mut Driver,
+        before: Mark,
+        rows: Option<RowsAhead>,
+    ) -> Result<(), RunError> {
+        self.passages.clear();
+        let events = system.watched_events();
+        if events.is_empty() {
             return Ok(());
         }
         let (mut low, mut high) = (driver.t(), f64::INFINITY);
@@ -113,89 +144,91 @@ impl<'s> Watch<'s> {
             // What changes at the start of a step is crossed first.
             let Some(step) = driver.step_at_hand() else { return Ok(()) };
             let mut sides = self.state.sides.clone();
-            let cx = Context { held: &self.state.held, ..self.functions.cx };
+            let cx = Context { held: &self.state.held, ..system.context() };
             let passages = self.functions.look(cx, driver, &step, &mut sides)?;
-            let counts = |passage: &Passage| self.functions.counts(passage);
-            let acts = |passage: &&Passage| counts(passage) && self.functions.events[passage.event].acts();
+            let acts = |passage: &&Passage| counts(events, passage) && events[passage.event].acts();
             let first = passages.iter().find(acts).copied();
             let near = near(&step);
-            let next = match (first, wanted) {
-                // Cut short by something else, it ends before the event.
-                (None, Some(_)) if step.to < asked => return self.take(passages, sides),
-                (None, None) => return self.take(passages, sides),
-                (Some(first), _) if first.t <= step.from + near => {
-                    driver.take_back(before);
-                    return self.at_start(first, step.from);
+            let next = match first {
+                // Nothing acts, or cut short by something else it ends before the event.
+                None if wanted.is_none() || step.to < asked => {
+                    self.take(system, passages, sides);
+                    return Ok(());
                 }
-                (Some(first), _) => {
+                Some(first) if first.t <= step.from + near => {
+                    driver.take_back(before);
+                    self.at_start(first, step.from);
+                    return Ok(());
+                }
+                Some(first) => {
                     (high, wanted) = (step.to, Some(first.event));
                     first.t
                 }
-                (None, Some(event)) => {
+                None => {
                     low = step.to;
-                    step.to + self.ahead(driver, &step, event)?
+                    step.to + wanted.map_or(Ok(0.0), |event| self.functions.ahead(cx, driver, &step, event))?
                 }
             };
             let Some(event) = wanted else { return Ok(()) };
             let is_here = (next - step.to).abs() <= near || high - low <= near;
             if is_here || tried >= MOST_TRIES {
-                return self.end_at(driver, &step, event, passages, sides);
+                return self.end_at(system, driver, &step, event, passages, sides);
             }
             asked = if low < next && next < high { next } else { 0.5 * (low + high) };
             driver.take_back(before);
-            driver.advance(Context { held: &self.state.held, ..self.functions.cx }, asked, rows, &mut || false)?;
+            driver.advance(cx, asked, rows, &mut || false)?;
         }
         Ok(())
     }
 
-    fn ahead(&mut self, driver: &mut Driver, step: &Target, event: usize) -> Result<f64, RunError> {
-        let cx = Context { held: &self.state.held, ..self.functions.cx };
-        self.functions.ahead(cx, driver, step, event)
-    }
-
-    fn take(&mut self, mut passages: Vec<Passage>, sides: Sides) -> Result<(), RunError> {
-        passages.retain(|passage| self.functions.counts(passage));
+    fn take(&mut self, system: &System, mut passages: Vec<Passage>, sides: Sides) {
+        passages.retain(|passage| counts(system.watched_events(), passage));
         (self.passages, self.state.sides) = (passages, sides);
-        Ok(())
     }
 
     /// An event acts before the step that was taken back.
-    fn at_start(&mut self, first: Passage, t: f64) -> Result<(), RunError> {
+    fn at_start(&mut self, first: Passage, t: f64) {
         self.state.sides.leave(first.event, first.t);
         self.passages = vec![Passage { t, ..first }];
-        Ok(())
     }
 
     /// The step ends at an event that acts, and at all others that happen at the same time.
     fn end_at(
         &mut self,
+        system: &System,
         driver: &mut Driver,
         step: &Target,
         event: usize,
         mut passages: Vec<Passage>,
         mut sides: Sides,
     ) -> Result<(), RunError> {
-        let near = near(step);
+        let (near, cx) = (near(step), Context { held: &self.state.held, ..system.context() });
         let last: Vec<_> = passages.extract_if(.., |passage| passage.t >= step.to - near).collect();
-        for other in 0..self.functions.events.len() {
+        for other in 0..system.watched_events().len() {
             let sign = sides.signs[other];
             let rises = match last.iter().find(|passage| passage.event == other) {
                 Some(passage) => passage.rises,
                 None if other == event => sign < 0,
-                None if sign != 0 && self.ahead(driver, step, other)?.abs() <= near => sign < 0,
+                None if sign != 0 && self.functions.ahead(cx, driver, step, other)?.abs() <= near => sign < 0,
                 None => continue,
             };
             sides.signs[other] = 0;
             passages.push(Passage { event: other, t: step.to, rises });
         }
-        self.take(passages, sides)
+        self.take(system, passages, sides);
+        Ok(())
     }
 
-    /// Tells the rows of what was seen, and does what the events do that act.
+    /// Tells of what was seen, and does what the events do that act.
     ///
     /// # Errors
-    /// What the rows or the new torques and inputs may show; [`RunError::EventChatter`].
-    pub(crate) fn happen(&mut self, driver: &mut Driver, output: &mut Output) -> Result<Next, RunError> {
+    /// Those of `tell`, and what new torques and inputs may show; [`RunError::EventChatter`].
+    pub(crate) fn happen(
+        &mut self,
+        system: &System,
+        driver: &mut Driver,
+        tell: &mut Tell,
+    ) -> Result<Next, RunError> {
         let mut passages = std::mem::take(&mut self.passages);
         let Some(last) = passages.last().copied() else { return Ok(Next::GoesOn) };
         let near = driver.step_at_hand().map_or(0.0, |step| near(&step));
@@ -208,11 +241,11 @@ impl<'s> Watch<'s> {
             from += count;
         }
         let before = self.state.held.clone();
-        let cx = Context { held: &before, ..self.functions.cx };
+        let cx = Context { held: &before, ..system.context() };
         for passage in &passages {
-            output.event(cx, driver, passage.event, passage.t)?;
+            tell(cx, driver, passage.event, passage.t)?;
         }
-        let events = self.functions.events;
+        let events = system.watched_events();
         let acting = || passages.iter().map(|passage| &events[passage.event]).filter(|event| event.acts());
         let mut held = before.clone();
         for event in acting() {
@@ -221,7 +254,9 @@ impl<'s> Watch<'s> {
         if let Some(event) = acting().next() {
             self.count(event, last.t, driver.recorder.settings.end)?;
         }
-        if acting().any(|event| event.action == Action::Stop) {
+        let stops = |passage: &&Passage| events[passage.event].action == Action::Stop;
+        if let Some(passage) = passages.iter().find(stops) {
+            self.state.stopped = Some(passage.event);
             return Ok(Next::Stops);
         }
         if held != before {
@@ -255,6 +290,11 @@ impl Event {
             }
         }
     }
+}
+
+/// Whether a passage is in the direction of its event.
+fn counts(events: &[Event], passage: &Passage) -> bool {
+    events[passage.event].direction.counts(passage.rises)
 }
 
 /// How far apart times may be that are one.
