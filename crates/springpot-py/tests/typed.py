@@ -91,7 +91,8 @@ def simulations() -> None:
     times: list[float] = [simulation.end, snapshot.t, state.t]
     words: list[str] = [*simulation.columns, *simulation.units, *simulation.element_names, simulation.model.name]
     steps: int = simulation.report["steps"]
-    print(force, unit, known, nothing, vectors, times, words, steps)
+    events: tuple[list[tuple[str, float]], str | None] = (simulation.passed, simulation.stopped_by)
+    print(force, unit, known, nothing, vectors, times, words, steps, events)
 
 
 def materials() -> None:
