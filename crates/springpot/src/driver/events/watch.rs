@@ -223,12 +223,7 @@ impl Watch {
     ///
     /// # Errors
     /// Those of `tell`, and what new torques and inputs may show; [`RunError::EventChatter`].
-    pub(crate) fn happen(
-        &mut self,
-        system: &System,
-        driver: &mut Driver,
-        tell: &mut Tell,
-    ) -> Result<Next, RunError> {
+    pub(crate) fn happen(&mut self, system: &System, driver: &mut Driver, tell: &mut Tell) -> Result<Next, RunError> {
         let mut passages = std::mem::take(&mut self.passages);
         let Some(last) = passages.last().copied() else { return Ok(Next::GoesOn) };
         let near = driver.step_at_hand().map_or(0.0, |step| near(&step));
