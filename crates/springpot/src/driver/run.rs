@@ -7,7 +7,7 @@ use super::rows::Rows;
 use super::state::Checkpoint;
 use super::time_loop::{Driver, RowsAhead};
 use super::written::Written;
-use crate::equations::context::{Context, Held};
+use crate::equations::context::Context;
 use crate::system::System;
 use crate::system::error::RunError;
 use crate::system::settings::{Settings, Stop};
@@ -33,8 +33,7 @@ pub fn resume(
 ) -> (Report, Result<(), RunError>) {
     let Checkpoint { driver, written, events } = checkpoint;
     let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
-    let cx = Context { system, held: &events.held, sampled: Held::NONE };
-    let driver = Driver::resume(cx, settings, driver, stop, looked_ahead);
+    let driver = Driver::resume(events.cx(system), settings, driver, stop, looked_ahead);
     go(system, driver, rows, (written, events), stop)
 }
 

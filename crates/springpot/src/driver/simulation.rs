@@ -303,7 +303,7 @@ impl Simulation {
     /// [`RunError::OtherRun`] where it is of another system; nothing is changed then.
     pub fn set_state(&mut self, state: &SimulationState) -> Result<(), RunError> {
         let SimulationState { driver, events } = state.clone();
-        self.driver.go_on(Context { held: &events.held, ..self.system.context() }, driver)?;
+        self.driver.go_on(events.cx(&self.system), driver)?;
         self.events.go_on(events);
         self.sample = 0;
         Ok(())

@@ -34,7 +34,7 @@ pub(crate) struct Watch {
 pub(crate) struct WatchState {
     sides: Sides,
     /// What is held, by events or from outside.
-    pub(crate) held: Held,
+    held: Held,
     /// The event that ended it.
     stopped: Option<usize>,
     /// When the first of the events acted that lie close together, and how many they are.
@@ -52,6 +52,13 @@ pub(crate) enum Next {
     Stops,
 }
 
+impl WatchState {
+    /// The system, and what is held.
+    pub(crate) fn cx<'a>(&'a self, system: &'a System) -> Context<'a> {
+        Context { held: &self.held, ..system.context() }
+    }
+}
+
 impl Watch {
     /// # Errors
     /// Of a function of t alone that changes more often than a run can follow; [`RunError::Interrupted`].
@@ -66,7 +73,7 @@ impl Watch {
 
     /// The system, and what events have set.
     pub(crate) fn cx<'a>(&'a self, system: &'a System) -> Context<'a> {
-        Context { held: &self.state.held, ..system.context() }
+        self.state.cx(system)
     }
 
     /// What is held from outside, to be changed.
@@ -113,7 +120,7 @@ impl Watch {
             return Ok(());
         }
         let mut sides = std::mem::take(&mut self.state.sides);
-        let cx = Context { held: &self.state.held, ..system.context() };
+        let cx = self.state.cx(system);
         let passages = self.functions.look_now(cx, driver, &mut sides)?;
         self.take(system, passages, sides);
         Ok(())
@@ -144,7 +151,7 @@ impl Watch {
             // What changes at the start of a step is crossed first.
             let Some(step) = driver.step_at_hand() else { return Ok(()) };
             let mut sides = self.state.sides.clone();
-            let cx = Context { held: &self.state.held, ..system.context() };
+            let cx = self.state.cx(system);
             let passages = self.functions.look(cx, driver, &step, &mut sides)?;
             let acts = |passage: &&Passage| counts(events, passage) && events[passage.event].acts();
             let first = passages.iter().find(acts).copied();
@@ -202,7 +209,7 @@ impl Watch {
         mut passages: Vec<Passage>,
         mut sides: Sides,
     ) -> Result<(), RunError> {
-        let (near, cx) = (near(step), Context { held: &self.state.held, ..system.context() });
+        let (near, cx) = (near(step), self.state.cx(system));
         let last: Vec<_> = passages.extract_if(.., |passage| passage.t >= step.to - near).collect();
         for other in 0..system.watched_events().len() {
             let sign = sides.signs[other];
