@@ -68,21 +68,12 @@ fn missing(error: &clap::Error, arguments: &[OsString]) -> bool {
     let of = chosen.get_name();
     let lacking: Vec<&str> = lacking.iter().map(String::as_str).collect();
     let at = arguments.iter().position(|argument| argument == of).map_or(arguments.len(), |at| at + 1);
-    let given = arguments[at..].iter().map(|argument| quoted(&argument.to_string_lossy()));
+    let given = arguments[at..].iter().map(|argument| springpot_run::quoted(&argument.to_string_lossy()));
     let wanted = lacking.iter().map(|name| name.replace(['<', '>'], "").trim_end_matches("...").to_owned());
     let words = given.chain(wanted).collect::<Vec<_>>().join(" ");
     let help = format!("write springpot {of} {words}; `springpot {of} --help` shows examples");
     diagnostic::error_with_help(format!("`springpot {of}` lacks {}", list(lacking.iter().copied())), help);
     true
-}
-
-/// An argument as a shell takes it.
-fn quoted(argument: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
-    match !argument.is_empty() && argument.chars().all(is_plain) {
-        true => argument.to_owned(),
-        false => format!("'{}'", argument.replace('\'', "'\\''")),
-    }
 }
 
 /// Arguments that exclude one another, and why.

@@ -62,7 +62,7 @@ pub use export::{ExportError, ExportFormat, export};
 pub use finish::Finished;
 pub use follow::{NewRows, News, Tail, Underway};
 pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
-pub use report::{comparison, report};
+pub use report::{comparison, quoted, report};
 pub use results::{COMPARISON_PAGE, REPORT_PAGE, Results, ResultsError, VIEW_PAGE};
 pub use survey::{Depth, ElementSurvey, Found, Survey};
 pub use table::sealed::{SealError, open, seal};

@@ -7,6 +7,7 @@ mod files;
 mod written;
 
 pub use compare::comparison;
+pub use written::quoted;
 
 use crate::numbers::{brief, count, four, rough, short};
 use crate::record::Sweep;
