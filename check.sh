@@ -108,10 +108,11 @@ quick() {
 without=(lints engine oldest crates documentation book)
 waiting=(pages engines)
 rest=(python scenarios)
+known="quick format ${without[*]} tests ${waiting[*]} ${rest[*]}"
 for step in "$@"; do
-    case " quick format ${without[*]} tests ${waiting[*]} ${rest[*]} " in
+    case " $known " in
     *" $step "*) ;;
-    *) echo "no step $step: there are quick format ${without[*]} tests ${waiting[*]} ${rest[*]}" >&2 && exit 2 ;;
+    *) echo "no step $step: there are $known" >&2 && exit 2 ;;
     esac
 done
 
@@ -130,7 +131,12 @@ beside() {
     (steps "${@:2}") >"$said/$1" 2>&1 &
     lanes[$1]=$!
 }
-join() { wait "${lanes[$1]}" && cat "$said/$1" || { cat "$said/$1"; exit 1; }; }
+join() {
+    local ended=0
+    wait "${lanes[$1]}" || ended=$?
+    cat "$said/$1"
+    return "$ended"
+}
 
 if [ "$#" -gt 0 ]; then
     steps "$@"
