@@ -351,6 +351,23 @@ fn what_an_event_sets_holds_until_somebody_else_does() {
 }
 
 #[test]
+fn what_somebody_sets_makes_events_happen() {
+    let events = event("pushed", "when = \"tau.q - 1\"\ndirection = \"rising\"\naction = \"stop\"");
+    let plan = plan(&mass("torque = { q = 0 }", &events, 4.0, "rtol = 1e-10"));
+    for looks in [false, true] {
+        let mut robot = Simulation::new(plan.system(), plan.settings.clone()).unwrap();
+        robot.step_to(1.5).unwrap();
+        robot.set_torque(0, 2.0).unwrap();
+        if looks {
+            assert_eq!(robot.snapshot().unwrap().t(), 1.5);
+        }
+        assert!(!robot.step().unwrap(), "{looks}");
+        assert_eq!(robot.stopped_by().map(|event| &*event.name), Some("pushed"));
+        assert_eq!((robot.t(), robot.v()[0]), (1.5, 0.0));
+    }
+}
+
+#[test]
 fn a_switch_with_a_gap_acts_once_each_time() {
     // Steps far longer than the last bits of their times.
     let events = event("low", "when = \"q.q + 0.1\"\ndirection = \"falling\"\naction = { set = { \"tau.q\" = 3 } }")

@@ -26,10 +26,36 @@ impl Forward {
         self.drives.iter().flat_map(Drive::signals).collect()
     }
 
+    /// The velocities of `model`'s joints that forces drive, in rising order, with the signals that say how large these are.
+    pub(crate) fn forces<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (usize, &'a Signal)> {
+        self.forced(model).flat_map(|(j, signals)| model.v_range(j).zip(signals))
+    }
+
+    /// The joints of `model` that signals move.
+    pub(crate) fn paths<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (usize, &'a JointPath)> {
+        model.own_joints().zip(&self.drives).filter_map(|(j, drive)| match drive {
+            Drive::Prescribed(path) => Some((j, path)),
+            _ => None,
+        })
+    }
+
+    /// The joints of `model` that stay where they start.
+    pub(crate) fn locked<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = usize> + 'a {
+        let drives = model.own_joints().zip(&self.drives);
+        drives.filter(|(_, drive)| matches!(drive, Drive::Locked)).map(|(j, _)| j)
+    }
+
+    /// The joints of `model` that forces drive, each with the signals of its velocities.
+    pub(crate) fn forced<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (usize, &'a [Signal])> {
+        model.own_joints().zip(&self.drives).filter_map(|(j, drive)| match drive {
+            Drive::Force(signals) => Some((j, &signals[..])),
+            _ => None,
+        })
+    }
+
     /// The velocities of `model`'s joints that forces drive, in rising order.
     pub(crate) fn free_velocities(&self, model: &Model) -> Vec<usize> {
-        let drives = model.own_joints().zip(&self.drives);
-        drives.filter(|(_, drive)| matches!(drive, Drive::Force(_))).flat_map(|(j, _)| model.v_range(j)).collect()
+        self.forces(model).map(|(k, _)| k).collect()
     }
 }
 

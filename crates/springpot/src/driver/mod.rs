@@ -11,6 +11,7 @@ mod events;
 mod limits;
 mod output;
 mod report;
+mod roots;
 mod rows;
 mod run;
 mod simulation;

@@ -124,8 +124,9 @@ impl<'a> Output<'a> {
     /// [`RunError::Missed`] and [`RunError::MissedKink`] where a row contradicts its step, [`RunError::Unbalanced`] where the energies do not balance.
     pub(super) fn verdict(&self, cx: Context, driver: &Driver) -> Result<(), RunError> {
         let Written { departure, misread, residual, residual_at: t, rounding, .. } = self.written;
-        if let (Some((t, Misread { law, is, used })), Some(control)) = (misread, &driver.recorder.control) {
-            let (expression, column) = control.words(law, cx.system);
+        if let Some((t, misread)) = misread {
+            let (expression, column) = driver.recorder.equations.words(&misread, cx.system);
+            let Misread { is, used, .. } = misread;
             return Err(RunError::MissedKink { t, expression, column, is, used });
         }
         if let Some((t, e, departure)) = departure {

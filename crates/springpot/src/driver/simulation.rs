@@ -4,7 +4,7 @@ use super::events::{Next, Watch, WatchState};
 use super::report::Report;
 use super::state::SimulationState;
 use super::time_loop::Driver;
-use crate::actuation::Drive;
+
 use crate::collocation::STAGES;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
@@ -12,7 +12,7 @@ use crate::observe::Snapshot;
 use crate::system::error::RunError;
 use crate::system::row_times::RowTimes;
 use crate::system::settings::{Settings, Stop};
-use crate::system::{Event, Motion, System};
+use crate::system::{Event, System};
 use std::sync::Arc;
 
 /// A system on its way, driven step by step by whoever owns it: a controller, another engine, a notebook.
@@ -103,8 +103,7 @@ impl Simulation {
             if self.happen()? {
                 return Ok(false);
             }
-            while self.driver.settle(self.events.cx(&self.system))? {
-                self.events.look_now(&self.system, &mut self.driver)?;
+            while self.cross()? {
                 if self.happen()? {
                     return Ok(false);
                 }
@@ -131,6 +130,15 @@ impl Simulation {
             self.events.look(&self.system, &mut self.driver, mark, None)?;
         }
         Ok(true)
+    }
+
+    /// Takes the step at hand into the past, or crosses what is behind it, where events may pass as well: `true` where something was crossed.
+    fn cross(&mut self) -> Result<bool, RunError> {
+        let crossed = self.driver.settle(self.events.cx(&self.system))?;
+        if crossed {
+            self.events.look_now(&self.system, &mut self.driver)?;
+        }
+        Ok(crossed)
     }
 
     /// Does what events do at the present time: `true` where one of them ends it.
@@ -220,11 +228,10 @@ impl Simulation {
     /// As there.
     pub fn interpolate_into(&mut self, t: f64, snapshot: &mut Snapshot) -> Result<(), RunError> {
         self.check_time(t, self.t_before(), self.t())?;
-        let cx = self.events.cx(&self.system);
         while self.driver.is_disturbed() {
-            self.driver.settle(cx)?;
+            self.cross()?;
         }
-        self.driver.read(cx, t, 0, snapshot)?;
+        self.driver.read(self.events.cx(&self.system), t, 0, snapshot)?;
         Ok(())
     }
 
@@ -238,14 +245,7 @@ impl Simulation {
     /// [`RunError::NotDriven`] where no force drives that velocity, [`RunError::NotFinite`].
     pub fn set_torque(&mut self, velocity: usize, torque: f64) -> Result<(), RunError> {
         let (model, t) = (&self.system.model, self.t());
-        let driven = match &self.system.motion {
-            Motion::Given(_) => false,
-            Motion::Forward(forward) => {
-                let mut drives = model.own_joints().zip(&forward.drives);
-                drives.any(|(j, drive)| model.v_range(j).contains(&velocity) && matches!(drive, Drive::Force(_)))
-            }
-        };
-        if !driven {
+        if !self.system.driven_velocities().contains(&velocity) {
             return Err(RunError::NotDriven { velocity });
         }
         if !torque.is_finite() {

@@ -2,6 +2,7 @@
 
 use super::driver_state::{DriverState, fingerprint};
 use super::report::Report;
+use super::roots::try_step;
 use crate::account::recorder::Recorder;
 use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
@@ -102,9 +103,9 @@ impl Driver {
     fn start(&mut self, cx: Context) -> Result<(), RunError> {
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
-        self.recorder.begin_control(cx)?;
-        if let (Some(sampler), Some(control)) = (&self.sampler, &mut self.recorder.control) {
-            control.set_sides(sampler.sides());
+        self.recorder.equations.begin_control(cx.system, self.recorder.settings.end)?;
+        if let Some(sampler) = &self.sampler {
+            self.recorder.equations.take_sides(sampler);
         }
         let first = self.solver.stepper_mut().start(cx, &mut self.recorder, &self.agenda)?;
         cx.system.check_definite(&self.recorder.evaluations[0].q)?;
@@ -128,11 +129,8 @@ impl Driver {
         let read = |e: usize| [evaluation.elements[e].reading.coordinate, evaluation.elements[e].reading.rate];
         let (system, q, v) = (cx.system, &evaluation.q[..], &evaluation.v[..]);
         let eye = Eye { system, t, q, v, kinematics: &kinematics, element: &read };
-        if let (Some(sampler), Some(control)) = (&mut self.sampler, &mut self.recorder.control) {
-            sampler.take(&eye, &shown, control)?;
-            control.set_sides(sampler.sides());
-        }
-        Ok(())
+        let sampler = self.sampler.as_mut();
+        sampler.map_or(Ok(()), |sampler| self.recorder.equations.sample(sampler, &eye, &shown))
     }
 
     /// Where a run of the same system was.
@@ -148,7 +146,7 @@ impl Driver {
     ) -> Result<Self, RunError> {
         let mut driver = Self::unstarted(cx, settings, stop)?;
         looked_ahead(&driver);
-        driver.recorder.begin_control(cx)?;
+        driver.recorder.equations.begin_control(cx.system, settings.end)?;
         driver.go_on(cx, state)?;
         Ok(driver)
     }
@@ -295,7 +293,7 @@ impl Driver {
         self.recorder.check_warmth(cx, step.to)?;
         self.t = step.to;
         self.crossing = step.crossing();
-        self.solver.stepper_mut().accept(cx, &self.recorder, &step)
+        self.solver.stepper_mut().accept(cx, &mut self.recorder, &step)
     }
 
     /// The far side of a kink at the present time.
@@ -342,7 +340,7 @@ impl Driver {
                 return Err(RunError::Interrupted { t: self.t });
             }
             let target = self.target(until, rows);
-            match self.solver.stepper_mut().try_step(cx, &mut self.recorder, target)? {
+            match try_step(self.solver.stepper_mut(), cx, &mut self.recorder, target)? {
                 Trial::Accepted { step, next } => {
                     self.check_definite(cx, &step)?;
                     self.steps += 1;
@@ -358,7 +356,7 @@ impl Driver {
                 Trial::Rejected { size } => {
                     self.rejected_steps += 1;
                     self.h = self.aligned(size);
-                    if self.t == 0.0 && size < MUCH_SHORTER * self.planned && self.recorder.has_inner_strokes(cx) {
+                    if self.t == 0.0 && size < MUCH_SHORTER * self.planned && self.recorder.has_inner_strokes() {
                         // Strokes inside a series may change faster than the memories are built for, whose energies take that for still.
                         self.recorder.begin(cx)?;
                         self.recorder.open(cx, size)?;
@@ -408,7 +406,7 @@ impl Driver {
         let stop = self.next_stop(t);
         let stop_at = stop.map_or(end, |stop| stop.before.min(end));
         let reach = self.solver.stepper().reach(t, self.agenda.reach(t, self.h));
-        let reach = self.recorder.control.as_ref().map_or(reach, |control| control.reach(t, reach));
+        let reach = self.recorder.equations.reach(t, reach);
         let sparse = rows.filter(|rows| {
             self.solver.stepper().ends_on_sparse_rows() && rows.next > t && rows.next - rows.last >= reach
         });
@@ -479,7 +477,7 @@ impl Driver {
 
     /// How stiff element `e` is over a step, N/m or N·m/rad; 0 where it takes no steps.
     pub(super) fn stiffness(&self, cx: Context, e: usize) -> f64 {
-        let bank = &self.recorder.bank;
+        let bank = &self.recorder.equations.bank;
         let stiffness = cx.system.elements[e].law.stiffness(&bank.point(e, 0), bank.size().recip());
         if stiffness.is_finite() { stiffness } else { 0.0 }
     }
@@ -527,12 +525,12 @@ impl Driver {
         let Target { from, to, .. } = self.step.expect("a step at hand");
         let theta = if node == 0 { 0.0 } else { RADAU_NODES[node - 1] };
         let at = if node == STAGES { to } else { from + theta * (to - from) };
-        let (recorder, evaluation) = (&mut self.recorder, &mut snapshot.evaluation);
-        match self.solver.stepper().kinematics(node) {
+        match self.solver.stepper().kinematics(&self.recorder.equations, node) {
             Some(kinematics) => {
-                evaluation.q.copy_from_slice(&recorder.evaluations[node].q);
-                evaluation.v.copy_from_slice(&recorder.evaluations[node].v);
-                cx.fill_readings((at, needs), Some(kinematics), &mut recorder.scratch, evaluation)?;
+                let (known, evaluation) = (&self.recorder.evaluations[node], &mut snapshot.evaluation);
+                evaluation.q.copy_from_slice(&known.q);
+                evaluation.v.copy_from_slice(&known.v);
+                cx.fill_readings((at, needs), Some(kinematics), &mut self.recorder.scratch, evaluation)?;
             }
             None => self.glance(cx, at, needs, snapshot)?,
         }
@@ -592,7 +590,7 @@ impl Driver {
             steps: self.steps,
             rejected_steps: self.rejected_steps,
             newton_iterations: self.solver.stepper().newton_iterations(),
-            modes: self.recorder.bank.modes(),
+            modes: self.recorder.equations.bank.modes(),
             switches: self.switches(),
             resolution: self.switches().map(|_| FINEST * self.recorder.settings.end),
             ..Report::default()

@@ -375,6 +375,11 @@ impl ElementBank {
         &self.elements[e].energies.errors
     }
 
+    /// How many of the first local errors of element `e` a motion may show nothing of ([`Network::hidden_errors`]).
+    pub(crate) fn hidden_errors(&self, e: usize) -> usize {
+        self.elements[e].law.hidden_errors()
+    }
+
     /// The largest regular D^order x so far, the step that was accounted included, of local error `m`.
     pub(crate) fn scale(&self, e: usize, m: usize) -> f64 {
         let Banked { kept, energies, .. } = &self.elements[e];

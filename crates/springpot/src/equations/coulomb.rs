@@ -6,6 +6,7 @@
 //! fewer, else the first of them alone, which ends (Júdice & Pires, Computers & Operations Research 21, 1994). In
 //! fixed steps velocities at the end of the step take the place of accelerations.
 
+use super::solve::Solve;
 use crate::linalg::Lu;
 
 /// Pivots after which there is no answer: far more than any robot has needed.
@@ -61,12 +62,12 @@ impl Coulomb {
         self.lu.factor(n, |matrix| (0..n).for_each(|k| matrix[k * n + k] = 1.0));
     }
 
-    /// Takes the friction of the candidates off `a`, which solves a system with the factors `lu` without it, and tells their
+    /// Takes the friction of the candidates off `a`, which solves a system with the factors `solve` without it, and tells their
     /// directions.
     ///
     /// # Errors
     /// A candidate that finds no friction; numbers that are not finite are the cause.
-    pub(crate) fn solve(&mut self, lu: &mut Lu, a: &mut [f64]) -> Result<(), usize> {
+    pub(crate) fn solve(&mut self, solve: &mut Solve, a: &mut [f64]) -> Result<(), usize> {
         let (n, unknowns) = (self.candidates.len(), a.len());
         self.columns.clear();
         self.columns.resize(n * unknowns, 0.0);
@@ -75,7 +76,7 @@ impl Coulomb {
         self.pushed.clear();
         for (c, column) in self.columns.chunks_exact_mut(unknowns.max(1)).enumerate() {
             column[self.candidates[c].place] = 1.0;
-            lu.solve(column);
+            solve.solve(column);
             for (r, candidate) in self.candidates.iter().enumerate() {
                 self.mobility[r * n + c] = column[candidate.place];
             }
@@ -171,8 +172,7 @@ impl Coulomb {
 
 #[cfg(test)]
 mod tests {
-    use super::{Candidate, Coulomb};
-    use crate::linalg::Lu;
+    use super::{Candidate, Coulomb, Solve};
 
     /// Masses with coupled random numbers: every answer meets the conditions, whatever holds.
     #[test]
@@ -191,7 +191,7 @@ mod tests {
                 sum + if r == c { 1e-3 } else { 0.0 }
             };
             let push: Vec<f64> = (0..n).map(|_| 3.0 * random()).collect();
-            let mut lu = Lu::default();
+            let mut lu = Solve::default();
             assert!(lu.factor(n, |m| (0..n * n).for_each(|k| m[k] = mass(k / n, k % n))));
             let mut a = push.clone();
             lu.solve(&mut a);
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn what_is_not_finite_finds_no_friction() {
-        let mut lu = Lu::default();
+        let mut lu = Solve::default();
         assert!(lu.factor(1, |m| m[0] = 1.0));
         let mut coulomb = Coulomb::default();
         coulomb.candidates.push(Candidate { place: 0, limit: 1.0, slack: 0.0, offset: 0.0 });

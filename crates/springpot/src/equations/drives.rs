@@ -1,8 +1,8 @@
-//! What drives the joints: checked where it is asked for.
+//! What drives the joints at one time: checked where it is asked for.
 
 use super::context::Context;
 use super::evaluate::Evaluation;
-use crate::actuation::{Drive, Forward};
+use crate::actuation::Forward;
 use crate::model::Model;
 use crate::motion::JointPath;
 use crate::signal::Signal;
@@ -23,7 +23,7 @@ pub(crate) fn finite(cx: Context, k: usize, t: f64, value: f64) -> Result<f64, R
 
 /// The coordinates, velocities and accelerations of joint `j`, which `path` prescribes, at t; `q`, `v` and `a` are those of the
 /// whole robot.
-pub(crate) fn take_path(
+fn take_path(
     model: &Model,
     j: usize,
     path: &JointPath,
@@ -43,25 +43,37 @@ pub(crate) fn take_path(
     Ok(())
 }
 
+impl Forward {
+    /// Puts the coordinates, velocities and accelerations of all joints that signals move, at t, into those of the whole robot.
+    ///
+    /// # Errors
+    /// [`RunError::NotFinite`].
+    pub(crate) fn take_paths(
+        &self,
+        model: &Model,
+        t: f64,
+        q: &mut [f64],
+        v: &mut [f64],
+        a: &mut [f64],
+    ) -> Result<(), RunError> {
+        self.paths(model).try_for_each(|(j, path)| take_path(model, j, path, t, q, v, a))
+    }
+}
+
 /// What drives the joints at t, and the places of those that signals move.
 pub(crate) fn drive(cx: Context, forward: &Forward, t: f64, evaluation: &mut Evaluation) {
     let model = &cx.system.model;
-    for (j, drive) in model.own_joints().zip(&forward.drives) {
+    for (k, signal) in forward.forces(model) {
+        evaluation.driven[k] = Some(cx.force(k, signal, t));
+    }
+    for (j, path) in forward.paths(model) {
         let (q, v) = (model.q_range(j), model.v_range(j));
-        match drive {
-            Drive::Force(signals) => {
-                for (k, signal) in v.zip(signals) {
-                    evaluation.driven[k] = Some(cx.force(k, signal, t));
-                }
-            }
-            Drive::Prescribed(path) => {
-                path.at(t, &mut evaluation.q[q], &mut evaluation.v[v.clone()], &mut evaluation.a[v]);
-            }
-            Drive::Locked => {
-                evaluation.q[q.clone()].copy_from_slice(&forward.q[q]);
-                evaluation.v[v.clone()].fill(0.0);
-                evaluation.a[v].fill(0.0);
-            }
-        }
+        path.at(t, &mut evaluation.q[q], &mut evaluation.v[v.clone()], &mut evaluation.a[v]);
+    }
+    for j in forward.locked(model) {
+        let (q, v) = (model.q_range(j), model.v_range(j));
+        evaluation.q[q.clone()].copy_from_slice(&forward.q[q]);
+        evaluation.v[v.clone()].fill(0.0);
+        evaluation.a[v].fill(0.0);
     }
 }

@@ -15,9 +15,6 @@ const SHARE: f64 = 1e-8;
 /// The same where it is rounding, in units of that of the stroke.
 const ROUNDINGS: f64 = 16.0;
 
-/// Tries to reach a kink from behind it in a row; then the way is halved.
-pub(crate) const FROM_BEHIND: u32 = 2;
-
 /// A kink that a step comes upon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kink {

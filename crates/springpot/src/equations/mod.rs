@@ -1,17 +1,36 @@
-//! The equations of motion at one time: what is known there, and the forces of all that acts.
+//! The equations of motion: what is known at one time and at the nodes of a step, and the forces of all that acts.
 
+mod accelerations;
+mod ahead;
+mod assembly;
 pub(crate) mod context;
 pub(crate) mod control;
 pub(crate) mod coulomb;
 pub(crate) mod drives;
 pub(crate) mod evaluate;
+mod friction;
+mod guards;
 pub(crate) mod kinks;
+mod node;
 pub(crate) mod on_grid;
 mod pose;
 pub(crate) mod resistance;
+mod rounding;
+mod rows;
+mod scale;
+mod solve;
+mod state;
 mod steady;
-pub(crate) mod tangent;
+mod tangent;
 pub(crate) mod zero;
 
+pub(crate) use accelerations::{ElementAtStart, solve_mass};
+pub(crate) use ahead::Outlook;
+pub(crate) use assembly::Equations;
+pub(crate) use guards::{Change, Look, Solved, Within};
+pub(crate) use node::{Node, Origin};
 pub use pose::{ElementStart, Pose, State};
+pub(crate) use scale::Scale;
+pub(crate) use solve::Solve;
+pub(crate) use state::EquationsState;
 pub use steady::SteadyError;

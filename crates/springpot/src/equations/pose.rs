@@ -1,7 +1,6 @@
 //! Where the robot and its elements are, without running anything.
 
 use super::evaluate::{Evaluation, Scratch};
-use crate::actuation::Drive;
 use crate::control::Aim;
 use crate::dynamics::Kinematics;
 use crate::model::{Anchor, Model, Parent};
@@ -120,11 +119,9 @@ impl System {
                 trajectory.at(&self.model, t, q, v, a)?;
             }
             Motion::Forward(forward) => {
-                for (j, drive) in self.model.own_joints().zip(&forward.drives) {
+                for (j, path) in forward.paths(&self.model) {
                     let (own, velocities) = (self.model.q_range(j), self.model.v_range(j));
-                    if let Drive::Prescribed(path) = drive {
-                        path.at(t, &mut q[own], &mut v[velocities.clone()], &mut a[velocities]);
-                    }
+                    path.at(t, &mut q[own], &mut v[velocities.clone()], &mut a[velocities]);
                 }
             }
         }

@@ -1,7 +1,6 @@
 //! A system at rest: the forces that remain, and their derivatives.
 
 use super::error::LinearError;
-use crate::actuation::Drive;
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{Forces, Pull};
 use crate::law::{AtRest, InputValue, Point};
@@ -90,14 +89,11 @@ impl System {
     pub(super) fn torques_at(&self, t: f64) -> Result<Option<Vec<f64>>, LinearError> {
         let Motion::Forward(forward) = &self.motion else { return Ok(None) };
         let mut torques = vec![0.0; self.model.nv()];
-        for (j, drive) in self.model.own_joints().zip(&forward.drives) {
-            let Drive::Force(signals) = drive else { continue };
-            for (k, signal) in self.model.v_range(j).zip(signals) {
-                torques[k] = signal.at(t).value;
-                if !torques[k].is_finite() {
-                    let what = format!("tau.{}", self.model.v_labels()[k].name);
-                    return Err(LinearError::Value { what, problem: format!("{} is no finite number", torques[k]) });
-                }
+        for (k, signal) in forward.forces(&self.model) {
+            torques[k] = signal.at(t).value;
+            if !torques[k].is_finite() {
+                let what = format!("tau.{}", self.model.v_labels()[k].name);
+                return Err(LinearError::Value { what, problem: format!("{} is no finite number", torques[k]) });
             }
         }
         Ok(Some(torques))

@@ -4,6 +4,7 @@ use crate::account::recorder::Recorder;
 use crate::dynamics::Kinematics;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
+use crate::equations::{Change, Equations, Look};
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::settings::Settings;
@@ -89,11 +90,45 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
         h
     }
 
-    /// Works out a step without taking it into the past.
+    /// Solves a step without taking it into the past: gives the size that the next one may have, or one to try instead.
     ///
     /// # Errors
     /// Where no step leads on.
-    fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError>;
+    fn solve(&mut self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<Result<f64, f64>, RunError>;
+
+    /// The first change in the step that was solved last.
+    ///
+    /// # Errors
+    /// What a row inside the step may show.
+    fn look(&mut self, _: Context, _: &mut Recorder, _: &Target) -> Result<Look, RunError> {
+        Ok(Look::Nothing)
+    }
+
+    /// How far a change is away at θ of the step that was solved last; negative behind it.
+    fn value(&mut self, _: Context, _: &mut Recorder, _: &Target, _: Change, _theta: f64) -> f64 {
+        0.0
+    }
+
+    /// What becomes of a step that was solved and in which nothing changes before its end; `next` is the size that the one after it may have.
+    ///
+    /// # Errors
+    /// Where no step leads on, or what is behind the end must not jump.
+    fn judge(&mut self, _: Context, _: &mut Recorder, step: Target, next: f64) -> Result<Trial, RunError> {
+        Ok(Trial::Accepted { step, next })
+    }
+
+    /// Why a step of size `size` is not tried in place of one in which no first change was found, where there is no point in it.
+    fn gives_up(&self, _: Context, _: &Recorder, _: &Target, _size: f64) -> Option<RunError> {
+        None
+    }
+
+    /// Takes over what changes where the step starts.
+    ///
+    /// # Errors
+    /// Where changes follow one another without end.
+    fn change_at_start(&mut self, _: Context, _: &mut Recorder) -> Result<(), RunError> {
+        Ok(())
+    }
 
     /// Makes sure that the evaluation at the start (0) or at the end (1) of the step has all that a row asks for.
     ///
@@ -117,7 +152,7 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
     ) -> Result<(), RunError>;
 
     /// Positions and velocities of the links at the start (0) or at a node of the step that was worked out, where the method knows them.
-    fn kinematics(&self, _node: usize) -> Option<&Kinematics> {
+    fn kinematics<'s>(&'s self, _: &'s Equations, _node: usize) -> Option<&'s Kinematics> {
         None
     }
 
@@ -138,7 +173,7 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// Where nothing can follow.
-    fn accept(&mut self, cx: Context, recorder: &Recorder, step: &Target) -> Result<(), RunError>;
+    fn accept(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError>;
 
     /// Goes from the present time to `after`, the far side of what jumps between them or there.
     ///

@@ -16,7 +16,7 @@ pub use fixed_step::FixedStep;
 pub use row_times::RowTimes;
 pub use settings::{Settings, Stop};
 
-use crate::actuation::{Drive, Forward};
+use crate::actuation::Forward;
 use crate::control::Control;
 use crate::elements::Element;
 use crate::model::{Model, Site};
@@ -109,8 +109,7 @@ impl System {
     /// The velocities that forces drive; none where the motion is given in advance.
     pub(crate) fn driven_velocities(&self) -> Vec<usize> {
         let Motion::Forward(forward) = &self.motion else { return Vec::new() };
-        let drives = self.model.own_joints().zip(&forward.drives);
-        drives.filter(|(_, drive)| matches!(drive, Drive::Force(_))).flat_map(|(j, _)| self.model.v_range(j)).collect()
+        forward.free_velocities(&self.model)
     }
 
     /// Whether somebody asks for the leaves of the elements' laws.

@@ -4,7 +4,6 @@ use super::error::RunError;
 use super::jump::refuse_jumps;
 use super::settings::Settings;
 use super::{Motion, System};
-use crate::actuation::Drive;
 use crate::signal::{Agenda, AgendaError, Signal, Watched};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -29,6 +28,21 @@ const STILL: f64 = 1e-9;
 const MOST_LOOKED_AT: usize = 10_000;
 
 impl System {
+    /// Whether anything that drives the robot varies with time.
+    pub(crate) fn varies(&self) -> bool {
+        let Motion::Forward(forward) = &self.motion else { return true };
+        let varies = |signal: &Signal| signal.is_constant().is_none();
+        let aims =
+            self.control.controller.as_ref().is_some_and(|controlled| {
+                controlled.reference.trajectory().signals().iter().any(|signal| varies(signal))
+            });
+        forward.has_paths()
+            || forward.forces(&self.model).any(|(_, signal)| varies(signal))
+            || self.control.laws().any(|(law, _)| !law.parts_of_time().is_empty())
+            || aims
+            || self.elements.iter().flat_map(|element| &element.inputs).any(varies)
+    }
+
     /// Looks through all signals before a run whose own steps are at most `longest`.
     ///
     /// # Errors
@@ -196,16 +210,11 @@ impl System {
                 watched.extend(named.map(|(name, signal)| (name, position(signal))));
             }
             Motion::Forward(forward) => {
-                for (j, drive) in self.model.own_joints().zip(&forward.drives) {
-                    let names = self.model.v_range(j).map(|k| format!("the torque on \"{}\"", labels[k].name));
-                    match drive {
-                        Drive::Force(signals) => watched.extend(names.zip(signals.iter().map(own))),
-                        Drive::Prescribed(joint) => {
-                            let name = format!("the motion of joint \"{}\"", self.model.joint_names()[j]);
-                            watched.extend(joint.signals().into_iter().map(|signal| (name.clone(), position(signal))));
-                        }
-                        Drive::Locked => {}
-                    }
+                let torque = |k: usize| format!("the torque on \"{}\"", labels[k].name);
+                watched.extend(forward.forces(&self.model).map(|(k, signal)| (torque(k), own(signal))));
+                for (j, joint) in forward.paths(&self.model) {
+                    let name = format!("the motion of joint \"{}\"", self.model.joint_names()[j]);
+                    watched.extend(joint.signals().into_iter().map(|signal| (name.clone(), position(signal))));
                 }
             }
         }

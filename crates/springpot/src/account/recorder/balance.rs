@@ -3,6 +3,7 @@
 use super::Recorder;
 use crate::account::ledger::{Balance, NodePower, singular_work, work, work_defect};
 use crate::collocation::STAGES;
+use crate::equations::Equations;
 use crate::equations::evaluate::Evaluation;
 use crate::observe::Snapshot;
 use crate::observe::evaluation::ElementRow;
@@ -39,15 +40,15 @@ impl Recorder {
     pub(super) fn work_until(&self, theta: f64) -> (f64, f64) {
         let (t, h) = self.span();
         let mut actuators = work(&self.powers.actuators, h, theta);
-        for e in 0..self.bank.len() {
-            if !self.takes_elements_work || !self.bank.is_singular(e) {
+        for e in 0..self.equations.bank.len() {
+            if !self.takes_elements_work || !self.equations.bank.is_singular(e) {
                 continue;
             }
             // Without their power of t, which singular_work integrates exactly.
             let mut shares: Vec<(f64, NodePower)> = Vec::new();
             for k in 0..=STAGES {
-                let (at, mut m) = (self.bank.point(e, k), 0);
-                self.bank.for_each_singularity(e, at.inputs, &mut |term| {
+                let (at, mut m) = (self.equations.bank.point(e, k), 0);
+                self.equations.bank.for_each_singularity(e, at.inputs, &mut |term| {
                     if k == 0 {
                         shares.push((term.order, [0.0; STAGES + 1]));
                     }
@@ -62,15 +63,33 @@ impl Recorder {
 
     /// Adds the regular power that element `e` takes from the actuators of kinematics given in advance.
     pub(crate) fn add_actuator_power(&mut self, e: usize) {
-        self.bank.evaluate_element(e);
-        let response = *self.bank.response(e);
+        self.equations.bank.evaluate_element(e);
+        let response = *self.equations.bank.response(e);
         for k in 0..=STAGES {
-            let at = self.bank.point(e, k);
+            let at = self.equations.bank.point(e, k);
             let regular = match k {
-                0 => self.bank.now(e, &at).map_or(0.0, |observation| observation.regular),
+                0 => self.equations.bank.now(e, &at).map_or(0.0, |observation| observation.regular),
                 _ => response.force[k - 1] - response.singular[k - 1],
             };
             self.powers.actuators[k] += regular * at.rate;
+        }
+    }
+
+    /// Takes in the powers of the actuators and the losses of the joints at the start of the step and at its nodes, where `force` is that of an
+    /// element there.
+    pub(crate) fn take_powers(&mut self, force: impl Fn(&Equations, usize, usize) -> f64) {
+        for (node, evaluation) in self.evaluations.iter().enumerate() {
+            let of_joint = |j: usize| {
+                let computed = || {
+                    let elements = evaluation.elements.iter().enumerate();
+                    let pull = elements.map(|(e, at)| force(&self.equations, e, node) * at.gradient[j]);
+                    evaluation.rigid[j] + pull.sum::<f64>()
+                };
+                evaluation.driven[j].unwrap_or_else(computed)
+            };
+            let moving = evaluation.v.iter().enumerate().filter(|(_, v)| **v != 0.0);
+            self.powers.actuators[node] = moving.map(|(j, v)| of_joint(j) * v).sum();
+            self.powers.joints[node] = evaluation.joint_loss;
         }
     }
 
@@ -116,7 +135,7 @@ impl Recorder {
 
     /// Forces of a named scheme are known at the rows alone.
     fn actuators_unknown(&self) -> bool {
-        (0..self.bank.len()).any(|e| !self.bank.takes_part(e))
+        (0..self.equations.bank.len()).any(|e| !self.equations.bank.takes_part(e))
     }
 
     /// The largest of the first so many local errors of element `e` in units of their tolerances, and its order, where the stroke is about to be as
@@ -126,10 +145,11 @@ impl Recorder {
         let settings = &self.settings;
         let mut worst = (0.0, 0.0);
         // Strokes inside a series may begin like no power of t, alike on every scale of time: the very first steps err by what is soon nothing.
-        let is_onset = self.bank.from() + self.bank.size() - since <= SHORTEST_LEDGER_STEP * settings.end;
-        for (m, error) in self.bank.errors(e).iter().enumerate().take(first) {
-            let soon = if rate > 0.0 { BEGUN * rate * self.bank.size().powf(1.0 - error.order) } else { 0.0 };
-            let scale = self.bank.scale(e, m).max(soon);
+        let is_onset =
+            self.equations.bank.from() + self.equations.bank.size() - since <= SHORTEST_LEDGER_STEP * settings.end;
+        for (m, error) in self.equations.bank.errors(e).iter().enumerate().take(first) {
+            let soon = if rate > 0.0 { BEGUN * rate * self.equations.bank.size().powf(1.0 - error.order) } else { 0.0 };
+            let scale = self.equations.bank.scale(e, m).max(soon);
             let allowed = settings.atol.unwrap_or(0.0).max(settings.rtol * scale);
             let share = match error.share(scale, allowed) {
                 share if is_onset && share.is_finite() => share.min(1.0),
@@ -155,8 +175,8 @@ impl Recorder {
         let rounding = self.rounding_of_work();
         let mut defect = work_defect(&self.powers.actuators, h) + work_defect(&self.powers.joints, h);
         let mut worst_account = 0.0f64;
-        for e in 0..self.bank.len() {
-            let (powers, (dissipated, _)) = (self.bank.powers(e), self.bank.energies(e));
+        for e in 0..self.equations.bank.len() {
+            let (powers, (dissipated, _)) = (self.equations.bank.powers(e), self.equations.bank.energies(e));
             let (dissipation, input) = (powers.map(|p| p.dissipation), powers.map(|p| p.input));
             let own = work_defect(&dissipation, h);
             defect += own + work_defect(&input, h);
@@ -173,10 +193,10 @@ impl Recorder {
 
     /// What rounding of the strokes does to the work of the elements in a step, J: what has relaxed is known no better.
     fn rounding_of_work(&self) -> f64 {
-        let works = (0..self.bank.len()).map(|e| {
-            let [strokes, _] = self.bank.told(e);
+        let works = (0..self.equations.bank.len()).map(|e| {
+            let [strokes, _] = self.equations.bank.told(e);
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
-            largest(strokes) * largest(&self.bank.response(e).force)
+            largest(strokes) * largest(&self.equations.bank.response(e).force)
         });
         WORK_ROUNDING * works.filter(|work| work.is_finite()).sum::<f64>()
     }

@@ -15,7 +15,7 @@ impl Recorder {
     /// The first expression of the state that the step at hand took on the wrong side of a kink, where a row shows it.
     pub(crate) fn misread(&mut self, cx: Context, snapshot: &Snapshot) -> Option<Misread> {
         let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
-        self.control.as_mut()?.misread(cx, allowed, &snapshot.evaluation)
+        self.equations.misread(cx, allowed, &snapshot.evaluation)
     }
 
     /// Compares the rates at θ of the step with what its memories were told, the cubic through its nodes: the first element that departs too
@@ -32,9 +32,9 @@ impl Recorder {
             *weight = lagrange_row(k).iter().rev().fold(0.0, |sum, c| sum * theta + c);
         }
         let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
-        let taking_part = (0..self.bank.len()).filter(|&e| self.bank.takes_part(e));
+        let taking_part = (0..self.equations.bank.len()).filter(|&e| self.equations.bank.takes_part(e));
         for e in taking_part {
-            let [_, rates] = self.bank.told(e);
+            let [_, rates] = self.equations.bank.told(e);
             let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
             let is = snapshot.evaluation.elements[e].reading.rate;
             // Parts in series share the stroke: what is little of all of it is no departure of any of them.
@@ -44,11 +44,11 @@ impl Recorder {
             }
             let derivative = snapshot.elements[e].observation.derivative.abs();
             // D^alpha x and its share of a step are those of the time of the memories.
-            let pace = self.bank.pace(e);
-            for (m, error) in self.bank.errors(e).iter().enumerate().filter(|(_, error)| error.order > 0.0) {
+            let pace = self.equations.bank.pace(e);
+            for (m, error) in self.equations.bank.errors(e).iter().enumerate().filter(|(_, error)| error.order > 0.0) {
                 let departure = (is - told).abs() * h * (h * pace).powf(-error.order);
-                let scale = self.bank.scale(e, m).max(if derivative.is_finite() { derivative } else { 0.0 });
-                let resolution = 8.0 * self.bank.resolution(e) * (h * pace).powf(-error.order);
+                let scale = self.equations.bank.scale(e, m).max(if derivative.is_finite() { derivative } else { 0.0 });
+                let resolution = 8.0 * self.equations.bank.resolution(e) * (h * pace).powf(-error.order);
                 let floor = self.settings.atol.unwrap_or(0.0) + resolution;
                 if departure > allowed * scale + floor {
                     return Some((e, departure / scale));

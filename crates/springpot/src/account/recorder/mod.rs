@@ -7,16 +7,14 @@ mod balance;
 mod check;
 
 use crate::account::ledger::{NodePower, Turnover};
-use crate::collocation::Nodes;
 use crate::collocation::STAGES;
-use crate::elements::{Element, ElementBank, Kept, MemoryRange};
+use crate::elements::{Element, MemoryRange};
 use crate::equations::context::Context;
-use crate::equations::control::{ControlRun, ControlState};
 use crate::equations::evaluate::{ElementEvaluation, Evaluation, Scratch};
 use crate::equations::on_grid::{GridDerivatives, on_grid_observation};
-use crate::fractional::Form;
+use crate::equations::{Equations, EquationsState};
 use crate::law::heat::TEMPERATURE;
-use crate::law::{Observation, Point};
+use crate::law::{Observation, Point, State};
 use crate::observe::evaluation::ElementRow;
 use crate::observe::{ElementQuantity, Quantity, Snapshot};
 use crate::system::error::RunError;
@@ -42,9 +40,7 @@ pub(crate) struct Recorder {
     pub(crate) evaluations: [Evaluation; STAGES + 1],
     /// Whether those at the start and at the end have all that a row asks for.
     pub(crate) is_whole: [bool; 2],
-    pub(crate) bank: ElementBank,
-    /// What follows from the state, where anything does.
-    pub(crate) control: Option<Box<ControlRun>>,
+    pub(crate) equations: Equations,
     pub(crate) powers: StepPowers,
     /// Whether actuators move the elements, as along kinematics given in advance.
     pub(crate) takes_elements_work: bool,
@@ -74,29 +70,22 @@ struct Ledger {
 /// step.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct RecorderState {
-    elements: Vec<Option<Kept>>,
+    equations: EquationsState,
     /// Where the next step starts.
     pub(crate) evaluation: Evaluation,
     is_whole: bool,
-    control: Option<ControlState>,
     ledger: Ledger,
 }
 
 impl Recorder {
     pub(crate) fn new(cx: Context, settings: &Settings) -> Self {
         let evaluation = Evaluation::new(cx.system);
-        let laws = cx.system.elements.iter().map(|element| element.law.clone()).collect();
-        let mut bank = ElementBank::new(laws, Nodes::Radau, Form::Rates);
-        for (e, element) in cx.system.elements.iter().enumerate() {
-            bank.reserve_inputs(e, element.inputs.len());
-        }
         Self {
             settings: settings.clone(),
             scratch: Scratch::new(&cx.system.model),
             evaluations: std::array::from_fn(|_| evaluation.clone()),
             is_whole: [true; 2],
-            bank,
-            control: ControlRun::of(cx.system, settings.fixed_step.is_some()),
+            equations: Equations::new(cx.system, settings.fixed_step.is_some()),
             powers: StepPowers::default(),
             takes_elements_work: true,
             jolts: vec![false; cx.system.elements.len()],
@@ -106,52 +95,41 @@ impl Recorder {
         }
     }
 
-    /// Begins what is kept of the errors of a controller, where the motion starts.
-    ///
-    /// # Errors
-    /// Where the reference cannot be followed, or a memory cannot be.
-    pub(crate) fn begin_control(&mut self, cx: Context) -> Result<(), RunError> {
-        let Some(control) = &mut self.control else { return Ok(()) };
-        let start = cx.system.state(0.0)?;
-        control.begin(cx.system, &start.q, &start.v, self.settings.end)
-    }
-
     /// Gives the first evaluation the inputs that follow from the state.
     pub(crate) fn take_inputs_at_start(&mut self, cx: Context) {
-        if let (Some(control), [evaluation, ..]) = (&self.control, &mut self.evaluations) {
-            let elements = evaluation.elements.iter_mut().enumerate();
-            elements.for_each(|(e, element)| control.inputs_at_start(cx, e, &mut element.inputs));
-        }
+        let [evaluation, ..] = &mut self.evaluations;
+        let elements = evaluation.elements.iter_mut().enumerate();
+        elements.for_each(|(e, element)| self.equations.inputs_at_start(cx, e, &mut element.inputs));
     }
 
-    /// Completes an evaluation by what follows from the state: at θ of the step at hand, or between two steps.
-    ///
-    /// # Errors
-    /// Where an input breaks a rule of its law, or the reference cannot be followed.
-    pub(crate) fn control(
-        &mut self,
-        cx: Context,
-        theta: Option<f64>,
-        evaluation: &mut Evaluation,
-    ) -> Result<(), RunError> {
-        match &mut self.control {
-            Some(control) => control.fill(cx, theta, &self.bank, evaluation),
-            None => Ok(()),
-        }
-    }
-
-    /// Goes onto the branches of control behind the changes that were seen, at the end of the step or at its start.
+    /// Goes onto the branches of control behind the changes that were seen at the start of a step.
     ///
     /// # Errors
     /// [`RunError::ControlChatter`].
-    pub(crate) fn change_branches(&mut self, cx: Context, is_end: bool) -> Result<(), RunError> {
-        let end = self.settings.end;
-        self.control.as_mut().map_or(Ok(()), |control| control.change(cx.system, is_end, end))
+    pub(crate) fn change_branches(&mut self, cx: Context) -> Result<(), RunError> {
+        self.equations.change_branches(cx, false, self.settings.end)
     }
 
     /// Whether an element has strokes, or other variables, of its own inside.
-    pub(crate) fn has_inner_strokes(&self, cx: Context) -> bool {
-        cx.system.elements.iter().any(|element| element.law.hidden_errors() == usize::MAX)
+    pub(crate) fn has_inner_strokes(&self) -> bool {
+        (0..self.equations.bank.len()).any(|e| self.equations.bank.hidden_errors(e) == usize::MAX)
+    }
+
+    /// [`Self::begin`]s where the motion follows from forces: gives what jumps at t = 0 do at once, of each element ([`crate::law::past::jolt`]).
+    ///
+    /// # Errors
+    /// Where a memory cannot be.
+    pub(crate) fn begin_with_jolts(&mut self, cx: Context) -> Result<Vec<Option<(State, f64)>>, RunError> {
+        let elements = cx.system.elements.iter().zip(&self.evaluations[0].elements);
+        let jolts = elements.map(|(element, at)| {
+            let start = element.start(at.reading.coordinate, &at.inputs);
+            let jolt = element.jolt(&start, self.settings.memory_rtol, self.settings.end);
+            jolt.map_err(RunError::of_kernel(&element.name))
+        });
+        let jolts = jolts.collect::<Result<Vec<_>, _>>()?;
+        self.jolts = jolts.iter().map(Option::is_some).collect();
+        self.begin(cx)?;
+        Ok(jolts)
     }
 
     /// Begins the laws at the first evaluation, `evaluations[0]`, their memories without kernels.
@@ -168,8 +146,9 @@ impl Recorder {
                 let range = MemoryRange { tolerance, shortest: 0.0, horizon };
                 state = element.settled(&start, state, range).map_err(RunError::of_kernel(&element.name))?;
             }
-            self.bank.begin_from(e, &start, state);
+            self.equations.bank.begin_from(e, &start, state);
         }
+        self.equations.take_starts();
         Ok(())
     }
 
@@ -179,12 +158,10 @@ impl Recorder {
         for (e, element) in cx.system.elements.iter().enumerate() {
             let range = MemoryRange { tolerance, shortest: first, horizon };
             let range = element.memory_range(range, &self.evaluations[0].elements[e].inputs);
-            let opened = self.bank.open_element(e, range);
+            let opened = self.equations.bank.open_element(e, range);
             opened.map_err(RunError::of_kernel(&element.name))?;
         }
-        if let Some(control) = &mut self.control {
-            control.open(tolerance, first, horizon)?;
-        }
+        self.equations.open_control(tolerance, first, horizon)?;
         let at_start = cx.system.elements.iter().zip(&self.evaluations[0].elements);
         let stretching = |(element, at): (&Element, &ElementEvaluation)| {
             element.law.as_heated().map_or(0.0, |heated| heated.stretching(&at.point(0.0), 1.0 / horizon))
@@ -205,10 +182,10 @@ impl Recorder {
     pub(crate) fn tell(&mut self, cx: Context, e: usize) {
         for (k, evaluation) in self.evaluations.iter().enumerate() {
             let at = &evaluation.elements[e];
-            self.bank.set(e, k, at.stroke, at.reading.rate, &at.inputs);
+            self.equations.bank.set(e, k, at.stroke, at.reading.rate, &at.inputs);
         }
         let start = self.evaluations[0].elements[e].reading.coordinate;
-        self.bank.set_resolution(e, cx.system.elements[e].resolution(start));
+        self.equations.bank.set_resolution(e, cx.system.elements[e].resolution(start));
     }
 
     /// Makes sure that the evaluation at the start (0) or at the end (1) has all that a row asks for.
@@ -226,25 +203,21 @@ impl Recorder {
     /// # Errors
     /// [`RunError::ControlChatter`]; where the reference of a controller cannot be followed.
     pub(crate) fn commit(&mut self, cx: Context) -> Result<(), RunError> {
-        self.change_branches(cx, true)?;
-        if let Some(control) = &mut self.control {
-            let ends = [0, STAGES].map(|k| &self.evaluations[k]).map(|end| (end.t, &end.q[..], &end.v[..]));
-            control.commit(cx.system, ends)?;
-        }
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[STAGES];
         let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);
-        for e in 0..self.bank.len() {
-            let until = self.bank.energies_until(e, 1.0);
+        for e in 0..self.equations.bank.len() {
+            let until = self.equations.bank.energies_until(e, 1.0);
             // Of an element that takes no part all three are unknown.
-            stored += self.bank.end(e).stored.unwrap_or(f64::NAN);
+            stored += self.equations.bank.end(e).stored.unwrap_or(f64::NAN);
             (dissipated, supplied) = (dissipated + until.0, supplied + until.1);
         }
         let balance = self.balance_of(end, [stored, dissipated, supplied], actuators, joints);
+        let ends = [0, STAGES].map(|k| &self.evaluations[k]).map(|end| (end.t, &end.q[..], &end.v[..]));
+        self.equations.commit(cx, ends, self.settings.end)?;
         self.ledger.turnover.take(&balance);
         self.ledger.actuators += actuators;
         self.ledger.joints += joints;
-        self.bank.commit_account();
         self.evaluations.swap(0, STAGES);
         self.is_whole.swap(0, 1);
         Ok(())
@@ -254,7 +227,7 @@ impl Recorder {
     /// [`RunError::RunAway`] where an element is too hot after the last step.
     pub(crate) fn check_warmth(&self, cx: Context, t: f64) -> Result<(), RunError> {
         for &e in &self.thermal {
-            let temperature = self.bank.warmth(e, None).map_or(0.0, |warmth| warmth.temperature);
+            let temperature = self.equations.bank.warmth(e, None).map_or(0.0, |warmth| warmth.temperature);
             let highest = TEMPERATURE.high;
             if temperature > highest {
                 let element = cx.system.elements[e].name.clone();
@@ -283,12 +256,12 @@ impl Recorder {
         self.is_whole[0] = true;
         // An impulse of the actuators makes the velocities jump; a jump of an input changes what its element stores.
         self.ledger.actuators += right.kinetic - left.kinetic;
-        for e in 0..self.bank.len() {
+        for e in 0..self.equations.bank.len() {
             let was = left.elements[e].point(left.t);
             let is = Point { inputs: &right.elements[e].inputs, ..was };
-            let stored = |at: &Point| self.bank.now(e, at).and_then(|observation| observation.stored);
+            let stored = |at: &Point| self.equations.bank.now(e, at).and_then(|observation| observation.stored);
             if let Some((was, is)) = stored(&was).zip(stored(&is)) {
-                self.bank.add_supplied(e, is - was);
+                self.equations.bank.add_supplied(e, is - was);
             }
         }
         Ok(())
@@ -306,14 +279,14 @@ impl Recorder {
         row: usize,
         snapshot: &mut Snapshot,
     ) -> Result<(), RunError> {
-        self.control(cx, theta, &mut snapshot.evaluation)?;
+        self.equations.complete(cx, theta, &mut snapshot.evaluation)?;
         let Snapshot { evaluation, elements, .. } = snapshot;
         elements.clear();
-        for e in 0..self.bank.len() {
+        for e in 0..self.equations.bank.len() {
             let point = evaluation.elements[e].point(evaluation.t);
             let (observation, (dissipated, input)) = match theta {
-                Some(theta) => (self.bank.at(e, theta, &point), self.bank.energies_until(e, theta)),
-                None => (self.bank.now(e, &point), self.bank.energies(e)),
+                Some(theta) => (self.equations.bank.at(e, theta, &point), self.equations.bank.energies_until(e, theta)),
+                None => (self.equations.bank.now(e, &point), self.equations.bank.energies(e)),
             };
             let observation = match observation {
                 Some(observation) => observation,
@@ -321,10 +294,10 @@ impl Recorder {
             };
             let mut leaves = Vec::new();
             if cx.system.needs_leaves() {
-                self.bank.leaves(e, theta, &point, &mut leaves);
+                self.equations.bank.leaves(e, theta, &point, &mut leaves);
             }
-            let electric = self.bank.electric(e, theta, &point);
-            let warmth = self.bank.warmth(e, theta);
+            let electric = self.equations.bank.electric(e, theta, &point);
+            let warmth = self.equations.bank.warmth(e, theta);
             elements.push(ElementRow { observation, electric, leaves, dissipated, input, warmth });
         }
         let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
@@ -344,13 +317,14 @@ impl Recorder {
 
     /// Whether all energies are known.
     pub(crate) fn knows_energies(&self) -> bool {
-        (0..self.bank.len()).all(|e| self.bank.takes_part(e) && self.bank.is_accounted(e))
+        (0..self.equations.bank.len()).all(|e| self.equations.bank.takes_part(e) && self.equations.bank.is_accounted(e))
     }
 
     /// Whether a row at time t may leave this quantity empty: whatever follows from an infinite force, or from a named scheme, at t = 0, and
     /// energies of which no account is kept.
     pub(crate) fn may_be_unknown(&self, t: f64, quantity: &Quantity) -> bool {
-        let is_unknown_at_start = |e: usize| !self.bank.takes_part(e) || self.bank.begins_singular(e);
+        let is_unknown_at_start =
+            |e: usize| !self.equations.bank.takes_part(e) || self.equations.bank.begins_singular(e);
         match quantity {
             Quantity::GripperError => true,
             Quantity::Energy(_)
@@ -359,26 +333,20 @@ impl Recorder {
             {
                 true
             }
-            _ => t == 0.0 && (0..self.bank.len()).any(is_unknown_at_start),
+            _ => t == 0.0 && (0..self.equations.bank.len()).any(is_unknown_at_start),
         }
     }
 
     /// What outlasts the steps.
     pub(crate) fn state(&self) -> RecorderState {
-        let (elements, evaluation) = (self.bank.kept(), self.evaluations[0].clone());
-        let control = self.control.as_ref().map(|control| control.state());
-        RecorderState { elements, evaluation, is_whole: self.is_whole[0], control, ledger: self.ledger }
+        let (equations, evaluation) = (self.equations.save(), self.evaluations[0].clone());
+        RecorderState { equations, evaluation, is_whole: self.is_whole[0], ledger: self.ledger }
     }
 
     /// Goes on from a state of the same system; `false`, and nothing changed, where it is of another one.
     pub(crate) fn go_on(&mut self, state: RecorderState) -> bool {
-        let RecorderState { elements, evaluation, is_whole, control, ledger } = state;
-        let controls = match (&mut self.control, control) {
-            (None, None) => true,
-            (Some(own), Some(state)) => own.go_on(state),
-            _ => false,
-        };
-        if !controls || !evaluation.has_shape_of(&self.evaluations[0]) || !self.bank.go_on(elements) {
+        let RecorderState { equations, evaluation, is_whole, ledger } = state;
+        if !evaluation.has_shape_of(&self.evaluations[0]) || !self.equations.load(equations) {
             return false;
         }
         self.evaluations[0] = evaluation;

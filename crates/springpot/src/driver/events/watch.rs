@@ -1,6 +1,7 @@
 //! The events of a run or simulation: steps end where they act, somebody is told where they happen.
 
 use super::sides::{Functions, Passage, Sides};
+use crate::driver::roots::{Bracket, MOST_TRIES};
 use crate::driver::time_loop::{Driver, Mark, RowsAhead};
 use crate::equations::context::{Context, Held};
 use crate::methods::stepper::Target;
@@ -9,9 +10,6 @@ use crate::system::error::RunError;
 use crate::system::settings::{Settings, Stop};
 use crate::system::{Action, Event, Setting};
 use serde::{Deserialize, Serialize};
-
-/// Tries to end a step where an event acts.
-const MOST_TRIES: usize = 40;
 
 /// Times that differ by less than this share of their step are one.
 const ONE_TIME: f64 = 1e-12;
@@ -145,7 +143,7 @@ impl Watch {
         if events.is_empty() {
             return Ok(());
         }
-        let (mut low, mut high) = (driver.t(), f64::INFINITY);
+        let mut bracket = Bracket::new(driver.t());
         let (mut wanted, mut asked) = (None, f64::INFINITY);
         for tried in 0.. {
             // What changes at the start of a step is crossed first.
@@ -168,20 +166,21 @@ impl Watch {
                     return Ok(());
                 }
                 Some(first) => {
-                    (high, wanted) = (step.to, Some(first.event));
+                    bracket.is_before(step.to);
+                    wanted = Some(first.event);
                     first.t
                 }
                 None => {
-                    low = step.to;
+                    bracket.is_behind(step.to);
                     step.to + wanted.map_or(Ok(0.0), |event| self.functions.ahead(cx, driver, &step, event))?
                 }
             };
             let Some(event) = wanted else { return Ok(()) };
-            let is_here = (next - step.to).abs() <= near || high - low <= near;
+            let is_here = (next - step.to).abs() <= near || bracket.is_closed(near);
             if is_here || tried >= MOST_TRIES {
                 return self.end_at(system, driver, &step, event, passages, sides);
             }
-            asked = if low < next && next < high { next } else { 0.5 * (low + high) };
+            asked = bracket.next(Some(next));
             driver.take_back(before);
             driver.advance(cx, asked, rows, &mut || false)?;
         }

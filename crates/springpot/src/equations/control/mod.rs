@@ -16,6 +16,7 @@ pub(crate) use guards::ControlSeen;
 pub(crate) use mode::Guard;
 pub(crate) use row::Misread;
 pub(crate) use sampler::{Sampler, SamplerState, Shown};
+pub(crate) use step::End;
 
 use crate::collocation::STAGES;
 use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, TorqueSlopes};

@@ -2,7 +2,6 @@
 
 use super::eye::Eye;
 use super::{ControlRun, LawRun, Target, at, input};
-use crate::actuation::Drive;
 use crate::control::Feedback;
 use crate::dynamics::Kinematics;
 use crate::elements::ElementBank;
@@ -223,12 +222,9 @@ fn seen(law: &Feedback, cx: Context, kinematics: &Kinematics, evaluation: &Evalu
 /// What signals and `torque` (nv) say together, in the place of what drives the joints; where that is not known, it stays so.
 fn add(cx: Context, torque: &[f64], evaluation: &mut Evaluation) {
     let Motion::Forward(forward) = &cx.system.motion else { return };
-    for (j, drive) in cx.system.model.own_joints().zip(&forward.drives) {
-        let Drive::Force(signals) = drive else { continue };
-        for (k, signal) in cx.system.model.v_range(j).zip(signals) {
-            if let Some(driven) = &mut evaluation.driven[k] {
-                *driven = cx.force(k, signal, evaluation.t) + if cx.holds_force(k) { 0.0 } else { torque[k] };
-            }
+    for (k, signal) in forward.forces(&cx.system.model) {
+        if let Some(driven) = &mut evaluation.driven[k] {
+            *driven = cx.force(k, signal, evaluation.t) + if cx.holds_force(k) { 0.0 } else { torque[k] };
         }
     }
 }

@@ -4,12 +4,12 @@ use super::rub::SLACK;
 use super::step::Place;
 use crate::actuation::Forward;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
+use crate::equations::Solve;
 use crate::equations::context::Context;
 use crate::equations::coulomb::{Candidate, Coulomb};
 use crate::equations::drives::drive;
 use crate::equations::evaluate::{Evaluation, Scratch};
 use crate::equations::resistance::holding_forces;
-use crate::linalg::Lu;
 use crate::model::Model;
 use crate::system::error::RunError;
 
@@ -65,7 +65,7 @@ pub(super) struct Accelerator {
     kinematics: Kinematics,
     workspace: Workspace,
     mass: Vec<f64>,
-    lu: Lu,
+    solve: Solve,
     free: Vec<usize>,
     /// What friction that sticks can hold at every velocity.
     limits: Vec<f64>,
@@ -79,7 +79,7 @@ impl Accelerator {
             kinematics: Kinematics::new(model),
             workspace: Workspace::new(model),
             mass: vec![0.0; model.nv() * model.nv()],
-            lu: Lu::default(),
+            solve: Solve::default(),
             free: forward.free_velocities(model),
             limits: holding_forces(model),
             coulomb: Coulomb::default(),
@@ -113,8 +113,8 @@ impl Accelerator {
         }
         self.kinematics.update_position(model, &evaluation.q);
         crba_into(model, &self.kinematics, &mut self.workspace, &mut self.mass);
-        if self.lu.factor_part(model.nv(), &self.mass, &self.free) {
-            self.lu.solve(&mut push);
+        if self.solve.factor_part(&self.mass, model.nv(), &self.free) {
+            self.solve.solve(&mut push);
             self.hold(t, model, evaluation, &mut push)?;
         }
         for (push, &k) in push.iter().zip(&self.free) {
@@ -125,7 +125,7 @@ impl Accelerator {
 
     /// Takes the friction that sticks off the accelerations `a` of the joints at rest.
     fn hold(&mut self, t: f64, model: &Model, evaluation: &Evaluation, a: &mut [f64]) -> Result<(), RunError> {
-        let Self { free, limits, coulomb, lu, .. } = self;
+        let Self { free, limits, coulomb, solve, .. } = self;
         coulomb.candidates.clear();
         for (place, &k) in free.iter().enumerate().filter(|(_, k)| limits[**k] > 0.0 && evaluation.v[**k] == 0.0) {
             coulomb.candidates.push(Candidate { place, limit: limits[k], slack: SLACK * limits[k], offset: 0.0 });
@@ -133,7 +133,7 @@ impl Accelerator {
         if coulomb.candidates.is_empty() {
             return Ok(());
         }
-        let outcome = coulomb.solve(lu, a);
+        let outcome = coulomb.solve(solve, a);
         outcome.map_err(|c| {
             let k = free[coulomb.candidates[c].place];
             RunError::NoHold { t, joint: model.v_labels()[k].name.clone() }

@@ -13,7 +13,7 @@ use crate::equations::evaluate::Evaluation;
 use crate::equations::resistance::joint_loss;
 use crate::fractional::Form;
 use crate::law::Course;
-use crate::methods::stepper::{Stepper, Target, Trial};
+use crate::methods::stepper::{Stepper, Target};
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::fixed_step::FixedStep;
@@ -89,7 +89,7 @@ impl Fixed {
 
     /// Fills the evaluations at the nodes of the ledger as far as it asks for them.
     fn fill_evaluations(&self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<(), RunError> {
-        let (step, bank) = (&self.step, &recorder.bank);
+        let (step, bank) = (&self.step, &recorder.equations.bank);
         for (evaluation, c) in recorder.evaluations[1..].iter_mut().zip(RADAU_NODES) {
             let at = if c == 1.0 { target.to } else { target.from + c * target.size };
             if self.has_paths {
@@ -115,25 +115,10 @@ impl Fixed {
         Ok(())
     }
 
-    /// Powers of actuators and joints at the start and at the nodes, elements with the force of the step.
-    fn fill_powers(&self, recorder: &mut Recorder) {
-        for (k, evaluation) in recorder.evaluations.iter().enumerate() {
-            let of_joint = |j: usize| {
-                let computed = || {
-                    let pull = self.step.forces.values().iter().zip(&evaluation.elements);
-                    evaluation.rigid[j] + pull.map(|(force, at)| force * at.gradient[j]).sum::<f64>()
-                };
-                evaluation.driven[j].unwrap_or_else(computed)
-            };
-            let moving = evaluation.v.iter().enumerate().filter(|(_, v)| **v != 0.0);
-            recorder.powers.actuators[k] = moving.map(|(j, v)| of_joint(j) * v).sum();
-            recorder.powers.joints[k] = evaluation.joint_loss;
-        }
-    }
-
     /// Accelerations and all else that a row asks for, at the start (0) or at the end (1) of the step.
     fn accelerate(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
-        let Recorder { evaluations, bank, scratch, is_whole, .. } = recorder;
+        let Recorder { evaluations, equations, scratch, is_whole, .. } = recorder;
+        let bank = &equations.bank;
         let evaluation = &mut evaluations[end * STAGES];
         let force = |e: usize, evaluation: &Evaluation| match end {
             0 => bank.now(e, &evaluation.elements[e].point(evaluation.t)).map_or(0.0, |now| now.finite_force()),
@@ -156,8 +141,8 @@ impl Stepper for Fixed {
 
     fn set_up(&self, recorder: &mut Recorder) {
         recorder.takes_elements_work = false;
-        recorder.bank.set_course(Course::Sought);
-        (0..recorder.bank.len()).for_each(|e| recorder.bank.set_form(e, Form::Strokes));
+        recorder.equations.bank.set_course(Course::Sought);
+        (0..recorder.equations.bank.len()).for_each(|e| recorder.equations.bank.set_form(e, Form::Strokes));
     }
 
     fn start(&mut self, cx: Context, recorder: &mut Recorder, _: &Agenda) -> Result<f64, RunError> {
@@ -167,7 +152,7 @@ impl Stepper for Fixed {
         cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
         recorder.begin(cx)?;
         self.accelerate(cx, recorder, 0)?;
-        if recorder.bank.has_singular() {
+        if recorder.equations.bank.has_singular() {
             let [evaluation, ..] = &mut recorder.evaluations;
             evaluation.a.fill(f64::NAN);
             evaluation.driven.fill(None);
@@ -175,18 +160,18 @@ impl Stepper for Fixed {
         Ok(self.by.step)
     }
 
-    fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError> {
-        self.step.attempt(cx, &mut recorder.bank, target.to, target.size)?;
+    fn solve(&mut self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<Result<f64, f64>, RunError> {
+        self.step.attempt(cx, &mut recorder.equations.bank, target.to, target.size)?;
         self.newton_iterations += u64::from(ITERATIONS);
-        self.tell_ledger(cx, &mut recorder.bank, &target);
-        self.fill_evaluations(cx, recorder, &target)?;
-        (0..recorder.bank.len()).for_each(|e| _ = recorder.bank.account(e));
+        self.tell_ledger(cx, &mut recorder.equations.bank, target);
+        self.fill_evaluations(cx, recorder, target)?;
+        (0..recorder.equations.bank.len()).for_each(|e| _ = recorder.equations.bank.account(e));
         recorder.is_whole[1] = false;
         if self.has_paths {
             self.accelerate(cx, recorder, 1)?;
         }
-        self.fill_powers(recorder);
-        Ok(Trial::Accepted { step: target, next: self.by.step })
+        recorder.take_powers(|_, e, _| self.step.forces.values()[e]);
+        Ok(Ok(self.by.step))
     }
 
     fn complete(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
@@ -207,7 +192,7 @@ impl Stepper for Fixed {
         let step = &self.step;
         // Of a singular start there are none.
         let first = if start.a.iter().all(|a| a.is_finite()) { &start.a } else { &step.a };
-        let h = recorder.bank.size();
+        let h = recorder.equations.bank.size();
         let within = Between::new(cx, &step.forward, [&step.origin, &step.end], [first, &end.a], h);
         within.place(at, theta, evaluation);
         Ok(())
@@ -225,7 +210,7 @@ impl Stepper for Fixed {
         cx.fill(at, at, None, &mut recorder.scratch, evaluation)
     }
 
-    fn accept(&mut self, _: Context, _: &Recorder, _: &Target) -> Result<(), RunError> {
+    fn accept(&mut self, _: Context, _: &mut Recorder, _: &Target) -> Result<(), RunError> {
         self.step.accept();
         Ok(())
     }

@@ -1,14 +1,15 @@
 //! One step of a fixed-step method: one stage, a fixed number of Newton iterations.
 
 use super::element_step::ElementStep;
-use crate::actuation::{Drive, Forward};
+use crate::actuation::Forward;
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{ElementBank, Forces};
+use crate::equations::Solve;
 use crate::equations::context::Context;
 use crate::equations::coulomb::Coulomb;
+use crate::equations::drives::force_at;
 use crate::equations::resistance::{add_secants, add_smooth_resistance, holding_forces};
 use crate::law::Response;
-use crate::linalg::Lu;
 use crate::model::Model;
 use crate::system::error::RunError;
 use crate::system::fixed_step::Method;
@@ -53,7 +54,7 @@ pub(super) struct OneStage {
     drives: Vec<f64>,
     workspace: Workspace,
     slopes: RneaDerivatives,
-    pub(super) newton: Lu,
+    pub(super) newton: Solve,
     pub(super) residual: Vec<f64>,
     tau: Vec<f64>,
     pub(super) forces: Forces,
@@ -73,13 +74,10 @@ impl OneStage {
         let mut start =
             Place { t: 0.0, q: forward.q.clone(), v: forward.v.clone(), kinematics: Kinematics::new(model) };
         let mut a = vec![0.0; nv];
-        for (j, drive) in model.own_joints().zip(&forward.drives) {
+        forward.locked(model).for_each(|j| start.v[model.v_range(j)].fill(0.0));
+        for (j, path) in forward.paths(model) {
             let (q, v) = (model.q_range(j), model.v_range(j));
-            match drive {
-                Drive::Force(_) => {}
-                Drive::Prescribed(path) => path.at(0.0, &mut start.q[q], &mut start.v[v.clone()], &mut a[v]),
-                Drive::Locked => start.v[v].fill(0.0),
-            }
+            path.at(0.0, &mut start.q[q], &mut start.v[v.clone()], &mut a[v]);
         }
         start.kinematics.update_velocity(model, &start.q, &start.v);
         let elements = system.elements.iter().map(|element| ElementStep::new(element, model, &start.kinematics));
@@ -97,7 +95,7 @@ impl OneStage {
             drives: vec![0.0; free.len()],
             workspace: Workspace::new(model),
             slopes: RneaDerivatives::new(model),
-            newton: Lu::default(),
+            newton: Solve::default(),
             residual: vec![0.0; free.len()],
             tau: vec![0.0; nv],
             forces: Forces::with_room_for(system.elements.iter().map(|element| &element.measure)),
@@ -110,7 +108,7 @@ impl OneStage {
         };
         // Room for the factors, so that no step allocates.
         let count = stepper.free.len();
-        stepper.newton.factor(count, |matrix| (0..count).for_each(|k| matrix[k * count + k] = 1.0));
+        stepper.newton.reserve(count);
         stepper.coulomb.reserve(stepper.rubbing().count(), count);
         Ok(stepper)
     }
@@ -167,41 +165,16 @@ impl OneStage {
     }
 
     fn take_drives(&mut self, cx: Context, t: f64) -> Result<(), RunError> {
-        let mut place = 0;
-        for (j, drive) in self.model.own_joints().zip(&self.forward.drives) {
-            let (q, v) = (self.model.q_range(j), self.model.v_range(j));
-            match drive {
-                Drive::Force(signals) => {
-                    for (k, signal) in v.zip(signals) {
-                        let force = cx.force(k, signal, t);
-                        if !force.is_finite() {
-                            let what = format!("tau.{}", self.model.v_labels()[k].name);
-                            return Err(RunError::NotFinite { t, what, value: force });
-                        }
-                        self.drives[place] = force;
-                        place += 1;
-                    }
-                }
-                Drive::Prescribed(path) => {
-                    let (stage, end) = (&mut self.stage, &mut self.end);
-                    // The accelerations at the end are not asked for.
-                    path.at(end.t, &mut end.q[q.clone()], &mut end.v[v.clone()], &mut self.a[v.clone()]);
-                    path.at(t, &mut stage.q[q], &mut stage.v[v.clone()], &mut self.a[v]);
-                    self.check_prescribed(t, j)?;
-                }
-                Drive::Locked => self.a[v].fill(0.0),
-            }
+        let (model, stage, end) = (&self.model, &mut self.stage, &mut self.end);
+        for (drive, (k, signal)) in self.drives.iter_mut().zip(self.forward.forces(model)) {
+            *drive = force_at(cx, k, signal, t)?;
         }
-        Ok(())
-    }
-
-    fn check_prescribed(&self, t: f64, j: usize) -> Result<(), RunError> {
-        let (q, v) = (&self.stage.q[self.model.q_range(j)], self.model.v_range(j));
-        let all = q.iter().chain(&self.stage.v[v.clone()]).chain(&self.a[v]);
-        match all.copied().find(|x| !x.is_finite()) {
-            Some(value) => Err(RunError::NotFinite { t, what: format!("q.{}", self.model.joint_names()[j]), value }),
-            None => Ok(()),
+        for j in self.forward.locked(model) {
+            self.a[model.v_range(j)].fill(0.0);
         }
+        // The accelerations at the end are not asked for.
+        self.forward.take_paths(model, end.t, &mut end.q, &mut end.v, &mut self.a)?;
+        self.forward.take_paths(model, t, &mut stage.q, &mut stage.v, &mut self.a)
     }
 
     /// Places the stage and the end under the accelerations.
@@ -311,9 +284,7 @@ impl OneStage {
 
 /// Takes the places of all joints but those that signals move.
 fn take_moved(model: &Model, forward: &Forward, moved: &[f64], q: &mut [f64]) {
-    for (j, drive) in model.own_joints().zip(&forward.drives) {
-        if !matches!(drive, Drive::Prescribed(_)) {
-            q[model.q_range(j)].copy_from_slice(&moved[model.q_range(j)]);
-        }
+    for j in forward.forced(model).map(|(j, _)| j).chain(forward.locked(model)) {
+        q[model.q_range(j)].copy_from_slice(&moved[model.q_range(j)]);
     }
 }

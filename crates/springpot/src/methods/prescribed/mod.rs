@@ -10,8 +10,8 @@ use crate::collocation::{RADAU_NODES, RADAU_WEIGHTS, STAGES};
 use crate::elements::NoDirection;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
-use crate::equations::kinks::{FROM_BEHIND, Kinks, Seen};
-use crate::equations::on_grid;
+use crate::equations::kinks::Seen;
+use crate::equations::{Change, Look, Scale, on_grid};
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
@@ -39,9 +39,6 @@ const SHRINKS: f64 = 0.5;
 /// Rounding of a stroke, in units of its largest value: signals that begin at nothing are differences of what is that large.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Tries to end a step on a kink of a force.
-const MOST_TRIES: usize = 40;
-
 /// Exponent of the energy estimate, whose order is that of the third difference.
 const ENERGY_EXPONENT: f64 = 0.25;
 
@@ -57,8 +54,8 @@ pub(crate) struct Prescribed {
     since: f64,
     /// Velocities at which friction sticks: their power has a kink where they turn round.
     rubbing: Vec<usize>,
-    /// Kinks of the elements' forces.
-    kinks: Kinks,
+    /// Error of the step that was evaluated last.
+    error: StepError,
     /// The first evaluation behind the step that was worked out.
     behind: Option<Evaluation>,
     /// Where the last step that was refused starts, and how far each stroke was then from the integral of its rates, m.
@@ -86,6 +83,8 @@ struct StepError {
 }
 
 impl StepError {
+    const NONE: Self = Self { memory: 0.0, alpha: 0.0, element: None, energy: 0.0 };
+
     fn accepted(&self) -> bool {
         self.memory <= 1.0 && self.energy <= 1.0
     }
@@ -103,9 +102,17 @@ impl StepError {
 impl Prescribed {
     pub(crate) fn new(cx: Context, trajectory: &Arc<Trajectory>) -> Self {
         let rubbing = reversal::rubbing(&cx.system.model);
-        let kinks = Kinks::of(cx.system);
         let (trajectory, largest) = (trajectory.clone(), vec![0.0; cx.system.elements.len()]);
-        Self { trajectory, energy_floor: 0.0, largest, since: 0.0, rubbing, kinks, behind: None, refused: None }
+        Self {
+            trajectory,
+            energy_floor: 0.0,
+            largest,
+            since: 0.0,
+            rubbing,
+            error: StepError::NONE,
+            behind: None,
+            refused: None,
+        }
     }
 
     /// What the next step takes over from those before.
@@ -122,34 +129,6 @@ impl Prescribed {
         let rows = recorder.settings.rows.clone();
         recorder.grid = on_grid::derivatives(cx, &self.trajectory, &rows, &mut recorder.scratch)?;
         Ok(())
-    }
-
-    /// Takes a lower bound of the energy that the motion turns over, and the largest strokes, from 65 samples of it.
-    fn look_ahead(&mut self, cx: Context, recorder: &mut Recorder) {
-        let end = recorder.settings.end;
-        let mut evaluation = Evaluation::new(cx.system);
-        let (mut potential, mut kinetic) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0f64);
-        let mut strokes = vec![[f64::INFINITY, f64::NEG_INFINITY]; cx.system.elements.len()];
-        let mut forces = vec![0.0f64; cx.system.elements.len()];
-        for k in 0..=64 {
-            let t = end * k as f64 / 64.0;
-            if cx.evaluate(&self.trajectory, t, t, &mut recorder.scratch, &mut evaluation).is_err() {
-                break;
-            }
-            let widen = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
-            kinetic = kinetic.max(evaluation.kinetic);
-            widen(&mut potential, evaluation.potential);
-            for (e, state) in evaluation.elements.iter().enumerate() {
-                widen(&mut strokes[e], state.stroke);
-                let element = &cx.system.elements[e];
-                if let Ok(law) = element.law.begin(&element.start(element.rest, &state.inputs)) {
-                    forces[e] = forces[e].max(element.law.estimate(&state.point(t), &law, 1.0 / end).abs());
-                }
-            }
-        }
-        let elements: f64 = strokes.iter().zip(forces).map(|(range, force)| (range[1] - range[0]) * force).sum();
-        self.energy_floor = kinetic + (potential[1] - potential[0]).max(0.0) + elements.max(0.0);
-        self.largest = strokes.iter().map(|[low, high]| low.abs().max(high.abs())).collect();
     }
 
     /// Evaluates the step without keeping it; an element that turns over on the way is asked for a shorter one.
@@ -169,17 +148,17 @@ impl Prescribed {
             recorder.powers.actuators[k] = evaluation.rigid_power();
             recorder.powers.joints[k] = evaluation.joint_loss;
         }
-        let mut error = StepError { memory: 0.0, alpha: 0.0, element: None, energy: 0.0 };
-        recorder.bank.start(t, h);
+        let mut error = StepError::NONE;
+        recorder.equations.bank.start(t, h);
         for e in 0..cx.system.elements.len() {
             recorder.tell(cx, e);
             let noise = self.noise(recorder, e, t) + self.rounding(recorder, e);
-            recorder.bank.set_resolution(e, recorder.bank.resolution(e) + noise);
-            if !recorder.bank.account(e) {
+            recorder.equations.bank.set_resolution(e, recorder.equations.bank.resolution(e) + noise);
+            if !recorder.equations.bank.account(e) {
                 continue;
             }
             recorder.add_actuator_power(e);
-            if !recorder.bank.response(e).force.iter().all(|force| force.is_finite()) {
+            if !recorder.equations.bank.response(e).force.iter().all(|force| force.is_finite()) {
                 // A law that finds no force asks for a shorter step.
                 return Ok(StepError { memory: 1e3, alpha: 0.0, element: Some(e), energy: 0.0 });
             }
@@ -190,41 +169,6 @@ impl Prescribed {
         }
         error.energy = recorder.energy_error(h, self.energy_floor);
         Ok(error)
-    }
-
-    /// The step that was evaluated with `error`, or the part of it up to the first kink of a force.
-    fn end_on_kink(
-        &mut self,
-        cx: Context,
-        recorder: &mut Recorder,
-        whole: Target,
-        error: StepError,
-    ) -> Result<(Target, StepError), RunError> {
-        let (mut step, mut error, t) = (whole, error, whole.from);
-        let (mut low, mut high, mut wanted, mut from_behind) = (t, f64::INFINITY, None, 0);
-        for _ in 0..MOST_TRIES {
-            let next = match (self.kinks.look(&recorder.bank, |_| 0.0), wanted) {
-                (Seen::AtEnd, _) | (Seen::Nothing, None) => break,
-                (Seen::Nothing, Some(kink)) => {
-                    (low, from_behind) = (step.to, 0);
-                    let [at_end, before] = [1.0, 0.999].map(|theta| self.kinks.value(&recorder.bank, kink, theta));
-                    step.to + 0.001 * step.size * at_end / (before - at_end)
-                }
-                (Seen::Within(theta, kink), _) => {
-                    (high, wanted, from_behind) = (step.to, Some(kink), from_behind + 1);
-                    // Where the time is too short to tell, a few bits on.
-                    (t + theta * step.size).max(t + 4.0 * f64::EPSILON * t)
-                }
-            };
-            if high - low <= 4.0 * f64::EPSILON * high {
-                break;
-            }
-            // Behind a kink a guard may hardly move, and tells little of where it is.
-            let to = if from_behind < FROM_BEHIND && low < next && next < high { next } else { 0.5 * (low + high) };
-            step = Target { to, size: to - t, behind: Behind::Step, ..step };
-            error = self.evaluate(cx, recorder, &step)?;
-        }
-        Ok((step, error))
     }
 
     /// Noise of stroke `e`, m: what does not shrink with the step, within what the path is solved to. Near singular configurations its
@@ -239,9 +183,9 @@ impl Prescribed {
 
     /// What rounding of the signals, and of the time that they are told, does to stroke `e`, m.
     fn rounding(&self, recorder: &Recorder, e: usize) -> f64 {
-        let [_, rates] = recorder.bank.told(e);
+        let [_, rates] = recorder.equations.bank.told(e);
         let fastest = rates.iter().fold(0.0f64, |fastest, rate| fastest.max(rate.abs()));
-        ROUNDING * (self.largest[e] + recorder.bank.from() * fastest)
+        ROUNDING * (self.largest[e] + recorder.equations.bank.from() * fastest)
     }
 
     /// The first evaluation behind a kink, to which coordinates must not jump from that at index `from` of the recorder.
@@ -283,9 +227,9 @@ impl Prescribed {
 
 /// How far stroke `e` at the end of the step is from the integral of its rates, m: of order h⁶ where the motion is smooth.
 fn gap(recorder: &Recorder, e: usize) -> f64 {
-    let [strokes, rates] = recorder.bank.told(e);
+    let [strokes, rates] = recorder.equations.bank.told(e);
     let travel: f64 = rates[1..].iter().zip(RADAU_WEIGHTS).map(|(rate, weight)| rate * weight).sum();
-    (strokes[STAGES] - strokes[0] - recorder.bank.size() * travel).abs()
+    (strokes[STAGES] - strokes[0] - recorder.equations.bank.size() * travel).abs()
 }
 
 /// An element whose points passed each other between two nodes, or that passed half a turn.
@@ -314,7 +258,8 @@ impl Stepper for Prescribed {
         let settings = recorder.settings.clone();
         cx.evaluate(&self.trajectory, 0.0, 0.0, &mut recorder.scratch, &mut recorder.evaluations[0])?;
         recorder.grid = on_grid::derivatives(cx, &self.trajectory, &settings.rows, &mut recorder.scratch)?;
-        self.look_ahead(cx, recorder);
+        let Scale { energy, strokes } = cx.scale_of(&self.trajectory, settings.end, &mut recorder.scratch);
+        (self.energy_floor, self.largest) = (energy, strokes);
         recorder.begin(cx)?;
         let first = settings.first_step.unwrap_or(self.longest_step(cx, &settings) * FIRST_STEP);
         Ok(agenda.reach(0.0, first.min(settings.end)))
@@ -324,24 +269,34 @@ impl Stepper for Prescribed {
         self.trajectory.reach(t, h)
     }
 
-    fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError> {
-        let mut step = target;
-        let mut error = self.evaluate(cx, recorder, &step)?;
-        if let Some(to) = self.first_reversal(cx, recorder, &step)? {
-            step = Target { to, size: to - step.from, behind: Behind::Step, ..step };
-            error = self.evaluate(cx, recorder, &step)?;
+    fn solve(&mut self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<Result<f64, f64>, RunError> {
+        self.error = self.evaluate(cx, recorder, target)?;
+        Ok(Ok(target.size))
+    }
+
+    fn look(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<Look, RunError> {
+        if let Some(theta) = self.first_reversal(cx, recorder, step)? {
+            return Ok(Look::Within(theta, Change::Reversal));
         }
-        (step, error) = self.end_on_kink(cx, recorder, step, error)?;
-        let next = step.size * error.factor();
-        if !error.accepted() {
+        Ok(match recorder.equations.look_for_kinks(step.size, &[]) {
+            Seen::Nothing => Look::Nothing,
+            Seen::Within(theta, kink) => Look::Within(theta, Change::Kink(kink)),
+            Seen::AtEnd => Look::AtEnd,
+        })
+    }
+
+    fn value(&mut self, _: Context, recorder: &mut Recorder, _: &Target, change: Change, theta: f64) -> f64 {
+        let Change::Kink(kink) = change else { return 0.0 };
+        recorder.equations.value_of_kink(kink, theta)
+    }
+
+    fn judge(&mut self, cx: Context, recorder: &mut Recorder, step: Target, _: f64) -> Result<Trial, RunError> {
+        let next = step.size * self.error.factor();
+        if !self.error.accepted() {
             self.refused = Some((step.from, (0..cx.system.elements.len()).map(|e| gap(recorder, e)).collect()));
             let size = next.min(0.7 * step.size);
-            let end = recorder.settings.end;
-            return if size < SHORTEST_STEP * end {
-                Err(self.step_too_small(cx, &step, &error, end))
-            } else {
-                Ok(Trial::Rejected { size })
-            };
+            let too_small = self.gives_up(cx, recorder, &step, size);
+            return too_small.map_or(Ok(Trial::Rejected { size }), Err);
         }
         // Before any row is written, since a jump must leave none behind.
         self.behind = match step.behind {
@@ -349,6 +304,11 @@ impl Stepper for Prescribed {
             _ => None,
         };
         Ok(Trial::Accepted { step, next })
+    }
+
+    fn gives_up(&self, cx: Context, recorder: &Recorder, step: &Target, size: f64) -> Option<RunError> {
+        let end = recorder.settings.end;
+        (size < SHORTEST_STEP * end).then(|| self.step_too_small(cx, step, &self.error, end))
     }
 
     fn place(
@@ -373,7 +333,7 @@ impl Stepper for Prescribed {
         cx.evaluate(&self.trajectory, at, at, &mut recorder.scratch, evaluation)
     }
 
-    fn accept(&mut self, _: Context, _: &Recorder, _: &Target) -> Result<(), RunError> {
+    fn accept(&mut self, _: Context, _: &mut Recorder, _: &Target) -> Result<(), RunError> {
         Ok(())
     }
 

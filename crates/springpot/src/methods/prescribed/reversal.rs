@@ -23,7 +23,7 @@ pub(super) fn rubbing(model: &Model) -> Vec<usize> {
 }
 
 impl Prescribed {
-    /// The first time in the step that was just evaluated at which a joint turns round against friction that sticks.
+    /// The first θ in the step that was just evaluated at which a joint turns round against friction that sticks.
     pub(super) fn first_reversal(
         &self,
         cx: Context,
@@ -76,6 +76,6 @@ impl Prescribed {
             }
             first = Some(first.map_or(zero, |first| first.min(zero)));
         }
-        Ok(first.map(|theta| t + theta * h).filter(|turn| t < *turn && *turn < to))
+        Ok(first.filter(|theta| t < t + theta * h && t + theta * h < to))
     }
 }

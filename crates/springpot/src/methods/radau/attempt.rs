@@ -4,7 +4,6 @@ use super::method::Radau;
 use super::newton::Outcome;
 use crate::account::recorder::Recorder;
 use crate::collocation::STAGES;
-use crate::elements::NoDirection;
 use crate::equations::context::Context;
 use crate::equations::kinks::Seen;
 use crate::methods::stepper::Target;
@@ -47,24 +46,23 @@ impl Radau {
         target: &Target,
     ) -> Result<Result<f64, f64>, RunError> {
         let Target { from: t, size: h, .. } = *target;
-        self.step.energy = recorder.turned_over();
-        let outcome =
-            self.step.attempt(cx, &mut recorder.bank, recorder.control.as_deref_mut(), h, target.end_inputs())?;
+        self.step.errors.energy = recorder.turned_over();
+        let outcome = self.step.attempt(cx, &mut recorder.equations, h, target.end_inputs())?;
         let (mut error, mut worst, iterations) = match outcome {
             Outcome::Diverged { iterations, worst } => (f64::INFINITY, Worst::Newton(worst), iterations),
             Outcome::Converged { iterations } => {
-                let (error, worst) = self.step.estimate(&recorder.bank, recorder.control.as_deref(), h);
+                let (error, worst) = self.step.estimate(&recorder.equations, h);
                 (error, Worst::Velocity(worst), iterations)
             }
         };
         self.newton_iterations += u64::from(iterations);
-        if let Some((e, _)) = self.lost() {
+        if let Some((e, _)) = recorder.equations.lost() {
             (error, worst) = (f64::INFINITY, Worst::Element(e));
         }
         self.refuse_overflow(t, h)?;
         if error <= 1.0 {
             self.evaluate_step(cx, recorder, target)?;
-            let whole = self.has_paths || self.step.stick.holds_any();
+            let whole = self.has_paths || recorder.equations.holds_any();
             if whole || self.has_inner_variables {
                 (error, worst) = self.recorder_error(cx, recorder, h, whole, (error, worst));
             }
@@ -75,12 +73,12 @@ impl Radau {
                 h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
             // Where a kink makes the error, a step up to it has none of that.
             if error.is_finite()
-                && let Seen::Within(theta, _) = self.kinks.look(&recorder.bank, |e| self.step.stroke_noise(e, h))
+                && let Seen::Within(theta, _) = recorder.equations.look_for_kinks(h, &self.step.errors.noise)
             {
                 smaller = smaller.max((1.01 * theta).min(0.9) * h);
             }
             if is_too_short(target, smaller, recorder.settings.end) {
-                return Err(self.step_too_small(cx, t, h, error, worst));
+                return Err(step_too_small(cx, recorder, (t, h), error, worst));
             }
             return Ok(Err(smaller));
         }
@@ -113,18 +111,20 @@ impl Radau {
         whole: bool,
         (mut error, mut worst): (f64, Worst),
     ) -> (f64, Worst) {
+        let (equations, sizes) = (&recorder.equations, &self.step.errors.sizes);
         // Beside a singular start there is no ledger, and what the actuators do against it is integrated by its moments.
-        let counts = !self.step.is_singular && (whole || self.has_inner_strokes);
+        let counts = !equations.is_singular() && (whole || self.has_inner_strokes);
         let energy = if counts { recorder.energy_error(h, 0.0) } else { 0.0 };
         if energy > error {
             (error, worst) = (energy, Worst::Energy);
         }
-        for (e, element) in cx.system.elements.iter().enumerate() {
-            let errors = if whole { usize::MAX } else { element.law.hidden_errors() };
+        for e in 0..cx.system.elements.len() {
+            let errors = if whole { usize::MAX } else { equations.bank.hidden_errors(e) };
             if errors == 0 {
                 continue;
             }
-            let (share, order) = recorder.memory_error(e, errors, self.step.coming_rate(e, h), self.step.sizes.since());
+            let coming = equations.coming_rate(e, |k| sizes.coming(k, self.step.origin.t + h));
+            let (share, order) = recorder.memory_error(e, errors, coming, sizes.since());
             let memory = share.powf(1.0 / (EXPONENT * (4.0 - order)));
             if memory > error {
                 (error, worst) = (memory, Worst::Element(e));
@@ -132,25 +132,19 @@ impl Radau {
         }
         (error, worst)
     }
+}
 
-    /// The first element that lost its direction in the step.
-    fn lost(&self) -> Option<(usize, NoDirection)> {
-        self.step.elements.iter().enumerate().find_map(|(e, element)| Some((e, element.lost()?)))
+fn step_too_small(cx: Context, recorder: &Recorder, (t, h): (f64, f64), error: f64, worst: Worst) -> RunError {
+    let system = cx.system;
+    let joint = |k: usize| system.model.v_labels()[k].name.clone();
+    if let Some((e, why)) = recorder.equations.lost() {
+        return system.elements[e].without_direction(t, why);
     }
-
-    fn step_too_small(&self, cx: Context, t: f64, h: f64, error: f64, worst: Worst) -> RunError {
-        let system = cx.system;
-        let joint = |k: usize| system.model.v_labels()[k].name.clone();
-        if let Some((e, why)) = self.lost() {
-            return system.elements[e].without_direction(t, why);
-        }
-        match worst {
-            Worst::Velocity(k) => RunError::StepTooSmall { t, h, error, subject: format!("joint \"{}\"", joint(k)) },
-            Worst::Element(e) => {
-                RunError::StepTooSmall { t, h, error, subject: format!("element \"{}\"", system.elements[e].name) }
-            }
-            Worst::Energy => RunError::StepTooSmall { t, h, error, subject: "the energy ledger".to_owned() },
-            Worst::Newton(k) => RunError::NoConvergence { t, h, joint: joint(k) },
-        }
-    }
+    let subject = match worst {
+        Worst::Velocity(k) => format!("joint \"{}\"", joint(k)),
+        Worst::Element(e) => format!("element \"{}\"", system.elements[e].name),
+        Worst::Energy => "the energy ledger".to_owned(),
+        Worst::Newton(k) => return RunError::NoConvergence { t, h, joint: joint(k) },
+    };
+    RunError::StepTooSmall { t, h, error, subject }
 }

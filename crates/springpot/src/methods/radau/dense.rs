@@ -1,20 +1,16 @@
 //! Positions, velocities and accelerations inside a step.
 
 use super::step::RadauStep;
-use crate::actuation::Drive;
-use crate::elements::ElementBank;
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
-use crate::law::InputValue;
+use crate::equations::{Equations, Within};
 use crate::model::JointKind;
 
 /// The step just fitted as a function of time: the cubic through the regular accelerations at its start and its nodes, integrated
 /// twice, and the share of singular starts, integrated exactly.
 pub(super) struct Dense<'s> {
-    pub(super) cx: Context<'s>,
     pub(super) step: &'s RadauStep,
-    pub(super) bank: &'s ElementBank,
     pub(super) h: f64,
     pub(super) scratch: &'s mut Scratch,
 }
@@ -24,77 +20,40 @@ pub(super) struct Dense<'s> {
 pub(super) struct Scratch {
     xi: Vec<f64>,
     singular: Vec<[f64; 3]>,
-    inputs: Vec<InputValue>,
 }
 
-impl Dense<'_> {
-    /// Fills q, v, a and what drives the joints at t = t_n + θh.
-    pub(super) fn place(&mut self, t: f64, theta: f64, evaluation: &mut Evaluation) {
-        self.take_singular(t);
+impl Within for Dense<'_> {
+    fn velocity(&mut self, cx: Context, equations: &Equations, k: usize, theta: f64) -> f64 {
+        let Self { step, h, scratch } = self;
+        let from = step.origin.t;
+        equations.singular_forces(cx, from, from + theta * *h, &mut scratch.singular);
+        let [_, push, _] = integrals(step.fitted.cubic.each_ref().map(|u| u[k]), theta);
+        let [_, extra, _] = equations.singular_motion(k, &scratch.singular);
+        step.origin.v[k] + *h * push + extra
+    }
+
+    fn place(&mut self, cx: Context, equations: &Equations, t: f64, theta: f64, evaluation: &mut Evaluation) {
         let (step, h, scratch) = (self.step, self.h, &mut *self.scratch);
         let (model, origin) = (&step.model, &step.origin);
+        equations.singular_forces(cx, origin.t, t, &mut scratch.singular);
         scratch.xi.clear();
         scratch.xi.resize(model.nv(), 0.0);
-        for (j, driven) in model.own_joints().zip(&step.forward.drives) {
-            if !matches!(driven, Drive::Force(_)) {
-                continue;
-            }
+        for (j, _) in equations.forward().forced(model) {
             for k in model.v_range(j) {
-                let [a, push, travel] = integrals(step.cubic.each_ref().map(|u| u[k]), theta);
-                let singular = scratch.singular.iter().zip(&step.elements);
-                let extra = singular.fold([0.0; 3], |sum, (part, element)| {
-                    [0, 1, 2].map(|order| sum[order] + element.share[k] * part[order])
-                });
+                let [a, push, travel] = integrals(step.fitted.cubic.each_ref().map(|u| u[k]), theta);
+                let extra = equations.singular_motion(k, &scratch.singular);
                 let start = origin.v[k];
                 evaluation.a[k] = a + extra[0];
                 evaluation.v[k] = start + h * push + extra[1];
                 scratch.xi[k] = if model.joint_kind(j) == JointKind::Floating {
-                    h * integrals(step.turning.each_ref().map(|u| u[k]), theta)[1]
+                    h * integrals(step.fitted.turning.each_ref().map(|u| u[k]), theta)[1]
                 } else {
                     h * (theta * start + h * travel) + extra[2]
                 };
             }
         }
         model.integrate_into(&origin.q, &scratch.xi, &mut evaluation.q);
-        drive(self.cx, &step.forward, t, evaluation);
-    }
-
-    /// Velocity `k`, which a force drives, at t = t_n + θh.
-    pub(super) fn velocity(&mut self, k: usize, theta: f64) -> f64 {
-        let (step, h) = (self.step, self.h);
-        self.take_singular(step.origin.t + theta * h);
-        let [_, push, _] = integrals(step.cubic.each_ref().map(|u| u[k]), theta);
-        let singular = self.scratch.singular.iter().zip(&step.elements);
-        let extra: f64 = singular.map(|(part, element)| element.share[k] * part[1]).sum();
-        step.origin.v[k] + h * push + extra
-    }
-
-    /// Of every element, the singular force at t, its integral from the start of the step, and the integral of that.
-    fn take_singular(&mut self, t: f64) {
-        let (step, scratch) = (self.step, &mut *self.scratch);
-        scratch.singular.clear();
-        if !step.is_singular {
-            return;
-        }
-        let from = step.origin.t;
-        for (e, element) in self.cx.system.elements.iter().enumerate() {
-            scratch.inputs.clear();
-            scratch.inputs.resize(element.inputs.len(), InputValue::default());
-            self.cx.inputs_at(e, t, &mut scratch.inputs);
-            let mut sum = [0.0; 3];
-            self.bank.for_each_singularity(e, &scratch.inputs, &mut |term| {
-                let alpha = term.order;
-                let parts = |t: f64| {
-                    let value = if t == 0.0 { 0.0 } else { term.coefficient * t.powf(-alpha) };
-                    [value, value * t / (1.0 - alpha), value * t * t / ((1.0 - alpha) * (2.0 - alpha))]
-                };
-                let ([value, once, twice], [_, before, before_twice]) = (parts(t), parts(from));
-                sum[0] += value;
-                sum[1] += once - before;
-                sum[2] += twice - before_twice - (t - from) * before;
-            });
-            scratch.singular.push(sum);
-        }
+        drive(cx, equations.forward(), t, evaluation);
     }
 }
 

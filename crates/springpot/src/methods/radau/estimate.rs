@@ -1,36 +1,28 @@
 //! The embedded error estimate of a step.
 
 use super::step::RadauStep;
+use crate::collocation::MAX_NODES;
 use crate::collocation::radau::{ESTIMATE, GAMMA, LEFT, RIGHT};
-use crate::collocation::{MAX_NODES, STAGES};
-use crate::elements::ElementBank;
-use crate::equations::control::ControlRun;
-use crate::equations::tangent::couplings;
+use crate::equations::Equations;
 
 impl RadauStep {
     /// Accelerations without what a singular start adds: a_i − s σ_i with s σ = −M⁻¹ Σ g F_singular.
-    pub(super) fn collect_regular(&mut self, bank: &ElementBank) {
-        self.regular[0].copy_from_slice(&self.origin.a);
-        for i in 0..STAGES {
-            self.regular[i + 1].copy_from_slice(&self.stages[i].a);
-        }
-        if !self.is_singular {
-            return;
-        }
-        for (e, element) in self.elements.iter().enumerate() {
-            let singular = &bank.response(e).singular;
-            for i in 0..STAGES {
-                for &k in &self.free {
-                    self.regular[i + 1][k] -= element.share[k] * singular[i];
-                }
+    pub(super) fn collect_regular(&mut self, equations: &Equations) {
+        let regular = &mut self.fitted.regular;
+        regular[0].copy_from_slice(&self.origin.a);
+        for (i, stage) in self.stages.iter().enumerate() {
+            regular[i + 1].copy_from_slice(&stage.a);
+            if equations.is_singular() {
+                equations.take_off_singular(i + 1, &mut regular[i + 1]);
             }
         }
     }
 
     /// The estimate, filtered by the linearised equations of motion: rms in units of the tolerance, and the velocity with the
     /// largest share of it.
-    pub(super) fn estimate(&mut self, bank: &ElementBank, control: Option<&ControlRun>, h: f64) -> (f64, usize) {
-        let (n, count) = (self.model.nv(), self.free.len());
+    pub(super) fn estimate(&mut self, equations: &Equations, h: f64) -> (f64, usize) {
+        let (n, free, slopes) = (self.model.nv(), equations.free(), equations.slopes());
+        let count = free.len();
         if count == 0 {
             return (0.0, 0);
         }
@@ -38,23 +30,22 @@ impl RadauStep {
         let raw = |start: f64, at: [f64; 3]| -> f64 {
             h * (GAMMA * start + ESTIMATE.iter().zip(at).map(|(e, x)| e * x).sum::<f64>())
         };
-        let (stages, is_one_degree) = (&self.stages, self.model.is_one_degree());
+        let (stages, regular, is_one_degree) = (&self.stages, &self.fitted.regular, self.model.is_one_degree());
         let scratch = &mut self.scratch;
         scratch.velocities.clear();
         scratch.positions.clear();
-        for &k in &self.free {
-            scratch.velocities.push(raw(self.regular[0][k], [1, 2, 3].map(|i| self.regular[i][k])));
+        for &k in free {
+            scratch.velocities.push(raw(regular[0][k], [1, 2, 3].map(|i| regular[i][k])));
             let rates = stages.each_ref().map(|stage| if is_one_degree { stage.v[k] } else { stage.xi_rate[k] });
             scratch.positions.push(raw(self.origin.v[k], rates));
         }
         // K with the elements' stiffness as the scheme sees it: lᵀ G r + lᵀ P r/(h γ_0).
-        let (free, slopes) = (&self.free, &self.slopes);
         scratch.stiffness.clear();
         scratch.stiffness.extend((0..count * count).map(|k| slopes.d_q[free[k / count] * n + free[k % count]]));
         let along = |m: &[[f64; MAX_NODES]; MAX_NODES]| -> f64 {
             (0..3).map(|i| LEFT[i] * (0..3).map(|j| m[i][j] * RIGHT[j]).sum::<f64>()).sum()
         };
-        for coupling in couplings(self.elements.iter().map(|element| &element.gradient[..]), bank, control) {
+        for coupling in equations.couplings() {
             let [stroke, rate] = coupling.gain.each_ref().map(along);
             coupling.add([stroke, rate / step], free, &mut scratch.stiffness, |r| r * count);
         }
@@ -76,21 +67,21 @@ impl RadauStep {
             return (f64::INFINITY, free[0]);
         }
         self.filter.solve(&mut scratch.error);
-        self.weigh(step)
+        self.weigh(free, step)
     }
 
     /// rms of the error in `scratch` in units of the tolerance.
-    fn weigh(&self, step: f64) -> (f64, usize) {
-        let (mut sum, mut worst, mut largest) = (0.0, self.free[0], -1.0);
-        for (r, &k) in self.free.iter().enumerate() {
+    fn weigh(&self, free: &[usize], step: f64) -> (f64, usize) {
+        let (mut sum, mut worst, mut largest) = (0.0, free[0], -1.0);
+        for (r, &k) in free.iter().enumerate() {
             let (e_v, r_q) = (self.scratch.error[r], self.scratch.positions[r]);
-            let [v, q] = self.allowed[r];
+            let [v, q] = self.errors.allowed[r];
             let square = (e_v / v).powi(2) + ((r_q + step * e_v) / q).powi(2);
             if square > largest {
                 (worst, largest) = (k, square);
             }
             sum += square;
         }
-        ((sum / (2 * self.free.len()) as f64).sqrt(), worst)
+        ((sum / (2 * free.len()) as f64).sqrt(), worst)
     }
 }

@@ -2,25 +2,23 @@
 
 use super::attempt::is_too_short;
 use super::dense::{Dense, Scratch};
-use super::events::Settled;
 use super::sizes::Tolerance;
 use super::start;
 use super::step::{Carried, RadauStep};
 use crate::account::recorder::Recorder;
-use crate::actuation::{Drive, Forward};
+use crate::actuation::Forward;
+use crate::collocation::STAGES;
 use crate::dynamics::Kinematics;
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
-use crate::equations::kinks::Kinks;
+use crate::equations::{Change, Equations, Look, Solved, Within};
 use crate::law::Course;
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::settings::Settings;
-use crate::system::{Motion, System};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// The estimate is of order 3, the method of order 5: the estimate may reach this share of rtol^⅔.
 const ESTIMATE_SHARE: f64 = 0.03;
@@ -42,9 +40,6 @@ pub(crate) struct Radau {
     /// Whether a law keeps inner strokes, whose energies no stroke shows either.
     pub(super) has_inner_strokes: bool,
     pub(super) newton_iterations: u64,
-    /// Kinks of forces, and whether the step ends on one.
-    pub(super) kinks: Kinks,
-    pub(super) is_at_kink: bool,
     pub(super) scratch: Scratch,
 }
 
@@ -58,24 +53,23 @@ pub(crate) struct StepperState {
 }
 
 impl Radau {
-    pub(crate) fn new(cx: Context, forward: &Arc<Forward>, settings: &Settings) -> Self {
+    pub(crate) fn new(cx: Context, forward: &Forward, settings: &Settings) -> Self {
         let rtol = settings.rtol;
         let mapped = ESTIMATE_SHARE * rtol.powf(2.0 / 3.0);
         let tolerance = Tolerance { rtol: mapped, atol: settings.atol.unwrap_or(0.0) * mapped / rtol };
-        let has_inner_strokes = cx.system.elements.iter().any(|element| element.law.hidden_errors() == usize::MAX);
-        let mut step = RadauStep::new(cx, forward, tolerance, rtol);
+        let hidden = cx.system.elements.iter().map(|element| element.law.hidden_errors()).max().unwrap_or(0);
+        let has_inner_strokes = hidden == usize::MAX;
+        let mut step = RadauStep::new(&cx.system.model, forward, tolerance, rtol);
         if has_inner_strokes {
-            step.sizes.set_steep();
+            step.errors.sizes.set_steep();
         }
         Self {
             step,
             has_paths: forward.has_paths(),
             last: None,
-            has_inner_variables: cx.system.elements.iter().any(|element| element.law.hidden_errors() > 0),
+            has_inner_variables: hidden > 0,
             has_inner_strokes,
             newton_iterations: 0,
-            kinks: Kinks::of(cx.system),
-            is_at_kink: false,
             scratch: Scratch::default(),
         }
     }
@@ -95,28 +89,35 @@ impl Radau {
 
     /// How large a motion the forces at the origin begin.
     pub(super) fn expect(&mut self, cx: Context, recorder: &mut Recorder) -> Result<(), RunError> {
-        let (t, bank) = (self.step.origin.t, &mut recorder.bank);
-        bank.start(t, 0.0);
-        self.step.take_inputs(cx, bank, 0.0, t)?;
-        self.step.linearise(cx, bank, recorder.control.as_deref_mut())?;
-        if let Some(control) = &recorder.control {
-            control.write_inputs(cx, 0, bank);
+        let (equations, settings, t) = (&mut recorder.equations, &recorder.settings, self.step.origin.t);
+        if equations.begin(cx, self.step.origin.node(), 0.0, t)? {
+            self.step.take_off_singular(equations);
         }
-        self.step.sizes.take(&self.step.model, t, &self.step.origin.q, &self.step.origin.v);
-        self.step.expect(cx, bank, 1.0 / recorder.settings.end);
-        let stretch = self.longest_step(cx, &recorder.settings).min(self.step.sizes.response());
-        // What moves has a size; samples and breaks come by the thousand.
-        if t < 2.0 * self.step.sizes.looked() && !self.step.rests() {
-            return Ok(());
-        }
-        let (ahead, stretch) = self.step.foresee(cx, bank, recorder.control.as_deref(), stretch)?;
-        self.step.sizes.look_ahead(ahead, stretch);
-        Ok(())
+        let longest = self.longest_step(cx, settings);
+        self.step.expect(cx, equations, settings.end, longest)
     }
 
-    /// The step of size `h` that was fitted, as a function of time.
-    pub(super) fn dense<'s>(&'s mut self, cx: Context<'s>, recorder: &'s Recorder, h: f64) -> Dense<'s> {
-        Dense { cx, step: &self.step, bank: &recorder.bank, h, scratch: &mut self.scratch }
+    /// Hands over the step that was solved and evaluated, and the equations that it solves.
+    fn solved<T>(
+        &mut self,
+        recorder: &mut Recorder,
+        step: &Target,
+        take: impl FnOnce(&mut Equations, &mut Solved) -> T,
+    ) -> T {
+        let Recorder { evaluations, equations, scratch, settings, .. } = recorder;
+        let mut within = Dense { step: &self.step, h: step.size, scratch: &mut self.scratch };
+        let mut solved = Solved {
+            from: step.from,
+            to: step.to,
+            size: step.size,
+            evaluations,
+            scratch,
+            within: &mut within,
+            noise: &self.step.errors.noise,
+            rtol: settings.rtol,
+            end: settings.end,
+        };
+        take(equations, &mut solved)
     }
 }
 
@@ -129,7 +130,7 @@ impl Stepper for Radau {
 
     fn set_up(&self, recorder: &mut Recorder) {
         recorder.takes_elements_work = false;
-        recorder.bank.set_course(Course::Sought);
+        recorder.equations.bank.set_course(Course::Sought);
     }
 
     fn ends_on_sparse_rows(&self) -> bool {
@@ -138,27 +139,19 @@ impl Stepper for Radau {
 
     fn start(&mut self, cx: Context, recorder: &mut Recorder, agenda: &Agenda) -> Result<f64, RunError> {
         let settings = recorder.settings.clone();
-        let forward = self.step.forward.clone();
-        let control = recorder.control.as_deref_mut();
-        let (origin, elements) = start::origin(cx, &forward, &mut self.step.stick, control)?;
-        self.step.free = self.step.stick.free();
+        let (origin, elements) = recorder.equations.at_start(cx)?;
         let [evaluation, ..] = &mut recorder.evaluations;
         evaluation.q.copy_from_slice(&origin.q);
         evaluation.v.copy_from_slice(&origin.v);
         evaluation.a.copy_from_slice(&origin.a);
-        drive(cx, &forward, 0.0, evaluation);
+        drive(cx, recorder.equations.forward(), 0.0, evaluation);
         cx.fill(0.0, 0.0, None, &mut recorder.scratch, evaluation)?;
         recorder.take_inputs_at_start(cx);
-        let jolts = start::jolts(cx, &recorder.evaluations[0], &settings)?;
-        recorder.jolts = jolts.iter().map(Option::is_some).collect();
-        recorder.begin(cx)?;
-        if let (Some(control), [evaluation, ..]) = (&recorder.control, &mut recorder.evaluations) {
-            control.add_torques(cx, 0, evaluation);
-        }
+        let jolts = recorder.begin_with_jolts(cx)?;
+        recorder.equations.add_torques(cx, 0, &mut recorder.evaluations[0]);
         self.step.origin = origin;
-        start::kick(cx, &elements, &jolts, &self.step.free, &mut self.step.origin);
-        self.step.is_singular = recorder.bank.has_singular();
-        if self.step.is_singular {
+        recorder.equations.kick(cx, &elements, &jolts, &mut self.step.origin);
+        if recorder.equations.is_singular() {
             let [evaluation, ..] = &mut recorder.evaluations;
             evaluation.a.fill(f64::NAN);
             evaluation.driven.fill(None);
@@ -166,36 +159,48 @@ impl Stepper for Radau {
         }
         self.expect(cx, recorder)?;
         let strict = Tolerance { rtol: settings.rtol, atol: settings.atol.unwrap_or(0.0) };
-        let chosen = start::first_step(cx, (&self.step, &recorder.bank), &elements, strict, settings.end);
+        let chosen = start::first_step(cx, (&self.step, &recorder.equations), &elements, strict, settings.end);
         Ok(agenda.reach(0.0, settings.first_step.unwrap_or(chosen).min(self.longest_step(cx, &settings))))
     }
 
-    fn try_step(&mut self, cx: Context, recorder: &mut Recorder, target: Target) -> Result<Trial, RunError> {
-        let factor = match self.attempt(cx, recorder, &target)? {
-            Err(size) => return Ok(Trial::Rejected { size }),
-            Ok(factor) => factor,
-        };
-        let step = match self.settle(cx, recorder, target)? {
-            // At a start the first motion may be as small as it likes.
-            Settled::Shorter(size) if is_too_short(&target, size, 0.0) => {
-                return Err(self.settles_nowhere(&target));
-            }
-            Settled::Shorter(size) => return Ok(Trial::Rejected { size }),
-            Settled::AtStart => {
-                // What expressions alone change is counted with them.
-                if self.step.stick.changes() || !recorder.control.as_ref().is_some_and(|control| control.changes()) {
-                    self.stop_sliding(recorder.settings.end)?;
-                }
-                recorder.change_branches(cx, false)?;
-                return Ok(Trial::Changes);
-            }
-            Settled::At(step) => step,
-        };
-        let jumps = self.is_at_kink && self.kinks.may_jump();
-        let switches = recorder.control.as_ref().is_some_and(|control| control.changes());
-        let changes = (self.step.stick.changes() || jumps || switches) && step.behind == Behind::Step;
+    fn solve(&mut self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<Result<f64, f64>, RunError> {
+        Ok(self.attempt(cx, recorder, target)?.map(|factor| target.size * factor))
+    }
+
+    fn look(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<Look, RunError> {
+        if recorder.equations.is_smooth() {
+            return Ok(Look::Nothing);
+        }
+        self.solved(recorder, step, |equations, solved| equations.look(cx, solved))
+    }
+
+    fn value(&mut self, cx: Context, recorder: &mut Recorder, step: &Target, change: Change, theta: f64) -> f64 {
+        self.solved(recorder, step, |equations, solved| equations.value(cx, solved, change, theta))
+    }
+
+    fn judge(&mut self, _: Context, recorder: &mut Recorder, step: Target, next: f64) -> Result<Trial, RunError> {
+        let changes = recorder.equations.starts_anew() && step.behind == Behind::Step;
         let behind = if changes { Behind::Change } else { step.behind };
-        Ok(Trial::Accepted { step: Target { behind, ..step }, next: target.size * factor })
+        Ok(Trial::Accepted { step: Target { behind, ..step }, next })
+    }
+
+    fn gives_up(&self, _: Context, _: &Recorder, step: &Target, size: f64) -> Option<RunError> {
+        // At a start the first motion may be as small as it likes.
+        is_too_short(step, size, 0.0).then(|| {
+            let speeds = self.step.stages[STAGES - 1].v.iter().map(|v| v.abs());
+            let fastest = speeds.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(k, _)| k);
+            let joint = self.step.model.v_labels()[fastest].name.clone();
+            RunError::NoConvergence { t: step.from, h: step.size, joint }
+        })
+    }
+
+    fn change_at_start(&mut self, cx: Context, recorder: &mut Recorder) -> Result<(), RunError> {
+        let equations = &mut recorder.equations;
+        // What expressions alone change is counted with them.
+        if equations.sticks_or_slips() || !equations.switches() {
+            equations.stop_sliding(cx, &mut self.step.origin, recorder.settings.end)?;
+        }
+        Ok(())
     }
 
     fn place(
@@ -206,13 +211,17 @@ impl Stepper for Radau {
         theta: f64,
         evaluation: &mut Evaluation,
     ) -> Result<(), RunError> {
-        let h = recorder.bank.size();
-        self.dense(cx, recorder, h).place(at, theta, evaluation);
+        let equations = &recorder.equations;
+        let mut dense = Dense { step: &self.step, h: equations.bank.size(), scratch: &mut self.scratch };
+        dense.place(cx, equations, at, theta, evaluation);
         Ok(())
     }
 
-    fn kinematics(&self, node: usize) -> Option<&Kinematics> {
-        Some(if node == 0 { &self.step.start } else { &self.step.stages[node - 1].kinematics })
+    fn kinematics<'s>(&'s self, equations: &'s Equations, node: usize) -> Option<&'s Kinematics> {
+        Some(match node {
+            0 => equations.kinematics_at_start(),
+            _ => &self.step.stages[node - 1].kinematics,
+        })
     }
 
     fn interpolate(
@@ -227,14 +236,16 @@ impl Stepper for Radau {
         cx.fill(at, at, None, &mut recorder.scratch, evaluation)
     }
 
-    fn accept(&mut self, _: Context, recorder: &Recorder, step: &Target) -> Result<(), RunError> {
-        self.step.accept(&recorder.bank, step.size, step.to);
-        if self.is_at_kink {
+    fn accept(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
+        let equations = &mut recorder.equations;
+        self.step.accept(step.size, step.to);
+        equations.accept();
+        if equations.take_kink() {
             // What follows is another function: neither the cubic nor the errors before tell anything of it.
-            (self.last, self.step.last, self.is_at_kink) = (None, None, false);
+            (self.last, self.step.fitted.last) = (None, None);
         }
-        if self.step.stick.changes() {
-            self.stop_sliding(recorder.settings.end)?;
+        if equations.sticks_or_slips() {
+            equations.stop_sliding(cx, &mut self.step.origin, recorder.settings.end)?;
         }
         Ok(())
     }
@@ -245,25 +256,5 @@ impl Stepper for Radau {
 
     fn newton_iterations(&self) -> Option<u64> {
         Some(self.newton_iterations)
-    }
-}
-
-impl System {
-    /// Whether anything that drives the robot varies with time.
-    pub(super) fn varies(&self) -> bool {
-        let Motion::Forward(forward) = &self.motion else { return true };
-        let drives = forward.drives.iter().any(|drive| match drive {
-            Drive::Force(signals) => signals.iter().any(|signal| signal.is_constant().is_none()),
-            Drive::Prescribed(_) => true,
-            Drive::Locked => false,
-        });
-        let feedback = self.control.laws().any(|(law, _)| !law.parts_of_time().is_empty());
-        let aims = self.control.controller.as_ref().is_some_and(|controlled| {
-            controlled.reference.trajectory().signals().iter().any(|signal| signal.is_constant().is_none())
-        });
-        drives
-            || feedback
-            || aims
-            || self.elements.iter().flat_map(|e| &e.inputs).any(|signal| signal.is_constant().is_none())
     }
 }

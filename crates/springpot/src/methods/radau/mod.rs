@@ -5,22 +5,16 @@
 //! in time at every fractional order; rows between steps come from the cubic through the accelerations, integrated twice.
 //! Source of the method: Hairer & Wanner, Solving ODEs II, IV.5 and IV.8.
 
-mod ahead;
 mod attempt;
 mod cross;
 mod dense;
+mod errors;
 mod estimate;
-mod events;
 mod method;
 mod newton;
-mod rounding;
-mod scale;
-mod settle;
 mod sizes;
 mod stages;
 mod start;
 mod step;
-mod stick;
-mod watch;
 
 pub(crate) use method::{Radau, StepperState};

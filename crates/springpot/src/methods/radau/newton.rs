@@ -3,11 +3,8 @@
 use super::step::RadauStep;
 use crate::collocation::radau::{A, A_SQUARED};
 use crate::collocation::{MAX_NODES, STAGES};
-use crate::elements::{ElementBank, Pull};
+use crate::equations::Equations;
 use crate::equations::context::Context;
-use crate::equations::control::ControlRun;
-use crate::equations::resistance::add_smooth_resistance;
-use crate::equations::tangent::couplings;
 use crate::system::error::RunError;
 
 /// Newton iterations after which a step is given up.
@@ -30,60 +27,53 @@ impl RadauStep {
     pub(super) fn attempt(
         &mut self,
         cx: Context,
-        bank: &mut ElementBank,
-        mut control: Option<&mut ControlRun>,
+        equations: &mut Equations,
         h: f64,
         t_end: f64,
     ) -> Result<Outcome, RunError> {
-        bank.start(self.origin.t, h);
-        self.take_inputs(cx, bank, h, t_end)?;
-        self.linearise(cx, bank, control.as_deref_mut())?;
-        if let Some(control) = control.as_deref_mut() {
-            control.start(cx, self.origin.t, h, t_end)?;
-            control.write_inputs(cx, 0, bank);
+        if equations.begin(cx, self.origin.node(), h, t_end)? {
+            self.take_off_singular(equations);
         }
-        self.choose_forms(cx, bank, h);
-        bank.prepare();
+        equations.prepare(cx, t_end)?;
         self.predict(h);
-        self.take_drives(cx, h, t_end)?;
-        self.allow(cx, bank, control.as_deref(), h);
-        let count = self.free.len();
+        self.take_drives(cx, equations, h, t_end)?;
+        self.allow(cx, equations, h);
         let (mut before, mut iterations) = (f64::INFINITY, 0);
-        let mut worst = self.free.first().copied().unwrap_or(0);
-        if !self.place_stages(cx, bank, control.as_deref_mut(), h) {
+        let mut worst = equations.free().first().copied().unwrap_or(0);
+        if !self.place_stages(cx, equations, h) {
             return Ok(Outcome::Diverged { iterations, worst });
         }
-        respond(bank, control.as_deref_mut());
+        equations.answer();
+        let count = equations.free().len();
         if count == 0 {
-            self.collect_regular(bank);
+            self.collect_regular(equations);
             return Ok(Outcome::Converged { iterations });
         }
-        if let Some(control) = control.as_deref_mut() {
-            control.take_input_forces(bank);
-        }
-        if !self.factor(bank, control.as_deref(), h) {
+        equations.take_input_forces();
+        if !self.factor(equations, h) {
             return Ok(Outcome::Diverged { iterations, worst });
         }
         loop {
             iterations += 1;
-            self.fill_residual(cx, bank, control.as_deref());
+            self.fill_residual(cx, equations, t_end);
+            let free = equations.free();
             if let Some(k) = self.residual.iter().position(|r| !r.is_finite()) {
-                return Ok(Outcome::Diverged { iterations, worst: self.free[k % count] });
+                return Ok(Outcome::Diverged { iterations, worst: free[k % count] });
             }
             self.newton.solve(&mut self.residual);
             for (stage, change) in self.stages.iter_mut().zip(self.residual.chunks_exact(count)) {
-                for (&k, delta) in self.free.iter().zip(change) {
+                for (&k, delta) in free.iter().zip(change) {
                     stage.a[k] -= delta;
                 }
             }
-            if iterations == 1 && self.sized.iter().any(|[speed, _]| *speed == 0.0) {
-                self.allow(cx, bank, control.as_deref(), h);
+            if iterations == 1 && self.errors.finds_nothing_moving() {
+                self.allow(cx, equations, h);
             }
             let size;
-            (size, worst) = self.velocity_change(h);
-            let placed = size.is_finite() && self.place_stages(cx, bank, control.as_deref_mut(), h);
+            (size, worst) = self.velocity_change(equations.free(), h);
+            let placed = size.is_finite() && self.place_stages(cx, equations, h);
             if placed {
-                respond(bank, control.as_deref_mut());
+                equations.answer();
             }
             if iterations > 1 {
                 self.contraction = size / before;
@@ -101,40 +91,23 @@ impl RadauStep {
             }
             before = size;
         }
-        self.collect_regular(bank);
+        self.collect_regular(equations);
         Ok(Outcome::Converged { iterations })
     }
 
-    /// RNEA(q_i, v_i, a_i) + resistance − drive, node by node, of the free velocities.
-    fn fill_residual(&mut self, cx: Context, bank: &ElementBank, control: Option<&ControlRun>) {
+    /// The residual of the free velocities, node by node.
+    fn fill_residual(&mut self, cx: Context, equations: &mut Equations, t_end: f64) {
         self.residual.clear();
-        for i in 0..STAGES {
-            self.forces.clear();
-            for (e, element) in cx.system.elements.iter().enumerate() {
-                self.forces.push(&element.measure, Pull::constant(bank.response(e).force[i]));
-            }
-            let stage = &self.stages[i];
-            let (at, workspace, tau) = ((&stage.q[..], &stage.a[..]), &mut self.workspace, &mut self.tau);
-            self.forces.inverse_dynamics_into(&self.model, &stage.kinematics, at, workspace, tau);
-            add_smooth_resistance(&self.model, &stage.v, &mut self.tau);
-            self.stick.add_sliding(&mut self.tau);
-            let forces = self.free.iter().zip(&self.drives[i]);
-            self.residual.extend(forces.map(|(&k, drive)| self.tau[k] - drive));
-            if let Some(control) = control {
-                let residual = &mut self.residual[i * self.free.len()..];
-                for (residual, &k) in residual.iter_mut().zip(&self.free).filter(|(_, k)| !cx.holds_force(**k)) {
-                    *residual -= control.torque(i + 1)[k];
-                }
-            }
+        for (i, stage) in self.stages.iter().enumerate() {
+            equations.residual(cx, i + 1, stage.node(t_end), &stage.kinematics, &mut self.residual);
         }
     }
 
     /// I⊗M + hA⊗D + h²A²⊗K + Σ on ⊗ (h² G A² by_q + h P A by_v) of all couplings, over the free velocities.
-    fn factor(&mut self, bank: &ElementBank, control: Option<&ControlRun>, h: f64) -> bool {
-        let (n, count, free) = (self.model.nv(), self.free.len(), &self.free);
-        let slopes = &self.slopes;
+    fn factor(&mut self, equations: &Equations, h: f64) -> bool {
+        let (n, free, slopes) = (self.model.nv(), equations.free(), equations.slopes());
+        let (count, couplings) = (free.len(), equations.couplings());
         let size = STAGES * count;
-        let couplings = couplings(self.elements.iter().map(|element| &element.gradient[..]), bank, control);
         let product = |x: &[[f64; MAX_NODES]; MAX_NODES], y: &[[f64; STAGES]; STAGES], i: usize, j: usize| -> f64 {
             (0..STAGES).map(|m| x[i][m] * y[m][j]).sum()
         };
@@ -164,11 +137,11 @@ impl RadauStep {
 
     /// rms over stages and velocities of |h Σ_j A_ij Δa_j| in units of what the iteration may leave, and the velocity with the largest
     /// share; Δa is what `residual` holds. Each velocity has its own rounding: one that is all rounding says nothing of the others.
-    fn velocity_change(&self, h: f64) -> (f64, usize) {
-        let (count, enough) = (self.free.len(), self.enough(h));
-        let (mut sum, mut worst, mut largest) = (0.0, self.free[0], 0.0);
-        for (r, &k) in self.free.iter().enumerate() {
-            let left = enough * self.allowed[r][0] + ROUNDED * self.noise[r];
+    fn velocity_change(&self, free: &[usize], h: f64) -> (f64, usize) {
+        let (count, enough) = (free.len(), self.enough(free, h));
+        let (mut sum, mut worst, mut largest) = (0.0, free[0], 0.0);
+        for (r, &k) in free.iter().enumerate() {
+            let left = enough * self.errors.allowed[r][0] + ROUNDED * self.errors.noise[r];
             for row in &A {
                 let moved: f64 = (0..STAGES).map(|j| row[j] * self.residual[j * count + r]).sum();
                 let square = (h * moved / left).powi(2);
@@ -182,18 +155,10 @@ impl RadauStep {
     }
 
     /// The share of the tolerance that the iteration may leave, not below rounding.
-    fn enough(&self, h: f64) -> f64 {
+    fn enough(&self, free: &[usize], h: f64) -> f64 {
         let end = &self.stages[STAGES - 1];
         let moved = |k: usize| end.v[k].abs().max(self.origin.v[k].abs()) + h * end.a[k].abs();
-        let largest = self.free.iter().zip(&self.allowed).fold(0.0, |m: f64, (&k, [v, _])| m.max(moved(k) / v));
+        let largest = free.iter().zip(&self.errors.allowed).fold(0.0, |m: f64, (&k, [v, _])| m.max(moved(k) / v));
         self.rtol.sqrt().min(0.03) + 2e-14 * largest
-    }
-}
-
-/// The laws' answers to the stages, and those of what controls the robot.
-fn respond(bank: &mut ElementBank, control: Option<&mut ControlRun>) {
-    (0..bank.len()).for_each(|e| bank.evaluate_element(e));
-    if let Some(control) = control {
-        control.answer(bank);
     }
 }

@@ -1,25 +1,24 @@
-//! Which joints friction holds and which slide against it, between two changes.
+//! Coulomb friction of the joints: which of them it holds and which slide against it, between two changes.
 
-use crate::actuation::{Drive, Forward};
-use crate::equations::coulomb::{Candidate, Coulomb};
-use crate::equations::evaluate::Evaluation;
-use crate::equations::resistance::holding_forces;
-use crate::linalg::Lu;
+use super::coulomb::{Candidate, Coulomb};
+use super::resistance::holding_forces;
+use super::solve::Solve;
+use crate::actuation::Forward;
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
 /// Changes between holding and sliding after which a run that does not get on stops.
-pub(super) const MOST_CHANGES: u32 = 1_000;
+const MOST_CHANGES: u32 = 1_000;
 
 /// What counts as not getting on: all those changes within this share of the run.
-pub(super) const CHATTER: f64 = 1e-9;
+pub(crate) const CHATTER: f64 = 1e-9;
 
 /// What a force must exceed its limit by to move a joint that holds, in units of its rounding.
 const ROUNDINGS: f64 = 64.0;
 
 /// What is carried from step to step.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Sliding {
+pub(crate) struct Sliding {
     /// Of every velocity that rubs, in their order, −1, 0 (held) or 1: the direction in which it slides.
     directions: Vec<i8>,
     /// Changes since that time, s.
@@ -29,7 +28,7 @@ pub(super) struct Sliding {
 
 /// Friction that sticks, at the velocities of forward dynamics.
 #[derive(Debug)]
-pub(super) struct Stick {
+pub(crate) struct Friction {
     /// What friction can hold at every velocity, N·m or N; 0 where nothing sticks.
     limits: Vec<f64>,
     /// Velocities that forces drive.
@@ -44,20 +43,16 @@ pub(super) struct Stick {
     pub(super) stopping: Vec<usize>,
     pub(super) caught: Vec<usize>,
     pub(super) breaks_away: bool,
-    /// An evaluation to look into a step from.
-    pub(super) spare: Option<Evaluation>,
     coulomb: Coulomb,
 }
 
-impl Stick {
+impl Friction {
     pub(super) fn new(model: &Model, forward: &Forward) -> Self {
         let limits = holding_forces(model);
         let driven = forward.free_velocities(model);
         let rubbing: Vec<usize> = driven.iter().copied().filter(|&k| limits[k] > 0.0).collect();
-        let drives = model.own_joints().zip(&forward.drives);
-        let led = drives
-            .filter(|(j, drive)| matches!(drive, Drive::Prescribed(_)) && model.v_range(*j).any(|k| limits[k] > 0.0));
-        let led = led.map(|(j, _)| j).collect();
+        let is_rubbed = |j: &usize| model.v_range(*j).any(|k| limits[k] > 0.0);
+        let led = forward.paths(model).map(|(j, _)| j).filter(is_rubbed).collect();
         let sliding = Sliding { directions: vec![0; rubbing.len()], ..Sliding::default() };
         Self {
             limits,
@@ -68,9 +63,13 @@ impl Stick {
             stopping: Vec::new(),
             caught: Vec::new(),
             breaks_away: false,
-            spare: None,
             coulomb: Coulomb::default(),
         }
+    }
+
+    /// Whether a state may be one of the same system.
+    pub(super) fn fits(&self, sliding: &Sliding) -> bool {
+        sliding.directions.len() == self.rubbing.len()
     }
 
     /// Whether nothing sticks anywhere.
@@ -153,12 +152,12 @@ impl Stick {
             }
         }
         let Some(&(_, first)) = at_rest.first() else { return Ok(()) };
-        let mut lu = Lu::default();
-        if !lu.factor_part(limits.len(), mass, &self.driven) {
+        let mut solve = Solve::default();
+        if !solve.factor_part(mass, limits.len(), &self.driven) {
             return Err(first);
         }
-        lu.solve(&mut push);
-        let outcome = coulomb.solve(&mut lu, &mut push);
+        solve.solve(&mut push);
+        let outcome = coulomb.solve(&mut solve, &mut push);
         for (&(at, k), &direction) in at_rest.iter().zip(&coulomb.directions) {
             sliding.directions[at] = if self.caught.contains(&k) { 0 } else { direction };
         }
@@ -184,13 +183,13 @@ fn slack(limit: f64, size: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST_CHANGES, Stick};
+    use super::{Friction, MOST_CHANGES};
     use crate::actuation::{Drive, Forward};
     use crate::model::{BodySpec, FrictionLaw, JointSpec, ModelBuilder, Parent};
     use crate::signal::Signal;
 
     /// A slider of 4 kg with 2 N of friction.
-    fn slider() -> Stick {
+    fn slider() -> Friction {
         let mut builder = ModelBuilder::new([0.0; 3]);
         let joint = JointSpec {
             friction: 2.0,
@@ -200,31 +199,32 @@ mod tests {
         let (name, parent) = ("b".to_owned(), Parent::World);
         builder.push(BodySpec { name, parent, joint, mass: 4.0, com: [0.0; 3], inertia: [[0.0; 3]; 3] }).unwrap();
         let drives = vec![Drive::Force(vec![Signal::constant(0.0)])];
-        Stick::new(&builder.finish().unwrap(), &Forward { q: vec![0.0], v: vec![0.0], drives })
+        Friction::new(&builder.finish().unwrap(), &Forward { q: vec![0.0], v: vec![0.0], drives })
     }
 
     #[test]
     fn changes_that_do_not_get_on_are_counted() {
-        let mut stick = slider();
-        assert!(!stick.is_idle() && stick.holds(0) && stick.free().is_empty());
+        let mut friction = slider();
+        assert!(!friction.is_idle() && friction.holds(0) && friction.free().is_empty());
         // Apart they may be as many as there are; together they are too many.
         for k in 0..3 * MOST_CHANGES {
-            assert_eq!(stick.count_change(f64::from(k), 0.5), None);
+            assert_eq!(friction.count_change(f64::from(k), 0.5), None);
         }
-        let counts: Vec<_> = (0..MOST_CHANGES).map(|_| stick.count_change(f64::from(3 * MOST_CHANGES), 0.5)).collect();
+        let counts: Vec<_> =
+            (0..MOST_CHANGES).map(|_| friction.count_change(f64::from(3 * MOST_CHANGES), 0.5)).collect();
         assert!(counts.iter().all(Option::is_none));
-        assert_eq!(stick.count_change(f64::from(3 * MOST_CHANGES), 0.5), Some(MOST_CHANGES + 1));
+        assert_eq!(friction.count_change(f64::from(3 * MOST_CHANGES), 0.5), Some(MOST_CHANGES + 1));
     }
 
     #[test]
     fn a_push_above_the_limit_moves() {
-        let mut stick = slider();
+        let mut friction = slider();
         for (v, push, direction) in [(0.0, 1.9, 0), (0.0, 2.1, 1), (0.0, -2.1, -1), (0.3, -5.0, 1), (-1e-9, 5.0, -1)] {
-            stick.decide(&[v], &[-push], &[1.0], &[4.0]).unwrap();
-            assert_eq!(stick.rubbing().collect::<Vec<_>>(), [(0, direction)], "{v} {push}");
+            friction.decide(&[v], &[-push], &[1.0], &[4.0]).unwrap();
+            assert_eq!(friction.rubbing().collect::<Vec<_>>(), [(0, direction)], "{v} {push}");
         }
         // What breaks it away is more than what decides that it does.
-        assert!(stick.breaking(0, 1.0) > 2.0 && stick.breaking(0, 1.0) < 2.0 + 1e-10);
-        assert_eq!(stick.decide(&[0.0], &[-f64::NAN], &[1.0], &[4.0]), Err(0));
+        assert!(friction.breaking(0, 1.0) > 2.0 && friction.breaking(0, 1.0) < 2.0 + 1e-10);
+        assert_eq!(friction.decide(&[0.0], &[-f64::NAN], &[1.0], &[4.0]), Err(0));
     }
 }

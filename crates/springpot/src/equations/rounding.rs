@@ -1,10 +1,8 @@
 //! What rounding does to accelerations, so that nothing below it is taken for an error of a step.
 
-use super::step::RadauStep;
-use crate::actuation::Drive;
-use crate::elements::ElementBank;
-use crate::equations::context::Context;
-use crate::equations::control::ControlRun;
+use super::assembly::{Equations, Tangent};
+use super::context::Context;
+use super::node::Node;
 
 /// What a sum of forces loses of its largest terms.
 const LOST: f64 = 4.0 * f64::EPSILON;
@@ -44,46 +42,40 @@ impl Rounding {
     }
 }
 
-impl RadauStep {
-    /// Works out what rounding does to the accelerations of the free velocities in a step of size `h`: where `allowed`, the tolerance of each
-    /// velocity, is not far above what it has of its own, by |M⁻¹| from all of them.
+impl Equations {
+    /// What rounding does to the accelerations of the free velocities, in their order, in a step of size `h` from where the robot is at `at`: where
+    /// `allowed`, the tolerance of each velocity, is not far above what it has of its own, by |M⁻¹| from all of them.
     ///
     /// Terms of the equations of motion round as they are before they cancel: weights as |g| √(m_k M_kk), m_k being the mass that k carries,
     /// inertia as √M_kk Σ √M_jj (|a_j| + ω |v_j|).
-    pub(super) fn round(
-        &mut self,
-        cx: Context,
-        bank: &ElementBank,
-        control: Option<&ControlRun>,
-        h: f64,
-        allowed: impl Fn(usize) -> f64,
-    ) {
+    pub(crate) fn round(&mut self, cx: Context, at: Node, h: f64, allowed: impl Fn(usize) -> f64) -> &[f64] {
         let mut rounding = std::mem::take(&mut self.rounding);
-        self.round_pulls(cx, bank, control, h, &mut rounding.pulls);
-        self.round_forces(cx, control, h, &mut rounding);
-        let (n, count) = (self.model.nv(), self.free.len());
-        let mass = |k: usize| self.slopes.d_a[k * n + k];
-        let own = self.free.iter().zip(&rounding.forces).map(|(&k, f)| if mass(k) > 0.0 { f / mass(k) } else { 0.0 });
+        self.round_pulls(cx, at.t, h, &mut rounding.pulls);
+        self.round_forces(cx, at, h, &mut rounding);
+        let (n, count) = (cx.system.model.nv(), self.free().len());
+        let mass = |k: usize| self.slopes().d_a[k * n + k];
+        let own = self.free().iter().zip(&rounding.forces).map(|(&k, f)| if mass(k) > 0.0 { f / mass(k) } else { 0.0 });
         rounding.accelerations.clear();
         rounding.accelerations.extend(own);
         for r in 0..count {
             let (force, own) = (rounding.forces[r], rounding.accelerations[r]);
-            if (allowed(r) <= CLOSE * h * own || (force > 0.0 && own == 0.0)) && self.invert_row(&mut rounding, r) {
+            if (allowed(r) <= CLOSE * h * own || (force > 0.0 && own == 0.0)) && self.invert_row(n, &mut rounding, r) {
                 let row = rounding.inverse[r].iter().zip(&rounding.forces);
                 rounding.accelerations[r] = row.map(|(m, f)| m * f).sum();
             }
         }
         self.rounding = rounding;
+        &self.rounding.accelerations
     }
 
     /// Of the elements: what their strokes and inputs lose, and the last digits of the force itself.
-    fn round_pulls(&self, cx: Context, bank: &ElementBank, control: Option<&ControlRun>, h: f64, pulls: &mut Vec<f64>) {
+    fn round_pulls(&self, cx: Context, from: f64, h: f64, pulls: &mut Vec<f64>) {
         pulls.clear();
-        let t = self.origin.t + h;
+        let (bank, t) = (&self.bank, from + h);
         for (e, element) in cx.system.elements.iter().enumerate() {
             // From nothing that a run that goes on does not know.
             let stiffness = element.law.stiffness(&bank.point(e, 0), 1.0 / h);
-            let mut pull = stiffness * bank.resolution(e) + LOST * self.origin.forces[e].abs();
+            let mut pull = stiffness * bank.resolution(e) + LOST * self.force_at_start(e).abs();
             let mut input = |i: usize, lost: f64| {
                 if lost > 0.0 {
                     let slopes = bank.by_input(e, i);
@@ -93,7 +85,7 @@ impl RadauStep {
             for (i, signal) in element.inputs.iter().enumerate().filter(|(i, _)| !cx.holds_input(e, *i)) {
                 input(i, signal.rounding(t));
             }
-            if let Some(control) = control {
+            if let Some(control) = &self.control {
                 control.for_each_rounded_input(e, &mut input);
             }
             pulls.push(if pull.is_finite() { pull } else { 0.0 });
@@ -101,31 +93,32 @@ impl RadauStep {
     }
 
     /// Of all that acts on each free velocity.
-    fn round_forces(&self, cx: Context, control: Option<&ControlRun>, h: f64, rounding: &mut Rounding) {
+    fn round_forces(&self, cx: Context, at: Node, h: f64, rounding: &mut Rounding) {
         let Rounding { roots, pulls, forces, .. } = rounding;
-        let (model, n, origin) = (&self.model, self.model.nv(), &self.origin);
+        let (model, n, slopes) = (&cx.system.model, cx.system.model.nv(), self.slopes());
         roots.clear();
-        roots.extend((0..n).map(|k| self.slopes.d_a[k * n + k].max(0.0).sqrt()));
+        roots.extend((0..n).map(|k| slopes.d_a[k * n + k].max(0.0).sqrt()));
         let gravity = model.gravity().iter().map(|g| g * g).sum::<f64>().sqrt();
-        let turning: f64 = model.turning(&origin.v).map(f64::abs).sum();
+        let turning: f64 = model.turning(at.v).map(f64::abs).sum();
         let moved: f64 =
-            roots.iter().zip(&origin.a).zip(&origin.v).map(|((root, a), v)| root * (a.abs() + turning * v.abs())).sum();
+            roots.iter().zip(at.a).zip(at.v).map(|((root, a), v)| root * (a.abs() + turning * v.abs())).sum();
         forces.clear();
-        let t = origin.t + h;
-        let mut free = self.free.iter().peekable();
-        for (j, drive) in model.own_joints().zip(&self.forward.drives) {
-            let Drive::Force(signals) = drive else { continue };
+        let t = at.t + h;
+        let mut free = self.free().iter().peekable();
+        for (j, signals) in self.forward.forced(model) {
+            let carried = gravity * model.subtree_mass(j).sqrt();
             for (k, signal) in model.v_range(j).zip(signals) {
                 if free.next_if(|free| **free == k).is_none() {
                     continue;
                 }
-                let rigid = roots[k] * (gravity * model.subtree_mass(j).sqrt() + moved);
+                let rigid = roots[k] * (carried + moved);
                 let pull: f64 = self.elements.iter().zip(&*pulls).map(|(e, pull)| e.gradient[k].abs() * pull).sum();
-                let driven = self.drives.iter().fold(0.0, |largest: f64, drives| {
-                    largest.max(drives.get(forces.len()).map_or(0.0, |drive| drive.abs()))
+                let driven = self.driven.iter().fold(0.0, |largest: f64, driven| {
+                    largest.max(driven.get(forces.len()).map_or(0.0, |driven| driven.abs()))
                 });
                 let signal = if cx.holds_force(k) { 0.0 } else { signal.rounding(t) };
-                let held = control.map_or(0.0, |control| HELD * LOST * control.largest(k) + control.rounded_torque(k));
+                let held = self.control.as_ref();
+                let held = held.map_or(0.0, |control| HELD * LOST * control.largest(k) + control.rounded_torque(k));
                 let sum = LOST * (RIGID * rigid + driven) + pull + signal + held;
                 forces.push(if sum.is_finite() { sum } else { 0.0 });
             }
@@ -133,12 +126,13 @@ impl RadauStep {
     }
 
     /// Row `r` of |M⁻¹| over the free velocities; `false` where M is singular.
-    fn invert_row(&mut self, rounding: &mut Rounding, r: usize) -> bool {
-        let (n, count) = (self.model.nv(), self.free.len());
+    fn invert_row(&mut self, nv: usize, rounding: &mut Rounding, r: usize) -> bool {
         let Rounding { inverse, is_factored, .. } = rounding;
-        if !*is_factored.get_or_insert_with(|| self.mass.factor_part(n, &self.slopes.d_a, &self.free)) {
+        let (free, Tangent { mass, slopes, .. }) = (&self.free, &mut self.tangent);
+        if !*is_factored.get_or_insert_with(|| mass.factor_part(&slopes.d_a, nv, free)) {
             return false;
         }
+        let count = free.len();
         inverse.resize_with(count.max(inverse.len()), Vec::new);
         let row = &mut inverse[r];
         if row.len() != count {
@@ -146,7 +140,7 @@ impl RadauStep {
             row.clear();
             row.resize(count, 0.0);
             row[r] = 1.0;
-            self.mass.solve(row);
+            mass.solve(row);
             row.iter_mut().for_each(|entry| *entry = entry.abs());
         }
         true

@@ -1,0 +1,122 @@
+//! What a step may err.
+
+use super::sizes::{Sizes, Tolerance};
+use super::step::RadauStep;
+use crate::equations::context::Context;
+use crate::equations::{Equations, Outlook};
+use crate::system::error::RunError;
+
+/// Share of the speed that all the energy turned over would give a joint alone: slower joints are not looked at more closely.
+const ENERGY_FLOOR: f64 = 1e-6;
+
+/// What a step may err, and what that is measured by.
+#[derive(Debug)]
+pub(super) struct Errors {
+    pub(super) tolerance: Tolerance,
+    /// How large the motion is.
+    pub(super) sizes: Sizes,
+    /// The energy turned over so far, J.
+    pub(super) energy: f64,
+    /// How fast and how far each free velocity moves until the end of this step.
+    sized: Vec<[f64; 2]>,
+    /// Errors that are allowed in this step, of each free velocity and of its coordinate.
+    pub(super) allowed: Vec<[f64; 2]>,
+    /// What rounding makes of each free velocity in this step.
+    pub(super) noise: Vec<f64>,
+}
+
+impl Errors {
+    pub(super) fn new(tolerance: Tolerance, sizes: Sizes) -> Self {
+        Self { tolerance, sizes, energy: 0.0, sized: Vec::new(), allowed: Vec::new(), noise: Vec::new() }
+    }
+
+    /// Whether a velocity has no size that its error could be measured by.
+    pub(super) fn finds_nothing_moving(&self) -> bool {
+        self.sized.iter().any(|[speed, _]| *speed == 0.0)
+    }
+}
+
+impl RadauStep {
+    /// What the errors of velocities and coordinates may be in a step of size `h`, in the order of the free velocities.
+    pub(super) fn allow(&mut self, cx: Context, equations: &mut Equations, h: f64) {
+        self.size_up(cx, equations, h);
+        let (model, origin, Errors { tolerance, sized, allowed, noise, .. }) =
+            (&self.model, &self.origin, &mut self.errors);
+        let rounded = equations.round(cx, origin.node(), h, |r| tolerance.of(sized[r][0]));
+        noise.clear();
+        noise.extend(rounded.iter().map(|a| h * a));
+        allowed.clear();
+        for ((&k, [speed, travel]), noise) in equations.free().iter().zip(&*sized).zip(&*noise) {
+            let place = model.coordinate_of(k).map_or(1.0, |c| origin.q[c]);
+            let rounding = 4.0 * f64::EPSILON * place.abs();
+            let of_velocity = (tolerance.of(*speed) + noise).max(f64::MIN_POSITIVE);
+            allowed.push([of_velocity, (tolerance.of(*travel) + rounding + h * noise).max(f64::MIN_POSITIVE)]);
+        }
+    }
+
+    /// How fast and how far each free velocity moves until the end of a step of size `h`.
+    fn size_up(&mut self, cx: Context, equations: &Equations, h: f64) {
+        let (n, mass_matrix) = (self.model.nv(), &equations.slopes().d_a);
+        let Errors { sizes, energy, sized, .. } = &mut self.errors;
+        let until = self.origin.t + h;
+        sized.clear();
+        for &k in equations.free() {
+            let mass = mass_matrix[k * n + k];
+            let of_energy = if mass > 0.0 { ENERGY_FLOOR * (2.0 * *energy / mass).sqrt() } else { 0.0 };
+            // Memories of errors begin as steeply as no step resolves: they are measured by what is still missing.
+            let [mut missing, mut slip] = equations.missing(k, mass);
+            // Joints that nothing drives are moved by those that are.
+            for (own, [far, fast]) in equations.going() {
+                let share = (mass_matrix[k * n + own] / mass).abs();
+                if share.is_finite() {
+                    (missing, slip) = (missing.max(share * far), slip.max(share * fast));
+                }
+            }
+            let speed = sizes.speed(k, until).max(self.origin.v[k].abs()).max(of_energy).max(slip);
+            // A joint that no force moved yet is measured by what this very step does.
+            let own = || self.stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
+            let speed = if speed > 0.0 { speed } else { own() };
+            // What a stop takes up is little beside the flights between: there an error of the place is one of the energy.
+            let square = equations.stiffness_of_stops(cx, k) / mass;
+            let taken_up = if square > 0.0 { speed / square.sqrt() } else { f64::INFINITY };
+            sized.push([speed, sizes.travel(k, until).min(taken_up).max(h * speed).max(missing)]);
+        }
+    }
+
+    /// The rate at which the system answers the accelerations at the origin, rad/s.
+    pub(super) fn answering_rate(&self, cx: Context, equations: &Equations, slowest: f64) -> f64 {
+        equations.answering_rate(cx, &self.origin.v, &self.origin.a, slowest)
+    }
+
+    /// Expects what the accelerations at the origin begin in a run until `end`; nothing of steps longer than `longest` seconds.
+    ///
+    /// # Errors
+    /// Where what drives the robot is not finite.
+    pub(super) fn expect(
+        &mut self,
+        cx: Context,
+        equations: &Equations,
+        end: f64,
+        longest: f64,
+    ) -> Result<(), RunError> {
+        let omega = self.answering_rate(cx, equations, 1.0 / end);
+        let (origin, sizes) = (&self.origin, &mut self.errors.sizes);
+        sizes.take(&self.model, origin.t, &origin.q, &origin.v);
+        sizes.expect(origin.t, &origin.a, omega, equations.is_singular());
+        // What moves has a size; samples and breaks come by the thousand.
+        if origin.t < 2.0 * sizes.looked() && !equations.free().iter().any(|&k| sizes.rests(k)) {
+            return Ok(());
+        }
+        let rests = |k: usize| sizes.rests(k);
+        let from = Outlook { at: origin.node(), rests: &rests, response: sizes.response() };
+        let (ahead, stretch) = equations.foresee(cx, from, longest.min(sizes.response()))?;
+        sizes.look_ahead(ahead, stretch);
+        Ok(())
+    }
+}
+
+/// Of a singular start with the stroke `jump`, how far it moves each velocity: |jump|·|g_k|/g·g.
+pub(super) fn jump_travel(jump: f64, gradient: &[f64], k: usize) -> f64 {
+    let square: f64 = gradient.iter().map(|g| g * g).sum();
+    if square > 0.0 { jump.abs() * gradient[k].abs() / square } else { 0.0 }
+}
