@@ -55,13 +55,14 @@ fn rows(law: &Value, printed: &str) -> Vec<String> {
     let mut rows = Vec::new();
     for param in law["parameters"].as_array().unwrap() {
         let (name, cells) = (text(param, "name"), cells(text(param, "name")));
-        let unit = if text(param, "unit").is_empty() { "—" } else { text(param, "unit") };
+        let unit = text(param, "unit");
+        let unit = if unit.is_empty() { "—".to_owned() } else { format!("`{unit}`") };
         let default = if cells[3] == "required" { "" } else { &cells[3] };
         rows.push(format!("| `{name}` | {unit} | {} | {default} | {} |", cells[2], meaning(param)));
     }
     for input in law["inputs"].as_array().unwrap() {
         let (name, cells) = (text(input, "name"), cells(text(input, "name")));
-        rows.push(format!("| input `{name}` | {} | {} | | {} |", text(input, "unit"), cells[2], meaning(input)));
+        rows.push(format!("| input `{name}` | `{}` | {} | | {} |", text(input, "unit"), cells[2], meaning(input)));
     }
     rows
 }

@@ -5,7 +5,10 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Pages that are not part of the book.
+/// Pages that are not part of the book, but lead to it.
+const BESIDE: [&str; 2] = ["README.md", "scenarios/README.md"];
+
+/// Pages below docs/ that are not part of the book.
 const OUTSIDE: [&str; 1] = ["docs/SUMMARY.md"];
 
 /// Every page below docs/, by its path from the root.
@@ -67,12 +70,46 @@ fn broken(page: &str, link: &Link, anchors: &HashMap<String, Vec<String>>) -> Op
 
 #[test]
 fn links_lead_somewhere() {
-    let pages: Vec<Page> = pages().iter().map(String::as_str).chain(["README.md"]).map(Page::open).collect();
+    let pages: Vec<Page> = pages().iter().map(String::as_str).chain(BESIDE).map(Page::open).collect();
     let anchors = pages.iter().map(|page| (page.name.clone(), page.anchors())).collect();
     let links = pages.iter().flat_map(|page| page.links.iter().map(move |link| (page, link)));
     let broken: Vec<String> = links.clone().filter_map(|(page, link)| broken(&page.name, link, &anchors)).collect();
     assert!(broken.is_empty(), "\n{}", broken.join("\n"));
-    assert!(links.count() > 250);
+    assert!(links.count() > 700);
+}
+
+/// Headings of docs/SCENARIO.md to which other pages of the world lead.
+#[test]
+fn the_headings_of_scenario_files_stay() {
+    let anchors = Page::open("docs/SCENARIO.md").anchors();
+    for heading in [
+        "values",
+        "constants",
+        "robot",
+        "bodies",
+        "urdf-files",
+        "element",
+        "past",
+        "heat",
+        "schemes",
+        "motion",
+        "feedback",
+        "controllers",
+        "event",
+        "metric",
+        "time",
+        "solver",
+        "sweep",
+        "figure",
+        "output",
+        "what-is-not-there-yet",
+        "in-an-editor",
+        "the-command-line",
+        "going-on-with-a-run",
+        "results",
+    ] {
+        assert!(anchors.iter().any(|anchor| anchor == heading), "{heading}");
+    }
 }
 
 #[test]
@@ -85,15 +122,15 @@ fn every_page_is_in_the_summary_once() {
 
 #[test]
 fn every_picture_is_shown_somewhere() {
-    let pages: Vec<Page> = pages().iter().map(String::as_str).chain(["README.md"]).map(Page::open).collect();
+    let pages: Vec<Page> = pages().iter().map(String::as_str).chain(BESIDE).map(Page::open).collect();
     let shown = |picture: &str| {
         pages.iter().flat_map(|page| &page.links).any(|link| link.target.rsplit('/').next() == Some(picture))
     };
-    for folder in ["images", "laws/figures"] {
-        for entry in fs::read_dir(format!("{ROOT}/docs/{folder}")).unwrap().map(Result::unwrap) {
+    for folder in ["docs/images", "docs/laws/figures", "scenarios/pictures"] {
+        for entry in fs::read_dir(format!("{ROOT}/{folder}")).unwrap().map(Result::unwrap) {
             let name = entry.file_name();
             let picture = name.to_str().unwrap();
-            assert!(shown(picture), "docs/{folder}/{picture} is shown nowhere");
+            assert!(shown(picture), "{folder}/{picture} is shown nowhere");
         }
     }
 }

@@ -9,8 +9,8 @@ use std::process::{Command, Stdio};
 
 /// Kinds of blocks that are looked at elsewhere (scenarios.rs, laws.rs, documentation tests, tests of the Python package) or not at
 /// all.
-const ELSEWHERE: [&str; 10] =
-    ["toml", "toml part", "toml ignore", "toml comment", "bash", "pycon", "python", "rust", "c", "json"];
+const ELSEWHERE: [&str; 11] =
+    ["toml", "toml part", "toml ignore", "toml comment", "bash", "pycon", "python", "rust", "c", "json", "math"];
 
 /// Lines that cannot be run here.
 const NOT_RUN: [(&str, &str); 2] = [

@@ -1,7 +1,7 @@
 //! The keys of a scenario, as data: name, what may stand there, what stands for it where it is left out, words.
 //!
 //! Everything that lists keys reads these tables: the readers (which keys there are, units, ranges, defaults), what is suggested in
-//! the place of a misspelt one, the JSON schema, and a test that compares them with the tables of docs/SCENARIO.md.
+//! the place of a misspelt one, the JSON schema, and a test that compares them with the tables of docs/scenario/.
 
 mod constants;
 mod controller;
