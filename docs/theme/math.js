@@ -81,22 +81,23 @@ class Formula {
 
     scripted() {
         const { inner, limits } = this.atom();
-        let below, above = '';
+        let below, above, primes = '';
         for (;;) {
             const word = this.next();
-            if (word === '_') {
-                this.at += 1;
-                below = this.group();
-            } else if (word === '^') {
-                this.at += 1;
-                above += this.group();
-            } else if (word === "'") {
-                this.at += 1;
-                above += tag('mo', '′', ' lspace="0" rspace="0"');
-            } else break;
+            if (!['_', '^', "'"].includes(word)) break;
+            this.at += 1;
+            if (word === '_') below = this.group();
+            else if (word === '^') above = this.group();
+            else primes += tag('mo', '′', ' lspace="0" rspace="0"');
         }
+        // A prime stands raised by itself. Beside an index it comes last, under a power first.
+        const base = primes && above ? tag('mrow', inner + primes) : inner;
+        const whole = this.raised(base, below, above, limits);
+        return primes && !above ? tag('mrow', whole + primes) : whole;
+    }
+
+    raised(inner, below, above, limits) {
         const kind = limits ? ['munder', 'mover', 'munderover'] : ['msub', 'msup', 'msubsup'];
-        if (above) above = tag('mrow', above);
         if (below && above) return tag(kind[2], inner + below + above);
         if (below) return tag(kind[0], inner + below);
         return above ? tag(kind[1], inner + above) : inner;
