@@ -15,7 +15,7 @@ const OPERATORS = {
 };
 const SPACES = { ',': 0.17, ';': 0.28, quad: 1, qquad: 2 };
 const LARGE = { sum: '∑', int: '∫', prod: '∏' };
-const FUNCTIONS = ['sin', 'cos', 'tan', 'atan', 'exp', 'log', 'ln', 'tanh', 'max', 'min', 'det'];
+const FUNCTIONS = ['sin', 'cos', 'tan', 'arctan', 'exp', 'log', 'ln', 'tanh', 'max', 'min', 'det'];
 const ACCENTS = { dot: '˙', ddot: '¨', bar: '¯', hat: '^', tilde: '~', vec: '→' };
 
 const tag = (name, inner, attributes = '') => `<${name}${attributes}>${inner}</${name}>`;
@@ -143,10 +143,7 @@ class Formula {
     }
 }
 
-// The MathML of a formula, its lines one below the other.
-function typeset(tex, display) {
-    return tex.trim().split(/\\\\\s*\n/).map(line => new Formula(line).mathml(display)).join('');
-}
+const typeset = (tex, display) => new Formula(tex.trim()).mathml(display);
 
 if (typeof document !== 'undefined') {
     const attempt = (tex, display, put) => {

@@ -34,7 +34,7 @@ fn unknown(formula: &str, script: &str) -> Option<String> {
                 let known = [format!(" {word}: "), format!("'{word}'"), format!("'\\\\{word}'")];
                 if word.is_empty() {
                     let mark = rest.next();
-                    if !matches!(mark, Some(',' | ';' | '\\')) {
+                    if !matches!(mark, Some(',' | ';')) {
                         return Some(format!("\\{mark:?}"));
                     }
                 } else if !known.iter().any(|known| script.contains(known)) {
@@ -46,6 +46,9 @@ fn unknown(formula: &str, script: &str) -> Option<String> {
         if open < 0 {
             break;
         }
+    }
+    if formula.matches(r"\left").count() != formula.matches(r"\right").count() {
+        return Some(r"\left and \right".to_owned());
     }
     (open != 0).then(|| "braces".to_owned())
 }
@@ -63,7 +66,9 @@ fn every_formula_is_typeset() {
         }
     }
     assert!(found > 150, "{found}");
-    for (wrong, word) in [(r"\farc{1}{2}", r"\farc"), (r"\frac{1}{2", "braces"), ("|x|", r"\lvert")] {
+    for (wrong, word) in
+        [(r"\farc{1}{2}", r"\farc"), (r"\frac{1}{2", "braces"), ("|x|", r"\lvert"), (r"\left( x", "right")]
+    {
         assert!(unknown(wrong, &script).unwrap().contains(word), "{wrong}");
     }
     // Nothing that the script says is fetched.
