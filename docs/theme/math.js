@@ -128,7 +128,8 @@ class Formula {
         if (FUNCTIONS.includes(name)) return { inner: this.named(name, begins) };
         if (name in SYMBOLS) return { inner: tag('mi', SYMBOLS[name], /[A-ZΓΔΠΣΩ∞]/u.test(SYMBOLS[name]) ? ' mathvariant="normal"' : '') };
         if (name in SPACES) return { inner: tag('mspace', '', ` width="${SPACES[name]}em"`) };
-        if (name in OPERATORS) return { inner: tag('mo', OPERATORS[name], /vert|ceil/.test(name) ? ' stretchy="false"' : '') };
+        const fence = { l: 'prefix', r: 'postfix' }[/^([lr])(vert|ceil)$/.exec(name)?.[1]];
+        if (name in OPERATORS) return { inner: tag('mo', OPERATORS[name], fence ? ` form="${fence}" stretchy="false"` : '') };
         if (name) throw new Error(`\\${name} is not known`);
         if (/^\d/.test(word)) return { inner: tag('mn', word) };
         if (/^\p{L}$/u.test(word)) return { inner: tag('mi', word) };

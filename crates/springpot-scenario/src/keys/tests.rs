@@ -136,13 +136,16 @@ fn is_said(key: &Key, last: &str) -> bool {
     }
 }
 
+/// The pages, with their headings, whose tables hold the keys of one.
+type Places = &'static [(&'static str, &'static str)];
+
 #[test]
 fn the_pages_have_the_same_keys() {
     let of_motion =
         |kind: MotionKind| -> Vec<&'static Key> { MOTION.of(kind.name()).filter(|key| !key.only.is_empty()).collect() };
     let all = |keys: &'static Keys| -> Vec<&'static Key> { keys.keys.iter().collect() };
     // The two keys of prescribed joints stand in sentences.
-    let sections: [(&[(&str, &str)], Vec<&'static Key>); 18] = [
+    let sections: [(Places, Vec<&'static Key>); 18] = [
         (&[("robot", "[robot]"), ("urdf", "Keys")], all(&ROBOT)),
         (&[("robot", "Bodies")], all(&BODY)),
         (&[("robot", "Joints")], all(&JOINT)),

@@ -10,7 +10,7 @@ const AGAIN: &str = "UPDATE=1 cargo test -p springpot-scenario reference";
 
 const HEAD: &str = "# Keys of a scenario
 
-Every key that a scenario may hold, made of the tables by which the program reads, checks and completes it. [Scenario files](../SCENARIO.md) explains them, with examples.
+Every key that a scenario may hold, made of the tables by which the program reads, checks and completes it. [Scenario files](../SCENARIO.md) leads to where each is explained, with examples.
 
 A number stands in the unit that is named, or is a quantity with its unit in quotes, such as `\"5 ms\"`. Where two units stand, the first is that of joints that turn, the second that of
 joints that slide. The column *of* names the kinds that alone take a key.
