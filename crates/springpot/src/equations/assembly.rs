@@ -282,14 +282,16 @@ impl Equations {
     ) -> Result<(), RunError> {
         let (model, driven) = (&cx.system.model, &mut self.driven[i]);
         driven.clear();
-        for (k, signal) in self.forward.forces(model) {
-            let force = force_at(cx, k, signal, t)?;
-            if !self.friction.holds(k) {
-                driven.push(force);
-                continue;
+        for (j, signals) in self.forward.forced(model) {
+            for (k, signal) in model.v_range(j).zip(signals) {
+                let force = force_at(cx, k, signal, t)?;
+                if !self.friction.holds(k) {
+                    driven.push(force);
+                    continue;
+                }
+                let place = model.coordinate_of(k).expect("friction sticks in joints of one degree");
+                (q[place], v[k], a[k]) = (held[place], 0.0, 0.0);
             }
-            let place = model.coordinate_of(k).expect("friction sticks in joints of one degree");
-            (q[place], v[k], a[k]) = (held[place], 0.0, 0.0);
         }
         for j in self.forward.locked(model) {
             let own = model.q_range(j);

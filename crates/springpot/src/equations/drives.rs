@@ -63,8 +63,10 @@ impl Forward {
 /// What drives the joints at t, and the places of those that signals move.
 pub(crate) fn drive(cx: Context, forward: &Forward, t: f64, evaluation: &mut Evaluation) {
     let model = &cx.system.model;
-    for (k, signal) in forward.forces(model) {
-        evaluation.driven[k] = Some(cx.force(k, signal, t));
+    for (j, signals) in forward.forced(model) {
+        for (k, signal) in model.v_range(j).zip(signals) {
+            evaluation.driven[k] = Some(cx.force(k, signal, t));
+        }
     }
     for (j, path) in forward.paths(model) {
         let (q, v) = (model.q_range(j), model.v_range(j));

@@ -10,5 +10,6 @@ mod refusals;
 mod rubbing;
 mod runs;
 mod stability;
+mod states;
 #[path = "../support/mod.rs"]
 mod support;

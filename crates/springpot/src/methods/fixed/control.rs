@@ -4,10 +4,11 @@ use super::real_time::MemorySettings;
 use super::step::OneStage;
 use crate::elements::ElementBank;
 use crate::equations::context::Held;
-use crate::equations::control::{ControlRun, Eye, Sampler, Shown};
+use crate::equations::control::{ControlRun, ControlState, Eye, Sampler, SamplerState, Shown};
 use crate::law::{Observation, Point};
 use crate::system::System;
 use crate::system::error::RunError;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What controls a robot in a loop.
@@ -15,6 +16,13 @@ use std::sync::Arc;
 pub(super) struct LoopControl {
     sampler: Box<Sampler>,
     run: Box<ControlRun>,
+}
+
+/// What of it outlasts a step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct LoopControlState {
+    sampler: SamplerState,
+    run: ControlState,
 }
 
 /// A robot in a loop between two steps.
@@ -63,6 +71,16 @@ impl LoopControl {
     /// What acts.
     pub(super) fn acting(&self) -> &Held {
         self.sampler.acting()
+    }
+
+    /// What outlasts a step.
+    pub(super) fn state(&self) -> LoopControlState {
+        LoopControlState { sampler: self.sampler.state(), run: self.run.state() }
+    }
+
+    /// Goes on from a state of the same system; `false` where it is of another one.
+    pub(super) fn go_on(&mut self, LoopControlState { sampler, run }: LoopControlState) -> bool {
+        self.sampler.go_on(sampler) && self.run.go_on(run)
     }
 
     /// Takes the step that was just worked out into the past.

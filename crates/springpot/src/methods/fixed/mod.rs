@@ -22,6 +22,6 @@ mod run;
 mod step;
 
 pub use crate::system::fixed_step::Method;
-pub use real_time::{Loop, LoopError, MemorySettings};
+pub use real_time::{Loop, LoopError, LoopState, MemorySettings};
 pub(crate) use run::{Fixed, StepperState};
 pub use step::ITERATIONS;

@@ -1,17 +1,18 @@
 //! A robot with its elements in a controller's loop.
 
-use super::control::LoopControl;
+use super::control::{LoopControl, LoopControlState};
 use super::step::OneStage;
 use crate::dynamics::{kinetic_energy, potential_energy};
-use crate::elements::{ElementBank, MemoryRange};
+use crate::elements::{BankState, ElementBank, MemoryRange};
 use crate::equations::context::{Context, Held};
 use crate::fractional::Form;
-use crate::law::{Course, Point};
+use crate::law::{Course, InputValue, Point};
 use crate::system::definite::Definite;
 use crate::system::error::RunError;
 use crate::system::fixed_step::Method;
 use crate::system::row_times::multiple;
 use crate::system::{Motion, System};
+use serde::{Deserialize, Serialize};
 
 /// How the memories of the elements are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +91,21 @@ pub struct Loop<'a> {
     definite: Option<Definite>,
     step: f64,
     steps: u64,
+}
+
+/// The state of a [`Loop`] between two steps, memories, samples and what is held included. It belongs to the system, method, step and memories
+/// that it was taken from, and what goes on from it does so to the bit, in any process on the same machine.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct LoopState {
+    steps: u64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+    held: Held,
+    bank: BankState,
+    /// What the bank was told of the inputs at the stage of the last step.
+    inputs: Vec<Vec<InputValue>>,
+    control: Option<LoopControlState>,
 }
 
 impl<'a> Loop<'a> {
@@ -173,6 +189,49 @@ impl<'a> Loop<'a> {
     pub fn hold_input(&mut self, element: usize, input: usize, value: Option<f64>) -> Result<(), RunError> {
         let held = self.held.hold_input(self.system, element, input, value);
         held.ok_or(RunError::NoInput { element, input })
+    }
+
+    /// What it takes to go on from here.
+    pub fn state(&self) -> LoopState {
+        let Self { stage, bank, .. } = self;
+        LoopState {
+            steps: self.steps,
+            q: stage.origin.q.clone(),
+            v: stage.origin.v.clone(),
+            a: stage.a.clone(),
+            held: self.held.clone(),
+            bank: bank.state(),
+            inputs: (0..bank.len()).map(|e| bank.point(e, 1).inputs.to_vec()).collect(),
+            control: self.control.as_ref().map(LoopControl::state),
+        }
+    }
+
+    /// Goes on from a state of a loop of the same system, method, step and memories, later or earlier. What [`Self::force`], [`Self::correction`]
+    /// and [`Self::kinetic_energy`] tell of the last step they tell again behind the next one.
+    ///
+    /// # Errors
+    /// [`RunError::OtherRun`] where it is of another system.
+    pub fn set_state(&mut self, state: &LoopState) -> Result<(), RunError> {
+        let LoopState { steps, q, v, a, held, bank, inputs, control } = state.clone();
+        let Self { system, stage, .. } = self;
+        let fits = [q.len(), v.len(), a.len()] == [stage.origin.q.len(), stage.origin.v.len(), stage.a.len()];
+        let inputs_fit = inputs.iter().map(Vec::len).eq(system.elements.iter().map(|element| element.inputs.len()));
+        let controls = match (&mut self.control, control) {
+            (None, None) => true,
+            (Some(own), Some(state)) if fits && inputs_fit => own.go_on(state),
+            _ => false,
+        };
+        if !(fits && inputs_fit && controls && self.bank.set_state(bank)) {
+            return Err(RunError::OtherRun);
+        }
+        (self.steps, self.held) = (steps, held);
+        for (e, values) in inputs.iter().enumerate() {
+            self.bank.inputs_mut(e, 1).copy_from_slice(values);
+        }
+        stage.a = a;
+        let sampled = self.control.as_ref().map_or(Held::NONE, LoopControl::acting);
+        stage.go_on(Context { system, held: &self.held, sampled }, multiple(steps, self.step), &q, &v);
+        Ok(())
     }
 
     /// Time, s.

@@ -160,7 +160,10 @@ impl OneStage {
         origin.v.copy_from_slice(v);
         origin.kinematics.update_velocity(model, q, v);
         for (element, step) in cx.system.elements.iter().zip(&mut self.elements) {
-            element.measure.read_into(model, &origin.kinematics, &mut step.gradients[1], &mut step.ends[0]);
+            let [at_stage, at_end] = &mut step.gradients;
+            element.measure.read_into(model, &origin.kinematics, at_end, &mut step.ends[0]);
+            // With backward Euler's method the stage is the end.
+            at_stage.copy_from_slice(at_end);
         }
     }
 
