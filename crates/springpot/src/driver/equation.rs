@@ -207,7 +207,8 @@ impl System {
         match outcome {
             _ if !table.is_empty() => Ok(table),
             Err(error) => Err(error.into()),
-            Ok(()) => unreachable!("a run to {:?} s has a row at {t} s", t_reached),
+            // An event has stopped it.
+            Ok(()) => Err(EquationError::Outside { t, end: t_reached.unwrap_or(0.0) }),
         }
     }
 }

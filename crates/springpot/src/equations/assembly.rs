@@ -58,6 +58,8 @@ pub(crate) struct Equations {
 #[derive(Debug)]
 pub(super) struct Tangent {
     pub(super) is_known: bool,
+    /// Positions and velocities of the links, and whether they are those of the start.
+    pub(super) is_placed: bool,
     pub(super) kinematics: Kinematics,
     /// The mass matrix; ∂(RNEA + resistance − τ)/∂q and /∂v, forces of the elements constant.
     pub(super) slopes: RneaDerivatives,
@@ -101,6 +103,7 @@ impl Equations {
             may_yield: system.elements.iter().any(may_yield),
             tangent: Tangent {
                 is_known: false,
+                is_placed: false,
                 kinematics: Kinematics::new(model),
                 slopes: RneaDerivatives::new(model),
                 mass: Solve::default(),
@@ -200,9 +203,11 @@ impl Equations {
     }
 
     fn linearise(&mut self, cx: Context, at: Node) -> Result<(), RunError> {
-        let (model, Tangent { kinematics, slopes, .. }) = (&cx.system.model, &mut self.tangent);
+        let (model, Tangent { kinematics, slopes, is_placed, .. }) = (&cx.system.model, &mut self.tangent);
         let Scratch { forces, workspace, .. } = &mut self.scratch;
-        kinematics.update_velocity(model, at.q, at.v);
+        if !std::mem::replace(is_placed, true) {
+            kinematics.update_velocity(model, at.q, at.v);
+        }
         self.rounding.forget();
         forces.clear();
         for (element, nodes) in cx.system.elements.iter().zip(&self.elements) {
@@ -426,9 +431,10 @@ impl Equations {
             .fold([0.0; 3], |sum, (force, nodes)| [0, 1, 2].map(|order| sum[order] + nodes.share[k] * force[order]))
     }
 
-    /// Goes on to the end of the step.
-    pub(crate) fn accept(&mut self) {
-        self.tangent.is_known = false;
+    /// Goes on to the end of the step, where the links are as `kinematics` tell, which is given those at the start.
+    pub(crate) fn accept(&mut self, kinematics: &mut Kinematics) {
+        std::mem::swap(&mut self.tangent.kinematics, kinematics);
+        (self.tangent.is_known, self.tangent.is_placed) = (false, true);
         for (e, nodes) in self.elements.iter_mut().enumerate() {
             let response = self.bank.response(e);
             nodes.singular = response.singular[STAGES - 1];
@@ -438,7 +444,7 @@ impl Equations {
 
     /// The start is another one: what was known of it holds no longer.
     pub(crate) fn restart(&mut self) {
-        self.tangent.is_known = false;
+        (self.tangent.is_known, self.tangent.is_placed) = (false, false);
         self.elements.iter_mut().for_each(|nodes| nodes.singular = 0.0);
     }
 

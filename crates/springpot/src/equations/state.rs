@@ -117,7 +117,8 @@ impl Equations {
         for (nodes, [force, singular]) in self.elements.iter_mut().zip(forces) {
             (nodes.force, nodes.singular) = (force, singular);
         }
-        (self.is_singular, self.tangent.is_known) = (is_singular, false);
+        self.is_singular = is_singular;
+        (self.tangent.is_known, self.tangent.is_placed) = (false, false);
         true
     }
 }

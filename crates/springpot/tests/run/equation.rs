@@ -105,4 +105,14 @@ fn what_is_no_time_of_the_motion_is_an_error() {
     let plan = cases.plan(0).unwrap();
     let error = plan.system().equation(&plan.settings, 0.34).unwrap_err();
     assert!(matches!(error, EquationError::NotARow { nearest: 0.3, .. }), "{error}");
+    // A motion that an event ends is no longer than that.
+    let stop = "[motion]\nkind = \"forward\"\n[[event]]\nname = \"stop\"\nwhen = \"t - 0.25\"\naction = \"stop\"\n";
+    let cases = crate::support::cases(&format!("{ARM}{}{stop}{}", springpot(0.5, "caputo"), every(1.0, 0.1)));
+    let plan = cases.plan(0).unwrap();
+    let system = plan.system();
+    assert_eq!(system.equation(&plan.settings, 0.2).unwrap().t, 0.2);
+    for t in [0.3, 0.31] {
+        let error = system.equation(&plan.settings, t).unwrap_err();
+        assert!(matches!(error, EquationError::Outside { end, .. } if (end - 0.25).abs() < 1e-12), "{error}");
+    }
 }

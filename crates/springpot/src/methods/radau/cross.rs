@@ -7,6 +7,7 @@ use crate::collocation::{RADAU_NODES, STAGES};
 use crate::equations::Within;
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
+use crate::equations::resistance::joint_loss;
 use crate::methods::stepper::Target;
 use crate::system::error::RunError;
 
@@ -43,8 +44,11 @@ impl Radau {
             if is_whole {
                 let inputs_at = if is_end { target.end_inputs() } else { at };
                 cx.fill(at, inputs_at, None, scratch, evaluation)?;
-            } else {
+            } else if is_end {
                 cx.fill_energies(at, &stage.kinematics, equations.read(k + 1), evaluation);
+            } else {
+                evaluation.t = at;
+                evaluation.joint_loss = joint_loss(&cx.system.model, &evaluation.v);
             }
             equations.complete_node(cx, k + 1, evaluation);
         }

@@ -239,7 +239,7 @@ impl Stepper for Radau {
     fn accept(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
         let equations = &mut recorder.equations;
         self.step.accept(step.size, step.to);
-        equations.accept();
+        equations.accept(&mut self.step.stages[STAGES - 1].kinematics);
         if equations.take_kink() {
             // What follows is another function: neither the cubic nor the errors before tell anything of it.
             (self.last, self.step.fitted.last) = (None, None);
