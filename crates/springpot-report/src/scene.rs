@@ -54,6 +54,12 @@ pub struct Joint {
     pub kind: Freedom,
     /// Its axis in its frame.
     pub axis: [f64; 3],
+    /// Of a helical joint: the advance along the axis per turn, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lead: Option<f64>,
+    /// What its velocity is called, where that is not its own name; columns are `v.<rate>`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate: Option<String>,
     /// The joint that it follows, if it has no coordinate of its own.
     pub follows: Option<Follows>,
 }
@@ -70,6 +76,10 @@ pub enum Freedom {
     Continuous,
     /// Along the axis, m.
     Prismatic,
+    /// About the axis, rad, and along it by the lead in each turn.
+    Helical,
+    /// A quaternion, columns `.qx` … `.qw`.
+    Spherical,
     /// Freely: position in the parent's frame and a quaternion, columns `.x` … `.z` and `.qx` … `.qw`.
     Floating,
 }

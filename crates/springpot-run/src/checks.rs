@@ -2,7 +2,7 @@
 
 use crate::numbers::short;
 use springpot::dynamics::Kinematics;
-use springpot::model::{Anchor, JointKind, Parent};
+use springpot::model::{Anchor, Dimension, Parent};
 use springpot::system::System;
 use springpot_scenario::{Plan, Remark, ShapePlan};
 
@@ -98,7 +98,8 @@ fn far_anchors(plan: &Plan, system: &System) -> Option<Vec<Remark>> {
         return None;
     }
     let pose = system.pose(0.0).ok()?;
-    let turns = plan.bodies.iter().any(|body| matches!(body.joint.kind, JointKind::Revolute | JointKind::Continuous));
+    let model = &plan.model;
+    let turns = (0..model.joint_count()).any(|j| model.joint_space(j).dimension() == Some(Dimension::Angle));
     let points = plan.bodies.iter().enumerate().flat_map(|(index, body)| {
         let body_is = Parent::Body(index);
         let com = (body.mass > 0.0).then(|| pose.point(&Anchor { body: body_is, point: body.com }));
@@ -142,9 +143,9 @@ pub(crate) fn elements(plan: &Plan, system: &System) -> Vec<Remark> {
         let t = plan.settings.end * f64::from(k) / f64::from(LOOKED_AT - 1);
         let Ok(mut state) = system.state(if plan.motion.is_forward() { 0.0 } else { t }) else { return Vec::new() };
         if plan.motion.is_forward() {
-            let own = model.own_joints().filter(|j| model.q_range(*j).len() == 1);
-            for (joint, j) in own.enumerate() {
-                let slides = model.joint_kind(j) == JointKind::Prismatic;
+            let own = model.own_joints().filter_map(|j| Some((j, model.joint_space(j).dimension()?)));
+            for (joint, (j, dimension)) in own.enumerate() {
+                let slides = dimension == Dimension::Length;
                 // Golden angles: no two joints keep step.
                 let turn = (f64::from(k) * 0.618_034 * (joint + 1) as f64).sin();
                 state.q[model.q_range(j).start] += APART[usize::from(slides)] * turn;

@@ -8,7 +8,7 @@ use springpot::elements::Element;
 use springpot::equations::Pose;
 use springpot::law::{InputValue, Network, Point, Term};
 use springpot::model::urdf::{self, VisualShape};
-use springpot::model::{Anchor, JointKind, Parent};
+use springpot::model::{Anchor, BodySpec, JointKind, JointSpec, Mimic, Move, Parent};
 use springpot::system::System;
 use springpot_report::ElementSign;
 use springpot_report::scene::{
@@ -25,35 +25,39 @@ const POINTS: usize = 400;
 pub(crate) fn scene(plan: &Plan, folder: &FilePath) -> Scene {
     let robot = plan.urdf.as_ref().map(|urdf| &urdf.robot);
     let visual = |shown: &urdf::Visual| visual(shown, folder);
-    let bodies = plan.bodies.iter().enumerate().map(|(index, body)| {
-        let joint = &body.joint;
-        let follows = joint.mimic.as_ref().map(|mimic| Follows {
-            joint: mimic.joint.clone(),
-            ratio: mimic.multiplier,
-            offset: mimic.offset,
-        });
+    let places = Places::of(plan);
+    let mut bodies = Vec::new();
+    for (index, body) in plan.bodies.iter().enumerate() {
+        let mut joints = joints(&body.joint);
+        let last = joints.pop();
+        let (mut parent, mut origin, mut rpy) = (places.of_parent(body.parent), body.joint.origin, body.joint.rpy);
+        for joint in joints {
+            let name = joint.name.clone();
+            bodies.push(Body { name, parent, origin, rpy, joint, com: [0.0; 3], mass: 0.0, visuals: Vec::new() });
+            (parent, origin, rpy) = (Some(bodies.len() - 1), [0.0; 3], [0.0; 3]);
+        }
         let visuals = robot.and_then(|robot| robot.visuals.get(index)).map_or(&[][..], Vec::as_slice);
-        Body {
+        bodies.extend(last.map(|joint| Body {
             name: body.name.clone(),
-            parent: index_of(body.parent),
-            origin: joint.origin,
-            rpy: joint.rpy,
-            joint: Joint { name: joint.name.clone(), kind: freedom(joint.kind), axis: joint.axis, follows },
+            parent,
+            origin,
+            rpy,
+            joint,
             com: body.com,
             mass: body.mass,
             visuals: visuals.iter().filter_map(&visual).collect(),
-        }
-    });
+        }));
+    }
     let root = robot.filter(|robot| !robot.floating_base).map(|robot| Root {
         name: robot.root.name.clone(),
         visuals: robot.root.visuals.iter().filter_map(&visual).collect(),
     });
     Scene {
-        bodies: bodies.collect(),
+        bodies,
         root,
         ground: None,
-        gripper: plan.gripper.as_ref().map(|gripper| spot(&gripper.anchor)),
-        elements: elements(plan),
+        gripper: plan.gripper.as_ref().map(|gripper| places.spot(&gripper.anchor)),
+        elements: elements(plan, &places),
         wanted: None,
     }
 }
@@ -136,16 +140,15 @@ fn sign(law: &Network, at: &Point<'_>) -> ElementSign {
     }
 }
 
-fn elements(plan: &Plan) -> Vec<SceneElement> {
+fn elements(plan: &Plan, places: &Places) -> Vec<SceneElement> {
     let mut drawn: Vec<SceneElement> = Vec::with_capacity(plan.elements.len());
     for element in &plan.elements {
         let (mut name, sign) = (element.element.name.clone(), sign_of(&element.element));
         let shape = match &element.shape {
-            ShapePlan::Points(points) => SceneShape::Points(points.iter().map(spot).collect()),
+            ShapePlan::Points(points) => SceneShape::Points(points.iter().map(|anchor| places.spot(anchor)).collect()),
             ShapePlan::Joint(joint) => {
-                let Some(body) = plan.bodies.iter().position(|body| body.joint.name == *joint) else { continue };
-                let turns = element.element.measure.is_rotation();
-                SceneShape::Joint { body, axis: plan.bodies[body].joint.axis, turns }
+                let Some((body, axis)) = places.of_joint(plan, joint) else { continue };
+                SceneShape::Joint { body, axis, turns: element.element.measure.is_rotation() }
             }
             ShapePlan::Bushing { from, to, component } => {
                 // One ring for all components.
@@ -158,7 +161,7 @@ fn elements(plan: &Plan) -> Vec<SceneElement> {
                     parts.push(part);
                     continue;
                 }
-                SceneShape::Bushing { from: placed(from), to: placed(to), parts: vec![part] }
+                SceneShape::Bushing { from: places.placed(from), to: places.placed(to), parts: vec![part] }
             }
         };
         drawn.push(SceneElement { name, sign, contact: lets_go(&element.element.law), shape });
@@ -175,29 +178,70 @@ fn lets_go(law: &Network) -> bool {
     }
 }
 
-fn freedom(kind: JointKind) -> Freedom {
-    match kind {
-        JointKind::Fixed => Freedom::Fixed,
-        JointKind::Revolute => Freedom::Revolute,
-        JointKind::Continuous => Freedom::Continuous,
-        JointKind::Prismatic => Freedom::Prismatic,
-        JointKind::Floating => Freedom::Floating,
+/// The joints that a joint is drawn as, a body each; they are given in its frame, where all of its coordinates are 0.
+fn joints(spec: &JointSpec) -> Vec<Joint> {
+    let follows = |mimic: &Mimic| Follows { joint: mimic.joint.clone(), ratio: mimic.multiplier, offset: mimic.offset };
+    let parts = spec.parts();
+    if parts.is_empty() {
+        let (name, axis) = (spec.name.clone(), spec.axis);
+        return vec![Joint { name, kind: Freedom::Fixed, axis, lead: None, rate: None, follows: None }];
     }
+    let is_only = parts.len() == 1;
+    let drawn = parts.into_iter().map(|part| Joint {
+        kind: match part.moves {
+            Move::Turn if spec.kind == JointKind::Continuous => Freedom::Continuous,
+            Move::Turn => Freedom::Revolute,
+            Move::Shift => Freedom::Prismatic,
+            Move::Screw => Freedom::Helical,
+            Move::Ball => Freedom::Spherical,
+            Move::Pose => Freedom::Floating,
+        },
+        axis: if is_only { spec.axis } else { part.axis },
+        lead: (part.moves == Move::Screw).then_some(spec.lead),
+        rate: (part.velocity != part.name).then_some(part.velocity),
+        name: part.name,
+        follows: spec.mimic.as_ref().map(follows),
+    });
+    drawn.collect()
 }
 
-fn index_of(parent: Parent) -> Option<usize> {
-    match parent {
-        Parent::World => None,
-        Parent::Body(index) => Some(index),
+/// Which body of the scene each body of the plan is: those of joints of several coordinates stand behind one for each of the others.
+struct Places(Vec<usize>);
+
+impl Places {
+    fn of(plan: &Plan) -> Self {
+        let mut count = 0;
+        let last = |body: &BodySpec| {
+            count += body.joint.parts().len().max(1);
+            count - 1
+        };
+        Self(plan.bodies.iter().map(last).collect())
     }
-}
 
-fn spot(anchor: &Anchor) -> Spot {
-    Spot { body: index_of(anchor.body), point: anchor.point }
-}
+    fn of_parent(&self, parent: Parent) -> Option<usize> {
+        match parent {
+            Parent::World => None,
+            Parent::Body(index) => Some(self.0[index]),
+        }
+    }
 
-fn placed(frame: &FramePlan) -> Placed {
-    Placed { body: index_of(frame.anchor.body), point: frame.anchor.point, rpy: frame.rpy }
+    /// The body of the scene that a joint, or a coordinate of one, moves, and what it moves along or about.
+    fn of_joint(&self, plan: &Plan, name: &str) -> Option<(usize, [f64; 3])> {
+        plan.bodies.iter().zip(&self.0).find_map(|(body, last)| {
+            let parts = body.joint.parts();
+            let k = parts.iter().position(|part| part.name == name)?;
+            let axis = if parts.len() == 1 { body.joint.axis } else { parts[k].axis };
+            Some((last + 1 + k - parts.len(), axis))
+        })
+    }
+
+    fn spot(&self, anchor: &Anchor) -> Spot {
+        Spot { body: self.of_parent(anchor.body), point: anchor.point }
+    }
+
+    fn placed(&self, frame: &FramePlan) -> Placed {
+        Placed { body: self.of_parent(frame.anchor.body), point: frame.anchor.point, rpy: frame.rpy }
+    }
 }
 
 /// A shape of a URDF file; nothing for files that were not found.

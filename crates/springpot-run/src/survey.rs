@@ -8,7 +8,7 @@ use springpot::control::Aim;
 use springpot::driver::LimitWatch;
 use springpot::dynamics::Kinematics;
 use springpot::equations::ElementStart;
-use springpot::model::JointKind;
+use springpot::model::{Dimension, Space};
 use springpot::system::{RowTimes, RunError, Stop, System};
 use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, Remark, ShapePlan};
 use std::ops::RangeInclusive;
@@ -262,10 +262,13 @@ fn short_run(plan: &Plan) -> Option<[f64; 2]> {
     }
 }
 
+/// What joints measure that turn, but not without end.
+const ANGLE: Space = Space::Line(Dimension::Angle);
+
 /// Joints whose own motion begins many turns away, in an expression without a unit.
 fn far_starts(plan: &Plan, system: &System) -> Vec<Remark> {
     let Ok(state) = system.state(0.0) else { return Vec::new() };
-    let turning = system.model.own_joints().filter(|j| system.model.joint_kind(*j) == JointKind::Revolute);
+    let turning = system.model.own_joints().filter(|j| system.model.joint_space(*j) == ANGLE);
     let remarks = turning.filter_map(|j| {
         let (name, angle) = (&system.model.joint_names()[j], state.q[system.model.q_range(j).start]);
         let place = plan.motion.place_of(name);
@@ -294,7 +297,7 @@ fn fast_turns(plan: &Plan, system: &System) -> Vec<Remark> {
     for k in 0..TURNS_LOOKED_AT {
         let t = plan.settings.end * f64::from(k) / f64::from(TURNS_LOOKED_AT);
         let Ok(state) = system.state(t) else { return Vec::new() };
-        for j in system.model.own_joints().filter(|j| system.model.joint_kind(*j) == JointKind::Revolute) {
+        for j in system.model.own_joints().filter(|j| system.model.joint_space(*j) == ANGLE) {
             let (q, v) = (state.q[system.model.q_range(j).start], system.model.v_range(j).start);
             speeds[v] += state.v[v].abs() / f64::from(TURNS_LOOKED_AT);
             (lowest[v], highest[v]) = (lowest[v].min(q), highest[v].max(q));

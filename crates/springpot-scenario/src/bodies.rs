@@ -1,14 +1,14 @@
 //! `[[robot.body]]`: a robot body by body.
 
-use super::constants;
-use super::keys::{BODY, FRICTION, INERTIA, JOINT, keys_of};
+pub(crate) mod changed;
+mod joint;
+
+use super::keys::{BODY, INERTIA};
 use super::plan::BodyPlaces;
-use super::reader::{Field, Read, Refused, Table, all};
+use super::reader::{Field, Read, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Parts, checked_name, unique, unknown_body};
-use springpot::model::{
-    BodySpec, Dimension, FrictionLaw, JointKind, JointSpec, Limits, Model, ModelBuilder, ModelError, Parent,
-};
+use springpot::model::{BodySpec, JointKind, Model, ModelBuilder, ModelError, Parent};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -27,7 +27,8 @@ pub(super) fn read(table: &Table<'_>, bodies: &Field<'_>, gravity: Read<[f64; 3]
     }
     let index = body_names(&items)?;
     let joints = joint_names(&items);
-    let read = all(items.iter().enumerate().map(|(i, item)| body(item, i, &index)));
+    let kinds = joint::kinds(&items);
+    let read = all(items.iter().enumerate().map(|(i, item)| body(item, i, &index, &kinds)));
     let (bodies, places): (Vec<_>, Vec<_>) = read?.into_iter().unzip();
     joints?;
     if bodies.iter().all(|body| body.joint.kind == JointKind::Fixed) {
@@ -91,7 +92,12 @@ fn joint_names(items: &[Field<'_>]) -> Read<()> {
     .map(|_| ())
 }
 
-fn body(item: &Field<'_>, i: usize, index: &HashMap<String, usize>) -> Read<(BodySpec, BodyPlaces)> {
+fn body(
+    item: &Field<'_>,
+    i: usize,
+    index: &HashMap<String, usize>,
+    kinds: &joint::Kinds<'_>,
+) -> Read<(BodySpec, BodyPlaces)> {
     let name = item.node.get("name").and_then(|node| node.text());
     let what = name.map_or_else(|| format!("body {}", i + 1), |name| format!("body {name:?}"));
     let table = Table::of(item.ctx, item.node, what, &BODY)?;
@@ -105,7 +111,7 @@ fn body(item: &Field<'_>, i: usize, index: &HashMap<String, usize>) -> Read<(Bod
         None if i == 0 => Ok(Parent::World),
         None => Ok(Parent::Body(i - 1)),
     };
-    let joint = table.require("joint").and_then(|field| joint(&field, name.ok(), &mut places));
+    let joint = table.require("joint").and_then(|field| joint::read(&field, name.ok(), kinds, &mut places));
     let mass = table.number("mass");
     let com = table.vector("com");
     let inertia = table.get("inertia").map_or(Ok([[0.0; 3]; 3]), |field| inertia(&field));
@@ -132,90 +138,6 @@ fn parent(field: &Field<'_>, i: usize, index: &HashMap<String, usize>) -> Read<P
             Err(unknown_body(field, name, earlier.iter().copied()))
         }
     }
-}
-
-fn joint(field: &Field<'_>, body: Option<&str>, places: &mut BodyPlaces) -> Read<JointSpec> {
-    let kind = field.node.get("kind").and_then(|node| node.text()).and_then(kind_named);
-    let what = body.map_or_else(|| field.to_string(), |body| format!("the joint of body {body:?}"));
-    let plain = kind.filter(|kind| !kind.has_axis());
-    let reason = |key: &str| {
-        if matches!(key, "lower" | "upper" | "limit" | "limits" | "effort" | "velocity") {
-            let why = "limits of joints are those of a URDF file, where [robot] limits makes end stops of them; here an element with joint = \"NAME\" and network = \"stop(k, lower, upper)\" is one";
-            return Some((RefusalKind::UnknownKey, format!("`{key}` of {what} is no key of a joint: {why}")));
-        }
-        let why = match plain? {
-            JointKind::Floating => "a floating joint moves freely in all six directions",
-            _ => "a fixed joint does not move",
-        };
-        let message = || format!("`{key}` of {what} has no meaning: {why}");
-        JOINT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
-    };
-    let of_kind = keys_of(kind.unwrap_or(JointKind::Revolute));
-    let table = Table::of_kind(field.ctx, field.node, what.clone(), (&JOINT, of_kind), reason)?;
-    for field in table.fields() {
-        places.fields.push((format!("joint.{}", field.key), field.node.place.clone()));
-    }
-    let name = table.require("name").and_then(|field| field.text());
-    let kind = table.require("kind").and_then(|field| kind_named(field.word("kind of joint")?).ok_or(Refused));
-    let axis = match kind {
-        Ok(kind) if !kind.has_axis() => Ok([0.0, 0.0, 1.0]),
-        Ok(_) => table.require("axis").and_then(|field| axis(&field)),
-        // Of an unknown kind nobody knows whether it needs one.
-        Err(Refused) => table.get("axis").map_or(Err(Refused), |field| axis(&field)),
-    };
-    let origin = table.vector("origin");
-    let rpy = table.vector("rpy");
-    let slides = kind.is_ok_and(|kind| kind.dimension() == Some(Dimension::Length));
-    let damping = table.joint_number("damping", slides);
-    let friction = match table.get("friction") {
-        Some(field) => friction(&field, slides, places),
-        None => Ok((0.0, FrictionLaw::default())),
-    };
-    let (friction, friction_law) = friction?;
-    Ok(JointSpec {
-        name: name?.to_owned(),
-        kind: kind?,
-        axis: axis?,
-        origin: origin?,
-        rpy: rpy?,
-        damping: damping?,
-        friction,
-        friction_law,
-        limits: Limits::NONE,
-        mimic: None,
-    })
-}
-
-/// A number, or `{ force = …, speed = …, stick = … }`.
-fn friction(field: &Field<'_>, slides: bool, places: &mut BodyPlaces) -> Read<(f64, FrictionLaw)> {
-    if field.node.entries().is_none() || constants::is_expression(field.node) {
-        return Ok((field.joint_quantity(slides)?, FrictionLaw::default()));
-    }
-    let table = field.table(&FRICTION)?;
-    for field in table.fields() {
-        // What is wrong with the force is said of the whole.
-        let key = if field.key == "force" { String::new() } else { format!(".{}", field.key) };
-        places.fields.insert(0, (format!("joint.friction{key}"), field.node.place.clone()));
-    }
-    let right = if slides { "force = \"0.2 N\"" } else { "force = \"0.2 N*m\"" };
-    let force = table.require_with("force", right).and_then(|field| field.joint_quantity(slides));
-    let speed = table.joint_number("speed", slides);
-    let stick = table.flag("stick");
-    let (force, speed, stick) = (force?, speed?, stick?);
-    Ok((force, if stick { FrictionLaw::Sticking } else { FrictionLaw::Smooth { speed } }))
-}
-
-fn kind_named(name: &str) -> Option<JointKind> {
-    JointKind::ALL.into_iter().find(|kind| kind.name() == name)
-}
-
-fn axis(field: &Field<'_>) -> Read<[f64; 3]> {
-    let axis = field.components()?;
-    if axis != [0.0; 3] {
-        return Ok(axis);
-    }
-    let message = format!("is {}, which has no direction", field.node.written());
-    Err(field.refuse(RefusalKind::OutOfRange, message, Some("write a direction such as [0, 0, 1]".to_owned())))
 }
 
 fn inertia(field: &Field<'_>) -> Read<[[f64; 3]; 3]> {

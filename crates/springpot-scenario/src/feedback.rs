@@ -141,11 +141,11 @@ fn senses(plan: &Plan) -> Vec<(String, Sense)> {
     let mut senses = Vec::new();
     let model = &plan.model;
     for j in model.own_joints() {
-        let (velocity, name) = (model.v_range(j).start, &model.joint_names()[j]);
-        let Some(place) = model.coordinate_of(velocity).filter(|_| model.v_range(j).len() == 1) else { continue };
+        let (velocity, name, rate) = (model.v_range(j).start, &model.joint_names()[j], &model.velocity_names()[j]);
+        let Some(place) = model.coordinate_of(velocity) else { continue };
         senses.push((format!("q.{name}"), Sense::Coordinate { place, velocity }));
-        senses.push((format!("v.{name}"), Sense::Velocity(velocity)));
-        senses.push((format!("a.{name}"), Sense::Acceleration(velocity)));
+        senses.push((format!("v.{rate}"), Sense::Velocity(velocity)));
+        senses.push((format!("a.{rate}"), Sense::Acceleration(velocity)));
     }
     for (e, plan) in plan.elements.iter().enumerate() {
         let made = [Sense::Length(e), Sense::Stroke(e), Sense::Rate(e), Sense::Force(e), Sense::Derivative(e)];

@@ -497,6 +497,7 @@ impl<'a> Field<'a> {
             Some(Shape::Number(unit, bound) | Shape::NumberOrWord(unit, bound, _)) => (unit, bound),
             Some(
                 Shape::JointNumber(units, bound)
+                | Shape::JointNumbers(units, bound)
                 | Shape::JointNumberOr(units, bound, _)
                 | Shape::JointNumberOrWord(units, bound, _),
             ) => (units[usize::from(slides)], bound),

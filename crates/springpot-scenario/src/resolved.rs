@@ -90,19 +90,7 @@ impl Plan {
         json!({
             "name": body.name,
             "parent": self.body_name(body.parent),
-            "joint": {
-                "name": joint.name,
-                "kind": joint.kind.name(),
-                "axis": joint.axis,
-                "origin": joint.origin,
-                "rpy": joint.rpy,
-                "damping": joint.damping,
-                "friction": friction(joint),
-                "limits": limits(&joint.limits),
-                "mimic": joint.mimic.as_ref().map(|Mimic { joint, multiplier, offset }| {
-                    json!({ "joint": joint, "multiplier": multiplier, "offset": offset })
-                }),
-            },
+            "joint": described(joint),
             "mass": body.mass,
             "com": body.com,
             "inertia": { "xx": xx, "yy": yy, "zz": zz, "xy": xy, "xz": xz, "yz": yz },
@@ -176,13 +164,46 @@ fn urdf(plan: &UrdfPlan) -> Value {
     })
 }
 
+fn described(joint: &JointSpec) -> Value {
+    let mut value = json!({
+        "name": joint.name,
+        "kind": joint.kind.name(),
+        "axis": joint.axis,
+        "origin": joint.origin,
+        "rpy": joint.rpy,
+        "damping": by_coordinate(joint, |k| json!(joint.damping[k])),
+        "friction": by_coordinate(joint, |k| friction(joint.friction[k], joint.friction_law[k])),
+        "armature": by_coordinate(joint, |k| json!(joint.armature[k])),
+        "limits": by_coordinate(joint, |k| limits(&joint.limits[k])),
+        "mimic": joint.mimic.as_ref().map(|Mimic { joint, multiplier, offset }| {
+            json!({ "joint": joint, "multiplier": multiplier, "offset": offset })
+        }),
+    });
+    if joint.kind.has_axis2() {
+        value["axis2"] = json!(joint.axis2);
+    }
+    if joint.kind.has_lead() {
+        value["lead"] = json!(joint.lead);
+    }
+    value
+}
+
+/// One value, or of a joint of several coordinates one for each.
+fn by_coordinate(joint: &JointSpec, of: impl Fn(usize) -> Value) -> Value {
+    if joint.kind.numbers().count() < 2 {
+        return of(0);
+    }
+    let each = joint.kind.numbers().enumerate();
+    each.map(|(k, (name, _))| (name.to_owned(), of(k))).collect::<Map<_, _>>().into()
+}
+
 /// Force, speed of a smooth law, and whether it sticks.
-fn friction(joint: &JointSpec) -> Value {
-    let (speed, stick) = match joint.friction_law {
+fn friction(force: f64, law: FrictionLaw) -> Value {
+    let (speed, stick) = match law {
         FrictionLaw::Smooth { speed } => (Some(speed), false),
         FrictionLaw::Sticking => (None, true),
     };
-    json!({ "force": joint.friction, "speed": speed, "stick": stick })
+    json!({ "force": force, "speed": speed, "stick": stick })
 }
 
 /// The limits that there are.

@@ -7,7 +7,7 @@ use super::plan::{BodyPlaces, EndStops, Gripper, UrdfPlan};
 use super::reader::{Field, Read, Refused, Table};
 use super::refusal::{Place, RefusalKind};
 use super::{bodies, urdf};
-use springpot::model::{Anchor, BodySpec, JointKind, Model, Parent, Units};
+use springpot::model::{Anchor, BodySpec, Dimension, JointKind, Model, Parent, Space, Units};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
@@ -32,22 +32,32 @@ pub(crate) struct Parts {
     pub(crate) urdf: Option<UrdfPlan>,
 }
 
-/// A moving joint that has coordinates of its own.
+/// A joint of the model that has coordinates of its own: a joint as it is described, or one coordinate of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OwnJoint<'a> {
+    /// `q1`, or `u.first` where the joint has several coordinates that are numbers.
     pub(crate) name: &'a str,
-    pub(crate) kind: JointKind,
+    /// The same of the velocity.
+    pub(crate) velocity: &'a str,
+    /// Name of the joint as it is described.
+    pub(crate) joint: &'a str,
+    pub(crate) space: Space,
 }
 
-impl OwnJoint<'_> {
-    /// Unit of the coordinate of a joint of one degree.
-    pub(crate) fn unit(&self) -> &'static str {
-        self.units().coordinate
+impl<'a> OwnJoint<'a> {
+    /// Units, if it has one coordinate.
+    pub(crate) fn units(&self) -> Option<Units> {
+        self.space.dimension().map(Dimension::units)
     }
 
-    /// Units of a joint of one degree.
-    pub(crate) fn units(&self) -> Units {
-        self.kind.dimension().expect("a joint of one degree").units()
+    /// The coordinate as tables by joint call it inside that of its joint; `None` where the joint has no other number.
+    pub(crate) fn coordinate_part(&self) -> Option<&'a str> {
+        self.name.strip_prefix(self.joint)?.strip_prefix('.')
+    }
+
+    /// The same of the velocity.
+    pub(crate) fn velocity_part(&self) -> Option<&'a str> {
+        self.velocity.strip_prefix(self.joint)?.strip_prefix('.')
     }
 }
 
@@ -119,15 +129,38 @@ impl Robot {
         body
     }
 
-    /// The moving joints that have coordinates of their own, in the order of q.
+    /// The joints of the model that have coordinates of their own, in the order of q.
     pub(crate) fn own_joints(&self) -> impl Iterator<Item = OwnJoint<'_>> {
         let model = self.model();
-        let own = (0..model.joint_count()).filter(|&j| model.followed(j).is_none());
-        own.map(|j| OwnJoint { name: &model.joint_names()[j], kind: model.joint_kind(j) })
+        model.own_joints().map(|j| OwnJoint {
+            name: &model.joint_names()[j],
+            velocity: &model.velocity_names()[j],
+            joint: &model.described_joint(j).name,
+            space: model.joint_space(j),
+        })
+    }
+
+    /// What the joint is that has this coordinate.
+    pub(crate) fn kind_of(&self, joint: &OwnJoint<'_>) -> JointKind {
+        self.joint_kinds.get(joint.joint).copied().unwrap_or(JointKind::Fixed)
+    }
+
+    /// Names of the joints as they are described that have coordinates of their own, in the order of q.
+    pub(crate) fn joints_as_described(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.own_joints().map(|joint| joint.joint).collect();
+        names.dedup();
+        names
     }
 
     /// Why a joint of that name has no coordinate; `None` where it has one, or does not exist.
     pub(crate) fn why_no_coordinate(&self, name: &str) -> Option<String> {
+        if let Some(own) = self.own_joints().find(|own| own.name == name && own.coordinate_part().is_some()) {
+            let part = own.coordinate_part().unwrap_or_default();
+            return Some(format!(
+                "{name:?} is a coordinate of joint {:?}: write {} = {{ {part} = … }}",
+                own.joint, own.joint
+            ));
+        }
         if *self.joint_kinds.get(name)? == JointKind::Fixed {
             return Some(format!("joint {name:?} is fixed and has no coordinate"));
         }

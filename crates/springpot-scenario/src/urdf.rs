@@ -1,5 +1,6 @@
 //! `urdf` of `[robot]`: a robot from a URDF file.
 
+use super::bodies::changed;
 use super::plan::{BodyPlaces, UrdfPlan};
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::{RefusalKind, Remark};
@@ -84,7 +85,10 @@ pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>
         package_path: package_path.iter().map(|folder| field.ctx.folder.join(folder)).collect(),
     };
     let robot = field.ctx.robots.read(&written, field.ctx.folder.join(&written), options);
-    let robot = robot.map_err(|error| refuse(field, &error))?;
+    let mut robot = robot.map_err(|error| refuse(field, &error))?;
+    if let Some(joints) = table.get("joint") {
+        changed::change(&joints, &mut Arc::make_mut(&mut robot).bodies)?;
+    }
     let model = robot.model(gravity?).map_err(|error| refuse(field, &error))?;
     if model.joint_count() == 0 {
         let help = "floating_base = true lets it move as a whole".to_owned();

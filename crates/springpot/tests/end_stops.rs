@@ -16,7 +16,7 @@ const UPPER: f64 = 0.5;
 fn system(gravity: f64, lower: f64, motion: impl FnOnce() -> Motion, stiffness: f64, damping: f64) -> System {
     let mut builder = ModelBuilder::new([gravity, 0.0, 0.0]);
     let limits = Limits { lower, upper: UPPER, ..Limits::NONE };
-    let joint = JointSpec { limits, ..JointSpec::prismatic("q", [1.0, 0.0, 0.0], [0.0; 3]) };
+    let joint = JointSpec { limits: [limits; 3], ..JointSpec::prismatic("q", [1.0, 0.0, 0.0], [0.0; 3]) };
     let body =
         BodySpec { name: "m".into(), parent: Parent::World, joint, mass: MASS, com: [0.0; 3], inertia: [[0.0; 3]; 3] };
     builder.push(body).unwrap();

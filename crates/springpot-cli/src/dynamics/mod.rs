@@ -87,9 +87,9 @@ fn check_size(robot: &Robot, christoffel: bool) -> Result<(), Refused> {
     if !christoffel {
         return Ok(());
     }
-    let several = |(joint, _): &(usize, &str)| robot.model.joint_kind(*joint).nv() != 1;
+    let several = |(joint, _): &(usize, &str)| robot.model.joint_space(*joint).nv() != 1;
     if let Some((joint, name)) = robot.own_joints().find(several) {
-        let degrees = robot.model.joint_kind(joint).nv();
+        let degrees = robot.model.joint_space(joint).nv();
         return refuse(format!(
             "--christoffel: joint {name:?} has {degrees} degrees of freedom, and Christoffel symbols exist only where every \
              joint has one; \"coriolis\" holds the forces C v of all joints"
@@ -108,7 +108,7 @@ fn joint_losses(robot: &Robot) -> Option<String> {
     let model = &robot.model;
     let mut groups: BTreeMap<(&str, u64, &str), Vec<&str>> = BTreeMap::new();
     for (j, name) in model.joint_names().iter().enumerate() {
-        let slides = model.joint_kind(j).dimension() == Some(Dimension::Length);
+        let slides = model.joint_space(j).dimension() == Some(Dimension::Length);
         let (damping, friction) = if slides { ("N·s/m", "N") } else { ("N·m·s/rad", "N·m") };
         for (what, value, unit) in
             [("damping", model.damping()[j], damping), ("friction", model.friction()[j], friction)]

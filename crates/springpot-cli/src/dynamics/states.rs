@@ -3,7 +3,6 @@
 use super::json_text::Json;
 use super::order::Order;
 use crate::robot::Robot;
-use springpot::model::JointKind;
 use springpot_scenario::{Place, RefusalKind, Refusals, Source};
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -83,7 +82,7 @@ pub(super) fn read(robot: &Robot, source: &Arc<Source>) -> Result<States, Refusa
         let message = format!("\"states\" is {}, but must be an array of states", states.written());
         states.refuse(RefusalKind::WrongType, message)
     })?;
-    let floating = floating_attitudes(robot);
+    let floating = attitudes(robot);
     let (mut read, mut unnormalised) = (Vec::with_capacity(items.len()), Vec::new());
     for (k, item) in items.iter().enumerate() {
         let (state, lengths) = state(k, item, &order, &floating)?;
@@ -210,10 +209,11 @@ fn blocks(names: &[String], joints: &[String]) -> String {
     format!("write {}, …, {}", names[..SHOWN - 1].join(", "), names[names.len() - 1])
 }
 
-/// The floating joints, and where their quaternions stand in the model's q.
-fn floating_attitudes(robot: &Robot) -> Vec<(usize, usize)> {
-    let floating = robot.own_joints().filter(|(joint, _)| robot.model.joint_kind(*joint) == JointKind::Floating);
-    floating.map(|(joint, _)| (joint, robot.model.q_range(joint).start + 3)).collect()
+/// The joints that turn freely, and where their quaternions stand in the model's q.
+fn attitudes(robot: &Robot) -> Vec<(usize, usize)> {
+    let model = &robot.model;
+    let free = robot.own_joints().filter_map(|(joint, _)| Some((joint, model.joint_space(joint).quaternion()?)));
+    free.map(|(joint, first)| (joint, model.q_range(joint).start + first)).collect()
 }
 
 /// Divides by the length and returns it; components that are all tiny or huge lose nothing.

@@ -4,7 +4,7 @@ use crate::plain;
 use crate::robot::Robot;
 use serde::Serialize;
 use springpot::model::urdf::{Owner, UrdfWarning};
-use springpot::model::{BodySpec, Label, Limits, Parent};
+use springpot::model::{BodySpec, DescribedJoint, JointSpec, Label, Limits, Parent};
 use springpot::spatial::Placement;
 use std::ops::Range;
 use std::path::Path;
@@ -44,18 +44,32 @@ struct Joint<'a> {
     parent: &'a str,
     link: &'a str,
     axis: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    axis2: Option<[f64; 3]>,
+    /// Advance per turn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lead: Option<f64>,
     origin: [f64; 3],
     rpy: [f64; 3],
     /// Indices of its own numbers in q and v; none where it follows another joint.
     q: Vec<usize>,
     v: Vec<usize>,
     follows: Option<Follows<'a>>,
-    limits: JointLimits,
-    damping: f64,
-    friction: f64,
+    limits: Each<JointLimits>,
+    damping: Each<f64>,
+    friction: Each<f64>,
+    armature: Each<f64>,
     /// Mass of the link with all that is fixed to it, and with all that it carries.
     mass: f64,
     subtree_mass: f64,
+}
+
+/// Of a joint of one coordinate, or of each of several in their order.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Each<T> {
+    One(T),
+    Several(Vec<T>),
 }
 
 #[derive(Serialize)]
@@ -128,7 +142,7 @@ pub(super) fn text(robot: &Robot, file: &Path) -> String {
         v: names(model.v_labels()),
         base: &robot.base.0,
         gripper: robot.gripper.as_ref().map(|(body, point)| Gripper { body, point: *point }),
-        joints: (0..model.joint_count()).map(|j| joint(robot, j)).collect(),
+        joints: model.described_joints().iter().map(|described| joint(robot, described)).collect(),
         frames: robot.fixed_bodies().filter_map(|(index, body)| frame(robot, index, body)).collect(),
         links: robot.bodies.iter().map(link).collect(),
         warnings: robot.warnings.iter().map(warning).collect(),
@@ -137,33 +151,47 @@ pub(super) fn text(robot: &Robot, file: &Path) -> String {
     format!("{}\n", plain::json(&text))
 }
 
-fn joint(robot: &Robot, j: usize) -> Joint<'_> {
-    let model = &robot.model;
+fn joint<'a>(robot: &'a Robot, described: &DescribedJoint) -> Joint<'a> {
+    let (model, Range { start, end }) = (&robot.model, described.joints.clone());
+    let j = end - 1;
     let body = &robot.bodies[model.joint_body(j)];
     let spec = &body.joint;
     let followed = model.followed(j);
     let own = |range: Range<usize>| if followed.is_none() { range.collect() } else { Vec::new() };
-    let Limits { lower, upper, velocity, effort } = spec.limits;
+    let limits = |k: usize| {
+        let Limits { lower, upper, velocity, effort } = spec.limits[k];
+        JointLimits { lower, upper, velocity, effort }
+    };
     Joint {
         name: &spec.name,
         kind: spec.kind.name(),
         parent: robot.body_name(body.parent),
         link: &body.name,
         axis: spec.kind.has_axis().then_some(spec.axis),
+        axis2: spec.kind.has_axis2().then_some(spec.axis2),
+        lead: spec.kind.has_lead().then_some(spec.lead),
         origin: spec.origin,
         rpy: spec.rpy,
-        q: own(model.q_range(j)),
-        v: own(model.v_range(j)),
+        q: own(model.q_range(start).start..model.q_range(j).end),
+        v: own(model.v_range(start).start..model.v_range(j).end),
         follows: followed.map(|(leader, multiplier, offset)| Follows {
             joint: &model.joint_names()[leader],
             multiplier,
             offset,
         }),
-        limits: JointLimits { lower, upper, velocity, effort },
-        damping: spec.damping,
-        friction: spec.friction,
+        limits: each(spec, limits),
+        damping: each(spec, |k| spec.damping[k]),
+        friction: each(spec, |k| spec.friction[k]),
+        armature: each(spec, |k| spec.armature[k]),
         mass: model.link_inertia(j).mass,
         subtree_mass: model.subtree_mass(j),
+    }
+}
+
+fn each<T>(joint: &JointSpec, of: impl Fn(usize) -> T) -> Each<T> {
+    match joint.kind.numbers().count() {
+        0 | 1 => Each::One(of(0)),
+        several => Each::Several((0..several).map(of).collect()),
     }
 }
 

@@ -83,7 +83,7 @@ fn section(headline: &str, lead: &str, items: Vec<String>, width: Option<usize>)
 /// How many joints of which kind there are.
 fn kinds(robot: &Robot) -> String {
     let model = &robot.model;
-    let of = |kind: JointKind| (0..model.joint_count()).filter(|&j| model.joint_kind(j) == kind).count();
+    let of = |kind: JointKind| model.described_joints().iter().filter(|joint| joint.kind == kind).count();
     let kinds = JointKind::ALL.into_iter().filter(|kind| of(*kind) > 0);
     let kinds: Vec<String> = kinds.map(|kind| format!("{} {}", of(kind), kind.name())).collect();
     let followers = model.joint_count() - robot.own_joints().count();

@@ -3,7 +3,7 @@
 use crate::grid::{Grid, Set};
 use crate::plain;
 use crate::robot::Robot;
-use springpot::model::{Dimension, Limits, Parent};
+use springpot::model::{Dimension, JointSpec, Limits, Parent};
 use springpot_run::numbers::brief;
 use std::ops::Range;
 
@@ -13,9 +13,10 @@ const MOST_LEVELS: usize = 10;
 /// Joints and the links that they move, as a tree: what is alone on the link above stands under it, several are branches.
 pub(super) fn tree(robot: &Robot) -> Grid {
     let model = &robot.model;
+    // By link; a joint of several coordinates moves the link of its last one.
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); model.joint_count() + 1];
-    for joint in 0..model.joint_count() {
-        children[model.parent_link(joint)].push(joint);
+    for joint in model.described_joints() {
+        children[model.parent_link(joint.joints.start)].push(joint.joints.end - 1);
     }
     let columns = [("joint", Set::Name), ("link", Set::Name), ("kind", Set::Text), ("axis", Set::Text)];
     let mut grid = Grid::new(columns.into_iter().chain([("mass, kg", Set::Number)]));
@@ -50,7 +51,7 @@ pub(super) fn tree(robot: &Robot) -> Grid {
             format!("{drawn}{branch}{}", plain::line(&body.joint.name)),
             plain::line(&body.name),
             kind.name().to_owned(),
-            if kind.has_axis() { axis(body.joint.axis) } else { String::new() },
+            axes(&body.joint),
             brief(model.link_inertia(joint).mass),
         ]);
         rest.extend(branches(joint + 1, &before));
@@ -62,30 +63,32 @@ pub(super) fn tree(robot: &Robot) -> Grid {
 pub(super) fn joints(robot: &Robot) -> Grid {
     let model = &robot.model;
     let titles = ["q", "v", "from", "to"].map(|title| (title, Set::Number));
-    let more = ["speed", "effort", "damping", "friction"].map(|title| (title, Set::Number));
+    let more = ["speed", "effort", "damping", "friction", "armature"].map(|title| (title, Set::Number));
     let columns = [("joint", Set::Name)].into_iter().chain(titles).chain([("", Set::Text)]).chain(more);
     let mut grid = Grid::new(columns);
     let all = 0..model.joint_count();
     let any = |finite: fn(&Limits) -> bool| all.clone().any(|j| finite(model.limits(j)));
     let ranges = any(|limits| limits.lower.is_finite() || limits.upper.is_finite());
     let (speeds, efforts) = (any(|limits| limits.velocity.is_finite()), any(|limits| limits.effort.is_finite()));
-    let (damped, rubs) = (model.damping().iter().any(|d| *d != 0.0), model.friction().iter().any(|f| *f != 0.0));
+    let some = |values: &[f64]| values.iter().any(|value| *value != 0.0);
+    let [damped, rubs, has_rotors] = [model.damping(), model.friction(), model.armature()].map(some);
     for j in all {
-        let kind = model.joint_kind(j);
+        let dimension = model.joint_space(j).dimension();
         let own = model.followed(j).is_none();
         let Limits { lower, upper, velocity, effort } = *model.limits(j);
-        let shown = |shown: bool, value: f64| if shown && kind.nv() == 1 { limit(value) } else { String::new() };
+        let shown = |shown: bool, value: f64| if shown && dimension.is_some() { limit(value) } else { String::new() };
         grid.row(vec![
             plain::line(&model.joint_names()[j]),
             if own { numbers(model.q_range(j)) } else { String::new() },
             if own { numbers(model.v_range(j)) } else { String::new() },
             shown(ranges, lower),
             shown(ranges, upper),
-            kind.dimension().map_or("", |dimension| dimension.units().coordinate).to_owned(),
+            dimension.map_or("", |dimension| dimension.units().coordinate).to_owned(),
             shown(speeds, velocity),
             shown(efforts, effort),
             shown(damped, model.damping()[j]),
             shown(rubs, model.friction()[j]),
+            shown(has_rotors, model.armature()[j]),
         ]);
     }
     grid.without_empty_columns()
@@ -101,11 +104,12 @@ pub(super) fn units(robot: &Robot) -> String {
         (finite(|limits| limits.effort), "effort", ["N·m", "N"]),
         (model.damping().iter().any(|d| *d != 0.0), "damping", ["N·m·s/rad", "N·s/m"]),
         (model.friction().iter().any(|f| *f != 0.0), "friction", ["N·m", "N"]),
+        (model.armature().iter().any(|a| *a != 0.0), "armature", ["kg·m²", "kg"]),
     ];
     let kinds: Vec<usize> = [Dimension::Angle, Dimension::Length]
         .into_iter()
         .enumerate()
-        .filter(|(_, dimension)| all.clone().any(|j| model.joint_kind(j).dimension() == Some(*dimension)))
+        .filter(|(_, dimension)| all.clone().any(|j| model.joint_space(j).dimension() == Some(*dimension)))
         .map(|(k, _)| k)
         .collect();
     let shown = shown.into_iter().filter(|(shown, ..)| *shown);
@@ -159,6 +163,18 @@ fn limit(value: f64) -> String {
         _ if rounded == 0.0 || value.abs() > 1e4 => brief(value),
         _ => brief(rounded),
     }
+}
+
+/// The axes of a joint and its lead, as far as it has them.
+fn axes(joint: &JointSpec) -> String {
+    let mut text = if joint.kind.has_axis() { axis(joint.axis) } else { String::new() };
+    if joint.kind.has_axis2() {
+        text += &format!(", then {}", axis(joint.axis2));
+    }
+    if joint.kind.has_lead() {
+        text += &format!(", {} m per turn", brief(joint.lead));
+    }
+    text
 }
 
 /// `z`, `-y`, or the components of the direction.

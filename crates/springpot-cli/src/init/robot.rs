@@ -4,7 +4,7 @@ use crate::arguments::InitOptions;
 use crate::{Ending, diagnostic};
 use springpot::law::Catalog;
 use springpot::model::urdf::{Urdf, UrdfOptions, UrdfProblem};
-use springpot::model::{BodySpec, Dimension, JointKind, Limits, Model, Parent};
+use springpot::model::{BodySpec, DescribedJoint, Dimension, Limits, Model, Parent, Space};
 use springpot_scenario::{Scenario, suggest, toml_key};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
@@ -146,12 +146,20 @@ impl Starter<'_> {
     /// Links to begin at, with the joints from there to the other end: two joints apart first, moving links before the
     /// world.
     fn pairs(&self) -> Vec<Pair> {
-        let parent = |joint: usize| self.model.parent_link(joint).checked_sub(1);
-        let body = |link: Option<usize>| link.map_or(Parent::World, |joint| Parent::Body(self.model.joint_body(joint)));
-        let joints = 0..self.model.joint_count();
-        let two = joints.clone().filter_map(|j| parent(j).map(|above| (body(parent(above)), vec![above, j])));
-        let one = joints.map(|j| (body(parent(j)), vec![j]));
-        let (moving, fixed): (Vec<_>, Vec<_>) = two.partition(|(from, _)| *from != Parent::World);
+        let described = self.model.described_joints();
+        // The joint that carries another one, both as they are described.
+        let parent = |joint: &DescribedJoint| {
+            let carrier = self.model.parent_link(joint.joints.start).checked_sub(1)?;
+            described.iter().find(|other| other.joints.contains(&carrier))
+        };
+        let body = |joint: Option<&DescribedJoint>| {
+            joint.map_or(Parent::World, |joint| Parent::Body(self.model.joint_body(joint.joints.start)))
+        };
+        let both =
+            |one: &DescribedJoint, other: &DescribedJoint| one.joints.clone().chain(other.joints.clone()).collect();
+        let two = described.iter().filter_map(|j| parent(j).map(|above| (body(parent(above)), both(above, j))));
+        let one = described.iter().map(|j| (body(parent(j)), j.joints.clone().collect()));
+        let (moving, fixed): (Vec<(Parent, Vec<usize>)>, Vec<_>) = two.partition(|(from, _)| *from != Parent::World);
         let to = |joints: &[usize]| Parent::Body(self.model.joint_body(joints[joints.len() - 1]));
         moving.into_iter().chain(fixed).chain(one).map(|(from, joints)| (from, to(&joints), joints)).collect()
     }
@@ -199,7 +207,8 @@ impl Starter<'_> {
         let mut joints = Vec::new();
         while let Parent::Body(index) = link {
             let body = &self.bodies()[index];
-            joints.extend(self.model.joint_index(&body.joint.name));
+            let described = self.model.described_joints().iter().find(|joint| joint.name == body.joint.name);
+            joints.extend(described.into_iter().flat_map(|joint| joint.joints.clone()));
             link = body.parent;
         }
         joints
@@ -322,21 +331,31 @@ impl Starter<'_> {
         let moving: Vec<usize> =
             moving.iter().map(|&j| self.model.followed(j).map_or(j, |(leader, ..)| leader)).collect();
         let mut text = String::new();
-        for j in (0..names.len()).filter(|&j| self.model.followed(j).is_none()) {
-            let signal = match self.model.joint_kind(j) {
-                JointKind::Floating if moving.contains(&j) => format!("{{ z = \"{SLIDE}*sin(2*pi*t)\" }}"),
-                JointKind::Floating => "{}".to_owned(),
-                kind => signal(kind, self.model.limits(j), moving.contains(&j)),
+        let signal = |j: usize| match (self.model.joint_space(j), moving.contains(&j)) {
+            (Space::Line(dimension), moves) => signal(dimension, self.model.limits(j), moves),
+            (Space::Circle, moves) => signal(Dimension::Angle, self.model.limits(j), moves),
+            (Space::Pose, true) => format!("{{ z = \"{SLIDE}*sin(2*pi*t)\" }}"),
+            (Space::Attitude, true) => format!("{{ rpy = [\"{SWING}*sin(2*pi*t)\", 0, 0] }}"),
+            (Space::Attitude | Space::Pose, false) => "{}".to_owned(),
+        };
+        for joint in self.model.described_joints() {
+            let said = match joint.joints.clone() {
+                only if only.len() == 1 && self.model.followed(only.start).is_some() => continue,
+                only if only.len() == 1 => signal(only.start),
+                several => {
+                    let part = |j: usize| format!("{} = {}", &names[j][joint.name.len() + 1..], signal(j));
+                    format!("{{ {} }}", several.map(part).collect::<Vec<_>>().join(", "))
+                }
             };
-            let _ = writeln!(text, "{} = {signal}", toml_key(&names[j]));
+            let _ = writeln!(text, "{} = {said}", toml_key(&joint.name));
         }
         text
     }
 }
 
 /// A swing within the limits, or rest, about 0 or, where the limits leave that out, about their middle.
-fn signal(kind: JointKind, limits: &Limits, moves: bool) -> String {
-    let most = if kind.dimension() == Some(Dimension::Length) { SLIDE } else { SWING };
+fn signal(dimension: Dimension, limits: &Limits, moves: bool) -> String {
+    let most = if dimension == Dimension::Length { SLIDE } else { SWING };
     let finite = limits.lower.is_finite() && limits.upper.is_finite() && limits.lower < limits.upper;
     let middle = match finite {
         true if limits.lower + most > 0.0 || limits.upper - most < 0.0 => round(0.5 * (limits.lower + limits.upper)),

@@ -51,7 +51,7 @@ enum Start {
 /// The joints of one degree of freedom that a start may name, with a coordinate within their limits.
 fn joints(model: &Model) -> Vec<(String, f64)> {
     let own = model.own_joints().filter(|&joint| {
-        let turns = matches!(model.joint_kind(joint), JointKind::Revolute | JointKind::Prismatic);
+        let turns = matches!(model.described_joint(joint).kind, JointKind::Revolute | JointKind::Prismatic);
         turns && model.followed(joint).is_none()
     });
     own.map(|joint| {

@@ -1,7 +1,7 @@
 //! The engine's model, and what its algorithms work in.
 
 use springpot::dynamics::{AbaDerivatives, Kinematics, RneaDerivatives, Workspace};
-use springpot::model::{JointKind, Model};
+use springpot::model::Model;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Scratch kept for later calls, at most.
@@ -31,7 +31,7 @@ pub(crate) struct Scratch {
 
 impl Core {
     pub(crate) fn new(model: Arc<Model>) -> Self {
-        let is_free_of_quaternions = (0..model.joint_count()).all(|j| model.joint_kind(j) != JointKind::Floating);
+        let is_free_of_quaternions = (0..model.joint_count()).all(|j| model.joint_space(j).quaternion().is_none());
         Self { model, is_free_of_quaternions, free: Mutex::default() }
     }
 

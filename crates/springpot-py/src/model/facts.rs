@@ -4,16 +4,16 @@ use super::PyModel;
 use crate::notebook;
 use numpy::{PyArray1, PyArray3};
 use pyo3::prelude::*;
-use springpot::model::{JointKind, Limits};
+use springpot::model::{Limits, Space};
 
 impl PyModel {
     /// A number of each joint of its own for each of its coordinates (or velocities).
-    fn by_joint(&self, count: impl Fn(JointKind) -> usize, value: impl Fn(usize) -> f64) -> Vec<f64> {
+    fn by_joint(&self, count: impl Fn(Space) -> usize, value: impl Fn(usize) -> f64) -> Vec<f64> {
         let model = &self.core.model;
-        model.own_joints().flat_map(|j| std::iter::repeat_n(value(j), count(model.joint_kind(j)))).collect()
+        model.own_joints().flat_map(|j| std::iter::repeat_n(value(j), count(model.joint_space(j)))).collect()
     }
 
-    fn limit(&self, count: impl Fn(JointKind) -> usize, of: impl Fn(&Limits) -> f64) -> Vec<f64> {
+    fn limit(&self, count: impl Fn(Space) -> usize, of: impl Fn(&Limits) -> f64) -> Vec<f64> {
         self.by_joint(count, |j| of(self.core.model.limits(j)))
     }
 }
@@ -38,17 +38,18 @@ impl PyModel {
         self.core.model.nv()
     }
 
-    /// Names of the moving joints, those that follow another one included.
+    /// Names of the moving joints, those that follow another one included; of a joint of several coordinates that are numbers, one
+    /// for each, such as ``c.z`` and ``c.rz``.
     #[getter]
     fn joint_names(&self) -> Vec<String> {
         self.core.model.joint_names().to_vec()
     }
 
-    /// What they are: revolute, continuous, prismatic, floating.
+    /// What they are, or are part of: revolute, continuous, prismatic, helical, cylindrical, universal, planar, spherical, floating.
     #[getter]
     fn joint_kinds(&self) -> Vec<&'static str> {
         let model = &self.core.model;
-        (0..model.joint_count()).map(|j| model.joint_kind(j).name()).collect()
+        (0..model.joint_count()).map(|j| model.described_joint(j).kind.name()).collect()
     }
 
     /// Names of the coordinates, in the order of q: joints, with a component where they have several.
@@ -126,37 +127,43 @@ impl PyModel {
     /// Lower limits of q, shape ``(nq,)``, −inf where there is none.
     #[getter]
     fn lower_limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.limit(JointKind::nq, |limits| limits.lower))
+        PyArray1::from_vec(py, self.limit(Space::nq, |limits| limits.lower))
     }
 
     /// Upper limits of q, shape ``(nq,)``.
     #[getter]
     fn upper_limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.limit(JointKind::nq, |limits| limits.upper))
+        PyArray1::from_vec(py, self.limit(Space::nq, |limits| limits.upper))
     }
 
     /// Limits of \|v\|, shape ``(nv,)``, inf where there is none.
     #[getter]
     fn velocity_limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.limit(JointKind::nv, |limits| limits.velocity))
+        PyArray1::from_vec(py, self.limit(Space::nv, |limits| limits.velocity))
     }
 
     /// Limits of \|tau\|, shape ``(nv,)``.
     #[getter]
     fn effort_limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.limit(JointKind::nv, |limits| limits.effort))
+        PyArray1::from_vec(py, self.limit(Space::nv, |limits| limits.effort))
     }
 
     /// Viscous damping of the joints, shape ``(nv,)``, N·m·s/rad or N·s/m; no algorithm here adds it.
     #[getter]
     fn damping<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.by_joint(JointKind::nv, |j| self.core.model.damping()[j]))
+        PyArray1::from_vec(py, self.by_joint(Space::nv, |j| self.core.model.damping()[j]))
     }
 
     /// Coulomb friction of the joints, shape ``(nv,)``, N·m or N; no algorithm here adds it.
     #[getter]
     fn friction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.by_joint(JointKind::nv, |j| self.core.model.friction()[j]))
+        PyArray1::from_vec(py, self.by_joint(Space::nv, |j| self.core.model.friction()[j]))
+    }
+
+    /// Inertia of the rotors as felt along the velocities, shape ``(nv,)``, kg·m² or kg: on the diagonal of the mass matrix.
+    #[getter]
+    fn armature<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.core.model.rotors())
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -222,6 +222,11 @@ fn material(document: &mut Document, color: Option<[f64; 4]>, shade: Paint) -> u
 fn joint(document: &mut Document, parts: &mut Parts, body: &Body, is_drawn: bool, r: f64) {
     let (half, radius) = match (body.joint.kind, is_drawn) {
         (Freedom::Fixed | Freedom::Floating, _) => return,
+        // A spherical joint is as round whichever way.
+        (Freedom::Spherical, _) => {
+            parts.ball(paint::JOINT.material(document), ZERO, if is_drawn { 0.6 * r } else { 1.6 * r });
+            return;
+        }
         (Freedom::Prismatic, true) => (1.2 * r, 0.3 * r),
         (_, true) => (1.5 * r, 0.3 * r),
         (Freedom::Prismatic, false) => (1.9 * r, 1.25 * r),

@@ -62,8 +62,11 @@ impl Layout {
             let Some(drive) = tree.drive(body) else { continue };
             let leader = columns[drive.column].name.strip_prefix("q.").unwrap_or_default();
             let is_own = on.joint.follows.is_none();
-            let effort = column(&format!("tau.{leader}")).filter(|_| is_own);
-            let velocity = column(&format!("v.{leader}"));
+            let rate =
+                scene.bodies.iter().find(|body| body.joint.name == leader).and_then(|body| body.joint.rate.as_deref());
+            let rate = rate.unwrap_or(leader);
+            let effort = column(&format!("tau.{rate}")).filter(|_| is_own);
+            let velocity = column(&format!("v.{rate}"));
             let place = joints.len();
             joints.push(JointRow { name: joint_names.take(names::frame(&on.joint.name)), body, velocity, effort });
             if is_own {

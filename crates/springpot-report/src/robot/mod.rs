@@ -61,13 +61,15 @@ pub struct JointMark {
     pub kind: JointKind,
 }
 
-/// Kinds of joints with one degree of freedom.
+/// Kinds of joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// Turns about the axis: a circle.
     Revolute,
     /// Slides along the axis: a rectangle.
     Prismatic,
+    /// Turns about any axis: a circle within a circle.
+    Spherical,
 }
 
 /// An element between two anchors, on a joint, or a bushing.

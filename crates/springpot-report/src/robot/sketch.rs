@@ -174,6 +174,7 @@ fn draw_joint(joint: &JointMark, camera: &Camera, sheet: &mut Sheet) -> Point {
         match joint.kind {
             JointKind::Revolute => sheet.revolute(at),
             JointKind::Prismatic => sheet.prismatic(at, [1.0, 0.0]),
+            JointKind::Spherical => sheet.spherical(at),
         }
         return at;
     };
@@ -199,6 +200,10 @@ fn draw_joint(joint: &JointMark, camera: &Camera, sheet: &mut Sheet) -> Point {
             sheet.sense(&camera.all(&turn(center, axis, SENSE * metre, camera.view)));
             sheet.revolute(at);
             camera.at(center)
+        }
+        JointKind::Spherical => {
+            sheet.spherical(at);
+            at
         }
         JointKind::Prismatic => {
             let ahead = camera.at(on_axis(AXIS_AHEAD));

@@ -167,6 +167,13 @@ impl Sheet {
         self.obstacles.frame(Frame::sized(at, [JOINT + 1.0; 2]));
     }
 
+    pub(super) fn spherical(&mut self, at: Point) {
+        let circle = |radius| Outline::Circle { center: at, radius };
+        self.scene.draw(circle(JOINT), Some(PAPER), Some(Stroke::new(INK, 1.8)));
+        self.scene.draw(circle(0.55 * JOINT), Some(INK), None);
+        self.obstacles.frame(Frame::sized(at, [JOINT + 1.0; 2]));
+    }
+
     /// An axis of the frame that points straight out of the paper (a dot) or into it (a cross).
     pub(super) fn end_on(&mut self, at: Point, out: bool) {
         self.scene.draw(Outline::Circle { center: at, radius: 4.5 }, Some(PAPER), Some(Stroke::new(INK, 1.2)));

@@ -1,6 +1,9 @@
 //! Where the bodies of a scene are, from the values of a row.
 
 use super::{Body, Freedom, Joint, Scene};
+use std::f64::consts::TAU;
+
+const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 
 /// Joints that follow one another, at most.
 const MOST_FOLLOWERS: usize = 16;
@@ -94,7 +97,12 @@ enum Motion {
     None,
     Turn([f64; 3], Option<Drive>),
     Slide([f64; 3], Option<Drive>),
-    Float([usize; 7]),
+    /// With the shift in m/rad.
+    Screw([f64; 3], f64, Option<Drive>),
+    /// A quaternion.
+    Ball([usize; 4]),
+    /// A position and a quaternion.
+    Float([usize; 3], [usize; 4]),
 }
 
 /// The tree of a scene, ready to be placed.
@@ -111,8 +119,8 @@ impl Kinematics {
         let mut bodies = Vec::with_capacity(scene.bodies.len());
         for (index, body) in scene.bodies.iter().enumerate() {
             let motion = motion(&scene.bodies, &body.joint, &column);
-            if matches!(motion, Motion::Turn(_, None) | Motion::Slide(_, None))
-                || body.joint.kind == Freedom::Floating && matches!(motion, Motion::None)
+            if matches!(motion, Motion::Turn(_, None) | Motion::Slide(_, None) | Motion::Screw(_, _, None))
+                || body.joint.kind != Freedom::Fixed && matches!(motion, Motion::None)
             {
                 missing.push(body.joint.name.clone());
             }
@@ -136,7 +144,7 @@ impl Kinematics {
     /// What moves the joint of a body that has one coordinate; `None` where there is no column of it.
     pub fn drive(&self, body: usize) -> Option<Drive> {
         match self.bodies[body].2 {
-            Motion::Turn(_, drive) | Motion::Slide(_, drive) => drive,
+            Motion::Turn(_, drive) | Motion::Slide(_, drive) | Motion::Screw(_, _, drive) => drive,
             _ => None,
         }
     }
@@ -151,12 +159,18 @@ impl Kinematics {
                 Motion::Slide(axis, drive) => {
                     origin.of(&Placement { shift: axis.map(|along| along * value(drive)), ..Placement::IDENTITY })
                 }
-                Motion::Float(columns) => {
-                    let [x, y, z, rest @ ..] = columns.map(|column| row[column]);
-                    let norm = rest.iter().map(|part| part * part).sum::<f64>().sqrt();
-                    let turn = if norm < LEAST_NORM { Placement::IDENTITY.turn } else { rest.map(|part| part / norm) };
-                    origin.of(&Placement { turn, shift: [x, y, z] })
+                Motion::Screw(axis, pitch, drive) => {
+                    let angle = value(drive);
+                    let turn = Placement::about(*axis, angle);
+                    origin.of(&Placement { shift: axis.map(|along| along * pitch * angle), ..turn })
                 }
+                Motion::Ball(columns) => {
+                    origin.of(&Placement { turn: unit(columns.map(|column| row[column])), shift: [0.0; 3] })
+                }
+                Motion::Float(shift, turn) => origin.of(&Placement {
+                    turn: unit(turn.map(|column| row[column])),
+                    shift: shift.map(|column| row[column]),
+                }),
             }
         };
         self.bodies.iter().map(one).collect()
@@ -179,14 +193,29 @@ fn motion(bodies: &[Body], joint: &Joint, column: &impl Fn(&str) -> Option<usize
         Freedom::Fixed => Motion::None,
         Freedom::Revolute | Freedom::Continuous => Motion::Turn(axis, drive(bodies, joint, column)),
         Freedom::Prismatic => Motion::Slide(axis, drive(bodies, joint, column)),
+        Freedom::Helical => Motion::Screw(axis, joint.lead.unwrap_or_default() / TAU, drive(bodies, joint, column)),
+        Freedom::Spherical => columns(joint, QUATERNION, column).map_or(Motion::None, Motion::Ball),
         Freedom::Floating => {
-            let found = ["x", "y", "z", "qx", "qy", "qz", "qw"].map(|part| column(&format!("q.{}.{part}", joint.name)));
-            match found.iter().all(Option::is_some) {
-                true => Motion::Float(found.map(Option::unwrap_or_default)),
-                false => Motion::None,
-            }
+            let found = columns(joint, ["x", "y", "z"], column).zip(columns(joint, QUATERNION, column));
+            found.map_or(Motion::None, |(shift, turn)| Motion::Float(shift, turn))
         }
     }
+}
+
+/// The columns of these coordinates of a joint, if all are there.
+fn columns<const N: usize>(
+    joint: &Joint,
+    parts: [&str; N],
+    column: &impl Fn(&str) -> Option<usize>,
+) -> Option<[usize; N]> {
+    let found = parts.map(|part| column(&format!("q.{}.{part}", joint.name)));
+    found.iter().all(Option::is_some).then(|| found.map(Option::unwrap_or_default))
+}
+
+/// A quaternion of length 1; unturned where it has none.
+fn unit(turn: [f64; 4]) -> [f64; 4] {
+    let norm = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
+    if norm < LEAST_NORM { Placement::IDENTITY.turn } else { turn.map(|part| part / norm) }
 }
 
 /// Along the joints that it follows to the one that has a coordinate.

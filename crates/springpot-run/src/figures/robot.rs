@@ -4,7 +4,7 @@ use super::look::millimetres;
 use super::source::Source;
 use crate::scene::{ground, sign_of};
 use springpot::equations::Pose;
-use springpot::model::{Anchor, Dimension, JointKind, Parent};
+use springpot::model::{Anchor, JointKind, JointPart, Move, Parent};
 use springpot::system::System;
 use springpot_report::{ElementMark, ElementShape, JointMark, Link, Rendered, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan, ShapePlan};
@@ -34,15 +34,17 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
     for (bone, name) in skeleton.bones.iter().zip(&skeleton.names) {
         drawing.links.push(Link { name: (*name).to_owned(), points: bone.line(near) });
     }
-    for (index, body) in plan.bodies.iter().enumerate() {
-        let kind = match body.joint.kind.dimension() {
-            Some(Dimension::Length) => springpot_report::JointKind::Prismatic,
-            Some(_) => springpot_report::JointKind::Revolute,
-            None => continue,
-        };
-        let body_index = Parent::Body(index);
-        let (position, axis) = (pose.origin(body_index), pose.direction(body_index, body.joint.axis));
-        drawing.joints.push(JointMark { name: body.joint.name.clone(), position, axis, kind });
+    for index in 0..plan.bodies.len() {
+        for (part, position, axis) in parts(plan, &pose, index) {
+            let kind = match part.moves {
+                Move::Turn | Move::Screw => springpot_report::JointKind::Revolute,
+                Move::Shift => springpot_report::JointKind::Prismatic,
+                Move::Ball => springpot_report::JointKind::Spherical,
+                Move::Pose => continue,
+            };
+            let axis = if part.moves == Move::Ball { [0.0; 3] } else { axis };
+            drawing.joints.push(JointMark { name: part.name, position, axis, kind });
+        }
     }
     let bracket = |drawing: &mut RobotDrawing, anchor: &Anchor| {
         let link = match anchor.body {
@@ -62,11 +64,11 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
                 points.iter().for_each(|point| bracket(&mut drawing, point));
             }
             ShapePlan::Joint(joint) => {
-                let Some(body) = plan.bodies.iter().position(|body| body.joint.name == *joint) else { continue };
-                let (at, axis) = (pose.origin(Parent::Body(body)), plan.bodies[body].joint.axis);
+                let mut parts = (0..plan.bodies.len()).flat_map(|body| parts(plan, &pose, body));
+                let Some((_, at, axis)) = parts.find(|(part, ..)| part.name == *joint) else { continue };
                 let shape = match element.element.measure.is_rotation() {
                     true => ElementShape::Turn,
-                    false => ElementShape::Slide(pose.direction(Parent::Body(body), axis)),
+                    false => ElementShape::Slide(axis),
                 };
                 drawing.elements.push(ElementMark { name, from: at, to: at, sign, shape });
             }
@@ -87,6 +89,22 @@ fn drawing(figure: &FigurePlan, system: &System, plan: &Plan) -> Result<RobotDra
     drawing.gripper = plan.gripper.as_ref().map(|gripper| pose.point(&gripper.anchor));
     drawing.ground = ground(plan, &pose);
     Ok(drawing)
+}
+
+/// What the joint of a body is made of, where each part is, and its axis in the world.
+fn parts(plan: &Plan, pose: &Pose<'_>, body: usize) -> Vec<(JointPart, [f64; 3], [f64; 3])> {
+    let spec = &plan.bodies[body].joint;
+    let (frame, parts) = (Parent::Body(body), spec.parts());
+    let Some(first) = plan.model.described_joints().iter().find(|joint| joint.name == spec.name) else {
+        return Vec::new();
+    };
+    let is_only = parts.len() == 1;
+    let placed = parts.into_iter().zip(first.joints.clone()).map(|(part, joint)| {
+        // The axis of a chain is that of the link that it moves.
+        let axis = if is_only { pose.direction(frame, spec.axis) } else { pose.joint_axis(joint) };
+        (part, pose.origin(frame), axis)
+    });
+    placed.collect()
 }
 
 /// The centre lines of a robot. Links of a URDF that are fixed to others are frames of those and have no line.

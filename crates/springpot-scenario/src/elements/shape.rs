@@ -83,7 +83,7 @@ pub(super) fn on_joint(table: &Table<'_>, robot: &Robot) -> Read<Shape> {
     let name = field.text()?;
     let model = robot.model();
     let joint = Joint::named(model, name).map_err(|error| match error {
-        JointMeasureError::Kind { .. } => {
+        JointMeasureError::Kind { .. } | JointMeasureError::Several { .. } => {
             field.refuse(RefusalKind::Rule, format!("is {name:?}: {error}"), other_joints(robot))
         }
         _ => {
@@ -98,7 +98,7 @@ pub(super) fn on_joint(table: &Table<'_>, robot: &Robot) -> Read<Shape> {
 /// The joints that an element can act on.
 fn other_joints(robot: &Robot) -> Option<String> {
     let model = robot.model();
-    let one_degree = (0..model.joint_count()).filter(|&j| model.joint_kind(j).dimension().is_some());
+    let one_degree = (0..model.joint_count()).filter(|&j| model.joint_space(j).dimension().is_some());
     let names: Vec<&str> = one_degree.map(|j| model.joint_names()[j].as_str()).collect();
     (!names.is_empty()).then(|| format!("joints with one coordinate are {}", names::list(names)))
 }

@@ -30,10 +30,11 @@ pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
 pub(crate) use heat::{ARRHENIUS, EXPANSION, SHIFT, THERMAL};
 pub(crate) use metric::METRIC;
 pub(crate) use motion::{
-    FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN, TIME_UNIT, of_gripper,
+    FLOATING, FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, SPHERICAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN,
+    TIME_UNIT, of_gripper,
 };
 pub(crate) use output::OUTPUT;
-pub(crate) use robot::{ANCHOR, BODY, END_STOPS, FRICTION, FROM_URDF, INERTIA, JOINT, ROBOT, keys_of};
+pub(crate) use robot::{ANCHOR, BODY, CHANGED_JOINT, END_STOPS, FRICTION, FROM_URDF, INERTIA, JOINT, MIMIC, ROBOT};
 pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
 pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
@@ -84,6 +85,8 @@ pub(crate) enum Shape {
     NumberOrWord(&'static str, Bound, &'static str),
     /// A number that belongs to a joint: in the first unit where it turns, in the second where it slides.
     JointNumber([&'static str; 2], Bound),
+    /// A number that belongs to a joint as above, or a table of them by coordinates.
+    JointNumbers([&'static str; 2], Bound),
     /// A number of a joint as above, or this word.
     JointNumberOrWord([&'static str; 2], Bound, &'static str),
     /// A whole number from the first on, to the second if there is one.
@@ -120,7 +123,7 @@ pub(crate) enum Shape {
     TableOrTables(&'static Keys),
     /// An array of tables, so many at most where that is said.
     Tables(&'static Keys, Option<usize>),
-    /// A number that belongs to a joint as above, or a table.
+    /// A number that belongs to a joint as above, or a table, or a table of such by coordinates.
     JointNumberOr([&'static str; 2], Bound, &'static Keys),
     /// One of these words, or a table.
     WordsOr(fn() -> Vec<&'static str>, &'static Keys),

@@ -1,6 +1,7 @@
 //! Signals, and what motions hold for a joint.
 
 use super::{Bound, Each, Key, Keys, Need, Shape, key};
+use springpot::model::JointKind;
 
 /// A signal that is a table.
 pub(crate) static SIGNAL: Keys = Keys {
@@ -55,16 +56,22 @@ pub(crate) const fn of_gripper(name: &'static str, only: &'static [&'static str]
     .only(only)
 }
 
+/// Joints that turn freely.
+pub(crate) const SPHERICAL: JointKind = JointKind::Spherical;
+pub(crate) const FLOATING: JointKind = JointKind::Floating;
+/// What of them floating joints take alone.
+const ALONE: &[&str] = &[FLOATING.name()];
+
 const OF_FRAME: &str = "Coordinate of the joint's frame.";
 const NO_TURN: &str = "Roll, pitch, yaw.";
 
 const fn path(name: &'static str) -> Key {
-    key(name, Shape::Signal("m"), Need::Number(0.0), OF_FRAME)
+    key(name, Shape::Signal("m"), Need::Number(0.0), OF_FRAME).only(ALONE)
 }
 
-/// How a floating joint moves.
+/// How a joint that turns freely moves.
 pub(crate) static POSE: Keys = Keys {
-    words: "Where a floating joint is.",
+    words: "Where a floating or spherical joint is.",
     keys: &[path("x"), path("y"), path("z"), key("rpy", Shape::Signals("rad"), Need::Vector([0.0; 3]), NO_TURN)],
 };
 
@@ -77,39 +84,39 @@ pub(crate) static START: Keys = Keys {
 };
 
 const fn at(name: &'static str) -> Key {
-    key(name, Shape::Number("m", Bound::Any), Need::Number(0.0), OF_FRAME)
+    key(name, Shape::Number("m", Bound::Any), Need::Number(0.0), OF_FRAME).only(ALONE)
 }
 
-/// Where a floating joint starts; the keys are those of [`POSE`].
+/// Where a joint that turns freely starts; the keys are those of [`POSE`].
 pub(crate) static START_POSE: Keys = Keys {
-    words: "Where a floating joint starts.",
+    words: "Where a floating or spherical joint starts.",
     keys: &[at("x"), at("y"), at("z"), key("rpy", Shape::Vector("rad"), Need::Vector([0.0; 3]), NO_TURN)],
 };
 
 const fn velocity(name: &'static str) -> Key {
-    key(name, Shape::Number("m/s", Bound::Any), Need::Number(0.0), "Velocity.")
+    key(name, Shape::Number("m/s", Bound::Any), Need::Number(0.0), "Velocity.").only(ALONE)
 }
 
 const fn turning(name: &'static str) -> Key {
     key(name, Shape::Number("rad/s", Bound::Any), Need::Number(0.0), "Angular velocity.")
 }
 
-/// Velocities of a floating joint, as in the columns of the results.
+/// Velocities of a joint that turns freely, as in the columns of the results.
 pub(crate) static START_VELOCITIES: Keys = Keys {
-    words: "How a floating joint starts, in the axes of its body.",
+    words: "How a floating or spherical joint starts, in the axes of its body.",
     keys: &[velocity("vx"), velocity("vy"), velocity("vz"), turning("wx"), turning("wy"), turning("wz")],
 };
 
 const fn force(name: &'static str) -> Key {
-    key(name, Shape::Signal("N"), Need::Number(0.0), "Force.")
+    key(name, Shape::Signal("N"), Need::Number(0.0), "Force.").only(ALONE)
 }
 
 const fn torque(name: &'static str) -> Key {
     key(name, Shape::Signal("N*m"), Need::Number(0.0), "Torque.")
 }
 
-/// What acts on a floating joint; the keys are those of [`START_VELOCITIES`].
+/// What acts on a joint that turns freely; the keys are those of [`START_VELOCITIES`].
 pub(crate) static FORCES: Keys = Keys {
-    words: "Forces and torques on a floating joint, in the axes of its body.",
+    words: "Forces and torques on a floating or spherical joint, in the axes of its body.",
     keys: &[force("vx"), force("vy"), force("vz"), torque("wx"), torque("wy"), torque("wz")],
 };

@@ -9,8 +9,6 @@ pub(super) const NAME: &str = "name = \"…\"";
 const KILOGRAM_METRE_SQUARED: &str = "kg*m^2";
 /// N·m where a joint turns, N where it slides.
 const FORCE: [&str; 2] = ["N*m", "N"];
-/// The kind of joints with an axis.
-const WITH_AXIS: &str = "with an axis";
 /// The kind of robots from a URDF file.
 pub(crate) const FROM_URDF: &str = "with urdf";
 const WITH_URDF: &[&str] = &[FROM_URDF];
@@ -45,6 +43,12 @@ pub(crate) static ROBOT: Keys = Keys {
             Shape::Table(&END_STOPS),
             Need::Optional,
             "Makes limits of joints end stops: outside, the force -stiffness*excess - damping*v, never pulling.",
+        ),
+        key(
+            "joint",
+            Shape::Tables(&CHANGED_JOINT, None),
+            Need::Optional,
+            "Joints of the file with another kind or with a rotor.",
         )
         .only(WITH_URDF),
         key(
@@ -142,48 +146,108 @@ pub(crate) static INERTIA: Keys = Keys {
     keys: &[moment("xx"), moment("yy"), moment("zz"), product("xy"), product("xz"), product("yz")],
 };
 
-/// What joints with an axis take alone.
-const AXIS: &[&str] = &[WITH_AXIS];
+// The kinds of joint that take a key: a test compares them with what the kinds are.
+const AXIS: &[&str] = &["revolute", "continuous", "prismatic", "helical", "cylindrical", "universal", "planar"];
+const AXIS2: &[&str] = &["universal"];
+const LEAD: &[&str] = &["helical"];
+/// Those with coordinates that are numbers.
+const NUMBERS: &[&str] = AXIS;
+/// Those of these that end somewhere.
+const ENDS: &[&str] = &["revolute", "prismatic", "helical", "cylindrical", "universal", "planar"];
+/// Those of one coordinate.
+const ONE: &[&str] = &["revolute", "continuous", "prismatic", "helical"];
 
-/// What `only` of [`JOINT`] calls a kind of joint.
-pub(crate) const fn keys_of(kind: JointKind) -> &'static str {
-    if kind.has_axis() { WITH_AXIS } else { "" }
+fn joint_kinds() -> Vec<&'static str> {
+    JointKind::ALL.map(JointKind::name).to_vec()
 }
 
-/// The kinds of it that `only` knows: joints with an axis.
+/// The kinds of it that `only` knows: kinds of joint.
 pub(crate) static JOINT: Keys = Keys {
     words: "The joint between the body and its parent.",
     keys: &[
         key("name", Shape::Name(&[]), Need::Written(NAME), "Name of the joint."),
-        key(
-            "kind",
-            Shape::Words(|| JointKind::ALL.map(JointKind::name).to_vec()),
-            Need::Required("kind = \"revolute\", \"continuous\", \"prismatic\", \"floating\" or \"fixed\""),
-            "How it moves.",
-        ),
+        key("kind", Shape::Words(joint_kinds), Need::Required("kind = \"revolute\", or another of the kinds of joint"), "How it moves."),
         key("origin", Shape::Vector("m"), ZERO, "Origin of the joint frame in the parent's joint frame."),
         key("rpy", Shape::Vector("rad"), ZERO, "Roll, pitch, yaw of the joint frame in the parent's."),
         key(
             "axis",
             Shape::Vector(""),
             Need::Required("axis = [0, 0, 1]"),
-            "Axis in the joint frame, of any length but 0.",
+            "Axis in the joint frame, of any length but 0; of planar joints the normal, [0, 0, 1] where it is left out.",
         )
         .only(AXIS),
+        AXIS2_KEY,
+        LEAD_KEY,
         key(
             "damping",
-            Shape::JointNumber(["N*m*s/rad", "N*s/m"], Bound::NotNegative),
+            Shape::JointNumbers(["N*m*s/rad", "N*s/m"], Bound::NotNegative),
             Need::Number(0.0),
             "Viscous damping.",
         )
-        .only(AXIS),
+        .only(NUMBERS),
         key(
             "friction",
             Shape::JointNumberOr(FORCE, Bound::NotNegative, &FRICTION),
             Need::Number(0.0),
             "Coulomb friction: a number or quantity, or a table with `force`.",
         )
-        .only(AXIS),
+        .only(NUMBERS),
+        ARMATURE_KEY,
+        key("lower", Shape::JointNumbers(["rad", "m"], Bound::Any), Need::Said("none"), "Smallest coordinate.").only(ENDS),
+        key("upper", Shape::JointNumbers(["rad", "m"], Bound::Any), Need::Said("none"), "Largest coordinate.").only(ENDS),
+        key("velocity", Shape::JointNumbers(["rad/s", "m/s"], Bound::Positive), Need::Said("none"), "Largest speed.")
+            .only(NUMBERS),
+        key("effort", Shape::JointNumbers(FORCE, Bound::Positive), Need::Said("none"), "Largest actuator force.").only(NUMBERS),
+        key("mimic", Shape::Table(&MIMIC), Need::Optional, "The joint that it follows.").only(ONE),
+    ],
+};
+
+const AXIS2_KEY: Key = key(
+    "axis2",
+    Shape::Vector(""),
+    Need::Required("axis2 = [0, 1, 0]"),
+    "Second axis, fixed in the body, in the joint frame at q = 0; not parallel to `axis`.",
+)
+.only(AXIS2);
+const LEAD_KEY: Key = key(
+    "lead",
+    Shape::Number("m", Bound::Any),
+    Need::Required("lead = \"5 mm\""),
+    "Advance along the axis in each turn, not 0.",
+)
+.only(LEAD);
+const ARMATURE_KEY: Key = key(
+    "armature",
+    Shape::JointNumbers([KILOGRAM_METRE_SQUARED, "kg"], Bound::NotNegative),
+    Need::Number(0.0),
+    "Inertia of the rotor as felt at the joint.",
+)
+.only(NUMBERS);
+
+/// A joint that follows another one.
+pub(crate) static MIMIC: Keys = Keys {
+    words: "The joint that one follows: its coordinate is multiplier·q + offset.",
+    keys: &[
+        key(
+            "joint",
+            Shape::Text,
+            Need::Required("joint = \"NAME\""),
+            "Name of a joint of one coordinate, or of a coordinate, \"c.rz\".",
+        ),
+        key("multiplier", Shape::Number("", Bound::Any), Need::Number(1.0), "Ratio of the two speeds."),
+        key("offset", Shape::JointNumber(["rad", "m"], Bound::Any), Need::Number(0.0), "Where it stands at q = 0."),
+    ],
+};
+
+/// What a scenario says of a joint of a URDF file; the kinds of it that `only` knows are kinds of joint.
+pub(crate) static CHANGED_JOINT: Keys = Keys {
+    words: "What the scenario says of a joint of the URDF file.",
+    keys: &[
+        key("name", Shape::Text, Need::Required(NAME), "Name of the joint."),
+        key("kind", Shape::Words(joint_kinds), Need::Said("as in the file"), "Another kind; axis and origin stay."),
+        AXIS2_KEY,
+        LEAD_KEY,
+        ARMATURE_KEY,
     ],
 };
 

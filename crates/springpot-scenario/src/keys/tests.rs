@@ -49,8 +49,10 @@ fn every_key_is_sound() {
         assert_eq!(names.len(), keys.keys.len(), "{}: a key stands twice", keys.words);
         for key in keys.keys {
             assert!(key.sentence().ends_with('.') && keys.words.ends_with('.'), "{}", key.name);
-            if let (Need::Number(default), Shape::Number(_, bound) | Shape::JointNumber(_, bound)) =
-                (key.need, key.shape)
+            if let (
+                Need::Number(default),
+                Shape::Number(_, bound) | Shape::JointNumber(_, bound) | Shape::JointNumbers(_, bound),
+            ) = (key.need, key.shape)
             {
                 let holds = match bound {
                     Bound::Any => default.is_finite(),
@@ -118,6 +120,7 @@ fn unit_of(key: &Key) -> String {
         | Shape::NumbersOr(unit, _)
         | Shape::Signal(unit) => unit,
         Shape::JointNumber([turning, _], _)
+        | Shape::JointNumbers([turning, _], _)
         | Shape::JointNumberOr([turning, _], ..)
         | Shape::JointNumberOrWord([turning, _], ..) => turning,
         _ => "",

@@ -1,7 +1,7 @@
 //! `[motion.controller]`: what drives the joints of a robot that moves by itself.
 
 use super::gripper_path;
-use super::joints::open_joints;
+use super::joints::{ByJoint, Parts};
 use crate::document::shorten;
 use crate::feedback;
 use crate::keys::{self, CONTROLLER, REFERENCE};
@@ -15,7 +15,7 @@ use springpot::control::{
     AntiWindup, ComputedTorque, Controlled, Controller, Impedance, Limit, PdGravity, Pid, Profile, Reference, Sampling,
 };
 use springpot::law::Range;
-use springpot::model::{JointKind, Model};
+use springpot::model::{Dimension, Model, Space};
 use springpot::motion::gripper_path::{Course, GripperPoint};
 use springpot::motion::{JointPath, Trajectory};
 use springpot::signal::Signal;
@@ -109,7 +109,7 @@ pub(super) struct Joints<'r> {
     pub(super) robot: &'r Robot,
     /// q(0).
     pub(super) start: &'r [f64],
-    pub(super) is_driven: &'r dyn Fn(&str) -> bool,
+    pub(super) is_driven: &'r dyn Fn(&OwnJoint<'_>) -> bool,
     /// How a joint moves whose motion is prescribed.
     pub(super) moved: &'r dyn Fn(&str) -> Option<JointPath>,
 }
@@ -119,22 +119,24 @@ impl<'r> Joints<'r> {
     fn driven(&self) -> impl Iterator<Item = (usize, OwnJoint<'r>)> {
         let model = self.robot.model();
         let joints = model.own_joints().zip(self.robot.own_joints());
-        let driven = joints.filter(|(_, joint)| joint.kind.nv() == 1 && (self.is_driven)(joint.name));
+        let driven = joints.filter(|(_, joint)| joint.units().is_some() && (self.is_driven)(joint));
         driven.map(|(j, joint)| (model.v_range(j).start, joint))
     }
 
-    /// Opens a table by joints that a controller drives.
-    fn open<'a>(&self, field: &Field<'a>) -> Read<Table<'a>> {
-        let names: Vec<&str> = self.driven().map(|(_, joint)| joint.name).collect();
+    /// Opens a table by joints that a controller drives; one value may stand for all coordinates of a joint.
+    fn open(&self, field: &Field<'r>) -> Read<ByJoint<'r>> {
+        let mut names: Vec<&str> = self.driven().map(|(_, joint)| joint.joint).collect();
+        names.dedup();
         let reason = |key: &str| {
             if let Some(why) = self.robot.why_no_coordinate(key) {
                 return Some((RefusalKind::Rule, why));
             }
-            let own = self.robot.own_joints().find(|joint| joint.name == key)?;
-            let why = if own.kind.nv() == 1 { "no force drives it" } else { "it has several degrees of freedom" };
+            let own = self.robot.own_joints().find(|joint| joint.joint == key)?;
+            let why = if own.units().is_some() { "no force drives it" } else { "it has several degrees of freedom" };
             Some((RefusalKind::Rule, format!("joint {key:?} is none that the controller drives: {why}")))
         };
-        Table::open_with(field.ctx, field.node, field.to_string(), &names, reason)
+        let table = Table::open_with(field.ctx, field.node, field.to_string(), &names, reason)?;
+        ByJoint::inside(table, self.robot, Parts::Coordinates, true)
     }
 }
 
@@ -239,10 +241,11 @@ fn law(
         return Err(table.lacks("kp"));
     }
     if kind == keys::COMPUTED_TORQUE
-        && let Some(joint) = joints.robot.own_joints().find(|joint| joint.kind.nv() != 1)
+        && let Some(joint) = joints.robot.own_joints().find(|joint| joint.units().is_none())
     {
+        let is = joints.robot.kind_of(&joint).name();
         let message =
-            format!("kind = \"computed-torque\" drives joints of one degree, but joint {:?} is floating", joint.name);
+            format!("kind = \"computed-torque\" drives joints of one degree, but joint {:?} is {is}", joint.name);
         return Err(table.ctx.refuse(table.node.place.refuse(RefusalKind::Rule, message)));
     }
     let order = |key: &'static str| -> Read<Vec<f64>> {
@@ -261,7 +264,8 @@ fn law(
     let (lambda, mu) = (order("lambda")?, order("mu")?);
     let gain = |key: &'static str, which: usize| {
         by_joint(table, key, joints, 0.0, &|field, joint, velocity| {
-            let unit = if joint.kind == JointKind::Prismatic { slides[which] } else { turns[which] };
+            let slide = joint.space.dimension() == Some(Dimension::Length);
+            let unit = if slide { slides[which] } else { turns[which] };
             let exponent = |k: usize| if which == 2 { lambda[k] } else { mu[k] };
             not_negative(field, unit, &exponent, velocity)
         })
@@ -346,7 +350,7 @@ fn by_joint(
     for (velocity, joint) in &driven {
         let own = match &given {
             None => Some(field.clone()),
-            Some(given) => given.get(joint.name),
+            Some(given) => given.get(joint),
         };
         if let Some(own) = own {
             values[*velocity] = read(&own, joint, *velocity)?;
@@ -361,9 +365,9 @@ fn limits(table: &Table<'_>, joints: &Joints<'_>, record: &mut Map<String, Value
         let Some(field) = table.get(key) else { continue };
         let given = joints.open(&field)?;
         let driven: Vec<_> = joints.driven().collect();
-        let read = all(driven.iter().filter_map(|(k, joint)| Some((k, joint, given.get(joint.name)?))).map(
+        let read = all(driven.iter().filter_map(|(k, joint)| Some((k, joint, given.get(joint)?))).map(
             |(k, joint, field)| {
-                let value = field.number(&format!("{}{per}", joint.units().force))?;
+                let value = field.number(&format!("{}{per}", joint.units().map_or("", |units| units.force)))?;
                 if value > 0.0 {
                     return Ok((*k, joint.name, value));
                 }
@@ -451,10 +455,11 @@ fn reference(field: &Field<'_>, law: &str, joints: &Joints<'_>, end: Option<f64>
         let table = Table::of_kind(field.ctx, field.node, field.to_string(), (&REFERENCE, kind), wrong)?;
         return to_a_point(&table, joints);
     }
-    let names: Vec<&str> = std::iter::once("kind").chain(joints.robot.own_joints().map(|joint| joint.name)).collect();
+    let names: Vec<&str> = std::iter::once("kind").chain(joints.robot.joints_as_described()).collect();
     let table = Table::open_with(field.ctx, field.node, field.to_string(), &names, wrong)?;
-    let driven: Vec<&str> = joints.driven().map(|(_, joint)| joint.name).collect();
-    let missing: Vec<&str> = driven.iter().copied().filter(|name| table.get(name).is_none()).collect();
+    let table = ByJoint::inside(table, joints.robot, Parts::Coordinates, true)?;
+    let missing: Vec<&str> =
+        joints.driven().filter(|(_, joint)| table.get(joint).is_none()).map(|(_, joint)| joint.name).collect();
     if !missing.is_empty() {
         let message = format!("{field} has no signal for {}", names::list(missing.iter().copied()));
         let refusal = field.node.place.refuse(RefusalKind::Missing, message).label("missing joints");
@@ -465,8 +470,8 @@ fn reference(field: &Field<'_>, law: &str, joints: &Joints<'_>, end: Option<f64>
     let model = joints.robot.model();
     let paths = all(model.own_joints().zip(joints.robot.own_joints()).map(|(j, joint)| {
         let start = Signal::constant(joints.start[model.q_range(j).start]);
-        let Some(field) = table.get(joint.name).filter(|_| joint.kind.nv() == 1) else { return Ok((start, None)) };
-        let wanted = Wanted { unit: joint.unit(), range: Range::ANY, smooth: true, end };
+        let Some((field, units)) = table.get(&joint).zip(joint.units()) else { return Ok((start, None)) };
+        let wanted = Wanted { unit: units.coordinate, range: Range::ANY, smooth: true, end };
         let plan = feedback::read_of_time(&field, wanted)?;
         Ok((plan.signal.clone(), Some((joint.name.to_owned(), plan.record()))))
     }))?;
@@ -486,20 +491,19 @@ fn still(joints: &Joints<'_>) -> Reference {
 /// where they are.
 fn of_signals(joints: &Joints<'_>, signals: Vec<Signal>) -> Reference {
     let own = joints.robot.own_joints().zip(signals);
-    let paths = own.map(|(joint, signal)| match joint.kind {
+    let still = || std::array::from_fn(|_| Signal::constant(0.0));
+    let paths = own.map(|(joint, signal)| match joint.space {
         _ if let Some(path) = (joints.moved)(joint.name) => path,
-        JointKind::Floating => JointPath::Pose(Box::new(springpot::motion::PosePath {
-            position: std::array::from_fn(|_| Signal::constant(0.0)),
-            rpy: std::array::from_fn(|_| Signal::constant(0.0)),
-        })),
-        _ => JointPath::Coordinate(signal),
+        Space::Line(_) | Space::Circle => JointPath::Coordinate(signal),
+        Space::Attitude => JointPath::Attitude(Box::new(still())),
+        Space::Pose => JointPath::Pose(Box::new(springpot::motion::PosePath { position: still(), rpy: still() })),
     });
     Reference::new(Trajectory::Prescribed(paths.collect()))
 }
 
 /// A move from where the robot starts.
 fn to_a_point(table: &Table<'_>, joints: &Joints<'_>) -> Read<Referred> {
-    let to = table.require("to").and_then(|field| open_joints(&field, joints.robot));
+    let to = table.require("to").and_then(|field| ByJoint::open(&field, joints.robot, Parts::Coordinates));
     let duration = table.require("duration").and_then(|field| field.quantity());
     let profile = table.word("profile", "profile").map(|word| (word, profile(word)));
     let (to, duration, (word, profile)) = (to?, duration?, profile?);
@@ -507,12 +511,12 @@ fn to_a_point(table: &Table<'_>, joints: &Joints<'_>) -> Read<Referred> {
     let mut targets = Map::new();
     let signals = all(model.own_joints().zip(joints.robot.own_joints()).map(|(j, joint)| {
         let start = joints.start[model.q_range(j).start];
-        let Some(field) = to.get(joint.name) else { return Ok(Signal::constant(start)) };
-        if joint.kind.nv() != 1 || !(joints.is_driven)(joint.name) {
+        let Some(field) = to.get(&joint) else { return Ok(Signal::constant(start)) };
+        let Some(units) = joint.units().filter(|_| (joints.is_driven)(&joint)) else {
             let message = format!("names joint {:?}, which the controller does not drive", shorten(joint.name));
             return Err(field.refuse(RefusalKind::Rule, message, Some("leave it out".to_owned())));
-        }
-        let end = field.number(joint.unit())?;
+        };
+        let end = field.number(units.coordinate)?;
         targets.insert(joint.name.to_owned(), json!(end));
         Ok(profile.signal(start, end, duration))
     }))?;

@@ -2,7 +2,7 @@
 
 use super::controller::{self, ControllerPlan, Joints};
 use super::idle;
-use super::joints::{open_joints, path_of_joint, signal, zero};
+use super::joints::{ByJoint, Parts, open_free, path_of_joint, signal, zero};
 use super::{Made, ready};
 use crate::document::{shorten, shortest};
 use crate::feedback::{self, TorqueTexts};
@@ -16,7 +16,7 @@ use crate::signals::Wanted;
 use serde_json::{Map, Value, json};
 use springpot::actuation::{Drive, Forward};
 use springpot::law::Range;
-use springpot::model::JointKind;
+use springpot::model::Space;
 use springpot::motion::JointPath;
 use springpot::signal::{Expression, Signal};
 use springpot::spatial::Quaternion;
@@ -29,25 +29,28 @@ pub(super) fn read(
     end: Option<f64>,
 ) -> Read<(Made, TorqueTexts, Option<ControllerPlan>)> {
     let start = table.get("start").map(|field| start(&field, robot)).transpose();
-    let torque = table.get("torque").map(|field| open_joints(&field, robot)).transpose();
-    let prescribed = table.get("prescribed").map(|field| open_joints(&field, robot)).transpose();
+    let torque = table.get("torque").map(|field| ByJoint::open(&field, robot, Parts::Velocities)).transpose();
+    let prescribed = table.get("prescribed").map(|field| ByJoint::open(&field, robot, Parts::Coordinates)).transpose();
     let locked = table.get("locked").map_or_else(|| Ok(HashSet::new()), |field| locked(&field, robot));
     let (torque, prescribed, locked) = (torque?, prescribed?, locked?);
     if let Some(field) = table.get("start") {
-        let is_moved = |joint: &str| prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
-        warn_of_led(&field.table(&START)?, robot, |joint| match locked.contains(joint) {
+        warn_of_led(&field.table(&START)?, robot, |joint| match locked.contains(joint.name) {
             true => Some("locked"),
-            false => is_moved(joint).then_some("prescribed"),
+            false => prescribed.as_ref().is_some_and(|table| table.names(joint)).then_some("prescribed"),
         })?;
     }
     let place = &table.node.place;
     let mut feedback = TorqueTexts::new();
-    let is_idle = |joint: &str| {
-        let given = |table: &Option<Table<'_>>| table.as_ref().is_some_and(|table| table.get(joint).is_some());
-        !given(&torque) && !given(&prescribed) && !locked.contains(joint)
+    let is_moved = |joint: &OwnJoint<'_>| {
+        let own = robot.own_joints().find(|own| own.name == joint.name);
+        prescribed.as_ref().zip(own).is_some_and(|(table, own)| table.names(&own))
     };
-    let is_led =
-        |joint: &str| locked.contains(joint) || prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
+    let is_led = |joint: &OwnJoint<'_>| locked.contains(joint.name) || is_moved(joint);
+    let is_idle = |joint: &OwnJoint<'_>| {
+        let own = robot.own_joints().find(|own| own.name == joint.name);
+        let given = torque.as_ref().zip(own).is_some_and(|(table, own)| table.get(&own).is_some());
+        !given && !is_led(joint)
+    };
     let started = start.as_ref().ok().and_then(Option::as_ref);
     let still = idle::joints(robot, started.map(|(q, _)| &q[..]), is_led, is_idle);
     if !still.is_empty() {
@@ -58,9 +61,9 @@ pub(super) fn read(
         table.ctx.warn(Remark::new(message).help("give what they carry an inertia"));
     }
     let drives = all(robot.own_joints().map(|joint| {
-        let given = |table: &Option<Table<'_>>| table.as_ref().and_then(|table| table.get(joint.name)).is_some();
-        let is_locked = locked.contains(joint.name);
-        let (driven, moved) = (given(&torque), given(&prescribed));
+        let force_on = torque.as_ref().and_then(|table| table.get(&joint));
+        let (is_locked, moved) = (locked.contains(joint.name), is_moved(&joint));
+        let driven = force_on.is_some();
         if usize::from(driven) + usize::from(moved) + usize::from(is_locked) > 1 {
             let kinds = [("torque", driven), ("prescribed", moved), ("locked", is_locked)];
             let which: Vec<&str> = kinds.iter().filter(|(_, is)| *is).map(|(kind, _)| *kind).collect();
@@ -71,16 +74,16 @@ pub(super) fn read(
         if is_locked {
             return Ok((Drive::Locked, json!("locked")));
         }
-        if let Some(field) = prescribed.as_ref().and_then(|table| table.get(joint.name)) {
-            let (path, record) = path_of_joint(&field, &joint, end)?;
+        if let Some(table) = prescribed.as_ref().filter(|_| moved) {
+            let (path, record) = path_of_joint(table.get(&joint), table.place(), &joint, end)?;
             return Ok((Drive::Prescribed(path), json!({ "prescribed": record })));
         }
         if still.contains(&index_of(robot, joint.name)) {
             return Ok(coast(robot, index_of(robot, joint.name), started));
         }
-        let forces = match torque.as_ref().and_then(|table| table.get(joint.name)) {
+        let forces = match force_on {
             Some(field) => force(&field, &joint, end)?,
-            None => (0..joint.kind.nv()).map(|_| zero(place)).collect(),
+            None => (0..joint.space.nv()).map(|_| zero(place)).collect(),
         };
         let first = robot.model().v_range(index_of(robot, joint.name)).start;
         let texts = forces.iter().enumerate().filter_map(|(k, force)| Some((first + k, force.feedback.clone()?)));
@@ -89,10 +92,7 @@ pub(super) fn read(
     }));
     let (q, v) = start?.unwrap_or_else(|| (robot.model().neutral(), vec![0.0; robot.model().nv()]));
     let controller = table.get("controller");
-    let is_forced = |joint: &str| {
-        let is_moved = prescribed.as_ref().is_some_and(|table| table.get(joint).is_some());
-        !is_moved && !locked.contains(joint)
-    };
+    let is_forced = |joint: &OwnJoint<'_>| !is_led(joint);
     let (drives, records): (Vec<Drive>, Vec<Value>) = drives?.into_iter().unzip();
     let moved = |joint: &str| match &drives[index_of(robot, joint)] {
         Drive::Prescribed(path) => Some(path.clone()),
@@ -127,13 +127,17 @@ fn coast(robot: &Robot, joint: usize, start: Option<&(Vec<f64>, Vec<f64>)>) -> (
 }
 
 /// Warns of what `start` says of joints that [motion] leads.
-fn warn_of_led(start: &Table<'_>, robot: &Robot, led: impl Fn(&str) -> Option<&'static str>) -> Read<()> {
-    for key in ["q", "v"] {
+fn warn_of_led<'a>(
+    start: &Table<'a>,
+    robot: &'a Robot,
+    led: impl Fn(&OwnJoint<'a>) -> Option<&'static str>,
+) -> Read<()> {
+    for (key, parts) in [("q", Parts::Coordinates), ("v", Parts::Velocities)] {
         let Some(field) = start.get(key) else { continue };
-        let table = open_joints(&field, robot)?;
+        let table = ByJoint::open(&field, robot, parts)?;
         for joint in robot.own_joints() {
             // Locked joints stay where they start.
-            let Some((field, how)) = table.get(joint.name).zip(led(joint.name)) else { continue };
+            let Some((field, how)) = table.get(&joint).zip(led(&joint)) else { continue };
             if key == "v" || how == "prescribed" {
                 let message =
                     format!("{key} of joint {:?} at the start says nothing: [motion] has it {how}", joint.name);
@@ -158,28 +162,30 @@ fn start(field: &Field<'_>, robot: &Robot) -> Read<(Vec<f64>, Vec<f64>)> {
     let table = field.table(&START)?;
     let model = robot.model();
     let (mut q, mut v) = (model.neutral(), vec![0.0; model.nv()]);
-    let positions = table.get("q").map(|field| open_joints(&field, robot)).transpose();
-    let velocities = table.get("v").map(|field| open_joints(&field, robot)).transpose();
+    let positions = table.get("q").map(|field| ByJoint::open(&field, robot, Parts::Coordinates)).transpose();
+    let velocities = table.get("v").map(|field| ByJoint::open(&field, robot, Parts::Velocities)).transpose();
     let (positions, velocities) = (positions?, velocities?);
     all(model.own_joints().zip(robot.own_joints()).map(|(j, joint)| {
-        if let Some(field) = positions.as_ref().and_then(|table| table.get(joint.name)) {
+        if let Some(field) = positions.as_ref().and_then(|table| table.get(&joint)) {
             let q = &mut q[model.q_range(j)];
-            if joint.kind == JointKind::Floating {
-                start_pose(&field, q)?;
-            } else {
-                q[0] = field.number(joint.unit())?;
-                must_be_near(&field, q[0], joint.unit())?;
+            match joint.units() {
+                Some(units) => {
+                    q[0] = field.number(units.coordinate)?;
+                    must_be_near(&field, q[0], units.coordinate)?;
+                }
+                None => start_pose(&field, joint.space, q)?,
             }
         }
-        if let Some(field) = velocities.as_ref().and_then(|table| table.get(joint.name)) {
+        if let Some(field) = velocities.as_ref().and_then(|table| table.get(&joint)) {
             let v = &mut v[model.v_range(j)];
-            if joint.kind == JointKind::Floating {
-                let table = field.table(&START_VELOCITIES)?;
-                for (v, name) in v.iter_mut().zip(START_VELOCITIES.names()) {
-                    *v = table.number(name)?;
+            match joint.units() {
+                Some(units) => v[0] = field.number(units.velocity)?,
+                None => {
+                    let table = open_free(&field, &START_VELOCITIES, joint.space, "of velocities")?;
+                    for (v, (name, _)) in v.iter_mut().zip(joint.space.velocities()) {
+                        *v = table.number(name)?;
+                    }
                 }
-            } else {
-                v[0] = field.number(joint.units().velocity)?;
             }
         }
         Ok(())
@@ -206,29 +212,32 @@ fn must_be_near(field: &Field<'_>, q: f64, unit: &str) -> Read<()> {
     Err(field.refuse(RefusalKind::OutOfRange, message, Some(help.to_owned())))
 }
 
-/// `{ x = …, y = …, z = …, rpy = […] }`, all numbers.
-fn start_pose(field: &Field<'_>, q: &mut [f64]) -> Read<()> {
-    let table = field.table(&START_POSE)?;
-    for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
+/// `{ x = …, y = …, z = …, rpy = […] }`, all numbers; of a spherical joint the last alone.
+fn start_pose(field: &Field<'_>, space: Space, q: &mut [f64]) -> Read<()> {
+    let table = open_free(field, &START_POSE, space, "such as { rpy = [roll, pitch, yaw] }")?;
+    let first = space.quaternion().unwrap_or(q.len());
+    for (k, (axis, _)) in space.coordinates().iter().enumerate().take(first) {
         q[k] = table.number(axis)?;
         if let Some(field) = table.get(axis) {
             must_be_near(&field, q[k], "m")?;
         }
     }
     let [roll, pitch, yaw] = table.vector("rpy")?;
-    q[3..].copy_from_slice(&Quaternion::from_rpy([roll, pitch, yaw]).0);
+    q[first..].copy_from_slice(&Quaternion::from_rpy([roll, pitch, yaw]).0);
     Ok(())
 }
 
-/// Names of locked joints.
-fn locked<'a>(field: &Field<'a>, robot: &Robot) -> Read<HashSet<&'a str>> {
+/// Locked joints of the model; a name stands for all coordinates of a joint, or for one.
+fn locked<'a>(field: &Field<'_>, robot: &'a Robot) -> Read<HashSet<&'a str>> {
     let right = "an array of names of joints";
     let names = all(field.items(right)?.iter().map(|item| {
         let name = item.text()?;
-        if robot.own_joints().any(|joint| joint.name == name) {
-            return Ok(name);
+        let named: Vec<&str> =
+            robot.own_joints().filter(|own| own.joint == name || own.name == name).map(|own| own.name).collect();
+        if !named.is_empty() {
+            return Ok(named);
         }
-        let known: Vec<&str> = robot.own_joints().map(|joint| joint.name).collect();
+        let known = robot.joints_as_described();
         Err(match robot.why_no_coordinate(name) {
             Some(why) => item.refuse(RefusalKind::Rule, format!("names a joint that cannot be locked: {why}"), None),
             None => {
@@ -237,17 +246,16 @@ fn locked<'a>(field: &Field<'a>, robot: &Robot) -> Read<HashSet<&'a str>> {
             }
         })
     }))?;
-    Ok(names.into_iter().collect())
+    Ok(names.into_iter().flatten().collect())
 }
 
 /// The actuator force of a joint.
 fn force(field: &Field<'_>, joint: &OwnJoint<'_>, end: Option<f64>) -> Read<Vec<SignalPlan>> {
-    if joint.kind != JointKind::Floating {
-        let unit = joint.units().force;
-        return Ok(vec![feedback::read(field, Wanted { unit, range: Range::ANY, smooth: false, end })?]);
+    if let Some(units) = joint.units() {
+        return Ok(vec![feedback::read(field, Wanted { unit: units.force, range: Range::ANY, smooth: false, end })?]);
     }
-    let table = field.table(&FORCES)?;
-    all(FORCES.names().into_iter().map(|name| match table.get(name) {
+    let table = open_free(field, &FORCES, joint.space, "of forces and torques")?;
+    all(joint.space.velocities().iter().map(|&(name, _)| match table.get(name) {
         Some(field) => signal(&field, false, end),
         None => Ok(zero(&field.node.place)),
     }))

@@ -1,11 +1,11 @@
 //! The gripper follows a path.
 
-use super::joints::{open_joints, rpy, signal};
+use super::joints::{ByJoint, Parts, rpy, signal};
 use super::{Made, Maker, record};
 use crate::plan::SignalPlan;
 use crate::reader::{Field, Read, Refused, Table, all};
 use crate::refusal::RefusalKind;
-use crate::robot::Robot;
+use crate::robot::{OwnJoint, Robot};
 use serde_json::{Map, Value, json};
 use springpot::model::Model;
 use springpot::model::urdf::FLOATING_BASE;
@@ -64,9 +64,9 @@ pub(super) fn path(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<(
         let right = "write [robot.gripper] with body = \"NAME\" and point = [x, y, z]";
         table.ctx.refuse(place.refuse(RefusalKind::Missing, message).help(right));
     }
-    if let Some(joint) = robot.own_joints().find(|joint| joint.kind.nv() != 1) {
-        let name = joint.name;
-        let message = format!("kind = \"gripper-path\" moves joints of one degree, but joint {name:?} is floating");
+    if let Some(joint) = robot.own_joints().find(|joint| joint.units().is_none()) {
+        let (name, kind) = (joint.name, robot.kind_of(&joint).name());
+        let message = format!("kind = \"gripper-path\" moves joints of one degree, but joint {name:?} is {kind}");
         let place = table.get("kind").map_or(&table.node.place, |field| &field.node.place);
         let right = match &robot.parts.urdf {
             Some(_) if name == FLOATING_BASE => "leave floating_base out, or write kind = \"prescribed\"",
@@ -103,6 +103,7 @@ pub(super) fn path(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<(
 }
 
 fn guess(field: &Field<'_>, robot: &Robot) -> Read<Vec<f64>> {
-    let given = open_joints(field, robot)?;
-    all(robot.own_joints().map(|joint| given.get(joint.name).map_or(Ok(0.0), |field| field.number(joint.unit()))))
+    let given = ByJoint::open(field, robot, Parts::Coordinates)?;
+    let unit = |joint: &OwnJoint<'_>| joint.units().map_or("", |units| units.coordinate);
+    all(robot.own_joints().map(|joint| given.get(&joint).map_or(Ok(0.0), |field| field.number(unit(&joint)))))
 }

@@ -1,6 +1,6 @@
 //! Joints whose motion no equation tells: the mass matrix is singular along them.
 
-use crate::robot::Robot;
+use crate::robot::{OwnJoint, Robot};
 use springpot::dynamics::{Kinematics, crba};
 
 /// Below this share of its own inertia, what a joint moves that others do not is what rounded angles leave (1.5708 for a right one); a chain of 1000
@@ -14,8 +14,8 @@ const NOTHING: f64 = 1e-10;
 pub(super) fn joints(
     robot: &Robot,
     start: Option<&[f64]>,
-    is_led: impl Fn(&str) -> bool,
-    is_idle: impl Fn(&str) -> bool,
+    is_led: impl Fn(&OwnJoint<'_>) -> bool,
+    is_idle: impl Fn(&OwnJoint<'_>) -> bool,
 ) -> Vec<usize> {
     let model = robot.model();
     let neutral = model.neutral();
@@ -26,11 +26,11 @@ pub(super) fn joints(
     for (j, joint) in model.own_joints().zip(robot.own_joints()).collect::<Vec<_>>().into_iter().rev() {
         for k in model.v_range(j).rev() {
             let pivot = mass[k * n + k];
-            if is_led(joint.name) {
+            if is_led(&joint) {
                 continue;
             }
             if pivot.abs() <= NOTHING * diagonal[k] {
-                if joint.kind.nv() == 1 && is_idle(joint.name) {
+                if joint.units().is_some() && is_idle(&joint) {
                     still.push(j);
                 }
                 continue;

@@ -1,6 +1,6 @@
 //! Every joint moves as signals say.
 
-use super::joints::{coordinate, open_joints, path_of_joint, posed};
+use super::joints::{ByJoint, Parts, attitude, coordinate, path_of_joint, posed};
 use super::{Made, ready};
 use crate::path;
 use crate::plan::SignalPlan;
@@ -9,11 +9,11 @@ use crate::refusal::RefusalKind;
 use crate::robot::{OwnJoint, Robot};
 use crate::signals;
 use serde_json::{Map, Value};
-use springpot::model::JointKind;
+use springpot::model::Space;
 use springpot::motion::{JointPath, Trajectory};
 use std::collections::HashSet;
 
-/// What follows the name of a floating joint in the columns of a motion.
+/// What follows the name of a floating joint in the columns of a motion; the last three that of a spherical one.
 const POSE_COLUMNS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 
 /// Reads what belongs to the kind "prescribed".
@@ -21,10 +21,12 @@ pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<M
     let joints: Vec<OwnJoint<'_>> = robot.own_joints().collect();
     let paths = match (table.get("joints"), table.get("csv")) {
         (Some(field), None) => {
-            let given = open_joints(&field, robot)?;
-            let missing = joints.iter().map(|joint| joint.name).filter(|name| given.get(name).is_none());
-            refuse_missing(&given, &missing.collect::<Vec<_>>(), "joints", &field)?;
-            all(joints.iter().map(|joint| path_of_joint(&given.get(joint.name).ok_or(Refused)?, joint, end)))?
+            let given = ByJoint::open(&field, robot, Parts::Coordinates)?;
+            let mut missing: Vec<&OwnJoint<'_>> = joints.iter().filter(|joint| !given.names(joint)).collect();
+            missing.dedup_by_key(|joint| joint.joint);
+            let untold = missing.iter().filter(|joint| !given.suspects(joint)).map(|joint| joint.joint).collect();
+            refuse_missing(untold, !missing.is_empty(), "joints", &field)?;
+            all(joints.iter().map(|joint| path_of_joint(given.get(joint), given.place(), joint, end)))?
         }
         (None, Some(csv)) => from_csv(table, &csv, (robot, &joints), end)?,
         (Some(_), Some(csv)) => {
@@ -32,8 +34,12 @@ pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<M
             return Err(csv.refuse(RefusalKind::Rule, "stands beside `joints`", Some(help)));
         }
         (None, None) => {
-            let all: Vec<String> =
-                joints.iter().map(|joint| format!("{} = …", path::toml_key(joint.name))).take(12).collect();
+            let all: Vec<String> = robot
+                .joints_as_described()
+                .iter()
+                .map(|joint| format!("{} = …", path::toml_key(joint)))
+                .take(12)
+                .collect();
             let right = format!("joints = {{ {} }} or csv = \"motion.csv\"", all.join(", "));
             return Err(table.missing("joints", &right));
         }
@@ -43,11 +49,10 @@ pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<M
     Ok(ready([("joints", records.into())], Trajectory::Prescribed(paths)))
 }
 
-/// Refuses what is missing, all in one message.
-fn refuse_missing(given: &Table<'_>, missing: &[&str], what: &str, field: &Field<'_>) -> Read<()> {
-    let untold: Vec<&str> = missing.iter().copied().filter(|name| !given.suspects(name)).collect();
+/// Refuses what is missing, all in one message; where something `is_missing`, but nothing untold, the refusal is noted already.
+fn refuse_missing(untold: Vec<&str>, is_missing: bool, what: &str, field: &Field<'_>) -> Read<()> {
     if untold.is_empty() {
-        return if missing.is_empty() { Ok(()) } else { Err(Refused) };
+        return if is_missing { Err(Refused) } else { Ok(()) };
     }
     let message = format!("leaves out the {what} {}", all_names(&untold));
     let help = "every moving joint needs a signal: a number, a quantity, an expression of t or a CSV column".to_owned();
@@ -59,7 +64,8 @@ fn all_names(names: &[&str]) -> String {
     names.join(", ")
 }
 
-/// Motion from a CSV file: per joint a column of its name; of a floating one six, `NAME.x` to `NAME.yaw`.
+/// Motion from a CSV file: per coordinate a column of its name; of a floating joint six, `NAME.x` to `NAME.yaw`, of a spherical one
+/// the last three.
 fn from_csv(
     table: &Table<'_>,
     csv: &Field<'_>,
@@ -70,23 +76,28 @@ fn from_csv(
     let columns: Vec<Vec<String>> = joints.iter().map(columns_of).collect();
     let headers: HashSet<&str> = samples.table.headers().iter().map(String::as_str).collect();
     let missing = columns.iter().flatten().map(String::as_str).filter(|column| !headers.contains(column));
-    refuse_missing(table, &missing.collect::<Vec<_>>(), "columns", csv)?;
+    let missing: Vec<&str> = missing.collect();
+    let untold = missing.iter().copied().filter(|name| !table.suspects(name)).collect();
+    refuse_missing(untold, !missing.is_empty(), "columns", csv)?;
     let unit_field = table.get("unit");
     let by_joint = unit_field
         .as_ref()
         .filter(|field| field.node.entries().is_some())
-        .map(|field| open_joints(field, robot))
+        .map(|field| ByJoint::open(field, robot, Parts::Coordinates))
         .transpose()?;
     let unit_of = |joint: &OwnJoint<'_>| match &by_joint {
-        Some(table) => table.fields().find(|field| field.key == joint.name),
+        Some(table) => robot.own_joints().find(|own| own.name == joint.name).and_then(|own| table.get(&own)),
         None => table.get("unit"),
     };
     let column = |name: &String, joint: &OwnJoint<'_>| -> Read<SignalPlan> {
         let signal = signals::samples_signal(csv, &samples, name, true)?;
-        let signal = match (unit_of(joint), joint.kind == JointKind::Floating) {
-            (Some(unit), false) => signals::in_unit(&unit, signal, joint.unit())?,
-            (Some(unit), true) => {
-                let message = "stands for a floating joint, whose columns are in m and rad";
+        let signal = match (unit_of(joint), joint.units()) {
+            (Some(unit), Some(units)) => signals::in_unit(&unit, signal, units.coordinate)?,
+            (Some(unit), None) => {
+                let message = match joint.space.quaternion() {
+                    Some(0) => "stands for a spherical joint, whose columns are in rad",
+                    _ => "stands for a floating joint, whose columns are in m and rad",
+                };
                 let help = "write unit = { NAME = \"…\" } for the other joints".to_owned();
                 return Err(unit.refuse(RefusalKind::Rule, message, Some(help)));
             }
@@ -102,14 +113,20 @@ fn from_csv(
             let rpy = [column(roll)?, column(pitch)?, column(yaw)?];
             Ok(posed(position, rpy))
         }
+        [roll, pitch, yaw] => {
+            let column = |name| column(name, joint);
+            Ok(attitude([column(roll)?, column(pitch)?, column(yaw)?]))
+        }
         names => column(&names[0], joint).map(coordinate),
     }))
 }
 
 /// Columns of a CSV file that say how a joint moves.
 fn columns_of(joint: &OwnJoint<'_>) -> Vec<String> {
-    match joint.kind {
-        JointKind::Floating => POSE_COLUMNS.map(|part| format!("{}.{part}", joint.name)).to_vec(),
-        _ => vec![joint.name.to_owned()],
-    }
+    let parts = match joint.space {
+        Space::Line(_) | Space::Circle => return vec![joint.name.to_owned()],
+        Space::Attitude => &POSE_COLUMNS[3..],
+        Space::Pose => &POSE_COLUMNS[..],
+    };
+    parts.iter().map(|part| format!("{}.{part}", joint.name)).collect()
 }

@@ -3,7 +3,6 @@
 use super::super::figures::FIGURE;
 use super::super::keys::{
     BETWEEN, BUSHING, COMPONENT, ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ON_JOINT, ROBOT, SHIFT, SIGNAL, TIME,
-    keys_of,
 };
 use super::super::material::TABLE;
 use super::super::motion::MOTION;
@@ -104,14 +103,14 @@ fn of_robot() -> Value {
     json!({ "dependencies": needs, "not": { "required": alternatives(&ROBOT) } })
 }
 
-/// The kinds of joint by what `only` calls them.
+/// The kinds of joint that take the same keys, by the first of them.
 pub(super) fn joints() -> Vec<(&'static str, Vec<&'static str>)> {
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
-    for kind in JointKind::ALL {
-        let of = keys_of(kind);
-        match groups.iter_mut().find(|(group, _)| *group == of) {
-            Some((_, kinds)) => kinds.push(kind.name()),
-            None => groups.push((of, vec![kind.name()])),
+    for kind in JointKind::ALL.map(JointKind::name) {
+        let of = JOINT.names_for(kind);
+        match groups.iter_mut().find(|(group, _)| JOINT.names_for(group) == of) {
+            Some((_, kinds)) => kinds.push(kind),
+            None => groups.push((kind, vec![kind])),
         }
     }
     groups

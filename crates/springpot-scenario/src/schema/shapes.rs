@@ -4,6 +4,7 @@ use super::super::keys::{Bound, COMPONENT, Each, FORCES, Key, Keys, Need, POSE, 
 use serde_json::{Map, Value, json};
 use springpot::fractional::scheme::Scheme;
 use springpot::law::Catalog;
+use springpot::model::JointKind;
 
 /// A table with its keys and no others.
 pub(super) fn object(description: &str, keys: &Keys, catalog: &Catalog) -> Value {
@@ -52,6 +53,10 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             json!({ "description": words, "anyOf": [number, { "const": word }] })
         }
         Shape::JointNumber(units, bound) => joint_number(units, bound, &words),
+        Shape::JointNumbers(units, bound) => {
+            let number = joint_number(units, bound, "A number.");
+            json!({ "description": words, "anyOf": [number, by_part(&number)] })
+        }
         Shape::JointNumberOrWord(units, bound, word) => {
             let number = joint_number(units, bound, "A number.");
             json!({ "description": words, "anyOf": [number, { "const": word }] })
@@ -59,7 +64,9 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
         Shape::JointNumberOr(units, bound, keys) => {
             let force = keys.keys.first().map_or(words.as_str(), |key| key.words);
             let table = object(keys.words, keys, catalog);
-            json!({ "description": words, "anyOf": [joint_number(units, bound, force), table] })
+            let number = joint_number(units, bound, force);
+            let each = by_part(&json!({ "anyOf": [number, table] }));
+            json!({ "description": words, "anyOf": [number, table, each] })
         }
         Shape::Whole(low, high) => {
             let or_scalar = json!([{ "anyOf": [{ "type": "integer" }, { "$ref": "#/definitions/scalar" }] }]);
@@ -119,18 +126,18 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             let each = match each {
                 Each::Path => json!({ "$ref": "#/definitions/path" }),
                 Each::Force => json!({ "$ref": "#/definitions/force" }),
-                Each::Number => json!({ "$ref": "#/definitions/quantity" }),
-                Each::Coordinate => joint_number(["rad", "m"], Bound::Any, "Coordinate."),
+                Each::Number => or_by_part(&json!({ "$ref": "#/definitions/quantity" })),
+                Each::Coordinate => or_by_part(&joint_number(["rad", "m"], Bound::Any, "Coordinate.")),
                 Each::NumberOr(keys) => {
                     let number = json!({ "$ref": "#/definitions/quantity" });
-                    json!({ "anyOf": [number, object(keys.words, keys, catalog)] })
+                    json!({ "anyOf": [number, object(keys.words, keys, catalog), by_part(&number)] })
                 }
             };
             json!({ "type": "object", "additionalProperties": each, "description": words })
         }
         Shape::ByJointOrNumber => {
             let number = json!({ "$ref": "#/definitions/quantity" });
-            let table = json!({ "type": "object", "additionalProperties": number });
+            let table = json!({ "type": "object", "additionalProperties": or_by_part(&number) });
             json!({ "description": words, "anyOf": [number, table] })
         }
         Shape::TableWithJoints(keys) => {
@@ -172,7 +179,8 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
 pub(super) fn definitions(catalog: &Catalog) -> Value {
     let or_table = |keys: &Keys| {
         let table = object(keys.words, keys, catalog);
-        json!({ "anyOf": [{ "$ref": "#/definitions/signal" }, table] })
+        let signal = json!({ "$ref": "#/definitions/signal" });
+        json!({ "anyOf": [signal, table, by_part(&signal)] })
     };
     let table = object(SIGNAL.words, &SIGNAL, catalog);
     json!({
@@ -185,6 +193,20 @@ pub(super) fn definitions(catalog: &Catalog) -> Value {
         "path": or_table(&POSE),
         "force": or_table(&FORCES),
     })
+}
+
+/// One for each coordinate of a joint of several.
+fn by_part(each: &Value) -> Value {
+    let numbers = JointKind::ALL.into_iter().flat_map(JointKind::numbers).map(|(name, _)| name);
+    let rates = JointKind::ALL.into_iter().flat_map(JointKind::rates);
+    let mut names: Vec<&str> = numbers.chain(rates).filter(|name| !name.is_empty()).collect();
+    names.sort_unstable();
+    names.dedup();
+    json!({ "type": "object", "additionalProperties": each, "propertyNames": { "enum": names } })
+}
+
+fn or_by_part(each: &Value) -> Value {
+    json!({ "anyOf": [each, by_part(each)] })
 }
 
 fn scheme() -> Value {

@@ -34,7 +34,7 @@ output_step = 0.1
 #[test]
 fn continuous_and_floating_joints_are_planned() {
     let plan = cases(BOAT).unwrap().plan(0).unwrap();
-    assert_eq!([0, 1].map(|j| plan.model.joint_kind(j)), [JointKind::Floating, JointKind::Continuous]);
+    assert_eq!([0, 1].map(|j| plan.model.described_joint(j).kind), [JointKind::Floating, JointKind::Continuous]);
     assert_eq!((plan.model.damping()[1], plan.model.friction()[1]), (0.1, 0.2));
     let pose = pose(&plan);
     assert_eq!(pose.position.each_ref().map(|signal| signal.value(0.5)), [1.0, 0.0, 0.1]);
@@ -130,9 +130,9 @@ fn joints_are_refused_where_they_are_wrong() {
             ),
             (&[(axle, "kind = ‸\"continous\", axis = [0, 2, 0]")], UnknownName, "did you mean `continuous`?"),
             (
-                &[(sea, "kind = ‸\"planar\", origin")],
+                &[(sea, "kind = ‸\"gimbal\", origin")],
                 UnknownName,
-                "there is fixed, revolute, continuous, prismatic and floating",
+                "there is fixed, revolute, continuous, prismatic, helical, cylindrical, universal, planar, spherical and floating",
             ),
             (&[("0.1 N*m*s/rad", "0.1 ‸N*s/m")], BadQuantity, "this place takes `N*m*s/rad`"),
             (

@@ -38,7 +38,7 @@ fn the_example_is_planned_whole() {
     assert_eq!(forearm.joint.axis, [0.0, 1.0, 0.0]);
     assert_eq!(forearm.joint.origin, [0.5, 0.0, 0.0]);
     assert_eq!(forearm.joint.rpy, [0.0; 3]);
-    assert_eq!((forearm.joint.damping, forearm.joint.friction), (0.0, 0.0));
+    assert_eq!((forearm.joint.damping[0], forearm.joint.friction[0]), (0.0, 0.0));
     assert_eq!(forearm.mass, 2.0);
     assert_eq!(forearm.com, [0.18, -0.01, 0.01]);
     assert_eq!(forearm.inertia, [[0.006, 0.0, -0.001], [0.0, 0.03, 0.0004], [-0.001, 0.0004, 0.03]]);
@@ -164,8 +164,8 @@ fn joints_take_quantities_of_their_kind() {
     );
     let plan = cases(&text).unwrap().plan(0).unwrap();
     assert_eq!(plan.bodies[0].joint.kind, JointKind::Prismatic);
-    assert_eq!((plan.bodies[0].joint.damping, plan.bodies[0].joint.friction), (2.0, 3.0));
-    assert_eq!((plan.bodies[1].joint.damping, plan.bodies[1].joint.friction), (0.1, 0.2));
+    assert_eq!((plan.bodies[0].joint.damping[0], plan.bodies[0].joint.friction[0]), (2.0, 3.0));
+    assert_eq!((plan.bodies[1].joint.damping[0], plan.bodies[1].joint.friction[0]), (0.1, 0.2));
     assert_eq!(plan.bodies[0].joint.rpy[2], std::f64::consts::PI);
     let joints = coordinates(&plan);
     assert_eq!(joints[0].is_constant(), Some(0.05));

@@ -93,7 +93,7 @@ fn what_the_file_leaves_out_can_be_swept() {
     let cases = grid("[[sweep]]\nparameter = \"solver.max_step\"\nvalues = [1, \"1 ms\"]");
     assert_eq!(cases.plan(1).unwrap().settings.max_step, Some(0.001));
     let cases = grid("[[sweep]]\nparameter = \"robot.body.forearm.joint.damping\"\nvalues = [0, 1]");
-    assert_eq!(cases.plan(1).unwrap().bodies[2].joint.damping, 1.0);
+    assert_eq!(cases.plan(1).unwrap().bodies[2].joint.damping[0], 1.0);
     let cases = grid("[[sweep]]\nparameter = \"element.strut.from.point\"\nvalues = [[0, 0, 0], [1, 0, 0]]");
     let plan = cases.plan(1).unwrap();
     let ShapePlan::Points(points) = &plan.elements[0].shape else { panic!("between points") };

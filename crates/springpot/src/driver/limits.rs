@@ -196,7 +196,7 @@ fn position(observables: &Observables, quantity: Quantity) -> usize {
 
 fn of_joint(model: &Model, observables: &Observables, joint: usize) -> Vec<Watched> {
     let (q, v) = (model.q_range(joint).start, model.v_range(joint).start);
-    let Some(dimension) = model.joint_kind(joint).dimension() else { return Vec::new() };
+    let Some(dimension) = model.joint_space(joint).dimension() else { return Vec::new() };
     let units = dimension.units();
     let followed = model.followed(joint);
     let (ratio, offset) = followed.map_or((1.0, 0.0), |(_, ratio, offset)| (ratio, offset));

@@ -54,7 +54,7 @@ pub fn aba_into<T: Scalar>(
         for k in own.clone().rev() {
             let unit = joint::unit_motion(&degrees[k], link, Vec3::ZERO);
             let u = joint::load(&degrees[k], &inertia, unit);
-            (column[k], inverse_pivot[k]) = (u, T::ONE / unit.dot(u));
+            (column[k], inverse_pivot[k]) = (u, T::ONE / (unit.dot(u) + T::from_f64(model.rotors()[k])));
             effort[k] = tau[k] - unit.dot(load);
             if k > own.start || model.parent_link(j) > 0 {
                 inertia = inertia.minus_outer(u, inverse_pivot[k]);

@@ -10,7 +10,7 @@ use crate::spatial::{Inertia, Scalar, Vec3};
 ///
 /// `mass` is nv × nv, row-major, symmetric (both triangles are written), kg·m², kg·m or kg; needs positions. With b beyond
 /// a, column b is the momentum of all that joint b carries when it moves at unit speed, and a_ab is what joint a feels of it;
-/// joints on different branches do not couple.
+/// joints on different branches do not couple. Rotors stand on the diagonal.
 pub fn crba_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace: &mut Workspace<T>, mass: &mut [T]) {
     let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(mass.len(), n * n, "the mass matrix is nv x nv");
@@ -29,6 +29,9 @@ pub fn crba_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace
             mass[row * n + column] += entry;
             mass[column * n + row] += entry;
         }
+    }
+    for (k, &rotor) in model.rotors().iter().enumerate() {
+        mass[k * n + k] += T::from_f64(rotor);
     }
 }
 

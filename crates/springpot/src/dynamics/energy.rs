@@ -4,7 +4,7 @@ use super::kinematics::Kinematics;
 use crate::model::Model;
 use crate::spatial::{Inertia, Motion, Scalar, Vec3};
 
-/// Kinetic energy T = ½ vᵀ M v, J; needs velocities. Does not allocate.
+/// Kinetic energy T = ½ vᵀ M v, J, that of rotors included; needs velocities. Does not allocate.
 pub fn kinetic_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T {
     let mut twice = T::ZERO;
     for j in 0..model.joint_count() {
@@ -12,6 +12,9 @@ pub fn kinetic_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T
         let Motion { angular, linear } = kinematics.link_velocity(j + 1);
         let velocity = Motion { angular: rotation.unrotate(angular), linear: rotation.unrotate(linear) };
         twice += velocity.dot(Inertia::from_f64(model.link_inertia(j)) * velocity);
+    }
+    for (&v, &rotor) in kinematics.joint_velocities().iter().zip(model.rotors()) {
+        twice += v * v * T::from_f64(rotor);
     }
     twice * T::from_f64(0.5)
 }

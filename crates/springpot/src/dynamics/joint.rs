@@ -2,13 +2,15 @@
 //! whose functions bear the names of those here.
 
 mod floating;
+mod helical;
 mod prismatic;
 mod revolute;
+mod spherical;
 
 use crate::model::{Axis, Degree, DegreeMotion, JointMotion, Model};
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scalar, Vec3};
 
-/// Where the joints stand: coordinate, sine and cosine of each; without meaning for a floating joint.
+/// Where the joints stand: coordinate, sine and cosine of each; without meaning for a spherical or floating joint.
 #[derive(Debug, Clone)]
 pub(super) struct Stands<T> {
     coordinates: Vec<T>,
@@ -45,6 +47,10 @@ impl<T: Scalar> Stands<T> {
         match model.motion(j) {
             JointMotion::Revolute => revolute::placement(at_zero, self.sines[j], self.cosines[j]),
             JointMotion::Prismatic => prismatic::placement(at_zero, self.coordinates[j]),
+            JointMotion::Helical(pitch) => {
+                helical::placement(at_zero, pitch, [self.coordinates[j], self.sines[j], self.cosines[j]])
+            }
+            JointMotion::Spherical => spherical::placement(model, j, q),
             JointMotion::Floating => floating::placement(model, j, q),
         }
     }
@@ -57,10 +63,11 @@ fn speed<T: Scalar>(model: &Model, j: usize, v: &[T]) -> T {
     v[own.v] * T::from_f64(own.ratio)
 }
 
-/// The velocity (or acceleration) of a floating joint, in the axes of its link.
+/// The velocity (or acceleration) of a spherical or floating joint, in the axes of its link.
 #[inline]
 fn twist<T: Scalar>(model: &Model, j: usize, v: &[T]) -> Motion<T> {
-    floating::twist(&v[model.coordinates(j).v..])
+    let own = &v[model.coordinates(j).v..];
+    if model.motion(j) == JointMotion::Spherical { spherical::twist(own) } else { floating::twist(own) }
 }
 
 /// The velocity of `link`, which joint `j` moves with `v` (nv), where its parent carries its origin along with `carried`.
@@ -76,7 +83,10 @@ pub(super) fn velocity<T: Scalar>(
     match model.motion(j) {
         JointMotion::Revolute => revolute::velocity(carried, axis(), speed(model, j, v)),
         JointMotion::Prismatic => prismatic::velocity(carried, axis(), speed(model, j, v)),
-        JointMotion::Floating => floating::velocity(carried, &link.rotation, twist(model, j, v)),
+        JointMotion::Helical(pitch) => helical::velocity(carried, axis(), pitch, speed(model, j, v)),
+        JointMotion::Spherical | JointMotion::Floating => {
+            floating::velocity(carried, &link.rotation, twist(model, j, v))
+        }
     }
 }
 
@@ -95,7 +105,8 @@ pub(super) fn acceleration<T: Scalar>(
     match model.motion(j) {
         JointMotion::Revolute => revolute::acceleration(carried, omega, axis(), speeds()),
         JointMotion::Prismatic => prismatic::acceleration(carried, omega, axis(), speeds()),
-        JointMotion::Floating => {
+        JointMotion::Helical(pitch) => helical::acceleration(carried, omega, axis(), pitch, speeds()),
+        JointMotion::Spherical | JointMotion::Floating => {
             let twists = [twist(model, j, v), twist(model, j, a)];
             floating::acceleration(carried, omega, &link.rotation, twists)
         }
@@ -122,20 +133,26 @@ pub(super) fn advance<T: Scalar>(
             let push = a.map_or(T::ZERO, |a| speed(model, j, a));
             prismatic::advance(velocity, acceleration, speed(model, j, v), push);
         }
-        JointMotion::Floating => {
+        JointMotion::Helical(pitch) => {
+            let push = a.map_or(T::ZERO, |a| speed(model, j, a));
+            helical::advance(velocity, acceleration, pitch, [speed(model, j, v), push]);
+        }
+        JointMotion::Spherical | JointMotion::Floating => {
             let push = a.map_or(Motion::ZERO, |a| twist(model, j, a));
             floating::advance(velocity, acceleration, twist(model, j, v), push);
         }
     }
 }
 
-/// Adds Sᵀ f to `tau` (nv), 0 until then where the joint floats: what joint `j` feels of a force on its link, in the link's axes.
+/// Adds Sᵀ f to `tau` (nv), 0 until then where the joint has several degrees: what joint `j` feels of a force on its link, in the link's axes.
 #[inline]
 pub(super) fn add_effort<T: Scalar>(model: &Model, j: usize, force: Force<T>, tau: &mut [T]) {
     let own = model.coordinates(j);
     match model.motion(j) {
         JointMotion::Revolute => tau[own.v] += revolute::effort(force) * T::from_f64(own.ratio),
         JointMotion::Prismatic => tau[own.v] += prismatic::effort(force) * T::from_f64(own.ratio),
+        JointMotion::Helical(pitch) => tau[own.v] += helical::effort(force, pitch) * T::from_f64(own.ratio),
+        JointMotion::Spherical => spherical::write_effort(force, &mut tau[own.v..]),
         JointMotion::Floating => floating::write_effort(force, &mut tau[own.v..]),
     }
 }
@@ -147,7 +164,8 @@ pub(super) fn bias<T: Scalar>(model: &Model, j: usize, link: &Placement<T>, velo
     match model.motion(j) {
         JointMotion::Revolute => revolute::bias(velocity, own()),
         JointMotion::Prismatic => prismatic::bias(velocity, own()),
-        JointMotion::Floating => floating::bias(velocity, &link.rotation, twist(model, j, v)),
+        JointMotion::Helical(pitch) => helical::bias(velocity, own(), pitch),
+        JointMotion::Spherical | JointMotion::Floating => floating::bias(velocity, &link.rotation, twist(model, j, v)),
     }
 }
 
@@ -169,6 +187,7 @@ pub(super) fn unit_motion<T: Scalar>(degree: &Degree, link: &Placement<T>, arm: 
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::unit_motion(axis, arm),
         DegreeMotion::Shift(_) => prismatic::unit_motion(axis),
+        DegreeMotion::Screw(pitch) => helical::unit_motion(axis, arm, pitch),
     }
 }
 
@@ -178,6 +197,7 @@ pub(super) fn load<T: Scalar>(degree: &Degree, inertia: &ArticulatedInertia<T>, 
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::load(inertia, unit),
         DegreeMotion::Shift(_) => prismatic::load(inertia, unit),
+        DegreeMotion::Screw(_) => helical::load(inertia, unit),
     }
 }
 
@@ -187,6 +207,7 @@ pub(super) fn momentum<T: Scalar>(degree: &Degree, inertia: &Inertia<T>, unit: M
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::momentum(inertia, unit),
         DegreeMotion::Shift(_) => prismatic::momentum(inertia, unit),
+        DegreeMotion::Screw(_) => helical::momentum(inertia, unit),
     }
 }
 
@@ -197,6 +218,7 @@ pub(super) fn felt<T: Scalar>(degree: &Degree, link: &Placement<T>, momentum: Fo
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::felt(unit, point - link.translation, momentum),
         DegreeMotion::Shift(_) => prismatic::felt(unit, momentum),
+        DegreeMotion::Screw(_) => helical::felt(unit, point - link.translation, momentum),
     }
 }
 
@@ -207,6 +229,7 @@ pub(super) fn point_column<T: Scalar>(degree: &Degree, link: &Placement<T>, poin
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::point_column(axis, point - link.translation),
         DegreeMotion::Shift(_) => axis,
+        DegreeMotion::Screw(pitch) => helical::point_column(axis, point - link.translation, pitch),
     }
 }
 
@@ -227,6 +250,10 @@ pub(super) fn point_column_rate<T: Scalar>(
             revolute::point_column_rate(axis, rate, point - link.translation, velocity - motion.linear)
         }
         DegreeMotion::Shift(_) => rate,
+        DegreeMotion::Screw(pitch) => {
+            let arms = [point - link.translation, velocity - motion.linear];
+            helical::point_column_rate([axis, rate], arms, pitch)
+        }
     }
 }
 
@@ -234,7 +261,7 @@ pub(super) fn point_column_rate<T: Scalar>(
 #[inline]
 pub(super) fn angular_column<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
     match degree.motion {
-        DegreeMotion::Turn(_) => axis(degree, link),
+        DegreeMotion::Turn(_) | DegreeMotion::Screw(_) => axis(degree, link),
         DegreeMotion::Shift(_) => Vec3::ZERO,
     }
 }
@@ -251,6 +278,9 @@ pub(super) fn first_moment_column<T: Scalar>(
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::point_column(axis, first),
         DegreeMotion::Shift(_) => axis * T::from_f64(model.subtree_mass(degree.link - 1)),
+        DegreeMotion::Screw(pitch) => {
+            axis.times_plus(T::from_f64(pitch * model.subtree_mass(degree.link - 1)), axis.cross(first))
+        }
     }
 }
 

@@ -10,6 +10,7 @@ enum Ends {
     Plain,
     Floating,
     Following,
+    Screw,
 }
 
 fn model(ends: Ends) -> Model {
@@ -19,6 +20,8 @@ fn model(ends: Ends) -> Model {
         let mut joint = kind(format!("q{k}"), [0.3, k as f64, 1.0], [0.2, 0.1, 0.4]);
         match ends {
             Ends::Floating if k == 0 => joint = JointSpec::floating("q0", joint.origin),
+            Ends::Screw if k == 0 => joint = JointSpec::spherical("q0", joint.origin),
+            Ends::Screw if k == 4 => joint = JointSpec::helical("q4", joint.axis, 0.3, joint.origin),
             Ends::Following if k == 4 => {
                 joint.mimic = Some(Mimic { joint: "q2".into(), multiplier: 0.7, offset: -0.2 });
             }
@@ -89,7 +92,7 @@ fn everything<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T]) -> Vec<T> {
 
 #[test]
 fn lanes_do_not_meet() {
-    for ends in [Ends::Plain, Ends::Floating, Ends::Following] {
+    for ends in [Ends::Plain, Ends::Floating, Ends::Following, Ends::Screw] {
         let model = model(ends);
         let single = |seed: f64| -> [Vec<f64>; 3] {
             let numbers = |n: usize, seed: f64| (0..n).map(|j| (seed + 1.3 * j as f64).sin()).collect();

@@ -102,6 +102,11 @@ fn inverse_dynamics<T: Scalar>(
         let on_parent = ws.local[j].force_to_parent(force);
         ws.force[model.parent_link(j)] += on_parent;
     }
+    if let Some(a) = a {
+        for ((tau, &a), &rotor) in tau.iter_mut().zip(a).zip(model.rotors()) {
+            *tau = a.times_plus(T::from_f64(rotor), *tau);
+        }
+    }
 }
 
 /// [`rnea_into`], allocating.

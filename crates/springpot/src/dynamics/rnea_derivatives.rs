@@ -103,6 +103,9 @@ pub fn rnea_derivatives_into<T: Scalar>(
             ws.force[parent] += load;
         }
     }
+    for (k, &rotor) in model.rotors().iter().enumerate() {
+        d_a[k * n + k] += T::from_f64(rotor);
+    }
     for pair in pairs {
         add_pair_stiffness(model, kinematics, pair, workspace, d_q, d_v);
     }

@@ -192,8 +192,8 @@ mod tests {
     fn slider() -> Friction {
         let mut builder = ModelBuilder::new([0.0; 3]);
         let joint = JointSpec {
-            friction: 2.0,
-            friction_law: FrictionLaw::Sticking,
+            friction: [2.0; 3],
+            friction_law: [FrictionLaw::Sticking; 3],
             ..JointSpec::prismatic("q", [1.0, 0.0, 0.0], [0.0; 3])
         };
         let (name, parent) = ("b".to_owned(), Parent::World);

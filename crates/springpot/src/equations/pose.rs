@@ -140,6 +140,11 @@ impl Pose<'_> {
         self.model.resolve(anchor).map_or([0.0; 3], |site| self.kinematics.position(&site).0)
     }
 
+    /// World components of what moving joint `joint` turns about or shifts along.
+    pub fn joint_axis(&self, joint: usize) -> [f64; 3] {
+        self.kinematics.link(joint + 1).rotation.z_axis().0
+    }
+
     /// World components of a direction given in a body's axes.
     pub fn direction(&self, body: Parent, direction: [f64; 3]) -> [f64; 3] {
         self.model.frame(body).map_or(direction, |frame| (self.kinematics.frame(&frame).rotation * Vec3(direction)).0)

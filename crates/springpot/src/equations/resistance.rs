@@ -27,7 +27,7 @@ impl Resisting {
 fn resisting<'a>(model: &'a Model, v: &'a [f64]) -> impl Iterator<Item = Resisting> + 'a {
     (0..model.joint_count()).filter_map(move |j| {
         let (damping, friction) = (model.damping()[j], model.friction()[j]);
-        if model.joint_kind(j).nv() != 1 || (damping == 0.0 && friction == 0.0) {
+        if damping == 0.0 && friction == 0.0 {
             return None;
         }
         let (index, ratio) = (model.v_range(j).start, model.followed(j).map_or(1.0, |(_, ratio, _)| ratio));

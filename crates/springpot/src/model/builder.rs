@@ -1,13 +1,14 @@
 //! From a described robot to a [`Model`].
 
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use std::f64::consts::TAU;
 
 use super::degree::JointMotion;
 use super::error::{Field, ModelError};
 use super::frame::Frame;
-use super::robot::Model;
-use super::spec::{BodySpec, JointSpec, Mimic, Parent};
+use super::kind::Move;
+use super::robot::{DescribedJoint, Model};
+use super::spec::{BodySpec, JointPart, JointSpec, Mimic, Parent};
 use super::validate::Rules;
 use super::{mass_check, numbering, validate};
 use crate::spatial::{Inertia, Placement, Rotation, Symmetric3, Vec3};
@@ -73,13 +74,14 @@ impl ModelBuilder {
         if let Some(&first) = self.model.body_lookup.get(&spec.name) {
             return Err(ModelError::DuplicateName { body, field: Field::Name, name: spec.name, first });
         }
-        match self.joint_lookup.entry(spec.joint.name.clone()) {
-            Entry::Occupied(entry) => {
-                let (name, first) = (spec.joint.name, *entry.get());
-                return Err(ModelError::DuplicateName { body, field: Field::JointName, name, first });
-            }
-            Entry::Vacant(entry) => entry.insert(body),
-        };
+        let coordinates = spec.joint.kind.numbers().filter(|(part, _)| !part.is_empty());
+        let names: Vec<String> = coordinates.map(|(part, _)| format!("{}.{part}", spec.joint.name)).collect();
+        let names: Vec<String> = names.into_iter().chain([spec.joint.name.clone()]).collect();
+        if let Some((name, &first)) = names.iter().find_map(|name| self.joint_lookup.get_key_value(name)) {
+            let name = name.clone();
+            return Err(ModelError::DuplicateName { body, field: Field::JointName, name, first });
+        }
+        self.joint_lookup.extend(names.into_iter().map(|name| (name, body)));
 
         let parent = match spec.parent {
             Parent::World => Frame::WORLD,
@@ -88,13 +90,7 @@ impl ModelBuilder {
         let joint = spec.joint;
         let offset = Placement { rotation: Rotation::from_rpy(joint.rpy), translation: joint.origin.into() };
         let in_parent_link = parent.placement * offset;
-        let frame = match joint.motion() {
-            None => {
-                self.model.fixed_joints.push(joint.name);
-                Frame { link: parent.link, placement: in_parent_link }
-            }
-            Some(motion) => self.add_link(parent.link, in_parent_link, motion, joint, body),
-        };
+        let frame = self.add_joint(parent.link, in_parent_link, joint, body);
         let model = &mut self.model;
         // What is fixed to the world has no part in the dynamics.
         if frame.link > 0 {
@@ -108,29 +104,55 @@ impl ModelBuilder {
         Ok(body)
     }
 
-    /// Appends a moving joint and returns the frame of its body.
-    fn add_link(
-        &mut self,
-        parent_link: usize,
-        in_parent_link: Placement,
-        motion: JointMotion,
-        joint: JointSpec,
-        body: usize,
-    ) -> Frame {
-        let to_z = if joint.kind.has_axis() { Rotation::with_z_axis(unit(joint.axis)) } else { Rotation::IDENTITY };
+    /// Appends the joints that a described joint is, each with its link, and returns the frame of its body.
+    fn add_joint(&mut self, parent_link: usize, in_parent_link: Placement, joint: JointSpec, body: usize) -> Frame {
+        let parts = joint.parts();
+        let mut frame = Frame { link: parent_link, placement: in_parent_link };
+        let first = self.model.motions.len();
+        for (k, part) in parts.iter().enumerate() {
+            frame = self.add_link(frame, part, k, &joint, body);
+        }
         let model = &mut self.model;
-        model.motions.push(motion);
-        model.kinds.push(joint.kind);
-        model.parents.push(parent_link);
-        model.placements.push(in_parent_link * Placement { rotation: to_z, translation: Vec3::ZERO });
+        if parts.is_empty() {
+            model.fixed_joints.push(joint.name);
+        } else {
+            let joints = first..first + parts.len();
+            model.described.push(DescribedJoint { name: joint.name, kind: joint.kind, joints });
+        }
+        frame
+    }
+
+    /// Appends part `k` of a joint, whose frame stands at `at` where its coordinate is 0, and returns where the frame is in the
+    /// new link.
+    fn add_link(&mut self, at: Frame, part: &JointPart, k: usize, joint: &JointSpec, body: usize) -> Frame {
+        let to_z = match part.moves {
+            Move::Turn | Move::Shift | Move::Screw => Rotation::with_z_axis(Vec3(part.axis)),
+            Move::Ball | Move::Pose => Rotation::IDENTITY,
+        };
+        let model = &mut self.model;
+        model.motions.push(match part.moves {
+            Move::Turn => JointMotion::Revolute,
+            Move::Shift => JointMotion::Prismatic,
+            Move::Screw => JointMotion::Helical(joint.lead / TAU),
+            Move::Ball => JointMotion::Spherical,
+            Move::Pose => JointMotion::Floating,
+        });
+        model.spaces.push(part.space);
+        model.described_as.push(model.described.len());
+        model.parents.push(at.link);
+        model.placements.push(at.placement * Placement { rotation: to_z, translation: Vec3::ZERO });
         model.inertias.push(Inertia::ZERO);
         model.bodies_of_joints.push(body);
-        model.joint_names.push(joint.name);
-        model.damping.push(joint.damping);
-        model.friction.push(joint.friction);
-        model.friction_laws.push(joint.friction_law);
-        model.limits.push(joint.limits);
-        self.mimics.push(joint.mimic);
+        model.joint_names.push(part.name.clone());
+        model.velocity_names.push(part.velocity.clone());
+        // What a joint without numbers for coordinates says of these has no meaning.
+        let is_number = part.space.dimension().is_some();
+        model.damping.push(if is_number { joint.damping[k] } else { 0.0 });
+        model.friction.push(if is_number { joint.friction[k] } else { 0.0 });
+        model.armature.push(if is_number { joint.armature[k] } else { 0.0 });
+        model.friction_laws.push(joint.friction_law[k]);
+        model.limits.push(joint.limits[k]);
+        self.mimics.push(joint.mimic.clone());
         Frame {
             link: model.motions.len(),
             placement: Placement { rotation: to_z.transpose(), translation: Vec3::ZERO },
@@ -160,12 +182,4 @@ impl ModelBuilder {
         model.collect_subtree_masses();
         Ok(model)
     }
-}
-
-/// The direction of a vector that is not zero, safe from overflow and underflow.
-fn unit(axis: [f64; 3]) -> Vec3 {
-    let largest = axis.iter().fold(0.0, |s: f64, x| s.max(x.abs()));
-    let scaled = Vec3(axis.map(|x| x / largest));
-    let norm = scaled.norm();
-    Vec3(scaled.0.map(|x| x / norm))
 }

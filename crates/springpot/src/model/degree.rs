@@ -3,12 +3,16 @@
 use crate::spatial::{Motion, Vec3};
 
 /// What a joint does in the frame of the link that it moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum JointMotion {
     /// Turns about z.
     Revolute,
     /// Shifts along z.
     Prismatic,
+    /// Turns about z and shifts along it by so much, m/rad.
+    Helical(f64),
+    /// Turns about x, y and z.
+    Spherical,
     /// Shifts along, and turns about, x, y and z.
     Floating,
 }
@@ -22,12 +26,14 @@ pub(crate) enum Axis {
 }
 
 /// The motion that one degree of freedom gives to its link, through the origin of the link's frame and fixed in that frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum DegreeMotion {
     /// A turn about the axis.
     Turn(Axis),
     /// A shift along the axis.
     Shift(Axis),
+    /// A turn about z with a shift along it by so much, m/rad.
+    Screw(f64),
 }
 
 impl DegreeMotion {
@@ -36,6 +42,7 @@ impl DegreeMotion {
     pub(crate) const fn axis(self) -> Axis {
         match self {
             Self::Turn(axis) | Self::Shift(axis) => axis,
+            Self::Screw(_) => Axis::Z,
         }
     }
 
@@ -49,6 +56,7 @@ impl DegreeMotion {
         match self {
             Self::Turn(_) => Motion { angular: along, ..Motion::ZERO },
             Self::Shift(_) => Motion { linear: along, ..Motion::ZERO },
+            Self::Screw(pitch) => Motion { angular: along, linear: along * pitch },
         }
     }
 }
@@ -79,10 +87,12 @@ pub(crate) struct Coordinates {
 impl JointMotion {
     /// The degrees of freedom in the order of v.
     pub(crate) fn degrees(self) -> Vec<DegreeMotion> {
-        use DegreeMotion::{Shift, Turn};
+        use DegreeMotion::{Screw, Shift, Turn};
         match self {
             Self::Revolute => vec![Turn(Axis::Z)],
             Self::Prismatic => vec![Shift(Axis::Z)],
+            Self::Helical(pitch) => vec![Screw(pitch)],
+            Self::Spherical => vec![Turn(Axis::X), Turn(Axis::Y), Turn(Axis::Z)],
             Self::Floating => {
                 vec![Shift(Axis::X), Shift(Axis::Y), Shift(Axis::Z), Turn(Axis::X), Turn(Axis::Y), Turn(Axis::Z)]
             }

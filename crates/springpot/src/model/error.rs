@@ -1,6 +1,6 @@
 //! What can be wrong with the description of a robot.
 
-use super::spec::JointKind;
+use super::kind::JointKind;
 use std::fmt;
 
 /// Why a description is not a robot; every message names the place, the value and what would be right.
@@ -78,22 +78,72 @@ pub enum ModelError {
     },
 
     /// The axis has no direction.
-    #[error("the axis of joint \"{joint}\" is [0, 0, 0]; it must point somewhere, as in [0, 0, 1]")]
+    #[error("the {} of joint \"{joint}\" is [0, 0, 0]; it must point somewhere, as in [0, 0, 1]", field.last())]
     ZeroAxis {
+        /// Index of the body.
+        body: usize,
+        /// Name of its joint.
+        joint: String,
+        /// [`Field::Axis`] or [`Field::Axis2`].
+        field: Field,
+    },
+
+    /// The second axis is parallel to the first, so that both turns are one.
+    #[error(
+        "the axis2 of joint \"{joint}\" is parallel to its axis; both turns would be the same, choose another direction"
+    )]
+    ParallelAxes {
         /// Index of the body.
         body: usize,
         /// Name of its joint.
         joint: String,
     },
 
-    /// A mass, damping or friction is below zero.
+    /// A helical joint does not advance.
+    #[error(
+        "the lead of joint \"{joint}\" is 0; a helical joint advances by its lead in each turn (one that does not is revolute)"
+    )]
+    NoLead {
+        /// Index of the body.
+        body: usize,
+        /// Name of its joint.
+        joint: String,
+    },
+
+    /// The smallest coordinate of a joint is above the largest.
+    #[error("the limits of joint \"{joint}\" are lower = {lower} and upper = {upper}; lower must not be above upper")]
+    LimitOrder {
+        /// Index of the body.
+        body: usize,
+        /// Name of its joint.
+        joint: String,
+        /// The smallest coordinate.
+        lower: f64,
+        /// The largest.
+        upper: f64,
+    },
+
+    /// A largest speed or force is not positive.
+    #[error("the {} of joint \"{joint}\" is {value}; it must be positive", field.last())]
+    LimitNotPositive {
+        /// Index of the body.
+        body: usize,
+        /// Name of its joint.
+        joint: String,
+        /// [`Field::Velocity`] or [`Field::Effort`].
+        field: Field,
+        /// The value.
+        value: f64,
+    },
+
+    /// A mass, damping, friction or armature is below zero.
     #[error("{field} of body \"{name}\" is {value}; it must be 0 or more")]
     Negative {
         /// Index of the body.
         body: usize,
         /// Its name.
         name: String,
-        /// [`Field::Mass`], [`Field::Damping`] or [`Field::Friction`].
+        /// [`Field::Mass`], [`Field::Damping`], [`Field::Friction`] or [`Field::Armature`].
         field: Field,
         /// The value.
         value: f64,
@@ -261,6 +311,18 @@ pub enum Field {
     JointName,
     /// `joint.axis`
     Axis,
+    /// `joint.axis2`
+    Axis2,
+    /// `joint.lead`
+    Lead,
+    /// `joint.lower`
+    Lower,
+    /// `joint.velocity`
+    Velocity,
+    /// `joint.effort`
+    Effort,
+    /// `joint.armature`
+    Armature,
     /// `joint.origin`
     Origin,
     /// `joint.rpy`
@@ -289,6 +351,12 @@ impl Field {
             Self::Parent => "parent",
             Self::JointName => "joint.name",
             Self::Axis => "joint.axis",
+            Self::Axis2 => "joint.axis2",
+            Self::Lead => "joint.lead",
+            Self::Lower => "joint.lower",
+            Self::Velocity => "joint.velocity",
+            Self::Effort => "joint.effort",
+            Self::Armature => "joint.armature",
             Self::Origin => "joint.origin",
             Self::Rpy => "joint.rpy",
             Self::Damping => "joint.damping",
@@ -299,6 +367,13 @@ impl Field {
             Self::Com => "com",
             Self::Inertia => "inertia",
         }
+    }
+}
+
+impl Field {
+    /// The key without its table.
+    fn last(self) -> &'static str {
+        self.key().rsplit_once('.').map_or(self.key(), |(_, last)| last)
     }
 }
 
@@ -333,14 +408,18 @@ impl ModelError {
             Self::InvalidName { body, field, .. }
             | Self::DuplicateName { body, field, .. }
             | Self::NotFinite { body, field, .. }
+            | Self::ZeroAxis { body, field, .. }
+            | Self::LimitNotPositive { body, field, .. }
             | Self::Negative { body, field, .. } => (body, field),
+            Self::ParallelAxes { body, .. } => (body, Field::Axis2),
+            Self::NoLead { body, .. } => (body, Field::Lead),
+            Self::LimitOrder { body, .. } => (body, Field::Lower),
             Self::MimicTarget { body, .. } | Self::MimicKind { body, .. } | Self::MimicCycle { body, .. } => {
                 (body, Field::Mimic)
             }
             Self::FrictionSpeed { body, .. } => (body, Field::FrictionSpeed),
             Self::ReservedName { body } => (body, Field::Name),
             Self::ParentNotEarlier { body, .. } => (body, Field::Parent),
-            Self::ZeroAxis { body, .. } => (body, Field::Axis),
             Self::AsymmetricInertia { body, .. }
             | Self::InertiaNotPositive { body, .. }
             | Self::TriangleInequality { body, .. } => (body, Field::Inertia),

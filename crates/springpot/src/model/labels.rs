@@ -1,8 +1,8 @@
 //! What the numbers of q and v are called.
 
 use super::dimension::Dimension;
+use super::kind::{Component, Space};
 use super::robot::Model;
-use super::spec::Space;
 
 /// One number of q or v: the joint's name, with a component where the joint has several.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,50 +13,25 @@ pub struct Label {
     pub dimension: Dimension,
 }
 
-const COORDINATES: [(&str, Dimension); 7] = [
-    ("x", Dimension::Length),
-    ("y", Dimension::Length),
-    ("z", Dimension::Length),
-    ("qx", Dimension::Quaternion),
-    ("qy", Dimension::Quaternion),
-    ("qz", Dimension::Quaternion),
-    ("qw", Dimension::Quaternion),
-];
-const VELOCITIES: [(&str, Dimension); 6] = [
-    ("vx", Dimension::Length),
-    ("vy", Dimension::Length),
-    ("vz", Dimension::Length),
-    ("wx", Dimension::Angle),
-    ("wy", Dimension::Angle),
-    ("wz", Dimension::Angle),
-];
-
 impl Model {
     /// Names of the coordinates, in the order of q.
     pub fn q_labels(&self) -> Vec<Label> {
-        self.labels(&COORDINATES)
+        self.labels(&self.joint_names, Space::coordinates)
     }
 
     /// Names of the velocities, in the order of v; accelerations and generalized forces have the same.
     pub fn v_labels(&self) -> Vec<Label> {
-        self.labels(&VELOCITIES)
+        self.labels(&self.velocity_names, Space::velocities)
     }
 
-    fn labels(&self, of_pose: &[(&str, Dimension)]) -> Vec<Label> {
-        let own = (0..self.joint_count()).filter(|&j| self.followed(j).is_none());
-        own.flat_map(|j| {
-            let joint = &self.joint_names()[j];
-            let one = |dimension| vec![Label { name: joint.clone(), dimension }];
-            match self.joint_kind(j).space() {
-                Space::Point => Vec::new(),
-                Space::Line(dimension) => one(dimension),
-                Space::Circle => one(Dimension::Angle),
-                Space::Pose => of_pose
-                    .iter()
-                    .map(|&(part, dimension)| Label { name: format!("{joint}.{part}"), dimension })
-                    .collect(),
+    fn labels(&self, names: &[String], parts: fn(Space) -> &'static [Component]) -> Vec<Label> {
+        let label = |(j, space): (usize, Space)| match space.dimension() {
+            Some(dimension) => vec![Label { name: names[j].clone(), dimension }],
+            None => {
+                let named = |&(part, dimension): &Component| Label { name: format!("{}.{part}", names[j]), dimension };
+                parts(space).iter().map(named).collect()
             }
-        })
-        .collect()
+        };
+        self.own_joints_and_spaces().flat_map(label).collect()
     }
 }

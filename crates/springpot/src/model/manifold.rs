@@ -1,27 +1,27 @@
 //! The configuration manifold: steps between configurations and what a configuration may be.
 
 use super::dimension::Dimension;
+use super::kind::Space;
 use super::robot::Model;
-use super::spec::{Limits, Space};
+use super::spec::Limits;
 use crate::spatial::{Motion, Quaternion, Rotation, Vec3};
 use std::f64::consts::{PI, TAU};
 
 /// Configurations q and the tangent vectors v between them. Joint by joint; slices of a wrong length panic.
 impl Model {
-    /// The configuration in which every joint stands at 0: floating joints at their origin, unturned.
+    /// The configuration in which every joint stands at 0: floating joints at their origin, they and spherical ones unturned.
     pub fn neutral(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.nq()];
         for (j, space) in self.own_joints_and_spaces() {
-            match space {
-                Space::Point | Space::Line(_) | Space::Circle => {}
-                Space::Pose => q[self.q_range(j).end - 1] = 1.0,
+            if space.quaternion().is_some() {
+                q[self.q_range(j).end - 1] = 1.0;
             }
         }
         q
     }
 
     /// q ⊕ v: the configuration after one second at the constant velocities `v`. A floating joint follows the twist (u, ω) in
-    /// its own axes, p + R V(ω) u and R exp \[ω\]×. `q` and `out` are nq, `v` is nv.
+    /// its own axes, p + R V(ω) u and R exp \[ω\]×, a spherical one the latter. `q` and `out` are nq, `v` is nv.
     ///
     /// Source: Blanco-Claraco, A tutorial on SE(3) transformation parameterizations and on-manifold optimization, 2010.
     pub fn integrate_into(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
@@ -29,16 +29,15 @@ impl Model {
         for (j, space) in self.own_joints_and_spaces() {
             let (q, v) = (&mut out[self.q_range(j)], &v[self.v_range(j)]);
             match space {
-                Space::Point => {}
                 Space::Line(_) | Space::Circle => q[0] += v[0],
+                Space::Attitude => q.copy_from_slice(&(attitude(q) * turn(v)).normalised().0),
                 Space::Pose => {
-                    let (shift, turn) = (Vec3([v[0], v[1], v[2]]), Vec3([v[3], v[4], v[5]]));
-                    let attitude = Quaternion::new([q[3], q[4], q[5], q[6]]).normalised();
-                    let moved = Rotation::from_quaternion(attitude) * left_jacobian(turn, shift);
+                    let attitude = attitude(&q[3..]);
+                    let moved = Rotation::from_quaternion(attitude) * left_jacobian(vector(&v[3..]), vector(v));
                     for k in 0..3 {
                         q[k] += moved.0[k];
                     }
-                    q[3..].copy_from_slice(&(attitude * Quaternion::from_rotation_vector(turn)).normalised().0);
+                    q[3..].copy_from_slice(&(attitude * turn(&v[3..])).normalised().0);
                 }
             }
         }
@@ -53,17 +52,18 @@ impl Model {
 
     /// to ⊖ from: the velocities `v` (nv) that lead from one configuration to the other in one second, `from` ⊕ v = `to`.
     ///
-    /// The shorter way round where there are two: the turn of a continuous or floating joint is at most π.
+    /// The shorter way round where there are two: the turn of a continuous, spherical or floating joint is at most π.
     pub fn difference_into(&self, from: &[f64], to: &[f64], v: &mut [f64]) {
         for (j, space) in self.own_joints_and_spaces() {
             let (from, to, v) = (&from[self.q_range(j)], &to[self.q_range(j)], &mut v[self.v_range(j)]);
             match space {
-                Space::Point => {}
                 Space::Line(_) => v[0] = to[0] - from[0],
                 Space::Circle => v[0] = wrapped(to[0] - from[0]),
+                Space::Attitude => {
+                    v.copy_from_slice(&(attitude(from).conjugate() * attitude(to)).rotation_vector().0);
+                }
                 Space::Pose => {
-                    let attitude = |q: &[f64]| Quaternion::new([q[3], q[4], q[5], q[6]]).normalised();
-                    let (start, end) = (attitude(from), attitude(to));
+                    let (start, end) = (attitude(&from[3..]), attitude(&to[3..]));
                     let turn = (start.conjugate() * end).rotation_vector();
                     let line = Vec3([to[0] - from[0], to[1] - from[1], to[2] - from[2]]);
                     let shift = inverse_left_jacobian(turn, Rotation::from_quaternion(start).unrotate(line));
@@ -87,13 +87,10 @@ impl Model {
         for (j, space) in self.own_joints_and_spaces() {
             let q = &mut q[self.q_range(j)];
             match space {
-                Space::Point | Space::Line(_) => {}
+                Space::Line(_) => {}
                 Space::Circle => q[0] = wrapped(q[0]),
-                Space::Pose => {
-                    let unit = Quaternion::new([q[3], q[4], q[5], q[6]]).normalised().0;
-                    let sign = if unit[3] < 0.0 { -1.0 } else { 1.0 };
-                    q[3..].copy_from_slice(&unit.map(|x| sign * x));
-                }
+                Space::Attitude => upright(q),
+                Space::Pose => upright(&mut q[3..]),
             }
         }
     }
@@ -112,16 +109,13 @@ impl Model {
                 low + (high - low) * uniform()
             };
             match space {
-                Space::Point => {}
                 Space::Line(Dimension::Angle) => q[0] = within(PI),
                 Space::Line(_) => q[0] = within(1.0),
                 Space::Circle => q[0] = PI * (2.0 * uniform() - 1.0),
+                Space::Attitude => q.copy_from_slice(&any_attitude(&mut uniform)),
                 Space::Pose => {
                     q[..3].fill_with(|| 2.0 * uniform() - 1.0);
-                    // Shoemake, Uniform random rotations, Graphics Gems III, 1992.
-                    let (share, first, second) = (uniform(), TAU * uniform(), TAU * uniform());
-                    let (a, b) = ((1.0 - share).sqrt(), share.sqrt());
-                    q[3..].copy_from_slice(&[a * first.sin(), a * first.cos(), b * second.sin(), b * second.cos()]);
+                    q[3..].copy_from_slice(&any_attitude(&mut uniform));
                 }
             }
         }
@@ -129,7 +123,7 @@ impl Model {
     }
 
     /// How fast the tangent vector `xi` of q(t) = q_0 ⊕ ξ(t) changes while the robot has the velocities `v`: v itself for joints
-    /// of one degree; for a floating joint v + ½ \[ξ, v\] + A \[ξ, \[ξ, v\]\] + B \[ξ, … \[ξ, v\]\] (four brackets), singular at turns
+    /// of one degree; for a floating or spherical joint v + ½ \[ξ, v\] + A \[ξ, \[ξ, v\]\] + B \[ξ, … \[ξ, v\]\] (four brackets), singular at turns
     /// of 2π. All slices are nv.
     ///
     /// Source: Bullo and Murray, Proportional derivative (PD) control on the Euclidean group, 1995 (the inverse of the
@@ -139,16 +133,14 @@ impl Model {
             let range = self.v_range(j);
             let (xi, v, rate) = (&xi[range.clone()], &v[range.clone()], &mut rate[range]);
             match space {
-                Space::Point => {}
                 Space::Line(_) | Space::Circle => rate[0] = v[0],
+                Space::Attitude => {
+                    let spin = |v: &[f64]| Motion { angular: vector(v), ..Motion::ZERO };
+                    rate.copy_from_slice(&bent(spin(xi), spin(v)).angular.0);
+                }
                 Space::Pose => {
-                    let twist =
-                        |v: &[f64]| Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) };
-                    let (xi, v) = (twist(xi), twist(v));
-                    let (second, fourth) = bracket_factors(xi.angular.norm());
-                    let once = xi.cross(v);
-                    let twice = xi.cross(once);
-                    let sum = v + once * 0.5 + twice * second + xi.cross(xi.cross(twice)) * fourth;
+                    let twist = |v: &[f64]| Motion { linear: vector(v), angular: vector(&v[3..]) };
+                    let sum = bent(twist(xi), twist(v));
                     rate[..3].copy_from_slice(&sum.linear.0);
                     rate[3..].copy_from_slice(&sum.angular.0);
                 }
@@ -161,9 +153,43 @@ impl Model {
         (0..self.joint_count()).filter(|&j| self.followed(j).is_none())
     }
 
-    fn own_joints_and_spaces(&self) -> impl Iterator<Item = (usize, Space)> + '_ {
-        self.own_joints().map(|j| (j, self.joint_kind(j).space()))
+    pub(super) fn own_joints_and_spaces(&self) -> impl Iterator<Item = (usize, Space)> + '_ {
+        self.own_joints().map(|j| (j, self.joint_space(j)))
     }
+}
+
+fn vector(v: &[f64]) -> Vec3 {
+    Vec3([v[0], v[1], v[2]])
+}
+
+fn attitude(q: &[f64]) -> Quaternion {
+    Quaternion::new([q[0], q[1], q[2], q[3]]).normalised()
+}
+
+fn turn(v: &[f64]) -> Quaternion {
+    Quaternion::from_rotation_vector(vector(v))
+}
+
+/// Length 1 and qw ≥ 0.
+fn upright(q: &mut [f64]) {
+    let unit = attitude(q).0;
+    let sign = if unit[3] < 0.0 { -1.0 } else { 1.0 };
+    q.copy_from_slice(&unit.map(|x| sign * x));
+}
+
+/// Shoemake, Uniform random rotations, Graphics Gems III, 1992.
+fn any_attitude(mut uniform: impl FnMut() -> f64) -> [f64; 4] {
+    let (share, first, second) = (uniform(), TAU * uniform(), TAU * uniform());
+    let (a, b) = ((1.0 - share).sqrt(), share.sqrt());
+    [a * first.sin(), a * first.cos(), b * second.sin(), b * second.cos()]
+}
+
+/// The sum of brackets of [`Model::tangent_rate_into`].
+fn bent(xi: Motion, v: Motion) -> Motion {
+    let (second, fourth) = bracket_factors(xi.angular.norm());
+    let once = xi.cross(v);
+    let twice = xi.cross(once);
+    v + once * 0.5 + twice * second + xi.cross(xi.cross(twice)) * fourth
 }
 
 /// The angle in (−π, π] that differs from `angle` by full turns.

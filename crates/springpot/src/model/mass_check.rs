@@ -1,9 +1,10 @@
 //! Whether the mass matrix is positive definite.
 
+use super::degree::JointMotion;
 use super::error::ModelError;
 use super::robot::Model;
 use super::validate;
-use crate::spatial::{Inertia, Motion, Placement, Vec3};
+use crate::spatial::{Inertia, Motion, Placement, Rotation, Vec3};
 
 /// A pivot below this share of what it was computed from is rounding.
 const PIVOT_TOLERANCE: f64 = 1e-14;
@@ -47,8 +48,9 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
             // What it does not move is left out: it may be infinite.
             let moved = || (0..6).filter(|&k| unit[k] != 0.0);
             let column = reduced.map(|row| moved().map(|k| row[k] * unit[k]).sum::<f64>());
-            let pivot = moved().map(|k| column[k] * unit[k]).sum::<f64>();
-            let before = moved().map(|k| gross[j][k / 3] * unit[k] * unit[k]).sum::<f64>();
+            let armature = model.armature[j];
+            let pivot = moved().map(|k| column[k] * unit[k]).sum::<f64>() + armature;
+            let before = moved().map(|k| gross[j][k / 3] * unit[k] * unit[k]).sum::<f64>() + armature;
             if !pivot.is_finite() {
                 return Err(ModelError::Overflow { body, name: name() });
             }
@@ -124,6 +126,10 @@ fn generic_placement(model: &Model, j: usize, length: f64) -> Placement {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let generic = 0.37 + ((j + 1) as f64 * GOLDEN).fract();
     let at_zero = model.placements[j];
+    if model.motions[j] == JointMotion::Spherical {
+        let turn = Rotation::from_rpy([generic, 0.5 * generic, -generic]);
+        return Placement { rotation: at_zero.rotation * turn, ..at_zero };
+    }
     // Wherever a floating joint stands, it takes up all that it carries.
     let [degree] = model.degrees[model.degrees_of(j)] else { return at_zero };
     let Motion { angular: Vec3([.., turn]), linear: Vec3([.., shift]) } = degree.motion.unit();

@@ -13,12 +13,12 @@ type Leader = Option<(usize, f64, f64)>;
 pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), ModelError> {
     let leaders = leaders(model, mimics)?;
     let mut own = Vec::with_capacity(leaders.len());
-    for (kind, leader) in model.kinds.iter().zip(&leaders) {
+    for (space, leader) in model.spaces.iter().zip(&leaders) {
         own.push((model.nq, model.nv));
         if leader.is_none() {
-            model.places.extend((0..kind.nv()).map(|_| (kind.nv() == 1).then_some(model.nq)));
-            model.nq += kind.nq();
-            model.nv += kind.nv();
+            model.places.extend((0..space.nv()).map(|_| (space.nv() == 1).then_some(model.nq)));
+            model.nq += space.nq();
+            model.nv += space.nv();
         }
     }
     for (j, leader) in leaders.iter().enumerate() {
@@ -33,6 +33,10 @@ pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), 
             carrier = model.degrees.len();
         }
         model.last_degrees.push(carrier);
+    }
+    model.rotors = vec![0.0; model.nv];
+    for (own, armature) in model.coordinates.iter().zip(&model.armature) {
+        model.rotors[own.v] += own.ratio * own.ratio * armature;
     }
     // Without followers, degrees and velocities are the same; followers couple branches, so that nothing is known to stay 0.
     model.pivots = if model.is_free_of_followers() { model.carriers.clone() } else { (0..model.nv).collect() };
@@ -72,15 +76,16 @@ fn leaders(model: &Model, mimics: &[Option<Mimic>]) -> Result<Vec<Leader>, Model
 
 /// The joint that joint `j` follows by `mimic`.
 fn followed(model: &Model, names: &HashMap<&str, usize>, j: usize, mimic: &Mimic) -> Result<usize, ModelError> {
-    let (body, joint, kind) = (model.bodies_of_joints[j], model.joint_names[j].clone(), model.kinds[j]);
+    let (body, described) = (model.bodies_of_joints[j], model.described_joint(j));
+    let (joint, kind) = (described.name.clone(), described.kind);
     if kind.nv() != 1 {
         return Err(ModelError::MimicKind { body, joint, kind });
     }
     let target = names.get(mimic.joint.as_str()).copied();
-    target.filter(|&target| model.kinds[target].nv() == 1).ok_or_else(|| ModelError::MimicTarget {
+    target.filter(|&target| model.spaces[target].nv() == 1).ok_or_else(|| ModelError::MimicTarget {
         body,
         joint,
         followed: mimic.joint.clone(),
-        exists: target.is_some(),
+        exists: model.has_joint(&mimic.joint),
     })
 }

@@ -5,18 +5,22 @@ use std::collections::BTreeMap;
 use super::degree::{Coordinates, Degree, DegreeMotion, JointMotion};
 use super::error::ModelError;
 use super::frame::{Frame, Site};
-use super::spec::{Anchor, FrictionLaw, JointKind, Limits, Parent};
+use super::kind::{JointKind, Space};
+use super::spec::{Anchor, FrictionLaw, Limits, Parent};
 use crate::spatial::{Inertia, Placement, Rotation, Vec3};
 use std::ops::Range;
 
 /// The robot: a tree of links, each moved by one joint; constant, shared by threads.
 ///
 /// *Link* 0 is the world, and joint j moves link j + 1: it turns it about, or shifts it along, the z axis of the link's own
-/// frame, or (a floating joint) all three axes of it. Links come in the order of their joints, parents first. Bodies on fixed
-/// joints are part of the link that carries them.
+/// frame, or does both at once (a helical joint), or all three axes of it (a spherical or floating joint). Links come in the
+/// order of their joints, parents first. Bodies on fixed joints are part of the link that carries them.
 ///
-/// The coordinates q and the velocities v stand in the order of the joints, [`JointKind::nq`] and [`JointKind::nv`] of them
-/// for each joint but those that follow another one ([`Model::followed`]): these have none of their own.
+/// A described joint with several coordinates that are numbers is a chain of joints here, one for each coordinate, called
+/// after it with a dot ("c.z", "c.rz"), on links without mass but the last ([`Model::described_joints`]).
+///
+/// The coordinates q and the velocities v stand in the order of the joints, [`Space::nq`] and [`Space::nv`] of them for each
+/// joint but those that follow another one ([`Model::followed`]): these have none of their own.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(super) gravity: [f64; 3],
@@ -24,7 +28,9 @@ pub struct Model {
     pub(super) nv: usize,
     // One entry per joint, indexed by j.
     pub(super) motions: Vec<JointMotion>,
-    pub(super) kinds: Vec<JointKind>,
+    pub(super) spaces: Vec<Space>,
+    /// Which described joint it is, or is part of.
+    pub(super) described_as: Vec<usize>,
     pub(super) coordinates: Vec<Coordinates>,
     /// The coordinate that each velocity moves; none for those of joints of several degrees.
     pub(super) places: Vec<Option<usize>>,
@@ -37,6 +43,9 @@ pub struct Model {
     pub(super) may_be_indefinite: bool,
     pub(super) bodies_of_joints: Vec<usize>,
     pub(super) joint_names: Vec<String>,
+    /// What its velocity, or the joint before the names of several, is called.
+    pub(super) velocity_names: Vec<String>,
+    pub(super) armature: Vec<f64>,
     pub(super) damping: Vec<f64>,
     pub(super) friction: Vec<f64>,
     pub(super) friction_laws: Vec<FrictionLaw>,
@@ -48,6 +57,10 @@ pub struct Model {
     pub(super) last_degrees: Vec<usize>,
     /// One more than the velocity that the elimination of velocity i touches next, or 0.
     pub(super) pivots: Vec<usize>,
+    /// Armature felt along each velocity.
+    pub(super) rotors: Vec<f64>,
+    // One entry per described joint that moves.
+    pub(super) described: Vec<DescribedJoint>,
     /// Names of the fixed joints.
     pub(super) fixed_joints: Vec<String>,
     // One entry per described body.
@@ -58,6 +71,17 @@ pub struct Model {
     pub(super) world_names: Vec<String>,
 }
 
+/// A joint that moves, as it is described: one joint of the [`Model`], or a chain of them.
+#[derive(Debug, Clone)]
+pub struct DescribedJoint {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub kind: JointKind,
+    /// Its joints of the model.
+    pub joints: Range<usize>,
+}
+
 impl Model {
     pub(super) fn empty(gravity: [f64; 3]) -> Self {
         Self {
@@ -65,7 +89,8 @@ impl Model {
             nq: 0,
             nv: 0,
             motions: Vec::new(),
-            kinds: Vec::new(),
+            spaces: Vec::new(),
+            described_as: Vec::new(),
             coordinates: Vec::new(),
             places: Vec::new(),
             followed: Vec::new(),
@@ -77,6 +102,8 @@ impl Model {
             may_be_indefinite: false,
             bodies_of_joints: Vec::new(),
             joint_names: Vec::new(),
+            velocity_names: Vec::new(),
+            armature: Vec::new(),
             damping: Vec::new(),
             friction: Vec::new(),
             friction_laws: Vec::new(),
@@ -84,6 +111,8 @@ impl Model {
             carriers: Vec::new(),
             last_degrees: vec![0],
             pivots: Vec::new(),
+            rotors: Vec::new(),
+            described: Vec::new(),
             fixed_joints: Vec::new(),
             world_names: Vec::new(),
             frames: Vec::new(),
@@ -130,6 +159,11 @@ impl Model {
         self.gravity
     }
 
+    /// What the velocity of each moving joint is called; where it has several, what stands before theirs.
+    pub fn velocity_names(&self) -> &[String] {
+        &self.velocity_names
+    }
+
     /// Names of the moving joints.
     pub fn joint_names(&self) -> &[String] {
         &self.joint_names
@@ -145,21 +179,36 @@ impl Model {
         self.fixed_joints.iter().any(|other| other == name)
     }
 
-    /// What moving joint `joint` is; never [`JointKind::Fixed`].
-    pub fn joint_kind(&self, joint: usize) -> JointKind {
-        self.kinds[joint]
+    /// What the coordinates of moving joint `joint` may be.
+    pub fn joint_space(&self, joint: usize) -> Space {
+        self.spaces[joint]
+    }
+
+    /// The described joint that moving joint `joint` is or is part of.
+    pub fn described_joint(&self, joint: usize) -> &DescribedJoint {
+        &self.described[self.described_as[joint]]
+    }
+
+    /// The joints that move as they are described, in their order.
+    pub fn described_joints(&self) -> &[DescribedJoint] {
+        &self.described
+    }
+
+    /// Whether a joint that moves, or a coordinate of one, is called `name`.
+    pub fn has_joint(&self, name: &str) -> bool {
+        self.joint_index(name).is_some() || self.described.iter().any(|joint| joint.name == name)
     }
 
     /// Where moving joint `joint` finds its coordinates in q: those of the joint that it follows, if it follows one.
     pub fn q_range(&self, joint: usize) -> Range<usize> {
         let first = self.coordinates[joint].q;
-        first..first + self.kinds[joint].nq()
+        first..first + self.spaces[joint].nq()
     }
 
     /// Where moving joint `joint` finds its velocities in v: those of the joint that it follows, if it follows one.
     pub fn v_range(&self, joint: usize) -> Range<usize> {
         let first = self.coordinates[joint].v;
-        first..first + self.kinds[joint].nv()
+        first..first + self.spaces[joint].nv()
     }
 
     /// The joint with coordinates of its own that moving joint `joint` follows, and the ratio and offset of
@@ -176,7 +225,7 @@ impl Model {
 
     /// Whether every joint has one degree of freedom, so that v = dq/dt and Christoffel symbols exist.
     pub fn is_one_degree(&self) -> bool {
-        self.kinds.iter().all(|kind| kind.nv() == 1)
+        self.spaces.iter().all(|space| space.nv() == 1)
     }
 
     /// What moving joint `joint` is built for.
@@ -187,6 +236,17 @@ impl Model {
     /// The described body on moving joint `joint`.
     pub fn joint_body(&self, joint: usize) -> usize {
         self.bodies_of_joints[joint]
+    }
+
+    /// Inertia of rotors as felt along each velocity, kg·m² or kg (nv): on the diagonal of the mass matrix.
+    #[inline]
+    pub fn rotors(&self) -> &[f64] {
+        &self.rotors
+    }
+
+    /// Inertia of the rotor per moving joint as felt along its coordinate, kg·m² or kg.
+    pub fn armature(&self) -> &[f64] {
+        &self.armature
     }
 
     /// Viscous damping per moving joint, N·m·s/rad or N·s/m; no algorithm of `dynamics` adds it by itself.
@@ -286,7 +346,7 @@ impl Model {
 
     /// Of the velocities `v` (nv) those that are angular, rad/s.
     pub(crate) fn turning<'a>(&'a self, v: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let turns = self.degrees.iter().filter(|degree| matches!(degree.motion, DegreeMotion::Turn(_)));
+        let turns = self.degrees.iter().filter(|degree| !matches!(degree.motion, DegreeMotion::Shift(_)));
         turns.map(|degree| degree.ratio * v[degree.index])
     }
 

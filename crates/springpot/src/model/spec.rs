@@ -1,7 +1,8 @@
 //! The robot as it is described.
 
-use super::degree::JointMotion;
-use super::dimension::Dimension;
+use super::kind::{Along, JointKind, MOST_COORDINATES, Move, Space};
+use super::validate::unit;
+use crate::spatial::Rotation;
 
 /// Where a body hangs: on the world or on an earlier body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,95 +13,7 @@ pub enum Parent {
     Body(usize),
 }
 
-/// The values that the coordinates of a joint have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Space {
-    /// No coordinate.
-    Point,
-    /// One number.
-    Line(Dimension),
-    /// One angle; angles a full turn apart are the same configuration.
-    Circle,
-    /// The origin x, y, z and a quaternion qx, qy, qz, qw; six velocities, linear and angular.
-    Pose,
-}
-
-/// The kinds of joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum JointKind {
-    /// No coordinate.
-    Fixed,
-    /// One angle about the axis.
-    Revolute,
-    /// One angle about the axis, without limits: angles a full turn apart are the same configuration.
-    Continuous,
-    /// One displacement along the axis.
-    Prismatic,
-    /// Free in all six directions. Seven coordinates: the origin x, y, z in the parent's frame, then a quaternion qx, qy, qz,
-    /// qw; six velocities: linear, then angular, both in the body's own axes.
-    Floating,
-}
-
-impl JointKind {
-    /// Every kind.
-    pub const ALL: [Self; 5] = [Self::Fixed, Self::Revolute, Self::Continuous, Self::Prismatic, Self::Floating];
-
-    /// Its name in scenario files and in URDF.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Fixed => "fixed",
-            Self::Revolute => "revolute",
-            Self::Continuous => "continuous",
-            Self::Prismatic => "prismatic",
-            Self::Floating => "floating",
-        }
-    }
-
-    /// What its coordinates may be.
-    pub const fn space(self) -> Space {
-        match self {
-            Self::Fixed => Space::Point,
-            Self::Revolute => Space::Line(Dimension::Angle),
-            Self::Continuous => Space::Circle,
-            Self::Prismatic => Space::Line(Dimension::Length),
-            Self::Floating => Space::Pose,
-        }
-    }
-
-    /// What its coordinate measures, if it has one alone.
-    pub const fn dimension(self) -> Option<Dimension> {
-        match self.space() {
-            Space::Line(dimension) => Some(dimension),
-            Space::Circle => Some(Dimension::Angle),
-            Space::Point | Space::Pose => None,
-        }
-    }
-
-    /// Number of coordinates.
-    pub const fn nq(self) -> usize {
-        match self.space() {
-            Space::Point => 0,
-            Space::Line(_) | Space::Circle => 1,
-            Space::Pose => 7,
-        }
-    }
-
-    /// Number of velocities.
-    pub const fn nv(self) -> usize {
-        match self.space() {
-            Space::Point => 0,
-            Space::Line(_) | Space::Circle => 1,
-            Space::Pose => 6,
-        }
-    }
-
-    /// Whether the joint turns about, or shifts along, an axis that the description must give.
-    pub const fn has_axis(self) -> bool {
-        self.nv() == 1
-    }
-}
-
-/// What a joint is built for; the algorithms do not enforce it. Infinite where there is no limit.
+/// What a coordinate of a joint is built for; the algorithms do not enforce it. Infinite where there is no limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Smallest coordinate, rad or m.
@@ -141,10 +54,10 @@ impl Default for FrictionLaw {
     }
 }
 
-/// A joint of one degree that follows another one: coordinate = multiplier · coordinate of `joint` + offset.
+/// A joint of one coordinate that follows another one: coordinate = multiplier · coordinate of `joint` + offset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mimic {
-    /// Name of the joint that it follows.
+    /// Name of the joint that it follows; of one of several coordinates with the coordinate's, "c.rz".
     pub joint: String,
     /// Ratio of the two speeds.
     pub multiplier: f64,
@@ -161,18 +74,26 @@ pub struct JointSpec {
     pub kind: JointKind,
     /// Axis in the joint frame (any length but zero; without meaning where [`JointKind::has_axis`] says no).
     pub axis: [f64; 3],
+    /// Second axis, fixed in the body, in the joint frame where all coordinates are 0 (of any length but zero, not parallel to the
+    /// first; without meaning where [`JointKind::has_axis2`] says no).
+    pub axis2: [f64; 3],
+    /// Advance along the axis in each turn, m, not 0 (without meaning where [`JointKind::has_lead`] says no).
+    pub lead: f64,
     /// Origin of the joint frame in the parent's joint frame, m.
     pub origin: [f64; 3],
     /// Roll, pitch, yaw of the joint frame in the parent's (R = Rz(yaw) Ry(pitch) Rx(roll)), rad.
     pub rpy: [f64; 3],
+    // Of each coordinate that is a number, in the order of q.
     /// Viscous damping, N·m·s/rad or N·s/m, 0 or more.
-    pub damping: f64,
+    pub damping: [f64; MOST_COORDINATES],
     /// Coulomb friction, N·m or N, 0 or more.
-    pub friction: f64,
+    pub friction: [f64; MOST_COORDINATES],
     /// What friction does at and near rest.
-    pub friction_law: FrictionLaw,
+    pub friction_law: [FrictionLaw; MOST_COORDINATES],
+    /// Inertia of the rotor as felt along the coordinate, kg·m² or kg, 0 or more.
+    pub armature: [f64; MOST_COORDINATES],
     /// What it is built for.
-    pub limits: Limits,
+    pub limits: [Limits; MOST_COORDINATES],
     /// The joint that it follows, if it has no coordinate of its own.
     pub mimic: Option<Mimic>,
 }
@@ -193,19 +114,34 @@ impl JointSpec {
         Self::plain(name.into(), JointKind::Fixed, [0.0, 0.0, 1.0], origin)
     }
 
+    /// A helical joint that advances by `lead`, m, in each turn, without rpy, damping, friction and limits.
+    pub fn helical(name: impl Into<String>, axis: [f64; 3], lead: f64, origin: [f64; 3]) -> Self {
+        Self { lead, ..Self::plain(name.into(), JointKind::Helical, axis, origin) }
+    }
+
+    /// A cylindrical joint without rpy, damping, friction and limits.
+    pub fn cylindrical(name: impl Into<String>, axis: [f64; 3], origin: [f64; 3]) -> Self {
+        Self::plain(name.into(), JointKind::Cylindrical, axis, origin)
+    }
+
+    /// A universal joint without rpy, damping, friction and limits.
+    pub fn universal(name: impl Into<String>, [axis, axis2]: [[f64; 3]; 2], origin: [f64; 3]) -> Self {
+        Self { axis2, ..Self::plain(name.into(), JointKind::Universal, axis, origin) }
+    }
+
+    /// A planar joint in the plane square to `axis`, without rpy, damping, friction and limits.
+    pub fn planar(name: impl Into<String>, axis: [f64; 3], origin: [f64; 3]) -> Self {
+        Self::plain(name.into(), JointKind::Planar, axis, origin)
+    }
+
+    /// A spherical joint without rpy.
+    pub fn spherical(name: impl Into<String>, origin: [f64; 3]) -> Self {
+        Self::plain(name.into(), JointKind::Spherical, [0.0, 0.0, 1.0], origin)
+    }
+
     /// A floating joint without rpy.
     pub fn floating(name: impl Into<String>, origin: [f64; 3]) -> Self {
         Self::plain(name.into(), JointKind::Floating, [0.0, 0.0, 1.0], origin)
-    }
-
-    /// How it moves its body; `None` where it does not.
-    pub(super) const fn motion(&self) -> Option<JointMotion> {
-        match self.kind {
-            JointKind::Fixed => None,
-            JointKind::Revolute | JointKind::Continuous => Some(JointMotion::Revolute),
-            JointKind::Prismatic => Some(JointMotion::Prismatic),
-            JointKind::Floating => Some(JointMotion::Floating),
-        }
     }
 
     fn plain(name: String, kind: JointKind, axis: [f64; 3], origin: [f64; 3]) -> Self {
@@ -213,14 +149,51 @@ impl JointSpec {
             name,
             kind,
             axis,
+            axis2: [0.0; 3],
+            lead: 0.0,
             origin,
             rpy: [0.0; 3],
-            damping: 0.0,
-            friction: 0.0,
-            friction_law: FrictionLaw::default(),
-            limits: Limits::NONE,
+            damping: [0.0; MOST_COORDINATES],
+            friction: [0.0; MOST_COORDINATES],
+            friction_law: [FrictionLaw::default(); MOST_COORDINATES],
+            armature: [0.0; MOST_COORDINATES],
+            limits: [Limits::NONE; MOST_COORDINATES],
             mimic: None,
         }
+    }
+}
+
+/// A joint of the chain that a described joint is: what one coordinate does, or all of a joint that turns freely.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointPart {
+    /// Name of the coordinate; of the joint, where that has no other number.
+    pub name: String,
+    /// Name of the velocity, likewise.
+    pub velocity: String,
+    /// How it moves.
+    pub moves: Move,
+    /// What it turns about or shifts along, of length 1, in the joint frame where all coordinates are 0.
+    pub axis: [f64; 3],
+    pub(super) space: Space,
+}
+
+impl JointSpec {
+    /// The chain that the joint is, from the parent outwards; of a valid joint.
+    pub fn parts(&self) -> Vec<JointPart> {
+        let called = |part: &str| if part.is_empty() { self.name.clone() } else { format!("{}.{part}", self.name) };
+        let chain = self.kind.chain().iter().map(|part| JointPart {
+            name: called(part.coordinate),
+            velocity: called(part.velocity),
+            moves: part.moves,
+            axis: match part.along {
+                Along::Frame => [0.0, 0.0, 1.0],
+                Along::Axis => unit(self.axis).0,
+                Along::Axis2 => unit(self.axis2).0,
+                Along::Across(side) => Rotation::shortest_from_z(unit(self.axis)).column(side).0,
+            },
+            space: part.space,
+        });
+        chain.collect()
     }
 }
 

@@ -1,7 +1,6 @@
 //! Whether numbers are a state of a robot: the algorithms take them as they are.
 
 use super::robot::Model;
-use super::spec::JointKind;
 
 /// Why numbers are no state of the robot.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -29,10 +28,10 @@ pub enum StateError {
         value: f64,
     },
 
-    /// The attitude of a floating joint has no direction.
+    /// The attitude of a spherical or floating joint has no direction.
     #[error("the quaternion of joint \"{joint}\" has the length {length}; it must have one, such as [0, 0, 0, 1]")]
     ZeroQuaternion {
-        /// The floating joint.
+        /// The joint.
         joint: String,
         /// 0, or so little that its square is 0.
         length: f64,
@@ -46,8 +45,9 @@ impl Model {
     /// [`StateError`].
     pub fn check_q(&self, q: &[f64]) -> Result<(), StateError> {
         check("q", q, self.nq(), |k| self.q_labels().swap_remove(k).name)?;
-        for j in self.own_joints().filter(|&j| self.joint_kind(j) == JointKind::Floating) {
-            let square: f64 = q[self.q_range(j)][3..].iter().map(|x| x * x).sum();
+        for (j, space) in self.own_joints_and_spaces() {
+            let Some(first) = space.quaternion() else { continue };
+            let square: f64 = q[self.q_range(j)][first..].iter().map(|x| x * x).sum();
             if !square.is_normal() {
                 return Err(StateError::ZeroQuaternion { joint: self.joint_names()[j].clone(), length: square.sqrt() });
             }

@@ -1,9 +1,11 @@
 //! Whether a described body makes physical sense.
 
 use super::error::{Field, ModelError};
-use super::spec::{BodySpec, FrictionLaw, JointKind, Parent};
+use super::kind::JointKind;
+use super::spec::{BodySpec, FrictionLaw, JointSpec, Limits, Parent};
 use crate::linalg::symmetric_eigenvalues;
 use crate::names::is_name;
+use crate::spatial::Vec3;
 
 /// Refuses a principal moment below minus this share of the largest one.
 const POSITIVE_TOLERANCE: f64 = 1e-12;
@@ -11,6 +13,9 @@ const POSITIVE_TOLERANCE: f64 = 1e-12;
 const TRIANGLE_TOLERANCE: f64 = 1e-9;
 /// Refuses off-diagonals that differ by more than this share of the largest entry.
 const SYMMETRY_TOLERANCE: f64 = 1e-12;
+
+/// Refuses two axes at an angle whose sine is not above this.
+const PARALLEL: f64 = 1e-8;
 
 /// What kind of description is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,9 +37,7 @@ pub(super) fn body(body: usize, spec: &BodySpec, rules: Rules, takes_any_inertia
         return Err(ModelError::ParentNotEarlier { body, name: spec.name.clone(), parent });
     }
     numbers(body, spec)?;
-    if spec.joint.kind.has_axis() && spec.joint.axis == [0.0; 3] {
-        return Err(ModelError::ZeroAxis { body, joint: spec.joint.name.clone() });
-    }
+    axes(body, &spec.joint)?;
     // What a URDF fixes to another link is judged together with it.
     if rules == Rules::UrdfLink && spec.joint.kind == JointKind::Fixed {
         return Ok(());
@@ -43,6 +46,35 @@ pub(super) fn body(body: usize, spec: &BodySpec, rules: Rules, takes_any_inertia
         Err(error) if takes_any_inertia && error.is_of_no_mass() => Ok(()),
         judged => judged,
     }
+}
+
+/// Refuses axes without direction, or without two of them, and a lead of 0.
+fn axes(body: usize, joint: &JointSpec) -> Result<(), ModelError> {
+    let name = || joint.name.clone();
+    if joint.kind.has_axis() && joint.axis == [0.0; 3] {
+        return Err(ModelError::ZeroAxis { body, joint: name(), field: Field::Axis });
+    }
+    if joint.kind.has_axis2() {
+        if joint.axis2 == [0.0; 3] {
+            return Err(ModelError::ZeroAxis { body, joint: name(), field: Field::Axis2 });
+        }
+        let [first, second] = [unit(joint.axis), unit(joint.axis2)];
+        if first.cross(second).norm() <= PARALLEL {
+            return Err(ModelError::ParallelAxes { body, joint: name() });
+        }
+    }
+    if joint.kind.has_lead() && joint.lead == 0.0 {
+        return Err(ModelError::NoLead { body, joint: name() });
+    }
+    Ok(())
+}
+
+/// The direction of a vector that is not zero, safe from overflow and underflow.
+pub(super) fn unit(axis: [f64; 3]) -> Vec3 {
+    let largest = axis.iter().fold(0.0, |s: f64, x| s.max(x.abs()));
+    let scaled = Vec3(axis.map(|x| x / largest));
+    let norm = scaled.norm();
+    Vec3(scaled.0.map(|x| x / norm))
 }
 
 fn names(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
@@ -60,17 +92,20 @@ fn names(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
 fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
     let joint = &spec.joint;
     let mimic = joint.mimic.as_ref().map_or([1.0, 0.0], |mimic| [mimic.multiplier, mimic.offset]);
-    let speed = match joint.friction_law {
+    let speeds = joint.friction_law.map(|law| match law {
         FrictionLaw::Smooth { speed } => speed,
         FrictionLaw::Sticking => f64::MIN_POSITIVE,
-    };
-    let fields: [(Field, &[f64]); 10] = [
+    });
+    let fields: [(Field, &[f64]); 13] = [
         (Field::Axis, &joint.axis),
+        (Field::Axis2, &joint.axis2),
+        (Field::Lead, &[joint.lead]),
         (Field::Origin, &joint.origin),
         (Field::Rpy, &joint.rpy),
-        (Field::Damping, &[joint.damping]),
-        (Field::Friction, &[joint.friction]),
-        (Field::FrictionSpeed, &[speed]),
+        (Field::Damping, &joint.damping),
+        (Field::Friction, &joint.friction),
+        (Field::FrictionSpeed, &speeds),
+        (Field::Armature, &joint.armature),
         (Field::Mimic, &mimic),
         (Field::Mass, &[spec.mass]),
         (Field::Com, &spec.com),
@@ -81,14 +116,30 @@ fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
             return Err(ModelError::NotFinite { body, name: spec.name.clone(), field, value });
         }
     }
-    for (field, value) in [(Field::Damping, joint.damping), (Field::Friction, joint.friction), (Field::Mass, spec.mass)]
-    {
-        if value < 0.0 {
+    let not_negative: [(Field, &[f64]); 4] = [
+        (Field::Damping, &joint.damping),
+        (Field::Friction, &joint.friction),
+        (Field::Armature, &joint.armature),
+        (Field::Mass, &[spec.mass]),
+    ];
+    for (field, values) in not_negative {
+        if let Some(&value) = values.iter().find(|value| **value < 0.0) {
             return Err(ModelError::Negative { body, name: spec.name.clone(), field, value });
         }
     }
-    if speed <= 0.0 {
+    if let Some(&speed) = speeds.iter().find(|speed| **speed <= 0.0) {
         return Err(ModelError::FrictionSpeed { body, name: spec.name.clone(), speed });
+    }
+    for limits in &joint.limits {
+        let Limits { lower, upper, velocity, effort } = *limits;
+        if !(lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY) {
+            return Err(ModelError::LimitOrder { body, joint: joint.name.clone(), lower, upper });
+        }
+        for (field, value) in [(Field::Velocity, velocity), (Field::Effort, effort)] {
+            if value.is_nan() || value <= 0.0 {
+                return Err(ModelError::LimitNotPositive { body, joint: joint.name.clone(), field, value });
+            }
+        }
     }
     Ok(())
 }

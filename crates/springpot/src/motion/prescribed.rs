@@ -12,6 +12,8 @@ use crate::spatial::Vec3;
 pub enum JointPath {
     /// A joint of one degree: its coordinate, rad or m.
     Coordinate(Signal),
+    /// A spherical joint: roll, pitch, yaw of the body in the joint's frame, R = Rz(yaw) Ry(pitch) Rx(roll), rad.
+    Attitude(Box<[Signal; 3]>),
     /// A floating joint: the pose of the body in the joint's frame.
     Pose(Box<PosePath>),
 }
@@ -29,6 +31,7 @@ impl JointPath {
     pub(crate) fn signals(&self) -> Vec<&Signal> {
         match self {
             Self::Coordinate(signal) => vec![signal],
+            Self::Attitude(rpy) => rpy.iter().collect(),
             Self::Pose(pose) => pose.position.iter().chain(&pose.rpy).collect(),
         }
     }
@@ -71,6 +74,12 @@ impl JointPath {
             Self::Coordinate(signal) => {
                 let Jet { value, first, second } = signal.at(t);
                 (q[0], v[0], a[0]) = (value, first, second);
+            }
+            Self::Attitude(rpy) => {
+                let Attitude { rotation, quaternion, omega, alpha } = Attitude::at(rpy, t);
+                q.copy_from_slice(&quaternion.0);
+                v.copy_from_slice(&rotation.unrotate(omega).0);
+                a.copy_from_slice(&rotation.unrotate(alpha).0);
             }
             Self::Pose(pose) => {
                 let jets = [0, 1, 2].map(|k| pose.position[k].at(t));

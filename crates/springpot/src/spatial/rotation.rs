@@ -124,6 +124,19 @@ impl Rotation<f64> {
         let b = x * y * a;
         Self([[1.0 + sign * x * x * a, b, x], [sign * b, sign + y * y * a, y], [-sign * x, -y, z]])
     }
+
+    /// The shortest turn that leads z to `axis`, of length 1; half a turn about x where that is −z.
+    pub fn shortest_from_z(axis: Vec3<f64>) -> Self {
+        let [x, y, z] = axis.0;
+        let square = x * x + y * y;
+        if square == 0.0 {
+            let sign = 1f64.copysign(z);
+            return Self([[1.0, 0.0, 0.0], [0.0, sign, 0.0], [0.0, 0.0, sign]]);
+        }
+        // 1/(1 + z), without a difference of numbers that are nearly the same.
+        let a = if z >= 0.0 { 1.0 / (1.0 + z) } else { (1.0 - z) / square };
+        Self([[1.0 - x * x * a, -x * y * a, x], [-x * y * a, 1.0 - y * y * a, y], [-x, -y, z]])
+    }
 }
 
 impl<T: Scalar> Default for Rotation<T> {

@@ -3,7 +3,7 @@
 use super::System;
 use super::error::RunError;
 use crate::dynamics::{Kinematics, Workspace, indefinite_joint_into};
-use crate::model::{Dimension, JointKind, Model};
+use crate::model::{Dimension, Model, Space};
 
 /// Configurations are looked at that are no farther apart than this, rad and m.
 const TURN: f64 = 0.05;
@@ -55,19 +55,31 @@ impl Definite {
         [start, end]: [&[f64]; 2],
     ) -> Result<(), RunError> {
         // Where a floating joint stands makes no difference to what it carries.
-        let own = || model.own_joints().filter(|&j| model.joint_kind(j) != JointKind::Floating);
-        let parts = own().map(|j| {
-            let k = model.q_range(j).start;
-            let apart = if model.joint_kind(j).dimension() == Some(Dimension::Length) { SHIFT } else { TURN };
-            (end[k] - start[k]).abs() / apart
+        let own = || model.own_joints().filter(|&j| model.joint_space(j) != Space::Pose);
+        // Of a quaternion and its negative, which are the same attitude, the nearer to the start.
+        let sign_of = |j: usize| {
+            let along: f64 = model.q_range(j).map(|k| start[k] * end[k]).sum();
+            if model.joint_space(j).quaternion().is_some() && along < 0.0 { -1.0 } else { 1.0 }
+        };
+        let parts = own().flat_map(|j| {
+            let (apart, sign) = match model.joint_space(j).dimension() {
+                Some(Dimension::Length) => (SHIFT, 1.0),
+                Some(_) => (TURN, 1.0),
+                // A component of a quaternion changes by at most half of what it turns.
+                None => (0.5 * TURN, sign_of(j)),
+            };
+            model.q_range(j).map(move |k| (sign * end[k] - start[k]).abs() / apart)
         });
         let count = parts.fold(1.0, f64::max).ceil().min(MOST);
         let mut between = std::mem::take(&mut self.between);
         let outcome = (1..=count as usize).try_for_each(|part| {
             let share = part as f64 / count;
             between.copy_from_slice(end);
-            for k in own().map(|j| model.q_range(j).start) {
-                between[k] = start[k] + share * (end[k] - start[k]);
+            for j in own() {
+                let sign = sign_of(j);
+                for k in model.q_range(j) {
+                    between[k] = start[k] + share * (sign * end[k] - start[k]);
+                }
             }
             self.check(model, from + share * (to - from), &between)
         });

@@ -4,7 +4,7 @@ use crate::random::{case, close, config, difference, largest, one_degree_case, t
 use proptest::prelude::*;
 use springpot::dynamics::Kinematics;
 use springpot::elements::{Joint, JointMeasureError, Line, Measure};
-use springpot::model::{JointKind, Model};
+use springpot::model::{Dimension, Model};
 
 /// Distances below this make differences inaccurate.
 const SHORTEST: f64 = 0.15;
@@ -37,15 +37,16 @@ proptest! {
         let model = case.model();
         for j in 0..model.joint_count() {
             let name = &model.joint_names()[j];
-            if model.joint_kind(j) == JointKind::Floating {
-                let error = JointMeasureError::Kind { joint: name.clone(), kind: JointKind::Floating };
+            let Some(dimension) = model.joint_space(j).dimension() else {
+                let kind = model.described_joint(j).kind;
+                let error = JointMeasureError::Kind { joint: name.clone(), kind };
                 prop_assert_eq!(Joint::new(&model, j), Err(error.clone()));
                 prop_assert_eq!(Joint::named(&model, name), Err(error));
                 continue;
-            }
+            };
             let measure = Measure::from(Joint::new(&model, j).unwrap());
             prop_assert_eq!(&measure, &Joint::named(&model, name).unwrap().into());
-            prop_assert_eq!(measure.is_rotation(), model.joint_kind(j) != JointKind::Prismatic);
+            prop_assert_eq!(measure.is_rotation(), dimension == Dimension::Angle);
             check(&case, &model, &measure, 1e-10)?;
         }
     }

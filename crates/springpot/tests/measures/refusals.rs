@@ -14,8 +14,7 @@ fn joints_without_one_coordinate_are_refused() {
     builder.push(body("c", Parent::Body(base), JointSpec::fixed("weld", [0.1; 3]))).unwrap();
     let model = builder.finish().unwrap();
     let error = |joint: Result<Joint, JointMeasureError>| joint.unwrap_err().to_string();
-    let kinds =
-        "an element acts on the coordinate of a joint of one degree of freedom (revolute, continuous or prismatic)";
+    let kinds = "an element acts on the coordinate of a joint of one degree of freedom (revolute, continuous, prismatic or helical)";
     assert_eq!(error(Joint::named(&model, "base")), format!("joint \"base\" is floating: {kinds}"));
     assert_eq!(error(Joint::new(&model, 0)), format!("joint \"base\" is floating: {kinds}"));
     assert_eq!(error(Joint::named(&model, "weld")), format!("joint \"weld\" is fixed: {kinds}"));

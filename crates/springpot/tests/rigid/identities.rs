@@ -10,6 +10,7 @@ use springpot::dynamics::{
 };
 use springpot::model::{BodySpec, JointKind, JointSpec, Model, Parent};
 use springpot::spatial::{Inertia, Placement, Rotation, Symmetric3, Vec3};
+use std::f64::consts::TAU;
 
 fn times(matrix: &[f64], v: &[f64]) -> Vec<f64> {
     matrix.chunks(v.len()).map(|row| row.iter().zip(v).map(|(m, v)| m * v).sum()).collect()
@@ -33,6 +34,37 @@ fn christoffel_forces(gamma: &[f64], v: &[f64]) -> Vec<f64> {
     forces
 }
 
+fn unit(v: [f64; 3]) -> Vec3 {
+    Vec3(v) * (1.0 / Vec3(v).norm())
+}
+
+/// What each coordinate of a joint does: an axis in the frame that is carried along so far, the turn about and the shift along it.
+fn moves(joint: &JointSpec) -> Vec<(Vec3, [f64; 2])> {
+    const TURN: [f64; 2] = [1.0, 0.0];
+    const SHIFT: [f64; 2] = [0.0, 1.0];
+    let axis = || unit(joint.axis);
+    match joint.kind {
+        JointKind::Fixed => Vec::new(),
+        JointKind::Revolute | JointKind::Continuous => vec![(axis(), TURN)],
+        JointKind::Prismatic => vec![(axis(), SHIFT)],
+        JointKind::Helical => vec![(axis(), [1.0, joint.lead / TAU])],
+        JointKind::Cylindrical => vec![(axis(), SHIFT), (axis(), TURN)],
+        // The second axis stands in the joint frame as it is where both angles are 0, and turns with the first.
+        JointKind::Universal => vec![(axis(), TURN), (unit(joint.axis2), TURN)],
+        JointKind::Planar => {
+            let up = Vec3([0.0, 0.0, 1.0]);
+            let (about, angle) = (up.cross(axis()), up.dot(axis()).clamp(-1.0, 1.0).acos());
+            let turned = match about.norm() {
+                // Half a turn about x leads z to −z.
+                0.0 => Rotation::from_rpy([angle, 0.0, 0.0]),
+                length => Rotation::from_axis_angle(about * (1.0 / length), about.norm().atan2(up.dot(axis()))),
+            };
+            vec![(turned.column(0), SHIFT), (turned.column(1), SHIFT), (axis(), TURN)]
+        }
+        JointKind::Spherical | JointKind::Floating => unreachable!("these trees have joints of one degree"),
+    }
+}
+
 /// The Rodrigues face as the papers state it: sums over bodies, in the described frames, nothing merged or turned.
 struct Rodrigues {
     mass: Vec<f64>,
@@ -43,8 +75,8 @@ struct Rodrigues {
 fn rodrigues(case: &Case) -> Rodrigues {
     let mut frames: Vec<Placement> = Vec::new();
     let mut carriers: Vec<Vec<usize>> = Vec::new();
-    // Axis in the world, origin, and 1 for revolute joints (0 for prismatic ones), per moving joint.
-    let mut joints: Vec<(Vec3, Vec3, f64)> = Vec::new();
+    // Axis in the world, origin, and how it turns about and shifts along it, per joint of the model.
+    let mut joints: Vec<(Vec3, Vec3, [f64; 2])> = Vec::new();
     let model = case.model();
     // A joint that follows another one moves with its coordinate, `ratio` times as fast.
     let own =
@@ -56,27 +88,15 @@ fn rodrigues(case: &Case) -> Rodrigues {
         };
         let mut frame =
             parent * Placement { rotation: Rotation::from_rpy(body.joint.rpy), translation: Vec3(body.joint.origin) };
-        let local_axis = Vec3(body.joint.axis) * (1.0 / Vec3(body.joint.axis).norm());
-        let axis = frame.rotation * local_axis;
-        let coordinate = |j: usize| {
+        for (axis, [turn, shift]) in moves(&body.joint) {
+            let j = joints.len();
             let (index, (ratio, offset)) = own(j);
-            ratio * case.q[index] + offset
-        };
-        match body.joint.kind {
-            JointKind::Fixed => {}
-            JointKind::Floating => unreachable!("these trees have joints of one degree"),
-            JointKind::Revolute | JointKind::Continuous => {
-                let q = coordinate(joints.len());
-                carrier.push(joints.len());
-                joints.push((axis, frame.translation, 1.0));
-                frame.rotation = frame.rotation * Rotation::from_axis_angle(local_axis, q);
-            }
-            JointKind::Prismatic => {
-                let q = coordinate(joints.len());
-                carrier.push(joints.len());
-                joints.push((axis, frame.translation, 0.0));
-                frame.translation += axis * q;
-            }
+            let q = ratio * case.q[index] + offset;
+            let along = frame.rotation * axis;
+            joints.push((along, frame.translation, [turn, shift]));
+            carrier.push(j);
+            frame.translation += along * (shift * q);
+            frame.rotation = frame.rotation * Rotation::from_axis_angle(axis, turn * q);
         }
         frames.push(frame);
         carriers.push(carrier);
@@ -85,15 +105,23 @@ fn rodrigues(case: &Case) -> Rodrigues {
     let n = model.nv();
     let mut out = Rodrigues { mass: vec![0.0; n * n], gamma: vec![0.0; n * n * n], gravity: vec![0.0; n] };
     let at = |j: usize| own(j).0;
+    // Each rotor turns with its own coordinate alone.
+    let mut j = 0;
+    for joint in case.bodies.iter().map(|body| &body.joint) {
+        for armature in &joint.armature[..moves(joint).len()] {
+            out.mass[at(j) * n + at(j)] += armature * own(j).1.0 * own(j).1.0;
+            j += 1;
+        }
+    }
     for (body, (frame, carrier)) in case.bodies.iter().zip(frames.iter().zip(&carriers)) {
         let m = body.mass;
         let centre = frame.point(Vec3(body.com));
         let inertia = Symmetric3::from_upper(body.inertia).rotated(&frame.rotation);
         let t = |j: usize| {
-            let (e, origin, revolute) = joints[j];
-            (e * (1.0 - revolute) + e.cross(centre - origin) * revolute) * own(j).1.0
+            let (e, origin, [turn, shift]) = joints[j];
+            (e * shift + e.cross(centre - origin) * turn) * own(j).1.0
         };
-        let om = |j: usize| joints[j].0 * (joints[j].2 * own(j).1.0);
+        let om = |j: usize| joints[j].0 * (joints[j].2[0] * own(j).1.0);
         for &a in carrier {
             out.gravity[at(a)] -= m * Vec3(GRAVITY).dot(t(a));
             for &b in carrier {
@@ -285,19 +313,20 @@ proptest! {
 fn the_random_trees_are_worth_their_name() {
     use proptest::strategy::ValueTree;
     let mut runner = proptest::test_runner::TestRunner::new(config(0x5eed_0001));
-    let (mut branches, mut prismatic, mut fixed, mut long, mut floating) = (0, 0, 0, 0, 0);
+    let (mut branches, mut long, mut kinds) = (0, 0, [0; JointKind::ALL.len()]);
     for _ in 0..256 {
         let case = case().new_tree(&mut runner).unwrap().current();
         let parents: Vec<Parent> = case.bodies.iter().map(|body| body.parent).collect();
         let is_kind = |kind| case.bodies.iter().any(|body| body.joint.kind == kind);
         branches += usize::from((1..parents.len()).any(|k| parents[..k].contains(&parents[k])));
-        prismatic += usize::from(is_kind(JointKind::Prismatic));
-        fixed += usize::from(is_kind(JointKind::Fixed));
         long += usize::from(case.q.len() >= 6);
-        floating += usize::from(is_kind(JointKind::Floating));
+        for (count, kind) in kinds.iter_mut().zip(JointKind::ALL) {
+            *count += usize::from(is_kind(kind));
+        }
     }
-    assert!(branches > 50 && prismatic > 100 && fixed > 60 && long > 25, "{branches} {prismatic} {fixed} {long}");
-    assert!(floating > 80, "{floating}");
+    assert!(branches > 50 && long > 25, "{branches} {long}");
+    let rare = |k: &usize| kinds[*k] <= 30 && JointKind::ALL[*k] != JointKind::Continuous;
+    assert_eq!((0..kinds.len()).find(rare), None, "{kinds:?}");
     let mut followers = 0;
     for _ in 0..256 {
         let case = one_degree_case().new_tree(&mut runner).unwrap().current();

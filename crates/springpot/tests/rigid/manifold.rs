@@ -3,7 +3,7 @@
 use crate::support::{build, case, close, config, largest};
 use proptest::prelude::*;
 use springpot::dynamics::{Kinematics, aba, kinetic_energy, potential_energy};
-use springpot::model::{BodySpec, JointKind, JointSpec, Limits, Model, ModelBuilder, Parent, StateError};
+use springpot::model::{BodySpec, JointKind, JointSpec, Limits, Model, ModelBuilder, Parent, Space, StateError};
 use springpot::spatial::{Motion, Rotation, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -36,10 +36,11 @@ proptest! {
         let model = case.model();
         let mut q = case.q.clone();
         for j in 0..model.joint_count() {
-            match model.joint_kind(j) {
-                JointKind::Floating => model.q_range(j).skip(3).for_each(|k| q[k] *= -stretch),
-                JointKind::Continuous if model.followed(j).is_none() => q[model.q_range(j).start] += TAU,
-                _ => {}
+            match model.joint_space(j) {
+                Space::Pose => model.q_range(j).skip(3).for_each(|k| q[k] *= -stretch),
+                Space::Attitude => model.q_range(j).for_each(|k| q[k] *= -stretch),
+                Space::Circle if model.followed(j).is_none() => q[model.q_range(j).start] += TAU,
+                Space::Circle | Space::Line(_) => {}
             }
         }
         // Followers turn by their ratio of the full turn, so that only their leaders' links stay where they were.
@@ -79,7 +80,7 @@ fn the_shorter_way_round() {
 fn random_configurations_are_within_limits_and_the_same_for_a_seed() {
     let mut builder = ModelBuilder::new([0.0; 3]);
     let limits = Limits { lower: 0.2, upper: 0.3, ..Limits::NONE };
-    let joint = JointSpec { limits, ..JointSpec::prismatic("q1", [1.0, 0.0, 0.0], [0.0; 3]) };
+    let joint = JointSpec { limits: [limits; 3], ..JointSpec::prismatic("q1", [1.0, 0.0, 0.0], [0.0; 3]) };
     builder.push(rod("slider".into(), joint)).unwrap();
     builder.push(rod("body".into(), JointSpec::floating("base", [0.0; 3]))).unwrap();
     let model = builder.finish().unwrap();

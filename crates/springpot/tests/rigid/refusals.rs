@@ -75,8 +75,8 @@ fn numbers_that_are_not_finite() {
         (Field::Axis, |b, x| b.joint.axis[1] = x),
         (Field::Origin, |b, x| b.joint.origin[2] = x),
         (Field::Rpy, |b, x| b.joint.rpy[0] = x),
-        (Field::Damping, |b, x| b.joint.damping = x),
-        (Field::Friction, |b, x| b.joint.friction = x),
+        (Field::Damping, |b, x| b.joint.damping[0] = x),
+        (Field::Friction, |b, x| b.joint.friction[0] = x),
         (Field::Mass, |b, x| b.mass = x),
         (Field::Com, |b, x| b.com[1] = x),
         (Field::Inertia, |b, x| b.inertia[2][1] = x),
@@ -97,8 +97,8 @@ fn numbers_that_are_not_finite() {
 #[test]
 fn signs_and_axes() {
     refused(|b| b.mass = -2.0, Field::Mass, &["mass", "\"arm\"", "-2", "0 or more"]);
-    refused(|b| b.joint.damping = -0.1, Field::Damping, &["joint.damping", "-0.1"]);
-    refused(|b| b.joint.friction = -0.1, Field::Friction, &["joint.friction", "-0.1"]);
+    refused(|b| b.joint.damping[0] = -0.1, Field::Damping, &["joint.damping", "-0.1"]);
+    refused(|b| b.joint.friction[0] = -0.1, Field::Friction, &["joint.friction", "-0.1"]);
     refused(|b| b.joint.axis = [0.0; 3], Field::Axis, &["\"q2\"", "[0, 0, 1]"]);
     // A fixed joint has no use for an axis, and length is no matter.
     let fixed = BodySpec { joint: JointSpec { axis: [0.0; 3], ..JointSpec::fixed("q", [0.0; 3]) }, ..body("b", "") };
@@ -246,7 +246,11 @@ fn what_the_model_tells() {
     fixed.joint.kind = JointKind::Fixed;
     let slider = BodySpec {
         parent: Parent::Body(0),
-        joint: JointSpec { damping: 3.0, friction: 0.5, ..JointSpec::prismatic("slide", [1.0, 0.0, 0.0], [0.0; 3]) },
+        joint: JointSpec {
+            damping: [3.0; 3],
+            friction: [0.5; 3],
+            ..JointSpec::prismatic("slide", [1.0, 0.0, 0.0], [0.0; 3])
+        },
         ..body("carriage", "")
     };
     let turntable = BodySpec { parent: Parent::Body(1), ..body("table", "turn") };
@@ -254,7 +258,10 @@ fn what_the_model_tells() {
     assert_eq!((model.nq(), model.nv()), (2, 2));
     assert_eq!(model.joint_names(), ["slide", "turn"]);
     assert_eq!((model.joint_index("turn"), model.joint_index("weld")), (Some(1), None));
-    assert_eq!((model.joint_kind(0), model.joint_kind(1)), (JointKind::Prismatic, JointKind::Revolute));
+    assert_eq!(
+        (model.described_joint(0).kind, model.described_joint(1).kind),
+        (JointKind::Prismatic, JointKind::Revolute)
+    );
     assert_eq!((model.joint_body(0), model.joint_body(1)), (1, 2));
     assert_eq!((model.damping(), model.friction()), (&[3.0, 0.0][..], &[0.5, 0.0][..]));
     assert_eq!((model.body_index("table"), model.body_index("none")), (Some(2), None));

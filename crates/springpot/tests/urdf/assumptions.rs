@@ -119,7 +119,7 @@ fn axes() {
 #[test]
 fn limits_that_are_missing() {
     let urdf = warned(&arm_with(LIMIT, ""), &[(NoLimit, "no <limit>, taken as unlimited: joint \"elbow\" (line 24)")]);
-    assert_eq!(urdf.bodies[1].joint.limits, Limits::NONE);
+    assert_eq!(urdf.bodies[1].joint.limits[0], Limits::NONE);
     let incomplete = "incomplete <limit>: joint \"elbow\" (line 29:";
     let cases = [
         ("upper=\"0.3\" effort=\"50\" velocity=\"1\"", "lower taken as 0"),
@@ -132,7 +132,7 @@ fn limits_that_are_missing() {
         let text = arm_with(LIMIT, &format!("<limit {limit}/>"));
         warned(&text, &[(IncompleteLimit, &format!("{incomplete} {what})"))]);
     }
-    let limits = parse(&arm_with(LIMIT, "<limit effort=\"50\"/>")).bodies[1].joint.limits;
+    let limits = parse(&arm_with(LIMIT, "<limit effort=\"50\"/>")).bodies[1].joint.limits[0];
     assert_eq!(limits, Limits { lower: 0.0, upper: 0.0, effort: 50.0, velocity: f64::INFINITY });
 }
 
@@ -143,7 +143,7 @@ fn limits_that_make_no_sense() {
         &arm_with("lower=\"0\"", "lower=\"1\""),
         &[(SenselessLimit, &format!("{senseless} lower 1 and upper 0.3)"))],
     );
-    let limits = urdf.bodies[1].joint.limits;
+    let limits = urdf.bodies[1].joint.limits[0];
     assert_eq!((limits.lower, limits.upper, limits.effort), (f64::NEG_INFINITY, f64::INFINITY, 50.0));
     warned(&arm_with("effort=\"50\"", "effort=\"-1\""), &[(SenselessLimit, &format!("{senseless} effort -1)"))]);
     warned(
@@ -151,7 +151,7 @@ fn limits_that_make_no_sense() {
         &[(SenselessLimit, &format!("{senseless} lower inf and upper 0.3)"))],
     );
     let unlimited = arm_with(LIMIT, "<limit lower=\"-inf\" upper=\"inf\" effort=\"Inf\" velocity=\" inf \"/>");
-    assert_eq!(warned(&unlimited, &[]).bodies[1].joint.limits, Limits::NONE);
+    assert_eq!(warned(&unlimited, &[]).bodies[1].joint.limits[0], Limits::NONE);
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn continuous_joints_have_no_lower_and_upper() {
     let text = arm_with("type=\"prismatic\"", "type=\"continuous\"");
     let urdf = warned(&text, &[(NotUsed, "not used: 1 lower and upper <limit> of continuous joints")]);
     let expected = Limits { effort: 50.0, velocity: 1.0, ..Limits::NONE };
-    assert_eq!((urdf.bodies[1].joint.kind, urdf.bodies[1].joint.limits), (JointKind::Continuous, expected));
+    assert_eq!((urdf.bodies[1].joint.kind, urdf.bodies[1].joint.limits[0]), (JointKind::Continuous, expected));
     warned(&text.replace(LIMIT, ""), &[]);
 }
 
@@ -184,7 +184,7 @@ fn floating_joints_have_no_axis() {
             (line 29)"
     );
     let urdf = warned(&text, &[(OfFloatingJoint, &message)]);
-    assert_eq!((urdf.bodies[1].joint.kind, urdf.bodies[1].joint.damping), (JointKind::Floating, 0.0));
+    assert_eq!((urdf.bodies[1].joint.kind, urdf.bodies[1].joint.damping[0]), (JointKind::Floating, 0.0));
 }
 
 #[test]

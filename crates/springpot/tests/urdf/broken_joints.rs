@@ -19,13 +19,13 @@ fn names_and_types() {
     let joint = ARM[ARM.find("<joint name=\"elbow\"").unwrap()..].replace("</robot>\n", "");
     let message = "line 31, column 1: there are two of joint \"elbow\", the first in line 24; names must be unique";
     refused(&arm_and(&joint), message);
-    let types = "fixed, revolute, continuous, prismatic, floating";
+    let types = "fixed, revolute, continuous, prismatic, planar, spherical, floating";
     let message = "line 24, column 3: joint \"elbow\" has the unknown type \"Prismatic\"; did you mean \"prismatic\"?; \
         the types are";
     refused(&arm_with("type=\"prismatic\"", "type=\"Prismatic\""), &format!("{message} {types}"));
     let message = "line 24, column 3: joint \"elbow\" has the unknown type \"\"; the types are";
     refused(&arm_with("type=\"prismatic\"", "type=\"\""), &format!("{message} {types}"));
-    for kind in ["planar", "spherical", "universal"] {
+    for kind in ["helical", "cylindrical", "universal"] {
         let text = arm_with("type=\"prismatic\"", &format!("type=\"{kind}\""));
         let message =
             format!("line 24, column 3: joint \"elbow\" is {kind}, which is not supported yet; supported are {types}");

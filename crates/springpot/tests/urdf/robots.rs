@@ -68,7 +68,7 @@ fn compare(model: &Model, described: &Value, joints: &[Value], robot: &str) -> u
     let what = |field: &str| format!("{robot} {name} {field}");
     let mut count = close(in_parent.rotation.0.as_flattened(), &described["placement_R"], &what("rotation"));
     count += close(&in_parent.translation.0, &described["placement_p"], &what("origin"));
-    if model.joint_kind(joint).has_axis() {
+    if model.described_joint(joint).kind.has_axis() {
         count += close(&own.rotation.0[2], &described["axis"], &what("axis"));
     }
 
@@ -125,9 +125,9 @@ fn the_arm_is_read_word_for_word() {
     assert_eq!(lower.com, [0.0; 3]);
     let joint = &upper.joint;
     assert_eq!((joint.kind, joint.axis, joint.origin), (JointKind::Revolute, [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]));
-    assert_eq!((joint.damping, joint.friction), (0.1, 0.2));
-    assert_eq!(joint.limits, Limits { lower: -1.0, upper: 1.0, velocity: 2.0, effort: 10.0 });
-    assert_eq!((lower.joint.kind, lower.joint.damping), (JointKind::Prismatic, 0.0));
+    assert_eq!((joint.damping[0], joint.friction[0]), (0.1, 0.2));
+    assert_eq!(joint.limits[0], Limits { lower: -1.0, upper: 1.0, velocity: 2.0, effort: 10.0 });
+    assert_eq!((lower.joint.kind, lower.joint.damping[0]), (JointKind::Prismatic, 0.0));
     assert_eq!((urdf.link_line("base"), urdf.link_line("lower"), urdf.link_line("none")), (Some(2), Some(10), None));
     assert_eq!((urdf.joint_line("elbow"), urdf.joint_line("none")), (Some(24), None));
     let model = urdf.model([0.0, 0.0, -9.81]).unwrap();

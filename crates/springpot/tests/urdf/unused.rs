@@ -47,7 +47,7 @@ fn unknown_elements_and_attributes_name_their_owner() {
     let misspelt = arm_with("<dynamics damping=\"0.1\"", "<dynamics dampping=\"0.1\"");
     let message = "not known, not used: dampping of <dynamics> of joint \"shoulder\" (line 22)";
     let urdf = warned(&misspelt, &[(UnknownAttribute, message)]);
-    assert_eq!(urdf.bodies[0].joint.damping, 0.0);
+    assert_eq!(urdf.bodies[0].joint.damping[0], 0.0);
 }
 
 #[test]

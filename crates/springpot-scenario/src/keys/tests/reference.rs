@@ -19,8 +19,8 @@ joints that slide. The column *of* names the kinds that alone take a key.
 /// What stands in several places, and what it is called there.
 const SHARED: [(&str, &Keys); 4] = [
     ("A signal", &SIGNAL),
-    ("How a floating joint moves", &POSE),
-    ("What acts on a floating joint", &FORCES),
+    ("How a joint that turns freely moves", &POSE),
+    ("What acts on a joint that turns freely", &FORCES),
     ("A number made of constants", &SCALAR),
 ];
 
@@ -130,8 +130,11 @@ fn takes(key: &Key, sections: &[Section]) -> String {
         Shape::Number(of, bound) => format!("number{}{}", unit(of), range(bound)),
         Shape::NumberOrWord(of, bound, word) => format!("number{}{}, or `{word:?}`", unit(of), range(bound)),
         Shape::JointNumber(of, bound) => of_joint(of, bound),
+        Shape::JointNumbers(of, bound) => format!("{}, or such by coordinate", of_joint(of, bound)),
         Shape::JointNumberOrWord(of, bound, word) => format!("{}, or `{word:?}`", of_joint(of, bound)),
-        Shape::JointNumberOr(of, bound, keys) => format!("{}, or {}", of_joint(of, bound), link("table", keys)),
+        Shape::JointNumberOr(of, bound, keys) => {
+            format!("{}, or {}, or such by coordinate", of_joint(of, bound), link("table", keys))
+        }
         Shape::Whole(low, None) => format!("whole number, ≥ {low}"),
         Shape::Whole(low, Some(high)) => format!("whole number, {low} … {}", grouped(high)),
         Shape::Vector(of) => format!("three numbers{}", unit(of)),
@@ -160,11 +163,11 @@ fn takes(key: &Key, sections: &[Section]) -> String {
             let each = match each {
                 Each::Path => format!("{} or {}", link("signal", &SIGNAL), link("pose", &POSE)),
                 Each::Force => {
-                    format!("{} or, of floating joints, {}", link("signal", &SIGNAL), link("six of them", &FORCES))
+                    format!("{} or, of joints that turn freely, {}", link("signal", &SIGNAL), link("several", &FORCES))
                 }
                 Each::Coordinate => "number in rad or m".to_owned(),
                 Each::Number => "number, ≥ 0".to_owned(),
-                Each::NumberOr(keys) => format!("number or, of floating joints, {}", link("table", keys)),
+                Each::NumberOr(keys) => format!("number or, of joints that turn freely, {}", link("table", keys)),
             };
             format!("by joint: {each}")
         }

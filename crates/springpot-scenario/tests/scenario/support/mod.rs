@@ -95,7 +95,7 @@ pub(crate) fn coordinates(plan: &Plan) -> Vec<Signal> {
     fn of_one_degree(path: JointPath) -> Signal {
         match path {
             JointPath::Coordinate(signal) => signal,
-            JointPath::Pose(_) => panic!("a floating joint"),
+            JointPath::Attitude(_) | JointPath::Pose(_) => panic!("a floating joint"),
         }
     }
     paths(plan).into_iter().map(of_one_degree).collect()
@@ -105,6 +105,6 @@ pub(crate) fn coordinates(plan: &Plan) -> Vec<Signal> {
 pub(crate) fn pose(plan: &Plan) -> PosePath {
     match paths(plan).swap_remove(0) {
         JointPath::Pose(pose) => *pose,
-        JointPath::Coordinate(_) => panic!("a joint of one degree"),
+        JointPath::Coordinate(_) | JointPath::Attitude(_) => panic!("a joint of one degree"),
     }
 }

@@ -36,7 +36,17 @@ pub enum JointMeasureError {
         /// Number of moving joints.
         count: usize,
     },
-    /// The joint has not one coordinate.
+    /// The joint has several coordinates that are numbers, and the name says none of them.
+    #[error("joint \"{joint}\" is {} and has {} coordinates: name one of {}", kind.name(), coordinates.len(), coordinates.join(", "))]
+    Several {
+        /// The joint.
+        joint: String,
+        /// What it is.
+        kind: JointKind,
+        /// Names of its coordinates.
+        coordinates: Vec<String>,
+    },
+    /// The joint has no coordinate that is a number.
     #[error(
         "joint \"{joint}\" is {}: an element acts on the coordinate of a joint of one degree of freedom ({})", kind.name(), of_one_degree()
     )]
@@ -60,14 +70,14 @@ impl Joint {
     /// The coordinate of moving joint `joint`.
     ///
     /// # Errors
-    /// [`JointMeasureError::NoSuchJoint`]; [`JointMeasureError::Kind`] for a floating joint.
+    /// [`JointMeasureError::NoSuchJoint`]; [`JointMeasureError::Kind`] for a spherical or floating joint.
     pub fn new(model: &Model, joint: usize) -> Result<Self, JointMeasureError> {
         let count = model.joint_count();
         if joint >= count {
             return Err(JointMeasureError::NoSuchJoint { joint, count });
         }
-        let kind = model.joint_kind(joint);
-        let Some(dimension) = kind.dimension() else {
+        let Some(dimension) = model.joint_space(joint).dimension() else {
+            let kind = model.described_joint(joint).kind;
             return Err(JointMeasureError::Kind { joint: model.joint_names()[joint].clone(), kind });
         };
         let (_, ratio, offset) = model.followed(joint).unwrap_or((joint, 1.0, 0.0));
@@ -75,17 +85,25 @@ impl Joint {
         Ok(Self { joint, velocity, ratio, offset, is_rotation: dimension == Dimension::Angle })
     }
 
-    /// The coordinate of the joint called `name`.
+    /// The coordinate of the joint called `name`; of a joint of several, that called "joint.coordinate".
     ///
     /// # Errors
-    /// [`JointMeasureError::Unknown`]; [`JointMeasureError::Kind`] for a floating or fixed joint.
+    /// [`JointMeasureError::Unknown`]; [`JointMeasureError::Several`] where the name says no coordinate;
+    /// [`JointMeasureError::Kind`] for a spherical, floating or fixed joint.
     pub fn named(model: &Model, name: &str) -> Result<Self, JointMeasureError> {
         match model.joint_index(name) {
             Some(joint) => Self::new(model, joint),
             None if model.has_fixed_joint(name) => {
                 Err(JointMeasureError::Kind { joint: name.into(), kind: JointKind::Fixed })
             }
-            None => Err(JointMeasureError::Unknown(name.into())),
+            None => Err(match model.described_joints().iter().find(|joint| joint.name == name) {
+                Some(joint) => JointMeasureError::Several {
+                    joint: name.into(),
+                    kind: joint.kind,
+                    coordinates: model.joint_names()[joint.joints.clone()].to_vec(),
+                },
+                None => JointMeasureError::Unknown(name.into()),
+            }),
         }
     }
 

@@ -5,7 +5,6 @@ use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::{Equations, Within};
-use crate::model::JointKind;
 
 /// The step just fitted as a function of time: the cubic through the regular accelerations at its start and its nodes, integrated
 /// twice, and the share of singular starts, integrated exactly.
@@ -45,7 +44,7 @@ impl Within for Dense<'_> {
                 let start = origin.v[k];
                 evaluation.a[k] = a + extra[0];
                 evaluation.v[k] = start + h * push + extra[1];
-                scratch.xi[k] = if model.joint_kind(j) == JointKind::Floating {
+                scratch.xi[k] = if model.joint_space(j).quaternion().is_some() {
                     h * integrals(step.fitted.turning.each_ref().map(|u| u[k]), theta)[1]
                 } else {
                     h * (theta * start + h * travel) + extra[2]

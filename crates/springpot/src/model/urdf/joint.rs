@@ -5,11 +5,12 @@ use super::limit;
 use super::problem::{TYPES, UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
-use crate::model::spec::{JointKind, JointSpec, Mimic};
+use crate::model::kind::JointKind;
+use crate::model::spec::{JointSpec, Mimic};
 use crate::names::nearest;
 
-/// Types of the format, and of its neighbours, that are not built.
-const OTHER_TYPES: [&str; 7] = ["planar", "spherical", "ball", "universal", "helical", "screw", "cylindrical"];
+/// Types of neighbours of the format, of which no file says enough.
+const OTHER_TYPES: [&str; 4] = ["universal", "helical", "screw", "cylindrical"];
 
 /// A joint as it stands in the file.
 #[derive(Debug)]
@@ -42,26 +43,31 @@ pub(super) fn read<'a>(
     let (origin, rpy) = reader.origin(origin, &owner)?;
 
     let mut spec = JointSpec { kind, rpy, ..JointSpec::fixed(name, origin) };
-    if !kind.has_axis() {
-        for (element, name) in [(axis, "axis"), (limit, "limit"), (dynamics, "dynamics"), (mimic, "mimic")] {
+    if kind == JointKind::Planar {
+        spec.axis = read_axis(reader, node, axis, &owner)?;
+    }
+    if kind.nv() != 1 {
+        let unused =
+            [(axis.filter(|_| !kind.has_axis()), "axis"), (limit, "limit"), (dynamics, "dynamics"), (mimic, "mimic")];
+        for (element, name) in unused {
             let Some(element) = element else { continue };
             if kind == JointKind::Floating {
                 let line = reader.line(element);
                 reader.warnings.add(UrdfWarningKind::OfFloatingJoint, &owner, line, format!("<{name}>"));
             } else {
-                reader.not_used(element, &owner, &format!("<{name}> of fixed joints"));
+                reader.not_used(element, &owner, &format!("<{name}> of {} joints", kind.name()));
             }
         }
         return Ok(JointEntry { node, parent, child, mimic: None, spec });
     }
     spec.axis = read_axis(reader, node, axis, &owner)?;
-    spec.limits = limit::read(reader, node, limit, &owner, kind)?;
+    spec.limits[0] = limit::read(reader, node, limit, &owner, kind)?;
     if let Some(dynamics) = dynamics {
         reader.leaf(dynamics, &owner, &["damping", "friction"], &[])?;
         let damping = reader.number(dynamics, &owner, "damping")?.unwrap_or(0.0);
-        spec.damping = reader.not_negative(dynamics, &owner, "damping", damping)?;
+        spec.damping[0] = reader.not_negative(dynamics, &owner, "damping", damping)?;
         let friction = reader.number(dynamics, &owner, "friction")?.unwrap_or(0.0);
-        spec.friction = reader.not_negative(dynamics, &owner, "friction", friction)?;
+        spec.friction[0] = reader.not_negative(dynamics, &owner, "friction", friction)?;
     }
     if let Some(mimic) = mimic {
         let found = read_mimic(reader, mimic, &owner)?;
@@ -76,7 +82,9 @@ pub(super) fn read<'a>(
 
 fn read_kind<'a>(reader: &Reader<'a>, node: Node<'a>, name: &str, owner: &Owner) -> Result<JointKind, UrdfError> {
     let written = reader.required(node, owner, "type")?;
-    if let Some(kind) = TYPES.into_iter().find(|kind| kind.name() == written) {
+    // Gazebo's name of it.
+    let own = if written == "ball" { JointKind::Spherical.name() } else { written };
+    if let Some(kind) = TYPES.into_iter().find(|kind| kind.name() == own) {
         return Ok(kind);
     }
     let (joint, kind) = (name.to_owned(), written.chars().take(40).collect());

@@ -3,7 +3,8 @@
 use super::error::{Owner, UrdfError};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
-use crate::model::spec::{JointKind, Limits, Space};
+use crate::model::kind::JointKind;
+use crate::model::spec::Limits;
 
 /// Attributes of other programs and of later versions of the format.
 const UNUSED: [&str; 6] = ["acceleration", "deceleration", "jerk", "current", "command_effort", "gear_velocity"];
@@ -23,7 +24,7 @@ pub(super) fn read<'a>(
     owner: &Owner,
     kind: JointKind,
 ) -> Result<Limits, UrdfError> {
-    let turns_freely = kind.space() == Space::Circle;
+    let turns_freely = kind == JointKind::Continuous;
     let Some(node) = limit else {
         if !turns_freely {
             reader.warnings.add(UrdfWarningKind::NoLimit, owner, reader.line(joint), "");

@@ -2,11 +2,18 @@
 
 use super::error::Owner;
 use crate::model::error::ModelError;
-use crate::model::spec::JointKind;
+use crate::model::kind::JointKind;
 
 /// The types of joints that are read.
-pub(super) const TYPES: [JointKind; 5] =
-    [JointKind::Fixed, JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic, JointKind::Floating];
+pub(super) const TYPES: [JointKind; 7] = [
+    JointKind::Fixed,
+    JointKind::Revolute,
+    JointKind::Continuous,
+    JointKind::Prismatic,
+    JointKind::Planar,
+    JointKind::Spherical,
+    JointKind::Floating,
+];
 
 /// What is wrong with a URDF file.
 #[derive(Debug, thiserror::Error)]

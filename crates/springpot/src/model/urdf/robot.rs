@@ -14,7 +14,8 @@ use super::tree::Tree;
 use super::visual::{self, Visual};
 use super::warning::UrdfWarningKind;
 use super::{BodyLines, FLOATING_BASE, RootLink, Urdf, UrdfOptions, joint, link, mimic};
-use crate::model::spec::{BodySpec, JointKind, JointSpec, Parent};
+use crate::model::kind::JointKind;
+use crate::model::spec::{BodySpec, JointSpec, Parent};
 
 /// The inertial frame's name.
 const WORLD: &str = "world";

@@ -35,21 +35,26 @@ fn inertia() -> impl Strategy<Value = [[f64; 3]; 3]> {
 /// Which joints a random tree may have.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 enum Joints {
-    /// Fixed, revolute, continuous and prismatic ones.
+    /// Fixed ones and chains of turns, shifts and screws.
     Plain,
     /// And such that follow others.
     OneDegree,
-    /// And floating ones.
+    /// And spherical and floating ones.
     All,
 }
 
 fn kind(joints: Joints) -> impl Strategy<Value = JointKind> {
-    let floating = if joints == Joints::All { JointKind::Floating } else { JointKind::Continuous };
+    let of_all = |kind| if joints == Joints::All { kind } else { JointKind::Continuous };
     prop_oneof![
-        4 => Just(JointKind::Revolute),
-        2 => Just(JointKind::Prismatic),
-        1 => Just(JointKind::Fixed),
-        2 => Just(floating),
+        6 => Just(JointKind::Revolute),
+        3 => Just(JointKind::Prismatic),
+        2 => Just(JointKind::Fixed),
+        3 => Just(of_all(JointKind::Floating)),
+        2 => Just(of_all(JointKind::Spherical)),
+        2 => Just(JointKind::Helical),
+        1 => Just(JointKind::Cylindrical),
+        1 => Just(JointKind::Universal),
+        1 => Just(JointKind::Planar),
     ]
 }
 
@@ -65,14 +70,24 @@ fn axis() -> impl Strategy<Value = [f64; 3]> {
 }
 
 fn body(joints: Joints) -> impl Strategy<Value = BodySpec> {
-    (kind(joints), axis(), vector(0.8), vector(3.0), 0.1..5.0, vector(0.4), inertia()).prop_map(
-        |(kind, axis, origin, rpy, mass, com, inertia)| BodySpec {
-            name: String::new(),
-            parent: Parent::World,
-            joint: JointSpec { kind, rpy, ..JointSpec::revolute("", axis, origin) },
-            mass,
-            com,
-            inertia,
+    let screw = (0.3..2.0, any::<bool>()).prop_map(|(lead, back): (f64, bool)| if back { -lead } else { lead });
+    let armature = prop_oneof![1 => Just([0.0; 3]), 1 => proptest::array::uniform3(0.0..0.5)];
+    let joint = (kind(joints), axis(), axis(), vector(0.8), vector(3.0), screw, armature);
+    (joint, 0.1..5.0, vector(0.4), inertia()).prop_map(
+        |((kind, axis, axis2, origin, rpy, lead, armature), mass, com, inertia)| {
+            let along: f64 = axis.iter().zip(&axis2).map(|(x, y)| x * y).sum();
+            let lengths: f64 =
+                [axis, axis2].iter().map(|axis| axis.iter().map(|x| x * x).sum::<f64>().sqrt()).product();
+            // Nearly parallel axes are nearly one: nothing can be told of them to many digits.
+            let axis2 = if along.abs() > 0.9 * lengths { [axis[1], axis[2], -axis[0] - 0.5] } else { axis2 };
+            BodySpec {
+                name: String::new(),
+                parent: Parent::World,
+                joint: JointSpec { kind, rpy, axis2, lead, armature, ..JointSpec::revolute("", axis, origin) },
+                mass,
+                com,
+                inertia,
+            }
         },
     )
 }
