@@ -6,6 +6,7 @@ use super::super::figures::{FIGURE, POINTS};
 use super::super::motion::{MOTION, MotionKind};
 use super::super::root::SCENARIO;
 use super::*;
+use springpot::model::JointKind;
 use std::fs;
 
 /// What a key may hold in a table of its own, if anything.
@@ -37,6 +38,47 @@ fn tables() -> Vec<&'static Keys> {
         at += 1;
     }
     found
+}
+
+#[test]
+fn kinds_of_joint_take_the_keys_that_they_have() {
+    for kind in JointKind::ALL {
+        let numbers: Vec<_> = kind.numbers().collect();
+        let ends = !numbers.is_empty() && kind != JointKind::Continuous;
+        let expected = [
+            ("axis", kind.has_axis()),
+            ("axis2", kind.has_axis2()),
+            ("lead", kind.has_lead()),
+            ("damping", !numbers.is_empty()),
+            ("friction", !numbers.is_empty()),
+            ("armature", !numbers.is_empty()),
+            ("velocity", !numbers.is_empty()),
+            ("effort", !numbers.is_empty()),
+            ("lower", ends),
+            ("upper", ends),
+            ("mimic", kind.dimension().is_some()),
+        ];
+        for keys in [&JOINT, &CHANGED_JOINT] {
+            let taken = keys.names_for(kind.name());
+            for (key, has) in expected.into_iter().filter(|(key, _)| keys.get(key).is_some()) {
+                assert_eq!(taken.contains(&key), has, "{key} of {} joints", kind.name());
+            }
+        }
+        assert!(JOINT.keys.iter().all(|key| key.only.is_empty() || expected.iter().any(|(name, _)| *name == key.name)));
+        // What stands behind a dot tells the coordinate.
+        let mut names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
+        names.dedup();
+        assert_eq!(names.len(), numbers.len(), "{}", kind.name());
+        assert!(numbers.len() < 2 || names.iter().all(|name| !name.is_empty()), "{}", kind.name());
+    }
+    let page = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/how-to/joints.md")).unwrap();
+    for kind in JointKind::ALL {
+        let row = page.lines().find(|line| line.starts_with('|') && line.contains(&format!("`{}`", kind.name())));
+        let row = row.unwrap_or_else(|| panic!("no row for {} joints", kind.name()));
+        for (name, _) in kind.numbers().filter(|(name, _)| !name.is_empty()) {
+            assert!(row.contains(&format!("`.{name}`")), "{}: {name}", kind.name());
+        }
+    }
 }
 
 #[test]

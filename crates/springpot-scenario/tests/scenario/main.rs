@@ -5,6 +5,7 @@ mod friction;
 mod fuzz;
 mod heat;
 mod joints;
+mod kinds;
 mod limits;
 mod plan;
 mod refusals;

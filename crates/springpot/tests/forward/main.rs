@@ -3,6 +3,7 @@
 mod drives;
 mod failures;
 mod floating;
+mod joints;
 mod limits;
 mod random;
 mod references;

@@ -2,6 +2,7 @@
 
 mod derivatives;
 mod identities;
+mod joints;
 mod long_chain;
 mod manifold;
 mod oracle;
