@@ -2,13 +2,128 @@
 
 use super::motion::of_gripper;
 use super::{Bound, Each, Keys, Need, Shape, key};
+use springpot::control::{ComputedTorque, Controller, Impedance, PdGravity, Pid};
+use std::sync::Arc;
 
-/// The kinds of controller.
-pub(crate) const PD_GRAVITY: &str = "pd-gravity";
-pub(crate) const COMPUTED_TORQUE: &str = "computed-torque";
-pub(crate) const PID: &str = "pid";
-pub(crate) const FRACTIONAL_PID: &str = "fractional-pid";
-pub(crate) const IMPEDANCE: &str = "impedance";
+const COMPUTED_TORQUE: &str = "computed-torque";
+const PID: &str = "pid";
+const FRACTIONAL_PID: &str = "fractional-pid";
+
+/// A kind of controller: its name, what it takes, and the law that it is.
+#[derive(Debug)]
+pub(crate) struct ControllerKind {
+    pub(crate) name: &'static str,
+    /// In the list of kinds.
+    words: &'static str,
+    /// Where its gains act, and their units.
+    pub(crate) gains: Gains,
+    /// Whether lambda and mu are its own; else they are 1.
+    pub(crate) has_orders: bool,
+    /// Whether it can take the elements' generalized forces off.
+    pub(crate) compensates: bool,
+    /// Whether it asks for the accelerations of all joints, which must have one degree then.
+    pub(crate) drives_all: bool,
+    /// What it does where all gains are 0.
+    pub(crate) without_gains: &'static str,
+    /// The law of what was read.
+    pub(crate) law: fn(Gained) -> Arc<dyn Controller>,
+}
+
+/// Units of gains: of kp, kd and, where there is an integral, ki.
+#[derive(Debug)]
+pub(crate) enum Gains {
+    /// By joint: of joints that turn, and that slide.
+    OfJoints([&'static [&'static str]; 2]),
+    /// At the gripper.
+    AtGripper([&'static str; 2]),
+}
+
+/// What was read of a controller: numbers by velocity (nv), or one at the gripper.
+#[derive(Debug, Default)]
+pub(crate) struct Gained {
+    pub(crate) kp: Vec<f64>,
+    pub(crate) kd: Vec<f64>,
+    pub(crate) ki: Vec<f64>,
+    pub(crate) lambda: Vec<f64>,
+    pub(crate) mu: Vec<f64>,
+    pub(crate) compensate_elements: bool,
+}
+
+const OF_FORCES: Gains = Gains::OfJoints([&["N*m/rad", "N*m*s/rad"], &["N/m", "N*s/m"]]);
+const HANGS: &str = "it carries the weight and follows nothing";
+
+/// Every kind.
+pub(crate) static KINDS: [ControllerKind; 5] = [
+    ControllerKind {
+        name: "pd-gravity",
+        words: "Proportional–derivative with gravity",
+        gains: OF_FORCES,
+        has_orders: false,
+        compensates: false,
+        drives_all: false,
+        without_gains: HANGS,
+        law: |Gained { kp, kd, .. }| Arc::new(PdGravity { kp, kd }),
+    },
+    ControllerKind {
+        name: COMPUTED_TORQUE,
+        words: "inverse dynamics",
+        gains: Gains::OfJoints([&["1/s^2", "1/s"]; 2]),
+        has_orders: false,
+        compensates: true,
+        drives_all: true,
+        without_gains: "nothing brings the robot back to where it should be",
+        law: |Gained { kp, kd, compensate_elements, .. }| Arc::new(ComputedTorque { kp, kd, compensate_elements }),
+    },
+    ControllerKind {
+        name: PID,
+        words: "proportional–integral–derivative",
+        gains: Gains::OfJoints([&["N*m/rad", "N*m*s/rad", "N*m/(rad*s)"], &["N/m", "N*s/m", "N/(m*s)"]]),
+        has_orders: false,
+        compensates: false,
+        drives_all: false,
+        without_gains: "it gives no force at all",
+        law: pid,
+    },
+    ControllerKind {
+        name: FRACTIONAL_PID,
+        words: "the same of fractional orders",
+        gains: Gains::OfJoints([
+            &["N*m/rad", "N*m*s^mu/rad", "N*m/(rad*s^lambda)"],
+            &["N/m", "N*s^mu/m", "N/(m*s^lambda)"],
+        ]),
+        has_orders: true,
+        compensates: false,
+        drives_all: false,
+        without_gains: "it gives no force at all",
+        law: pid,
+    },
+    ControllerKind {
+        name: "impedance",
+        words: "a spring and a dashpot at the gripper",
+        gains: Gains::AtGripper(["N/m", "N*s/m"]),
+        has_orders: false,
+        compensates: false,
+        drives_all: false,
+        without_gains: HANGS,
+        law: |Gained { kp, kd, .. }| Arc::new(Impedance { kp: kp[0], kd: kd[0] }),
+    },
+];
+
+fn pid(Gained { kp, kd, ki, lambda, mu, .. }: Gained) -> Arc<dyn Controller> {
+    Arc::new(Pid { kp, ki, kd, lambda, mu })
+}
+
+impl ControllerKind {
+    /// The kind called `name`.
+    pub(crate) fn named(name: &str) -> &'static Self {
+        KINDS.iter().find(|kind| kind.name == name).expect("a kind of the list")
+    }
+
+    /// Whether it has an integral.
+    pub(crate) fn integrates(&self) -> bool {
+        matches!(self.gains, Gains::OfJoints([[_, _, _], _]))
+    }
+}
 
 /// The kinds of reference.
 pub(crate) const JOINTS: &str = "joints";
@@ -24,13 +139,7 @@ pub(crate) const CONDITIONAL: &str = "conditional";
 pub(crate) const NONE: &str = "none";
 
 fn kinds() -> Vec<(&'static str, &'static str)> {
-    vec![
-        (PD_GRAVITY, "Proportional–derivative with gravity"),
-        (COMPUTED_TORQUE, "inverse dynamics"),
-        (PID, "proportional–integral–derivative"),
-        (FRACTIONAL_PID, "the same of fractional orders"),
-        (IMPEDANCE, "a spring and a dashpot at the gripper"),
-    ]
+    KINDS.iter().map(|kind| (kind.name, kind.words)).collect()
 }
 
 /// What drives the joints that forces drive.
@@ -137,3 +246,23 @@ pub(crate) static REFERENCE: Keys = Keys {
         .only(&[MOVE]),
     ],
 };
+
+#[cfg(test)]
+mod tests {
+    use super::{CONTROLLER, ControllerKind, KINDS};
+
+    #[test]
+    fn keys_belong_to_the_kinds_that_take_them() {
+        let takes: [(&str, fn(&ControllerKind) -> bool); 5] = [
+            ("ki", ControllerKind::integrates),
+            ("anti_windup", ControllerKind::integrates),
+            ("lambda", |kind| kind.has_orders),
+            ("mu", |kind| kind.has_orders),
+            ("compensate_elements", |kind| kind.compensates),
+        ];
+        for (key, takes) in takes {
+            let kinds: Vec<_> = KINDS.iter().filter(|kind| takes(kind)).map(|kind| kind.name).collect();
+            assert_eq!(CONTROLLER.get(key).unwrap().only, kinds, "{key}");
+        }
+    }
+}

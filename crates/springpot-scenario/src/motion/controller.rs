@@ -4,16 +4,14 @@ use super::gripper_path;
 use super::joints::{ByJoint, Parts};
 use crate::document::shorten;
 use crate::feedback;
-use crate::keys::{self, CONTROLLER, REFERENCE};
+use crate::keys::{self, CONTROLLER, ControllerKind, Gained, Gains, REFERENCE};
 use crate::names;
 use crate::reader::{Field, Read, Table, all};
 use crate::refusal::{Place, RefusalKind, Remark};
 use crate::robot::{OwnJoint, Robot};
 use crate::signals::Wanted;
 use serde_json::{Map, Value, json};
-use springpot::control::{
-    AntiWindup, ComputedTorque, Controlled, Controller, Impedance, Limit, PdGravity, Pid, Profile, Reference, Sampling,
-};
+use springpot::control::{AntiWindup, Controlled, Controller, Limit, Profile, Reference, Sampling};
 use springpot::law::Range;
 use springpot::model::{Dimension, Model, Space};
 use springpot::motion::gripper_path::{Course, GripperPoint};
@@ -155,6 +153,7 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
     }
     let mut record = Map::new();
     record.insert("kind".to_owned(), json!(kind));
+    let kind = ControllerKind::named(kind);
     let law = law(&table, kind, joints, &mut record);
     let reference = table.require("reference").and_then(|field| reference(&field, kind, joints, end));
     let limits = limits(&table, joints, &mut record);
@@ -169,7 +168,7 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
     let entries = written.as_ref().and_then(|field| field.node.entries()).unwrap_or_default();
     let signals = entries.iter().map(|entry| (entry.key.clone(), entry.node.place.clone())).collect();
     let to = written.map_or_else(|| own.clone(), |field| field.node.place.clone());
-    if kind == keys::PID || kind == keys::FRACTIONAL_PID {
+    if kind.integrates() {
         let word = if anti_windup == AntiWindup::None { keys::NONE } else { keys::CONDITIONAL };
         record.insert("anti_windup".to_owned(), json!(word));
     }
@@ -207,49 +206,66 @@ fn kind_of<'a>(field: &Field<'a>, keys: &'static keys::Keys, what: &str) -> Read
 
 fn law(
     table: &Table<'_>,
-    kind: &str,
+    kind: &ControllerKind,
     joints: &Joints<'_>,
     record: &mut Map<String, Value>,
 ) -> Read<Arc<dyn Controller>> {
-    let no_order = |_: usize| 1.0;
-    let [turns, slides] = units(kind);
-    if kind == keys::IMPEDANCE {
-        if joints.robot.gripper.is_none() {
-            let message = "kind = \"impedance\" needs a gripper, but the robot has none";
-            let refusal = table.node.place.refuse(RefusalKind::Missing, message);
-            return Err(table
-                .ctx
-                .refuse(refusal.help("write [robot.gripper] with body = \"NAME\" and point = [x, y, z]")));
-        }
-        let gain = |key: &'static str, unit: &str| match table.get(key) {
-            None => table.number(key),
-            Some(field) if field.node.entries().is_some() && !crate::constants::is_expression(field.node) => {
-                let message = "is a table by joints, but impedance acts at the gripper";
-                Err(field.refuse(RefusalKind::WrongType, message, Some(format!("write a number (in {unit})"))))
-            }
-            Some(field) => not_negative(&field, unit, &no_order, 0),
-        };
-        if table.get("kp").is_none() {
-            return Err(table.lacks("kp"));
-        }
-        let (kp, kd) = (gain("kp", "N/m")?, gain("kd", "N*s/m")?);
-        warn_of_no_gain(table, kind, [&[kp][..], &[kd]]);
-        record.extend([("kp".to_owned(), json!(kp)), ("kd".to_owned(), json!(kd))]);
-        return Ok(Arc::new(Impedance { kp, kd }));
+    match kind.gains {
+        Gains::AtGripper(units) => at_gripper(table, kind, units, joints, record),
+        Gains::OfJoints(units) => of_joints(table, kind, units, joints, record),
     }
+}
+
+/// A law whose gains act at the gripper.
+fn at_gripper(
+    table: &Table<'_>,
+    kind: &ControllerKind,
+    [of_error, of_rate]: [&str; 2],
+    joints: &Joints<'_>,
+    record: &mut Map<String, Value>,
+) -> Read<Arc<dyn Controller>> {
+    if joints.robot.gripper.is_none() {
+        let message = format!("kind = {:?} needs a gripper, but the robot has none", kind.name);
+        let refusal = table.node.place.refuse(RefusalKind::Missing, message);
+        return Err(table.ctx.refuse(refusal.help("write [robot.gripper] with body = \"NAME\" and point = [x, y, z]")));
+    }
+    let gain = |key: &'static str, unit: &str| match table.get(key) {
+        None => table.number(key),
+        Some(field) if field.node.entries().is_some() && !crate::constants::is_expression(field.node) => {
+            let message = format!("is a table by joints, but {} acts at the gripper", kind.name);
+            Err(field.refuse(RefusalKind::WrongType, message, Some(format!("write a number (in {unit})"))))
+        }
+        Some(field) => not_negative(&field, unit, &|_| 1.0, 0),
+    };
     if table.get("kp").is_none() {
         return Err(table.lacks("kp"));
     }
-    if kind == keys::COMPUTED_TORQUE
+    let (kp, kd) = (gain("kp", of_error)?, gain("kd", of_rate)?);
+    warn_of_no_gain(table, kind, [&[kp][..], &[kd]]);
+    record.extend([("kp".to_owned(), json!(kp)), ("kd".to_owned(), json!(kd))]);
+    Ok((kind.law)(Gained { kp: vec![kp], kd: vec![kd], ..Gained::default() }))
+}
+
+/// A law whose gains are those of joints that turn and that slide, in these units.
+fn of_joints(
+    table: &Table<'_>,
+    kind: &ControllerKind,
+    [turns, slides]: [&'static [&'static str]; 2],
+    joints: &Joints<'_>,
+    record: &mut Map<String, Value>,
+) -> Read<Arc<dyn Controller>> {
+    if table.get("kp").is_none() {
+        return Err(table.lacks("kp"));
+    }
+    if kind.drives_all
         && let Some(joint) = joints.robot.own_joints().find(|joint| joint.units().is_none())
     {
-        let is = joints.robot.kind_of(&joint).name();
-        let message =
-            format!("kind = \"computed-torque\" drives joints of one degree, but joint {:?} is {is}", joint.name);
+        let (is, name) = (joints.robot.kind_of(&joint).name(), kind.name);
+        let message = format!("kind = {name:?} drives joints of one degree, but joint {:?} is {is}", joint.name);
         return Err(table.ctx.refuse(table.node.place.refuse(RefusalKind::Rule, message)));
     }
     let order = |key: &'static str| -> Read<Vec<f64>> {
-        if kind != keys::FRACTIONAL_PID {
+        if !kind.has_orders {
             return Ok(vec![1.0; joints.robot.model().nv()]);
         }
         by_joint(table, key, joints, 1.0, &|field, _, _| {
@@ -271,53 +287,36 @@ fn law(
         })
     };
     let (kp, kd) = (gain("kp", 0)?, gain("kd", 1)?);
-    let ki = if matches!(kind, keys::PID | keys::FRACTIONAL_PID) { gain("ki", 2)? } else { Vec::new() };
+    let ki = if kind.integrates() { gain("ki", 2)? } else { Vec::new() };
     warn_of_no_gain(table, kind, [&kp[..], &kd, &ki]);
-    let listed = |values: &[f64]| -> Value {
-        joints.driven().map(|(k, joint)| (joint.name.to_owned(), json!(values[k]))).collect::<Map<_, _>>().into()
+    let mut list = |key: &str, values: &[f64]| {
+        let listed = joints.driven().map(|(k, joint)| (joint.name.to_owned(), json!(values[k])));
+        record.insert(key.to_owned(), listed.collect::<Map<_, _>>().into());
     };
-    record.extend([("kp".to_owned(), listed(&kp)), ("kd".to_owned(), listed(&kd))]);
-    Ok(match kind {
-        keys::PD_GRAVITY => Arc::new(PdGravity { kp, kd }),
-        keys::COMPUTED_TORQUE => {
-            let compensate_elements = table.flag("compensate_elements")?;
-            record.insert("compensate_elements".to_owned(), json!(compensate_elements));
-            Arc::new(ComputedTorque { kp, kd, compensate_elements })
-        }
-        _ => {
-            record.insert("ki".to_owned(), listed(&ki));
-            if kind == keys::FRACTIONAL_PID {
-                record.extend([("lambda".to_owned(), listed(&lambda)), ("mu".to_owned(), listed(&mu))]);
-            }
-            Arc::new(Pid { kp, ki, kd, lambda, mu })
-        }
-    })
+    list("kp", &kp);
+    list("kd", &kd);
+    if kind.integrates() {
+        list("ki", &ki);
+    }
+    if kind.has_orders {
+        list("lambda", &lambda);
+        list("mu", &mu);
+    }
+    let compensate_elements = kind.compensates && table.flag("compensate_elements")?;
+    if kind.compensates {
+        record.insert("compensate_elements".to_owned(), json!(compensate_elements));
+    }
+    Ok((kind.law)(Gained { kp, kd, ki, lambda, mu, compensate_elements }))
 }
 
 /// Says that a controller does not look at the error.
-fn warn_of_no_gain<const N: usize>(table: &Table<'_>, kind: &str, gains: [&[f64]; N]) {
+fn warn_of_no_gain<const N: usize>(table: &Table<'_>, kind: &ControllerKind, gains: [&[f64]; N]) {
     if gains.iter().any(|gains| gains.iter().any(|gain| *gain != 0.0)) {
         return;
     }
-    let left = match kind {
-        keys::PID | keys::FRACTIONAL_PID => "it gives no force at all",
-        keys::COMPUTED_TORQUE => "nothing brings the robot back to where it should be",
-        _ => "it carries the weight and follows nothing",
-    };
     let place = table.get("kp").map_or(&table.node.place, |field| &field.node.place);
-    let remark = Remark::at(place, format!("all gains of [motion.controller] are 0: {left}"));
+    let remark = Remark::at(place, format!("all gains of [motion.controller] are 0: {}", kind.without_gains));
     table.ctx.warn(remark.help("write kp and kd above 0, or leave [motion.controller] out"));
-}
-
-/// Units of kp, kd and ki of joints that turn and that slide.
-fn units(kind: &str) -> [[&'static str; 3]; 2] {
-    match kind {
-        keys::COMPUTED_TORQUE => [["1/s^2", "1/s", ""]; 2],
-        keys::FRACTIONAL_PID => {
-            [["N*m/rad", "N*m*s^mu/rad", "N*m/(rad*s^lambda)"], ["N/m", "N*s^mu/m", "N/(m*s^lambda)"]]
-        }
-        _ => [["N*m/rad", "N*m*s/rad", "N*m/(rad*s)"], ["N/m", "N*s/m", "N/(m*s)"]],
-    }
 }
 
 /// A gain; `order` is that of the velocity, by which its unit may have an exponent.
@@ -426,8 +425,8 @@ fn sampling(table: &Table<'_>, record: &mut Map<String, Value>) -> Read<Option<S
 
 type Referred = (Reference, Option<Arc<gripper_path::Path>>, Value);
 
-/// What a law of the kind `law` aims at.
-fn reference(field: &Field<'_>, law: &str, joints: &Joints<'_>, end: Option<f64>) -> Read<Referred> {
+/// What a law of that kind aims at.
+fn reference(field: &Field<'_>, law: &ControllerKind, joints: &Joints<'_>, end: Option<f64>) -> Read<Referred> {
     let kind = kind_of(field, &REFERENCE, "kind of reference")?;
     let wrong = |key: &str| -> Option<(RefusalKind, String)> {
         if let Some(row) = REFERENCE.get(key).filter(|row| !row.only.is_empty()) {
@@ -444,7 +443,7 @@ fn reference(field: &Field<'_>, law: &str, joints: &Joints<'_>, end: Option<f64>
             path.start_from(joints.start);
         }
         record.insert("kind".to_owned(), json!(kind));
-        if law == keys::IMPEDANCE {
+        if matches!(law.gains, Gains::AtGripper(_)) {
             // It asks where the gripper is to be, and for no joints.
             let point = Trajectory::source(GripperPoint(path.position().clone()));
             return Ok((Reference::new(point), None, record.into()));
