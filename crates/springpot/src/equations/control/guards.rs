@@ -186,7 +186,7 @@ impl ControlRun {
 
     /// The first change in the step that was solved.
     pub(crate) fn look(&mut self) -> ControlSeen {
-        self.changes.clear();
+        self.changing.at_end.clear();
         if !self.slide() {
             return ControlSeen::Nothing;
         }
@@ -216,7 +216,7 @@ impl ControlRun {
             Some((theta, guard)) => ControlSeen::Within(theta, guard),
             None if at_end.is_empty() => ControlSeen::Nothing,
             None => {
-                self.changes = at_end;
+                self.changing.at_end = at_end;
                 ControlSeen::AtEnd
             }
         }
@@ -242,14 +242,14 @@ impl ControlRun {
 
     /// Notes a change that is here.
     pub(crate) fn note(&mut self, guard: Guard) {
-        if !self.changes.contains(&guard) {
-            self.changes.push(guard);
+        if !self.changing.at_end.contains(&guard) {
+            self.changing.at_end.push(guard);
         }
     }
 
     /// Whether the branch is left at the end of the step, or at its start.
     pub(crate) fn changes(&self) -> bool {
-        !self.changes.is_empty()
+        !self.changing.at_end.is_empty()
     }
 
     /// Goes onto the branches behind the changes that were noted: at the end of the step, or at its start.
@@ -258,7 +258,7 @@ impl ControlRun {
     /// [`RunError::ControlChatter`] where branches are left again and again at one time.
     pub(crate) fn change(&mut self, system: &System, is_end: bool, end: f64) -> Result<(), RunError> {
         let (theta, node) = if is_end { (1.0, STAGES) } else { (0.0, 0) };
-        let changes = std::mem::take(&mut self.changes);
+        let changes = std::mem::take(&mut self.changing.at_end);
         let Some(&last) = changes.last() else { return Ok(()) };
         for &guard in &changes {
             let drift = match guard {
@@ -270,8 +270,8 @@ impl ControlRun {
             self.leave(guard, node, drift);
         }
         let (t, span) = (self.nodes[node].t, CHATTER * end);
-        self.left = (t, changes);
-        let (first, count) = &mut self.together;
+        self.changing.left = (t, changes);
+        let (first, count) = &mut self.changing.together;
         (*first, *count) = if t - *first <= span && *count > 0 { (*first, *count + 1) } else { (t, 1) };
         let count = *count;
         if count <= MOST_CHANGES {
@@ -355,9 +355,9 @@ impl ControlRun {
         if !self.acts_continuously() {
             return Ok(());
         }
-        self.changes.clear();
-        let before = self.has_branches.then(|| self.nodes[0].shaped.clone());
-        let (from, aimed) = (self.nodes[0].t, self.has_aim.then(|| self.nodes[0].aim.clone()));
+        self.changing.at_end.clear();
+        let before = self.known.branches.then(|| self.nodes[0].shaped.clone());
+        let (from, aimed) = (self.nodes[0].t, self.known.aim.then(|| self.nodes[0].aim.clone()));
         self.take_sides(eye);
         self.see_start(eye)?;
         if let Some(aimed) = aimed {
@@ -387,14 +387,14 @@ impl ControlRun {
         let still = vec![0.0; eye.v.len()];
         for own in self.laws.iter_mut().filter(|own| own.law.has_kinks()) {
             let expression = own.law.expression();
-            let taken = if self.has_branches { expression.kinks_of_time() } else { u64::MAX };
+            let taken = if self.known.branches { expression.kinks_of_time() } else { u64::MAX };
             if taken == 0 {
                 continue;
             }
             let jets: Vec<_> = own.law.senses().iter().map(|sense| eye.jet(*sense, &still)).collect();
             own.branch = own.branch & !taken | expression.branch(eye.t, &jets) & taken;
         }
-        self.has_branches = true;
+        self.known.branches = true;
     }
 
     /// Refuses a reference that jumps, where the law would answer with an impulse.
@@ -452,7 +452,7 @@ impl ControlRun {
 
     /// Whether a guard was left at the start: it may stand before its change by the rounding of the time.
     fn has_just_left(&self, guard: Guard) -> bool {
-        let (t, left) = &self.left;
+        let (t, left) = &self.changing.left;
         self.nodes[0].t - t <= 8.0 * f64::EPSILON * t && left.contains(&guard)
     }
 

@@ -50,24 +50,41 @@ pub(crate) struct ControlRun {
     /// ∂τ/∂q and ∂τ/∂v at the start of the step.
     slopes: TorqueSlopes,
     input_slopes: Vec<InputSlopes>,
-    /// Changes of the branch at the end of the step.
-    changes: Vec<Guard>,
-    /// What was left last, and when, s.
-    left: (f64, Vec<Guard>),
-    /// When the first of the changes happened that lie close together, and how many they are.
-    together: (f64, u32),
+    changing: Changing,
     spare: Vec<f64>,
     /// Errors at both ends of a step whose nodes are not known.
     ends: [Vec<[f64; 2]>; 2],
     /// Whether a step is known at its nodes, not at its ends alone.
     knows_nodes: bool,
-    /// Whether its branches are those of a start that was looked at.
-    has_branches: bool,
-    /// Whether the reference was looked at where the step starts.
-    has_aim: bool,
-    /// Where the reference is and how the links are, at the time of a row.
-    row_aim: Aim,
-    row_kinematics: Kinematics,
+    known: Known,
+    row: AtRow,
+}
+
+/// Changes of the branches.
+#[derive(Debug, Clone, Default)]
+struct Changing {
+    /// At the end of the step.
+    at_end: Vec<Guard>,
+    /// What was left last, and when, s.
+    left: (f64, Vec<Guard>),
+    /// When the first of the changes happened that lie close together, and how many they are.
+    together: (f64, u32),
+}
+
+/// What is known where the step starts.
+#[derive(Debug, Clone, Copy, Default)]
+struct Known {
+    /// Whether the branches are those of a start that was looked at.
+    branches: bool,
+    /// Whether the reference was looked at.
+    aim: bool,
+}
+
+/// Where the reference is and how the links are, at the time of a row.
+#[derive(Debug, Clone)]
+struct AtRow {
+    aim: Aim,
+    kinematics: Kinematics,
 }
 
 /// An expression that acts at every time.
@@ -204,16 +221,12 @@ impl ControlRun {
             scratch: Scratch::new(model),
             slopes: TorqueSlopes { d_q: square(), d_v: square() },
             input_slopes: Vec::new(),
-            changes: Vec::new(),
-            left: (0.0, Vec::new()),
-            together: (0.0, 0),
+            changing: Changing::default(),
             spare: Vec::new(),
             ends: Default::default(),
             knows_nodes: !has_fixed_steps,
-            has_branches: false,
-            has_aim: false,
-            row_aim: Aim::default(),
-            row_kinematics: Kinematics::new(model),
+            known: Known::default(),
+            row: AtRow { aim: Aim::default(), kinematics: Kinematics::new(model) },
             control,
         }))
     }
@@ -238,9 +251,9 @@ impl ControlRun {
     /// Where the reference cannot be followed, or a memory cannot be.
     pub(crate) fn begin(&mut self, system: &System, q: &[f64], v: &[f64], end: f64) -> Result<(), RunError> {
         self.terms.clear();
-        self.changes.clear();
-        self.left.1.clear();
-        (self.has_branches, self.has_aim) = (false, false);
+        self.changing.at_end.clear();
+        self.changing.left.1.clear();
+        (self.known.branches, self.known.aim) = (false, false);
         let Some(controlled) = self.control.controller.clone() else { return Ok(()) };
         for k in (0..=LOOKS).rev() {
             // Where a path cannot be followed so far, the run says when it comes there.
@@ -296,8 +309,8 @@ impl ControlRun {
             wanted: self.nodes[0].wanted.clone(),
             shaped: self.nodes[0].shaped.clone(),
             torque: self.nodes[0].torque.clone(),
-            left: self.left.clone(),
-            together: self.together,
+            left: self.changing.left.clone(),
+            together: self.changing.together,
         }
     }
 
@@ -314,8 +327,8 @@ impl ControlRun {
         self.terms.iter_mut().zip(terms).for_each(|(term, kept)| term.kept = kept);
         let start = &mut self.nodes[0];
         (start.wanted, start.shaped, start.torque) = (wanted, shaped, torque);
-        (self.left, self.together) = (left, together);
-        (self.has_branches, self.has_aim) = (true, false);
+        (self.changing.left, self.changing.together) = (left, together);
+        (self.known.branches, self.known.aim) = (true, false);
         true
     }
 

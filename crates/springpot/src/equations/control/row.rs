@@ -38,9 +38,9 @@ impl ControlRun {
         let system = cx.system;
         if let Some(controlled) = self.control.controller.clone() {
             let (site, spare) = (system.gripper.as_ref(), &mut self.scratch.kinematics);
-            controlled.reference.at_into(&system.model, site, evaluation.t, spare, &mut self.row_aim)?;
+            controlled.reference.at_into(&system.model, site, evaluation.t, spare, &mut self.row.aim)?;
             if site.is_some() {
-                let off = evaluation.gripper.iter().zip(self.row_aim.gripper[0]);
+                let off = evaluation.gripper.iter().zip(self.row.aim.gripper[0]);
                 let square: f64 = off.map(|(is, wanted)| (is - wanted).powi(2)).sum();
                 evaluation.gripper_error = Some(square.sqrt());
             }
@@ -48,11 +48,11 @@ impl ControlRun {
         if !self.acts_continuously() {
             return Ok(());
         }
-        let mut kinematics = std::mem::replace(&mut self.row_kinematics, Kinematics::new(&system.model));
+        let mut kinematics = std::mem::replace(&mut self.row.kinematics, Kinematics::new(&system.model));
         kinematics.update_velocity(&system.model, &evaluation.q, &evaluation.v);
         let filled = self.fill_inputs(cx, &kinematics, evaluation);
         self.fill_torques(cx, theta, &kinematics, bank, evaluation);
-        self.row_kinematics = kinematics;
+        self.row.kinematics = kinematics;
         filled
     }
 
@@ -96,7 +96,7 @@ impl ControlRun {
             let (t, q, v) = (evaluation.t, &evaluation.q[..], &evaluation.v[..]);
             let eye = Eye { system: cx.system, t, q, v, kinematics, element: &read };
             let mut law = vec![0.0; torque.len()];
-            let at = at(&eye, &self.row_aim);
+            let at = at(&eye, &self.row.aim);
             controlled.law.torque(&at, &mut self.scratch, &mut law);
             if self.compensates {
                 for (e, element) in evaluation.elements.iter().enumerate() {
@@ -129,10 +129,10 @@ impl ControlRun {
         if self.laws.iter().all(|law| !law.law.has_kinks()) {
             return None;
         }
-        let mut kinematics = std::mem::replace(&mut self.row_kinematics, Kinematics::new(&cx.system.model));
+        let mut kinematics = std::mem::replace(&mut self.row.kinematics, Kinematics::new(&cx.system.model));
         kinematics.update_velocity(&cx.system.model, &at.q, &at.v);
         let found = self.find_misread(cx, &kinematics, allowed, at);
-        self.row_kinematics = kinematics;
+        self.row.kinematics = kinematics;
         found
     }
 

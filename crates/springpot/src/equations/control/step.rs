@@ -22,7 +22,7 @@ impl ControlRun {
     /// # Errors
     /// Where the reference cannot be followed.
     pub(crate) fn start(&mut self, cx: Context, t: f64, h: f64, t_end: f64) -> Result<(), RunError> {
-        self.changes.clear();
+        self.changing.at_end.clear();
         for node in 1..=STAGES {
             let at = if node == STAGES { t_end } else { t + RADAU_NODES[node - 1] * h };
             self.nodes[node].t = at;
@@ -46,7 +46,7 @@ impl ControlRun {
     /// Where the reference cannot be followed.
     pub(crate) fn see_start(&mut self, eye: &Eye) -> Result<(), RunError> {
         self.aim_at(eye.system, eye.t, 0)?;
-        (self.nodes[0].t, self.has_aim) = (eye.t, true);
+        (self.nodes[0].t, self.known.aim) = (eye.t, true);
         self.see(0, eye);
         Ok(())
     }

@@ -1,15 +1,14 @@
 //! Rows between the ends of a step, and accelerations that solve the equations of motion there.
 
 use super::rub::SLACK;
-use super::step::Place;
 use crate::actuation::Forward;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
-use crate::equations::Solve;
 use crate::equations::context::Context;
 use crate::equations::coulomb::{Candidate, Coulomb};
 use crate::equations::drives::drive;
 use crate::equations::evaluate::{Evaluation, Scratch};
 use crate::equations::resistance::holding_forces;
+use crate::equations::{Place, Solve};
 use crate::model::Model;
 use crate::system::error::RunError;
 

@@ -92,10 +92,7 @@ impl LoopControl {
 
 impl Between<'_> {
     fn look(&self, take: impl FnOnce(&Eye) -> Result<(), RunError>) -> Result<(), RunError> {
-        let read = |e: usize| {
-            let [start, _] = &self.stage.elements[e].ends;
-            [start.coordinate, start.rate]
-        };
+        let read = |e: usize| self.stage.equations.read(e);
         let origin = &self.stage.origin;
         let (q, v, kinematics) = (&origin.q[..], &origin.v[..], &origin.kinematics);
         take(&Eye { system: self.system, t: origin.t, q, v, kinematics, element: &read })
@@ -117,8 +114,7 @@ impl Shown for Between<'_> {
 
     fn add_pull(&self, tau: &mut [f64]) {
         for e in 0..self.system.elements.len() {
-            let (force, [at_stage, at_end]) = (self.force(e), &self.stage.elements[e].gradients);
-            let gradient = if self.stage.method.node() == 1.0 { at_stage } else { at_end };
+            let (force, gradient) = (self.force(e), self.stage.equations.gradient(e));
             tau.iter_mut().zip(gradient).for_each(|(tau, slope)| *tau += force * slope);
         }
     }
@@ -127,9 +123,9 @@ impl Shown for Between<'_> {
 impl Between<'_> {
     fn observed(&self, e: usize, of: impl FnOnce(&Observation) -> f64) -> f64 {
         let Some(bank) = self.bank else { return 0.0 };
-        let [start, _] = &self.stage.elements[e].ends;
-        let stroke = self.system.elements[e].stroke(start.coordinate);
-        let point = Point { t: self.stage.origin.t, stroke, rate: start.rate, inputs: bank.point(e, 1).inputs };
+        let [coordinate, rate] = self.stage.equations.read(e);
+        let stroke = self.system.elements[e].stroke(coordinate);
+        let point = Point { t: self.stage.origin.t, stroke, rate, inputs: bank.point(e, 1).inputs };
         bank.now(e, &point).as_ref().map_or(0.0, of)
     }
 }

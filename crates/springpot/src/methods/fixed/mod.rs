@@ -14,8 +14,6 @@
 
 mod between;
 mod control;
-mod element_step;
-mod elements;
 mod real_time;
 mod rub;
 mod run;

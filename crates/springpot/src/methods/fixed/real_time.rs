@@ -120,7 +120,7 @@ impl<'a> Loop<'a> {
         let Motion::Forward(forward) = &system.motion else { return Err(LoopError::MotionGiven) };
         let mut held = Held::default();
         held.torques_mut(system.model.nv());
-        let mut stage = OneStage::new(Context { system, held: &held, sampled: Held::NONE }, forward, method)?;
+        let stage = OneStage::new(Context { system, held: &held, sampled: Held::NONE }, forward, method)?;
         let mut control = LoopControl::of(system, step, &stage, memory)?;
         let first = control.as_mut().map(|control| control.first(system, &stage)).transpose()?;
         let cx = Context { system, held: &held, sampled: first.as_deref().unwrap_or(Held::NONE) };
@@ -129,14 +129,14 @@ impl<'a> Loop<'a> {
         let mut bank = ElementBank::new(laws, method.nodes(), Form::Strokes);
         bank.set_course(Course::Sought);
         let range = MemoryRange { tolerance: memory.tolerance, shortest: step, horizon: memory.horizon };
-        for (e, (element, at)) in system.elements.iter().zip(&stage.elements).enumerate() {
+        for (e, element) in system.elements.iter().enumerate() {
             if element.scheme.is_some() {
                 return Err(LoopError::Scheme { element: element.name.clone() });
             }
             let mut inputs = vec![Default::default(); element.inputs.len()];
             cx.inputs_at(e, 0.0, &mut inputs);
             element.check_inputs(0.0, &inputs)?;
-            let coordinate = at.ends[0].coordinate;
+            let [coordinate, _] = stage.equations.read(e);
             let mut is_known = Ok(());
             let begun = element.begin_within(coordinate, &inputs, memory.tolerance, memory.horizon).and_then(|state| {
                 is_known = element.check_start(&state);
@@ -147,7 +147,8 @@ impl<'a> Loop<'a> {
             is_known?;
         }
         // Here and not in the first step, so that none allocates.
-        stage.begin_elements(cx, &mut bank, step, stage.stage_time(multiple(1, step), step))?;
+        let node = stage.stage_time(multiple(1, step), step);
+        stage.equations.begin(cx, &mut bank, [0.0, node], step)?;
         Ok(Self { system, held, stage, bank, control, definite: Definite::of(&system.model), step, steps: 0 })
     }
 
@@ -263,7 +264,7 @@ impl<'a> Loop<'a> {
 
     /// Length of an element, m, or the coordinate of the joint that it acts on, m or rad.
     pub fn length(&self, element: usize) -> f64 {
-        self.stage.elements[element].ends[0].coordinate
+        self.stage.equations.read(element)[0]
     }
 
     /// Stroke of an element, m or rad: what its length or coordinate has more than at rest.
@@ -273,7 +274,7 @@ impl<'a> Loop<'a> {
 
     /// Rate of an element's stroke, m/s or rad/s.
     pub fn rate(&self, element: usize) -> f64 {
-        self.stage.elements[element].ends[0].rate
+        self.stage.equations.read(element)[1]
     }
 
     /// Kinetic energy, J.

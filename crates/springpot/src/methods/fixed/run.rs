@@ -73,8 +73,7 @@ impl Fixed {
     /// as its memories take it, and the rates of the cubic through coordinates and rates there.
     fn tell_ledger(&self, cx: Context, bank: &mut ElementBank, target: &Target) {
         bank.set_nodes(Nodes::Radau);
-        for (e, (element, step)) in cx.system.elements.iter().zip(&self.step.elements).enumerate() {
-            let [from, to] = &step.ends;
+        for (e, (element, [from, to])) in cx.system.elements.iter().zip(self.step.equations.ends()).enumerate() {
             bank.set_resolution(e, element.resolution(from.coordinate));
             for (k, c) in [0.0].into_iter().chain(RADAU_NODES).enumerate() {
                 let travel = to.coordinate - from.coordinate;
@@ -94,22 +93,23 @@ impl Fixed {
             let at = if c == 1.0 { target.to } else { target.from + c * target.size };
             if self.has_paths {
                 let ends = [&step.origin, &step.end];
-                Between::new(cx, &step.forward, ends, [&step.a, &step.a], target.size).place(at, c, evaluation);
+                Between::new(cx, step.equations.forward(), ends, [&step.a, &step.a], target.size)
+                    .place(at, c, evaluation);
                 cx.fill(at, at, None, &mut recorder.scratch, evaluation)?;
                 continue;
             }
             for (v, (from, to)) in evaluation.v.iter_mut().zip(step.origin.v.iter().zip(&step.end.v)) {
                 *v = from + c * (to - from);
             }
-            drive(cx, &step.forward, at, evaluation);
+            drive(cx, step.equations.forward(), at, evaluation);
             evaluation.joint_loss = joint_loss(&step.model, &evaluation.v);
         }
         let end = &mut recorder.evaluations[STAGES];
         end.q.copy_from_slice(&step.end.q);
         end.v.copy_from_slice(&step.end.v);
         if !self.has_paths {
-            let elements = step.elements.iter().enumerate();
-            let elements = elements.map(|(e, element)| (&element.ends[1], bank.point(e, STAGES).inputs));
+            let ends = step.equations.ends().enumerate();
+            let elements = ends.map(|(e, [_, end])| (end, bank.point(e, STAGES).inputs));
             cx.fill_energies(target.to, &step.end.kinematics, elements, end);
         }
         Ok(())
@@ -124,7 +124,7 @@ impl Fixed {
             0 => bank.now(e, &evaluation.elements[e].point(evaluation.t)).map_or(0.0, |now| now.finite_force()),
             _ => bank.end(e).force(),
         };
-        self.accelerator.fill(cx, &self.step.forward, evaluation.t, scratch, evaluation, force)?;
+        self.accelerator.fill(cx, self.step.equations.forward(), evaluation.t, scratch, evaluation, force)?;
         is_whole[end] = true;
         Ok(())
     }
@@ -170,7 +170,7 @@ impl Stepper for Fixed {
         if self.has_paths {
             self.accelerate(cx, recorder, 1)?;
         }
-        recorder.take_powers(|_, e, _| self.step.forces.values()[e]);
+        recorder.take_powers(|_, e, _| self.step.equations.force(e));
         Ok(Ok(self.by.step))
     }
 
@@ -193,7 +193,7 @@ impl Stepper for Fixed {
         // Of a singular start there are none.
         let first = if start.a.iter().all(|a| a.is_finite()) { &start.a } else { &step.a };
         let h = recorder.equations.bank.size();
-        let within = Between::new(cx, &step.forward, [&step.origin, &step.end], [first, &end.a], h);
+        let within = Between::new(cx, step.equations.forward(), [&step.origin, &step.end], [first, &end.a], h);
         within.place(at, theta, evaluation);
         Ok(())
     }
