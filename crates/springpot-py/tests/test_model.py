@@ -251,6 +251,25 @@ def test_facts(ur5: sp.Model) -> None:
     np.testing.assert_allclose(moon.gravity(np.ones(6)), ur5.gravity(np.ones(6)) * 1.62 / 9.81)
 
 
+def test_joints_of_several_coordinates() -> None:
+    inertia = {"xx": 0.1, "yy": 0.1, "zz": 0.1}
+    joints = [
+        {"name": "c", "kind": "cylindrical", "axis": [0, 0, 1], "armature": {"rz": 0.5}, "upper": {"z": 0.3}},
+        {"name": "s", "kind": "spherical"},
+    ]
+    bodies = [{"name": f"b{k}", "joint": joint, "mass": 1, "inertia": inertia} for k, joint in enumerate(joints)]
+    model = sp.Model.from_scenario({"robot": {"body": bodies}})
+    assert model.joint_names == ["c.z", "c.rz", "s"] and model.joint_kinds == ["cylindrical", "cylindrical", "spherical"]
+    assert model.q_names == ["c.z", "c.rz", "s.qx", "s.qy", "s.qz", "s.qw"]
+    assert model.v_names == ["c.vz", "c.wz", "s.wx", "s.wy", "s.wz"]
+    assert np.array_equal(model.armature, [0, 0.5, 0, 0, 0]) and model.upper_limits[0] == 0.3
+    q, v = model.random(1), np.arange(5.0)
+    np.testing.assert_allclose(model.difference(q, model.integrate(q, 0.1 * v)), 0.1 * v, atol=1e-14)
+    np.testing.assert_allclose(model.rnea(q, v, model.aba(q, v, -v)), -v, atol=1e-12)
+    again = pickle.loads(pickle.dumps(model))
+    assert again.q_names == model.q_names and np.array_equal(again.crba(q), model.crba(q))
+
+
 def test_from_scenario() -> None:
     model = sp.Model.from_scenario(ROOT / "scenarios" / "falling_piezo.toml", set={"robot.gravity": [0, 0, -1]})
     assert model.gravity_vector[2] == -1 and model.gripper_body == "forearm"

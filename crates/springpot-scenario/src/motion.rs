@@ -226,7 +226,7 @@ impl MotionPlan {
 
     /// Where the motion of a joint stands that has one of its own.
     pub(crate) fn own_place_of(&self, joint: &str) -> Option<&Place> {
-        self.joints.iter().find(|(name, _)| name == joint).map(|(_, place)| place)
+        said_of(&self.joints, joint)
     }
 
     /// Where the path of the gripper stands that it follows, or that its controller does; its own place where there is none.
@@ -241,8 +241,7 @@ impl MotionPlan {
 
     /// Where the force on a joint stands: its torque, else the controller.
     pub(crate) fn place_of_force(&self, joint: &str) -> Option<&Place> {
-        let own = self.torques.iter().find(|(name, _)| name == joint).map(|(_, place)| place);
-        own.or_else(|| self.place_of_controller())
+        said_of(&self.torques, joint).or_else(|| self.place_of_controller())
     }
 
     /// Where the controller stands.
@@ -331,4 +330,11 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
     let (joints, torques) = ([places("joints"), places("prescribed")].concat(), places("torque"));
     let (place, has_orientation) = (field.node.place.clone(), field.node.get("rpy").is_some());
     Ok(MotionPlan { kind, record, maker, place, joints, torques, has_orientation, feedback, controller })
+}
+
+/// Where a table by joints says something of `joint`, or of the joint that has this coordinate.
+fn said_of<'p>(places: &'p [(String, Place)], joint: &str) -> Option<&'p Place> {
+    let of_all = |name: &str| joint.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+    let own = places.iter().find(|(name, _)| name == joint);
+    own.or_else(|| places.iter().find(|(name, _)| of_all(name))).map(|(_, place)| place)
 }

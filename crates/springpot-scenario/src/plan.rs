@@ -82,12 +82,12 @@ impl Plan {
         self.absent.iter().any(|(_, plan)| of(&plan.element.name))
     }
 
-    /// Names of the moving joints, those that follow another one included.
+    /// Names of the joints that move as they are described, those that follow another one included.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> {
-        self.model.joint_names().iter().map(String::as_str)
+        self.model.described_joints().iter().map(|joint| joint.name.as_str())
     }
 
-    /// Names of the moving joints that have coordinates of their own, in the order of q.
+    /// Names of the joints of the model that have coordinates of their own, in the order of q: `q1`, `c.rz`.
     pub fn own_joint_names(&self) -> impl Iterator<Item = &str> {
         let own = (0..self.model.joint_count()).filter(|&j| self.model.followed(j).is_none());
         own.map(|j| self.model.joint_names()[j].as_str())

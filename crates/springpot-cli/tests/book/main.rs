@@ -39,6 +39,7 @@ pages! {
     tutorial_python: "tutorial/python.md";
     tutorial_rust: "tutorial/rust.md";
     own_robot: "how-to/own-robot.md";
+    joints: "how-to/joints.md";
     own_material: "how-to/own-material.md";
     own_law: "how-to/own-law.md";
     own_controller: "how-to/own-controller.md";

@@ -133,10 +133,8 @@ fn laws_in_other_words() {
     place.done(&["run", "arm.toml", "-q", "--no-figures", "--out", "bare", "--set", "element.damper.shift.energy=6e4"]);
     assert_eq!(place.read("kilo/results.csv"), place.read("bare/results.csv"));
     place.springpot(&["check", "arm.toml", "--set", "element.damper.shift.energy=60 kJ"]).ends(2, &["`J/mol`"]);
-    place.write("arm.toml", edited(&[("axis = [0, 1, 0],", "axis = [0, 1, 0], lower = -1,")]));
-    place
-        .springpot(&["check", "arm.toml"])
-        .ends(2, &["`lower` of", "limits of joints are those of a URDF file", "stop(k, lower, upper)"]);
+    place.write("arm.toml", edited(&[("axis = [0, 1, 0],", "axis = [0, 1, 0], limits = [-1, 1],")]));
+    place.springpot(&["check", "arm.toml"]).ends(2, &["`limits` of", "`lower`, `upper`, `velocity` and `effort`"]);
 }
 
 #[test]

@@ -49,8 +49,12 @@ export class Kinematics {
     this.kind = bodies.map((body) => body.joint?.kind ?? 'fixed');
     this.axis = new Float64Array(3 * this.count);
     this.drivers = bodies.map((body, i) => (this.moves(i) ? driver(bodies, body.joint, column) : null));
-    this.floating = bodies.map((body, i) =>
-      this.kind[i] === 'floating' ? Int32Array.from(['x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'], (p) => column(`q.${body.joint.name}.${p}`)) : null);
+    // A spherical joint has no position.
+    this.free = bodies.map((body, i) =>
+      this.kind[i] === 'floating' || this.kind[i] === 'spherical'
+        ? Int32Array.from(['x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'], (p) => column(`q.${body.joint.name}.${p}`)) : null);
+    /** Of helical joints the shift, m/rad. */
+    this.pitch = Float64Array.from(bodies, (body) => (body.joint?.lead ?? 0) / (2 * Math.PI));
     this.coordinates = new Float64Array(this.count);
     this.pose = new Float64Array(SIZE * this.count);
     this.local = new Float64Array(SIZE);
@@ -67,7 +71,7 @@ export class Kinematics {
 
   /** @param {number} i */
   moves(i) {
-    return this.kind[i] === 'revolute' || this.kind[i] === 'continuous' || this.kind[i] === 'prismatic';
+    return ['revolute', 'continuous', 'prismatic', 'helical'].includes(this.kind[i]);
   }
 
   /** Places all bodies of a case between a row and the next. @param {import('./data.js').Case} one @param {number} row @param {number} s */
@@ -84,15 +88,17 @@ export class Kinematics {
       }
       this.coordinates[i] = q;
       const x = this.axis[3 * i], y = this.axis[3 * i + 1], z = this.axis[3 * i + 2];
-      if (kind === 'revolute' || kind === 'continuous') {
+      if (kind === 'revolute' || kind === 'continuous' || kind === 'helical') {
+        const p = this.pitch[i] * q;
+        local[9] = p * x; local[10] = p * y; local[11] = p * z;
         const c = Math.cos(q), n = Math.sin(q), v = 1 - c;
         local[0] = c + x * x * v; local[1] = x * y * v - z * n; local[2] = x * z * v + y * n;
         local[3] = y * x * v + z * n; local[4] = c + y * y * v; local[5] = y * z * v - x * n;
         local[6] = z * x * v - y * n; local[7] = z * y * v + x * n; local[8] = c + z * z * v;
       } else if (kind === 'prismatic') {
         local[9] = q * x; local[10] = q * y; local[11] = q * z;
-      } else if (kind === 'floating') {
-        this.float(one, row, s, this.floating[i]);
+      } else if (this.free[i]) {
+        this.float(one, row, s, this.free[i]);
       }
       compose(this.origin, SIZE * i, local, 0, middle, 0);
       const parent = this.parent[i];
@@ -102,11 +108,11 @@ export class Kinematics {
     return pose;
   }
 
-  /** Position and quaternion of a floating joint into `local`. */
+  /** Position, if it has one, and quaternion of a joint that turns freely into `local`. */
   float(one, row, s, columns) {
     const { local, quaternion: q } = this;
     for (let k = 0; k < 3; k++) {
-      const value = one.value(columns[k], row, s);
+      const value = columns[k] < 0 ? 0 : one.value(columns[k], row, s);
       local[9 + k] = Number.isFinite(value) ? value : 0;
     }
     let dot = 0;

@@ -146,7 +146,9 @@ export class RobotShape {
     // A foot stands on the ground, its axis does not reach below.
     const down = below ? [0, 0, -below - 1.25 * r] : ZERO;
     const up = body.parent == null && Math.abs(unit[2]) > 0.7 ? unit.map((v) => 1.5 * r * v * Math.sign(unit[2])) : down;
-    if (kind === 'prismatic') parts.rod(up, unit, drawn ? 1.2 * r : 1.9 * r, drawn ? 0.3 * r : 1.25 * r, JOINT, drawn ? 12 : 4);
+    // As round whichever way it turns.
+    if (kind === 'spherical') parts.ball(up, drawn ? 0.6 * r : 1.6 * r, JOINT);
+    else if (kind === 'prismatic') parts.rod(up, unit, drawn ? 1.2 * r : 1.9 * r, drawn ? 0.3 * r : 1.25 * r, JOINT, drawn ? 12 : 4);
     else if (drawn) parts.rod(up, unit, 1.5 * r, 0.3 * r, JOINT, 12);
     else {
       parts.rod(up, unit, 1.55 * r, 1.25 * r, JOINT, 28);
