@@ -21,6 +21,7 @@ mod info;
 mod init;
 #[cfg(unix)]
 mod interrupted;
+mod joints;
 mod laws;
 mod looks;
 mod manual;
