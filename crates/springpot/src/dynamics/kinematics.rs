@@ -21,6 +21,8 @@ pub struct Kinematics<T = f64> {
     level: Level,
     // Indexed by link; 0 is the world and never moves.
     placements: Vec<Placement<T>>,
+    // Of every joint, its link in the parent's.
+    locals: Vec<Placement<T>>,
     /// ω, and the velocity of the link's origin.
     velocities: Vec<Motion<T>>,
     /// dω/dt, and the acceleration of the link's origin (the second derivative of its position).
@@ -36,6 +38,7 @@ impl<T: Scalar> Kinematics<T> {
         let mut kinematics = Self {
             level: Level::Position,
             placements: vec![Placement::IDENTITY; n + 1],
+            locals: vec![Placement::IDENTITY; n],
             velocities: vec![Motion::ZERO; n + 1],
             accelerations: vec![Motion::ZERO; n + 1],
             joint_velocities: vec![T::ZERO; model.nv()],
@@ -67,9 +70,9 @@ impl<T: Scalar> Kinematics<T> {
         kinematics
     }
 
-    /// The joints' own placements, as last read.
-    pub(super) fn stands(&self) -> &Stands<T> {
-        &self.stands
+    /// Of every joint, the placement of its link in the parent's.
+    pub(super) fn locals(&self) -> &[Placement<T>] {
+        &self.locals
     }
 
     /// World placements of all links, the world first.
@@ -90,8 +93,9 @@ impl<T: Scalar> Kinematics<T> {
             if parent != j {
                 last = self.placements[parent];
             }
-            last = last * self.stands.placement(model, j, q);
-            self.placements[j + 1] = last;
+            let local = self.stands.placement(model, j, q);
+            last = last * local;
+            (self.locals[j], self.placements[j + 1]) = (local, last);
         }
     }
 

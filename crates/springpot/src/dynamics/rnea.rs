@@ -78,7 +78,7 @@ fn inverse_dynamics<T: Scalar>(
     ws.force[0] = Force::ZERO;
     for j in 0..n {
         let parent = model.parent_link(j);
-        let local = kinematics.map_or(&ws.stands, Kinematics::stands).placement(model, j, q);
+        let local = kinematics.map_or_else(|| ws.stands.placement(model, j, q), |known| known.locals()[j]);
         let mut velocity = local.motion_to_child(ws.velocity[parent]);
         let mut acceleration = local.motion_to_child(ws.acceleration[parent]);
         joint::advance(model, j, &mut velocity, &mut acceleration, v, a);

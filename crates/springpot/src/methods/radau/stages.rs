@@ -70,15 +70,15 @@ impl RadauStep {
     /// q_i = q_0 ⊕ ξ_i of the joints that forces drive; the others are where their signals say.
     fn move_free_joints(&mut self, equations: &Equations, i: usize) {
         let (stage, free) = (&mut self.stages[i], equations.free());
-        if free.len() == self.model.nv() {
-            self.model.integrate_into(&self.origin.q, &stage.xi, &mut stage.q);
-            return;
-        }
         if self.model.is_one_degree() {
             for &k in free {
                 let index = self.model.coordinate_of(k).expect("a joint of one degree");
                 stage.q[index] = self.origin.q[index] + stage.xi[k];
             }
+            return;
+        }
+        if free.len() == self.model.nv() {
+            self.model.integrate_into(&self.origin.q, &stage.xi, &mut stage.q);
             return;
         }
         self.held.clone_from(&stage.q);
