@@ -215,10 +215,10 @@ fn trial(param: &Param, k: usize) -> f64 {
 }
 
 fn part(network: &Network, law: &Entry, trials: &[Trial]) -> Part {
-    let all = |parts: &[Network]| parts.iter().map(|one| part(one, law, trials)).collect();
+    let all = || network.parts().iter().map(|one| part(one, law, trials)).collect();
     match network {
-        Network::Parallel(parts) => Part::Parallel(all(parts)),
-        Network::Series(parts) => Part::Series(all(parts)),
+        Network::Parallel(_) => Part::Parallel(all()),
+        Network::Series(_) => Part::Series(all()),
         Network::Heated(heated) => part(heated.law(), law, trials),
         Network::Leaf(leaf) => {
             let of = |value: f64| {

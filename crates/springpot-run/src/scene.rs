@@ -125,7 +125,7 @@ pub(crate) fn sign_of(element: &Element) -> ElementSign {
 }
 
 fn sign(law: &Network, at: &Point<'_>) -> ElementSign {
-    let all = |parts: &[Network]| parts.iter().map(|part| sign(part, at)).collect();
+    let all = || law.parts().iter().map(|part| sign(part, at)).collect();
     match law {
         Network::Leaf(leaf) => match leaf.linearised(at) {
             // A stop that is free at the moment is a spring all the same.
@@ -134,8 +134,8 @@ fn sign(law: &Network, at: &Point<'_>) -> ElementSign {
             Term { order: 1.0, .. } => ElementSign::Dashpot,
             Term { .. } => ElementSign::Springpot,
         },
-        Network::Parallel(parts) => ElementSign::Parallel(all(parts)),
-        Network::Series(parts) => ElementSign::Series(all(parts)),
+        Network::Parallel(_) => ElementSign::Parallel(all()),
+        Network::Series(_) => ElementSign::Series(all()),
         Network::Heated(heated) => sign(heated.law(), &Point { inputs: &heated.inputs_of_law(at.inputs), ..*at }),
     }
 }
@@ -173,8 +173,7 @@ fn elements(plan: &Plan, places: &Places) -> Vec<SceneElement> {
 fn lets_go(law: &Network) -> bool {
     match law {
         Network::Leaf(leaf) => ["tension", "compression", "stop"].contains(&leaf.name()),
-        Network::Parallel(parts) | Network::Series(parts) => parts.iter().any(lets_go),
-        Network::Heated(heated) => lets_go(heated.law()),
+        _ => law.parts().iter().any(lets_go),
     }
 }
 

@@ -49,7 +49,7 @@ pub use crate::fractional::Kind as Derivative;
 pub use catalog::{Build, Built, Catalog, Entry, Input, Param, Range};
 pub use heat::{Expansion, Heat, Shift, Thermal};
 pub use leaf::{Elastic, Leaf, LeafBuild, LeafKind, Table, TableError, When};
-pub use network::{Guard, Heated, Holds, LeafPart, Network, Warmth};
+pub use network::{Guard, Heated, Holds, LeafPart, Network, Series, Warmth};
 pub use past::{Past, Periodic};
 pub use prandtl_ishlinskii::{PrandtlIshlinskii, Stop};
 pub use rule::RuleError;

@@ -63,43 +63,8 @@ pub struct LeafAnswer {
     pub order: f64,
 }
 
-impl Network {
-    /// The law at rest since ever at the stroke of `at`: what flows has relaxed, and parts in series share one force. `held` is x(0), from
-    /// which Caputo's derivative of order 0 counts. `None` where parts in series come to no common force.
-    pub fn at_rest(&self, at: &Point, held: f64) -> Option<AtRest> {
-        match self {
-            Self::Leaf(leaf) => {
-                let LeafAtRest { force, stiffness, term, input, damping } = leaf.at_rest(at, held);
-                if let Some(tangent) = leaf.tangent(at) {
-                    return Some(AtRest { force, stiffness, tangent: Tangent::Whole(Box::new(tangent)) });
-                }
-                let tangent = Tangent::Leaf(term, input);
-                if damping == 0.0 {
-                    return Some(AtRest { force, stiffness, tangent });
-                }
-                let beside = Tangent::Leaf(Term { coefficient: damping, order: 1.0 }, None);
-                Some(AtRest { force, stiffness, tangent: Tangent::Parallel(vec![tangent, beside]) })
-            }
-            Self::Parallel(parts) => {
-                let mut sum = AtRest { force: 0.0, stiffness: None, tangent: Tangent::Parallel(Vec::new()) };
-                for part in parts {
-                    let part = part.at_rest(at, held)?;
-                    sum.force += part.force;
-                    sum.stiffness = part.stiffness.map(|k| k + sum.stiffness.unwrap_or(0.0)).or(sum.stiffness);
-                    if let Tangent::Parallel(tangents) = &mut sum.tangent {
-                        tangents.push(part.tangent);
-                    }
-                }
-                Some(sum)
-            }
-            Self::Series(parts) => series(parts, at),
-            Self::Heated(heated) => heated.at_rest(at, held),
-        }
-    }
-}
-
 /// Strokes at which all parts have one force: each follows its tangent to the force at which the tangents together have the whole stroke.
-fn series(parts: &[Network], at: &Point) -> Option<AtRest> {
+pub(super) fn series(parts: &[Network], at: &Point) -> Option<AtRest> {
     let mut strokes = vec![at.stroke / parts.len() as f64; parts.len()];
     for _ in 0..MOST_ROUNDS {
         let own = |(part, stroke): (&Network, &f64)| part.at_rest(&Point { stroke: *stroke, ..*at }, 0.0);

@@ -7,7 +7,9 @@ use num_complex::Complex64;
 use springpot::collocation::Nodes;
 use springpot::elements::{ElementBank, MemoryRange};
 use springpot::fractional::Form;
-use springpot::law::{Catalog, Course, Derivative, InputValue, Network, NetworkText, Point, Start, Step};
+use springpot::law::{
+    Catalog, Course, Derivative, InputValue, LeafState, Network, NetworkText, Point, Start, State, Step, When,
+};
 
 /// The published set of the prototype, N, m, s, V.
 pub(crate) const SPENCER: &str = "c_0a = \"21 N*s/cm\", c_0b = \"3.5 N*s/(cm*V)\", c_1a = \"283 N*s/cm\", \
@@ -126,7 +128,11 @@ impl Told {
 
 #[test]
 fn tangents_are_those_of_differences() {
-    for law in laws() {
+    let behind = |law: &Network| {
+        let beside = Network::parallel([law.clone(), Network::springpot(40.0, 0.4, Derivative::Caputo)]);
+        Network::series([Network::spring(70.0), beside])
+    };
+    for law in laws().iter().flat_map(|law| [law.clone(), behind(law)]) {
         for nodes in [Nodes::Radau, Nodes::Inner, Nodes::Midpoint, Nodes::One] {
             let count = nodes.count();
             let data = [[0.03, 0.032, 0.045, 0.071, 0.08], [0.4, 0.51, 0.2, 0.33, 0.25], [0.6, 0.7, 0.66, 0.8, 0.76]];
@@ -155,6 +161,37 @@ fn tangents_are_those_of_differences() {
             }
         }
     }
+}
+
+/// A stack behind a spring tells of its own circuit: R·q' + V = U, F = k·x − T·V of its own stroke.
+#[test]
+fn a_stack_in_a_series_tells_its_voltage() {
+    let (values, u) = ([90.0, 1.5, 8.0, -1.0, 0.0, 1.0, 0.03, 5.0, 0.0, 0.1], 0.6);
+    let [k, t, r] = [90.0 / 1.5, 90.0 / 8.0, 5.0];
+    let law = Network::series([Network::spring(70.0), law("piezo-stack", &values)]);
+    assert!(law.is_electric());
+    let inputs = [InputValue { value: u, rate: 0.0 }];
+    let mut state = law.begin(&Start { stroke: 0.0, jump: 0.0, inputs: &inputs }).unwrap();
+    let told = Told { nodes: Nodes::Radau, data: [vec![0.0, 0.01, 0.02, 0.03], vec![0.75; 4], vec![u; 4]] };
+    let check = |when: When, at: &Point, state: &State, leaves: &[LeafState], force: f64| {
+        let own = law.electric(when, at, state).expect("a stack has a circuit");
+        let stack: f64 = leaves[1..].iter().map(|leaf| leaf.force).sum();
+        assert!((own.voltage - (k * leaves[1].stroke - force) / t).abs() < 1e-12 && own.voltage != 0.0, "{own:?}");
+        assert!(
+            (r * own.current + own.voltage - u).abs() < 1e-12 && (stack - force).abs() < 1e-12,
+            "{own:?} {leaves:?}"
+        );
+    };
+    told.of(|step| {
+        let (at, mut leaves) = (step.point(3), Vec::new());
+        law.leaves_at(step, 1.0, &at, &state, &mut leaves);
+        let force = law.at(step, 1.0, &at, &state).force();
+        check(When::Within(step, 1.0), &at, &state, &leaves, force);
+    });
+    told.of(|step| law.commit(step, &mut state));
+    let (at, mut leaves) = (Point { t: 0.04, stroke: 0.03, rate: 0.75, inputs: &inputs }, Vec::new());
+    law.leaves_now(&at, &state, &mut leaves);
+    check(When::Between, &at, &state, &leaves, law.now(&at, &state).force());
 }
 
 /// Bouc-Wen along the motion of the papers: for beta = gamma and n = 2, z = Z tanh(x/Z) away from 0 and straight back to it.

@@ -5,19 +5,19 @@
 //! x_m = x − coefficient·(T − T_ref) and dx_m/dξ = a_T x_m'. Of its answer ∂F/∂x' is a_T ∂F/∂(dx/dξ) and P is P_ξ/a_T. How F follows T, and T
 //! the stroke, is no part of the tangents: in a step T moves little.
 
+mod answers;
 mod clock;
 mod warming;
 
-use super::{Guard, LeafPart, Network, Onset, Reported, Take};
+use super::part::{Part, Seen};
+use super::{LeafPart, Network, Series};
 use crate::collocation::{MAX_NODES, Nodes, lagrange_row};
 use crate::fractional::KernelError;
 use crate::law::heat::Heat;
 use crate::law::leaf::Unshifted;
-use crate::law::past::Recalled;
-use crate::law::rule::RuleError;
-use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{InputValue, LocalError, Point, Power, Powers, Response, Start, Step, Term};
-use crate::law::tangent::{AtRest, Tangent};
+use crate::law::state::{State, StateRef};
+use crate::law::step::{InputValue, Point, Powers, Start, Step, Term};
+use crate::law::tangent::Tangent;
 use clock::Clock;
 use std::sync::Arc;
 use warming::Temperatures;
@@ -167,16 +167,6 @@ impl Heated {
         self.warmth(Some((step, 1.0)), state).map_or(1.0, |warmth| self.heat.factor(warmth.temperature).recip())
     }
 
-    fn own_size(&self) -> StateSize {
-        let (clock, thermal) = (self.heat.shift.is_some(), self.heat.thermal.is_some());
-        StateSize { memories: 0, variables: usize::from(clock) + if thermal { 3 } else { 0 } }
-    }
-
-    pub(super) fn size(&self) -> StateSize {
-        let (own, law) = (self.own_size(), self.law.size());
-        StateSize { memories: law.memories, variables: own.variables + law.variables }
-    }
-
     /// Splits off what it keeps itself; `t` stands for ξ where nothing is shifted.
     fn own(&self, variables: &[f64], t: f64) -> Own {
         let (xi, rest) = match (self.heat.shift, variables) {
@@ -263,12 +253,6 @@ impl Heated {
         Some((own, course, inside))
     }
 
-    pub(super) fn begin(&self, start: &Start, state: &mut State) -> Result<(), KernelError> {
-        self.begin_own(state);
-        let mut inputs = Vec::new();
-        self.law.begin_part(&self.start(start, &mut inputs), state)
-    }
-
     fn begin_own(&self, state: &mut State) {
         if self.heat.shift.is_some() {
             state.push_variable(0.0);
@@ -291,7 +275,7 @@ impl Heated {
         let jump = match longer {
             0.0 => start.jump,
             // Strokes alone do not tell whether it was held: memories do.
-            _ if start.jump == 0.0 && self.law.size().memories == 0 => 0.0,
+            _ if start.jump == 0.0 && self.law.ask().size().memories == 0 => 0.0,
             _ if stroke.abs() <= tiny => 0.0,
             _ => stroke,
         };
@@ -314,174 +298,20 @@ impl Heated {
         Ok(state)
     }
 
-    pub(super) fn prepare(&self, step: &Step, state: &mut StateMut) {
-        let own = self.own(state.take(self.own_size()).variables, step.t);
-        // A state is another one whenever it is asked for: what it shifts, or stretches, has nothing to make ready.
-        let is_settled = self.heat.thermal.is_none() || (self.heat.shift.is_none() && self.heat.expansion.is_none());
-        match self.told(step, &own).filter(|_| is_settled) {
-            Some(course) => self.law.prepare_part(&self.inside(step, &own, &course).step(step), state),
-            None => state.skip(self.law.size(), self.law.series_count()),
-        }
-    }
-
-    pub(super) fn evaluate(&self, step: &Step, state: &mut StateRef, response: &mut Response) {
-        let Some((_, _, inside)) = self.look(step, state) else {
-            self.law.pass(state);
-            response.force = [f64::NAN; MAX_NODES];
-            return;
-        };
-        let mut own = Response::default();
-        self.law.evaluate_part(&inside.step(step), state, &mut own);
-        for i in 0..step.nodes.count() {
-            response.force[i] += own.force[i];
-            response.singular[i] += own.singular[i];
-            for j in 0..step.nodes.count() {
-                response.d_stroke[i][j] += own.d_stroke[i][j];
-                response.d_rate[i][j] += inside.clock.factor[j + 1] * own.d_rate[i][j];
-            }
-        }
-    }
-
-    /// Of the temperature what sources and the expansion make of it; what it does to the clock is left out.
-    pub(super) fn by_input(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        input: usize,
-        slopes: &mut [[f64; MAX_NODES]; MAX_NODES],
-    ) {
-        let Some((_, _, inside)) = self.look(step, state) else { return self.law.pass(state) };
-        let inner = match (self.input() == Some(input), self.takes) {
-            (true, takes) => takes,
-            (false, Some(own)) if self.heat.thermal.is_some() && input >= own => Some(input + 1),
-            (false, _) => Some(input),
-        };
-        let mut behind = *state;
-        match inner {
-            Some(inner) => self.law.by_input_part(&inside.step(step), state, inner, slopes),
-            None => self.law.pass(state),
-        }
-        if self.input() == Some(input) && self.heat.expansion.is_some() {
-            let (mut own, stretch) = (Response::default(), self.heat.stroke_by_temperature());
-            self.law.evaluate_part(&inside.step(step), &mut behind, &mut own);
-            for (row, own) in slopes.iter_mut().zip(own.d_stroke) {
-                row.iter_mut().zip(own).for_each(|(slope, by_stroke)| *slope += stretch * by_stroke);
-            }
-        }
-    }
-
-    pub(super) fn commit(&self, step: &Step, state: &mut StateMut) {
-        let size = self.own_size();
-        let looked = self.look(step, &mut state.view());
-        let variables = state.take(size).variables;
-        let Some((own, course, inside)) = looked else {
-            variables.fill(f64::NAN);
-            return state.skip(self.law.size(), self.law.series_count());
-        };
-        self.law.commit_part(&inside.step(step), state);
-        let (first, rest) = variables.split_at_mut(usize::from(self.heat.shift.is_some()));
-        first.fill(own.xi + inside.clock.h);
-        if let Some(thermal) = &self.heat.thermal {
-            let end = self.end(thermal, step, &own, &course);
-            rest.copy_from_slice(&end);
-        }
-    }
-
-    pub(super) fn local_errors(&self, step: &Step, state: &mut StateRef, errors: &mut Vec<LocalError>) {
-        let order = |error, value| LocalError { error, value, order: 0.0, sharpness: SHARPNESS };
-        let Some((own, course, inside)) = self.look(step, state) else {
-            errors.extend([order(f64::NAN, 1.0); 2].into_iter().take(self.own_errors()));
-            return self.law.pass(state);
-        };
-        let known = ..=step.nodes.count();
-        if self.heat.shift.is_some() {
-            let (pace, mean) = (inside.clock.factor.map(f64::recip), inside.clock.h / step.h);
-            errors.push(order(step.quadrature_defect(&pace[known]) / mean, 1.0));
-        }
-        if self.heat.thermal.is_some() {
-            // The temperature counts by what it does to the clock.
-            let scale = self.heat.shift.map_or(1.0, |shift| shift.slope(own.temperature).abs().max(1.0).recip());
-            errors.push(order(step.h * step.quadrature_defect(&course.warming[known]), scale));
-        }
-        self.law.local_errors_part(&inside.step(step), state, errors);
-    }
-
     /// How many of the local errors, the first of them, are those of the clock and of the temperature.
     fn own_errors(&self) -> usize {
         usize::from(self.heat.shift.is_some()) + usize::from(self.heat.thermal.is_some())
     }
 
-    /// How many of the local errors, the first of them, no motion shows.
-    pub(super) fn hidden_errors(&self) -> usize {
-        if self.law.has_inner_variables() { usize::MAX } else { self.own_errors() }
-    }
-
-    pub(super) fn powers(&self, step: &Step, state: &mut StateRef, powers: &mut Powers) {
-        let share = *state;
-        let Some((_, course, inside)) = self.look(step, state) else {
-            powers.fill(Power { dissipation: f64::NAN, input: f64::NAN });
-            return self.law.pass(state);
-        };
-        let mut behind = *state;
-        let own = self.powers_of(step, &inside, state);
-        for (power, own) in powers.iter_mut().zip(own) {
-            power.dissipation += own.dissipation;
-            power.input += own.input;
-        }
-        if self.heat.expansion.is_none() {
-            return;
-        }
-        // F·x' = F·x_m' + F·coefficient·T': what the heat does to the stroke is supplied by it.
-        let mut response = Response::default();
-        self.law.evaluate_part(&inside.step(step), &mut behind, &mut response);
-        let start = self.now(&step.point(0), &mut share.clone(), &mut |_| ()).observation.regular;
-        let by_temperature = self.heat.stroke_by_temperature();
-        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            // Of a singular start the energies are not known; its share of the force would only make steps short.
-            let force = if k == 0 { start } else { response.force[k - 1] - response.singular[k - 1] };
-            power.input += force * by_temperature * course.warming[k];
-        }
-    }
-
     /// Powers by the clock of the wall; leaves the state behind the law's share.
     fn powers_of(&self, step: &Step, inside: &Inside, state: &mut StateRef) -> Powers {
         let mut powers = Powers::default();
-        self.law.powers_part(&inside.step(step), state, &mut powers);
+        self.law.ask().powers(&inside.step(step), state, &mut powers);
         for (power, factor) in powers.iter_mut().zip(inside.clock.factor).take(step.nodes.count() + 1) {
             power.dissipation /= factor;
             power.input /= factor;
         }
         powers
-    }
-
-    pub(super) fn guards(&self, step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
-        match self.look(step, state) {
-            Some((_, _, inside)) => self.law.guards_part(&inside.step(step), state, guards),
-            None => self.law.pass(state),
-        }
-    }
-
-    pub(super) fn at(&self, step: &Step, theta: f64, at: &Point, state: &mut StateRef, take: Take) -> Reported {
-        let Some((own, course, inside)) = self.look(step, state) else {
-            self.law.pass(state);
-            return Reported::unknown();
-        };
-        let temperature = match self.heat.thermal {
-            None => self.seen(at.inputs),
-            Some(_) => self.within(step, theta, &own, &course),
-        };
-        let share = inside.clock.share(theta);
-        let place = self.place(at, own.xi + share * inside.clock.h, temperature);
-        let factor = place.factor;
-        let mut tell = |leaf| take(by_the_wall(leaf, factor));
-        self.law.at_part(&inside.step(step), share, &place.point(), state, &mut tell)
-    }
-
-    pub(super) fn now(&self, at: &Point, state: &mut StateRef, take: Take) -> Reported {
-        let own = self.own(state.take(self.own_size()).variables, at.t);
-        let place = self.place(at, own.xi, self.temperature(&own, at.inputs));
-        let factor = place.factor;
-        self.law.now_part(&place.point(), state, &mut |leaf| take(by_the_wall(leaf, factor)))
     }
 
     /// Temperature and heat at θ of a step, or between two steps.
@@ -514,80 +344,6 @@ impl Heated {
         InputValue { value, rate }
     }
 
-    pub(super) fn stiffness(&self, at: &Point, omega: f64) -> f64 {
-        let place = self.still(at);
-        self.law.stiffness(&place.point(), omega * place.factor)
-    }
-
-    pub(super) fn estimate(&self, at: &Point, state: &mut StateRef, omega: f64) -> f64 {
-        let own = self.own(state.take(self.own_size()).variables, at.t);
-        let place = self.place(at, own.xi, self.temperature(&own, at.inputs));
-        self.law.estimate_part(&place.point(), state, omega * place.factor)
-    }
-
-    pub(super) fn for_each_springpot(&self, at: &Point, take: &mut dyn FnMut(Term)) {
-        let place = self.still(at);
-        self.law.for_each_springpot(&place.point(), &mut |term| take(term.shifted(place.factor)));
-    }
-
-    pub(super) fn singularities(&self, inputs: &[InputValue], state: &mut StateRef, take: &mut dyn FnMut(Term)) {
-        let own = self.own(state.take(self.own_size()).variables, 0.0);
-        let at = Point { t: own.xi, stroke: 0.0, rate: 0.0, inputs };
-        let place = self.place(&at, own.xi, self.temperature(&own, inputs));
-        self.law.singularities(&place.inputs, state, &mut |term| take(term.shifted(place.factor)));
-    }
-
-    pub(super) fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
-        let temperature = self.seen(inputs);
-        if let Some(shift) = self.heat.shift.filter(|_| self.heat.thermal.is_none()) {
-            let needs = |broken: RuleError| RuleError { rule: format!("its shift needs {}", broken.rule), ..broken };
-            shift.check(temperature.value).map_err(needs)?;
-        }
-        let mut own = Vec::new();
-        self.hand_on(inputs, temperature, 1.0, &mut own);
-        self.law.check_inputs(&own)
-    }
-
-    pub(super) fn report(&self, at: &Point) -> (u8, f64) {
-        self.law.report(&self.still(at).point())
-    }
-
-    pub(super) fn has_guards(&self, at: &Point) -> bool {
-        self.law.has_guards(&self.still(at).point())
-    }
-
-    pub(super) fn modulus(&self, at: &Point, s: num_complex::Complex64) -> num_complex::Complex64 {
-        let place = self.still(at);
-        self.law.modulus(&place.point(), s * place.factor)
-    }
-
-    pub(super) fn asymptote(&self, at: &Point, onset: Onset) -> Term {
-        let place = self.still(at);
-        self.law.asymptote(&place.point(), onset).shifted(place.factor)
-    }
-
-    pub(super) fn recall(&self, stroke: &Recalled, at: &Point, state: &mut StateMut) {
-        state.take(self.own_size());
-        let place = self.still(at);
-        let temperature = self.seen(at.inputs).value;
-        let stroke = stroke.reduced(place.factor, self.heat.stroke(temperature));
-        self.law.recall_part(&stroke, &place.point(), state);
-    }
-
-    /// At rest at the temperature of the inputs, or of the start.
-    pub(in crate::law) fn at_rest(&self, at: &Point, held: f64) -> Option<AtRest> {
-        let place = self.still(at);
-        let rest = self.law.at_rest(&place.point(), held + (place.stroke - at.stroke))?;
-        let outside = |input: usize| match (self.heat.thermal, self.takes) {
-            _ if input >= self.inputs => None,
-            (Some(_), Some(own)) if input == own => None,
-            (Some(_), Some(own)) if input > own => Some(input - 1),
-            _ => Some(input),
-        };
-        let tangent = rest.tangent.shifted(place.factor, &outside);
-        Some(AtRest { tangent, ..rest })
-    }
-
     /// What a stretch by a kelvin at the rate `omega`, rad/s, stores, J.
     pub(crate) fn stretching(&self, at: &Point, omega: f64) -> f64 {
         match self.heat.expansion {
@@ -603,8 +359,8 @@ impl Heated {
 }
 
 /// A leaf whose rate is told in reduced time.
-fn by_the_wall(leaf: crate::law::step::LeafState, factor: f64) -> crate::law::step::LeafState {
-    crate::law::step::LeafState { rate: leaf.rate / factor, ..leaf }
+fn by_the_wall(leaf: Seen, factor: f64) -> Seen {
+    Seen { factor, ..leaf }
 }
 
 /// The law in which leaves that do not shift are told a_T as the input `factor`, and whether there are any.
@@ -623,9 +379,9 @@ fn unshifted(law: Network, factor: usize) -> (Network, bool) {
             let (parts, any) = all(parts);
             (Network::Parallel(parts), any)
         }
-        Network::Series(parts) => {
-            let (parts, any) = all(parts);
-            (Network::Series(parts), any)
+        Network::Series(series) => {
+            let (parts, any) = all(series.into_parts());
+            (Network::Series(Series::new(parts)), any)
         }
         other => (other, false),
     }

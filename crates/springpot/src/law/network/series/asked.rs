@@ -24,6 +24,8 @@ pub(super) struct Asked {
 /// What brings the nodes of a step, which lie elsewhere, to those of the parts and back.
 struct Bent {
     weights: [Weights; MAX_NODES],
+    /// The same of inputs, whose rates are known.
+    inputs: [Weights; MAX_NODES],
     outer: [[f64; MAX_NODES]; STAGES],
 }
 
@@ -96,6 +98,7 @@ impl Asked {
         stroke[0] = step.stroke[0];
         let bent = step.places.map(|places| Bent {
             weights: inner::NODES.map(|theta| way.weights_at(places, theta)),
+            inputs: inner::NODES.map(|theta| Way::Both.weights_at(places, theta)),
             outer: places.positions().map(inner::outer_row),
         });
         let weights = bent.as_ref().map_or(way.weights(), |bent| &bent.weights);
@@ -173,6 +176,21 @@ impl Asked {
                     response.d_stroke[i][j] += along * weights.stroke[j + 1];
                     response.d_rate[i][j] += self.h * along * weights.rate[j + 1];
                 }
+            }
+        }
+    }
+
+    /// Adds how forces at the nodes of the parts follow an input there, as they follow its values at the nodes of the whole.
+    pub(super) fn follow_input(&self, inside: &super::Matrix, slopes: &mut super::Matrix) {
+        if self.way == Way::Same {
+            slopes.iter_mut().flatten().zip(inside.iter().flatten()).for_each(|(slope, own)| *slope += own);
+            return;
+        }
+        let weights = self.bent.as_ref().map_or(Way::Both.weights(), |bent| &bent.inputs);
+        for (slopes, row) in slopes.iter_mut().zip(self.rows()) {
+            for (n, weights) in weights.iter().enumerate() {
+                let along: f64 = (0..MAX_NODES).map(|m| row[m] * inside[m][n]).sum();
+                (0..STAGES).for_each(|j| slopes[j] += along * weights.stroke[j + 1]);
             }
         }
     }

@@ -69,7 +69,7 @@ impl Lines {
         self.each.clear();
         for (part, inner) in parts.iter().zip(inner) {
             let mut response = Response::default();
-            part.evaluate_part(&inner.step(step), &mut state, &mut response);
+            part.ask().evaluate(&inner.step(step), &mut state, &mut response);
             let mut stiffness = response.d_stroke;
             for i in 0..count {
                 for j in 0..count {
@@ -238,6 +238,32 @@ fn search(parts: &[Network], step: &Step, starts: &[f64], state: StateRef) -> So
     let mut shares = [0.0; MOST_IN_SERIES];
     (0..parts.len()).for_each(|k| shares[k] = lines.share(k, count));
     Solved { inner, force, tangent: lines.tangent, shares }
+}
+
+/// ∂F_i/∂u_j of an input at the nodes of the parts, about strokes of theirs that fit: (Σ C_m)⁻¹ Σ C_m ∂F_m/∂u.
+pub(super) fn by_input(
+    parts: &[Network],
+    step: &Step,
+    inner: &[Inner; MOST_IN_SERIES],
+    input: usize,
+    mut state: StateRef,
+) -> Matrix {
+    let count = step.nodes.count();
+    let mut lines = Lines::default();
+    lines.look(parts, inner, step, state);
+    lines.turn(count);
+    let mut moved = Matrix::default();
+    for ((part, inner), line) in parts.iter().zip(inner).zip(&lines.each) {
+        let mut own = Matrix::default();
+        part.ask().by_input(&inner.step(step), &mut state, input, &mut own);
+        let longer = product(&line.compliance, &own);
+        moved.iter_mut().flatten().zip(longer.iter().flatten()).for_each(|(sum, own)| *sum += own);
+    }
+    product(&lines.tangent, &moved)
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    a.map(|row| std::array::from_fn(|j| row.iter().zip(b).map(|(entry, other)| entry * other[j]).sum()))
 }
 
 fn times(matrix: &Matrix, vector: &[f64; MAX_NODES]) -> [f64; MAX_NODES] {

@@ -1,15 +1,16 @@
 //! Who takes the stroke at t = 0.
 
-use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, own};
+use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, Series};
 use crate::fractional::{KernelError, Kind as Derivative, Memory};
-use crate::law::network::{Network, Onset};
+use crate::law::network::Network;
+use crate::law::network::part::{Onset, Part};
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut};
 use crate::law::step::{Point, Start};
 use num_complex::Complex64;
 
 /// The strokes of the parts at t = 0, and the parts' own states.
-pub(in crate::law::network) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Result<(), KernelError> {
+pub(super) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Result<(), KernelError> {
     // What was held since ever has relaxed; what begins at t = 0 has not.
     let onset = match parts.iter().find_map(|part| derivative(part, start)) {
         Some(Derivative::RiemannLiouville) => Onset::Short,
@@ -26,7 +27,7 @@ pub(in crate::law::network) fn begin(parts: &[Network], start: &Start, state: &m
     strokes.iter().for_each(|stroke| state.push_variable(*stroke));
     let first = state.memories().len();
     for (k, part) in parts.iter().enumerate() {
-        part.begin_part(&Start { stroke: strokes[k], jump: of_parts[k] * start.jump, ..*start }, state)?;
+        part.ask().begin(&Start { stroke: strokes[k], jump: of_parts[k] * start.jump, ..*start }, state)?;
     }
     if onset == Onset::Short && start.jump != 0.0 {
         state.memories_mut()[first..].iter_mut().for_each(Memory::lose_account);
@@ -45,7 +46,7 @@ struct Shares {
 
 /// What share of a stroke each part takes at once, or at last.
 fn shares(parts: &[Network], at: &Point, onset: Onset) -> Shares {
-    let terms: Vec<_> = parts.iter().map(|part| part.asymptote(at, onset)).collect();
+    let terms: Vec<_> = parts.iter().map(|part| part.ask().asymptote(at, onset)).collect();
     let softer = |a: f64, b: f64| if onset == Onset::Short { a < b } else { a > b };
     let order = terms.iter().map(|term| term.order).reduce(|a, b| if softer(b, a) { b } else { a }).unwrap_or(0.0);
     let compliance = |k: usize| if terms[k].order == order { terms[k].coefficient.recip() } else { 0.0 };
@@ -61,10 +62,10 @@ fn shares(parts: &[Network], at: &Point, onset: Onset) -> Shares {
 fn balance(parts: &[Network], holding: &[usize], start: &Start, strokes: &mut [f64]) -> Result<(), KernelError> {
     let rest = |part: &Network, stroke: f64| -> Result<[f64; 2], KernelError> {
         let mut state = State::default();
-        part.begin_part(&Start { stroke, jump: 0.0, ..*start }, &mut state)?;
+        part.ask().begin(&Start { stroke, jump: 0.0, ..*start }, &mut state)?;
         let at = Point { t: 0.0, stroke, rate: 0.0, inputs: start.inputs };
-        let force = part.now_part(&at, &mut state.view(), &mut |_| ()).observation.regular;
-        Ok([force, part.asymptote(&at, Onset::Long).coefficient])
+        let force = part.ask().now(&at, &mut state.view(), &mut |_| ()).observation.regular;
+        Ok([force, part.ask().asymptote(&at, Onset::Long).coefficient])
     };
     let (mut from, mut apart_before, mut halvings) = (strokes.to_vec(), f64::INFINITY, 0);
     for _ in 0..MOST_ITERATIONS {
@@ -93,12 +94,13 @@ fn balance(parts: &[Network], holding: &[usize], start: &Start, strokes: &mut [f
 /// The derivative that the first springpot takes.
 fn derivative(part: &Network, start: &Start) -> Option<Derivative> {
     let mut state = State::default();
-    part.begin_part(start, &mut state).ok()?;
+    part.ask().begin(start, &mut state).ok()?;
     state.memories().first().map(Memory::kind)
 }
 
 /// The strokes of the parts under a stroke made of exponentials: all have one force at each of them.
-pub(in crate::law::network) fn recall(parts: &[Network], whole: &Recalled, at: &Point, state: &mut StateMut) {
+pub(super) fn recall(series: &Series, whole: &Recalled, at: &Point, state: &mut StateMut) {
+    let parts = series.parts();
     let mut inner: Vec<Vec<[Complex64; 2]>> = vec![Vec::new(); parts.len()];
     let rest = shares(parts, at, Onset::Long).of_parts;
     for &[s, stroke] in whole.exponentials() {
@@ -108,10 +110,10 @@ pub(in crate::law::network) fn recall(parts: &[Network], whole: &Recalled, at: &
             inner.push([s, own / compliance * stroke]);
         }
     }
-    let strokes = state.take(own(parts)).variables;
+    let strokes = state.take(series.own_size()).variables;
     for (k, (part, (exponentials, stroke))) in parts.iter().zip(inner.into_iter().zip(strokes)).enumerate() {
         let own = whole.with(rest[k] * whole.mean(), exponentials);
         *stroke = own.stroke(0.0);
-        part.recall_part(&own, at, state);
+        part.ask().recall(&own, at, state);
     }
 }
