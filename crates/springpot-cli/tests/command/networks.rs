@@ -148,10 +148,10 @@ fn leaves_that_yield_stand_beside_others() {
     place.done(&["run", "arm.toml"]);
     let yields = "does not hold at times: what stands behind it would be free";
     for (leaf, given, words) in [
-        ("tension(k)", "k = 100", yields),
-        ("compression(k)", "k = 100", yields),
-        ("stop(k, a, b)", "k = 100, a = -1, b = 1", yields),
-        ("friction(f, v0)", "k = 100, f = 1, v0 = 1", yields),
+        ("tension(k), compression(l)", "k = 100, l = 5", "`tension(k)` only pulls and `compression(l)` only pushes"),
+        ("series(compression(l), series(spring(k), tension(k)))", "k = 100, l = 5", "only pulls and"),
+        ("parallel(tension(k), compression(l))", "k = 100, l = 5", yields),
+        ("tension(l)", "k = 100, l = 0", "`tension(l)` gives none"),
         ("preload(f)", "k = 100, f = 1", yields),
         ("polynomial(k, l, m)", "k = 100, l = 1, m = 0", yields),
         ("bouc-wen(k, A, b, g, n)", "k = 100, A = 1, b = 1, g = 1, n = 1", yields),
@@ -166,6 +166,21 @@ fn leaves_that_yield_stand_beside_others() {
     ] {
         let law = format!("network = \"series(spring(k), {leaf})\"\nparameters = {{ {given} }}\n");
         refused(&with(&law), "name=\"damper\"", &[words]);
+    }
+}
+
+#[test]
+fn leaves_that_let_go_stand_in_series() {
+    for (network, given) in [
+        ("series(tension(k), springpot(c, alpha))", "k = 100, c = 40, alpha = 0.5"),
+        ("series(compression(k), parallel(spring(l), springpot(c, alpha)))", "k = 900, l = 30, c = 40, alpha = 0.4"),
+        ("series(rope: stop(k, a, b), springpot(c, alpha))", "k = 100, a = -0.02, b = 0.01, c = 40, alpha = 0.5"),
+        ("series(spring(k), friction(f, v0))", "k = 100, f = 1, v0 = 0.01"),
+        ("series(tension(k), dashpot(c), friction(f, v0))", "k = 100, c = 40, f = 1, v0 = 0.01"),
+    ] {
+        let place = with(&format!("network = \"{network}\"\nparameters = {{ {given} }}\n"));
+        place.done(&["run", "arm.toml"]);
+        place.done(&["check", "arm.toml"]);
     }
 }
 

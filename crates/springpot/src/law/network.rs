@@ -12,7 +12,7 @@ pub(super) use series::Ready;
 pub use series::Series;
 
 use super::heat::Heat;
-use super::leaf::{Coefficient, Dashpot, Leaf, Source, Spring, Springpot, When};
+use super::leaf::{Coefficient, Dashpot, Free, Leaf, Source, Spring, Springpot, When};
 use super::past::Recalled;
 use super::rule::RuleError;
 use super::state::State;
@@ -76,6 +76,8 @@ pub enum Holds {
     Never,
     /// There are strokes at which it yields to every force.
     AtTimes,
+    /// The same of a spring that is free at some strokes ([`Leaf::free`]) or of friction, which slides: in a series what is slack is theirs.
+    LetsGo,
     /// Wherever it is.
     Always,
 }
@@ -141,6 +143,11 @@ impl Network {
     /// Whether it carries force wherever it is.
     pub fn holds(&self) -> Holds {
         self.ask().holds()
+    }
+
+    /// The strokes at which it carries nothing ([`Leaf::free`]).
+    pub(super) fn free(&self) -> Option<Free> {
+        self.ask().free()
     }
 
     /// F = k·x, k in N/m.

@@ -162,13 +162,14 @@ impl<'a> Step<'a> {
     /// The step's data at its start (0) or at node `index`.
     pub fn point(&self, index: usize) -> Point<'a> {
         let theta = if index == 0 { 0.0 } else { self.positions()[index - 1] };
+        let (stroke, rate) = (self.stroke[index], self.rate[index]);
+        Point { t: self.t + theta * self.h, stroke, rate, inputs: self.inputs_at(index) }
+    }
+
+    /// The inputs at its start (0) or at node `index`.
+    pub fn inputs_at(&self, index: usize) -> &'a [InputValue] {
         let count = self.inputs.len() / self.stroke.len();
-        Point {
-            t: self.t + theta * self.h,
-            stroke: self.stroke[index],
-            rate: self.rate[index],
-            inputs: &self.inputs[index * count..(index + 1) * count],
-        }
+        &self.inputs[index * count..(index + 1) * count]
     }
 
     /// The nodes.

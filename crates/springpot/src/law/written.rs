@@ -1,7 +1,7 @@
 //! Networks as text: `series(spring(k0), parallel(springpot(c, alpha), slow: dashpot(eta)))`.
 
 use super::catalog::{Entry, Param};
-use super::leaf::{LeafBuild, LeafKind, Table};
+use super::leaf::{Free, LeafBuild, LeafKind, Table};
 use super::network::{Holds, Network};
 use super::rule::RuleError;
 use crate::fractional::Kind as Derivative;
@@ -83,6 +83,16 @@ enum PartKind {
     },
     Parallel(Vec<Part>),
     Series(Vec<Part>),
+}
+
+impl Part {
+    /// The parts of a series, and of those in it.
+    fn leaves_in_series<'a>(&'a self, leaves: &mut Vec<&'a Self>) {
+        match &self.kind {
+            PartKind::Series(parts) => parts.iter().for_each(|part| part.leaves_in_series(leaves)),
+            _ => leaves.push(self),
+        }
+    }
 }
 
 impl NetworkText {
@@ -173,16 +183,42 @@ impl NetworkText {
                 let built = parts.iter().map(|part| {
                     let network = self.part(part, values, derivative)?;
                     let what = match network.holds() {
-                        Holds::Always => return Ok(network),
+                        Holds::Always | Holds::LetsGo => return Ok(network),
                         Holds::AtTimes => "does not hold at times: what stands behind it would be free",
                         Holds::Never => "gives none",
                     };
                     let rule = format!("every part of a series to carry its force, but `{}` {what}", self.words(part));
                     Err(RuleError { rule, parameter: self.first_parameter(part) })
                 });
-                Ok(Network::series(built.collect::<Result<Vec<_>, _>>()?))
+                let built = built.collect::<Result<Vec<_>, _>>()?;
+                let series = Network::series(built);
+                self.carries(parts, &series)?;
+                Ok(series)
             }
         }
+    }
+
+    /// A series that gives a force somewhere: of one part that only pulls and one that only pushes there is none.
+    fn carries(&self, parts: &[Part], series: &Network) -> Result<(), RuleError> {
+        if series.holds() != Holds::Never {
+            return Ok(());
+        }
+        let mut leaves = Vec::new();
+        parts.iter().for_each(|part| part.leaves_in_series(&mut leaves));
+        let never = |end: fn(&Free) -> f64| {
+            let own = leaves.iter().zip(series.parts());
+            own.filter(|(_, part)| part.free().is_some_and(|free| end(&free).is_infinite()))
+                .map(|(leaf, _)| *leaf)
+                .next()
+        };
+        let [pushes, pulls] =
+            [never(|free| free.upper), never(|free| free.lower)].map(|part| part.unwrap_or(&parts[0]));
+        let rule = format!(
+            "parts of a series that carry one force, but `{}` only pulls and `{}` only pushes: together they give none",
+            self.words(pulls),
+            self.words(pushes)
+        );
+        Err(RuleError { rule, parameter: self.first_parameter(pushes) })
     }
 
     fn words(&self, part: &Part) -> &str {

@@ -5,6 +5,7 @@ mod convergence;
 mod dampers;
 mod named;
 mod nonlinear;
+mod one_sided;
 mod orders;
 mod pasts;
 mod piezo;

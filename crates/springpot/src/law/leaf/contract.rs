@@ -17,6 +17,26 @@ pub enum When<'a> {
     Between,
 }
 
+/// A spring that is free at some strokes: F = k·(x − upper) above `upper`, k·(x − lower) below `lower`, 0 between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Free {
+    /// Stiffness k > 0, N/m.
+    pub stiffness: f64,
+    /// Where it is free, m: from `lower` to `upper` > `lower`; an end that is infinite is none.
+    pub lower: f64,
+    /// See `lower`.
+    pub upper: f64,
+}
+
+/// Friction that turns over about a rate: F = f·tanh(x'/v0).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slide {
+    /// f > 0, N.
+    pub force: f64,
+    /// v0 > 0, m/s.
+    pub rate: f64,
+}
+
 /// A part of a law that gives a force by itself: linear or not, with or without memories and inner variables.
 ///
 /// It is asked at the nodes of a step and nowhere else. Asking is pure and may be done any number of times; [`Leaf::commit`] is the only
@@ -106,6 +126,17 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     fn holds(&self) -> Holds {
         let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
         if self.is_linear() && self.linearised(&at).coefficient == 0.0 { Holds::Never } else { Holds::Always }
+    }
+
+    /// The strokes at which it carries nothing, of a spring that has such: what lets it stand in a series ([`Holds::LetsGo`]), which gives it
+    /// all that is slack.
+    fn free(&self) -> Option<Free> {
+        None
+    }
+
+    /// How it slides under the inputs, of friction: the other leaf that may stand in a series though it lets go.
+    fn slides(&self, _inputs: &[InputValue]) -> Option<Slide> {
+        None
     }
 
     /// Hands over functions whose zeros are kinks of its force, such as how far a stop is away, always as many in one order: steps

@@ -1,6 +1,6 @@
 //! What gives a force that follows from the stroke alone.
 
-use super::contract::Leaf;
+use super::contract::{Free, Leaf};
 use crate::law::network::Holds;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Response, Step, Term};
@@ -45,6 +45,11 @@ pub trait Elastic: Send + Sync + std::fmt::Debug {
     /// What may stand in a series by itself ([`Leaf::holds`]).
     fn holds(&self) -> Holds;
 
+    /// The strokes at which it carries nothing ([`Leaf::free`]).
+    fn free(&self) -> Option<Free> {
+        None
+    }
+
     /// Whether F is an affine function of x.
     fn is_linear(&self) -> bool {
         false
@@ -84,6 +89,10 @@ impl<T: Elastic> Leaf for T {
 
     fn holds(&self) -> Holds {
         Elastic::holds(self)
+    }
+
+    fn free(&self) -> Option<Free> {
+        Elastic::free(self)
     }
 
     fn is_linear(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Smooth friction.
 
-use super::contract::Leaf;
+use super::contract::{Leaf, Slide};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
 use crate::collocation::MAX_NODES;
@@ -8,7 +8,7 @@ use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
-use crate::law::step::{InputValue, Observation, Point, Powers, Response, Step, Term};
+use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Step, Term};
 
 /// F = f·tanh(x'/v0). Dissipates F·x'; creeps where it should stick, at rates of the order of v0. f may follow an input.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,7 +80,17 @@ impl Leaf for Friction {
 
     fn holds(&self) -> Holds {
         // Above some 20·v0 its force is f to the last bit, whatever the rate.
-        if self.force.is_none() { Holds::Never } else { Holds::AtTimes }
+        if self.force.is_none() { Holds::Never } else { Holds::LetsGo }
+    }
+
+    fn slides(&self, inputs: &[InputValue]) -> Option<Slide> {
+        (!self.force.is_none()).then(|| Slide { force: self.force.at(inputs).value, rate: self.rate })
+    }
+
+    fn local_errors(&self, step: &Step, _: StateRef, errors: &mut Vec<LocalError>) {
+        // Of its rate what the force knows of it.
+        let value = self.rate * (step.rate[step.nodes.count()] / self.rate).tanh();
+        errors.push(LocalError { error: 0.0, value, order: 1.0, sharpness: 0.0 });
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {

@@ -22,7 +22,7 @@ mod unshifted;
 mod viscous;
 
 pub use bouc_wen::BoucWen;
-pub use contract::{Leaf, When};
+pub use contract::{Free, Leaf, Slide, When};
 pub use dashpot::Dashpot;
 pub use elastic::Elastic;
 pub use end_stop::EndStop;

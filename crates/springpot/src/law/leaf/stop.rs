@@ -1,5 +1,6 @@
 //! Springs that are free at some strokes: taut ropes, pads that lift off, end stops.
 
+use super::contract::Free;
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
 use crate::law::catalog::{Param, Range};
@@ -70,8 +71,13 @@ impl Elastic for Stop {
         match self.stiffness {
             0.0 => Holds::Never,
             _ if self.lower == self.upper => Holds::Always,
-            _ => Holds::AtTimes,
+            _ => Holds::LetsGo,
         }
+    }
+
+    fn free(&self) -> Option<Free> {
+        let Self { stiffness, lower, upper } = *self;
+        (Elastic::holds(self) == Holds::LetsGo).then_some(Free { stiffness, lower, upper })
     }
 
     fn is_linear(&self) -> bool {

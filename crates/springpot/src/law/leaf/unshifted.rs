@@ -1,6 +1,6 @@
 //! A leaf that temperature does not shift, in a law that is told in reduced time.
 
-use super::contract::Leaf;
+use super::contract::{Leaf, Slide};
 use crate::collocation::MAX_NODES;
 use crate::fractional::KernelError;
 use crate::law::network::{Holds, LeafPart};
@@ -119,6 +119,11 @@ impl Leaf for Unshifted {
 
     fn holds(&self) -> Holds {
         self.leaf.holds()
+    }
+
+    fn slides(&self, inputs: &[InputValue]) -> Option<Slide> {
+        let own = self.leaf.slides(inputs)?;
+        Some(Slide { rate: own.rate * self.factor(inputs), ..own })
     }
 
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {

@@ -4,7 +4,7 @@ use super::part::{Onset, Part, Reported, Seen, Take};
 use super::{Guard, Holds, Network};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Memory, RatePolynomial};
-use crate::law::leaf::{Leaf, When};
+use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::past::Recalled;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
@@ -108,6 +108,14 @@ impl Part for LeafPart {
 
     fn holds(&self) -> Holds {
         self.leaf.holds()
+    }
+
+    fn free(&self) -> Option<Free> {
+        self.leaf.free()
+    }
+
+    fn slides(&self, inputs: &[InputValue]) -> Option<Slide> {
+        self.leaf.slides(inputs)
     }
 
     fn has_guards(&self, at: &Point) -> bool {

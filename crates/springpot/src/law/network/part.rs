@@ -3,7 +3,7 @@
 use super::{LeafPart, Network};
 use crate::collocation::MAX_NODES;
 use crate::fractional::KernelError;
-use crate::law::leaf::{Leaf, When};
+use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::network::{Guard, Holds};
 use crate::law::past::Recalled;
 use crate::law::rule::RuleError;
@@ -124,6 +124,16 @@ pub(in crate::law) trait Part: std::fmt::Debug {
         self.parts().iter().map(|part| part.ask().holds()).max().unwrap_or(Holds::Never)
     }
 
+    /// The strokes at which it carries nothing ([`Leaf::free`]).
+    fn free(&self) -> Option<Free> {
+        None
+    }
+
+    /// How it slides, of friction ([`Leaf::slides`]).
+    fn slides(&self, _: &[InputValue]) -> Option<Slide> {
+        None
+    }
+
     /// Whether its force may have kinks that steps are to end on.
     fn has_guards(&self, at: &Point) -> bool {
         self.parts().iter().any(|part| part.ask().has_guards(at))
@@ -177,7 +187,7 @@ pub(in crate::law) trait Part: std::fmt::Debug {
 
     /// What remains of it at short or at long times: the stiffest of parts side by side.
     fn asymptote(&self, at: &Point, onset: Onset) -> Term {
-        asymptote(self.parts(), at, onset, true)
+        asymptote(self.parts().iter().map(|part| part.ask().asymptote(at, onset)), onset, true)
     }
 
     /// At rest since ever ([`Network::at_rest`]).
@@ -198,13 +208,21 @@ impl Part for Vec<Network> {
     fn parts(&self) -> &[Network] {
         self
     }
+
+    /// A series knows what to do with one part that lets go, not with several side by side.
+    fn holds(&self) -> Holds {
+        match self.iter().map(Network::holds).max() {
+            Some(Holds::LetsGo) => Holds::AtTimes,
+            holds => holds.unwrap_or(Holds::Never),
+        }
+    }
 }
 
 /// What remains of parts at short or at long times, whose forces add (`adds`) or whose strokes do.
-pub(super) fn asymptote(parts: &[Network], at: &Point, onset: Onset, adds: bool) -> Term {
+pub(super) fn asymptote(parts: impl Iterator<Item = Term> + Clone, onset: Onset, adds: bool) -> Term {
     // The stiffest of parallel parts and the softest of those in series: that of the higher order at short times.
     let takes_highest = adds == (onset == Onset::Short);
-    let terms = || parts.iter().map(|part| part.ask().asymptote(at, onset)).filter(|term| term.coefficient != 0.0);
+    let terms = || parts.clone().filter(|term| term.coefficient != 0.0);
     let orders = terms().map(|term| term.order);
     let order = if takes_highest { orders.fold(0.0, f64::max) } else { orders.fold(f64::INFINITY, f64::min) };
     let order = if order.is_finite() { order } else { 0.0 };

@@ -9,6 +9,9 @@
 //! at three nodes a forward run would be of order three. The force at the three is that of the cubic through the four.
 
 mod asked;
+mod loose;
+mod play;
+mod slide;
 mod solve;
 mod start;
 
@@ -17,12 +20,15 @@ use super::{Guard, Holds, MOST_IN_SERIES, Network};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::KernelError;
+use crate::law::leaf::Slide;
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Course, InputValue, LocalError, Point, Power, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{self, AtRest};
 use asked::Asked;
+use loose::{Loose, Sought};
 use num_complex::Complex64;
+use play::Play;
 use solve::{Inner, Solved, solve};
 
 pub(in crate::law) use solve::Ready;
@@ -31,6 +37,8 @@ pub(in crate::law) use solve::Ready;
 #[derive(Debug, Clone)]
 pub struct Series {
     parts: Vec<Network>,
+    /// Those that let go at some strokes or rates.
+    loose: Option<Loose>,
 }
 
 type Matrix = [[f64; MAX_NODES]; MAX_NODES];
@@ -38,6 +46,9 @@ type Values = [f64; MAX_NODES + 1];
 
 /// Where so many steps have led since t = 0, inner strokes no longer bend as at a start.
 const LAYER: f64 = 10.0;
+
+/// Behind a change of sides, as a share of the time that has passed.
+const SOON: f64 = 1e-11;
 
 /// How much more an estimate counts before that: what it misses stays for as long as the parts relax.
 const ONSET: f64 = 6.0;
@@ -48,6 +59,12 @@ const OF_MEMORIES: f64 = 6.0;
 
 /// The largest share of a step in which what its strokes move may count as rounding.
 const NEAR: f64 = 1e-6;
+
+/// Steps this short, as a share of the time that has passed, resolve no kink of friction.
+const NARROW: f64 = 1e-9;
+
+/// What a part tells of its sliding that does not slide.
+const NO_FRICTION: Slide = Slide { force: 1.0, rate: 1.0 };
 
 /// Iterations of nonlinear parts, and how often one of them is halved.
 const MOST_ITERATIONS: usize = 60;
@@ -61,11 +78,55 @@ const MOST_SECANTS: usize = 200;
 
 impl Series {
     pub(super) fn new(parts: Vec<Network>) -> Self {
-        Self { parts }
+        Self { loose: Loose::of(&parts), parts }
+    }
+
+    /// Splits off what it keeps itself: the strokes of its parts, and when a play last changed sides.
+    fn own<'a>(&self, state: &mut StateRef<'a>) -> (&'a [f64], f64) {
+        let (strokes, since) = state.take(self.own_size()).variables.split_at(self.parts.len());
+        (strokes, since.first().copied().unwrap_or(0.0))
     }
 
     pub(super) fn into_parts(self) -> Vec<Network> {
         self.parts
+    }
+
+    /// Those of the parts that are free at some strokes.
+    fn play(&self) -> Option<&Play> {
+        self.loose.as_ref()?.play.as_ref()
+    }
+
+    /// Whether part `k` is one of those.
+    fn is_free(&self, k: usize) -> bool {
+        self.loose.as_ref().is_some_and(|loose| loose.is_free(k))
+    }
+
+    /// Whether part `k` is friction.
+    fn slides(&self, k: usize) -> bool {
+        self.lets_go(k) && !self.is_free(k)
+    }
+
+    /// Whether part `k` is one that lets go.
+    fn lets_go(&self, k: usize) -> bool {
+        self.loose.as_ref().is_some_and(|loose| loose.has(k))
+    }
+
+    /// The compliance of a play beside one of the others.
+    fn softness(&self, others: f64) -> f64 {
+        others + self.play().map_or(0.0, |play| play.stiffness().recip())
+    }
+
+    /// Whether all but those are linear.
+    fn others_are_linear(&self) -> bool {
+        self.parts.iter().enumerate().all(|(k, part)| self.lets_go(k) || part.is_linear())
+    }
+
+    /// The strokes of those that are never free, together, and of a play.
+    fn split(&self, strokes: &[f64]) -> [f64; 2] {
+        let of = |is_free: bool| {
+            (0..self.parts.len()).filter(|k| self.is_free(*k) == is_free).map(|k| strokes[k]).sum::<f64>()
+        };
+        [of(false), of(true)]
     }
 
     /// Whether no part gives a force that follows from its stroke alone.
@@ -81,18 +142,18 @@ impl Series {
     }
 
     /// What the parts are asked and how they answer; leaves the state at their shares.
-    fn solved(&self, step: &Step, state: &mut StateRef) -> (Asked, Solved) {
+    fn solved(&self, step: &Step, state: &mut StateRef, sought: Sought) -> (Asked, Solved) {
         let ready = state.take_ready();
         let asked = self.asked(step, ready);
-        let strokes = state.take(self.own_size()).variables;
-        let solved = solve(&self.parts, &asked.step(step), strokes, ready, *state);
+        let (strokes, _) = self.own(state);
+        let solved = solve(self, &asked.step(step), strokes, ready, *state, sought);
         (asked, solved)
     }
 
     /// The force at θ: the polynomial through that at its start and at the nodes, on which accelerations rest where strokes are sought.
     fn between(&self, step: &Step, theta: f64, mut state: StateRef) -> f64 {
         let start = self.now(&step.point(0), &mut state.clone(), &mut |_| ()).observation.regular;
-        let (_, Solved { force, .. }) = self.solved(step, &mut state);
+        let (_, Solved { force, .. }) = self.solved(step, &mut state, Sought::Fit);
         let values = [start, force[0], force[1], force[2], force[3]];
         let at = |row: &Values| row.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
         TABLEAU_OF_FOUR.values.iter().rev().fold(0.0, |sum, row| sum * theta + at(row))
@@ -104,9 +165,9 @@ impl Part for Series {
         &self.parts
     }
 
-    /// The strokes of its parts.
+    /// The strokes of its parts, and when a play last changed sides.
     fn own_size(&self) -> StateSize {
-        StateSize { memories: 0, variables: self.parts.len() }
+        StateSize { memories: 0, variables: self.parts.len() + usize::from(self.play().is_some()) }
     }
 
     fn series_count(&self) -> usize {
@@ -114,7 +175,7 @@ impl Part for Series {
     }
 
     fn begin(&self, start: &Start, state: &mut State) -> Result<(), KernelError> {
-        start::begin(&self.parts, start, state)
+        start::begin(self, start, state)
     }
 
     fn recall(&self, stroke: &Recalled, at: &Point, state: &mut StateMut) {
@@ -132,13 +193,13 @@ impl Part for Series {
             part.ask().prepare(&inner.step(step), &mut shares);
         }
         if let Some(ready) = ready {
-            ready.get(&self.parts, is_yielding, step, strokes, state.view());
+            ready.get(self, is_yielding, step, &strokes[..self.parts.len()], state.view());
         }
         self.parts.iter().for_each(|part| part.ask().pass_mut(state));
     }
 
     fn evaluate(&self, step: &Step, state: &mut StateRef, response: &mut Response) {
-        let (asked, Solved { force, tangent, .. }) = self.solved(step, state);
+        let (asked, Solved { force, tangent, .. }) = self.solved(step, state, Sought::Fit);
         self.parts.iter().for_each(|part| part.ask().pass(state));
         asked.respond(&force, &tangent, response);
     }
@@ -147,8 +208,13 @@ impl Part for Series {
         let ready = state.take_ready();
         let asked = self.asked(step, ready.as_deref());
         let step = &asked.step(step);
-        let strokes = state.take(self.own_size()).variables;
-        let Solved { inner, .. } = solve(&self.parts, step, strokes, ready.as_deref(), state.view());
+        let (strokes, since) = state.take(self.own_size()).variables.split_at_mut(self.parts.len());
+        let Solved { inner, .. } = solve(self, step, strokes, ready.as_deref(), state.view(), Sought::Fit);
+        if let Some((play, since)) = self.play().zip(since.first_mut()) {
+            let side = |point: usize| play.side(play.stroke(|k| inner[k].stroke[point]), play::near(step));
+            let end = side(step.nodes.count());
+            *since = if end.is_none() || end != side(0) { step.t + step.h } else { *since };
+        }
         if let Some(ready) = ready {
             ready.forget();
         }
@@ -163,12 +229,18 @@ impl Part for Series {
     }
 
     fn local_errors(&self, step: &Step, state: &mut StateRef, errors: &mut Vec<LocalError>) {
-        let (asked, Solved { mut inner, shares, .. }) = self.solved(step, state);
+        let mut behind_ready = *state;
+        behind_ready.take_ready();
+        let (strokes, since) = self.own(&mut behind_ready);
+        let (asked, Solved { mut inner, shares, .. }) = self.solved(step, state, Sought::Fit);
         // Of series within each other the outermost one weighs.
         let onset = if step.nodes == Nodes::Inner { 1.0 } else { ONSET };
         let step = &asked.step(step);
-        for ((part, inner), share) in self.parts.iter().zip(&mut inner).zip(shares) {
+        let is_on_end = |play: &Play| play.side(play.stroke(|k| strokes[k]), play::near(step)).is_none();
+        let since = if self.play().is_some_and(is_on_end) { step.t } else { since };
+        for (k, ((part, inner), share)) in self.parts.iter().zip(&mut inner).zip(shares).enumerate() {
             let (first, end) = (errors.len(), step.nodes.count());
+            let exact = *inner;
             let rate = inner.rate[end];
             if step.nodes == Nodes::Inner {
                 // The rates of the cubic through all strokes but one: what departs from it is the estimate.
@@ -182,11 +254,26 @@ impl Part for Series {
             for error in &mut errors[first..] {
                 // Dashpots are told rates that are known no better than the strokes; those of a series inside know it already.
                 if error.sharpness == 0.0 {
-                    error.error = ((rate - inner.rate[end]).abs() - resolution / step.h).max(0.0);
+                    error.error = match self.slides(k) {
+                        true => missed(part, step, &exact.rate, share, resolution),
+                        false => ((rate - inner.rate[end]).abs() - resolution / step.h).max(0.0),
+                    };
+                }
+            }
+            if self.slides(k) {
+                // Where it begins to slide no order is sharper.
+                errors[first..].iter_mut().for_each(|error| error.sharpness = 1.0);
+                continue;
+            }
+            // Behind a change of sides strokes begin as at t = 0, alike on every scale of time: the first of them err by what is soon nothing.
+            let is_onset = since > 0.0 && step.t + step.h - since <= SOON * since;
+            for error in &mut errors[first..] {
+                if is_onset && error.error.is_finite() {
+                    error.error = 0.0;
                 }
                 // A part that hardly yields in the step does not matter, however little is known of it. With share = (h/τ)^α what a step near
                 // the start errs is h/τ of it later on.
-                (error.error, error.sharpness) = match step.t > LAYER * step.h || error.order == 0.0 {
+                (error.error, error.sharpness) = match step.t - since > LAYER * step.h || error.order == 0.0 {
                     true => (error.error * share, (5.0 - error.order) / (4.0 - error.order)),
                     false => (onset * error.error * share.powf(error.order.recip()), 1.0),
                 };
@@ -195,7 +282,7 @@ impl Part for Series {
     }
 
     fn powers(&self, step: &Step, state: &mut StateRef, powers: &mut Powers) {
-        let (asked, Solved { inner, .. }) = self.solved(step, state);
+        let (asked, Solved { inner, .. }) = self.solved(step, state, Sought::Fit);
         let step = &asked.step(step);
         let mut own = Powers::default();
         for (part, inner) in self.parts.iter().zip(&inner) {
@@ -211,16 +298,20 @@ impl Part for Series {
 
     fn guards(&self, step: &Step, state: &mut StateRef, guards: &mut Vec<Guard>) {
         if !self.parts.iter().any(|part| part.has_guards(&step.point(0))) {
-            state.take_ready();
-            state.take(self.own_size());
-            self.parts.iter().for_each(|part| part.ask().pass(state));
-            return;
+            return self.pass(state);
         }
-        let (asked, Solved { inner, .. }) = self.solved(step, state);
+        let (asked, Solved { inner, .. }) = self.solved(step, state, Sought::Held);
         let step = &asked.step(step);
         let first = guards.len();
-        for (part, inner) in self.parts.iter().zip(&inner) {
-            part.ask().guards(&inner.step(step), state, guards);
+        for (k, (part, inner)) in self.parts.iter().zip(&inner).enumerate() {
+            match self.is_free(k) {
+                true => part.ask().pass(state),
+                false => part.ask().guards(&inner.step(step), state, guards),
+            }
+        }
+        if let Some(play) = self.play() {
+            let stroke: Guard = std::array::from_fn(|point| play.stroke(|k| inner[k].stroke[point]));
+            guards.extend(play.ends().map(|end| stroke.map(|stroke| stroke - end)));
         }
         for guard in &mut guards[first..] {
             *guard = asked.outer(guard);
@@ -241,8 +332,8 @@ impl Part for Series {
         let asked =
             if theta == 1.0 { self.asked(step, ready) } else { Asked::until(step, self.is_yielding(step), theta, at) };
         let step = &asked.step(step);
-        let strokes = state.take(self.own_size()).variables;
-        let Solved { inner, force, .. } = solve(&self.parts, step, strokes, ready, *state);
+        let (strokes, _) = self.own(state);
+        let Solved { inner, force, side, .. } = solve(self, step, strokes, ready, *state, Sought::Fit);
         let last = step.nodes.count();
         let mut sum = Reported::sum(
             at,
@@ -251,7 +342,14 @@ impl Part for Series {
                 part.ask().at(&inner.step(step), 1.0, &inside, state, take)
             }),
         );
-        (sum.observation.regular, sum.observation.singular) = (known.unwrap_or(force[last - 1]), 0.0);
+        let own = force[last - 1];
+        let regular = match (self.play(), known) {
+            // Between nodes a polynomial may pass beyond what a play gives.
+            (Some(_), Some(_)) if side == 0 => own,
+            (Some(_), Some(known)) if f64::from(side) * known < 0.0 => own,
+            (_, known) => known.unwrap_or(own),
+        };
+        (sum.observation.regular, sum.observation.singular) = (regular, 0.0);
         sum
     }
 
@@ -259,7 +357,8 @@ impl Part for Series {
     /// dashpot beside it, that of the rates that add up.
     fn now(&self, at: &Point, state: &mut StateRef, take: Take) -> Reported {
         state.take_ready();
-        let strokes = state.take(self.own_size()).variables;
+        let (strokes, _) = self.own(state);
+        let slack = self.play().filter(|play| play.force(play.stroke(|k| strokes[k])) == 0.0);
         let force = |part: &Network, stroke: f64, rate: f64, state: &StateRef| {
             part.ask().now(&Point { stroke, rate, ..*at }, &mut state.clone(), &mut |_| ()).observation.regular
         };
@@ -285,7 +384,7 @@ impl Part for Series {
                 lines[k] = [rest, slope];
                 part.ask().pass(&mut ahead);
             }
-            whole = follows.map_or((at.rate + owed) / yielding, |(_, rest)| rest);
+            whole = follows.map_or((at.rate + owed) / yielding, |(_, rest)| if slack.is_some() { 0.0 } else { rest });
             for (rate, [rest, slope]) in rates.iter_mut().zip(lines) {
                 *rate = if slope == 0.0 { 0.0 } else { (whole - rest) / slope };
             }
@@ -296,6 +395,17 @@ impl Part for Series {
             if iterations > 1 {
                 rates.iter_mut().filter(|rate| **rate == 0.0).for_each(|rate| *rate = f64::MIN_POSITIVE.sqrt());
             }
+        }
+        for k in (0..self.parts.len()).filter(|k| self.slides(*k)) {
+            // Where it slides as fast as that no force tells its rate, and nothing else moves.
+            let slide = self.parts[k].ask().slides(at.inputs).unwrap_or(NO_FRICTION);
+            let others: f64 = (0..self.parts.len()).filter(|other| *other != k).map(|other| rates[other]).sum();
+            rates[k] = slide.rate_under(whole).unwrap_or(at.rate - others);
+        }
+        if let Some(play) = slack {
+            // What is slack moves as the whole does but for how the others come back.
+            let others: f64 = (0..self.parts.len()).filter(|k| !play.has(*k)).map(|k| rates[k]).sum();
+            rates[play.first()] = at.rate - others;
         }
         let mut sum = Reported::sum(
             at,
@@ -310,8 +420,8 @@ impl Part for Series {
     }
 
     fn by_input(&self, step: &Step, state: &mut StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
-        let (asked, Solved { inner, .. }) = self.solved(step, state);
-        let inside = solve::by_input(&self.parts, &asked.step(step), &inner, input, *state);
+        let (asked, solved) = self.solved(step, state, Sought::Fit);
+        let inside = solve::by_input(self, &asked.step(step), &solved, input, *state);
         self.parts.iter().for_each(|part| part.ask().pass(state));
         asked.follow_input(&inside, slopes);
     }
@@ -326,11 +436,19 @@ impl Part for Series {
     }
 
     fn holds(&self) -> Holds {
-        self.parts.iter().map(Network::holds).min().unwrap_or(Holds::Always)
+        match self.play() {
+            Some(play) if !play.is_any() => Holds::Never,
+            _ => self.parts.iter().map(Network::holds).min().unwrap_or(Holds::Always),
+        }
     }
 
     fn stiffness(&self, at: &Point, omega: f64) -> f64 {
-        self.parts.iter().map(|part| part.stiffness(at, omega).recip()).sum::<f64>().recip()
+        let own = |(k, part): (usize, &Network)| match self.play() {
+            // Where the whole is stretched says nothing of whether what is free at times is engaged.
+            Some(play) if play.has(k) => play.stiffness_of(k),
+            _ => part.stiffness(at, omega),
+        };
+        self.parts.iter().enumerate().map(|part| own(part).recip()).sum::<f64>().recip()
     }
 
     fn for_each_springpot(&self, at: &Point, take: &mut dyn FnMut(Term)) {
@@ -357,12 +475,38 @@ impl Part for Series {
 
     /// That of the softest part.
     fn asymptote(&self, at: &Point, onset: Onset) -> Term {
-        part::asymptote(&self.parts, at, onset, false)
+        let own = |(k, part): (usize, &Network)| match self.play() {
+            Some(play) if play.has(k) => Term { coefficient: play.stiffness_of(k), order: 0.0 },
+            _ => part.ask().asymptote(at, onset),
+        };
+        part::asymptote(self.parts.iter().enumerate().map(own), onset, false)
     }
 
     fn at_rest(&self, at: &Point, _: f64) -> Option<AtRest> {
         tangent::series(&self.parts, at)
     }
+}
+
+/// How well friction knows its force, in units of f/v0, by its rates at the nodes: what they miss of its stroke as its force follows that, by the
+/// `compliance` of the others, where it sticks; where it slides no force tells, but it will stick again.
+fn missed(part: &Network, step: &Step, rate: &Values, compliance: f64, resolution: f64) -> f64 {
+    // Where it begins to slide far faster than v0 the force has a kink for every step: a shorter one only moves it by so much.
+    if step.nodes != Nodes::Inner || step.h < NARROW * step.t {
+        return 0.0;
+    }
+    // By what the rates themselves make of the strokes: differences of these round more than friction may.
+    let along = |rate: &[f64]| {
+        let moved = step.matrix().map(|row| row.iter().zip(rate).map(|(entry, rate)| entry * rate).sum::<f64>());
+        moved.map(|moved| step.h * moved)
+    };
+    let [first, second, third, last] = along(&rate[1..]);
+    let embedded = along(&embedded_rates(&[0.0, first, second, third, last], step.h)[1..]);
+    let off = [first - embedded[0], second - embedded[1], third - embedded[2], last - embedded[3]];
+    let end = step.nodes.count();
+    let Slide { force, rate } = part.ask().slides(step.inputs_at(end)).unwrap_or(NO_FRICTION);
+    let largest = off.iter().fold(0.0f64, |largest, off| largest.max(off.abs()));
+    let yields = compliance * force / rate + step.h * step.matrix()[end - 1][end - 1];
+    (largest - resolution).max(0.0) / yields
 }
 
 /// x' at 0 and at the nodes of the cubic through x at 0 and at all nodes but the first.

@@ -1,9 +1,11 @@
 //! The strokes of the parts at which all have one force.
 
-use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, Matrix, Values};
+use super::loose::{Gap, Loose, Sought};
+use super::play::{self, Side};
+use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, Matrix, Series, Values};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{Form, RatePolynomial};
-use crate::law::network::{MOST_IN_SERIES, Network};
+use crate::law::network::MOST_IN_SERIES;
 use crate::law::state::StateRef;
 use crate::law::step::{Course, Response, Step};
 
@@ -28,13 +30,15 @@ pub(super) struct Solved {
     pub(super) inner: [Inner; MOST_IN_SERIES],
     pub(super) force: [f64; MAX_NODES],
     pub(super) tangent: Matrix,
-    /// By how much the force at the end follows an error of that of each part.
+    /// By how much the force at the end follows an error of that of each part; of friction the compliance of the others there.
     pub(super) shares: [f64; MOST_IN_SERIES],
+    /// Where a play is at the end.
+    pub(super) side: Side,
 }
 
 impl Inner {
     /// Rates of the polynomial through the strokes.
-    fn take_rates(&mut self, nodes: Nodes, h: f64) {
+    pub(super) fn take_rates(&mut self, nodes: Nodes, h: f64) {
         let count = nodes.count();
         for (i, row) in nodes.inverse().iter().enumerate().take(count) {
             self.rate[i + 1] = (0..count).map(|j| row[j] * (self.stroke[j + 1] - self.stroke[0])).sum::<f64>() / h;
@@ -52,7 +56,7 @@ impl Inner {
 #[derive(Debug, Clone, Default)]
 struct Lines {
     each: Vec<Line>,
-    /// (Σ C_m)⁻¹.
+    /// (Σ C_m)⁻¹; beside parts that let go Σ C_m of the others.
     tangent: Matrix,
 }
 
@@ -64,12 +68,16 @@ struct Line {
 
 impl Lines {
     /// Forces and stiffnesses of all parts about `inner`; compliances are still to be found.
-    fn look(&mut self, parts: &[Network], inner: &[Inner; MOST_IN_SERIES], step: &Step, mut state: StateRef) {
+    fn look(&mut self, series: &Series, inner: &[Inner; MOST_IN_SERIES], step: &Step, mut state: StateRef) {
         let (count, inverse) = (step.nodes.count(), step.nodes.inverse());
         self.each.clear();
-        for (part, inner) in parts.iter().zip(inner) {
+        for (k, (part, inner)) in series.parts.iter().zip(inner).enumerate() {
             let mut response = Response::default();
             part.ask().evaluate(&inner.step(step), &mut state, &mut response);
+            if series.lets_go(k) {
+                self.each.push(Line { force: response.force, compliance: Matrix::default() });
+                continue;
+            }
             let mut stiffness = response.d_stroke;
             for i in 0..count {
                 for j in 0..count {
@@ -82,18 +90,31 @@ impl Lines {
     }
 
     /// Makes compliances of the stiffnesses.
-    fn turn(&mut self, count: usize) {
+    fn turn(&mut self, series: &Series, count: usize) {
         let entries = self.each.iter().flat_map(|line| line.compliance[..count].iter().flat_map(|row| &row[..count]));
         let stiffest = entries.fold(0.0f64, |stiffest, entry| stiffest.max(entry.abs()));
         let floor = (SOFTEST * stiffest).max(f64::MIN_POSITIVE);
         self.tangent = Matrix::default();
-        for Line { compliance, .. } in &mut self.each {
+        for (k, Line { compliance, .. }) in self.each.iter_mut().enumerate() {
+            if series.lets_go(k) {
+                continue;
+            }
             invert(compliance, count, floor);
             for (row, own) in self.tangent.iter_mut().zip(&*compliance) {
                 row.iter_mut().zip(own).for_each(|(entry, own)| *entry += own);
             }
         }
-        invert(&mut self.tangent, count, f64::MIN_POSITIVE);
+        if series.loose.is_none() {
+            invert(&mut self.tangent, count, f64::MIN_POSITIVE);
+        }
+    }
+
+    /// What of the step parts that let go are asked: the others leave them `missing` and by what their forces shorten them; `start` is X.
+    fn gap<'a>(&'a self, series: &'a Series, step: &'a Step<'a>, mut missing: [f64; MAX_NODES], start: f64) -> Gap<'a> {
+        for (_, Line { force, compliance }) in self.each.iter().enumerate().filter(|(k, _)| !series.lets_go(*k)) {
+            missing.iter_mut().zip(times(compliance, force)).for_each(|(missing, own)| *missing += own);
+        }
+        Gap { parts: &series.parts, step, compliance: &self.tangent, stroke: missing, start }
     }
 
     /// The force at which the strokes of the parts are longer by `missing` in all.
@@ -110,8 +131,28 @@ impl Lines {
         times(compliance, &std::array::from_fn(|i| force[i] - own[i]))
     }
 
-    fn share(&self, k: usize, count: usize) -> f64 {
-        (0..count).map(|j| self.tangent[count - 1][j] * self.each[k].compliance[j][count - 1]).sum::<f64>().abs()
+    /// Moves the strokes of all parts, but those that let go, to where they are under the force `force`.
+    fn stretch(&self, series: &Series, force: &[f64; MAX_NODES], step: &Step, inner: &mut [Inner; MOST_IN_SERIES]) {
+        let count = step.nodes.count();
+        for (k, inner) in inner.iter_mut().enumerate().take(self.each.len()).filter(|(k, _)| !series.lets_go(*k)) {
+            inner.stroke[1..=count].iter_mut().zip(self.longer(k, force)).for_each(|(x, delta)| *x += delta);
+            inner.take_rates(step.nodes, step.h);
+        }
+    }
+
+    /// Gives the parts of a play, of the stroke `start` at the start, the force of the side on which it is held.
+    fn hold(&mut self, loose: &Loose, start: f64, step: &Step, inner: &[Inner; MOST_IN_SERIES]) {
+        let Some(play) = &loose.play else { return };
+        for i in 0..step.nodes.count() {
+            let stroke = play.stroke(|k| inner[k].stroke[i + 1]);
+            let Some(force) = loose.held_force(start, play::near(step), stroke) else { return };
+            let own = self.each.iter_mut().enumerate().filter(|(k, _)| play.has(*k));
+            own.for_each(|(_, line)| line.force[i] = force);
+        }
+    }
+
+    fn share(&self, tangent: &Matrix, k: usize, count: usize) -> f64 {
+        (0..count).map(|j| tangent[count - 1][j] * self.each[k].compliance[j][count - 1]).sum::<f64>().abs()
     }
 }
 
@@ -128,11 +169,11 @@ pub(in crate::law) struct Ready {
 
 impl Ready {
     /// Gets ready for `step`, whose nodes are those of the parts; nothing where its answers are not the same however often it is asked.
-    pub(super) fn get(&mut self, parts: &[Network], is_yielding: bool, step: &Step, starts: &[f64], state: StateRef) {
+    pub(super) fn get(&mut self, series: &Series, is_yielding: bool, step: &Step, starts: &[f64], state: StateRef) {
         let is_ready = self.lines(step).is_some();
-        if !is_ready && step.inputs.is_empty() && parts.iter().all(Network::is_linear) {
-            self.lines.look(parts, &resting(starts, step), step, state);
-            self.lines.turn(step.nodes.count());
+        if !is_ready && step.inputs.is_empty() && series.others_are_linear() {
+            self.lines.look(series, &resting(starts, step), step, state);
+            self.lines.turn(series, step.nodes.count());
             (self.step, self.is_yielding) = (Some((step.t, step.h, step.nodes, step.course)), is_yielding);
         }
     }
@@ -160,69 +201,124 @@ fn resting(starts: &[f64], step: &Step) -> [Inner; MOST_IN_SERIES] {
 }
 
 /// Finds the strokes of the parts under the strokes of `step`, whose nodes are theirs, from those at its start.
-pub(super) fn solve(parts: &[Network], step: &Step, starts: &[f64], ready: Option<&Ready>, state: StateRef) -> Solved {
+pub(super) fn solve(
+    series: &Series,
+    step: &Step,
+    starts: &[f64],
+    ready: Option<&Ready>,
+    state: StateRef,
+    sought: Sought,
+) -> Solved {
     if let Some(lines) = ready.and_then(|ready| ready.lines(step)) {
-        return along(lines, parts.len(), step, starts);
+        return along(lines, series, step, starts, sought);
     }
-    if parts.iter().all(Network::is_linear) {
+    if series.others_are_linear() {
         let mut lines = Lines::default();
-        lines.look(parts, &resting(starts, step), step, state);
-        lines.turn(step.nodes.count());
-        return along(&lines, parts.len(), step, starts);
+        lines.look(series, &resting(starts, step), step, state);
+        lines.turn(series, step.nodes.count());
+        return along(&lines, series, step, starts, sought);
     }
-    search(parts, step, starts, state)
+    search(series, step, starts, state, sought)
 }
 
-/// The strokes of linear parts.
-fn along(lines: &Lines, parts: usize, step: &Step, starts: &[f64]) -> Solved {
-    let (count, rest) = (step.nodes.count(), starts.iter().sum::<f64>());
+/// The strokes of parts that are linear but for those that let go.
+fn along(lines: &Lines, series: &Series, step: &Step, starts: &[f64], sought: Sought) -> Solved {
+    let count = step.nodes.count();
+    let mut inner = resting(starts, step);
+    let [rest, start] = series.split(starts);
     let missing = std::array::from_fn(|i| if i < count { step.stroke[i + 1] - rest } else { 0.0 });
-    let mut solved = Solved {
-        inner: resting(starts, step),
-        force: lines.force(missing),
-        tangent: lines.tangent,
-        shares: [0.0; MOST_IN_SERIES],
+    let Some(loose) = &series.loose else {
+        let force = lines.force(missing);
+        lines.stretch(series, &force, step, &mut inner);
+        return finish(series, lines, step, inner, force, lines.tangent, 1);
     };
-    for k in 0..parts {
-        let inner = &mut solved.inner[k];
-        inner.stroke[1..=count].iter_mut().zip(lines.longer(k, &solved.force)).for_each(|(x, delta)| *x += delta);
-        inner.take_rates(step.nodes, step.h);
-        solved.shares[k] = lines.share(k, count);
+    let gap = lines.gap(series, step, missing, start);
+    let Some(found) = loose.solve(&gap, sought) else { return Solved::unknown(inner, count) };
+    lines.stretch(series, &found.force, step, &mut inner);
+    loose.place(&found, &gap, starts, &mut inner);
+    finish(series, lines, step, inner, found.force, found.tangent, found.sides[count - 1])
+}
+
+/// By how much the force follows each part.
+fn finish(
+    series: &Series,
+    lines: &Lines,
+    step: &Step,
+    inner: [Inner; MOST_IN_SERIES],
+    force: [f64; MAX_NODES],
+    tangent: Matrix,
+    side: Side,
+) -> Solved {
+    let mut shares = [0.0; MOST_IN_SERIES];
+    for (k, share) in shares.iter_mut().enumerate().take(series.parts.len()) {
+        // Where nothing is carried what the others err shows later, in how they come back.
+        *share = match side {
+            _ if series.slides(k) => series.softness(lines.tangent[step.nodes.count() - 1][step.nodes.count() - 1]),
+            0 => 1.0,
+            _ => lines.share(&tangent, k, step.nodes.count()),
+        };
     }
-    solved
+    Solved { inner, force, tangent, shares, side }
+}
+
+impl Solved {
+    /// Where no force is found.
+    fn unknown(mut inner: [Inner; MOST_IN_SERIES], count: usize) -> Self {
+        inner.iter_mut().for_each(|inner| inner.stroke[1..=count].fill(f64::NAN));
+        let (force, tangent) = ([f64::NAN; MAX_NODES], Matrix::default());
+        Self { inner, force, tangent, shares: [f64::NAN; MOST_IN_SERIES], side: 1 }
+    }
 }
 
 /// The strokes of parts that are not all linear, by Newton's method.
-fn search(parts: &[Network], step: &Step, starts: &[f64], state: StateRef) -> Solved {
-    let count = step.nodes.count();
+fn search(series: &Series, step: &Step, starts: &[f64], state: StateRef, sought: Sought) -> Solved {
+    let (count, parts) = (step.nodes.count(), series.parts.len());
     // Spread evenly a nonlinear part would begin far from where it is: the stiffness where it was shares the way out.
     let mut inner = resting(starts, step);
     let (mut search, mut lines) = (Search::default(), Lines::default());
-    let mut force = [0.0; MAX_NODES];
+    let [_, start] = series.split(starts);
+    let mut side = 1;
+    let (mut force, mut tangent) = ([0.0; MAX_NODES], Matrix::default());
     let mut is_found = false;
     while search.ways <= MOST_ITERATIONS {
-        lines.look(parts, &inner, step, state);
+        lines.look(series, &inner, step, state);
+        if let Some(loose) = series.loose.as_ref().filter(|_| sought == Sought::Held) {
+            lines.hold(loose, start, step, &inner);
+        }
         if !search.goes_on(&lines.each, count, &mut inner) {
-            inner.iter_mut().take(parts.len()).for_each(|inner| inner.take_rates(step.nodes, step.h));
+            inner.iter_mut().take(parts).for_each(|inner| inner.take_rates(step.nodes, step.h));
             if search.halvings > MOST_HALVINGS {
                 is_found = search.change <= NEARLY;
                 break;
             }
             continue;
         }
-        lines.turn(count);
-        let gathered = |i: usize| inner.iter().take(parts.len()).map(|inner| inner.stroke[i + 1]).sum::<f64>();
-        force = lines.force(std::array::from_fn(|i| if i < count { step.stroke[i + 1] - gathered(i) } else { 0.0 }));
-        let (mut change, mut size) = (0.0f64, step.resolution);
+        lines.turn(series, count);
+        let point = |k: usize, i: usize| if series.slides(k) { starts[k] } else { inner[k].stroke[i + 1] };
+        let gathered = |i: usize| (0..parts).filter(|k| !series.is_free(*k)).map(|k| point(k, i)).sum::<f64>();
+        let missing = std::array::from_fn(|i| if i < count { step.stroke[i + 1] - gathered(i) } else { 0.0 });
         search.from = inner;
-        for (k, inner) in inner.iter_mut().enumerate().take(parts.len()) {
-            for (x, delta) in inner.stroke[1..=count].iter_mut().zip(lines.longer(k, &force)) {
-                *x += delta;
+        match &series.loose {
+            None => {
+                (force, tangent) = (lines.force(missing), lines.tangent);
+                lines.stretch(series, &force, step, &mut inner);
+            }
+            Some(loose) => {
+                let gap = lines.gap(series, step, missing, start);
+                let Some(found) = loose.solve(&gap, sought) else { break };
+                (force, tangent, side) = (found.force, found.tangent, found.sides[count - 1]);
+                lines.stretch(series, &force, step, &mut inner);
+                loose.place(&found, &gap, starts, &mut inner);
+            }
+        }
+        let (mut change, mut size) = (0.0f64, step.resolution);
+        for (inner, from) in inner.iter().zip(&search.from).take(parts) {
+            for (x, from) in inner.stroke[1..=count].iter().zip(&from.stroke[1..=count]) {
+                let delta = (x - from).abs();
                 // Not `max`, which would pass over what is no number.
-                change = if delta.abs() > change || delta.is_nan() { delta.abs() } else { change };
+                change = if delta > change || delta.is_nan() { delta } else { change };
                 size = size.max(x.abs());
             }
-            inner.take_rates(step.nodes, step.h);
         }
         // Where nothing moves and nothing has moved there is nothing left to find.
         search.change = if change == 0.0 { 0.0 } else { change / size };
@@ -232,34 +328,31 @@ fn search(parts: &[Network], step: &Step, starts: &[f64], state: StateRef) -> So
         }
     }
     if !is_found {
-        force = [f64::NAN; MAX_NODES];
-        inner.iter_mut().for_each(|inner| inner.stroke[1..].fill(f64::NAN));
+        return Solved::unknown(inner, count);
     }
-    let mut shares = [0.0; MOST_IN_SERIES];
-    (0..parts.len()).for_each(|k| shares[k] = lines.share(k, count));
-    Solved { inner, force, tangent: lines.tangent, shares }
+    finish(series, &lines, step, inner, force, tangent, side)
 }
 
 /// ∂F_i/∂u_j of an input at the nodes of the parts, about strokes of theirs that fit: (Σ C_m)⁻¹ Σ C_m ∂F_m/∂u.
 pub(super) fn by_input(
-    parts: &[Network],
+    series: &Series,
     step: &Step,
-    inner: &[Inner; MOST_IN_SERIES],
+    Solved { inner, tangent, .. }: &Solved,
     input: usize,
     mut state: StateRef,
 ) -> Matrix {
     let count = step.nodes.count();
     let mut lines = Lines::default();
-    lines.look(parts, inner, step, state);
-    lines.turn(count);
+    lines.look(series, inner, step, state);
+    lines.turn(series, count);
     let mut moved = Matrix::default();
-    for ((part, inner), line) in parts.iter().zip(inner).zip(&lines.each) {
+    for ((part, inner), line) in series.parts.iter().zip(inner).zip(&lines.each) {
         let mut own = Matrix::default();
         part.ask().by_input(&inner.step(step), &mut state, input, &mut own);
         let longer = product(&line.compliance, &own);
         moved.iter_mut().flatten().zip(longer.iter().flatten()).for_each(|(sum, own)| *sum += own);
     }
-    product(&lines.tangent, &moved)
+    product(tangent, &moved)
 }
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
@@ -322,7 +415,7 @@ impl Search {
 }
 
 /// The inverse of the leading `count` rows and columns, by elimination with pivots; a pivot below `floor` counts as that.
-fn invert(matrix: &mut Matrix, count: usize, floor: f64) {
+pub(super) fn invert(matrix: &mut Matrix, count: usize, floor: f64) {
     let mut inverse: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
     for k in 0..count {
         let pivot = (k..count).max_by(|&a, &b| matrix[a][k].abs().total_cmp(&matrix[b][k].abs())).unwrap_or(k);

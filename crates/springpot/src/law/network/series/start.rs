@@ -6,34 +6,104 @@ use crate::law::network::Network;
 use crate::law::network::part::{Onset, Part};
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut};
-use crate::law::step::{Point, Start};
+use crate::law::step::{Point, Start, Term};
 use num_complex::Complex64;
 
-/// The strokes of the parts at t = 0, and the parts' own states.
-pub(super) fn begin(parts: &[Network], start: &Start, state: &mut State) -> Result<(), KernelError> {
+/// The strokes of the parts at t = 0, and the parts' own states. A play takes what it can for free.
+pub(super) fn begin(series: &Series, start: &Start, state: &mut State) -> Result<(), KernelError> {
+    let parts = series.parts();
     // What was held since ever has relaxed; what begins at t = 0 has not.
     let onset = match parts.iter().find_map(|part| derivative(part, start)) {
         Some(Derivative::RiemannLiouville) => Onset::Short,
         None if start.jump != 0.0 => Onset::Short,
         Some(Derivative::Caputo) | None => Onset::Long,
     };
-    let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
-    let Shares { of_parts, order, is_limp } = shares(parts, &at, onset);
-    let mut strokes: Vec<f64> = of_parts.iter().map(|share| share * start.stroke).collect();
-    if order == 0.0 && !is_limp {
-        let holding: Vec<usize> = (0..parts.len()).filter(|&k| of_parts[k] != 0.0).collect();
-        balance(parts, &holding, start, &mut strokes)?;
+    let free = series.play().map_or(0.0, |play| play.free(start.stroke));
+    let left = start.stroke - free;
+    let at = Point { t: 0.0, stroke: left, rate: 0.0, inputs: start.inputs };
+    let Shares { of_parts, order, is_limp } = shares(series, &at, onset);
+    let holding: Vec<usize> = (0..parts.len()).filter(|&k| of_parts[k] != 0.0 && !series.lets_go(k)).collect();
+    let place = |share: f64| -> Result<Placed, KernelError> {
+        let mut strokes: Vec<f64> = of_parts.iter().map(|own| own * left * share).collect();
+        let mut play = series.play().map(|play| free + play.stroke(|k| strokes[k]));
+        if order == 0.0 && !is_limp {
+            balance(series, &holding, start, &mut strokes, &mut play)?;
+        }
+        Ok((strokes, play))
+    };
+    // Friction gives way to what jumps at once, until no more than it can hold is left.
+    let slides = (0..parts.len()).find(|&k| series.slides(k)).filter(|_| onset == Onset::Short && start.jump != 0.0);
+    let share = match slides {
+        Some(_) if order > 0.0 => 0.0,
+        Some(_) => {
+            let most = parts.iter().filter_map(|part| part.ask().slides(start.inputs)).map(|slide| slide.force);
+            let most = most.fold(f64::INFINITY, f64::min);
+            let force = |share: f64| -> Result<f64, KernelError> {
+                let (strokes, play) = place(share)?;
+                Ok(match (series.play().zip(play), holding.first()) {
+                    (Some((play, x)), _) => play.force(x),
+                    (None, Some(&k)) => at_rest(&parts[k], strokes[k], start)?[0],
+                    (None, None) => 0.0,
+                })
+            };
+            largest_share(|share| Ok(force(share)?.abs() <= most))?
+        }
+        None => 1.0,
+    };
+    let (mut strokes, play) = place(share)?;
+    if let Some((play, x)) = series.play().zip(play) {
+        let side = play.side(x, 0.0).unwrap_or(0);
+        let own = play.spread(x, play.force(x), side);
+        (0..parts.len()).filter(|k| play.has(*k)).for_each(|k| strokes[k] = own[k]);
+    }
+    if let Some(k) = slides {
+        strokes[k] += left * (1.0 - share);
     }
     strokes.iter().for_each(|stroke| state.push_variable(*stroke));
+    if series.play().is_some() {
+        state.push_variable(0.0);
+    }
+    let jump = if start.stroke == 0.0 { 0.0 } else { start.jump * (left / start.stroke) * share };
     let first = state.memories().len();
     for (k, part) in parts.iter().enumerate() {
-        part.ask().begin(&Start { stroke: strokes[k], jump: of_parts[k] * start.jump, ..*start }, state)?;
+        part.ask().begin(&Start { stroke: strokes[k], jump: of_parts[k] * jump, ..*start }, state)?;
     }
-    if onset == Onset::Short && start.jump != 0.0 {
+    if onset == Onset::Short && jump != 0.0 {
         state.memories_mut()[first..].iter_mut().for_each(Memory::lose_account);
     }
     Ok(())
 }
+
+/// Strokes of parts, and of a play.
+type Placed = (Vec<f64>, Option<f64>);
+
+/// The largest share, up to 1, that holds.
+fn largest_share(mut holds: impl FnMut(f64) -> Result<bool, KernelError>) -> Result<f64, KernelError> {
+    if holds(1.0)? {
+        return Ok(1.0);
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..MOST_BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if holds(middle)? { low = middle } else { high = middle }
+    }
+    Ok(low)
+}
+
+/// Halvings that find a share to the last bit.
+const MOST_BISECTIONS: usize = 60;
+
+/// The force of a part that is at rest at `stroke`, and its slope.
+fn at_rest(part: &Network, stroke: f64, start: &Start) -> Result<[f64; 2], KernelError> {
+    let mut state = State::default();
+    part.ask().begin(&Start { stroke, jump: 0.0, ..*start }, &mut state)?;
+    let at = Point { t: 0.0, stroke, rate: 0.0, inputs: start.inputs };
+    let force = part.ask().now(&at, &mut state.view(), &mut |_| ()).observation.regular;
+    Ok([force, part.ask().asymptote(&at, Onset::Long).coefficient])
+}
+
+/// What is slack counts as this soft, in units of the stiffest part.
+const SOFTEST: f64 = 1e-30;
 
 /// How the parts share a stroke.
 struct Shares {
@@ -44,9 +114,14 @@ struct Shares {
     is_limp: bool,
 }
 
-/// What share of a stroke each part takes at once, or at last.
-fn shares(parts: &[Network], at: &Point, onset: Onset) -> Shares {
-    let terms: Vec<_> = parts.iter().map(|part| part.ask().asymptote(at, onset)).collect();
+/// What share of a stroke each part takes at once, or at last; a play as the spring that it is where it is engaged.
+fn shares(series: &Series, at: &Point, onset: Onset) -> Shares {
+    let parts = series.parts();
+    let term = |(k, part): (usize, &Network)| match series.play() {
+        Some(play) if play.has(k) => Term { coefficient: play.stiffness_of(k), order: 0.0 },
+        _ => part.ask().asymptote(at, onset),
+    };
+    let terms: Vec<_> = parts.iter().enumerate().map(term).collect();
     let softer = |a: f64, b: f64| if onset == Onset::Short { a < b } else { a > b };
     let order = terms.iter().map(|term| term.order).reduce(|a, b| if softer(b, a) { b } else { a }).unwrap_or(0.0);
     let compliance = |k: usize| if terms[k].order == order { terms[k].coefficient.recip() } else { 0.0 };
@@ -57,19 +132,26 @@ fn shares(parts: &[Network], at: &Point, onset: Onset) -> Shares {
     Shares { of_parts: (0..parts.len()).map(share).collect(), order, is_limp: limp.is_some() }
 }
 
-/// Moves the strokes of the parts that hold at rest to where all have one force: what is not linear, or gives a force at x = 0, shares
-/// differently.
-fn balance(parts: &[Network], holding: &[usize], start: &Start, strokes: &mut [f64]) -> Result<(), KernelError> {
-    let rest = |part: &Network, stroke: f64| -> Result<[f64; 2], KernelError> {
-        let mut state = State::default();
-        part.ask().begin(&Start { stroke, jump: 0.0, ..*start }, &mut state)?;
-        let at = Point { t: 0.0, stroke, rate: 0.0, inputs: start.inputs };
-        let force = part.ask().now(&at, &mut state.view(), &mut |_| ()).observation.regular;
-        Ok([force, part.ask().asymptote(&at, Onset::Long).coefficient])
-    };
-    let (mut from, mut apart_before, mut halvings) = (strokes.to_vec(), f64::INFINITY, 0);
+/// Moves the strokes of the parts that hold at rest, and of a play, to where all have one force: what is not linear, or gives a force at x = 0,
+/// shares differently.
+fn balance(
+    series: &Series,
+    holding: &[usize],
+    start: &Start,
+    strokes: &mut [f64],
+    play: &mut Option<f64>,
+) -> Result<(), KernelError> {
+    let parts = series.parts();
+    let (mut from, mut apart_before, mut halvings) = ((strokes.to_vec(), *play), f64::INFINITY, 0);
     for _ in 0..MOST_ITERATIONS {
-        let known = holding.iter().map(|&k| rest(&parts[k], strokes[k])).collect::<Result<Vec<_>, _>>()?;
+        let mut known =
+            holding.iter().map(|&k| at_rest(&parts[k], strokes[k], start)).collect::<Result<Vec<_>, _>>()?;
+        if let Some((own, x)) = series.play().zip(*play) {
+            let force = own.force(x);
+            // What is slack yields, though not without end.
+            let slack = SOFTEST * known.iter().fold(own.stiffness(), |most, [_, slope]| most.max(*slope));
+            known.push([force, if force == 0.0 { slack } else { own.stiffness() }]);
+        }
         let (low, high) =
             known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), [f, _]| (low.min(*f), high.max(*f)));
         if high - low <= ENOUGH * low.abs().max(high.abs()) {
@@ -77,15 +159,20 @@ fn balance(parts: &[Network], holding: &[usize], start: &Start, strokes: &mut [f
         }
         if high - low >= apart_before && halvings < MOST_HALVINGS {
             halvings += 1;
-            strokes.iter_mut().zip(&from).for_each(|(stroke, from)| *stroke = 0.5 * (*stroke + from));
+            strokes.iter_mut().zip(&from.0).for_each(|(stroke, from)| *stroke = 0.5 * (*stroke + from));
+            *play = play.zip(from.1).map(|(x, from)| 0.5 * (x + from));
             continue;
         }
         (apart_before, halvings) = (high - low, 0);
-        from.copy_from_slice(strokes);
+        from = (strokes.to_vec(), *play);
         let compliance: f64 = known.iter().map(|[_, slope]| slope.recip()).sum();
         let whole = known.iter().map(|[force, slope]| force / slope).sum::<f64>() / compliance;
-        for (&k, [force, slope]) in holding.iter().zip(&known) {
-            strokes[k] += (whole - force) / slope;
+        let mut longer = known.iter().map(|[force, slope]| (whole - force) / slope);
+        for (&k, longer) in holding.iter().zip(longer.by_ref()) {
+            strokes[k] += longer;
+        }
+        if let Some((x, longer)) = play.as_mut().zip(longer.next()) {
+            *x += longer;
         }
     }
     Ok(())
@@ -102,7 +189,7 @@ fn derivative(part: &Network, start: &Start) -> Option<Derivative> {
 pub(super) fn recall(series: &Series, whole: &Recalled, at: &Point, state: &mut StateMut) {
     let parts = series.parts();
     let mut inner: Vec<Vec<[Complex64; 2]>> = vec![Vec::new(); parts.len()];
-    let rest = shares(parts, at, Onset::Long).of_parts;
+    let rest = shares(series, at, Onset::Long).of_parts;
     for &[s, stroke] in whole.exponentials() {
         let compliances: Vec<Complex64> = parts.iter().map(|part| part.modulus(at, s).inv()).collect();
         let compliance: Complex64 = compliances.iter().sum();
@@ -110,7 +197,7 @@ pub(super) fn recall(series: &Series, whole: &Recalled, at: &Point, state: &mut 
             inner.push([s, own / compliance * stroke]);
         }
     }
-    let strokes = state.take(series.own_size()).variables;
+    let strokes = &mut state.take(series.own_size()).variables[..parts.len()];
     for (k, (part, (exponentials, stroke))) in parts.iter().zip(inner.into_iter().zip(strokes)).enumerate() {
         let own = whole.with(rest[k] * whole.mean(), exponentials);
         *stroke = own.stroke(0.0);
