@@ -2,12 +2,12 @@
 
 use super::cholesky::{cholesky_into, cholesky_solve_into};
 use super::crba::crba_into;
+use super::forces::pair::{self, PairForce};
+use super::forces::wrench::add_wrench;
 use super::joint;
 use super::kinematics::Kinematics;
 use super::moments::motions_at_rest;
-use super::pair::{self, PairForce};
 use super::workspace::Workspace;
-use super::wrench::add_wrench;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Scalar, Vec3};
 

@@ -2,8 +2,8 @@
 
 use super::aba::aba_into;
 use super::cholesky::{cholesky_into, inverse_from_cholesky_into, solve_matrix};
+use super::forces::pair::PairForce;
 use super::kinematics::Kinematics;
-use super::pair::PairForce;
 use super::rnea_derivatives::{RneaDerivatives, rnea_derivatives_into};
 use super::workspace::Workspace;
 use crate::model::Model;

@@ -14,15 +14,14 @@
 mod aba;
 mod aba_derivatives;
 mod body_coriolis;
-mod cable;
 mod cholesky;
 mod christoffel;
 mod com;
-mod coordinate;
 mod coriolis;
 mod crba;
 mod definite;
 mod energy;
+mod forces;
 mod frame_jacobian;
 mod gravity;
 mod jacobian;
@@ -30,27 +29,26 @@ mod joint;
 mod kinematics;
 #[cfg(test)]
 mod lanes_fit;
-mod line;
 mod moments;
-mod pair;
-mod pair_stiffness;
-mod relative_frame;
 mod rnea;
 mod rnea_derivatives;
 mod workspace;
-mod wrench;
 
 pub use aba::{aba, aba_into};
 pub use aba_derivatives::{AbaDerivatives, aba_derivatives, aba_derivatives_into};
-pub(crate) use cable::CableLength;
 pub use cholesky::{cholesky_into, cholesky_solve_into, inverse_from_cholesky_into, mass_inverse, mass_inverse_into};
 pub use christoffel::{christoffel, christoffel_into};
 pub use com::{com, com_jacobian, com_jacobian_into};
-pub(crate) use coordinate::{add_force, add_stiffness, gradient_into, hessian_into};
 pub use coriolis::{coriolis, coriolis_into};
 pub use crba::{crba, crba_into};
 pub use definite::{indefinite_joint, indefinite_joint_into};
 pub use energy::{kinetic_energy, potential_energy};
+pub(crate) use forces::coordinate::{add_force, add_stiffness, gradient_into, hessian_into};
+pub use forces::pair::{
+    CoincidentAnchors, Pair, PairForce, add_generalized_force, pair, pair_hessian, pair_hessian_into, pair_into,
+};
+pub use forces::wrench::{add_wrench, add_wrench_derivative};
+pub(crate) use forces::{CableLength, RelativeCoordinate};
 pub use frame_jacobian::{frame_jacobian, frame_jacobian_into, frame_jacobian_rate, frame_jacobian_rate_into};
 pub use gravity::{gravity, gravity_into};
 pub use jacobian::{
@@ -58,11 +56,6 @@ pub use jacobian::{
     point_jacobian_into, point_jacobian_rate, point_jacobian_rate_into,
 };
 pub use kinematics::Kinematics;
-pub use pair::{
-    CoincidentAnchors, Pair, PairForce, add_generalized_force, pair, pair_hessian, pair_hessian_into, pair_into,
-};
-pub(crate) use relative_frame::RelativeCoordinate;
 pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_at_into, rnea_into};
 pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};
 pub use workspace::Workspace;
-pub use wrench::{add_wrench, add_wrench_derivative};

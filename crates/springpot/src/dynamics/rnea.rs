@@ -1,8 +1,8 @@
 //! Inverse dynamics by the recursive Newton–Euler algorithm.
 
+use super::forces::pair::{self, PairForce};
 use super::joint;
 use super::kinematics::Kinematics;
-use super::pair::{self, PairForce};
 use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Vec3};

@@ -1,10 +1,10 @@
 //! Derivatives of the inverse dynamics.
 
+use super::forces::pair::PairForce;
+use super::forces::pair_stiffness::add_pair_stiffness;
 use super::joint;
 use super::kinematics::Kinematics;
 use super::moments::motions;
-use super::pair::PairForce;
-use super::pair_stiffness::add_pair_stiffness;
 use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::Scalar;

@@ -1,16 +1,16 @@
 //! How the generalized force of a pair answers to positions and velocities.
 
-use super::kinematics::Kinematics;
 use super::line::Line;
 use super::pair::PairForce;
-use super::workspace::Workspace;
+use crate::dynamics::kinematics::Kinematics;
+use crate::dynamics::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::Scalar;
 
 /// Adds −∂Q_b/∂q_c = F ∂²l/∂q_b∂q_c + ∂_b l (∂F/∂l ∂_c l + ∂F/∂l' ∂_c l') to `d_q` and −∂Q_b/∂v_c = ∂_b l ∂F/∂l' ∂_c l to `d_v`.
 ///
 /// l' = Σ_a ∂_a l v_a, so that ∂_c l' = Σ_a ∂²l/∂q_a∂q_c v_a.
-pub(super) fn add_pair_stiffness<T: Scalar>(
+pub(in crate::dynamics) fn add_pair_stiffness<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
     force: &PairForce<T>,

@@ -1,7 +1,7 @@
 //! Any scalar coordinate of the configuration: forces along it, and how they answer to positions and velocities.
 
-use super::kinematics::Kinematics;
-use super::workspace::Workspace;
+use crate::dynamics::kinematics::Kinematics;
+use crate::dynamics::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::{Scalar, Vec3};
 

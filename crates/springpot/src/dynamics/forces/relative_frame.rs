@@ -1,8 +1,8 @@
 //! One frame seen from another one: six coordinates, their derivatives.
 
 use super::coordinate::Coordinate;
-use super::joint;
-use super::kinematics::Kinematics;
+use crate::dynamics::joint;
+use crate::dynamics::kinematics::Kinematics;
 use crate::model::{Frame, Model};
 use crate::spatial::{Rotation, Vec3, left_inverse, left_inverse_slope, left_inverse_transposed};
 

@@ -1,24 +1,24 @@
 //! The line between two points: how it changes with the degrees of freedom between its ends.
 
-use super::joint;
-use super::kinematics::Kinematics;
+use crate::dynamics::joint;
+use crate::dynamics::kinematics::Kinematics;
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
 
 /// The line from one point to another in one state. NaN where the points coincide.
-pub(super) struct Line<'a, T> {
+pub(in crate::dynamics) struct Line<'a, T> {
     from: &'a Site,
     to: &'a Site,
     /// The last link that carries both ends.
     common: usize,
     length: T,
     /// u = l_vec/l.
-    pub(super) direction: Vec3<T>,
+    pub(in crate::dynamics) direction: Vec3<T>,
 }
 
 impl<'a, T: Scalar> Line<'a, T> {
     #[inline]
-    pub(super) fn new(model: &Model, kinematics: &Kinematics<T>, from: &'a Site, to: &'a Site) -> Self {
+    pub(in crate::dynamics) fn new(model: &Model, kinematics: &Kinematics<T>, from: &'a Site, to: &'a Site) -> Self {
         let line = kinematics.position(to) - kinematics.position(from);
         let length = line.norm();
         let common = joint::common_link(model, from.link(), to.link());
@@ -27,14 +27,19 @@ impl<'a, T: Scalar> Line<'a, T> {
 
     /// The degrees of freedom that move one end and not the other.
     #[inline]
-    pub(super) fn degrees<'m>(&self, model: &'m Model) -> impl Iterator<Item = usize> + 'm {
+    pub(in crate::dynamics) fn degrees<'m>(&self, model: &'m Model) -> impl Iterator<Item = usize> + 'm {
         let path = |site: &Site| joint::path_to(model, site.link(), self.common);
         path(self.from).chain(path(self.to))
     }
 
     /// Hands ∂l/∂q_b to `visit`, degree by degree.
     #[inline]
-    pub(super) fn slopes(&self, model: &Model, kinematics: &Kinematics<T>, visit: &mut impl FnMut(usize, T)) {
+    pub(in crate::dynamics) fn slopes(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics<T>,
+        visit: &mut impl FnMut(usize, T),
+    ) {
         for (site, towards) in [(self.to, self.direction), (self.from, -self.direction)] {
             let point = kinematics.position(site);
             for k in joint::path_to(model, site.link(), self.common) {
@@ -46,7 +51,7 @@ impl<'a, T: Scalar> Line<'a, T> {
 
     /// Fills t_k = ∂l_vec/∂q_k of [`Line::degrees`]; other columns stay as they are.
     #[inline]
-    pub(super) fn fill_columns(&self, model: &Model, kinematics: &Kinematics<T>, columns: &mut [Vec3<T>]) {
+    pub(in crate::dynamics) fn fill_columns(&self, model: &Model, kinematics: &Kinematics<T>, columns: &mut [Vec3<T>]) {
         let mut fill = |site: &Site, sign: T| {
             let point = kinematics.position(site);
             for k in joint::path_to(model, site.link(), self.common) {
@@ -60,7 +65,7 @@ impl<'a, T: Scalar> Line<'a, T> {
 
     /// Hands ∂(∂l/∂q_a)/∂q_b = (t_a·t_b − ∂_a l ∂_b l)/l + u·∂t_a/∂q_b to `visit` for every ordered two of [`Line::degrees`].
     #[inline]
-    pub(super) fn second_derivatives(
+    pub(in crate::dynamics) fn second_derivatives(
         &self,
         model: &Model,
         kinematics: &Kinematics<T>,

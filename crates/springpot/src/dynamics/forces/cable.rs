@@ -1,9 +1,9 @@
 //! The length of a line through points of any bodies.
 
 use super::coordinate::Coordinate;
-use super::kinematics::Kinematics;
 use super::line::Line;
 use super::pair::{Pair, pair_with};
+use crate::dynamics::kinematics::Kinematics;
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
 

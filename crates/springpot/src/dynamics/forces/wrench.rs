@@ -1,7 +1,7 @@
 //! Loads from outside: a force and a moment on a body.
 
-use super::joint;
-use super::kinematics::Kinematics;
+use crate::dynamics::joint;
+use crate::dynamics::kinematics::Kinematics;
 use crate::model::{Model, Site};
 use crate::spatial::{Force, Scalar};
 

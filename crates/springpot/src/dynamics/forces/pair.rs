@@ -1,9 +1,9 @@
 //! Two points of two bodies: their distance, its derivatives, and a force along the line that joins them.
 
-use super::joint;
-use super::kinematics::Kinematics;
 use super::line::Line;
-use super::workspace::Workspace;
+use crate::dynamics::joint;
+use crate::dynamics::kinematics::Kinematics;
+use crate::dynamics::workspace::Workspace;
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
 use serde::{Deserialize, Serialize};
@@ -83,7 +83,7 @@ pub fn pair_into<T: Scalar>(
 
 /// [`pair_into`] with ∂l/∂q_b for `visit`, degree by degree.
 #[inline]
-pub(super) fn pair_with<T: Scalar>(
+pub(in crate::dynamics) fn pair_with<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
     from: &Site,
@@ -153,7 +153,7 @@ pub fn pair_hessian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, from: 
 
 /// The force on the first anchor of a pair, world axes: tension pulls `from` towards `to`. NaN where the points coincide.
 #[inline]
-pub(super) fn pull<T: Scalar>(pair: &PairForce<T>, position: impl Fn(&Site) -> Vec3<T>) -> Vec3<T> {
+pub(in crate::dynamics) fn pull<T: Scalar>(pair: &PairForce<T>, position: impl Fn(&Site) -> Vec3<T>) -> Vec3<T> {
     let line = position(&pair.to) - position(&pair.from);
     line * (pair.force / line.norm())
 }
