@@ -47,8 +47,8 @@ impl<T: Scalar> Stands<T> {
         match model.motion(j) {
             JointMotion::Revolute => revolute::placement(at_zero, self.sines[j], self.cosines[j]),
             JointMotion::Prismatic => prismatic::placement(at_zero, self.coordinates[j]),
-            JointMotion::Helical(pitch) => {
-                helical::placement(at_zero, pitch, [self.coordinates[j], self.sines[j], self.cosines[j]])
+            JointMotion::Helical => {
+                helical::placement(at_zero, model.pitch(j), [self.coordinates[j], self.sines[j], self.cosines[j]])
             }
             JointMotion::Spherical => spherical::placement(model, j, q),
             JointMotion::Floating => floating::placement(model, j, q),
@@ -83,7 +83,7 @@ pub(super) fn velocity<T: Scalar>(
     match model.motion(j) {
         JointMotion::Revolute => revolute::velocity(carried, axis(), speed(model, j, v)),
         JointMotion::Prismatic => prismatic::velocity(carried, axis(), speed(model, j, v)),
-        JointMotion::Helical(pitch) => helical::velocity(carried, axis(), pitch, speed(model, j, v)),
+        JointMotion::Helical => helical::velocity(carried, axis(), model.pitch(j), speed(model, j, v)),
         JointMotion::Spherical | JointMotion::Floating => {
             floating::velocity(carried, &link.rotation, twist(model, j, v))
         }
@@ -105,7 +105,7 @@ pub(super) fn acceleration<T: Scalar>(
     match model.motion(j) {
         JointMotion::Revolute => revolute::acceleration(carried, omega, axis(), speeds()),
         JointMotion::Prismatic => prismatic::acceleration(carried, omega, axis(), speeds()),
-        JointMotion::Helical(pitch) => helical::acceleration(carried, omega, axis(), pitch, speeds()),
+        JointMotion::Helical => helical::acceleration(carried, omega, axis(), model.pitch(j), speeds()),
         JointMotion::Spherical | JointMotion::Floating => {
             let twists = [twist(model, j, v), twist(model, j, a)];
             floating::acceleration(carried, omega, &link.rotation, twists)
@@ -133,9 +133,9 @@ pub(super) fn advance<T: Scalar>(
             let push = a.map_or(T::ZERO, |a| speed(model, j, a));
             prismatic::advance(velocity, acceleration, speed(model, j, v), push);
         }
-        JointMotion::Helical(pitch) => {
+        JointMotion::Helical => {
             let push = a.map_or(T::ZERO, |a| speed(model, j, a));
-            helical::advance(velocity, acceleration, pitch, [speed(model, j, v), push]);
+            helical::advance(velocity, acceleration, model.pitch(j), [speed(model, j, v), push]);
         }
         JointMotion::Spherical | JointMotion::Floating => {
             let push = a.map_or(Motion::ZERO, |a| twist(model, j, a));
@@ -151,7 +151,7 @@ pub(super) fn add_effort<T: Scalar>(model: &Model, j: usize, force: Force<T>, ta
     match model.motion(j) {
         JointMotion::Revolute => tau[own.v] += revolute::effort(force) * T::from_f64(own.ratio),
         JointMotion::Prismatic => tau[own.v] += prismatic::effort(force) * T::from_f64(own.ratio),
-        JointMotion::Helical(pitch) => tau[own.v] += helical::effort(force, pitch) * T::from_f64(own.ratio),
+        JointMotion::Helical => tau[own.v] += helical::effort(force, model.pitch(j)) * T::from_f64(own.ratio),
         JointMotion::Spherical => spherical::write_effort(force, &mut tau[own.v..]),
         JointMotion::Floating => floating::write_effort(force, &mut tau[own.v..]),
     }
@@ -164,7 +164,7 @@ pub(super) fn bias<T: Scalar>(model: &Model, j: usize, link: &Placement<T>, velo
     match model.motion(j) {
         JointMotion::Revolute => revolute::bias(velocity, own()),
         JointMotion::Prismatic => prismatic::bias(velocity, own()),
-        JointMotion::Helical(pitch) => helical::bias(velocity, own(), pitch),
+        JointMotion::Helical => helical::bias(velocity, own(), model.pitch(j)),
         JointMotion::Spherical | JointMotion::Floating => floating::bias(velocity, &link.rotation, twist(model, j, v)),
     }
 }
@@ -187,7 +187,7 @@ pub(super) fn unit_motion<T: Scalar>(degree: &Degree, link: &Placement<T>, arm: 
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::unit_motion(axis, arm),
         DegreeMotion::Shift(_) => prismatic::unit_motion(axis),
-        DegreeMotion::Screw(pitch) => helical::unit_motion(axis, arm, pitch),
+        DegreeMotion::Screw => helical::unit_motion(axis, arm, degree.pitch),
     }
 }
 
@@ -197,7 +197,7 @@ pub(super) fn load<T: Scalar>(degree: &Degree, inertia: &ArticulatedInertia<T>, 
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::load(inertia, unit),
         DegreeMotion::Shift(_) => prismatic::load(inertia, unit),
-        DegreeMotion::Screw(_) => helical::load(inertia, unit),
+        DegreeMotion::Screw => helical::load(inertia, unit),
     }
 }
 
@@ -207,7 +207,7 @@ pub(super) fn momentum<T: Scalar>(degree: &Degree, inertia: &Inertia<T>, unit: M
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::momentum(inertia, unit),
         DegreeMotion::Shift(_) => prismatic::momentum(inertia, unit),
-        DegreeMotion::Screw(_) => helical::momentum(inertia, unit),
+        DegreeMotion::Screw => helical::momentum(inertia, unit),
     }
 }
 
@@ -218,7 +218,7 @@ pub(super) fn felt<T: Scalar>(degree: &Degree, link: &Placement<T>, momentum: Fo
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::felt(unit, point - link.translation, momentum),
         DegreeMotion::Shift(_) => prismatic::felt(unit, momentum),
-        DegreeMotion::Screw(_) => helical::felt(unit, point - link.translation, momentum),
+        DegreeMotion::Screw => helical::felt(unit, point - link.translation, momentum),
     }
 }
 
@@ -229,7 +229,7 @@ pub(super) fn point_column<T: Scalar>(degree: &Degree, link: &Placement<T>, poin
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::point_column(axis, point - link.translation),
         DegreeMotion::Shift(_) => axis,
-        DegreeMotion::Screw(pitch) => helical::point_column(axis, point - link.translation, pitch),
+        DegreeMotion::Screw => helical::point_column(axis, point - link.translation, degree.pitch),
     }
 }
 
@@ -250,9 +250,9 @@ pub(super) fn point_column_rate<T: Scalar>(
             revolute::point_column_rate(axis, rate, point - link.translation, velocity - motion.linear)
         }
         DegreeMotion::Shift(_) => rate,
-        DegreeMotion::Screw(pitch) => {
+        DegreeMotion::Screw => {
             let arms = [point - link.translation, velocity - motion.linear];
-            helical::point_column_rate([axis, rate], arms, pitch)
+            helical::point_column_rate([axis, rate], arms, degree.pitch)
         }
     }
 }
@@ -261,7 +261,7 @@ pub(super) fn point_column_rate<T: Scalar>(
 #[inline]
 pub(super) fn angular_column<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
     match degree.motion {
-        DegreeMotion::Turn(_) | DegreeMotion::Screw(_) => axis(degree, link),
+        DegreeMotion::Turn(_) | DegreeMotion::Screw => axis(degree, link),
         DegreeMotion::Shift(_) => Vec3::ZERO,
     }
 }
@@ -278,8 +278,8 @@ pub(super) fn first_moment_column<T: Scalar>(
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::point_column(axis, first),
         DegreeMotion::Shift(_) => axis * T::from_f64(model.subtree_mass(degree.link - 1)),
-        DegreeMotion::Screw(pitch) => {
-            axis.times_plus(T::from_f64(pitch * model.subtree_mass(degree.link - 1)), axis.cross(first))
+        DegreeMotion::Screw => {
+            axis.times_plus(T::from_f64(degree.pitch * model.subtree_mass(degree.link - 1)), axis.cross(first))
         }
     }
 }

@@ -133,10 +133,11 @@ impl ModelBuilder {
         model.motions.push(match part.moves {
             Move::Turn => JointMotion::Revolute,
             Move::Shift => JointMotion::Prismatic,
-            Move::Screw => JointMotion::Helical(joint.lead / TAU),
+            Move::Screw => JointMotion::Helical,
             Move::Ball => JointMotion::Spherical,
             Move::Pose => JointMotion::Floating,
         });
+        model.pitches.push(joint.lead / TAU);
         model.spaces.push(part.space);
         model.described_as.push(model.described.len());
         model.parents.push(at.link);

@@ -3,14 +3,14 @@
 use crate::spatial::{Motion, Vec3};
 
 /// What a joint does in the frame of the link that it moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum JointMotion {
     /// Turns about z.
     Revolute,
     /// Shifts along z.
     Prismatic,
-    /// Turns about z and shifts along it by so much, m/rad.
-    Helical(f64),
+    /// Turns about z and shifts along it, by its pitch.
+    Helical,
     /// Turns about x, y and z.
     Spherical,
     /// Shifts along, and turns about, x, y and z.
@@ -26,14 +26,14 @@ pub(crate) enum Axis {
 }
 
 /// The motion that one degree of freedom gives to its link, through the origin of the link's frame and fixed in that frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum DegreeMotion {
     /// A turn about the axis.
     Turn(Axis),
     /// A shift along the axis.
     Shift(Axis),
-    /// A turn about z with a shift along it by so much, m/rad.
-    Screw(f64),
+    /// A turn about z with a shift along it, by the pitch of the degree.
+    Screw,
 }
 
 impl DegreeMotion {
@@ -42,21 +42,23 @@ impl DegreeMotion {
     pub(crate) const fn axis(self) -> Axis {
         match self {
             Self::Turn(axis) | Self::Shift(axis) => axis,
-            Self::Screw(_) => Axis::Z,
+            Self::Screw => Axis::Z,
         }
     }
+}
 
+impl Degree {
     /// The motion of the link at unit velocity, in its own frame.
-    pub(crate) fn unit(self) -> Motion {
-        let along = match self.axis() {
+    pub(crate) fn unit(&self) -> Motion {
+        let along = match self.motion.axis() {
             Axis::X => Vec3([1.0, 0.0, 0.0]),
             Axis::Y => Vec3([0.0, 1.0, 0.0]),
             Axis::Z => Vec3([0.0, 0.0, 1.0]),
         };
-        match self {
-            Self::Turn(_) => Motion { angular: along, ..Motion::ZERO },
-            Self::Shift(_) => Motion { linear: along, ..Motion::ZERO },
-            Self::Screw(pitch) => Motion { angular: along, linear: along * pitch },
+        match self.motion {
+            DegreeMotion::Turn(_) => Motion { angular: along, ..Motion::ZERO },
+            DegreeMotion::Shift(_) => Motion { linear: along, ..Motion::ZERO },
+            DegreeMotion::Screw => Motion { angular: along, linear: along * self.pitch },
         }
     }
 }
@@ -70,6 +72,8 @@ pub(crate) struct Degree {
     /// Its velocity is ratio · v\[index\]; several degrees share an index where joints follow one another.
     pub(crate) index: usize,
     pub(crate) ratio: f64,
+    /// Shift of a screw, m/rad.
+    pub(crate) pitch: f64,
 }
 
 /// Where a joint finds its coordinates in q and its velocities in v.
@@ -91,7 +95,7 @@ impl JointMotion {
         match self {
             Self::Revolute => vec![Turn(Axis::Z)],
             Self::Prismatic => vec![Shift(Axis::Z)],
-            Self::Helical(pitch) => vec![Screw(pitch)],
+            Self::Helical => vec![Screw],
             Self::Spherical => vec![Turn(Axis::X), Turn(Axis::Y), Turn(Axis::Z)],
             Self::Floating => {
                 vec![Shift(Axis::X), Shift(Axis::Y), Shift(Axis::Z), Turn(Axis::X), Turn(Axis::Y), Turn(Axis::Z)]

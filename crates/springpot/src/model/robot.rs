@@ -28,6 +28,8 @@ pub struct Model {
     pub(super) nv: usize,
     // One entry per joint, indexed by j.
     pub(super) motions: Vec<JointMotion>,
+    /// Shift of a helical joint, m/rad.
+    pub(super) pitches: Vec<f64>,
     pub(super) spaces: Vec<Space>,
     /// Which described joint it is, or is part of.
     pub(super) described_as: Vec<usize>,
@@ -89,6 +91,7 @@ impl Model {
             nq: 0,
             nv: 0,
             motions: Vec::new(),
+            pitches: Vec::new(),
             spaces: Vec::new(),
             described_as: Vec::new(),
             coordinates: Vec::new(),
@@ -367,6 +370,12 @@ impl Model {
     #[inline]
     pub(crate) fn motion(&self, joint: usize) -> JointMotion {
         self.motions[joint]
+    }
+
+    /// Shift of helical joint `joint`, m/rad.
+    #[inline]
+    pub(crate) fn pitch(&self, joint: usize) -> f64 {
+        self.pitches[joint]
     }
 
     #[inline]
