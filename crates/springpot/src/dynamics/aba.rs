@@ -52,7 +52,7 @@ pub fn aba_into<T: Scalar>(
         let (mut inertia, mut load) = (articulated[j], force[j + 1]);
         let own = model.degrees_of(j);
         for k in own.clone().rev() {
-            let unit = joint::unit_motion(&degrees[k], link, Vec3::ZERO);
+            let unit = joint::unit_motion(model, &degrees[k], link, Vec3::ZERO);
             let u = joint::load(&degrees[k], &inertia, unit);
             (column[k], inverse_pivot[k]) = (u, T::ONE / (unit.dot(u) + T::from_f64(model.rotors()[k])));
             effort[k] = tau[k] - unit.dot(load);
@@ -76,7 +76,7 @@ pub fn aba_into<T: Scalar>(
         let mut here = acceleration[parent].shifted(arm) + bias[j];
         for k in model.degrees_of(j) {
             a[k] = (effort[k] - here.dot(column[k])) * inverse_pivot[k];
-            here += joint::unit_motion(&degrees[k], link, Vec3::ZERO) * a[k];
+            here += joint::unit_motion(model, &degrees[k], link, Vec3::ZERO) * a[k];
         }
         acceleration[j + 1] = here;
     }

@@ -35,7 +35,7 @@ pub fn christoffel_into<T: Scalar>(
         // ∫ T_k × T_h dm changes its sign with the order of k and h, and vanishes for h = k.
         for h in joint::carriers(model, k) {
             let carrier = &degrees[h];
-            let moment = deeper.moment_against(carrier, kinematics.link(carrier.link));
+            let moment = deeper.moment_against(model, carrier, kinematics.link(carrier.link));
             for lo in joint::path_to_world(model, degree.link) {
                 let entry = joint::angular_column(&degrees[lo], kinematics.link(degrees[lo].link)).dot(moment);
                 gamma[at(lo, k, h)] += entry;
@@ -78,7 +78,7 @@ impl<T: Scalar> Deeper<T> {
         let (link, composite) = (kinematics.link(degree.link), &workspace.composite[degree.link - 1]);
         Self {
             origin: link.translation,
-            unit: joint::unit_motion(degree, link, Vec3::ZERO),
+            unit: joint::unit_motion(model, degree, link, Vec3::ZERO),
             mass: composite.mass,
             first: composite.first_moment,
             second: composite.rotational.second_moments(),
@@ -90,8 +90,8 @@ impl<T: Scalar> Deeper<T> {
     /// With T_k = v_k + w_k × r, T_h = v_h + w_h × r at this degree's origin and m, H = ∫ r dm, P = ∫ r rᵀ dm, it is
     /// v_k × (m v_h + w_h × H) + (w_k × H) × v_h + P (w_k × w_h).
     #[inline]
-    fn moment_against(&self, h: &Degree, link: &Placement<T>) -> Vec3<T> {
-        let velocity = joint::point_column(h, link, self.origin);
+    fn moment_against(&self, model: &Model, h: &Degree, link: &Placement<T>) -> Vec3<T> {
+        let velocity = joint::point_column(model, h, link, self.origin);
         let spin = joint::angular_column(h, link);
         let Motion { angular, linear } = self.unit;
         linear.cross(velocity.times_plus(self.mass, spin.cross(self.first)))

@@ -18,13 +18,13 @@ pub fn crba_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace
     mass.fill(T::ZERO);
     for (k, degree) in degrees.iter().enumerate() {
         let (link, column) = (kinematics.link(degree.link), degree.index);
-        let unit = joint::unit_motion(degree, link, Vec3::ZERO);
+        let unit = joint::unit_motion(model, degree, link, Vec3::ZERO);
         let composite = &workspace.composite[degree.link - 1];
         let momentum = joint::momentum(degree, composite, unit);
         mass[column * n + column] += unit.dot(momentum);
         for c in joint::carriers(model, k) {
             let carrier = kinematics.link(degrees[c].link);
-            let entry = joint::felt(&degrees[c], carrier, momentum, link.translation);
+            let entry = joint::felt(model, &degrees[c], carrier, momentum, link.translation);
             let row = degrees[c].index;
             mass[row * n + column] += entry;
             mass[column * n + row] += entry;

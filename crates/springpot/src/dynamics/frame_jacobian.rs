@@ -14,7 +14,7 @@ pub fn frame_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>,
     for k in joint::path_to_world(model, frame.link()) {
         let degree = &model.degrees()[k];
         let link = kinematics.link(degree.link);
-        let (linear, angular) = (joint::point_column(degree, link, origin), joint::angular_column(degree, link));
+        let (linear, angular) = (joint::point_column(model, degree, link, origin), joint::angular_column(degree, link));
         add_column(jacobian, n, degree.index, linear, angular);
     }
 }
@@ -38,7 +38,7 @@ pub fn frame_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematic
     for k in joint::path_to_world(model, frame.link()) {
         let degree = &model.degrees()[k];
         let (link, motion) = (kinematics.link(degree.link), kinematics.link_velocity(degree.link));
-        let linear = joint::point_column_rate(degree, link, motion, origin, velocity);
+        let linear = joint::point_column_rate(model, degree, link, motion, origin, velocity);
         let angular = motion.angular.cross(joint::angular_column(degree, link));
         add_column(rate, n, degree.index, linear, angular);
     }

@@ -14,7 +14,7 @@ pub fn point_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>,
     let point = kinematics.position(site);
     for k in joint::path_to_world(model, site.link()) {
         let degree = &model.degrees()[k];
-        add_column(jacobian, n, degree.index, joint::point_column(degree, kinematics.link(degree.link), point));
+        add_column(jacobian, n, degree.index, joint::point_column(model, degree, kinematics.link(degree.link), point));
     }
 }
 
@@ -35,7 +35,7 @@ pub fn point_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematic
     for k in joint::path_to_world(model, site.link()) {
         let degree = &model.degrees()[k];
         let (link, motion) = (kinematics.link(degree.link), kinematics.link_velocity(degree.link));
-        add_column(rate, n, degree.index, joint::point_column_rate(degree, link, motion, position, velocity));
+        add_column(rate, n, degree.index, joint::point_column_rate(model, degree, link, motion, position, velocity));
     }
 }
 

@@ -182,12 +182,12 @@ fn axis<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
 
 /// The motion of the degree's link at unit velocity, at a point from which the link's origin is seen at `arm`; world axes.
 #[inline]
-pub(super) fn unit_motion<T: Scalar>(degree: &Degree, link: &Placement<T>, arm: Vec3<T>) -> Motion<T> {
+pub(super) fn unit_motion<T: Scalar>(model: &Model, degree: &Degree, link: &Placement<T>, arm: Vec3<T>) -> Motion<T> {
     let axis = axis(degree, link);
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::unit_motion(axis, arm),
         DegreeMotion::Shift(_) => prismatic::unit_motion(axis),
-        DegreeMotion::Screw => helical::unit_motion(axis, arm, degree.pitch),
+        DegreeMotion::Screw => helical::unit_motion(axis, arm, model.pitch(degree.link - 1)),
     }
 }
 
@@ -213,8 +213,14 @@ pub(super) fn momentum<T: Scalar>(degree: &Degree, inertia: &Inertia<T>, unit: M
 
 /// What a degree on `link` feels of a momentum about `point`.
 #[inline]
-pub(super) fn felt<T: Scalar>(degree: &Degree, link: &Placement<T>, momentum: Force<T>, point: Vec3<T>) -> T {
-    let unit = unit_motion(degree, link, Vec3::ZERO);
+pub(super) fn felt<T: Scalar>(
+    model: &Model,
+    degree: &Degree,
+    link: &Placement<T>,
+    momentum: Force<T>,
+    point: Vec3<T>,
+) -> T {
+    let unit = unit_motion(model, degree, link, Vec3::ZERO);
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::felt(unit, point - link.translation, momentum),
         DegreeMotion::Shift(_) => prismatic::felt(unit, momentum),
@@ -224,12 +230,12 @@ pub(super) fn felt<T: Scalar>(degree: &Degree, link: &Placement<T>, momentum: Fo
 
 /// ∂r_P/∂q_k = T_k(P) for a point P that degree k carries: e × (r_P − O) or e, with its axis e and the link's origin O.
 #[inline]
-pub(super) fn point_column<T: Scalar>(degree: &Degree, link: &Placement<T>, point: Vec3<T>) -> Vec3<T> {
+pub(super) fn point_column<T: Scalar>(model: &Model, degree: &Degree, link: &Placement<T>, point: Vec3<T>) -> Vec3<T> {
     let axis = axis(degree, link);
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::point_column(axis, point - link.translation),
         DegreeMotion::Shift(_) => axis,
-        DegreeMotion::Screw => helical::point_column(axis, point - link.translation, degree.pitch),
+        DegreeMotion::Screw => helical::point_column(axis, point - link.translation, model.pitch(degree.link - 1)),
     }
 }
 
@@ -237,6 +243,7 @@ pub(super) fn point_column<T: Scalar>(degree: &Degree, link: &Placement<T>, poin
 /// `velocity`.
 #[inline]
 pub(super) fn point_column_rate<T: Scalar>(
+    model: &Model,
     degree: &Degree,
     link: &Placement<T>,
     motion: Motion<T>,
@@ -252,7 +259,7 @@ pub(super) fn point_column_rate<T: Scalar>(
         DegreeMotion::Shift(_) => rate,
         DegreeMotion::Screw => {
             let arms = [point - link.translation, velocity - motion.linear];
-            helical::point_column_rate([axis, rate], arms, degree.pitch)
+            helical::point_column_rate([axis, rate], arms, model.pitch(degree.link - 1))
         }
     }
 }
@@ -278,9 +285,10 @@ pub(super) fn first_moment_column<T: Scalar>(
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::point_column(axis, first),
         DegreeMotion::Shift(_) => axis * T::from_f64(model.subtree_mass(degree.link - 1)),
-        DegreeMotion::Screw => {
-            axis.times_plus(T::from_f64(degree.pitch * model.subtree_mass(degree.link - 1)), axis.cross(first))
-        }
+        DegreeMotion::Screw => axis.times_plus(
+            T::from_f64(model.pitch(degree.link - 1) * model.subtree_mass(degree.link - 1)),
+            axis.cross(first),
+        ),
     }
 }
 

@@ -37,7 +37,7 @@ pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: O
         let (mut velocity, mut acceleration) = (carrier, pushed);
         for k in model.degrees_of(j) {
             let degree = &model.degrees()[k];
-            let unit = joint::unit_motion(degree, link, arm);
+            let unit = joint::unit_motion(model, degree, link, arm);
             let rate = carrier.cross(unit);
             velocity += unit * v[degree.index];
             acceleration += rate * v[degree.index];

@@ -32,7 +32,7 @@ pub(crate) enum DegreeMotion {
     Turn(Axis),
     /// A shift along the axis.
     Shift(Axis),
-    /// A turn about z with a shift along it, by the pitch of the degree.
+    /// A turn about z with a shift along it, by the pitch of its joint.
     Screw,
 }
 
@@ -48,8 +48,8 @@ impl DegreeMotion {
 }
 
 impl Degree {
-    /// The motion of the link at unit velocity, in its own frame.
-    pub(crate) fn unit(&self) -> Motion {
+    /// The motion of the link at unit velocity, in its own frame; `pitch` is that of its joint.
+    pub(crate) fn unit(&self, pitch: f64) -> Motion {
         let along = match self.motion.axis() {
             Axis::X => Vec3([1.0, 0.0, 0.0]),
             Axis::Y => Vec3([0.0, 1.0, 0.0]),
@@ -58,7 +58,7 @@ impl Degree {
         match self.motion {
             DegreeMotion::Turn(_) => Motion { angular: along, ..Motion::ZERO },
             DegreeMotion::Shift(_) => Motion { linear: along, ..Motion::ZERO },
-            DegreeMotion::Screw => Motion { angular: along, linear: along * self.pitch },
+            DegreeMotion::Screw => Motion { angular: along, linear: along * pitch },
         }
     }
 }
@@ -72,8 +72,6 @@ pub(crate) struct Degree {
     /// Its velocity is ratio · v\[index\]; several degrees share an index where joints follow one another.
     pub(crate) index: usize,
     pub(crate) ratio: f64,
-    /// Shift of a screw, m/rad.
-    pub(crate) pitch: f64,
 }
 
 /// Where a joint finds its coordinates in q and its velocities in v.

@@ -42,7 +42,7 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
         // Joints that follow one another share their inertia: a singularity of theirs is not looked for.
         let degrees = if model.followed[j].is_some() || leads[j] { 0..0 } else { model.degrees_of(j) };
         for degree in model.degrees[degrees].iter().rev() {
-            let Motion { angular, linear } = degree.unit();
+            let Motion { angular, linear } = degree.unit(model.pitches[j]);
             let unit = [angular.0, linear.0];
             let unit = unit.as_flattened();
             // What it does not move is left out: it may be infinite.
@@ -132,7 +132,7 @@ fn generic_placement(model: &Model, j: usize, length: f64) -> Placement {
     }
     // Wherever a floating joint stands, it takes up all that it carries.
     let [degree] = model.degrees[model.degrees_of(j)] else { return at_zero };
-    let Motion { angular: Vec3([.., turn]), linear: Vec3([.., shift]) } = degree.unit();
+    let Motion { angular: Vec3([.., turn]), linear: Vec3([.., shift]) } = degree.unit(model.pitches[j]);
     let coordinate = if turn == 0.0 { generic * length } else { generic };
     let (sin, cos) = (turn * coordinate).sin_cos();
     Placement {

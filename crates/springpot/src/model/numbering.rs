@@ -28,7 +28,7 @@ pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), 
         model.followed.push(leader.map(|(source, ..)| source));
         let mut carrier = model.last_degrees[model.parents[j]];
         for (k, motion) in model.motions[j].degrees().into_iter().enumerate() {
-            model.degrees.push(Degree { link: j + 1, motion, index: v + k, ratio, pitch: model.pitches[j] });
+            model.degrees.push(Degree { link: j + 1, motion, index: v + k, ratio });
             model.carriers.push(carrier);
             carrier = model.degrees.len();
         }

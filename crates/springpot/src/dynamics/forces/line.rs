@@ -44,7 +44,10 @@ impl<'a, T: Scalar> Line<'a, T> {
             let point = kinematics.position(site);
             for k in joint::path_to(model, site.link(), self.common) {
                 let degree = &model.degrees()[k];
-                visit(degree.index, towards.dot(joint::point_column(degree, kinematics.link(degree.link), point)));
+                visit(
+                    degree.index,
+                    towards.dot(joint::point_column(model, degree, kinematics.link(degree.link), point)),
+                );
             }
         }
     }
@@ -56,7 +59,7 @@ impl<'a, T: Scalar> Line<'a, T> {
             let point = kinematics.position(site);
             for k in joint::path_to(model, site.link(), self.common) {
                 let degree = &model.degrees()[k];
-                columns[k] = joint::point_column(degree, kinematics.link(degree.link), point) * sign;
+                columns[k] = joint::point_column(model, degree, kinematics.link(degree.link), point) * sign;
             }
         };
         fill(self.from, -T::ONE);

@@ -100,7 +100,7 @@ pub(in crate::dynamics) fn pair_with<T: Scalar>(
     for (site, point, towards) in [(to, end, direction), (from, start, -direction)] {
         for k in joint::path_to(model, site.link(), common) {
             let degree = &model.degrees()[k];
-            let slope = towards.dot(joint::point_column(degree, kinematics.link(degree.link), point));
+            let slope = towards.dot(joint::point_column(model, degree, kinematics.link(degree.link), point));
             visit(degree.index, slope);
             rate = slope.times_plus(v[degree.index], rate);
         }

@@ -71,7 +71,7 @@ impl Coordinate<f64> for RelativeCoordinate {
             let degree = &model.degrees()[k];
             let link = kinematics.link(degree.link);
             let column = match turn {
-                None => joint::point_column(degree, link, point),
+                None => joint::point_column(model, degree, link, point),
                 Some(_) => joint::angular_column(degree, link),
             };
             visit(degree.index, sign * direction.dot(column));
@@ -94,7 +94,7 @@ impl Coordinate<f64> for RelativeCoordinate {
         for (k, _) in self.degrees(model, common) {
             let link = kinematics.link(degrees[k].link);
             columns[k] = match turn {
-                None => joint::point_column(&degrees[k], link, point),
+                None => joint::point_column(model, &degrees[k], link, point),
                 Some(_) => spin(k),
             };
         }

@@ -22,7 +22,7 @@ pub fn add_wrench<T: Scalar>(
     for k in joint::path_to_world(model, site.link()) {
         let degree = &model.degrees()[k];
         let link = kinematics.link(degree.link);
-        q_force[degree.index] += joint::point_column(degree, link, point).dot(wrench.linear)
+        q_force[degree.index] += joint::point_column(model, degree, link, point).dot(wrench.linear)
             + joint::angular_column(degree, link).dot(wrench.angular);
     }
 }
@@ -43,7 +43,7 @@ pub fn add_wrench_derivative<T: Scalar>(
     let point = kinematics.position(site);
     for hi in joint::path_to_world(model, site.link()) {
         let (degree, link) = (&degrees[hi], kinematics.link(degrees[hi].link));
-        let (column, spin) = (joint::point_column(degree, link, point), joint::angular_column(degree, link));
+        let (column, spin) = (joint::point_column(model, degree, link, point), joint::angular_column(degree, link));
         for lo in joint::inwards(model, hi + 1, 0) {
             let inner = &degrees[lo];
             let carrier_link = kinematics.link(inner.link);
@@ -56,7 +56,7 @@ pub fn add_wrench_derivative<T: Scalar>(
             }
             d_q[other * n + row] += if inner.link == degree.link {
                 // Degrees of one joint move with one another.
-                let moved = spin.cross(joint::point_column(inner, carrier_link, point));
+                let moved = spin.cross(joint::point_column(model, inner, carrier_link, point));
                 moved.dot(wrench.linear) + spin.cross(turn).dot(wrench.angular)
             } else {
                 by_turn
