@@ -32,7 +32,6 @@ impl Plan {
             tells_joint_losses: self.tells_joint_losses,
             tells_leaves: self.tells_leaves,
             events: self.events.iter().map(|plan| plan.event.clone()).collect(),
-            end_stops: 0,
             control: Control { controller: self.motion.controller(&self.model, course), ..self.feedback.clone() }
                 .into(),
         };

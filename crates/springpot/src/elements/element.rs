@@ -39,6 +39,8 @@ pub struct Element {
     pub past: Past,
     /// A named offline scheme in place of the exact memory.
     pub scheme: Option<Scheme>,
+    /// Whether rows tell it by itself; what end stops store and lose is told with what joints lose.
+    pub shown: bool,
 }
 
 impl Element {
@@ -64,6 +66,7 @@ impl Element {
             derivative,
             past: Past::OfDerivative,
             scheme: None,
+            shown: true,
         })
     }
 

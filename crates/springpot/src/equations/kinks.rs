@@ -50,7 +50,11 @@ impl Kinks {
             element.law.has_guards(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs })
         };
         let elements = system.elements.iter().enumerate().filter(|(_, element)| has_guards(element));
-        Self { elements: elements.map(|(e, _)| e).collect(), guards: Vec::new(), may_jump: system.end_stops > 0 }
+        Self {
+            elements: elements.map(|(e, _)| e).collect(),
+            guards: Vec::new(),
+            may_jump: system.elements.iter().any(|element| element.law.jumps()),
+        }
     }
 
     /// Their numbers.

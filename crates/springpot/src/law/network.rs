@@ -84,6 +84,7 @@ pub enum Holds {
 
 impl Network {
     /// Whoever answers for it.
+    #[inline]
     pub(super) fn ask(&self) -> &dyn Part {
         match self {
             Self::Leaf(part) => part,
@@ -297,6 +298,11 @@ impl Network {
     /// Whether its force may have kinks that steps are to end on.
     pub fn has_guards(&self, at: &Point) -> bool {
         self.ask().has_guards(at)
+    }
+
+    /// Whether its force may jump at one of them ([`Leaf::jumps`]).
+    pub fn jumps(&self) -> bool {
+        self.any_leaf(|leaf| leaf.jumps())
     }
 
     /// The law at t_n + theta·h, 0 < theta ≤ 1, where its exact kinematics are those of `at`. Pure.

@@ -26,6 +26,8 @@ struct Shape {
 /// How many numbers an element has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct ElementShape {
+    /// Whether rows tell it.
+    pub(crate) shown: bool,
     pub(crate) inputs: usize,
     pub(crate) leaves: usize,
     /// Whether its law has one derivative to tell.
@@ -45,7 +47,8 @@ impl Shape {
         (0..nv).map(Quantity::Velocity).for_each(&mut *visit);
         (0..nv).map(Quantity::Acceleration).for_each(&mut *visit);
         (0..nv).map(Quantity::Torque).for_each(&mut *visit);
-        for (e, ElementShape { inputs, leaves, derivative, electric, thermal }) in elements.into_iter().enumerate() {
+        let shown = elements.into_iter().enumerate().filter(|(_, element)| element.shown);
+        for (e, ElementShape { inputs, leaves, derivative, electric, thermal, .. }) in shown {
             let told = |quantity: &ElementQuantity| *quantity != ElementQuantity::Derivative || derivative;
             let before = ElementQuantity::BEFORE_FORCES.into_iter().filter(told);
             let electric = if electric { &ElectricQuantity::ALL[..] } else { &[] };
@@ -90,6 +93,7 @@ impl Observables {
     pub fn new<'a>(model: &Model, elements: impl IntoIterator<Item = &'a Element>) -> Self {
         let element = |element: &Element| ObservedElement {
             name: element.name.clone(),
+            shown: element.shown,
             kind: element.measure.kind(),
             is_rotation: element.measure.is_rotation(),
             derivative_unit: derivative_unit(element),
@@ -147,6 +151,7 @@ impl Observables {
 
     fn element_shapes(&self) -> impl Iterator<Item = ElementShape> + '_ {
         self.elements.iter().map(|element| ElementShape {
+            shown: element.shown,
             inputs: element.entry.inputs.len(),
             leaves: element.leaves.len(),
             derivative: element.tells_derivative,

@@ -8,6 +8,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(super) struct ObservedElement {
     pub(super) name: String,
+    pub(super) shown: bool,
     pub(super) kind: MeasureKind,
     pub(super) is_rotation: bool,
     pub(super) derivative_unit: &'static str,

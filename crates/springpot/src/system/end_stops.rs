@@ -10,7 +10,7 @@ impl System {
     /// With stops of this stiffness (> 0) and damping (≥ 0), SI of each joint, where joints have smallest and largest coordinates: beyond them by e the
     /// force −stiffness·e − damping·v, which never pulls back. Of joints that follow others the coordinates are their own.
     ///
-    /// The stops are the last elements of the system. What they store and dissipate is told with what joints lose.
+    /// The stops are elements that rows do not tell. What they store and dissipate is told with what joints lose.
     ///
     /// # Errors
     /// [`RuleError`] where one of the two is out of its range, or the ends of a joint are in the wrong order.
@@ -32,14 +32,9 @@ impl System {
                 build: Arc::new(move |_, _| Ok(Network::leaf(stop))),
             };
             let name = format!("ends of {}", model.joint_names()[joint]);
-            self.elements.push(Element::new(name, measure, 0.0, &Arc::new(entry), &[], Derivative::Caputo)?);
-            self.end_stops += 1;
+            let stop = Element::new(name, measure, 0.0, &Arc::new(entry), &[], Derivative::Caputo)?;
+            self.elements.push(Element { shown: false, ..stop });
         }
         Ok(self)
-    }
-
-    /// The elements that are no end stops.
-    pub fn materials(&self) -> &[Element] {
-        &self.elements[..self.elements.len() - self.end_stops]
     }
 }

@@ -30,10 +30,8 @@ use std::sync::Arc;
 pub struct System {
     /// The robot.
     pub model: Arc<Model>,
-    /// The elements, end stops behind all others.
+    /// The elements, end stops ([`System::with_end_stops`]) among them.
     pub elements: Vec<Element>,
-    /// How many end stops there are ([`System::with_end_stops`]).
-    pub end_stops: usize,
     /// How it moves.
     pub motion: Motion,
     /// The gripper, where there is one.
@@ -83,7 +81,6 @@ impl System {
         Self {
             model,
             elements,
-            end_stops: 0,
             motion,
             gripper: None,
             tells_joint_losses: false,
@@ -95,7 +92,7 @@ impl System {
 
     /// What can be observed of it, in the order of a run's rows.
     pub fn observables(&self) -> Observables {
-        let mut observables = Observables::new(&self.model, self.materials());
+        let mut observables = Observables::new(&self.model, &self.elements);
         if self.gripper.is_some() {
             let aims = self.motion.has_path() || self.control.controller.is_some();
             observables = observables.with_gripper(aims);

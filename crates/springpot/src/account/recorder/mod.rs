@@ -303,8 +303,8 @@ impl Recorder {
         let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
         let balance = self.balance(snapshot, actuators, joints);
         snapshot.actuators = balance.actuators;
-        let stops = &snapshot.elements[snapshot.elements.len() - cx.system.end_stops..];
-        let stops = stops.iter().map(|row| row.observation.stored.unwrap_or(f64::NAN) + row.dissipated).sum::<f64>();
+        let hidden = snapshot.elements.iter().zip(&cx.system.elements).filter(|(_, element)| !element.shown);
+        let stops = hidden.map(|(row, _)| row.observation.stored.unwrap_or(f64::NAN) + row.dissipated).sum::<f64>();
         snapshot.joints = self.ledger.joints + joints + stops;
         snapshot.residual = balance.total() - self.ledger.origin;
         Ok(())

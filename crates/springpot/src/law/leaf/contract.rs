@@ -143,6 +143,11 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// end on them.
     fn guards(&self, _at: &Point, _take: &mut dyn FnMut(f64)) {}
 
+    /// Whether its force may jump where one of its guards is zero: what follows then starts anew.
+    fn jumps(&self) -> bool {
+        false
+    }
+
     /// [`Leaf::guards`] at the start and at the nodes of a step: of a leaf whose kinks depend on its inner variables what they are there.
     fn guards_in(&self, step: &Step, _state: StateRef, guards: &mut Vec<Guard>) {
         let first = guards.len();

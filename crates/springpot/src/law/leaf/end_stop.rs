@@ -102,6 +102,10 @@ impl Leaf for EndStop {
         Holds::AtTimes
     }
 
+    fn jumps(&self) -> bool {
+        self.damping > 0.0
+    }
+
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
         // Where it would begin to pull, as a stroke.
         let lag = self.damping / self.stiffness * at.rate;

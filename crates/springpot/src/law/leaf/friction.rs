@@ -8,7 +8,7 @@ use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
-use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Step, Term};
+use crate::law::step::{InputValue, Observation, Point, Powers, Response, Step, Term};
 
 /// F = f·tanh(x'/v0). Dissipates F·x'; creeps where it should stick, at rates of the order of v0. f may follow an input.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,12 +85,6 @@ impl Leaf for Friction {
 
     fn slides(&self, inputs: &[InputValue]) -> Option<Slide> {
         (!self.force.is_none()).then(|| Slide { force: self.force.at(inputs).value, rate: self.rate })
-    }
-
-    fn local_errors(&self, step: &Step, _: StateRef, errors: &mut Vec<LocalError>) {
-        // Of its rate what the force knows of it.
-        let value = self.rate * (step.rate[step.nodes.count()] / self.rate).tanh();
-        errors.push(LocalError { error: 0.0, value, order: 1.0, sharpness: 0.0 });
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {

@@ -172,6 +172,10 @@ impl<L: Leaf> Leaf for Lagged<L> {
         self.leaf.holds()
     }
 
+    fn jumps(&self) -> bool {
+        self.leaf.jumps()
+    }
+
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
         self.leaf.guards(&Point { inputs: &Self::settled(at), ..*at }, take);
     }

@@ -126,6 +126,10 @@ impl Leaf for Unshifted {
         Some(Slide { rate: own.rate * self.factor(inputs), ..own })
     }
 
+    fn jumps(&self) -> bool {
+        self.leaf.jumps()
+    }
+
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
         self.leaf.guards(&self.point(at), take);
     }

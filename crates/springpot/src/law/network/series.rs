@@ -123,6 +123,9 @@ impl Series {
 
     /// The strokes of those that are never free, together, and of a play.
     fn split(&self, strokes: &[f64]) -> [f64; 2] {
+        if self.loose.is_none() {
+            return [strokes.iter().sum(), 0.0];
+        }
         let of = |is_free: bool| {
             (0..self.parts.len()).filter(|k| self.is_free(*k) == is_free).map(|k| strokes[k]).sum::<f64>()
         };
@@ -240,8 +243,8 @@ impl Part for Series {
         let since = if self.play().is_some_and(is_on_end) { step.t } else { since };
         for (k, ((part, inner), share)) in self.parts.iter().zip(&mut inner).zip(shares).enumerate() {
             let (first, end) = (errors.len(), step.nodes.count());
-            let exact = *inner;
-            let rate = inner.rate[end];
+            let exact = inner.rate;
+            let rate = exact[end];
             if step.nodes == Nodes::Inner {
                 // The rates of the cubic through all strokes but one: what departs from it is the estimate.
                 inner.rate = embedded_rates(&inner.stroke, step.h);
@@ -251,19 +254,15 @@ impl Part for Series {
             let resolution = ROUNDING * (step.resolution + 4.0 * f64::EPSILON * largest);
             let told = Step { resolution: resolution / OF_MEMORIES, ..inner.step(step) };
             part.ask().local_errors(&told, state, errors);
+            if self.slides(k) {
+                errors.push(of_friction(part, step, &exact, share, resolution));
+                continue;
+            }
             for error in &mut errors[first..] {
                 // Dashpots are told rates that are known no better than the strokes; those of a series inside know it already.
                 if error.sharpness == 0.0 {
-                    error.error = match self.slides(k) {
-                        true => missed(part, step, &exact.rate, share, resolution),
-                        false => ((rate - inner.rate[end]).abs() - resolution / step.h).max(0.0),
-                    };
+                    error.error = ((rate - inner.rate[end]).abs() - resolution / step.h).max(0.0);
                 }
-            }
-            if self.slides(k) {
-                // Where it begins to slide no order is sharper.
-                errors[first..].iter_mut().for_each(|error| error.sharpness = 1.0);
-                continue;
             }
             // Behind a change of sides strokes begin as at t = 0, alike on every scale of time: the first of them err by what is soon nothing.
             let is_onset = since > 0.0 && step.t + step.h - since <= SOON * since;
@@ -488,11 +487,14 @@ impl Part for Series {
 }
 
 /// How well friction knows its force, in units of f/v0, by its rates at the nodes: what they miss of its stroke as its force follows that, by the
-/// `compliance` of the others, where it sticks; where it slides no force tells, but it will stick again.
-fn missed(part: &Network, step: &Step, rate: &Values, compliance: f64, resolution: f64) -> f64 {
+/// `compliance` of the others, where it sticks; where it slides no force tells, but it will stick again. Where it begins to slide no order is sharp.
+fn of_friction(part: &Network, step: &Step, rate: &Values, compliance: f64, resolution: f64) -> LocalError {
+    let end = step.nodes.count();
+    let Slide { force, rate: turns } = part.ask().slides(step.inputs_at(end)).unwrap_or(NO_FRICTION);
+    let known = |error| LocalError { error, value: turns * (rate[end] / turns).tanh(), order: 1.0, sharpness: 1.0 };
     // Where it begins to slide far faster than v0 the force has a kink for every step: a shorter one only moves it by so much.
     if step.nodes != Nodes::Inner || step.h < NARROW * step.t {
-        return 0.0;
+        return known(0.0);
     }
     // By what the rates themselves make of the strokes: differences of these round more than friction may.
     let along = |rate: &[f64]| {
@@ -502,11 +504,9 @@ fn missed(part: &Network, step: &Step, rate: &Values, compliance: f64, resolutio
     let [first, second, third, last] = along(&rate[1..]);
     let embedded = along(&embedded_rates(&[0.0, first, second, third, last], step.h)[1..]);
     let off = [first - embedded[0], second - embedded[1], third - embedded[2], last - embedded[3]];
-    let end = step.nodes.count();
-    let Slide { force, rate } = part.ask().slides(step.inputs_at(end)).unwrap_or(NO_FRICTION);
-    let largest = off.iter().fold(0.0f64, |largest, off| largest.max(off.abs()));
-    let yields = compliance * force / rate + step.h * step.matrix()[end - 1][end - 1];
-    (largest - resolution).max(0.0) / yields
+    let largest = off.iter().fold(0.0f64, |largest, off| if off.is_nan() { f64::NAN } else { largest.max(off.abs()) });
+    let yields = compliance * force / turns + step.h * step.matrix()[end - 1][end - 1];
+    known(if largest > resolution || largest.is_nan() { (largest - resolution) / yields } else { 0.0 })
 }
 
 /// x' at 0 and at the nodes of the cubic through x at 0 and at all nodes but the first.

@@ -224,14 +224,21 @@ pub(super) fn solve(
 /// The strokes of parts that are linear but for those that let go.
 fn along(lines: &Lines, series: &Series, step: &Step, starts: &[f64], sought: Sought) -> Solved {
     let count = step.nodes.count();
-    let mut inner = resting(starts, step);
     let [rest, start] = series.split(starts);
     let missing = std::array::from_fn(|i| if i < count { step.stroke[i + 1] - rest } else { 0.0 });
     let Some(loose) = &series.loose else {
-        let force = lines.force(missing);
-        lines.stretch(series, &force, step, &mut inner);
-        return finish(series, lines, step, inner, force, lines.tangent, 1);
+        let mut solved = Solved {
+            inner: resting(starts, step),
+            force: lines.force(missing),
+            tangent: lines.tangent,
+            shares: [0.0; MOST_IN_SERIES],
+            side: 1,
+        };
+        lines.stretch(series, &solved.force, step, &mut solved.inner);
+        (0..starts.len()).for_each(|k| solved.shares[k] = lines.share(&lines.tangent, k, count));
+        return solved;
     };
+    let mut inner = resting(starts, step);
     let gap = lines.gap(series, step, missing, start);
     let Some(found) = loose.solve(&gap, sought) else { return Solved::unknown(inner, count) };
     lines.stretch(series, &found.force, step, &mut inner);
@@ -240,6 +247,7 @@ fn along(lines: &Lines, series: &Series, step: &Step, starts: &[f64], sought: So
 }
 
 /// By how much the force follows each part.
+#[inline]
 fn finish(
     series: &Series,
     lines: &Lines,
@@ -295,7 +303,10 @@ fn search(series: &Series, step: &Step, starts: &[f64], state: StateRef, sought:
         }
         lines.turn(series, count);
         let point = |k: usize, i: usize| if series.slides(k) { starts[k] } else { inner[k].stroke[i + 1] };
-        let gathered = |i: usize| (0..parts).filter(|k| !series.is_free(*k)).map(|k| point(k, i)).sum::<f64>();
+        let gathered = |i: usize| match series.loose {
+            None => inner.iter().take(parts).map(|inner| inner.stroke[i + 1]).sum::<f64>(),
+            Some(_) => (0..parts).filter(|k| !series.is_free(*k)).map(|k| point(k, i)).sum(),
+        };
         let missing = std::array::from_fn(|i| if i < count { step.stroke[i + 1] - gathered(i) } else { 0.0 });
         search.from = inner;
         match &series.loose {
