@@ -150,7 +150,6 @@ impl Loose {
     }
 
     /// Forces, ∂F/∂g and the rates of friction.
-    #[expect(clippy::type_complexity, reason = "a step on the way to `Engaged`")]
     fn slide(
         &self,
         gap: &Gap,
