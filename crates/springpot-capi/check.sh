@@ -41,5 +41,6 @@ fi
 # SPRINGPOT names a command that is built already, beside its library.
 if [ -z "${SPRINGPOT:-}" ]; then
     cargo build --quiet -p springpot-capi -p springpot-cli
+    cargo build --quiet -p springpot-capi --example own_laws
 fi
 SPRINGPOT="${SPRINGPOT:-$target/debug/springpot}" "$venv/bin/python" -m pytest --quiet -p no:cacheprovider tests/fmu.py

@@ -2,6 +2,7 @@
 
 use crate::bank::{Answers, Bank, Told};
 use crate::border::{exclusive, guarded, shared, slice, slice_mut, text};
+use crate::laws::catalog;
 use crate::status::{Problem, Status};
 use springpot::collocation::Nodes as CollocationNodes;
 use springpot::elements::MemoryRange;
@@ -108,7 +109,7 @@ pub unsafe extern "C" fn springpot_bank_new(
         let elements = unsafe { self::text("text", text) }?;
         let nodes = choice("nodes", nodes, &[(1, CollocationNodes::One), (3, CollocationNodes::Radau)])?;
         let form = choice("form", form, &[(0, PieceForm::Rates), (1, PieceForm::Strokes)])?;
-        let bank = Bank::new(elements, nodes, form)?;
+        let bank = Bank::new(elements, catalog(), nodes, form)?;
         let c = |name: &str| CString::new(name).unwrap_or_default();
         let names = (0..bank.len()).filter_map(|e| bank.name(e).map(c)).collect();
         let inputs = (0..bank.inputs()).filter_map(|input| bank.input_name(input)).map(|name| c(&name)).collect();

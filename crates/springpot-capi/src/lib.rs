@@ -10,6 +10,8 @@
 //! | [`bank`] | elements from a text, driven on slices |
 //! | [`c`] | the same for C |
 //! | [`fmi`] | a scenario as an FMU: package, description, instances, functions |
+//!
+//! Rust hands the laws over with each call; C and FMUs know those that come with Springpot, or others by [`set_catalog`].
 
 pub mod bank;
 #[allow(unsafe_code)]
@@ -18,7 +20,9 @@ mod border;
 pub mod c;
 pub mod fmi;
 mod hash;
+mod laws;
 mod sealed;
 mod status;
 
+pub use laws::set_catalog;
 pub use status::{Problem, Status};

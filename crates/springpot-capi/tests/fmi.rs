@@ -58,7 +58,7 @@ struct Unpacked {
 impl Unpacked {
     fn of(text: &str) -> Self {
         let scenario = Scenario::parse(text, "arm.toml", "").unwrap();
-        let package = Package::new(&scenario, "arm").unwrap_or_else(|error| panic!("{error}"));
+        let package = Package::new(&scenario, "arm", &Catalog::standard()).unwrap_or_else(|error| panic!("{error}"));
         let folder = tempfile::tempdir().unwrap();
         package.write_resources(folder.path()).unwrap();
         Self { folder, package }
@@ -438,7 +438,10 @@ fn events_stop_and_set() {
 
 #[test]
 fn what_is_no_fmu_is_refused() {
-    let package = |text: &str| Package::new(&Scenario::parse(text, "arm.toml", "").unwrap(), "arm").map(|_| ());
+    let package = |text: &str| {
+        let scenario = Scenario::parse(text, "arm.toml", "").unwrap();
+        Package::new(&scenario, "arm", &Catalog::standard()).map(|_| ())
+    };
     let swept = format!("{ARM}\n[[sweep]]\nparameter = \"element.damper.u\"\nvalues = [1, 2]\n");
     assert!(matches!(package(&swept), Err(PackageError::Cases { cases: 2 })));
     let prescribed = ARM.replace(

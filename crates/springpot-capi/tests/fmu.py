@@ -4,6 +4,7 @@ Run by check.sh, which says where the command is: SPRINGPOT=target/debug/springp
 """
 
 import csv
+import ctypes
 import os
 import pathlib
 import subprocess
@@ -259,3 +260,15 @@ def test_the_same_scenario_makes_the_same_file(tmp_path):
     first = pathlib.Path(one).read_bytes()
     packed(tmp_path, "one", text)
     assert pathlib.Path(one).read_bytes() == first
+
+
+def test_a_library_with_a_law_of_its_own_knows_it_when_it_is_loaded():
+    library = next(pathlib.Path(COMMAND).parent.glob("examples/*own_laws.[sd]*"), None)
+    if library is None:
+        pytest.skip("cargo build -p springpot-capi --example own_laws")
+    element = b'{ "law": "twin-dashpot", "parameters": { "c_left": 3, "c_right": 4 } }'
+    bank = ctypes.c_void_p()
+    own = ctypes.CDLL(str(library))
+    assert own.springpot_bank_new(element, 1, 0, ctypes.byref(bank)) == 0
+    own.springpot_bank_free(bank)
+    assert own.fmi2GetVersion is not None

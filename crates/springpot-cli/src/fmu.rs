@@ -2,13 +2,14 @@
 
 use crate::arguments::FmuOptions;
 use crate::{Ending, diagnostic, output, printed, terminal};
+use springpot::law::Catalog;
 use springpot_capi::fmi::{LIBRARY, Package, PackageError, Role, is_this_library};
 use springpot_run::numbers::count;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub(crate) fn fmu(options: &FmuOptions) -> Ending {
+pub(crate) fn fmu(options: &FmuOptions, catalog: &Catalog) -> Ending {
     let stem = options.file.file_stem().unwrap_or("scenario".as_ref());
     let out = options.out.clone().unwrap_or_else(|| Path::new(stem).with_extension("fmu"));
     if !out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("fmu")) {
@@ -17,14 +18,14 @@ pub(crate) fn fmu(options: &FmuOptions) -> Ending {
         return Ending::Refused;
     }
     let packed = match diagnostic::scenario(&options.file, &options.overrides) {
-        Ok(scenario) => Package::new(&scenario, &stem.to_string_lossy()),
+        Ok(scenario) => Package::new(&scenario, &stem.to_string_lossy(), catalog),
         Err(refused) => Err(refused.into()),
     };
     let package = match packed.and_then(verified) {
         Ok(package) => package,
         Err(error) => return refused(error),
     };
-    let library = match library(options.library.as_deref()) {
+    let library = match library(options.library.as_deref(), package.own_laws()) {
         Ok(library) => library,
         Err(ending) => return ending,
     };
@@ -63,8 +64,8 @@ fn refused(error: PackageError) -> Ending {
     Ending::Refused
 }
 
-/// The bytes of the library of this version: the one that is named, else the first that is found.
-fn library(named: Option<&Path>) -> Result<Vec<u8>, Ending> {
+/// The bytes of the library of this version: the one that is named, else the first that is found, which knows no `own_laws`.
+fn library(named: Option<&Path>, own_laws: &[String]) -> Result<Vec<u8>, Ending> {
     let help = || {
         format!(
             "make it with cargo build --release -p springpot-capi, which puts {LIBRARY} into target/release, and name it with --library FILE"
@@ -72,7 +73,15 @@ fn library(named: Option<&Path>) -> Result<Vec<u8>, Ending> {
     };
     if let Some(file) = named {
         return match read(file) {
-            Ok(bytes) if is_this_library(&bytes) => Ok(bytes),
+            Ok(bytes) if is_this_library(&bytes) => {
+                let is_unheard = |law: &&String| !bytes.windows(law.len()).any(|window| window == law.as_bytes());
+                if let Some(law) = own_laws.iter().find(is_unheard) {
+                    let message = format!("the name of the law {law:?} is not in {}", file.display());
+                    let help = "a library that does not know it cannot start the FMU: springpot_capi::set_catalog hands it over";
+                    diagnostic::warning(message, Some(help.to_owned()));
+                }
+                Ok(bytes)
+            }
             Ok(_) => {
                 let message = format!("{} is not the library of this version of springpot", file.display());
                 diagnostic::error_with_help(message, help());
@@ -83,6 +92,12 @@ fn library(named: Option<&Path>) -> Result<Vec<u8>, Ending> {
                 Err(Ending::Refused)
             }
         };
+    }
+    if let Some(law) = own_laws.first() {
+        let message = format!("the law {law:?} does not come with Springpot, and the library that does knows nothing of it");
+        let help = "build a library that hands it to springpot_capi::set_catalog, and name it with --library FILE";
+        diagnostic::error_with_help(message, help.to_owned());
+        return Err(Ending::Refused);
     }
     let mut found = places().into_iter().filter_map(|file| read(&file).ok());
     found.find(|bytes| is_this_library(bytes)).ok_or_else(|| {

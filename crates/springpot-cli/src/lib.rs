@@ -182,7 +182,7 @@ fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
         Command::View(options) => view::view(&options, disk),
         Command::Report(options) => report::report(&options, disk),
         Command::Export(options) => export::export(&options, disk),
-        Command::Fmu(options) => fmu::fmu(&options),
+        Command::Fmu(options) => fmu::fmu(&options, catalog),
         Command::Init(options) => init::init(&options, catalog),
         Command::Completions(options) => manual::completions(&options),
         Command::Man(options) => manual::man(&options),

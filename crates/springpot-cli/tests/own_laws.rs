@@ -98,6 +98,22 @@ fn the_command_takes_laws_that_a_program_hands_in() {
     let record = std::fs::read_to_string(folder.path().join("out/run.json")).unwrap();
     assert!(record.contains("twin-dashpot") && record.contains("c_right"), "{record}");
 
+    // An FMU takes a library that was handed the law.
+    let ended_fmu = |more: &[&str]| ended(&with, &[&["fmu", "slide.toml"], more].concat());
+    let (code, _, complaints) = ended_fmu(&[]);
+    assert!(code == Some(2) && complaints.contains("\"twin-dashpot\" does not come with Springpot"), "{complaints}");
+    assert!(complaints.contains("--library FILE") && !folder.path().join("slide.fmu").exists(), "{complaints}");
+    let library = |name: &str, more: &str| {
+        let mark = concat!("springpot-capi for FMUs, version ", env!("CARGO_PKG_VERSION"), ";");
+        std::fs::write(folder.path().join(name), format!("\x7fELF{mark}fmi2DoStep{more}")).unwrap();
+    };
+    library("other.so", "");
+    let (code, _, complaints) = ended_fmu(&["--library", "other.so"]);
+    assert!(code == Some(0) && complaints.contains("\"twin-dashpot\" is not in other.so"), "{complaints}");
+    library("own.so", "twin-dashpot");
+    let (code, out, complaints) = ended_fmu(&["--library", "own.so"]);
+    assert!(code == Some(0) && out.starts_with("wrote slide.fmu") && complaints.is_empty(), "{complaints}");
+
     // Refusals know it as well: by its parameters, by names that are near, and by what it is not without the file.
     let wrong = |words: &[&str], said: &str| {
         let (code, _, complaints) = ended(&with, words);

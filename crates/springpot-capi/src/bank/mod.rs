@@ -7,7 +7,7 @@ use crate::status::{Problem, Status};
 use springpot::collocation::Nodes;
 use springpot::elements::{ElementBank, MemoryRange};
 use springpot::fractional::Form;
-use springpot::law::{Course, Derivative, InputValue, Start};
+use springpot::law::{Catalog, Course, Derivative, InputValue, Start};
 use springpot_scenario::LoneElement;
 
 /// Steps begin where the last one ended, to this share of their size and of the time.
@@ -23,8 +23,10 @@ const SAME_TIME: f64 = 1e-9;
 /// use springpot::collocation::Nodes;
 /// use springpot::elements::MemoryRange;
 /// use springpot::fractional::Form;
+/// use springpot::law::Catalog;
 ///
-/// let mut bank = Bank::new(r#"{ "law": "spring", "parameters": { "k": "2 N/mm" } }"#, Nodes::One, Form::Rates)?;
+/// let text = r#"{ "law": "spring", "parameters": { "k": "2 N/mm" } }"#;
+/// let mut bank = Bank::new(text, &Catalog::standard(), Nodes::One, Form::Rates)?;
 /// bank.begin(&[0.0], &[], MemoryRange { tolerance: 1e-9, shortest: 1e-3, horizon: 1.0 })?;
 /// let mut forces = [0.0];
 /// let told = Told { strokes: &[0.0, 0.01], rates: &[10.0, 10.0], ..Told::default() };
@@ -85,12 +87,12 @@ pub struct Answers<'a> {
 }
 
 impl Bank {
-    /// The elements of a text (JSON, or `[[element]]` of a scenario) in steps that are asked at `nodes` and told in `form`.
+    /// The elements of a text (JSON, or `[[element]]` of a scenario) with laws of `catalog`, in steps that are asked at `nodes` and told in `form`.
     ///
     /// # Errors
     /// [`Status::Text`].
-    pub fn new(text: &str, nodes: Nodes, form: Form) -> Result<Self, Problem> {
-        let elements = text::elements(text)?;
+    pub fn new(text: &str, catalog: &Catalog, nodes: Nodes, form: Form) -> Result<Self, Problem> {
+        let elements = text::elements(text, catalog)?;
         let all = elements.iter().enumerate();
         let inputs = all.flat_map(|(e, element)| (0..element.inputs.len()).map(move |i| (e, i))).collect();
         let laws = elements.iter().map(|element| element.plan.element.law.clone()).collect();

@@ -11,8 +11,8 @@ const NAME: &str = "elements";
 /// Deepest nesting of JSON.
 const DEEPEST: usize = 16;
 
-/// The elements of a text with the laws that come with Springpot.
-pub(super) fn elements(text: &str) -> Result<Vec<LoneElement>, Problem> {
+/// The elements of a text with the laws of `catalog`.
+pub(super) fn elements(text: &str, catalog: &Catalog) -> Result<Vec<LoneElement>, Problem> {
     let refused = |message: String| Problem::new(Status::Text, message);
     let is_json = text.trim_start().starts_with(['{', '[']) && !is_toml_table(text);
     let toml = match is_json {
@@ -20,7 +20,7 @@ pub(super) fn elements(text: &str) -> Result<Vec<LoneElement>, Problem> {
         false => None,
     };
     let scenario = Scenario::parse(toml.as_deref().unwrap_or(text), NAME, "");
-    let read = scenario.and_then(|scenario| scenario.lone_elements(&Catalog::standard()));
+    let read = scenario.and_then(|scenario| scenario.lone_elements(catalog));
     read.map_err(|refusals| match is_json {
         false => refused(refusals.to_string()),
         // Lines and columns are those of another text.
@@ -91,7 +91,7 @@ mod tests {
         assert_eq!(toml_of(json).unwrap(), r#"element = [{ law = "springpot", name = "a\"b" }]"#);
         let json = r#"[{ "law": "springpot", "parameters": { "c": "50 N*s^alpha/m", "alpha": 0.4 } }]"#;
         let toml = "[[element]]\nlaw = \"springpot\"\nparameters = { c = \"50 N*s^alpha/m\", alpha = 0.4 }";
-        let read = |text: &str| elements(text).unwrap()[0].plan.parameters.clone();
+        let read = |text: &str| elements(text, &Catalog::standard()).unwrap()[0].plan.parameters.clone();
         assert_eq!(read(json), [50.0, 0.4]);
         assert_eq!(read(toml), read(json));
         assert_eq!(read(r#"{ "element": [{ "law": "spring", "parameters": { "k": 1e3 } }] }"#), [1000.0]);
@@ -107,7 +107,7 @@ mod tests {
             ("", "elements:1:1: there is no element"),
             (r#"{ "law": "sprin", "parameters": { "k": 1 } }"#, "elements: `law` of element \"element1\" is \"sprin\""),
         ] {
-            let problem = elements(text).map(|_| ()).unwrap_err();
+            let problem = elements(text, &Catalog::standard()).map(|_| ()).unwrap_err();
             assert!(problem.status == Status::Text && problem.message.starts_with(wanted), "{text}: {problem}");
         }
     }

@@ -12,6 +12,7 @@ use super::registry::{self, Slot};
 use super::resources::Resources;
 use super::uri;
 use crate::border::{exclusive, guarded, shared, slice, slice_mut, text};
+use crate::laws::catalog;
 use crate::status::{Problem, Status as CStatus};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
@@ -173,7 +174,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
             }
             // SAFETY: as the standard says.
             let (guid, uri) = unsafe { (text("the GUID", guid)?, text("the place of the resources", resources)?) };
-            let read = uri::folder(uri).and_then(|folder| Resources::read(&folder));
+            let read = uri::folder(uri).and_then(|folder| Resources::read(&folder, catalog()));
             let resources = read.map_err(|message| Problem::new(CStatus::Argument, message))?;
             if resources.guid() != guid {
                 return refuse(format!(

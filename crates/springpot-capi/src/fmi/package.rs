@@ -7,11 +7,12 @@ use super::resources::{self, FILES, Resources, SCENARIO, SET, VARIABLES};
 use super::variables::{self, Variable};
 use super::{guid, zip};
 use springpot::Simulation;
-use springpot::law::Catalog;
+use springpot::law::{Catalog, Entry};
 use springpot::system::{Action, RowTimes, RunError};
 use springpot_scenario::{Plan, Portable, Refusals, Scenario};
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Why there is no FMU.
 #[derive(Debug, thiserror::Error)]
@@ -72,16 +73,17 @@ pub struct Package {
     variables: Vec<Variable>,
     guid: String,
     events: Vec<String>,
+    catalog: Catalog,
+    own_laws: Vec<String>,
 }
 
 impl Package {
-    /// The FMU of a scenario with what is set in it, whose file is called `name`.
+    /// The FMU of a scenario with what is set in it, whose file is called `name` and whose elements have laws of `catalog`.
     ///
     /// # Errors
     /// [`PackageError`]: several cases, named schemes, what keeps a run from starting, files that cannot be read.
-    pub fn new(scenario: &Scenario, name: &str) -> Result<Self, PackageError> {
-        let catalog = Catalog::standard();
-        let cases = scenario.cases(&catalog)?;
+    pub fn new(scenario: &Scenario, name: &str, catalog: &Catalog) -> Result<Self, PackageError> {
+        let cases = scenario.cases(catalog)?;
         if cases.len() > 1 {
             return Err(PackageError::Cases { cases: cases.len() });
         }
@@ -91,7 +93,8 @@ impl Package {
         }
         let recorded = plan.events.iter().filter(|event| event.event.action == Action::Record);
         let events = recorded.map(|event| event.event.name.clone()).collect();
-        let variables = variables_of(scenario, &plan)?;
+        let variables = variables_of(scenario, catalog, &plan)?;
+        let own_laws = own_laws(catalog, &plan);
         let Portable { text, set, files } = scenario.portable();
         let mut resources = vec![
             (SCENARIO.to_owned(), text.into_bytes()),
@@ -117,7 +120,8 @@ impl Package {
             tolerance: plan.settings.fixed_step.is_none().then_some(plan.settings.rtol),
         };
         let description = description::xml(&head, &variables);
-        Ok(Self { identifier, description, resources, variables, guid, events })
+        let catalog = catalog.clone();
+        Ok(Self { identifier, description, resources, variables, guid, events, catalog, own_laws })
     }
 
     /// modelDescription.xml.
@@ -133,6 +137,11 @@ impl Package {
     /// Events of the scenario that are only recorded, and not by an FMU.
     pub fn silent_events(&self) -> &[String] {
         &self.events
+    }
+
+    /// Laws of its elements that do not come with Springpot: only a library that was handed them runs the FMU.
+    pub fn own_laws(&self) -> &[String] {
+        &self.own_laws
     }
 
     /// The identity of the FMU.
@@ -155,7 +164,7 @@ impl Package {
     /// [`PackageError::Moved`].
     pub fn verify(&self, folder: &Path) -> Result<(), PackageError> {
         self.write_resources(folder).map_err(|error| PackageError::Moved(error.to_string()))?;
-        let resources = Resources::read(folder).map_err(PackageError::Moved)?;
+        let resources = Resources::read(folder, &self.catalog).map_err(PackageError::Moved)?;
         if resources.guid() != self.guid {
             return Err(PackageError::Moved("its files are not those that were written".to_owned()));
         }
@@ -183,7 +192,18 @@ fn json(value: &impl serde::Serialize) -> Vec<u8> {
     serde_json::to_vec_pretty(value).expect("texts and finite numbers")
 }
 
-fn variables_of(scenario: &Scenario, plan: &Plan) -> Result<Vec<Variable>, PackageError> {
+/// Names of the laws of a plan that are not those of this name that come with Springpot.
+fn own_laws(catalog: &Catalog, plan: &Plan) -> Vec<String> {
+    let standard = Catalog::standard();
+    let is_own = |law: &&Arc<Entry>| standard.get(&law.name).is_none_or(|other| other.equation != law.equation);
+    let elements = plan.all_elements();
+    let is_asked = |law: &&Arc<Entry>| {
+        elements.iter().any(|planned| !planned.is_network && planned.element.entry.name == law.name)
+    };
+    catalog.entries().iter().filter(is_own).filter(is_asked).map(|law| law.name.to_string()).collect()
+}
+
+fn variables_of(scenario: &Scenario, catalog: &Catalog, plan: &Plan) -> Result<Vec<Variable>, PackageError> {
     let mut simulation = Simulation::new(plan.system(), plan.settings.clone())?;
     let inputs = variables::inputs(plan, &mut simulation);
     let mut all = variables::outputs(simulation.system(), &inputs);
@@ -191,7 +211,7 @@ fn variables_of(scenario: &Scenario, plan: &Plan) -> Result<Vec<Variable>, Packa
     // What the scenario takes as it stands there, and nothing else.
     let is_taken = |candidate: &variables::Candidate| {
         let Some((path, start)) = candidate.variable.place() else { return false };
-        let changed = resources::plan(scenario, &[(path, start)], None);
+        let changed = resources::plan(scenario, catalog, &[(path, start)], None);
         changed.is_ok_and(|plan| (candidate.read)(&plan) == Some(start))
     };
     let parameters = candidates.into_iter().filter(is_taken).map(|candidate| candidate.variable);

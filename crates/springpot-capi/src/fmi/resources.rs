@@ -18,16 +18,17 @@ pub(super) const FILES: &str = "files";
 #[derive(Debug, Clone)]
 pub struct Resources {
     scenario: Scenario,
+    catalog: Catalog,
     variables: Vec<Variable>,
     guid: String,
 }
 
 impl Resources {
-    /// Reads a folder of resources.
+    /// Reads a folder of resources, whose elements have laws of `catalog`.
     ///
     /// # Errors
     /// In words, where a file cannot be read or is none of an FMU of this version.
-    pub fn read(folder: &Path) -> Result<Self, String> {
+    pub fn read(folder: &Path, catalog: &Catalog) -> Result<Self, String> {
         let files = gather(folder).map_err(|error| format!("{} cannot be read: {error}", folder.display()))?;
         let text = |name: &str| {
             let found = files.iter().find(|(file, _)| file == name);
@@ -42,7 +43,7 @@ impl Resources {
         }
         let variables = serde_json::from_str(&text(VARIABLES)?).map_err(|error| unread(VARIABLES, error))?;
         let guid = guid::of(files.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])));
-        Ok(Self { scenario, variables, guid })
+        Ok(Self { scenario, catalog: catalog.clone(), variables, guid })
     }
 
     /// The variables, by value reference.
@@ -60,17 +61,22 @@ impl Resources {
     /// # Errors
     /// In words, where the scenario does not take a number.
     pub fn plan(&self, changes: &[(&str, f64)], end: Option<f64>) -> Result<Plan, String> {
-        plan(&self.scenario, changes, end)
+        plan(&self.scenario, &self.catalog, changes, end)
     }
 }
 
 /// The only case of a scenario under changes.
-pub(super) fn plan(scenario: &Scenario, changes: &[(&str, f64)], end: Option<f64>) -> Result<Plan, String> {
+pub(super) fn plan(
+    scenario: &Scenario,
+    catalog: &Catalog,
+    changes: &[(&str, f64)],
+    end: Option<f64>,
+) -> Result<Plan, String> {
     let mut scenario = scenario.clone();
     for (path, value) in changes {
         scenario.set_anew(&format!("{path}={value:?}")).map_err(|error| error.to_string())?;
     }
-    let read = scenario.cases(&Catalog::standard()).and_then(|cases| cases.plan(0));
+    let read = scenario.cases(catalog).and_then(|cases| cases.plan(0));
     let mut plan = read.map_err(|error| error.to_string())?;
     if let Some(end) = end {
         plan.settings.end = end;
