@@ -1,7 +1,8 @@
 //! The line of a scenario file that a message is about, with its neighbours: no longer than a terminal is wide.
 
-use crate::plain::{CUT, picture};
+use crate::plain::picture;
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+use springpot_run::table::CUT;
 use springpot_scenario::Refusal;
 use std::ops::Range;
 

@@ -94,7 +94,8 @@ fn library(named: Option<&Path>, own_laws: &[String]) -> Result<Vec<u8>, Ending>
         };
     }
     if let Some(law) = own_laws.first() {
-        let message = format!("the law {law:?} does not come with Springpot, and the library that does knows nothing of it");
+        let message =
+            format!("the law {law:?} does not come with Springpot, and the library that does knows nothing of it");
         let help = "build a library that hands it to springpot_capi::set_catalog, and name it with --library FILE";
         diagnostic::error_with_help(message, help.to_owned());
         return Err(Ending::Refused);

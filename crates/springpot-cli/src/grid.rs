@@ -1,6 +1,7 @@
 //! Tables of text: columns that line up, names cut where the terminal is too narrow.
 
-use crate::plain::{self, CUT};
+use crate::plain;
+use springpot_run::table::CUT;
 use std::cmp::Reverse;
 use std::collections::HashSet;
 

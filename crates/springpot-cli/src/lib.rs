@@ -60,7 +60,6 @@ mod view;
 use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;
 use springpot::law::Catalog;
-use springpot_report::Rendered;
 use springpot_run::table::disk::Disk;
 use std::ffi::OsString;
 use std::io::{self, Write as _};
@@ -128,19 +127,6 @@ pub fn main_on(catalog: &Catalog, disk: &Disk, arguments: impl IntoIterator<Item
 /// As [`main_from`], with the exit code as a number: for programs that end by themselves.
 pub fn exit_code_from(catalog: &Catalog, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     code(catalog, &Disk::default(), arguments)
-}
-
-/// The figure that `springpot plot` draws with these arguments, for programs that are no command.
-///
-/// # Errors
-/// What is wrong with the arguments or the results, and what would be right.
-pub fn figure(arguments: impl IntoIterator<Item = OsString>) -> Result<Rendered, String> {
-    let words = ["springpot", "plot"].map(OsString::from).into_iter().chain(arguments);
-    match Arguments::try_parse_from(words) {
-        Ok(Arguments { command: Command::Plot(options), .. }) => plot::rendered(&options),
-        Ok(_) => Err("no figure is asked for".to_owned()),
-        Err(error) => Err(error.to_string()),
-    }
 }
 
 /// Stack of a command, whatever the system gives to the thread that asks for it.

@@ -1,8 +1,9 @@
 //! `springpot metrics`: metrics of a finished run, from its rows.
 
 use crate::arguments::MetricsOptions;
-use crate::{Ending, diagnostic, output, plain, printed, results, terminal};
+use crate::{Ending, diagnostic, output, printed, results, terminal};
 use springpot_run::metrics::{LaterError, Recomputed, Source};
+use springpot_run::table::cut_field;
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::Folder;
 use springpot_scenario::{Metric, RefusalKind, Refusals};
@@ -51,7 +52,7 @@ fn recomputed(options: &MetricsOptions, disk: &Disk) -> Result<Recomputed, Later
 
 fn taken(text: &str, name: &str) -> Refusals {
     let help = "names are unique: write another one in front, as in 'NAME = KIND(COLUMN)'";
-    let name = plain::field(name.as_bytes());
+    let name = cut_field(name.as_bytes());
     Metric::refuse(text, "--metric", RefusalKind::BadName, &format!("the name {name} is taken")).help(help).into()
 }
 

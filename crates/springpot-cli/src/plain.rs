@@ -1,10 +1,8 @@
 //! Texts of files as a terminal may have them: what would steer it, or be seen by nobody, is shown in its place.
 
+use springpot_run::table::cut;
 use std::borrow::Cow;
 use std::io::{self, Write};
-
-/// Stands where a text was cut.
-pub(crate) const CUT: char = '…';
 
 /// Longest runs without a blank in a message and in what would be right, characters: longer ones than any name or path.
 const LONGEST_RUN: usize = 200;
@@ -13,9 +11,8 @@ const LONGEST_RUN_OF_HELP: usize = 1000;
 const LONGEST_WORD: usize = 120;
 /// Longest message.
 const LONGEST: usize = 4000;
-/// Longest title, and longest field of a table that a message repeats.
+/// Longest title.
 const LONGEST_TITLE: usize = 100;
-const LONGEST_FIELD: usize = 60;
 
 /// What stands for a character that a terminal would obey or nobody would see; `None` for all others.
 ///
@@ -79,11 +76,6 @@ pub(crate) fn title(text: &str) -> String {
     line(&cut(text, LONGEST_TITLE))
 }
 
-/// A field of a table in a message, in quotes.
-pub(crate) fn field(text: &[u8]) -> String {
-    format!("{:?}", cut(&String::from_utf8_lossy(text), LONGEST_FIELD))
-}
-
 /// What is wrong: runs without a blank that are too long are cut, and so is the whole.
 pub(crate) fn message(text: &str) -> String {
     brief(text, LONGEST_RUN)
@@ -103,18 +95,6 @@ pub(crate) fn help(text: &str) -> String {
 fn brief(text: &str, longest_run: usize) -> String {
     let runs = text.split_inclusive([' ', '\n']).map(|run| cut(run, longest_run));
     lines(&cut(&runs.collect::<String>(), LONGEST)).into_owned()
-}
-
-/// A text of at most `most` characters: two thirds from the beginning of a longer one, the rest from its end.
-fn cut(text: &str, most: usize) -> Cow<'_, str> {
-    // No text has more characters than bytes.
-    let count = if text.len() <= most { 0 } else { text.chars().count() };
-    if count <= most {
-        return text.into();
-    }
-    let head = 2 * most / 3;
-    let tail = most - head - 1;
-    text.chars().take(head).chain([CUT]).chain(text.chars().skip(count - tail)).collect::<String>().into()
 }
 
 /// Rows on the way to a terminal. Each piece that is written must be whole characters.
@@ -162,15 +142,11 @@ mod tests {
     }
 
     #[test]
-    fn long_texts_are_cut() {
-        assert_eq!(cut("abcdefghij", 10), "abcdefghij");
-        assert_eq!(cut("abcdefghijk", 10), "abcdef…ijk");
-        assert_eq!(cut("ääääääääää", 10), "ääääääääää");
+    fn titles_and_messages_are_cut() {
         assert_eq!(title(&"é".repeat(500)).chars().count(), LONGEST_TITLE);
         let long = message(&format!("value {} is wrong\nand more", "9".repeat(1_000_000)));
         assert!(long.starts_with("value 99") && long.ends_with("9 is wrong\nand more"), "{long}");
         assert!(long.chars().count() < LONGEST_RUN + 30);
         assert_eq!(message(&"word ".repeat(100_000)).chars().count(), LONGEST);
-        assert_eq!(field(&[b'x'; 100]).chars().count(), LONGEST_FIELD + 2);
     }
 }

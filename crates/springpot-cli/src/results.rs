@@ -2,7 +2,7 @@
 
 use crate::{Ending, diagnostic, output};
 use springpot_run::table::disk::Disk;
-use springpot_run::{Results, ResultsError};
+use springpot_run::{Results, ResultsError, of_other_version};
 use std::path::Path;
 
 /// The results in a folder; the cases that are asked for have rows.
@@ -18,14 +18,8 @@ pub(crate) fn open(folder: &Path, cases: &[usize], disk: &Disk) -> Result<Result
 
 /// Says where results are of another version of Springpot: names and meanings may have changed since.
 pub(crate) fn say_version(folder: &Path, version: &str) {
-    let own = env!("CARGO_PKG_VERSION");
-    if !version.is_empty() && version != own {
-        let version: String = version.chars().filter(|c| !c.is_control()).take(20).collect();
-        let message = format!(
-            "{} is of Springpot {version}, and this is {own}: what is called otherwise there is not found",
-            folder.join("run.json").display()
-        );
-        diagnostic::warning(message, None);
+    if let Some(warning) = of_other_version(folder, version) {
+        diagnostic::warning(warning.message, warning.help);
     }
 }
 

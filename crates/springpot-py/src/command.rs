@@ -1,8 +1,8 @@
 //! The command line in process.
 
 use crate::error::guarded;
+use crate::scenario::CATALOG;
 use pyo3::prelude::*;
-use springpot::law::Catalog;
 use std::ffi::OsString;
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -13,5 +13,5 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 /// Runs the command `springpot` with these arguments, the program's name first; gives its exit code.
 #[pyfunction]
 fn command_line(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
-    guarded(py, || Ok(py.detach(|| springpot_cli::exit_code_from(&Catalog::standard(), arguments))))
+    guarded(py, || Ok(py.detach(|| springpot_cli::exit_code_from(&CATALOG, arguments))))
 }

@@ -1,5 +1,6 @@
 """Pages, figures and files of runs: view, report, figure, export."""
 
+import inspect
 import json
 import re
 import subprocess
@@ -101,3 +102,15 @@ def test_statistics_over_a_swept_parameter(run: sp.Run) -> None:
         run.figure("stack.force", size=("90", "60"))
     with pytest.raises(TypeError, match="x_range"):
         run.figure("stack.force", x_range=3)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="no option 'xrange'; there are x_range"):
+        run.figure("stack.force", xrange=(0, 1))
+    with pytest.raises(ValueError, match="write linear or log"):
+        run.figure("stack.force", x_scale="cubic")
+
+
+def test_options_of_a_look_are_those_of_the_command(run: sp.Run) -> None:
+    options = [name for name, one in inspect.signature(sp.Run.figure).parameters.items() if one.annotation == "Look"]
+    assert {"x_range", "y_scale", "size", "labels", "legend", "window"} <= set(options) and "view" not in options
+    said = subprocess.run([sys.executable, "-m", "springpot", "plot", "--help"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    look = said.split("Look of the figure:")[1]
+    assert sorted(re.findall(r"--(?!no-)([a-z-]+)", look)) == sorted(name.replace("_", "-").replace("labels", "label") for name in options)

@@ -63,7 +63,7 @@ pub use finish::Finished;
 pub use follow::{NewRows, News, Tail, Underway};
 pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
 pub use report::{comparison, quoted, report};
-pub use results::{COMPARISON_PAGE, REPORT_PAGE, Results, ResultsError, VIEW_PAGE};
+pub use results::{COMPARISON_PAGE, REPORT_PAGE, Results, ResultsError, VIEW_PAGE, of_other_version};
 pub use survey::{Depth, ElementSurvey, Found, Survey};
 pub use table::sealed::{SealError, open, seal};
 pub use trouble::Trouble;

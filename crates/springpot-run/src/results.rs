@@ -3,6 +3,7 @@
 use crate::record::{self, Record};
 use crate::table::disk::Disk;
 use crate::table::stored::Stored;
+use crate::warning::Warning;
 use springpot::table::Column;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,6 +14,20 @@ pub const VIEW_PAGE: &str = "view.html";
 pub const REPORT_PAGE: &str = "report.html";
 /// As [`VIEW_PAGE`], of what two results have to do with each other.
 pub const COMPARISON_PAGE: &str = "comparison.html";
+
+/// What is to be said where the results in a folder are of another version of Springpot: names and meanings may have changed since.
+pub fn of_other_version(folder: &Path, version: &str) -> Option<Warning> {
+    let own = env!("CARGO_PKG_VERSION");
+    (!version.is_empty() && version != own).then(|| {
+        let version: String = version.chars().filter(|c| !c.is_control()).take(20).collect();
+        let record = folder.join("run.json");
+        let message = format!(
+            "{} is of Springpot {version}, and this is {own}: what is called otherwise there is not found",
+            record.display()
+        );
+        message.into()
+    })
+}
 
 /// Why there are no results to read.
 #[derive(Debug, thiserror::Error)]

@@ -76,8 +76,9 @@ pub use cases::{Cases, SweptValue};
 pub use cure::Cure;
 pub use events::EventPlan;
 pub use figures::{
-    AxisLook, AxisRange, ColumnGlob, FigureFormat, FigureKind, FigureLabel, FigureNumbers, FigurePlan, FigurePoints,
-    FigureUnit, Look, RangeEnd, Selection, Statistic, Summarised, SweptAxis,
+    AxisLook, ColumnGlob, FIGURE_SIDES, FigureFormat, FigureKind, FigureLabel, FigureNumbers, FigurePlan, FigurePoints,
+    FigureUnit, LOOK_OPTIONS, Look, LookOption, RangeEnd, Said, Selection, Spelt, Statistic, Summarised, SweptAxis,
+    Takes,
 };
 pub use keys::MAX_CASES;
 pub use lone::LoneElement;

@@ -2,16 +2,32 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import pathlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
-from ._springpot import plot_figure
+from ._springpot import look_options, plot_figure
 
-Range: TypeAlias = "Sequence[float | str]"
+Look: TypeAlias = "str | bool | Sequence[float | str] | Mapping[str, str] | None"
+"""What an option of the look of a figure may be."""
+
+OPTIONS = dict(look_options())
+"""Options of the look of a figure, and what they say."""
+
+Method = TypeVar("Method", bound="Callable[..., Any]")
+
+
+def with_options(method: Method) -> Method:
+    """The same method, in whose signature the options of a look stand one by one, for help and completion."""
+    own = inspect.signature(method)
+    named = [parameter for parameter in own.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
+    options = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation="Look") for name in OPTIONS]
+    method.__signature__ = own.replace(parameters=[*named, *options])  # type: ignore[attr-defined]
+    return method
 
 
 @dataclass(frozen=True)
@@ -53,33 +69,31 @@ def draw(
     where: Mapping[str, object] | None,
     units: Mapping[str, str] | None,
     title: str | None,
-    look: Mapping[str, object],
-    legend: str | bool | None,
+    look: Mapping[str, Look],
 ) -> Figure:
-    """The figure of the results in a folder, by the options of ``springpot plot``."""
-    arguments = [folder, *y, f"--x={x}"]
-    arguments += [f"--where={path}={value}" for path, value in (where or {}).items()]
-    arguments += [f"--unit={column}={unit}" for column, unit in (units or {}).items()]
-    if title is not None:
-        arguments.append(f"--title={title}")
-    for name, value in look.items():
-        if value is None:
-            continue
-        option = name.replace("_", "-")
-        if isinstance(value, Mapping):
-            arguments += [f"--label={column}={text}" for column, text in value.items()]
-        elif isinstance(value, str):
-            arguments.append(f"--{option}={value}")
-        elif isinstance(value, Sequence):
-            arguments.append(f"--{option}={','.join(str(part) for part in value)}")
-        else:
-            raise TypeError(f"{name} = {value!r}: a text or a pair is wanted")
-    if legend is False:
-        arguments.append("--no-legend")
-    elif isinstance(legend, str):
-        arguments.append(f"--legend={legend}")
-    svg, png, pdf, remarks = plot_figure(arguments)
+    """The figure of the results in a folder, with options of the look by their names."""
+    selection = [f"{path}={value}" for path, value in (where or {}).items()]
+    drawn_in = [f"{column}={unit}" for column, unit in (units or {}).items()]
+    asked = [one for name, value in look.items() for one in _option(name, value)]
+    svg, png, pdf, remarks = plot_figure(folder, list(y), x, selection, drawn_in, title, asked)
     return Figure(svg, bytes(png), bytes(pdf), tuple(remarks))
+
+
+def _option(name: str, value: object) -> list[tuple[str, str | None]]:
+    """An option of a look as texts."""
+    if name not in OPTIONS:
+        raise TypeError(f"figures have no option {name!r}; there are {', '.join(OPTIONS)}")
+    if value is None or value is True:
+        return []
+    if value is False:
+        return [(name, None)]
+    if isinstance(value, Mapping):
+        return [(name, f"{column}={text}") for column, text in value.items()]
+    if isinstance(value, str):
+        return [(name, value)]
+    if isinstance(value, Sequence):
+        return [(name, ",".join(str(part) for part in value))]
+    raise TypeError(f"{name} = {value!r}: a text or a pair is wanted")
 
 
 def drawn(folder: str) -> dict[str, Figure]:

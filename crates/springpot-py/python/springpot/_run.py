@@ -18,7 +18,7 @@ import numpy.typing as npt
 from . import _html
 from ._case import Case, Column
 from ._errors import RunError, SpringpotError, SpringpotWarning
-from ._figure import Figure, Range, draw, drawn
+from ._figure import Figure, Look, draw, drawn, with_options
 from ._progress import Progress, shown
 from ._scenario import Scenario
 from ._springpot import Study
@@ -266,6 +266,7 @@ class Run:
             self._study.write(folder, cases=[case._case for case in self._cases], format="csv", figures=figures)
             yield folder
 
+    @with_options
     def figure(
         self,
         y: str | Sequence[str],
@@ -274,17 +275,7 @@ class Run:
         where: Mapping[str, object] | None = None,
         units: Mapping[str, str] | None = None,
         title: str | None = None,
-        x_range: Range | None = None,
-        y_range: Range | None = None,
-        x_scale: str | None = None,
-        y_scale: str | None = None,
-        aspect: str | None = None,
-        size: Sequence[str] | None = None,
-        x_label: str | None = None,
-        y_label: str | None = None,
-        labels: Mapping[str, str] | None = None,
-        legend: str | bool | None = None,
-        window: Range | None = None,
+        **look: Look,
     ) -> Figure:
         """Draws columns, or statistics of them over a swept parameter, as ``springpot plot`` and the figures of a scenario are drawn.
 
@@ -293,15 +284,12 @@ class Run:
         numbers or quantities, scales ``"linear"`` or ``"log"``, ``aspect="equal"``, ``size=("90 mm", "60 mm")``, ``legend=False`` for none, ``window`` in t.
 
         Raises:
-            ValueError: a column, a value or an option is not there or does not fit.
+            ValueError: a column, a value or an option does not fit.
+            TypeError: there is no such option, or it is neither a text nor a pair.
         """
-        look = {
-            "x_range": x_range, "y_range": y_range, "x_scale": x_scale, "y_scale": y_scale, "aspect": aspect, "size": size,
-            "x_label": x_label, "y_label": y_label, "labels": labels, "window": window,
-        }  # fmt: skip
         wanted = [y] if isinstance(y, str) else list(y)
         with self._saved(figures=False) as folder:
-            return draw(folder, wanted, x=x, where=where, units=units, title=title, look=look, legend=legend)
+            return draw(folder, wanted, x=x, where=where, units=units, title=title, look=look)
 
     def figures(self) -> dict[str, Figure]:
         """The figures of the scenario, by their names, as ``springpot run`` draws them."""

@@ -2,9 +2,10 @@
 
 use crate::error::{springpot_error, value_error};
 use pyo3::prelude::*;
+use springpot_run::figures::{AskedFigure, NotDrawn};
 use springpot_run::table::disk::Disk;
 use springpot_run::{ExportError, ExportFormat, Results};
-use std::ffi::OsString;
+use springpot_scenario::LOOK_OPTIONS;
 use std::path::{Path, PathBuf};
 
 fn open(py: Python<'_>, folder: &Path) -> PyResult<Results> {
@@ -57,10 +58,35 @@ fn export_bytes(py: Python<'_>, folder: PathBuf, case: usize, file: PathBuf) -> 
 /// SVG, PNG and PDF of a figure, and what it does not show.
 type Drawn = (String, Vec<u8>, Vec<u8>, Vec<String>);
 
-/// The figure that `springpot plot` draws with these arguments.
+/// Names of the options of a figure's look, and what they say.
 #[pyfunction]
-fn plot_figure(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<Drawn> {
-    let drawn = py.detach(|| springpot_cli::figure(arguments)).map_err(value_error)?;
+fn look_options() -> Vec<(&'static str, &'static str)> {
+    LOOK_OPTIONS.iter().filter_map(|option| Some((option.name(), option.spelt?.help))).collect()
+}
+
+/// The figure of columns of the results in a folder; `where` and `units` as `PATH=VALUE`, the look by names of options.
+#[pyfunction]
+fn plot_figure(
+    py: Python<'_>,
+    folder: PathBuf,
+    columns: Vec<String>,
+    x: String,
+    selection: Vec<String>,
+    units: Vec<String>,
+    title: Option<String>,
+    look: Vec<(String, Option<String>)>,
+) -> PyResult<Drawn> {
+    let asked = AskedFigure { results: vec![folder], columns, x, selection, units, title, look };
+    let draw = || {
+        // What a run warns of was said when it was run.
+        let figure = asked.figure(&mut |_| {});
+        let figure = figure.map_err(|NotDrawn { message, help }| match help {
+            Some(help) => format!("{message} ({help})"),
+            None => message,
+        })?;
+        figure.plot.render().map_err(|error| format!("the figure is not drawn: {error}"))
+    };
+    let drawn = py.detach(draw).map_err(value_error)?;
     Ok((drawn.svg, drawn.png, drawn.pdf, drawn.remarks))
 }
 
@@ -68,5 +94,6 @@ pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(view_page, module)?)?;
     module.add_function(wrap_pyfunction!(report_page, module)?)?;
     module.add_function(wrap_pyfunction!(export_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(look_options, module)?)?;
     module.add_function(wrap_pyfunction!(plot_figure, module)?)
 }

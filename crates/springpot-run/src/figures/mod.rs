@@ -1,15 +1,17 @@
-//! The scenario's figures from the columns that the run kept, and figures of curves from elsewhere.
+//! The scenario's figures from the columns that the run kept, figures of finished runs from their files, and figures of curves from elsewhere.
 //!
 //! A kind of figure is a file: what it wants of the rows, and how it is drawn.
 
 mod curves;
+mod later;
 mod look;
 mod panels;
 mod robot;
 mod source;
 mod summary;
 
-pub use look::{AskedAxis, AskedLook, Look, Misfit, Part};
+pub use later::{AskedFigure, LaterFigure, NotDrawn};
+pub use look::DrawnLook;
 pub use panels::{Curves, DrawnCase, FigureColumn, MeasuredPoints};
 pub use summary::swept_numbers;
 

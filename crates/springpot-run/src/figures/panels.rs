@@ -1,6 +1,6 @@
 //! Curves of several cases as panels of one figure.
 
-use super::look::Look;
+use super::look::DrawnLook;
 use crate::labels;
 use springpot::table::Column;
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
@@ -55,7 +55,7 @@ pub struct Curves<'a> {
     /// The ordinates.
     pub y: &'a [FigureColumn],
     /// Ranges, scales, size, words.
-    pub look: &'a Look,
+    pub look: &'a DrawnLook,
     /// Points of curves are marked.
     pub is_marked: bool,
     /// Measured points, which every panel shows.

@@ -1,7 +1,7 @@
 //! Pictures of columns that a report draws itself.
 
 use super::swept;
-use crate::figures::{Curves, DrawnCase, FigureColumn, Look};
+use crate::figures::{Curves, DrawnCase, DrawnLook, FigureColumn};
 use crate::results::{Results, ResultsError};
 use crate::sweep::KeptCurve;
 use springpot_report::page::Figure;
@@ -78,7 +78,7 @@ pub(super) fn picture<'p>(
         Some(FigureColumn { column, unit: None, label: None })
     };
     let (x, y) = (column(&asked.x)?, asked.y.iter().map(column).collect::<Option<Vec<_>>>()?);
-    let mut look = Look::default();
+    let mut look = DrawnLook::default();
     // Many curves need room for their names.
     look.asked.size = (y.len() == 1).then_some(SIZE);
     let plot = Curves { title: None, x: &x, y: &y, look: &look, is_marked: false, measured: &[] }.plot(cases);

@@ -1,7 +1,7 @@
 //! What figures want of the rows: their curves, and the columns that those are made of.
 
 use super::curve::MAX_CURVES_IN_ALL;
-use crate::figures::{FigureColumn, Look, MeasuredPoints};
+use crate::figures::{DrawnLook, FigureColumn, MeasuredPoints};
 use crate::table::matches;
 use springpot::table::Column;
 use springpot_scenario::units::Unit;
@@ -30,7 +30,7 @@ pub struct FigureData {
     /// Measured points beside them.
     pub measured: Vec<MeasuredPoints>,
     /// How it looks.
-    pub look: Look,
+    pub look: DrawnLook,
     /// Why it is not drawn; it has no cases and no curves then.
     pub left_out: Option<LeftOut>,
 }
@@ -275,9 +275,9 @@ impl Wanted {
         let look = match columns.first() {
             Some((x, _)) => {
                 let y: Vec<FigureColumn> = columns.iter().map(|(_, y)| y.clone()).collect();
-                Look::of(figure, x, &y)?
+                DrawnLook::of(figure, x, &y)?
             }
-            None => Look::default(),
+            None => DrawnLook::default(),
         };
         let measured = figure.data.iter().map(|data| measured(data, &columns)).collect::<Result<_, _>>()?;
         let fixed = |axis: usize| figure.selection.iter().find(|s| s.axis == axis).map(|s| s.value);
@@ -327,7 +327,7 @@ impl Wanted {
             }
         };
         let columns = totals.iter().map(column).collect::<Result<Vec<_>, Refusals>>()?;
-        let look = Look::of(figure, &over.column, &columns)?;
+        let look = DrawnLook::of(figure, &over.column, &columns)?;
         let fixed = |axis: usize| figure.selection.iter().find(|s| s.axis == axis).map(|s| s.value);
         let len = |axis: usize| if fixed(axis).is_some() { 1 } else { cases.axis_len(axis) };
         let others = (0..cases.axis_count()).filter(|axis| *axis != over.axis).map(len).product::<usize>();

@@ -15,7 +15,7 @@ pub mod text;
 pub use format::Format;
 pub use number::{push_fields, push_number};
 pub use statistics::{Statistics, Totals};
-pub use text::{push_text, quoted};
+pub use text::{CUT, cut, cut_field, push_text, quoted};
 
 /// Whether `name` matches a pattern in which `*` stands for any run of characters and `?` for one.
 pub fn matches(pattern: &str, name: &str) -> bool {

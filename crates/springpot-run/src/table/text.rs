@@ -20,9 +20,40 @@ pub fn push_text(line: &mut String, text: &str) {
     line.push_str(&String::from_utf8_lossy(&quoted(text.as_bytes())));
 }
 
+/// Stands where a text was cut.
+pub const CUT: char = '…';
+
+/// Longest field of a table that a message repeats, characters.
+const LONGEST_FIELD: usize = 60;
+
+/// A text of at most `most` characters: two thirds from the beginning of a longer one, the rest from its end.
+pub fn cut(text: &str, most: usize) -> Cow<'_, str> {
+    // No text has more characters than bytes.
+    let count = if text.len() <= most { 0 } else { text.chars().count() };
+    if count <= most {
+        return text.into();
+    }
+    let head = 2 * most / 3;
+    let tail = most - head - 1;
+    text.chars().take(head).chain([CUT]).chain(text.chars().skip(count - tail)).collect::<String>().into()
+}
+
+/// A field of a table in a message, in quotes.
+pub fn cut_field(text: &[u8]) -> String {
+    format!("{:?}", cut(&String::from_utf8_lossy(text), LONGEST_FIELD))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{push_text, quoted};
+    use super::{LONGEST_FIELD, cut, cut_field, push_text, quoted};
+
+    #[test]
+    fn long_texts_are_cut() {
+        assert_eq!(cut("abcdefghij", 10), "abcdefghij");
+        assert_eq!(cut("abcdefghijk", 10), "abcdef…ijk");
+        assert_eq!(cut("ääääääääää", 10), "ääääääääää");
+        assert_eq!(cut_field(&[b'x'; 100]).chars().count(), LONGEST_FIELD + 2);
+    }
 
     #[test]
     fn quotes_where_they_must_be() {

@@ -1,11 +1,13 @@
 //! How a figure looks: ranges, scales, size, words.
+//!
+//! An option is a field of [`Look`] and a row of [`OPTIONS`], in `options`: the key of a scenario, the option of the command and the argument in Python are
+//! made of the row. What an option may take is a variant of [`Takes`], which is read from TOML in `read`.
 
-mod keys;
+mod options;
 mod read;
 
-pub(super) use keys::{
-    ASPECT, FORMATS, LABELS, LEGEND, SIZE, VIEW, WINDOW, X_LABEL, X_RANGE, X_SCALE, Y_LABEL, Y_RANGE, Y_SCALE,
-};
+pub(super) use options::KEYS;
+pub use options::{AxisLook, Look, LookOption, OPTIONS, Spelt, Takes};
 pub(super) use read::read;
 
 use super::super::refusal::Place;
@@ -13,53 +15,18 @@ use super::super::units::{self, Unit};
 use super::columns::ColumnGlob;
 use serde_json::{Map, Value as Json, json};
 
-/// How a figure looks.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Look {
-    /// Along x.
-    pub x: AxisLook,
-    /// Along y.
-    pub y: AxisLook,
-    /// Where lengths along x and y are asked to have one scale.
-    pub equal: Option<Place>,
-    /// Width and height, m.
-    pub size: Option<[f64; 2]>,
-    /// What columns are called.
-    pub labels: Vec<FigureLabel>,
-    /// What stands above the legend.
-    pub legend: Option<String>,
-    /// There is no legend.
-    pub hides_legend: bool,
-    /// Only rows with t from the first to the second are drawn, s.
-    pub window: Option<[f64; 2]>,
-    /// The files that are written.
-    pub formats: Vec<FigureFormat>,
-    /// From where the robot is seen: turned about z, and above the horizon, degrees.
-    pub view: Option<[f64; 2]>,
-    /// Nothing of the robot is named.
-    pub hides_names: bool,
-}
+/// Smallest and largest side of a figure, m.
+pub const FIGURE_SIDES: [f64; 2] = [0.02, 2.0];
 
-/// How one axis looks.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct AxisLook {
-    /// From where to where it runs.
-    pub range: Option<AxisRange>,
-    /// It is logarithmic.
-    pub is_log: bool,
-    /// What stands at it, its unit included.
-    pub label: Option<String>,
-}
-
-/// From where to where an axis runs.
+/// An option of a look that was asked for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AxisRange {
-    /// First and last value.
-    pub ends: [RangeEnd; 2],
-    /// What it is, for messages.
+pub struct Said {
+    /// Its name.
+    pub option: &'static str,
+    /// What was asked, for messages.
     pub what: String,
-    /// Where it stands.
-    pub place: Place,
+    /// Where it stands in a scenario.
+    pub place: Option<Place>,
 }
 
 /// An end of an axis.
@@ -107,6 +74,7 @@ impl FigureFormat {
         }
     }
 }
+
 impl RangeEnd {
     /// Reads a number or a quantity.
     ///
@@ -135,47 +103,35 @@ impl RangeEnd {
 }
 
 impl Look {
+    /// The option of that name, where it was asked for.
+    pub fn said(&self, option: &str) -> Option<&Said> {
+        self.said.iter().find(|said| said.option == option)
+    }
+
     /// What run.json says of it: what is not left out.
     pub(super) fn record(&self) -> Map<String, Json> {
-        let mut record = Map::new();
-        let mut put = |key: &str, value: Json| {
-            record.insert(key.to_owned(), value);
-        };
-        for (name, axis) in [("x", &self.x), ("y", &self.y)] {
-            if let Some(range) = &axis.range {
-                let end = |end: &RangeEnd| end.unit.as_ref().map_or(json!(end.number), |_| json!(end.written()));
-                put(&format!("{name}_range"), range.ends.iter().map(end).collect());
-            }
-            if axis.is_log {
-                put(&format!("{name}_scale"), json!("log"));
-            }
-            if let Some(label) = &axis.label {
-                put(&format!("{name}_label"), json!(label));
-            }
-        }
-        if self.equal.is_some() {
-            put("aspect", json!("equal"));
-        }
-        for (name, pair) in [("size", self.size), ("window", self.window), ("view", self.view)] {
-            if let Some(pair) = pair {
-                put(name, json!(pair));
-            }
-        }
-        if !self.labels.is_empty() {
-            put("labels", self.labels.iter().map(|label| (label.column.text.clone(), json!(label.text))).collect());
-        }
-        if self.hides_names {
-            put("labels", json!(false));
-        }
-        if let Some(legend) = &self.legend {
-            put("legend", json!(legend));
-        }
-        if self.hides_legend {
-            put("legend", json!(false));
-        }
-        if self.formats != FigureFormat::DEFAULT {
-            put("formats", self.formats.iter().map(|format| format.name()).collect());
-        }
-        record
+        let mut look = self.clone();
+        let recorded = OPTIONS.iter().filter_map(|option| {
+            let value = match option.takes {
+                Takes::Range(at) => {
+                    let end = |end: &RangeEnd| end.unit.as_ref().map_or(json!(end.number), |_| json!(end.written()));
+                    at(&mut look).as_ref().map(|ends| ends.iter().map(end).collect())
+                }
+                Takes::Flag { word, at, .. } => at(&mut look).then(|| json!(word)),
+                Takes::Text(at) => at(&mut look).as_ref().map(|text| json!(text)),
+                Takes::TextOrFalse { text, hides } => match *hides(&mut look) {
+                    true => Some(json!(false)),
+                    false => text(&mut look).as_ref().map(|text| json!(text)),
+                },
+                Takes::Size(at) | Takes::Times(at) | Takes::Direction(at) => at(&mut look).map(|pair| json!(pair)),
+                Takes::Labels if look.hides_names => Some(json!(false)),
+                Takes::Labels => (!look.labels.is_empty())
+                    .then(|| look.labels.iter().map(|label| (label.column.text.clone(), json!(label.text))).collect()),
+                Takes::Formats => (look.formats != FigureFormat::DEFAULT)
+                    .then(|| look.formats.iter().map(|format| format.name()).collect()),
+            };
+            value.map(|value: Json| (option.name().to_owned(), value))
+        });
+        recorded.collect()
     }
 }

@@ -15,12 +15,15 @@ pub use columns::{ColumnGlob, FigureUnit};
 #[cfg(test)]
 pub(crate) use data::POINTS;
 pub use data::{FigureNumbers, FigurePoints};
-pub use look::{AxisLook, AxisRange, FigureFormat, FigureLabel, Look, RangeEnd};
+pub use look::{
+    AxisLook, FIGURE_SIDES, FigureFormat, FigureLabel, Look, LookOption, OPTIONS as LOOK_OPTIONS, RangeEnd, Said,
+    Spelt, Takes,
+};
 pub use selection::Selection;
 pub use summary::{Statistic, Summarised, SweptAxis};
 
 use super::document::Value as DocumentValue;
-use super::keys::{Keys, Need, Shape, key};
+use super::keys::{Key, Keys, Need, Shape, key};
 use super::names;
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::{Place, RefusalKind};
@@ -94,36 +97,27 @@ impl FigureKind {
 }
 
 /// The kinds of it that `only` knows are the kinds of figures.
-pub(crate) static FIGURE: Keys = Keys {
-    words: "A figure of curves, of statistics, or of the robot.",
-    keys: &[
-        key("name", Shape::FileName, Need::Said("figure-1, …"), "Name of its files without an ending."),
-        key("title", Shape::Text, Need::Said("none"), "Title."),
-        summary::X.only(&DRAWN),
-        curves::Y,
-        data::DATA,
-        key("units", Shape::TextsByName, Need::Said("SI"), "Units to draw columns in, by column or glob.").only(&DRAWN),
-        key("where", Shape::ByName, Need::Said("all cases"), "Only the cases with these values, by swept path."),
-        key(
-            "kind",
-            Shape::Words(|| KINDS.iter().map(|kind| kind.word).collect()),
-            Need::Word(CURVES),
-            "What is drawn.",
-        ),
-        look::X_RANGE,
-        look::Y_RANGE,
-        look::X_SCALE,
-        look::Y_SCALE,
-        look::ASPECT,
-        look::SIZE,
-        look::X_LABEL,
-        look::Y_LABEL,
-        look::LABELS,
-        look::LEGEND,
-        look::WINDOW,
-        look::FORMATS,
-        look::VIEW,
-    ],
+pub(crate) static FIGURE: Keys = Keys { words: "A figure of curves, of statistics, or of the robot.", keys: &ALL };
+
+/// What is drawn, of which cases; how it looks are the keys behind them.
+const OWN: [Key; 8] = [
+    key("name", Shape::FileName, Need::Said("figure-1, …"), "Name of its files without an ending."),
+    key("title", Shape::Text, Need::Said("none"), "Title."),
+    summary::X.only(&DRAWN),
+    curves::Y,
+    data::DATA,
+    key("units", Shape::TextsByName, Need::Said("SI"), "Units to draw columns in, by column or glob.").only(&DRAWN),
+    key("where", Shape::ByName, Need::Said("all cases"), "Only the cases with these values, by swept path."),
+    key("kind", Shape::Words(|| KINDS.iter().map(|kind| kind.word).collect()), Need::Word(CURVES), "What is drawn."),
+];
+
+const ALL: [Key; OWN.len() + look::KEYS.len()] = {
+    let (mut keys, mut k) = ([OWN[0]; OWN.len() + look::KEYS.len()], 0);
+    while k < keys.len() {
+        keys[k] = if k < OWN.len() { OWN[k] } else { look::KEYS[k - OWN.len()] };
+        k += 1;
+    }
+    keys
 };
 
 /// Most figures.

@@ -5,43 +5,36 @@ use super::super::super::document::Value;
 use super::super::super::reader::{Field, Read, Table, all};
 use super::super::super::refusal::RefusalKind;
 use super::super::columns::ColumnGlob;
-use super::{AxisLook, AxisRange, FigureFormat, FigureLabel, Look, RangeEnd};
-
-/// Smallest and largest side of a figure, m.
-const SIDES: [f64; 2] = [0.02, 2.0];
+use super::{FIGURE_SIDES, FigureFormat, FigureLabel, Look, OPTIONS, RangeEnd, Said, Takes};
 
 /// Reads it; `end` is that of the run, s, where all cases have one.
 pub(in crate::figures) fn read(table: &Table<'_>, is_robot: bool, end: Option<f64>) -> Read<Look> {
-    let axis = |range_key, scale_key, label_key| {
-        let range = table.get(range_key).map(|field| range_of(&field)).transpose();
-        let scale = table.word(scale_key, "scale");
-        let label = table.get(label_key).map(|field| field.text().map(str::to_owned)).transpose();
-        Ok(AxisLook { range: range?, is_log: scale? == "log", label: label? })
-    };
-    let (x, y) = (axis("x_range", "x_scale", "x_label"), axis("y_range", "y_scale", "y_label"));
-    let equal = table.get("aspect").map(|field| field.word("aspect").map(|_| field.node.place.clone())).transpose();
-    let size = table.get("size").map(|field| size(&field)).transpose();
-    let labels = table.get("labels").map(|field| labels(&field, is_robot)).transpose();
-    let legend = table.get("legend").map(|field| legend(&field)).transpose();
-    let window = table.get("window").map(|field| window(&field, end)).transpose();
-    let formats = table.get("formats").map_or(Ok(FigureFormat::DEFAULT.to_vec()), |field| formats(&field));
-    let view = table.get("view").map(|field| view(&field)).transpose();
-    let (labels, legend) = (labels?, legend?);
-    let hides_names = is_robot && labels.is_some();
-    let look = Look {
-        x: x?,
-        y: y?,
-        equal: equal?,
-        size: size?,
-        labels: labels.unwrap_or_default(),
-        hides_legend: legend == Some(None),
-        legend: legend.flatten(),
-        window: window?,
-        formats: formats?,
-        view: view?,
-        hides_names,
-    };
-    if let Some(place) = &look.equal
+    let mut look = Look { formats: FigureFormat::DEFAULT.to_vec(), ..Look::default() };
+    let asked = OPTIONS.iter().filter_map(|option| Some((option, table.get(option.name())?)));
+    all(asked.map(|(option, field)| {
+        match option.takes {
+            Takes::Range(at) => *at(&mut look) = Some(range(&field)?),
+            Takes::Flag { of, word, at } => *at(&mut look) = field.word(of)? == word,
+            Takes::Text(at) => *at(&mut look) = Some(field.text()?.to_owned()),
+            Takes::TextOrFalse { text, hides } => {
+                let written = text_or_false(&field)?;
+                *hides(&mut look) = written.is_none();
+                *text(&mut look) = written;
+            }
+            Takes::Size(at) => *at(&mut look) = Some(size(&field)?),
+            Takes::Times(at) => *at(&mut look) = Some(window(&field, end)?),
+            Takes::Direction(at) => *at(&mut look) = Some(view(&field)?),
+            Takes::Labels => (look.labels, look.hides_names) = (labels(&field, is_robot)?, is_robot),
+            Takes::Formats => look.formats = formats(&field)?,
+        }
+        let what = match option.takes {
+            Takes::Flag { word, .. } => format!("{} = {word:?}:", option.name()),
+            _ => field.to_string(),
+        };
+        look.said.push(Said { option: option.name(), what, place: Some(field.node.place.clone()) });
+        Ok(())
+    }))?;
+    if let Some(place) = look.said("aspect").and_then(|said| said.place.as_ref())
         && (look.x.is_log || look.y.is_log)
     {
         let refusal = place.refuse(RefusalKind::Rule, "aspect = \"equal\" has no meaning on a logarithmic scale");
@@ -59,11 +52,11 @@ fn pair<'a>(field: &Field<'a>, right: &str, help: &str) -> Read<[Field<'a>; 2]> 
     })
 }
 
-fn range_of(field: &Field<'_>) -> Read<AxisRange> {
+fn range(field: &Field<'_>) -> Read<[RangeEnd; 2]> {
     let [from, to] = pair(field, "an array of two numbers or quantities", "[from, to]")?;
     let ends = [range_end(&from), range_end(&to)];
     let [from, to] = ends;
-    Ok(AxisRange { ends: [from?, to?], what: field.to_string(), place: field.node.place.clone() })
+    Ok([from?, to?])
 }
 
 fn range_end(field: &Field<'_>) -> Read<RangeEnd> {
@@ -88,9 +81,13 @@ fn size(field: &Field<'_>) -> Read<[f64; 2]> {
     let [width, height] = pair(field, "an array of two lengths, [width, height]", help)?;
     let sides = [width.number("m"), height.number("m")];
     let sides = [sides[0]?, sides[1]?];
-    if let Some(side) = sides.into_iter().find(|side| !(SIDES[0]..=SIDES[1]).contains(side)) {
+    if let Some(side) = sides.into_iter().find(|side| !(FIGURE_SIDES[0]..=FIGURE_SIDES[1]).contains(side)) {
         let message = format!("holds {}, which is no side of a figure", millimetres(side));
-        let help = format!("write lengths from {} to {}, as in {help}", millimetres(SIDES[0]), millimetres(SIDES[1]));
+        let help = format!(
+            "write lengths from {} to {}, as in {help}",
+            millimetres(FIGURE_SIDES[0]),
+            millimetres(FIGURE_SIDES[1])
+        );
         return Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)));
     }
     Ok(sides)
@@ -116,8 +113,8 @@ fn labels(field: &Field<'_>, is_robot: bool) -> Read<Vec<FigureLabel>> {
     }))
 }
 
-/// What stands above the legend; nothing where there is none.
-fn legend(field: &Field<'_>) -> Read<Option<String>> {
+/// A text; nothing where there is none.
+fn text_or_false(field: &Field<'_>) -> Read<Option<String>> {
     match &field.node.value {
         Value::Text(text) => Ok(Some(text.clone())),
         Value::Boolean(false) => Ok(None),

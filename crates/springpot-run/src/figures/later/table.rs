@@ -1,11 +1,12 @@
 //! The rows of a run, and what run.json says of them.
 
-use super::Refused;
-use crate::{diagnostic, plain, results};
+use super::NotDrawn;
+use crate::results::of_other_version;
+use crate::table::{cut_field, matches, push_number};
+use crate::warning::Warn;
 use ::csv::{ByteRecord, Reader};
 use serde_json::Value;
 use springpot::table::Column;
-use springpot_run::table::{matches, push_number};
 use springpot_scenario::units::Unit;
 use springpot_scenario::{RangeEnd, csv};
 use std::collections::HashMap;
@@ -17,7 +18,7 @@ use std::path::{Path, PathBuf};
 const CHUNK: usize = 1 << 18;
 
 /// Takes a row, its line in the file, and the index of the value that each sweep has there.
-pub(super) type Visit<'a> = &'a mut dyn FnMut(&ByteRecord, u64, &[usize]) -> Result<(), Refused>;
+pub(super) type Visit<'a> = &'a mut dyn FnMut(&ByteRecord, u64, &[usize]) -> Result<(), NotDrawn>;
 
 /// A table of results that has been opened; its rows are read when they are asked for.
 pub(super) struct Table {
@@ -60,13 +61,13 @@ pub(super) struct Sweep {
 
 impl Table {
     /// A table of a run, or, `beside` one, of anybody.
-    pub(super) fn open(at: &Path, beside: bool) -> Result<Self, Refused> {
+    pub(super) fn open(at: &Path, beside: bool, warn: Warn<'_>) -> Result<Self, NotDrawn> {
         if at.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) && at.is_file() {
             let (file, stem) = (at.display(), at.file_stem().unwrap_or_default().to_string_lossy());
             let help = format!(
                 "run it first, `springpot run {file}`, and name its results: springpot plot results/{stem} COLUMN"
             );
-            return Err(Refused::new(format!("{file} is a scenario, and plot draws the results of a run"), help));
+            return Err(NotDrawn::new(format!("{file} is a scenario, and plot draws the results of a run"), help));
         }
         let (file, folder) = if at.is_dir() {
             (rows_in(at)?, at.to_owned())
@@ -77,17 +78,18 @@ impl Table {
         let header = reader.headers().map_err(|error| unreadable(&file, &error))?;
         let names: Vec<String> = header.iter().map(str::to_owned).collect();
         if names.is_empty() || names.iter().all(String::is_empty) {
-            return Err(Refused::new(format!("{} has no columns", file.display()), None));
+            return Err(NotDrawn::new(format!("{} has no columns", file.display()), None));
         }
         let record = folder.join("run.json");
         let run = record.is_file().then(|| fs::read_to_string(record).ok()).flatten();
         let is_measured = beside && run.is_none();
         if run.is_none() && !beside {
             let message = format!("there is no run.json beside {}: the labels have no units", file.display());
-            diagnostic::warning(message, None);
+            warn(message.into());
         }
         let run: Value = run.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
-        results::say_version(&folder, run["versions"]["springpot"].as_str().unwrap_or_default());
+        let version = run["versions"]["springpot"].as_str().unwrap_or_default();
+        of_other_version(&folder, version).into_iter().for_each(&mut *warn);
         let described = run["columns"].as_array().map_or(&[][..], Vec::as_slice);
         let headings: Vec<(&str, Option<Unit>)> = names.iter().map(|name| heading(name, is_measured)).collect();
         let columns = headings.iter().map(|(name, own)| {
@@ -126,7 +128,7 @@ impl Table {
     }
 
     /// Calls `visit` with every row; returns the sweeps with the values that run.json does not list.
-    pub(super) fn visit(&self, visit: Visit<'_>) -> Result<Vec<Sweep>, Refused> {
+    pub(super) fn visit(&self, visit: Visit<'_>) -> Result<Vec<Sweep>, NotDrawn> {
         let mut sweeps = self.sweeps.clone();
         let mut reader = reader(&self.file)?;
         let mut record = ByteRecord::new();
@@ -147,11 +149,11 @@ impl Table {
     }
 
     /// The rows of metrics.csv.
-    pub(super) fn metrics(&self) -> Result<Vec<MetricRow>, Refused> {
+    pub(super) fn metrics(&self) -> Result<Vec<MetricRow>, NotDrawn> {
         let file = self.folder.join("metrics.csv");
         if !file.is_file() {
             let help = "springpot metrics works them out, or name them in the scenario: [[metric]]".to_owned();
-            return Err(Refused::new(format!("{} holds no metrics.csv", self.folder.display()), help));
+            return Err(NotDrawn::new(format!("{} holds no metrics.csv", self.folder.display()), help));
         }
         let swept = swept_count(&self.sweeps);
         let mut rows = Vec::new();
@@ -181,14 +183,14 @@ impl Table {
     }
 
     /// The number in a field of a row; NaN where it is empty.
-    pub(super) fn number(&self, record: &ByteRecord, column: usize, line: u64) -> Result<f64, Refused> {
+    pub(super) fn number(&self, record: &ByteRecord, column: usize, line: u64) -> Result<f64, NotDrawn> {
         let field = record.get(column).unwrap_or_default();
         let text = std::str::from_utf8(field).unwrap_or("?");
         let value = if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() };
         let unit = self.units[column].as_ref();
         value.map(|value| unit.map_or(value, |unit| unit.to_si(value))).ok_or_else(|| {
-            let (file, name, field) = (self.file.display(), &self.columns[column].name, plain::field(field));
-            Refused::new(format!("{file}:{line}: {field} in column {name:?} is not a number"), None)
+            let (file, name, field) = (self.file.display(), &self.columns[column].name, cut_field(field));
+            NotDrawn::new(format!("{file}:{line}: {field} in column {name:?} is not a number"), None)
         })
     }
 }
@@ -283,28 +285,28 @@ fn field(value: &Value) -> Vec<u8> {
     text.into_bytes()
 }
 
-fn rows_in(folder: &Path) -> Result<PathBuf, Refused> {
+fn rows_in(folder: &Path) -> Result<PathBuf, NotDrawn> {
     let names = ["results.csv", "results.csv.part"];
     if let Some(found) = names.map(|name| folder.join(name)).into_iter().find(|file| file.is_file()) {
         return Ok(found);
     }
     let other = ["results.parquet", "results.npz"].into_iter().find(|name| folder.join(name).is_file());
     Err(match other {
-        Some(name) => Refused::new(
+        Some(name) => NotDrawn::new(
             format!("{} holds {name}, and plot reads CSV", folder.display()),
             "view, report, export and metrics read it; for plot run the scenario with --format csv".to_owned(),
         ),
-        None => Refused::new(
+        None => NotDrawn::new(
             format!("{} holds no results.csv", folder.display()),
             "name the folder of the results of a run, such as results/arm".to_owned(),
         ),
     })
 }
 
-fn reader(file: &Path) -> Result<Reader<BufReader<File>>, Refused> {
+fn reader(file: &Path) -> Result<Reader<BufReader<File>>, NotDrawn> {
     let refused = |why: String| {
         let help = "name the folder of the results of a run, such as results/arm, or its results.csv".to_owned();
-        Refused::new(format!("{} cannot be opened: {why}", file.display()), help)
+        NotDrawn::new(format!("{} cannot be opened: {why}", file.display()), help)
     };
     // The rows are read twice, and opening a pipe would wait for its other end.
     if !fs::metadata(file).map_err(|error| refused(error.to_string()))?.is_file() {
@@ -314,7 +316,7 @@ fn reader(file: &Path) -> Result<Reader<BufReader<File>>, Refused> {
     Ok(Reader::from_reader(BufReader::with_capacity(CHUNK, open)))
 }
 
-fn unreadable(file: &Path, error: &::csv::Error) -> Refused {
+fn unreadable(file: &Path, error: &::csv::Error) -> NotDrawn {
     let line = error.position().map_or_else(String::new, |position| format!(":{}", position.line()));
     let what = match error.kind() {
         ::csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
@@ -323,5 +325,5 @@ fn unreadable(file: &Path, error: &::csv::Error) -> Refused {
         ::csv::ErrorKind::Utf8 { .. } => "not UTF-8".to_owned(),
         _ => error.to_string(),
     };
-    Refused::new(format!("{}{line}: {what}", file.display()), None)
+    NotDrawn::new(format!("{}{line}: {what}", file.display()), None)
 }

@@ -1,15 +1,14 @@
 //! Statistics of columns, and metrics, over a swept parameter: what `kind = "summary"` of a figure draws, from the files of results.
 
-use super::Refused;
-use super::curves::{Sweeps, chosen, fitting, found, named, own_names, source, units};
+use super::super::{Curves, DrawnCase, FigureColumn, swept_numbers};
+use super::curves::{Sweeps, Units, chosen, fitting, found, found_labels, label, named, source, units};
 use super::table::{Sweep, Table};
-use crate::arguments::PlotOptions;
+use super::{AskedFigure, NotDrawn, look};
+use crate::sweep::is_within;
+use crate::table::{Totals, matches};
 use springpot::table::Column;
 use springpot_report::Plot;
-use springpot_run::figures::{Curves, DrawnCase, FigureColumn, swept_numbers};
-use springpot_run::sweep::is_within;
-use springpot_run::table::{Totals, matches};
-use springpot_scenario::{Statistic, suggest};
+use springpot_scenario::{Look, Statistic, suggest};
 use std::collections::HashMap;
 
 /// What stands before the parenthesis of a metric.
@@ -23,14 +22,14 @@ pub(super) enum Asked {
 }
 
 /// What the words ask for; nothing where none of them is a statistic.
-pub(super) fn asked(words: &[String]) -> Result<Option<Vec<Asked>>, Refused> {
+pub(super) fn asked(words: &[String]) -> Result<Option<Vec<Asked>>, NotDrawn> {
     let read: Vec<Option<Asked>> = words.iter().map(|word| one(word)).collect();
     if read.iter().all(Option::is_none) {
         return Ok(None);
     }
     if let Some((word, _)) = words.iter().zip(&read).find(|(_, read)| read.is_none()) {
         let message = format!("{word:?} is no statistic, and others are: a figure draws one or the other");
-        return Err(Refused::new(message, format!("write max({word}), or draw it in a figure of its own")));
+        return Err(NotDrawn::new(message, format!("write max({word}), or draw it in a figure of its own")));
     }
     Ok(Some(read.into_iter().flatten().collect()))
 }
@@ -67,24 +66,24 @@ struct Case {
 }
 
 /// The figure: the swept path at `--x`, or the only one, as the abscissa.
-pub(super) fn plot(tables: &[Table], options: &PlotOptions, asked: &[Asked]) -> Result<Plot, Refused> {
-    let path = path(&tables[0], &options.x)?;
-    let (names, chosen, window) =
-        (own_names(&tables[0], &options.look.labels)?, chosen(tables, &options.selection)?, options.look.window()?);
-    let units = units(&tables[0], &options.units)?;
+pub(super) fn plot(tables: &[Table], figure: &AskedFigure, look: &Look, asked: &[Asked]) -> Result<Plot, NotDrawn> {
+    let path = path(&tables[0], &figure.x)?;
+    found_labels(&tables[0], look)?;
+    let chosen = chosen(tables, &figure.selection)?;
+    let units = units(&tables[0], &figure.units)?;
     let (mut x, mut y) = (None, None);
     let mut drawn: Vec<Drawn> = Vec::new();
     for (at, (table, chosen)) in tables.iter().zip(&chosen).enumerate() {
         let axis = axis(table, &path)?;
         let what = what(table, asked)?;
-        let (cases, sweeps) = cases(table, (&path, axis), &what, chosen, window)?;
+        let (cases, sweeps) = cases(table, (&path, axis), &what, chosen, look.window)?;
         let sweep = &table.sweeps[axis];
         // Beyond the values that run.json lists, the rows have the numbers.
         let (column, values) = swept_numbers(&path, &sweep.written(&path))
-            .map_err(|(message, help)| Refused::new(message, help.to_owned()))?;
+            .map_err(|(message, help)| NotDrawn::new(message, help.to_owned()))?;
         x.get_or_insert(column);
         if y.is_none() {
-            y = Some(ordinates(table, &what, &names, &units)?);
+            y = Some(ordinates(table, &what, look, &units)?);
         }
         let own = source(tables, at);
         let named = named(sweeps);
@@ -107,34 +106,33 @@ pub(super) fn plot(tables: &[Table], options: &PlotOptions, asked: &[Asked]) -> 
         }
     }
     if drawn.is_empty() {
-        return Err(Refused::new("there are no rows to draw", None));
+        return Err(NotDrawn::new("there are no rows to draw", None));
     }
     for points in drawn.iter_mut().flat_map(|drawn| &mut drawn.points) {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     }
-    let (Some(x), Some(y)) = (x, y) else { return Err(Refused::new("there are no rows to draw", None)) };
-    let look = options.look.look(&x, &y)?;
+    let (Some(x), Some(y)) = (x, y) else { return Err(NotDrawn::new("there are no rows to draw", None)) };
+    let look = look::drawn(look, &x, &y)?;
     let cases = drawn.iter().map(|Drawn { source, values, points }| DrawnCase {
         source: source.clone(),
         values: values.clone(),
         points: points.iter().map(Vec::as_slice).collect(),
     });
-    Ok(Curves { title: options.title.as_deref(), x: &x, y: &y, look: &look, is_marked: true, measured: &[] }
-        .plot(cases))
+    Ok(Curves { title: figure.title.as_deref(), x: &x, y: &y, look: &look, is_marked: true, measured: &[] }.plot(cases))
 }
 
 /// The swept path that is the abscissa; `t` stands for the only one.
-fn path(table: &Table, x: &str) -> Result<String, Refused> {
+fn path(table: &Table, x: &str) -> Result<String, NotDrawn> {
     let mut swept = table.sweeps.iter().flat_map(|sweep| &sweep.parameters);
     match (x, swept.next(), swept.next()) {
-        (_, None, _) => Err(Refused::new(
+        (_, None, _) => Err(NotDrawn::new(
             format!("{} has no sweep, over which a statistic is drawn", table.name()),
             "draw the column itself, or run the scenario with --sweep PATH=v1,v2,...".to_owned(),
         )),
         ("t", Some(only), None) => Ok(only.clone()),
         ("t", ..) => {
             let all: Vec<&str> = table.sweeps.iter().flat_map(|sweep| &sweep.parameters).map(String::as_str).collect();
-            Err(Refused::new(
+            Err(NotDrawn::new(
                 "a statistic is drawn over a swept parameter",
                 format!("choose one with --x: {}", all.join(", ")),
             ))
@@ -143,15 +141,15 @@ fn path(table: &Table, x: &str) -> Result<String, Refused> {
     }
 }
 
-fn axis(table: &Table, path: &str) -> Result<usize, Refused> {
+fn axis(table: &Table, path: &str) -> Result<usize, NotDrawn> {
     let found = table.sweeps.iter().position(|sweep| sweep.parameters.iter().any(|own| own == path));
     found.ok_or_else(|| {
         let swept = table.sweeps.iter().flat_map(|sweep| &sweep.parameters).map(String::as_str);
-        Refused::new(format!("--x {path}: it is not swept in {}", table.name()), suggest(path, swept))
+        NotDrawn::new(format!("--x {path}: it is not swept in {}", table.name()), suggest(path, swept))
     })
 }
 
-fn what(table: &Table, asked: &[Asked]) -> Result<Vec<What>, Refused> {
+fn what(table: &Table, asked: &[Asked]) -> Result<Vec<What>, NotDrawn> {
     let mut what = Vec::new();
     for asked in asked {
         match asked {
@@ -165,21 +163,13 @@ fn what(table: &Table, asked: &[Asked]) -> Result<Vec<What>, Refused> {
 }
 
 /// The ordinates as they are drawn.
-fn ordinates(
-    table: &Table,
-    what: &[What],
-    names: &[(String, String)],
-    units: &super::curves::Units,
-) -> Result<Vec<FigureColumn>, Refused> {
-    let label = |column: &Column| {
-        names.iter().rev().find(|(glob, _)| matches(glob, &column.name)).map(|(_, text)| text.clone())
-    };
+fn ordinates(table: &Table, what: &[What], look: &Look, units: &Units) -> Result<Vec<FigureColumn>, NotDrawn> {
     let one = |what: &What| match what {
         What::Statistic(statistic, at) => {
             let column = table.columns[*at].clone();
             let unit = units.iter().rev().find(|(glob, ..)| matches(glob, &column.name));
             let unit = unit.map(|(_, text, unit)| fitting(&column, text, unit)).transpose()?;
-            let label = label(&column);
+            let label = label(look, &column);
             let plain = FigureColumn { column, unit, label: None };
             let label = label.unwrap_or_else(|| format!("{} of {}", statistic.name(), plain.name()));
             Ok(FigureColumn { label: Some(label), ..plain })
@@ -187,7 +177,7 @@ fn ordinates(
         What::Metric(name) => {
             let unit = table.metrics()?.iter().find(|metric| metric.name == *name).map(|metric| metric.unit.clone());
             let column = Column::new(format!("{METRIC}({name})"), unit.unwrap_or_default(), "");
-            let label = label(&column).unwrap_or_else(|| name.clone());
+            let label = label(look, &column).unwrap_or_else(|| name.clone());
             Ok(FigureColumn { column, unit: None, label: Some(label) })
         }
     };
@@ -201,7 +191,7 @@ fn cases(
     what: &[What],
     chosen: &[Option<String>],
     window: Option<[f64; 2]>,
-) -> Result<(Vec<Case>, Vec<Sweep>), Refused> {
+) -> Result<(Vec<Case>, Vec<Sweep>), NotDrawn> {
     let columns: Vec<usize> = what
         .iter()
         .filter_map(|what| match what {
@@ -265,7 +255,7 @@ fn cases(
         }
         if let Some(name) = named.iter().find(|name| metrics.iter().all(|metric| metric.name != ***name)) {
             let message = format!("{} has no metric {name:?}", table.name());
-            return Err(Refused::new(message, suggest(name, metrics.iter().map(|metric| metric.name.as_str()))));
+            return Err(NotDrawn::new(message, suggest(name, metrics.iter().map(|metric| metric.name.as_str()))));
         }
     }
     Ok((cases, sweeps))

@@ -1,16 +1,15 @@
 //! Which columns and cases are drawn, and the curves that they make.
 
-use super::Refused;
+use super::super::{Curves, DrawnCase, DrawnLook, FigureColumn, MeasuredPoints};
 use super::table::{Sweep, Table};
-use crate::arguments::PlotOptions;
+use super::{AskedFigure, NotDrawn, look};
+use crate::labels;
+use crate::sweep::{KeptCurve, MAX_CURVES, is_within, most_points};
+use crate::table::matches;
 use springpot::table::Column;
 use springpot_report::Plot;
-use springpot_run::figures::{Curves, DrawnCase, FigureColumn, Look, MeasuredPoints};
-use springpot_run::labels;
-use springpot_run::sweep::{KeptCurve, MAX_CURVES, is_within, most_points};
-use springpot_run::table::matches;
 use springpot_scenario::units::Unit;
-use springpot_scenario::{equals_sign, suggest};
+use springpot_scenario::{FigureLabel, Look, equals_sign, suggest};
 
 /// Values of a sweep that are listed.
 const LISTED: usize = 12;
@@ -19,9 +18,7 @@ const LISTED: usize = 12;
 pub(super) struct Wanted {
     x: FigureColumn,
     y: Vec<FigureColumn>,
-    look: Look,
-    /// Rows with t in between, s.
-    window: Option<[f64; 2]>,
+    look: DrawnLook,
     /// By result.
     places: Vec<Places>,
 }
@@ -36,10 +33,10 @@ struct Places {
 }
 
 impl Wanted {
-    pub(super) fn new(tables: &[Table], options: &PlotOptions, columns: &[String]) -> Result<Self, Refused> {
+    pub(super) fn new(tables: &[Table], asked: &AskedFigure, look: &Look) -> Result<Self, NotDrawn> {
         let table = &tables[0];
-        let units = units(table, &options.units)?;
-        let labels = own_names(table, &options.look.labels)?;
+        let units = units(table, &asked.units)?;
+        found_labels(table, look)?;
         let drawn = |at: usize| {
             let column = table.columns[at].clone();
             let unit = units.iter().rev().find(|(glob, ..)| matches(glob, &column.name));
@@ -47,11 +44,10 @@ impl Wanted {
                 None => None,
                 Some((_, text, unit)) => Some(fitting(&column, text, unit)?),
             };
-            let label = labels.iter().rev().find(|(glob, _)| matches(glob, &column.name)).map(|(_, text)| text.clone());
+            let label = label(look, &column);
             Ok(FigureColumn { column, unit, label })
         };
-        let window = options.look.window()?;
-        let mut places = Places::all(tables, &options.x, columns)?;
+        let mut places = Places::all(tables, &asked.x, &asked.columns)?;
         let names = |table: &Table, places: &Places| -> Vec<String> {
             places.y.iter().map(|&at| table.columns[at].name.clone()).collect()
         };
@@ -59,26 +55,27 @@ impl Wanted {
         for (other, places) in tables.iter().zip(&places).skip(1) {
             if !other.is_measured && names(other, places) != first {
                 let message = format!("{} and {} have other columns of these names", table.name(), other.name());
-                return Err(Refused::new(message, "name columns that all results have".to_owned()));
+                return Err(NotDrawn::new(message, "name columns that all results have".to_owned()));
             }
         }
-        for (places, chosen) in places.iter_mut().zip(chosen(tables, &options.selection)?) {
+        for (places, chosen) in places.iter_mut().zip(chosen(tables, &asked.selection)?) {
             places.chosen = chosen;
         }
-        if let Some((table, _)) = tables.iter().zip(&places).find(|(_, places)| window.is_some() && places.t.is_none())
+        if let Some((table, _)) =
+            tables.iter().zip(&places).find(|(_, places)| look.window.is_some() && places.t.is_none())
         {
-            return Err(Refused::new(format!("--window: {} has no column t", table.name()), None));
+            return Err(NotDrawn::new(format!("--window: {} has no column t", table.name()), None));
         }
         let x = drawn(places[0].x)?;
         let y = places[0].y.iter().copied().map(drawn).collect::<Result<Vec<_>, _>>()?;
-        let look = options.look.look(&x, &y)?;
-        Ok(Self { x, y, look, window, places })
+        let look = look::drawn(look, &x, &y)?;
+        Ok(Self { x, y, look, places })
     }
 }
 
 impl Places {
     /// Those of all tables: a column that only measured ones have is drawn of these.
-    fn all(tables: &[Table], x: &str, columns: &[String]) -> Result<Vec<Self>, Refused> {
+    fn all(tables: &[Table], x: &str, columns: &[String]) -> Result<Vec<Self>, NotDrawn> {
         let is_in = |table: &&Table, glob: &String| found(table, glob).is_ok();
         let one = |table: &Table| {
             let measured = || tables.iter().filter(|table| table.is_measured);
@@ -89,17 +86,17 @@ impl Places {
             let own: Vec<String> = own.cloned().collect();
             if own.is_empty() {
                 let help = "name a column of its own too".to_owned();
-                return Err(Refused::new(format!("{} has none of these columns", table.name()), help));
+                return Err(NotDrawn::new(format!("{} has none of these columns", table.name()), help));
             }
             Self::of(table, x, &own)
         };
         tables.iter().map(one).collect()
     }
 
-    fn of(table: &Table, x: &str, columns: &[String]) -> Result<Self, Refused> {
+    fn of(table: &Table, x: &str, columns: &[String]) -> Result<Self, NotDrawn> {
         let x = match found(table, x).map_err(|refused| refused.of_abscissa(table))?[..] {
             [only] => only,
-            _ => return Err(Refused::new(format!("--x {x:?} matches several columns; it takes one"), None)),
+            _ => return Err(NotDrawn::new(format!("--x {x:?} matches several columns; it takes one"), None)),
         };
         let mut y = Vec::new();
         for glob in columns {
@@ -115,11 +112,11 @@ impl Places {
 }
 
 /// Columns that a glob matches; at least one.
-pub(super) fn found(table: &Table, glob: &str) -> Result<Vec<usize>, Refused> {
+pub(super) fn found(table: &Table, glob: &str) -> Result<Vec<usize>, NotDrawn> {
     let found: Vec<usize> = (0..table.columns.len()).filter(|&k| table.is_called(k, glob)).collect();
     if found.is_empty() {
         let help = suggest(glob, table.columns.iter().map(|column| column.name.as_str()));
-        return Err(Refused::new(format!("{glob:?} matches no column of {}", table.name()), help));
+        return Err(NotDrawn::new(format!("{glob:?} matches no column of {}", table.name()), help));
     }
     Ok(found)
 }
@@ -127,49 +124,48 @@ pub(super) fn found(table: &Table, glob: &str) -> Result<Vec<usize>, Refused> {
 pub(super) type Units = Vec<(String, String, Unit)>;
 
 /// Reads `COLUMN=UNIT`.
-pub(super) fn units(table: &Table, assignments: &[String]) -> Result<Units, Refused> {
+pub(super) fn units(table: &Table, assignments: &[String]) -> Result<Units, NotDrawn> {
     let read = assignments.iter().map(|assignment| {
         let Some((glob, unit)) = assignment.split_once('=') else {
-            return Err(Refused::new(format!("--unit {assignment:?} has no `=`"), "write COLUMN=UNIT".to_owned()));
+            return Err(NotDrawn::new(format!("--unit {assignment:?} has no `=`"), "write COLUMN=UNIT".to_owned()));
         };
         found(table, glob)?;
         match Unit::parse(unit, &|_| None) {
             Ok(parsed) => Ok((glob.to_owned(), unit.to_owned(), parsed)),
-            Err(error) => Err(Refused::new(format!("--unit {assignment}: {error}"), None)),
+            Err(error) => Err(NotDrawn::new(format!("--unit {assignment}: {error}"), None)),
         }
     });
     read.collect()
 }
 
-/// Reads `COLUMN=TEXT`.
-pub(super) fn own_names(table: &Table, assignments: &[String]) -> Result<Vec<(String, String)>, Refused> {
-    let read = assignments.iter().map(|assignment| {
-        let Some((glob, text)) = assignment.split_once('=') else {
-            return Err(Refused::new(format!("--label {assignment:?} has no `=`"), "write COLUMN=TEXT".to_owned()));
-        };
-        found(table, glob)?;
-        Ok((glob.to_owned(), text.to_owned()))
-    });
-    read.collect()
+/// Whether every label is that of a column.
+pub(super) fn found_labels(table: &Table, look: &Look) -> Result<(), NotDrawn> {
+    look.labels.iter().try_for_each(|label| found(table, &label.column.text).map(|_| ()))
 }
 
-pub(super) fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), Refused> {
+/// What a column is called; nothing where nobody says it.
+pub(super) fn label(look: &Look, column: &Column) -> Option<String> {
+    let is_meant = |label: &&FigureLabel| matches(&label.column.text, &column.name);
+    look.labels.iter().rev().find(is_meant).map(|label| label.text.clone())
+}
+
+pub(super) fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), NotDrawn> {
     let own = Unit::parse(if column.unit.is_empty() { "1" } else { &column.unit }, &|_| None);
     match own {
         Ok(own) if own.dimension() == unit.dimension() => Ok((text.to_owned(), unit.clone())),
         _ => {
             let own = if column.unit.is_empty() { "a pure number" } else { &column.unit };
-            Err(Refused::new(format!("{} is in {own}, which does not convert to {text}", column.name), None))
+            Err(NotDrawn::new(format!("{} is in {own}, which does not convert to {text}", column.name), None))
         }
     }
 }
 
 /// By result, the value of each sweep that `--where` chooses; a path need not be swept in all of them.
-pub(super) fn chosen(tables: &[Table], selection: &[String]) -> Result<Vec<Vec<Option<String>>>, Refused> {
+pub(super) fn chosen(tables: &[Table], selection: &[String]) -> Result<Vec<Vec<Option<String>>>, NotDrawn> {
     let mut chosen: Vec<Vec<Option<String>>> = tables.iter().map(|table| vec![None; table.sweeps.len()]).collect();
     for assignment in selection {
         let Some(equals) = equals_sign(assignment) else {
-            return Err(Refused::new(format!("--where {assignment:?} has no `=`"), "write PATH=VALUE".to_owned()));
+            return Err(NotDrawn::new(format!("--where {assignment:?} has no `=`"), "write PATH=VALUE".to_owned()));
         };
         let (path, value) = (assignment[..equals].trim(), assignment[equals + 1..].trim().trim_matches('"'));
         let mut is_swept = false;
@@ -184,7 +180,7 @@ pub(super) fn chosen(tables: &[Table], selection: &[String]) -> Result<Vec<Vec<O
                 if labels.len() > LISTED {
                     help.push_str(", …");
                 }
-                return Err(Refused::new(format!("--where {assignment}: no case has this value"), help));
+                return Err(NotDrawn::new(format!("--where {assignment}: no case has this value"), help));
             };
             chosen[at] = Some(label.clone());
         }
@@ -194,7 +190,7 @@ pub(super) fn chosen(tables: &[Table], selection: &[String]) -> Result<Vec<Vec<O
                 None => "nothing is".to_owned(),
                 Some(_) => suggest(path, names().map(String::as_str)),
             };
-            return Err(Refused::new(format!("--where {assignment}: {path} is not swept"), help));
+            return Err(NotDrawn::new(format!("--where {assignment}: {path} is not swept"), help));
         }
     }
     Ok(chosen)
@@ -207,7 +203,7 @@ struct Case {
 }
 
 /// Reads the rows and makes the figure: the first sweep that is not fixed makes curves, the others panels.
-pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Result<Plot, Refused> {
+pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Result<Plot, NotDrawn> {
     let mut read = Vec::with_capacity(tables.len());
     let mut count = 0;
     for (table, places) in tables.iter().zip(&wanted.places) {
@@ -269,7 +265,7 @@ pub(super) fn source(tables: &[Table], at: usize) -> Option<String> {
 pub(super) type Sweeps = Vec<(String, Vec<String>)>;
 
 /// The points of every case that is drawn, in the order of the rows; `count` are the curves of all results so far.
-fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> Result<(Vec<Case>, Sweeps), Refused> {
+fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> Result<(Vec<Case>, Sweeps), NotDrawn> {
     let mut cases: Vec<Case> = Vec::new();
     let mut last: Option<(Vec<usize>, Option<usize>)> = None;
     // As many curves as run.json says; a run draws them from as many points.
@@ -300,10 +296,10 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
         if *count + cases.len() * places.y.len() > MAX_CURVES {
             let message = format!("the figure would hold more than {MAX_CURVES} curves");
             let help = "choose fewer columns, or some of the cases with --where PATH=VALUE".to_owned();
-            return Err(Refused::new(message, help));
+            return Err(NotDrawn::new(message, help));
         }
         let number = |at: usize| table.number(record, at, line);
-        if let (Some(window), Some(t)) = (wanted.window, places.t)
+        if let (Some(window), Some(t)) = (wanted.look.asked.window, places.t)
             && !is_within(window, number(t)?)
         {
             return Ok(());
@@ -315,10 +311,12 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
         Ok(())
     })?;
     if cases.is_empty() {
-        return Err(Refused::new("there are no rows to draw", None));
+        return Err(NotDrawn::new("there are no rows to draw", None));
     }
-    if wanted.window.is_some() && cases.iter().all(|case| case.curves.iter().all(|curve| curve.points().is_empty())) {
-        return Err(Refused::new("--window: no row lies in it", "choose times that the run has".to_owned()));
+    if wanted.look.asked.window.is_some()
+        && cases.iter().all(|case| case.curves.iter().all(|curve| curve.points().is_empty()))
+    {
+        return Err(NotDrawn::new("--window: no row lies in it", "choose times that the run has".to_owned()));
     }
     *count += cases.len() * places.y.len();
     Ok((cases, named(sweeps)))
