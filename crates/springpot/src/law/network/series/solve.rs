@@ -132,6 +132,7 @@ impl Lines {
     }
 
     /// Moves the strokes of all parts, but those that let go, to where they are under the force `force`.
+    #[inline]
     fn stretch(&self, series: &Series, force: &[f64; MAX_NODES], step: &Step, inner: &mut [Inner; MOST_IN_SERIES]) {
         let count = step.nodes.count();
         for (k, inner) in inner.iter_mut().enumerate().take(self.each.len()).filter(|(k, _)| !series.lets_go(*k)) {
@@ -193,6 +194,7 @@ impl Ready {
 }
 
 /// Parts that stay where they are.
+#[inline]
 fn resting(starts: &[f64], step: &Step) -> [Inner; MOST_IN_SERIES] {
     let mut inner = [Inner::default(); MOST_IN_SERIES];
     let last = step.nodes.count();
