@@ -30,7 +30,7 @@ pub fn crba_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace
             mass[column * n + row] += entry;
         }
     }
-    for (k, &rotor) in model.rotors().iter().enumerate() {
+    for (k, &rotor) in model.felt_rotors().iter().enumerate() {
         mass[k * n + k] += T::from_f64(rotor);
     }
 }

@@ -13,7 +13,7 @@ pub fn kinetic_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T
         let velocity = Motion { angular: rotation.unrotate(angular), linear: rotation.unrotate(linear) };
         twice += velocity.dot(Inertia::from_f64(model.link_inertia(j)) * velocity);
     }
-    for (&v, &rotor) in kinematics.joint_velocities().iter().zip(model.rotors()) {
+    for (&v, &rotor) in kinematics.joint_velocities().iter().zip(model.felt_rotors()) {
         twice += v * v * T::from_f64(rotor);
     }
     twice * T::from_f64(0.5)

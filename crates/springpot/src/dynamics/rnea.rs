@@ -103,7 +103,7 @@ fn inverse_dynamics<T: Scalar>(
         ws.force[model.parent_link(j)] += on_parent;
     }
     if let Some(a) = a {
-        for ((tau, &a), &rotor) in tau.iter_mut().zip(a).zip(model.rotors()) {
+        for ((tau, &a), &rotor) in tau.iter_mut().zip(a).zip(model.felt_rotors()) {
             *tau = a.times_plus(T::from_f64(rotor), *tau);
         }
     }

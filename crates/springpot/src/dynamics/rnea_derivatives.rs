@@ -103,7 +103,7 @@ pub fn rnea_derivatives_into<T: Scalar>(
             ws.force[parent] += load;
         }
     }
-    for (k, &rotor) in model.rotors().iter().enumerate() {
+    for (k, &rotor) in model.felt_rotors().iter().enumerate() {
         d_a[k * n + k] += T::from_f64(rotor);
     }
     for pair in pairs {

@@ -38,6 +38,7 @@ pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), 
     for (own, armature) in model.coordinates.iter().zip(&model.armature) {
         model.rotors[own.v] += own.ratio * own.ratio * armature;
     }
+    model.has_rotors = model.rotors.iter().any(|rotor| *rotor != 0.0);
     // Without followers, degrees and velocities are the same; followers couple branches, so that nothing is known to stay 0.
     model.pivots = if model.is_free_of_followers() { model.carriers.clone() } else { (0..model.nv).collect() };
     Ok(())

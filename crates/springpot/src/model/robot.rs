@@ -61,6 +61,7 @@ pub struct Model {
     pub(super) pivots: Vec<usize>,
     /// Armature felt along each velocity.
     pub(super) rotors: Vec<f64>,
+    pub(super) has_rotors: bool,
     // One entry per described joint that moves.
     pub(super) described: Vec<DescribedJoint>,
     /// Names of the fixed joints.
@@ -115,6 +116,7 @@ impl Model {
             last_degrees: vec![0],
             pivots: Vec::new(),
             rotors: Vec::new(),
+            has_rotors: false,
             described: Vec::new(),
             fixed_joints: Vec::new(),
             world_names: Vec::new(),
@@ -245,6 +247,12 @@ impl Model {
     #[inline]
     pub fn rotors(&self) -> &[f64] {
         &self.rotors
+    }
+
+    /// [`Self::rotors`]; nothing where there is none.
+    #[inline]
+    pub(crate) fn felt_rotors(&self) -> &[f64] {
+        if self.has_rotors { &self.rotors } else { &[] }
     }
 
     /// Inertia of the rotor per moving joint as felt along its coordinate, kg·m² or kg.
