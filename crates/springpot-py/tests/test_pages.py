@@ -112,5 +112,5 @@ def test_options_of_a_look_are_those_of_the_command(run: sp.Run) -> None:
     options = [name for name, one in inspect.signature(sp.Run.figure).parameters.items() if one.annotation == "Look"]
     assert {"x_range", "y_scale", "size", "labels", "legend", "window"} <= set(options) and "view" not in options
     said = subprocess.run([sys.executable, "-m", "springpot", "plot", "--help"], check=True, stdout=subprocess.PIPE, text=True).stdout
-    look = said.split("Look of the figure:")[1]
+    look = said.split("Look of the figure:")[1].split("Examples:")[0]
     assert sorted(re.findall(r"--(?!no-)([a-z-]+)", look)) == sorted(name.replace("_", "-").replace("labels", "label") for name in options)

@@ -6,10 +6,10 @@ use super::document::{Node, shorten};
 use super::keys::{
     AT_START, BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, ON_JOINT, RESERVED_NAMES,
 };
-use super::material::{self, Material};
+use super::material::{self, InputsOf, Material};
 use super::names;
 use super::past::{self, PastPlan};
-use super::plan::{ElementPlan, ShapePlan};
+use super::plan::{ElementPlan, ShapePlan, SignalPlan};
 use super::reader::{Field, Read, Refused, Table, all};
 use super::refusal::RefusalKind;
 use super::robot::{Robot, checked_name, unique};
@@ -22,7 +22,7 @@ use springpot::system::RowTimes;
 use std::collections::HashMap;
 
 /// Most elements of a robot.
-const MAX_ELEMENTS: usize = 10_000;
+pub(crate) const MAX_ELEMENTS: usize = 10_000;
 /// Most numbers ∂l/∂q_b of all elements.
 const MAX_GRADIENTS: usize = 10_000_000;
 
@@ -118,7 +118,7 @@ fn named(plan: ElementPlan, name: &str) -> ElementPlan {
     ElementPlan { element: Element { name, ..plan.element }, ..plan }
 }
 
-fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, super::Place>) -> Read<&'a str> {
+pub(crate) fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, super::Place>) -> Read<&'a str> {
     let name = checked_name(field)?;
     if RESERVED_NAMES.contains(&name) {
         let message = format!("is {name:?}, which the columns of the results use");
@@ -157,6 +157,19 @@ fn element(table: &Table<'_>, shape: Shape, time: Option<&Duration>) -> Read<Ele
     Materials::read(table, shape.measure.is_rotation(), time)?.element(table, shape)
 }
 
+/// Notes what the law of an element refuses.
+pub(crate) fn check(table: &Table<'_>, material: &Material, past: &Read<(Derivative, PastPlan)>) {
+    let Material { law, parameters: Ok(parameters), .. } = material else { return };
+    let Ok((derivative, _)) = past else { return };
+    if let Err(RuleError { parameter, rule }) = (law.build)(parameters, *derivative) {
+        let table_field = table.get("parameters");
+        let node = table_field.as_ref().map_or(table.node, |field| field.node);
+        let place = node.get(&parameter).map_or(&node.place, |parameter| &parameter.place);
+        let message = format!("{}: law {:?} needs {rule}", table.what, law.name);
+        table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{parameter}`")));
+    }
+}
+
 /// All of an element but what it acts along.
 struct Materials {
     material: Material,
@@ -168,23 +181,9 @@ impl Materials {
     fn read(table: &Table<'_>, is_rotation: bool, time: Option<&Duration>) -> Read<Self> {
         let past = past::read(table);
         let scheme = table.get("scheme").map_or(Ok(None), |field| scheme(&field, time));
-        let material = material::read(table, is_rotation, time)?;
-        let materials = Self { material, past, scheme };
-        materials.check(table);
-        Ok(materials)
-    }
-
-    /// Notes what the law refuses.
-    fn check(&self, table: &Table<'_>) {
-        let Material { law, parameters: Ok(parameters), .. } = &self.material else { return };
-        let Ok((derivative, _)) = &self.past else { return };
-        if let Err(RuleError { parameter, rule }) = (law.build)(parameters, *derivative) {
-            let table_field = table.get("parameters");
-            let node = table_field.as_ref().map_or(table.node, |field| field.node);
-            let place = node.get(&parameter).map_or(&node.place, |parameter| &parameter.place);
-            let message = format!("{}: law {:?} needs {rule}", table.what, law.name);
-            table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{parameter}`")));
-        }
+        let material = material::read(table, is_rotation, InputsOf::Robot(time))?;
+        check(table, &material, &past);
+        Ok(Self { material, past, scheme })
     }
 
     fn element(self, table: &Table<'_>, Shape { measure, plan, ends }: Shape) -> Read<ElementPlan> {
@@ -194,7 +193,7 @@ impl Materials {
         let element = Element::new("", measure, 0.0, &law, &parameters, derivative).map_err(|_| Refused);
         let place = table.get("parameters").map_or(&table.node.place, |field| &field.node.place).clone();
         let scheme_place = table.get("scheme").map(|field| field.node.place.clone());
-        let (inputs, mut element) = (inputs?, element?);
+        let (inputs, mut element): (Vec<SignalPlan>, _) = (inputs?.into_iter().flatten().collect(), element?);
         element.inputs = inputs.iter().map(|input| input.signal.clone()).collect();
         element.scheme = self.scheme?;
         if let PastPlan::Held(age) = past {

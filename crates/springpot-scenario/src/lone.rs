@@ -1,37 +1,33 @@
 //! Elements without a robot: laws, parameters and inputs as a scenario writes them, for engines that have bodies of their own.
 
-use super::document::{Entry, Node, Value};
-use super::material;
-use super::past::PastPlan;
-use super::plan::{ElementPlan, SignalPlan};
-use super::reader::Context;
-use super::refusal::{Refusal, RefusalKind, Refusals, Source};
+use super::document::{Entry as Written, Node, shorten};
+use super::elements::{MAX_ELEMENTS, check, element_name};
+use super::keys::LONE;
+use super::material::{self, InputsOf, Material};
+use super::past::{self, PastPlan};
+use super::plan::SignalPlan;
+use super::reader::{Context, Read, Refused, Table, all};
+use super::refusal::{Place, Refusal, RefusalKind, Refusals};
 use super::signals::CsvCache;
 use super::urdf::UrdfCache;
 use super::{Scenario, names};
-use springpot::law::{Catalog, Input};
-use std::path::PathBuf;
+use springpot::law::{Catalog, Derivative, Entry, Network};
+use std::collections::HashMap;
 use std::sync::Arc;
-
-/// What an element may say here; all else is about a robot or about rows.
-const KEYS: [&str; 10] =
-    ["name", "law", "network", "parameters", "inputs", "derivative", "past", "shift", "thermal", "expansion"];
-
-/// What elements hang on while they are read: a joint whose coordinate is the stroke.
-const SLIDER: &str = r#"
-robot.body = [{ name = "slider", joint = { name = "x", kind = "prismatic", axis = [1, 0, 0] }, mass = 1 }]
-motion.kind = "forward"
-time = { end = 1, output_step = 1 }
-"#;
-
-/// A temperature that every law takes, K.
-const TEMPERATE: f64 = 293.15;
 
 /// An element without a robot.
 #[derive(Debug, Clone)]
 pub struct LoneElement {
-    /// All of it; what it acts along, and inputs that the text leaves out, stand for nothing.
-    pub plan: ElementPlan,
+    /// Its name.
+    pub name: String,
+    /// The entry of its law.
+    pub entry: Arc<Entry>,
+    /// The law with its parameters.
+    pub law: Network,
+    /// Which fractional derivative it takes.
+    pub derivative: Derivative,
+    /// The parameters in the order of the entry, SI.
+    pub parameters: Vec<f64>,
     /// Its inputs where the text says them as functions of time, in the order of its law.
     pub inputs: Vec<Option<SignalPlan>>,
 }
@@ -41,34 +37,15 @@ impl Scenario {
     /// `name` may be left out (`element1`, …), and so may inputs that come from elsewhere. Strokes are in m, forces in N.
     ///
     /// # Errors
-    /// As [`Scenario::cases`]; other keys; a past that needs more than x(0).
+    /// As [`Scenario::cases`]; other keys; a past that needs more than x(0); inputs that follow from columns.
     pub fn lone_elements(&self, catalog: &Catalog) -> Result<Vec<LoneElement>, Refusals> {
         let elements = self.written()?;
         let (tables, robots) = (CsvCache::default(), UrdfCache::default());
         let ctx = Context::new(catalog, &self.folder, &tables, &robots);
-        let mut given = Vec::with_capacity(elements.len());
-        let mut items = Vec::with_capacity(elements.len());
-        for (k, element) in elements.into_iter().enumerate() {
-            let law = material::law_of(&ctx, &element);
-            let inputs = law.as_ref().map_or(&[][..], |law| &law.inputs[..]);
-            let (hung, known) = hung(element, k, inputs);
-            given.push(known);
-            items.push(Arc::new(hung));
-        }
-        let cases = self.on_slider(items)?.cases(catalog)?;
-        let plans = cases.plan(0)?.elements.into_iter().zip(given);
-        let lone = plans.map(|(plan, given)| match plan.past {
-            PastPlan::OfDerivative => {
-                let inputs = plan.inputs.iter().zip(given).map(|(input, given)| given.then(|| input.clone()));
-                Ok(LoneElement { inputs: inputs.collect(), plan })
-            }
-            _ => {
-                let message = format!("element {:?} has a past that is not the whole of it here", plan.element.name);
-                let refusal = plan.place.refuse(RefusalKind::Rule, message);
-                Err(refusal.help("write past = \"held\" or past = \"unloaded\"").into())
-            }
-        });
-        lone.collect()
+        let unnamed = elements.iter().enumerate().filter(|(_, element)| element.get("name").is_none());
+        let mut seen = unnamed.map(|(k, element)| (default_name(k), element.place.clone())).collect();
+        let read = all(elements.iter().enumerate().map(|(k, element)| lone(&ctx, element, k, &mut seen)));
+        ctx.finish(read)
     }
 
     /// The tables of the elements as they are written.
@@ -90,63 +67,44 @@ impl Scenario {
                 return Err(refusal.help("write [[element]] with a law or a network and its parameters").into());
             }
         };
+        if elements.len() > MAX_ELEMENTS {
+            let message = format!("there are {} elements; at most {MAX_ELEMENTS} are taken", elements.len());
+            return Err(root.place.refuse(RefusalKind::TooLarge, message).into());
+        }
         let entries = elements.iter().flat_map(|element| element.entries().unwrap_or_default());
-        let unknown: Vec<Refusal> = entries.filter(|entry| !KEYS.contains(&entry.key.as_str())).map(refused).collect();
+        let unknown: Vec<Refusal> = entries.filter(|entry| LONE.get(&entry.key).is_none()).map(refused).collect();
         if unknown.is_empty() { Ok(elements) } else { Err(Refusals::of(unknown)) }
     }
-
-    /// A scenario of these elements alone.
-    fn on_slider(&self, items: Vec<Arc<Node>>) -> Result<Self, Refusals> {
-        let source = Arc::new(Source { name: self.source.name.clone(), text: SLIDER.into() });
-        let mut document = Node::document(&source)?;
-        let place = self.document.place.clone();
-        let node = Node { value: Value::Array(items), place: place.clone(), tag: None };
-        if let Value::Table(entries) = &mut document.value {
-            entries.push(Entry { key: "element".to_owned(), key_place: place, node: Arc::new(node) });
-        }
-        Ok(Self { document, source: self.source.clone(), folder: PathBuf::clone(&self.folder), ..self.clone() })
-    }
 }
 
-fn refused(entry: &Entry) -> Refusal {
+fn refused(entry: &Written) -> Refusal {
     let message = format!("`{}` is no key of an element without a robot", entry.key);
-    entry.key_place.refuse(RefusalKind::UnknownKey, message).help(names::suggest(&entry.key, KEYS))
+    entry.key_place.refuse(RefusalKind::UnknownKey, message).help(names::suggest(&entry.key, LONE.names()))
 }
 
-/// An element on the slider with a name and all of its inputs, and which of them it says itself.
-fn hung(element: Node, k: usize, inputs: &[Input]) -> (Node, Vec<bool>) {
-    let place = element.place.clone();
-    let entry = |key: &str, value: Value| Entry {
-        key: key.to_owned(),
-        key_place: place.clone(),
-        node: Arc::new(Node { value, place: place.clone(), tag: None }),
-    };
-    let Value::Table(mut entries) = element.value else { return (element, Vec::new()) };
-    let own = entries.iter().position(|entry| entry.key == "inputs").map(|at| entries.remove(at));
-    let said = |name: &str| own.as_ref().is_some_and(|own| own.node.get(name).is_some());
-    let given: Vec<bool> = inputs.iter().map(|input| said(&input.name)).collect();
-    let silent = inputs.iter().zip(&given).filter(|(_, given)| !**given);
-    let made = silent.map(|(Input { name, range, .. }, _)| {
-        let value = [0.0, TEMPERATE, range.low].into_iter().find(|value| range.contains(*value)).unwrap_or(range.high);
-        entry(name, Value::Number { value, integer: None })
-    });
-    let made: Vec<Entry> = made.collect();
-    match own {
-        // What is no table is refused as it stands.
-        Some(own) if own.node.entries().is_none() => entries.push(own),
-        own => {
-            let written = own.as_ref().and_then(|own| own.node.entries()).unwrap_or_default();
-            let all: Vec<Entry> = written.iter().cloned().chain(made).collect();
-            if !all.is_empty() {
-                entries.push(entry("inputs", Value::Table(all)));
-            }
-        }
+fn default_name(k: usize) -> String {
+    format!("element{}", k + 1)
+}
+
+fn lone(ctx: &Context<'_>, element: &Node, k: usize, seen: &mut HashMap<String, Place>) -> Read<LoneElement> {
+    let default = default_name(k);
+    let called = element.get("name").and_then(|name| name.text()).unwrap_or(&default);
+    let table = Table::of(ctx, element, format!("element {:?}", shorten(called)), &LONE)?;
+    let name = table.get("name").map(|field| element_name(&field, seen).map(str::to_owned));
+    let past = past::read(&table);
+    let material = material::read(&table, false, InputsOf::Lone)?;
+    check(&table, &material, &past);
+    let Material { law: entry, parameters, inputs, .. } = material;
+    let (parameters, (derivative, past)) = (parameters?, past?);
+    let law = (entry.build)(&parameters, derivative).map_err(|_| Refused)?;
+    let name = name.unwrap_or(Ok(default))?;
+    if !matches!(past, PastPlan::OfDerivative) {
+        let message = format!("element {name:?} has a past that is not the whole of it here");
+        let place = table.get("parameters").map_or(&element.place, |field| &field.node.place);
+        let refusal = place.refuse(RefusalKind::Rule, message);
+        return Err(ctx.refuse(refusal.help("write past = \"held\" or past = \"unloaded\"")));
     }
-    entries.push(entry("joint", Value::Text("x".to_owned())));
-    if !entries.iter().any(|entry| entry.key == "name") {
-        entries.push(entry("name", Value::Text(format!("element{}", k + 1))));
-    }
-    (Node { value: Value::Table(entries), place, tag: element.tag }, given)
+    Ok(LoneElement { name, entry, law, derivative, parameters, inputs: inputs? })
 }
 
 #[cfg(test)]
@@ -165,12 +123,12 @@ mod tests {
                     parameters = { E_c = 1, mu_0 = 2, mu = 3, alpha = 0.4 }\ninputs = { u = \"2*t\" }\nderivative = \"riemann-liouville\"\n\
                     [[element]]\nnetwork = \"series(spring(k), springpot(c, alpha))\"\nparameters = { k = 1, c = 2, alpha = 0.3 }\n";
         let elements = read(text).unwrap();
-        let names: Vec<_> = elements.iter().map(|element| element.plan.element.name.as_str()).collect();
+        let names: Vec<_> = elements.iter().map(|element| element.name.as_str()).collect();
         assert_eq!(names, ["element1", "mr", "element3"]);
-        assert_eq!(elements[0].plan.parameters[..3], [30.0, 20.0, 50.0]);
+        assert_eq!(elements[0].parameters[..3], [30.0, 20.0, 50.0]);
         assert!(elements[0].inputs.len() == 1 && elements[0].inputs[0].is_none());
         assert_eq!(elements[1].inputs[0].as_ref().unwrap().signal.at(1.5).value, 3.0);
-        assert!(read("law = \"spring\"\nparameters = { k = \"2 N/mm\" }\n").unwrap()[0].plan.parameters == [2000.0]);
+        assert!(read("law = \"spring\"\nparameters = { k = \"2 N/mm\" }\n").unwrap()[0].parameters == [2000.0]);
     }
 
     #[test]
@@ -186,6 +144,15 @@ mod tests {
                 "bank:3:14: element \"element1\" has a past",
             ),
             ("element = 3", "bank:1:1: there is no element"),
+            ("law = \"spring\"\npast = \"steady\"\nparameters = { k = 1 }", "bank:1:1: "),
+            (
+                "law = \"magnetorheological\"\ninputs = { u = \"2*q.x\" }\nparameters = { E_c = 1, mu_0 = 2, mu = 3, alpha = 0.4 }",
+                "bank:2:16: `u` ",
+            ),
+            (
+                "[[element]]\nname = \"element2\"\nlaw = \"spring\"\nparameters = { k = 1 }\n[[element]]\nlaw = \"spring\"\nparameters = { k = 1 }",
+                "bank:2:8: ",
+            ),
             ("element = [3]", "bank:1:12:"),
             ("title = 3\n[[element]]\nlaw = \"spring\"", "bank:1:1: `title` stands beside"),
             (

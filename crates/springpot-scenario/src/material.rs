@@ -34,11 +34,20 @@ pub(crate) struct Material {
     pub(crate) is_network: bool,
     pub(crate) files: Files,
     pub(crate) parameters: Read<Vec<f64>>,
-    pub(crate) inputs: Read<Vec<SignalPlan>>,
+    pub(crate) inputs: Read<Vec<Option<SignalPlan>>>,
+}
+
+/// What the inputs of an element may be.
+#[derive(Clone, Copy)]
+pub(crate) enum InputsOf<'t> {
+    /// Functions of time and of what is fed back, over this time, all of them said.
+    Robot(Option<&'t Duration>),
+    /// Functions of time; those that are not said come from elsewhere.
+    Lone,
 }
 
 /// Reads `law` or `network`, `parameters` and `inputs`, in the units of a rotation where it is one.
-pub(crate) fn read(table: &Table<'_>, is_rotation: bool, time: Option<&Duration>) -> Read<Material> {
+pub(crate) fn read(table: &Table<'_>, is_rotation: bool, with: InputsOf<'_>) -> Read<Material> {
     let (law, files) = match (table.get("law"), table.get("network")) {
         (Some(law), None) => (by_name(&law)?, Vec::new()),
         (None, Some(network)) => of_text(&network, table.get("parameters").as_ref())?,
@@ -56,7 +65,7 @@ pub(crate) fn read(table: &Table<'_>, is_rotation: bool, time: Option<&Duration>
     let parameters = parameters(table, &law, &lists, &names);
     let heat = heat::read(table, is_rotation)?;
     let law = if heat.is_none() { law } else { Arc::new(law.with_heat(heat).map_err(|_| Refused)?) };
-    let inputs = inputs(table, &law, &heat, time);
+    let inputs = inputs(table, &law, &heat, with);
     Ok(Material { law, is_network: table.get("network").is_some(), files, parameters, inputs })
 }
 
@@ -352,7 +361,7 @@ fn value(field: &Field<'_>, param: &Param, exponents: &dyn Fn(&str) -> Option<f6
 }
 
 /// Inputs in the order of the catalog.
-fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, time: Option<&Duration>) -> Read<Vec<SignalPlan>> {
+fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, with: InputsOf<'_>) -> Read<Vec<Option<SignalPlan>>> {
     let names: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
     let field = table.get("inputs");
     let open = field.as_ref().map(|field| {
@@ -373,7 +382,7 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, time: Option<&Dura
         law.inputs.iter().filter(|input| given.as_ref().is_none_or(|given| given.get(&input.name).is_none())).collect();
     let untold = missing.iter().filter(|input| !given.as_ref().is_some_and(|given| given.suspects(&input.name)));
     let untold: Vec<&str> = untold.map(|input| &*input.name).collect();
-    if !untold.is_empty() {
+    if !untold.is_empty() && !matches!(with, InputsOf::Lone) {
         let right: Vec<String> =
             missing.iter().map(|input| describe(&input.name, &input.unit, &input.meaning)).collect();
         let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
@@ -387,9 +396,19 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, time: Option<&Dura
         table.ctx.refuse(refusal.help(help));
     }
     all(law.inputs.iter().map(|input| {
-        let field = given.as_ref().and_then(|given| given.get(&input.name)).ok_or(Refused)?;
-        let end = time.map(|time| time.end);
-        let signal = feedback::read(&field, Wanted { unit: &input.unit, range: input.range, smooth: false, end })?;
+        let wanted = |end| Wanted { unit: &input.unit, range: input.range, smooth: false, end };
+        let (field, signal) = match (given.as_ref().and_then(|given| given.get(&input.name)), with) {
+            (Some(field), InputsOf::Robot(time)) => {
+                let signal = feedback::read(&field, wanted(time.map(|time| time.end)))?;
+                (field, signal)
+            }
+            (Some(field), InputsOf::Lone) => {
+                let signal = feedback::read_of_time(&field, wanted(None))?;
+                (field, signal)
+            }
+            (None, InputsOf::Lone) => return Ok(None),
+            (None, InputsOf::Robot(_)) => return Err(Refused),
+        };
         let shift = heat.shift.filter(|_| input.name == TEMPERATURE);
         if let Some((shift, temperature)) = shift.zip(signal.constant)
             && let Err(broken) = shift.check(temperature)
@@ -400,7 +419,7 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, time: Option<&Dura
                 None,
             ));
         }
-        Ok(signal)
+        Ok(Some(signal))
     }))
 }
 

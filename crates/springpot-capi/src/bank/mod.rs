@@ -95,7 +95,7 @@ impl Bank {
         let elements = text::elements(text, catalog)?;
         let all = elements.iter().enumerate();
         let inputs = all.flat_map(|(e, element)| (0..element.inputs.len()).map(move |i| (e, i))).collect();
-        let laws = elements.iter().map(|element| element.plan.element.law.clone()).collect();
+        let laws = elements.iter().map(|element| element.law.clone()).collect();
         let identity = state::identity(text, nodes, form);
         let energies = vec![[0.0; 3]; elements.len()];
         let bank = ElementBank::new(laws, nodes, form);
@@ -124,13 +124,13 @@ impl Bank {
 
     /// Name of an element; `None` where there is none.
     pub fn name(&self, e: usize) -> Option<&str> {
-        self.elements.get(e).map(|element| element.plan.element.name.as_str())
+        self.elements.get(e).map(|element| element.name.as_str())
     }
 
     /// Name of an input of all: `ELEMENT.INPUT`; `None` where there is none.
     pub fn input_name(&self, input: usize) -> Option<String> {
         let (e, i) = self.input(input)?;
-        let element = &self.elements[e].plan.element;
+        let element = &self.elements[e];
         Some(format!("{}.{}", element.name, element.entry.inputs[i].name))
     }
 
@@ -174,7 +174,7 @@ impl Bank {
             .map(|(element, &stroke)| {
                 let (own, others) = rest.split_at(element.inputs.len());
                 rest = others;
-                let jump = if element.plan.element.derivative == Derivative::RiemannLiouville { stroke } else { 0.0 };
+                let jump = if element.derivative == Derivative::RiemannLiouville { stroke } else { 0.0 };
                 Start { stroke, jump, inputs: own }
             })
             .collect();
@@ -294,7 +294,7 @@ impl Bank {
         if !(value.is_finite() && rate.is_finite()) {
             return refuse(format!("is {value} with the rate {rate}"));
         }
-        let range = &element.plan.element.entry.inputs[i].range;
+        let range = &element.entry.inputs[i].range;
         match range.contains(value) {
             true => Ok(InputValue { value, rate }),
             false => refuse(format!("is {value}, outside {} to {}", range.low, range.high)),
@@ -303,12 +303,11 @@ impl Bank {
 
     fn check_rules(&self, t: f64, inputs: &[InputValue]) -> Result<(), Problem> {
         let mut rest = inputs;
-        for LoneElement { plan, inputs } in &self.elements {
+        for LoneElement { name, law, inputs, .. } in &self.elements {
             let (own, others) = rest.split_at(inputs.len());
             rest = others;
-            plan.element.law.check_inputs(own).map_err(|broken| {
-                Problem::new(Status::Input, format!("element {} at t = {t} s: {broken}", plan.element.name))
-            })?;
+            law.check_inputs(own)
+                .map_err(|broken| Problem::new(Status::Input, format!("element {} at t = {t} s: {broken}", name)))?;
         }
         Ok(())
     }
@@ -322,7 +321,7 @@ impl Bank {
         for e in 0..n {
             let response = self.bank.response(e);
             if let Some(force) = response.force[..s].iter().find(|force| !force.is_finite()) {
-                let name = &self.elements[e].plan.element.name;
+                let name = &self.elements[e].name;
                 let message =
                     format!("the force of element {name} is {force}: no force fits these strokes; try a shorter step");
                 return Err(Problem::new(Status::Unsolved, message));

@@ -91,7 +91,7 @@ mod tests {
         assert_eq!(toml_of(json).unwrap(), r#"element = [{ law = "springpot", name = "a\"b" }]"#);
         let json = r#"[{ "law": "springpot", "parameters": { "c": "50 N*s^alpha/m", "alpha": 0.4 } }]"#;
         let toml = "[[element]]\nlaw = \"springpot\"\nparameters = { c = \"50 N*s^alpha/m\", alpha = 0.4 }";
-        let read = |text: &str| elements(text, &Catalog::standard()).unwrap()[0].plan.parameters.clone();
+        let read = |text: &str| elements(text, &Catalog::standard()).unwrap()[0].parameters.clone();
         assert_eq!(read(json), [50.0, 0.4]);
         assert_eq!(read(toml), read(json));
         assert_eq!(read(r#"{ "element": [{ "law": "spring", "parameters": { "k": 1e3 } }] }"#), [1000.0]);

@@ -78,6 +78,23 @@ const REST: Key = key(
 const OF_MATERIALS: &[&str] = &[BETWEEN, ON_JOINT];
 const OF_POINTS: &[&str] = &[BETWEEN, BUSHING];
 
+/// An element without a robot: what it is made of, and no more.
+pub(crate) static LONE: Keys = Keys {
+    words: "A law with its parameters and inputs, without a robot.",
+    keys: &[
+        key("name", Shape::Name(&RESERVED_NAMES), Need::Said("element1, …"), "Name of the element."),
+        LAW,
+        NETWORK,
+        PARAMETERS,
+        INPUTS,
+        DERIVATIVE,
+        PAST,
+        SHIFT_KEY,
+        THERMAL_KEY,
+        EXPANSION_KEY,
+    ],
+};
+
 pub(crate) static ELEMENT: Keys = Keys {
     words: "A material between two points of two bodies, on a joint, or the materials of a bushing.",
     keys: &[
