@@ -11,9 +11,9 @@ mod source;
 mod summary;
 
 pub use later::{AskedFigure, LaterFigure, NotDrawn};
-pub use look::DrawnLook;
-pub use panels::{Curves, DrawnCase, FigureColumn, MeasuredPoints};
-pub use summary::swept_numbers;
+pub(crate) use look::DrawnLook;
+pub(crate) use panels::{Curves, DrawnCase, FigureColumn, MeasuredPoints};
+use summary::swept_numbers;
 
 use crate::sweep::{FigureData, Layout, Outcome, Wanted};
 use crate::table::folder::Folder;

@@ -47,7 +47,7 @@ fn with_unit(name: &str, unit: &str) -> String {
 
 /// What a figure of curves shows, apart from their points.
 #[derive(Clone, Copy)]
-pub struct Curves<'a> {
+pub(crate) struct Curves<'a> {
     /// Title.
     pub title: Option<&'a str>,
     /// The abscissa.
@@ -76,7 +76,7 @@ pub struct MeasuredPoints {
 }
 
 /// A case of a figure of curves.
-pub struct DrawnCase<'p> {
+pub(crate) struct DrawnCase<'p> {
     /// Whose it is, where the figure holds several results.
     pub source: Option<String>,
     /// Sweeps that the figure does not fix, and their values: the first tells curves apart, the others make panels.
@@ -111,7 +111,7 @@ struct Cell {
 
 impl Curves<'_> {
     /// The figure of these cases. Ordinates of two units have two axes, those of more units panels below one another.
-    pub fn plot<'p>(&self, cases: impl IntoIterator<Item = DrawnCase<'p>>) -> Plot {
+    pub(crate) fn plot<'p>(&self, cases: impl IntoIterator<Item = DrawnCase<'p>>) -> Plot {
         let groups = groups(self.y);
         let mut sweeps: Vec<String> = Vec::new();
         let mut cells: Vec<Cell> = Vec::new();

@@ -51,7 +51,10 @@ fn abscissa(cases: &Cases, figure: &FigurePlan, x: &SweptAxis) -> Result<Absciss
 ///
 /// # Errors
 /// What is wrong with them, and what would be right: texts, values in several units.
-pub fn swept_numbers(path: &str, written: &[String]) -> Result<(FigureColumn, Vec<f64>), (String, &'static str)> {
+pub(super) fn swept_numbers(
+    path: &str,
+    written: &[String],
+) -> Result<(FigureColumn, Vec<f64>), (String, &'static str)> {
     let mut unit: Option<Option<(String, Unit)>> = None;
     let mut values = Vec::with_capacity(written.len());
     for written in written {

@@ -27,7 +27,8 @@ pub use metrics::CaseMetrics;
 pub use parcel::{Parcel, ParcelError, Source};
 pub(crate) use record::begun;
 pub use shard::Shard;
-pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, Total, is_within};
+pub(crate) use wanted::is_within;
+pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, Total};
 pub(crate) use wanted::{Summed, Wanted};
 
 use crate::table::disk::DiskFile;

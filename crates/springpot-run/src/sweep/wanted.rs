@@ -106,7 +106,7 @@ impl Window {
 }
 
 /// Whether a time is in a window, its rounding aside.
-pub fn is_within([from, to]: [f64; 2], t: f64) -> bool {
+pub(crate) fn is_within([from, to]: [f64; 2], t: f64) -> bool {
     let slack = 1e-9 * (to - from);
     t >= from - slack && t <= to + slack
 }
