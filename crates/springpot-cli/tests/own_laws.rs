@@ -31,6 +31,13 @@ parameters = { c_left = "3 N*s/m", c_right = 4 }
 fn main() -> ExitCode {
     match std::env::var_os(LAWS) {
         Some(file) => springpot_cli::main_from(&catalog(file.as_ref()), std::env::args_os()),
+        // As test harnesses answer who asks for the list of tests.
+        None if std::env::args().any(|argument| argument == "--list") => {
+            if !std::env::args().any(|argument| argument == "--ignored") {
+                println!("the_command_takes_laws_that_a_program_hands_in: test");
+            }
+            ExitCode::SUCCESS
+        }
         None => {
             the_command_takes_laws_that_a_program_hands_in();
             println!("the_command_takes_laws_that_a_program_hands_in ... ok");
