@@ -66,6 +66,7 @@ fn look_options() -> Vec<(&'static str, &'static str)> {
 
 /// The figure of columns of the results in a folder; `where` and `units` as `PATH=VALUE`, the look by names of options.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "each is a part of the figure")]
 fn plot_figure(
     py: Python<'_>,
     folder: PathBuf,
