@@ -172,7 +172,7 @@ fn elements(plan: &Plan, places: &Places) -> Vec<SceneElement> {
 /// Whether a part of a law is one-sided, as a contact is.
 fn lets_go(law: &Network) -> bool {
     match law {
-        Network::Leaf(leaf) => ["tension", "compression", "stop"].contains(&leaf.name()),
+        Network::Leaf(leaf) => leaf.free().is_some(),
         _ => law.parts().iter().any(lets_go),
     }
 }

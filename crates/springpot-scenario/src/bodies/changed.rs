@@ -23,11 +23,7 @@ pub(crate) fn change(field: &Field<'_>, bodies: &mut [BodySpec]) -> Read<()> {
             Some(word) => JointKind::named(word),
             None => own.map(|own| bodies[own].joint.kind),
         };
-        let reason = |key: &str| {
-            let kind = kind?;
-            let message = || format!("`{key}` of {what} has no meaning: a {} joint {}", kind.name(), kind.says());
-            CHANGED_JOINT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
-        };
+        let reason = |key: &str| CHANGED_JOINT.without_meaning(key, &what, kind?);
         let keys = (&CHANGED_JOINT, kind.unwrap_or(JointKind::Revolute).name());
         let table = Table::of_kind(item.ctx, item.node, what.clone(), keys, reason)?;
         let name = table.require("name")?;

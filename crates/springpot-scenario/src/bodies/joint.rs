@@ -34,9 +34,7 @@ pub(super) fn read(
             let why = "what a joint is built for is said by `lower`, `upper`, `velocity` and `effort`";
             return Some((RefusalKind::UnknownKey, format!("`{key}` of {what} is no key of a joint: {why}")));
         }
-        let kind = kind?;
-        let message = || format!("`{key}` of {what} has no meaning: a {} joint {}", kind.name(), kind.says());
-        JOINT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
+        JOINT.without_meaning(key, &what, kind?)
     };
     let of_kind = kind.unwrap_or(JointKind::Revolute).name();
     let table = Table::of_kind(field.ctx, field.node, what.clone(), (&JOINT, of_kind), reason)?;

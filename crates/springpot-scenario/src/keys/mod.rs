@@ -39,7 +39,9 @@ pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
 
 use super::names;
+use super::refusal::RefusalKind;
 use serde_json::{Map, Value, json};
+use springpot::model::JointKind;
 use std::borrow::Cow;
 
 /// A table of a scenario and its keys.
@@ -299,6 +301,12 @@ impl Keys {
     /// Whether `name` belongs to some kinds of the table only.
     pub(crate) fn is_of_a_kind(&self, name: &str) -> bool {
         self.get(name).is_some_and(|key| !key.only.is_empty())
+    }
+
+    /// Why the key `name` of `owner`, a joint of this kind, is none of its own, where it is of other kinds.
+    pub(crate) fn without_meaning(&self, name: &str, owner: &str, kind: JointKind) -> Option<(RefusalKind, String)> {
+        let message = || format!("`{name}` of {owner} has no meaning: a {} joint {}", kind.name(), kind.says());
+        self.is_of_a_kind(name).then(|| (RefusalKind::Rule, message()))
     }
 
     /// The key of that name.

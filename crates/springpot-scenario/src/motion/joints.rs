@@ -107,14 +107,13 @@ fn free_kind(space: Space) -> Option<JointKind> {
 
 /// Opens what is said of a joint that turns freely, a table with those of `keys` that it has; `right` is such a table.
 pub(super) fn open_free<'a>(field: &Field<'a>, keys: &'static Keys, space: Space, right: &str) -> Read<Table<'a>> {
-    let kind = free_kind(space).map_or("", JointKind::name);
+    let kind = free_kind(space);
+    let name = kind.map_or("", JointKind::name);
     if field.node.entries().is_none() {
-        return Err(field.wrong_type(&format!("a table {right}, since the joint is {kind}")));
+        return Err(field.wrong_type(&format!("a table {right}, since the joint is {name}")));
     }
-    let says = free_kind(space).map_or("", JointKind::says);
-    Table::of_kind(field.ctx, field.node, field.to_string(), (keys, kind), |key| {
-        let message = || format!("`{key}` of {field} has no meaning: a {kind} joint {says}");
-        keys.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
+    Table::of_kind(field.ctx, field.node, field.to_string(), (keys, name), |key| {
+        keys.without_meaning(key, &field.to_string(), kind?)
     })
 }
 

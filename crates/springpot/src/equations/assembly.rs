@@ -404,8 +404,10 @@ impl Equations {
         if !self.is_singular {
             return;
         }
+        let mut inputs = Vec::new();
         for (e, element) in cx.system.elements.iter().enumerate() {
-            let mut inputs = vec![InputValue::default(); element.inputs.len()];
+            inputs.clear();
+            inputs.resize(element.inputs.len(), InputValue::default());
             cx.inputs_at(e, t, &mut inputs);
             let mut sum = [0.0; 3];
             self.bank.for_each_singularity(e, &inputs, &mut |term| {

@@ -44,13 +44,16 @@ impl Radau {
             if is_whole {
                 let inputs_at = if is_end { target.end_inputs() } else { at };
                 cx.fill(at, inputs_at, None, scratch, evaluation)?;
-            } else if is_end {
+                equations.complete_node(cx, k + 1, evaluation);
+                continue;
+            }
+            if is_end {
                 cx.fill_energies(at, &stage.kinematics, equations.read(k + 1), evaluation);
             } else {
                 evaluation.t = at;
                 evaluation.joint_loss = joint_loss(&cx.system.model, &evaluation.v);
             }
-            equations.complete_node(cx, k + 1, evaluation);
+            equations.add_torques(cx, k + 1, evaluation);
         }
         for e in 0..cx.system.elements.len() {
             equations.bank.account(e);
