@@ -137,7 +137,7 @@ impl System {
             (self.model.is_one_degree() && n <= MOST_WITH_CHRISTOFFEL).then(|| christoffel(&self.model, &kinematics));
         let velocity = christoffel.as_ref().map_or_else(|| times(&coriolis, &state.v), |gamma| twice(gamma, &state.v));
         let mut losses = vec![0.0; n];
-        add_resistance(&self.model, &state.v, &mut losses);
+        add_resistance(self, &state.v, &mut losses);
         let mut equation = Equation {
             t,
             inertia: times(&mass, &state.a),

@@ -241,7 +241,7 @@ fn balance(
         elements.push(ElementAtStart { stroke, jump, gradient, springpots: Vec::new() });
     }
     let mut residual = pulls.inverse_dynamics(model, [q, v, a]);
-    add_smooth_resistance(model, v, &mut residual);
+    add_smooth_resistance(system, v, &mut residual);
     let mut drives = vec![0.0; model.nv()];
     for (k, signal) in forward.forces(model) {
         drives[k] = force_at(cx, k, signal, t)?;

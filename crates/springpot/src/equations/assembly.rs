@@ -214,7 +214,7 @@ impl Equations {
             forces.push(&element.measure, Pull::constant(nodes.force));
         }
         forces.inverse_dynamics_derivatives_into(model, kinematics, at.a, workspace, slopes);
-        add_tangents(model, at.v, &mut slopes.d_v);
+        add_tangents(cx.system, at.v, &mut slopes.d_v);
         for (e, (element, nodes)) in cx.system.elements.iter().zip(&mut self.elements).enumerate() {
             let [reading, ..] = &mut nodes.readings;
             element.measure.read_into(model, kinematics, &mut nodes.gradient, reading);
@@ -355,7 +355,7 @@ impl Equations {
             forces.push(&element.measure, Pull::constant(self.bank.response(e).force[i - 1]));
         }
         forces.inverse_dynamics_into(model, kinematics, (at.q, at.a), workspace, tau);
-        add_smooth_resistance(model, at.v, tau);
+        add_smooth_resistance(cx.system, at.v, tau);
         self.friction.add_sliding(tau);
         let from = residual.len();
         residual.extend(self.free.iter().zip(&self.driven[i - 1]).map(|(&k, driven)| tau[k] - driven));

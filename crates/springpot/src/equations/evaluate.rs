@@ -123,7 +123,7 @@ impl Context<'_> {
         );
         evaluation.kinetic = kinetic_energy(&self.system.model, kinematics);
         evaluation.potential = potential_energy(&self.system.model, kinematics);
-        evaluation.joint_loss = add_resistance(&self.system.model, &evaluation.v, &mut evaluation.rigid);
+        evaluation.joint_loss = add_resistance(self.system, &evaluation.v, &mut evaluation.rigid);
         for (e, (element, state)) in self.system.elements.iter().zip(&mut evaluation.elements).enumerate() {
             element.measure.read_into(&self.system.model, kinematics, &mut state.gradient, &mut state.reading);
             element.check_direction(t, &state.reading)?;
@@ -184,7 +184,7 @@ impl Context<'_> {
         evaluation.t = t;
         evaluation.kinetic = kinetic_energy(&self.system.model, kinematics);
         evaluation.potential = potential_energy(&self.system.model, kinematics);
-        evaluation.joint_loss = joint_loss(&self.system.model, &evaluation.v);
+        evaluation.joint_loss = joint_loss(self.system, &evaluation.v);
         let states = self.system.elements.iter().zip(&mut evaluation.elements);
         for ((element, state), (reading, inputs)) in states.zip(elements) {
             state.reading.clone_from(reading);

@@ -210,10 +210,10 @@ impl OneNode {
     }
 
     /// What is missing of τ at the node, in the order of the velocities `free`.
-    pub(crate) fn residual(&mut self, model: &Model, free: &[usize], node: &Place, a: &[f64], residual: &mut [f64]) {
+    pub(crate) fn residual(&mut self, cx: Context, free: &[usize], node: &Place, a: &[f64], residual: &mut [f64]) {
         let Self { forces, workspace, tau, driven, .. } = self;
-        forces.inverse_dynamics_into(model, &node.kinematics, (&node.q, a), workspace, tau);
-        add_smooth_resistance(model, &node.v, tau);
+        forces.inverse_dynamics_into(&cx.system.model, &node.kinematics, (&node.q, a), workspace, tau);
+        add_smooth_resistance(cx.system, &node.v, tau);
         for ((r, &k), driven) in residual.iter_mut().zip(free).zip(&*driven) {
             *r = driven - tau[k];
         }
@@ -223,16 +223,16 @@ impl OneNode {
     /// of the step to the node, s.
     pub(crate) fn linearise(
         &mut self,
-        model: &Model,
+        cx: Context,
         bank: &ElementBank,
         node: &Place,
         a: &[f64],
         kappa: f64,
     ) -> &RneaDerivatives {
-        let ends_at_node = self.ends_at_node();
+        let (ends_at_node, model) = (self.ends_at_node(), &cx.system.model);
         let Self { forces, workspace, slopes, elements, .. } = self;
         forces.inverse_dynamics_derivatives_into(model, &node.kinematics, a, workspace, slopes);
-        add_secants(model, &node.v, &mut slopes.d_v);
+        add_secants(cx.system, &node.v, &mut slopes.d_v);
         if !ends_at_node {
             // ∂F/∂a = (κ² ∂F/∂x + κ ∂F/∂x') ∂y/∂q, taken at the end; added to the place of κ² K.
             for (e, step) in elements.iter().enumerate() {

@@ -2,6 +2,7 @@
 //! d·v + f·sign(v) where friction sticks ([`FrictionLaw`]).
 
 use crate::model::{FrictionLaw, Model};
+use crate::system::System;
 
 /// A joint that resists.
 struct Resisting {
@@ -44,9 +45,9 @@ fn sign(v: f64) -> f64 {
 /// Adds what the joints ask of the actuators at the velocities `v` (nv) to `tau` (nv); returns the power that they take, W.
 ///
 /// Friction that sticks is f·sign(v) here, 0 at rest: what holds a joint there is no matter of its velocity.
-pub(crate) fn add_resistance(model: &Model, v: &[f64], tau: &mut [f64]) -> f64 {
+pub(crate) fn add_resistance(system: &System, v: &[f64], tau: &mut [f64]) -> f64 {
     let mut power = 0.0;
-    for joint in resisting(model, v) {
+    for joint in resisting(&system.model, v) {
         let resistance = joint.resistance();
         tau[joint.index] += joint.ratio * resistance;
         power += resistance * joint.speed;
@@ -55,13 +56,13 @@ pub(crate) fn add_resistance(model: &Model, v: &[f64], tau: &mut [f64]) -> f64 {
 }
 
 /// The power that damping and friction of the joints take at the velocities `v` (nv), W.
-pub(crate) fn joint_loss(model: &Model, v: &[f64]) -> f64 {
-    resisting(model, v).map(|joint| joint.resistance() * joint.speed).sum()
+pub(crate) fn joint_loss(system: &System, v: &[f64]) -> f64 {
+    resisting(&system.model, v).map(|joint| joint.resistance() * joint.speed).sum()
 }
 
 /// [`add_resistance`] without the friction that sticks.
-pub(crate) fn add_smooth_resistance(model: &Model, v: &[f64], tau: &mut [f64]) {
-    for Resisting { index, ratio, speed, damping, friction, law } in resisting(model, v) {
+pub(crate) fn add_smooth_resistance(system: &System, v: &[f64], tau: &mut [f64]) {
+    for Resisting { index, ratio, speed, damping, friction, law } in resisting(&system.model, v) {
         let resistance = match law {
             FrictionLaw::Smooth { speed: width } => damping * speed + friction * (speed / width).tanh(),
             FrictionLaw::Sticking => damping * speed,
@@ -71,9 +72,9 @@ pub(crate) fn add_smooth_resistance(model: &Model, v: &[f64], tau: &mut [f64]) {
 }
 
 /// Adds the derivatives of [`add_smooth_resistance`] by v to ∂τ/∂v (nv × nv).
-pub(crate) fn add_tangents(model: &Model, v: &[f64], d_v: &mut [f64]) {
-    let n = model.nv();
-    for Resisting { index, ratio, speed, damping, friction, law } in resisting(model, v) {
+pub(crate) fn add_tangents(system: &System, v: &[f64], d_v: &mut [f64]) {
+    let n = system.model.nv();
+    for Resisting { index, ratio, speed, damping, friction, law } in resisting(&system.model, v) {
         let slope = match law {
             FrictionLaw::Smooth { speed: width } => {
                 let sign = (speed / width).tanh();
@@ -89,9 +90,9 @@ pub(crate) fn add_tangents(model: &Model, v: &[f64], d_v: &mut [f64]) {
 ///
 /// Where friction brings a joint to rest within a step, tangents lead to and fro across rest; secants, which are never smaller,
 /// lead towards it from one side, so that an iteration cut short never makes energy. Friction that sticks has no part in them.
-pub(crate) fn add_secants(model: &Model, v: &[f64], d_v: &mut [f64]) {
-    let n = model.nv();
-    for Resisting { index, ratio, speed, damping, friction, law } in resisting(model, v) {
+pub(crate) fn add_secants(system: &System, v: &[f64], d_v: &mut [f64]) {
+    let n = system.model.nv();
+    for Resisting { index, ratio, speed, damping, friction, law } in resisting(&system.model, v) {
         let slope = match law {
             FrictionLaw::Smooth { speed: width } => {
                 let share = speed / width;

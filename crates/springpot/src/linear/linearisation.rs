@@ -75,7 +75,7 @@ impl System {
             free.iter().for_each(|&k| left_over[k] = statics.holding[k] - torques[k]);
         }
         let mut damping = vec![0.0; model.nv() * model.nv()];
-        crate::equations::resistance::add_tangents(model, &vec![0.0; model.nv()], &mut damping);
+        crate::equations::resistance::add_tangents(self, &vec![0.0; model.nv()], &mut damping);
         let sticks = |&j: &usize| model.friction()[j] > 0.0 && model.friction_laws()[j] == FrictionLaw::Sticking;
         let sticking = (0..model.joint_count()).filter(sticks).map(|j| model.joint_names()[j].clone()).collect();
         let linear = |(element, at): (&crate::elements::Element, ElementAtRest)| LinearElement {

@@ -102,7 +102,7 @@ impl Fixed {
                 *v = from + c * (to - from);
             }
             drive(cx, step.equations.forward(), at, evaluation);
-            evaluation.joint_loss = joint_loss(&step.model, &evaluation.v);
+            evaluation.joint_loss = joint_loss(cx.system, &evaluation.v);
         }
         let end = &mut recorder.evaluations[STAGES];
         end.q.copy_from_slice(&step.end.q);

@@ -111,7 +111,7 @@ impl OneStage {
         self.place(kappa, h);
         self.equations.answer(cx, bank, [&self.stage, &self.end], h)?;
         for _ in 0..ITERATIONS {
-            self.improve(bank, kappa, h)?;
+            self.improve(cx, bank, kappa, h)?;
             self.place(kappa, h);
             self.equations.answer(cx, bank, [&self.stage, &self.end], h)?;
         }
@@ -170,13 +170,13 @@ impl OneStage {
     }
 
     /// One Newton iteration with all derivatives taken anew: (M + κ D + κ² K) Δa = −residual.
-    fn improve(&mut self, bank: &ElementBank, kappa: f64, h: f64) -> Result<(), RunError> {
+    fn improve(&mut self, cx: Context, bank: &ElementBank, kappa: f64, h: f64) -> Result<(), RunError> {
         let (n, free) = (self.model.nv(), &self.free);
         if free.is_empty() {
             return Ok(());
         }
-        self.equations.residual(&self.model, free, &self.stage, &self.a, &mut self.residual);
-        let slopes = self.equations.linearise(&self.model, bank, &self.stage, &self.a, kappa);
+        self.equations.residual(cx, free, &self.stage, &self.a, &mut self.residual);
+        let slopes = self.equations.linearise(cx, bank, &self.stage, &self.a, kappa);
         let count = free.len();
         let regular = self.newton.factor(count, |matrix| {
             for (line, &row) in matrix.chunks_exact_mut(count).zip(free) {

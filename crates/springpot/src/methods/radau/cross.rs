@@ -51,7 +51,7 @@ impl Radau {
                 cx.fill_energies(at, &stage.kinematics, equations.read(k + 1), evaluation);
             } else {
                 evaluation.t = at;
-                evaluation.joint_loss = joint_loss(&cx.system.model, &evaluation.v);
+                evaluation.joint_loss = joint_loss(cx.system, &evaluation.v);
             }
             equations.add_torques(cx, k + 1, evaluation);
         }
