@@ -146,11 +146,11 @@ fn told(n: u32) -> ([f64; 12], [f64; 12], [[f64; 4]; 2]) {
 /// The same elements in a bank of the engine.
 fn engine() -> ElementBank {
     let caputo = Derivative::Caputo;
-    let by_name = |name: &str, values: &[f64]| (Catalog::standard().get(name).unwrap().build)(values, caputo).unwrap();
+    let by_name = |name: &str, values: &[f64]| Catalog::standard().get(name).unwrap().build(values, caputo).unwrap();
     let mount = NetworkText::parse("parallel(spring(k_e), series(spring(k_m), springpot(c, alpha)))").unwrap().entry();
     let laws = vec![
         by_name("springpot", &[50.0, 0.4]),
-        (mount.build)(&[2000.0, 5000.0, 300.0, 0.6], caputo).unwrap(),
+        mount.build(&[2000.0, 5000.0, 300.0, 0.6], caputo).unwrap(),
         by_name("magnetorheological", &[50.0, 50.0, 200.0, 0.8]),
     ];
     let mut bank = ElementBank::new(laws, Nodes::Radau, Form::Rates);

@@ -129,7 +129,7 @@ fn law(name: &str, given: &[String], catalog: &Catalog) -> Result<Tangent, Refus
         return refused(format!("--law {name}: there is no such law"), &help);
     };
     let values = parameters(entry, given)?;
-    let built = (entry.build)(&values, Derivative::Caputo);
+    let built = entry.build(&values, Derivative::Caputo);
     let law = match built {
         Ok(law) if law.is_linear() && entry.inputs.is_empty() => law,
         Ok(_) => {

@@ -52,7 +52,7 @@ impl Part {
                 trials.push(Trial { name, value });
             }
         }
-        let network = (law.build)(&values, Derivative::Caputo).ok()?;
+        let network = law.build(&values, Derivative::Caputo).ok()?;
         Some(part(&network, law, &trials))
     }
 

@@ -161,7 +161,7 @@ fn element(table: &Table<'_>, shape: Shape, time: Option<&Duration>) -> Read<Ele
 pub(crate) fn check(table: &Table<'_>, material: &Material, past: &Read<(Derivative, PastPlan)>) {
     let Material { law, parameters: Ok(parameters), .. } = material else { return };
     let Ok((derivative, _)) = past else { return };
-    if let Err(RuleError { parameter, rule }) = (law.build)(parameters, *derivative) {
+    if let Err(RuleError { parameter, rule }) = law.build(parameters, *derivative) {
         let table_field = table.get("parameters");
         let node = table_field.as_ref().map_or(table.node, |field| field.node);
         let place = node.get(&parameter).map_or(&node.place, |parameter| &parameter.place);

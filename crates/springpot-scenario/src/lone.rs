@@ -96,7 +96,7 @@ fn lone(ctx: &Context<'_>, element: &Node, k: usize, seen: &mut HashMap<String, 
     check(&table, &material, &past);
     let Material { law: entry, parameters, inputs, .. } = material;
     let (parameters, (derivative, past)) = (parameters?, past?);
-    let law = (entry.build)(&parameters, derivative).map_err(|_| Refused)?;
+    let law = entry.build(&parameters, derivative).map_err(|_| Refused)?;
     let name = name.unwrap_or(Ok(default))?;
     if !matches!(past, PastPlan::OfDerivative) {
         let message = format!("element {name:?} has a past that is not the whole of it here");

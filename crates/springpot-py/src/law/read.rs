@@ -222,7 +222,7 @@ impl Description {
             Value::Points(..) => None,
         });
         let values: Vec<Vec<f64>> = numbers.collect();
-        let built = (entry.build)(&values.concat(), self.derivative);
+        let built = entry.build(&values.concat(), self.derivative);
         let network = built.map_err(|broken| {
             let parameter: &Cow<'_, str> = &broken.parameter;
             value_error(format!("the law demands {} ({parameter})", broken.rule))

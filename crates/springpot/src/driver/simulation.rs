@@ -6,8 +6,10 @@ use super::state::SimulationState;
 use super::time_loop::Driver;
 
 use crate::collocation::STAGES;
+use crate::equations::Variation;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
+use crate::observe::Quantity;
 use crate::observe::Snapshot;
 use crate::system::error::RunError;
 use crate::system::row_times::RowTimes;
@@ -210,6 +212,22 @@ impl Simulation {
     /// [`RunError`] where an input breaks a rule of its law.
     pub fn snapshot(&mut self) -> Result<Snapshot, RunError> {
         self.interpolate(self.t())
+    }
+
+    /// The derivative of a quantity at a time of the last step by each parameter of [`Settings::sensitivity`]; NaN where it is unknown.
+    ///
+    /// # Errors
+    /// As of [`Self::interpolate`].
+    pub fn derivatives(&mut self, t: f64, quantity: Quantity) -> Result<Vec<f64>, RunError> {
+        let mut snapshot = Snapshot::new(&self.system);
+        self.check_time(t, self.t_before(), self.t())?;
+        while self.driver.is_disturbed() {
+            self.cross()?;
+        }
+        let theta = self.driver.read(self.events.cx(&self.system), t, 0, &mut snapshot)?;
+        let variation = self.driver.vary(theta, &snapshot);
+        let value = |variation: &Variation, p: usize| variation.value(quantity, p, &snapshot).unwrap_or(f64::NAN);
+        Ok(variation.map_or_else(Vec::new, |all| (0..all.count()).map(|p| value(all, p)).collect()))
     }
 
     /// All that is known at a time of the last step, from [`Self::t_before`] to [`Self::t`].

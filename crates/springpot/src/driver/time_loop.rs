@@ -6,11 +6,13 @@ use super::roots::try_step;
 use crate::account::recorder::Recorder;
 use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
+use crate::equations::Variation;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, Sampler};
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
+use crate::sensitivity::SensitivityError;
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
 use crate::system::Motion;
@@ -110,9 +112,34 @@ impl Driver {
         let first = self.solver.stepper_mut().start(cx, &mut self.recorder, &self.agenda)?;
         cx.system.check_definite(&self.recorder.evaluations[0].q)?;
         self.recorder.open(cx, first)?;
+        self.begin_variation(cx)?;
         self.h = self.aligned(first);
         self.planned = self.h;
         Ok(())
+    }
+
+    /// What parameters change at t = 0, where any are asked for.
+    fn begin_variation(&mut self, cx: Context) -> Result<(), RunError> {
+        let Recorder { settings, equations, variation, .. } = &mut self.recorder;
+        let Some(by) = &settings.sensitivity else { return Ok(()) };
+        let Some(origin) = self.solver.stepper().origin() else {
+            return Err(SensitivityError::Unknown {
+                what: "steps of one size, and of motions given in advance".into(),
+            }
+            .into());
+        };
+        let mut begun = Variation::new(cx.system, by)?;
+        begun.begin(equations, origin)?;
+        *variation = Some(Box::new(begun));
+        Ok(())
+    }
+
+    /// What parameters change on the far side of what was crossed.
+    fn settle_variation(&mut self) {
+        let Recorder { equations, variation, .. } = &mut self.recorder;
+        if let (Some(variation), Some(origin)) = (variation, self.solver.stepper().origin()) {
+            variation.settle(equations, origin);
+        }
     }
 
     /// What sampled laws said last.
@@ -257,6 +284,7 @@ impl Driver {
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
         self.solver.stepper_mut().cross(cx, &mut self.recorder, after)?;
+        self.settle_variation();
         self.t = after;
         // A little further, since a sign is 0 while it turns.
         let past = if self.has_fixed_steps() { after } else { cx.system.past_turns(after) };
@@ -344,6 +372,7 @@ impl Driver {
                 Trial::Accepted { step, next } => {
                     self.check_definite(cx, &step)?;
                     self.steps += 1;
+                    self.solver.stepper_mut().vary(cx, &mut self.recorder, &step)?;
                     if let Some(size) = self.solver.stepper().fixed_step() {
                         self.tick += usize::from(step.to >= self.tick_time(size) * (1.0 - TICK));
                     }
@@ -473,6 +502,18 @@ impl Driver {
         }
         self.recorder.read(cx, Some(theta), row, snapshot)?;
         Ok(Some(theta))
+    }
+
+    /// What parameters change at the row that was read into `snapshot` last, at θ of the step at hand or between two.
+    pub(super) fn vary(&mut self, theta: Option<f64>, snapshot: &Snapshot) -> Option<&Variation> {
+        let Self { solver, recorder: Recorder { equations, variation, .. }, step, .. } = self;
+        let variation = variation.as_deref_mut()?;
+        match (theta, step) {
+            (Some(theta), Some(step)) => solver.stepper_mut().vary_within(variation, theta, step.size),
+            _ => variation.take_start(),
+        }
+        variation.read(equations, theta, snapshot);
+        Some(variation)
     }
 
     /// How stiff element `e` is over a step, N/m or N·m/rad; 0 where it takes no steps.

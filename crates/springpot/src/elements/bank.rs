@@ -1,5 +1,7 @@
 //! All elements of a system, step by step.
 
+mod variation;
+
 use crate::collocation::Nodes;
 use crate::collocation::{MAX_NODES, STAGES};
 use crate::fractional::{Form, KernelError};

@@ -60,7 +60,7 @@ impl Element {
             name: name.into(),
             measure: measure.into(),
             rest,
-            law: (entry.build)(parameters, derivative)?,
+            law: entry.build(parameters, derivative)?,
             entry: Arc::clone(entry),
             inputs: Vec::new(),
             derivative,

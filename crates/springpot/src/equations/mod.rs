@@ -23,6 +23,7 @@ mod solve;
 mod state;
 mod steady;
 mod tangent;
+mod variation;
 pub(crate) mod zero;
 
 pub(crate) use accelerations::{ElementAtStart, solve_mass};
@@ -36,3 +37,4 @@ pub(crate) use scale::Scale;
 pub(crate) use solve::Solve;
 pub(crate) use state::EquationsState;
 pub use steady::SteadyError;
+pub(crate) use variation::Variation;

@@ -2,6 +2,7 @@
 
 use super::network::Network;
 use super::rule::RuleError;
+use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use std::borrow::Cow;
 use std::fmt;
@@ -110,8 +111,8 @@ pub(super) fn damping() -> Param {
 }
 
 /// A law without any positive coefficient is no material.
-pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Result<(), RuleError> {
-    if parameters.iter().any(|(_, value)| *value > 0.0) {
+pub(super) fn at_least_one_positive(parameters: &[(&'static str, Dual)]) -> Result<(), RuleError> {
+    if parameters.iter().any(|(_, number)| number.value > 0.0) {
         return Ok(());
     }
     let names: Vec<_> = parameters.iter().map(|(name, _)| *name).collect();
@@ -125,9 +126,9 @@ pub(super) fn at_least_one_positive(parameters: &[(&'static str, f64)]) -> Resul
 /// What a catalog row builds.
 pub type Built = Result<Network, RuleError>;
 
-/// How a catalog row builds its law: from parameter values (SI, in the order of the row, each within its range), and the derivative that
-/// its springpots take.
-pub type Build = Arc<dyn Fn(&[f64], Derivative) -> Built + Send + Sync>;
+/// How a catalog row builds its law: from the numbers of its parameters (SI, in the order of the row, each within its range), and the derivative
+/// that its springpots take. They carry their derivatives into the numbers of its leaves, whatever it makes of them.
+pub type Build = Arc<dyn Fn(&[Dual], Derivative) -> Built + Send + Sync>;
 
 /// One law of the catalog. It owns all it says, so that it can come from a file, a network or another language as well.
 ///
@@ -148,7 +149,7 @@ pub type Build = Arc<dyn Fn(&[f64], Derivative) -> Built + Send + Sync>;
 /// let catalog = Catalog::standard().with(entry);
 /// let springs = catalog.get("springs").expect("the law that was added");
 /// assert_eq!(springs.equation, "F = (k_left + k_right)·x");
-/// assert!((springs.build)(&[3.0, 4.0], Derivative::Caputo).is_ok());
+/// assert!(springs.build(&[3.0, 4.0], Derivative::Caputo).is_ok());
 /// ```
 #[derive(Clone)]
 pub struct Entry {
@@ -167,6 +168,15 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// The law of these values, in the order of the parameters.
+    ///
+    /// # Errors
+    /// The rule that they break.
+    pub fn build(&self, values: &[f64], derivative: Derivative) -> Built {
+        let numbers: Vec<Dual> = values.iter().map(|value| Dual::from(*value)).collect();
+        (self.build)(&numbers, derivative)
+    }
+
     /// The law where its lists have `length` values: in place of a list `k` it has the parameters `k.0`, `k.1`, …
     pub fn with_lists(&self, length: usize) -> Self {
         let unfold = |param: &Param| match param.is_list {

@@ -162,7 +162,7 @@ impl Model {
         let [k, c, alpha] = ["k", "c", "alpha"].map(value);
         let free = [k, c, alpha].map(|value| value.is_some());
         let form = Self::ALL.into_iter().find(|form| form.free() == free && law.inputs.is_empty())?;
-        let network = (law.build)(&values, Derivative::Caputo).ok()?;
+        let network = law.build(&values, Derivative::Caputo).ok()?;
         let spring = k.map(|coefficient| Term { coefficient, order: 0.0 });
         let springpot = c.map(|coefficient| Term { coefficient, order: alpha.unwrap_or(1.0) });
         let mut found = sum(&network)?;

@@ -3,6 +3,7 @@
 use super::catalog::{Built, Entry, Input, Range};
 use super::network::Network;
 use super::rule::RuleError;
+use crate::dual::Dual;
 use std::sync::Arc;
 
 /// Temperatures of materials, K.
@@ -218,7 +219,7 @@ impl Entry {
             (Some(_), None) | (None, Some(_)) => {}
         }
         let (build, count) = (Arc::clone(&self.build), self.inputs.len());
-        let heated = move |values: &[f64], derivative| -> Built {
+        let heated = move |values: &[Dual], derivative| -> Built {
             let law = build(values, derivative)?;
             let one_clock = "to have no driver or circuit, which keeps a clock of its own, where temperature shifts it";
             RuleError::unless(heat.shift.is_none() || !law.has_clock(), one_clock, "shift")?;

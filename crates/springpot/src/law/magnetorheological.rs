@@ -3,6 +3,7 @@
 use super::catalog::{Entry, Input, Param, Range, alpha, at_least_one_positive, carrier};
 use super::leaf::{BoucWen, Coefficient, bouc_wen};
 use super::network::Network;
+use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use std::sync::Arc;
 
@@ -40,7 +41,8 @@ pub(super) fn magnetorheological_bouc_wen() -> Entry {
                 unreachable!("values follow params")
             };
             at_least_one_positive(&[("E_c", e_c), ("mu_0", mu_0), ("mu", mu), ("alpha_h", alpha_h)])?;
-            let hysteresis = Network::leaf(BoucWen::new(alpha_h, a, beta, gamma, n)?);
+            let hysteresis = BoucWen::new(alpha_h.value, a.value, beta.value, gamma.value, n.value)?;
+            let hysteresis = Network::leaf(hysteresis);
             Ok(Network::parallel(parts([e_c, mu_0, mu, alpha], derivative).into_iter().chain([hysteresis])))
         }),
     }
@@ -59,7 +61,7 @@ fn inputs() -> Vec<Input> {
     vec![Input::new("u", "V", "voltage of the coil", Range::ANY)]
 }
 
-fn parts([e_c, mu_0, mu, alpha]: [f64; 4], derivative: Derivative) -> [Network; 2] {
+fn parts([e_c, mu_0, mu, alpha]: [Dual; 4], derivative: Derivative) -> [Network; 2] {
     let coefficient = Coefficient {
         constant: mu_0,
         slope: mu,
@@ -77,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_negative_coefficient_names_the_rule() {
-        let law = (magnetorheological().build)(&[10.0, 50.0, 10.0, 0.5], Derivative::Caputo).unwrap();
+        let law = magnetorheological().build(&[10.0, 50.0, 10.0, 0.5], Derivative::Caputo).unwrap();
         let at = |u: f64| law.check_inputs(&[InputValue { value: u, rate: 0.0 }]);
         assert!(at(-5.0).is_ok());
         let broken = at(-7.0).unwrap_err().to_string();

@@ -16,7 +16,7 @@
 //! let catalog = Catalog::standard();
 //! let entry = catalog.get("fractional-kelvin-voigt").expect("a law that comes with Springpot");
 //! assert_eq!(entry.equation, "F = k·x + c·D^alpha x");
-//! let law = (entry.build)(&[100.0, 50.0, 0.5], Derivative::Caputo)?;
+//! let law = entry.build(&[100.0, 50.0, 0.5], Derivative::Caputo)?;
 //! let state = law.begin(&Start { stroke: 0.02, jump: 0.02, inputs: &[] })?;
 //! let at = Point { t: 0.0, stroke: 0.02, rate: 0.1, inputs: &[] };
 //! assert_eq!(law.now(&at, &state).force(), 100.0 * 0.02); // D^½ x = 0 at the start
@@ -32,6 +32,7 @@ pub mod past;
 pub mod state;
 pub mod step;
 pub mod tangent;
+pub mod variation;
 
 mod damper;
 mod kelvin_voigt;

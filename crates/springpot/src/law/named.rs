@@ -4,6 +4,7 @@ use super::catalog::{Entry, Param, Range};
 use super::network::Network;
 use super::rule::RuleError;
 use super::written::NetworkText;
+use crate::dual::Dual;
 use std::sync::Arc;
 
 /// A law as a row: the network behind its name.
@@ -144,10 +145,10 @@ fn prony() -> Entry {
         build: Arc::new(|values, _| {
             let (k_e, rest) = values.split_first().expect("values follow params");
             let (stiffnesses, times) = rest.split_at(rest.len() / 2);
-            let terms = stiffnesses.iter().zip(times).filter(|(k, _)| **k > 0.0);
-            let term = |(k, tau): (&f64, &f64)| Network::series([Network::spring(*k), Network::dashpot(k * tau)]);
+            let terms = stiffnesses.iter().zip(times).filter(|(k, _)| k.value > 0.0);
+            let term = |(k, tau): (&Dual, &Dual)| Network::series([Network::spring(*k), Network::dashpot(*k * *tau)]);
             let parts: Vec<Network> =
-                (*k_e > 0.0).then(|| Network::spring(*k_e)).into_iter().chain(terms.map(term)).collect();
+                (k_e.value > 0.0).then(|| Network::spring(*k_e)).into_iter().chain(terms.map(term)).collect();
             if parts.is_empty() {
                 return Err(RuleError { rule: "k_e or one of k to be positive".into(), parameter: "k_e".into() });
             }

@@ -20,7 +20,9 @@ use super::step::{
     Electric, InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term,
 };
 use super::tangent::AtRest;
+use super::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::collocation::MAX_NODES;
+use crate::dual::Dual;
 use crate::fractional::KernelError;
 use crate::fractional::Kind as Derivative;
 use num_complex::Complex64;
@@ -152,28 +154,28 @@ impl Network {
     }
 
     /// F = k·x, k in N/m.
-    pub fn spring(stiffness: f64) -> Self {
-        Self::leaf(Spring { stiffness })
+    pub fn spring(stiffness: impl Into<Dual>) -> Self {
+        Self::leaf(Spring { stiffness: stiffness.into() })
     }
 
     /// F = c·x', c in N·s/m.
-    pub fn dashpot(viscosity: f64) -> Self {
-        Self::leaf(Dashpot { viscosity })
+    pub fn dashpot(viscosity: impl Into<Dual>) -> Self {
+        Self::leaf(Dashpot { viscosity: viscosity.into() })
     }
 
     /// F = c·D^alpha x, 0 ≤ alpha ≤ 1, c in N·s^alpha/m.
-    pub fn springpot(coefficient: f64, alpha: f64, derivative: Derivative) -> Self {
+    pub fn springpot(coefficient: impl Into<Dual>, alpha: impl Into<Dual>, derivative: Derivative) -> Self {
         Self::varying_springpot(Coefficient::constant(coefficient), alpha, derivative)
     }
 
     /// F = c·D^alpha x with a coefficient that follows an input.
-    pub fn varying_springpot(coefficient: Coefficient, alpha: f64, derivative: Derivative) -> Self {
-        Self::leaf(Springpot { coefficient, alpha, derivative })
+    pub fn varying_springpot(coefficient: Coefficient, alpha: impl Into<Dual>, derivative: Derivative) -> Self {
+        Self::leaf(Springpot { coefficient, alpha: alpha.into(), derivative })
     }
 
     /// F = −gain·(input − reference), the input counted from 0.
-    pub fn source(gain: f64, reference: f64, input: usize) -> Self {
-        Self::leaf(Source { gain, reference, input })
+    pub fn source(gain: impl Into<Dual>, reference: impl Into<Dual>, input: usize) -> Self {
+        Self::leaf(Source { gain: gain.into(), reference: reference.into(), input })
     }
 
     /// Parts side by side: one stroke, forces add. None: no force.
@@ -245,6 +247,51 @@ impl Network {
         let mut state = State::default();
         self.ask().begin(start, &mut state)?;
         Ok(state)
+    }
+
+    /// The numbers of its leaves, in their order, with their derivatives where it was built of such.
+    pub fn numbers(&self) -> Vec<Dual> {
+        let mut numbers = Vec::new();
+        self.ask().for_each_leaf(&mut |leaf| {
+            leaf.numbers(&mut |number| numbers.push(number));
+        });
+        numbers
+    }
+
+    /// The part of it of which no derivative by a parameter is known, as it is called.
+    pub fn without_derivatives(&self) -> Option<String> {
+        self.ask().without_derivatives()
+    }
+
+    /// What parameters change of its forces at the nodes of a step where strokes and rates there stay, node by node, a block for each
+    /// ([`super::Leaf::vary`]).
+    pub(crate) fn vary(
+        &self,
+        step: &Step,
+        state: &State,
+        told: &StepVariation,
+        own: &LawVariation,
+        forces: &mut [f64],
+    ) {
+        forces.fill(0.0);
+        self.ask().vary(step, &mut state.view(), told, &mut own.view(), forces);
+    }
+
+    /// Takes what changes of an accepted step, which is not in the state yet, into what changes of that.
+    pub(crate) fn commit_variation(&self, step: &Step, state: &State, told: &StepVariation, own: &mut LawVariation) {
+        self.ask().commit_variation(step, &mut state.view(), told, &mut own.view_mut());
+    }
+
+    /// Adds what parameters change of it at one time: within a step, or between two.
+    pub(crate) fn vary_at(
+        &self,
+        (when, at): (When, &Point),
+        state: &State,
+        told: &PointVariation,
+        own: &LawVariation,
+        sum: &mut ObservationVariation,
+    ) {
+        self.ask().vary_at((when, at), &mut state.view(), told, &mut own.view(), sum);
     }
 
     /// Whether a state can be one of this law.

@@ -5,8 +5,9 @@ use super::leaf::{Hysteresis, Stack, VoltageDrop, hysteresis};
 use super::network::Network;
 use super::prandtl_ishlinskii::PrandtlIshlinskii;
 use super::rule::RuleError;
+use crate::dual::{Dual, Real};
 use crate::fractional::Kind as Derivative;
-use crate::fractional::gamma::gamma;
+use crate::fractional::gamma::{digamma, gamma};
 use std::sync::Arc;
 
 const POSITIVE: Range = Range { low: f64::MIN_POSITIVE, high: f64::MAX };
@@ -42,8 +43,8 @@ pub(super) fn piezo_stack_bouc_wen() -> Entry {
             let (common, &[alpha_h, a, beta, gamma, n]) = values.split_at(COMMON) else {
                 unreachable!("values follow params")
             };
-            let hysteresis = Hysteresis::new(a, beta, gamma, n)?;
-            stack(common, VoltageDrop::BoucWen { alpha_h, hysteresis }, derivative)
+            let hysteresis = Hysteresis::new(a.value, beta.value, gamma.value, n.value)?;
+            stack(common, VoltageDrop::BoucWen { alpha_h: alpha_h.value, hysteresis }, derivative)
         }),
     }
 }
@@ -111,27 +112,36 @@ fn with_plays() -> Vec<Param> {
     common().into_iter().chain(more).collect()
 }
 
-fn of_plays(values: &[f64], feed_forward: bool, derivative: Derivative) -> Result<Network, RuleError> {
+fn of_plays(values: &[Dual], feed_forward: bool, derivative: Derivative) -> Result<Network, RuleError> {
     let (common, plays) = values.split_at(COMMON);
     let (weights, widths) = plays.split_at(plays.len() / 2);
-    let stops = PrandtlIshlinskii::new(weights, widths)?.stops().to_vec();
+    let stops = PrandtlIshlinskii::new(&Dual::values(weights), &Dual::values(widths))?.stops().to_vec();
     stack(common, VoltageDrop::Stops { stops, feed_forward }, derivative)
 }
 
-fn stack(values: &[f64], drop: VoltageDrop, derivative: Derivative) -> Result<Network, RuleError> {
+fn stack(values: &[Dual], drop: VoltageDrop, derivative: Derivative) -> Result<Network, RuleError> {
     let &[f_block, x_0, v_max, v_min, c, alpha, capacitance, resistance, creep, alpha_creep] = values else {
         unreachable!("values follow params")
     };
-    RuleError::unless(v_min <= 0.0, "V_min ≤ 0", "V_min")?;
+    RuleError::unless(v_min.value <= 0.0, "V_min ≤ 0", "V_min")?;
     let stiffness = f_block / x_0;
     let spring = Network::spring(stiffness);
-    let elastic = if creep == 0.0 {
+    let elastic = if creep.value == 0.0 {
         spring
     } else {
-        let coefficient = stiffness * (10f64.powf(alpha_creep) - 1.0) / (creep * gamma(1.0 + alpha_creep));
+        let grown = Dual::from(10.0).powf(alpha_creep) - 1.0.into();
+        let coefficient = stiffness * grown / (creep * factorial(alpha_creep));
         Network::series([spring, Network::springpot(coefficient, alpha_creep, derivative)])
     };
     let coupling = f_block / v_max;
-    let electric = Stack { coupling, capacitance, resistance, stiffness, drop, range: [v_min, v_max] };
+    let [coupling, capacitance, resistance, stiffness] =
+        [coupling, capacitance, resistance, stiffness].map(|number| number.value);
+    let electric = Stack { coupling, capacitance, resistance, stiffness, drop, range: [v_min.value, v_max.value] };
     Ok(Network::parallel([elastic, Network::springpot(c, alpha, derivative), Network::leaf(electric)]))
+}
+
+/// Γ(1 + x).
+fn factorial(x: Dual) -> Dual {
+    let value = gamma(1.0 + x.value);
+    x.through(value, value * digamma(1.0 + x.value))
 }

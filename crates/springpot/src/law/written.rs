@@ -4,6 +4,7 @@ use super::catalog::{Entry, Param};
 use super::leaf::{Free, LeafBuild, LeafKind, Table};
 use super::network::{Holds, Network};
 use super::rule::RuleError;
+use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use crate::names::is_name;
 use std::borrow::Cow;
@@ -28,7 +29,7 @@ const GRAMMAR: &str = "write leaves such as spring(k), or parts in series(…) a
 /// let zener = NetworkText::parse("parallel(spring(k_e), series(spring(k_m), springpot(c, alpha)))")?.entry();
 /// let names: Vec<_> = zener.params.iter().map(|param| (&*param.name, &*param.unit)).collect();
 /// assert_eq!(names, [("k_e", "N/m"), ("k_m", "N/m"), ("c", "N*s^alpha/m"), ("alpha", "")]);
-/// let law = (zener.build)(&[10.0, 90.0, 5.0, 0.5], Derivative::Caputo)?;
+/// let law = zener.build(&[10.0, 90.0, 5.0, 0.5], Derivative::Caputo)?;
 /// assert_eq!(law.leaf_names(), ["spring1", "spring2", "springpot1"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -142,7 +143,7 @@ impl NetworkText {
         }
     }
 
-    fn build(&self, values: &[f64], derivative: Derivative) -> Result<Network, RuleError> {
+    fn build(&self, values: &[Dual], derivative: Derivative) -> Result<Network, RuleError> {
         let network = self.part(&self.root, values, derivative)?;
         if network.holds() == Holds::Never {
             let names: Vec<&str> = self.params.iter().map(|param| &*param.name).chain(self.files()).collect();
@@ -155,10 +156,10 @@ impl NetworkText {
         Ok(network)
     }
 
-    fn part(&self, part: &Part, values: &[f64], derivative: Derivative) -> Result<Network, RuleError> {
+    fn part(&self, part: &Part, values: &[Dual], derivative: Derivative) -> Result<Network, RuleError> {
         match &part.kind {
             PartKind::Leaf { name, kind, params } => {
-                let own: Vec<f64> = params.iter().map(|at| values[*at]).collect();
+                let own: Vec<Dual> = params.iter().map(|at| values[*at]).collect();
                 let LeafBuild::Values(build) = kind.build else { unreachable!("a leaf from values") };
                 let leaf = build(&own, derivative).map_err(|error| {
                     let at = kind.params.iter().position(|param| param.name == error.parameter);

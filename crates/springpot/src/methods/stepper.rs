@@ -5,6 +5,7 @@ use crate::dynamics::Kinematics;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::{Change, Equations, Look};
+use crate::equations::{Node, Variation};
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::settings::Settings;
@@ -119,6 +120,22 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
 
     /// Why a step of size `size` is not tried in place of one in which no first change was found, where there is no point in it.
     fn gives_up(&self, _: Context, _: &Recorder, _: &Target, _size: f64) -> Option<RunError> {
+        None
+    }
+
+    /// Works out what parameters change over the step at hand.
+    ///
+    /// # Errors
+    /// Where nothing changes in one way.
+    fn vary(&mut self, _: Context, _: &mut Recorder, _: &Target) -> Result<(), RunError> {
+        Ok(())
+    }
+
+    /// Works out what parameters change of the motion at θ of the step at hand, as a row is asked for.
+    fn vary_within(&mut self, _: &mut Variation, _theta: f64, _size: f64) {}
+
+    /// Where the next step starts.
+    fn origin(&self) -> Option<Node<'_>> {
         None
     }
 

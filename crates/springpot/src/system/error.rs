@@ -3,10 +3,14 @@
 use crate::fractional::KernelError;
 use crate::fractional::scheme::SchemeError;
 use crate::motion::PathError;
+use crate::sensitivity::SensitivityError;
 
 /// Why a run stopped or a simulation refused; what happens on the way names the time.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
+    /// The run cannot be differentiated.
+    #[error(transparent)]
+    Sensitivity(#[from] SensitivityError),
     /// The points that an element joins met, so that its direction is undefined.
     #[error("t = {} s: element \"{element}\" has no direction: its points met (length {length:.1e} m)", seconds(*.t))]
     ZeroLength {
@@ -455,6 +459,7 @@ impl RunError {
             | Self::NoStepping { .. }
             | Self::NotDriven { .. }
             | Self::NoInput { .. }
+            | Self::Sensitivity(_)
             | Self::Output(_) => None,
         }
     }

@@ -33,7 +33,7 @@ fn temperature(t: f64) -> InputValue {
 
 fn law(text: &str, values: &[f64], heat: Heat) -> Network {
     let entry = NetworkText::parse(text).unwrap().entry().with_heat(heat).unwrap();
-    (entry.build)(values, Derivative::Caputo).unwrap()
+    entry.build(values, Derivative::Caputo).unwrap()
 }
 
 fn bank(law: &Network, form: Form, h: f64, count: u32) -> (ElementBank, usize) {

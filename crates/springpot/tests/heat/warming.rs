@@ -121,8 +121,7 @@ fn banks_carry_heat() {
     let thermal = Some(Thermal { capacity: 0.2, conductance: 0.05, ambient: 293.0, start: 300.0 });
     let catalog = Catalog::standard();
     let zener = catalog.get("fractional-zener").unwrap();
-    let law =
-        |heat: Heat| (zener.with_heat(heat).unwrap().build)(&[20.0, 100.0, 30.0, 0.5], Derivative::Caputo).unwrap();
+    let law = |heat: Heat| zener.with_heat(heat).unwrap().build(&[20.0, 100.0, 30.0, 0.5], Derivative::Caputo).unwrap();
     let laws = [Heat { shift, thermal, expansion: None }, Heat { shift, ..Heat::default() }].map(law);
     let inputs = |t: f64| [InputValue { value: 300.0 + 5.0 * t, rate: 5.0 }];
     let begun = || {

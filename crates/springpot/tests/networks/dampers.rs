@@ -77,7 +77,7 @@ fn spencers_damper_under_the_standard_test() {
 }
 
 fn law(name: &str, values: &[f64]) -> Network {
-    (Catalog::standard().get(name).unwrap().build)(values, Derivative::Caputo).unwrap()
+    Catalog::standard().get(name).unwrap().build(values, Derivative::Caputo).unwrap()
 }
 
 /// Every law with an input of its own driver or circuit, of sizes that matter at strokes of some 0.1 m and rates of some 1 m/s.
@@ -288,10 +288,10 @@ fn under_a_constant_command_they_are_networks() {
     };
     let alone = ran("bouc-wen-damper", &parameters, "2");
     let text = "parallel(dashpot(c), spring(k), preload(f), bouc-wen(a, A, b, g, n))";
-    let network = (NetworkText::parse(text).unwrap().entry().build)(
-        &[230.0, 700.0, -7.0, 1700.0, 1.2, 3e4, 6e4, 2.0],
-        Derivative::Caputo,
-    );
+    let network = NetworkText::parse(text)
+        .unwrap()
+        .entry()
+        .build(&[230.0, 700.0, -7.0, 1700.0, 1.2, 3e4, 6e4, 2.0], Derivative::Caputo);
     let parts = crate::slider(&[network.unwrap()], &along("0.015*sin(5*pi*t)"), 1.0, 100, 1e-9);
     assert!(departure(&alone, &crate::force(&parts)) < 1e-9);
     let [integer, fractional] = [("bouc-wen-damper", &parameters), ("fractional-bouc-wen-damper", &fractional)]
@@ -378,7 +378,7 @@ fn what_makes_energy_is_refused() {
         let mut values = SPENCER_SI;
         values[k] = value;
         let entry = Catalog::standard().get("spencer").unwrap().clone();
-        (entry.build)(&values, Derivative::Caputo).unwrap_err()
+        entry.build(&values, Derivative::Caputo).unwrap_err()
     };
     for (k, value, rule, parameter) in [
         (0, -1.0, "c_0a + u·c_0b ≥ 0", "c_0b"),
@@ -401,6 +401,6 @@ fn what_makes_energy_is_refused() {
     assert!(error.contains("F_ya + u·F_yb ≥ 0 is broken"), "{error}");
     // A coefficient that lags says nothing of a stretch before t = 0.
     let entry = Catalog::standard().get("fractional-bingham").unwrap().clone();
-    let refused = (entry.build)(&[2.0, 3.0, 0.3, 4.0, 1.0, 0.6, 7.0, 30.0], Derivative::RiemannLiouville).unwrap_err();
+    let refused = entry.build(&[2.0, 3.0, 0.3, 4.0, 1.0, 0.6, 7.0, 30.0], Derivative::RiemannLiouville).unwrap_err();
     assert!(refused.rule.starts_with("derivative = \"caputo\""), "{refused}");
 }

@@ -112,7 +112,7 @@ fn at_rest_the_modulus_is_what_remains() {
         ("jeffreys", &[4.0, 25.0, 2.0], 0.0),
     ];
     for (name, parameters, stiffness) in remaining {
-        let law = (Catalog::standard().get(name).unwrap().build)(parameters, Derivative::Caputo).unwrap();
+        let law = Catalog::standard().get(name).unwrap().build(parameters, Derivative::Caputo).unwrap();
         let [stored, lost] = law.complex_modulus(&at, 0.0);
         assert!((stored - stiffness).abs() < 1e-12 && lost == 0.0, "{name}: {stored} {lost}");
         let near = law.complex_modulus(&at, 1e-30);

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 /// A network as text with its values.
 fn network(text: &str, values: &[f64]) -> Network {
-    (NetworkText::parse(text).unwrap().entry().build)(values, Derivative::Caputo).unwrap()
+    NetworkText::parse(text).unwrap().entry().build(values, Derivative::Caputo).unwrap()
 }
 
 fn forward(q: f64, v: f64, torque: &str) -> String {
@@ -30,7 +30,7 @@ fn leaves() -> Vec<Network> {
         Network::leaf(Stop::compression(60.0)),
         Network::leaf(Stop::new(80.0, -0.05, 0.07).unwrap()),
         Network::leaf(Friction::new(1.5, 0.3).unwrap()),
-        Network::leaf(Preload { force: -2.0 }),
+        Network::leaf(Preload { force: (-2.0).into() }),
         Network::leaf(BoucWen::new(50.0, 1.0, 100.0, 250.0, 2.0).unwrap()),
         Network::leaf(BoucWen::new(50.0, 1.0, -5.0, 15.0, 1.0).unwrap()),
         Network::leaf(BoucWen::new(50.0, 0.5, 300.0, 400.0, 2.5).unwrap()),

@@ -12,7 +12,7 @@ use springpot::law::{Derivative, Network, NetworkText, Start};
 use std::f64::consts::PI;
 
 fn network(text: &str, values: &[f64]) -> Network {
-    (NetworkText::parse(text).unwrap().entry().build)(values, Derivative::Caputo).unwrap()
+    NetworkText::parse(text).unwrap().entry().build(values, Derivative::Caputo).unwrap()
 }
 
 /// Places from `a` to `b`, how far each is from `b`, and its weight, of the double exponential rule: for what may be singular at both ends.
@@ -355,7 +355,7 @@ fn what_flies_is_free() {
 #[test]
 fn where_they_start() {
     let at_start = |text: &str, values: &[f64], derivative: Derivative, stroke: f64| {
-        let law = (NetworkText::parse(text).unwrap().entry().build)(values, derivative).unwrap();
+        let law = NetworkText::parse(text).unwrap().entry().build(values, derivative).unwrap();
         let jump = if derivative == Derivative::RiemannLiouville { stroke } else { 0.0 };
         let state = law.begin(&Start { stroke, jump, inputs: &[] }).unwrap();
         let at = springpot::law::Point { t: 0.0, stroke, rate: 0.0, inputs: &[] };

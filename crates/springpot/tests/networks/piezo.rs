@@ -202,7 +202,7 @@ fn about_rest_it_is_stiffer_open_than_closed() {
         // 1/0.87 − 1: at rest no play has moved.
         ("piezo-stack-prandtl-ishlinskii", vec![0.08, 0.05, 5.0, 20.0], 1.0 / 0.87 - 1.0),
     ] {
-        let law = (catalog.get(name).unwrap().build)(&[&common[..], &more].concat(), Derivative::Caputo).unwrap();
+        let law = catalog.get(name).unwrap().build(&[&common[..], &more].concat(), Derivative::Caputo).unwrap();
         let rest = law.at_rest(&Point { t: 0.0, stroke: 2e-6, rate: 0.0, inputs: &u }, 0.0).unwrap();
         assert!((rest.force - (K * 2e-6 - T * 40.0)).abs() < 1e-10, "{name}: {rest:?}");
         for omega in [1.0, 3e4, 1e9] {

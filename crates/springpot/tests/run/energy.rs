@@ -318,7 +318,7 @@ fn singular_starts_have_no_ledger() {
 /// `edit` may change the state, written as JSON, before step `at`.
 fn work_less_ledger(alpha: f64, at: usize, edit: &dyn Fn(&mut Value)) -> f64 {
     let entry = Catalog::standard();
-    let law = (entry.get("springpot").unwrap().build)(&[1.0, alpha], Kind::Caputo).unwrap();
+    let law = entry.get("springpot").unwrap().build(&[1.0, alpha], Kind::Caputo).unwrap();
     let (x, v) = (|t: f64| 0.1 * (8.0 * t).sin() + 0.05 * t, |t: f64| 0.8 * (8.0 * t).cos() + 0.05);
     // Towards t = 0 the powers are of the kind t^{1−alpha}.
     let grid = graded(2.0, 4000);

@@ -23,7 +23,7 @@ fn plain() -> Vec<Arc<Entry>> {
 }
 
 fn build(entry: &Entry, alpha: f64, derivative: Derivative) -> Network {
-    (entry.build)(&parameters(entry, alpha), derivative).unwrap()
+    entry.build(&parameters(entry, alpha), derivative).unwrap()
 }
 
 /// An input and its rate: a temperature near 300 K, a voltage near 0.6 V.
@@ -264,7 +264,7 @@ fn constant_and_varying_inputs() {
     // Magnetorheological: c = mu_0 + u·mu outside the derivative, so forces of equal memories are in the ratio of the c.
     let catalog = Catalog::standard();
     let entry = catalog.get("magnetorheological").unwrap();
-    let law = (entry.build)(&[0.0, 5.0, 2.0, 0.5], Derivative::Caputo).unwrap();
+    let law = entry.build(&[0.0, 5.0, 2.0, 0.5], Derivative::Caputo).unwrap();
     let mut state = begin(&law, false, &input(entry, 0.0));
     for (t, h) in random_steps(5, 20, 1e-3, 0.1) {
         let varying = Samples::new(entry, t, h, Nodes::Radau, Form::Rates);
@@ -285,7 +285,7 @@ fn constant_and_varying_inputs() {
         law.commit(&varying.step(), &mut state);
     }
     // Rules over the inputs: the coefficient must not turn negative.
-    let weak = (entry.build)(&[0.0, 5.0, -2.0, 0.5], Derivative::Caputo).unwrap();
+    let weak = entry.build(&[0.0, 5.0, -2.0, 0.5], Derivative::Caputo).unwrap();
     let u = |value: f64| [InputValue { value, rate: 0.0 }];
     assert!(weak.check_inputs(&u(2.5)).is_ok());
     let broken = weak.check_inputs(&u(2.6)).unwrap_err();
@@ -301,7 +301,7 @@ fn drives_push_by_their_gain() {
         ("piezo-kelvin-voigt", vec![2000.0, 3000.0, 5000.0, 0.5, 1e-5], 0.03, 0.0),
     ] {
         let entry = catalog.get(name).unwrap();
-        let law = (entry.build)(&values, Derivative::Caputo).unwrap();
+        let law = entry.build(&values, Derivative::Caputo).unwrap();
         let state = begin(&law, false, &input(entry, 0.0));
         let force = |value: f64| {
             let inputs = [InputValue { value, rate: 0.0 }];
@@ -394,7 +394,7 @@ fn a_law_without_any_coefficient_is_refused() {
     for (k, entry) in Catalog::standard().entries().iter().enumerate().filter(|(_, entry)| !is_stack(entry)) {
         let zeros: Vec<f64> =
             entry.params.iter().map(|p| if p.name == "alpha" { 0.5 } else { 0.0f64.max(p.range.low) }).collect();
-        let broken = (entry.build)(&zeros, Derivative::Caputo).expect_err(&entry.name);
+        let broken = entry.build(&zeros, Derivative::Caputo).expect_err(&entry.name);
         assert!(entry.params.iter().any(|p| p.name == broken.parameter), "{}: {}", entry.name, broken.parameter);
         assert!(broken.rule.contains(&*broken.parameter), "{}: {broken}", entry.name);
         // One positive coefficient of a stiffness or of a viscosity makes it a material, but where parts stand in series.
@@ -405,7 +405,7 @@ fn a_law_without_any_coefficient_is_refused() {
         for param in entry.params.iter().filter(passive) {
             let mut values = zeros.clone();
             values[entry.params.iter().position(|p| p.name == param.name).unwrap()] = 1.0;
-            assert!((entry.build)(&values, Derivative::Caputo).is_ok(), "{}: {} = 1", entry.name, param.name);
+            assert!(entry.build(&values, Derivative::Caputo).is_ok(), "{}: {} = 1", entry.name, param.name);
         }
     }
 }

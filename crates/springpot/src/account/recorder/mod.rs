@@ -9,6 +9,7 @@ mod check;
 use crate::account::ledger::{NodePower, Turnover};
 use crate::collocation::STAGES;
 use crate::elements::{Element, MemoryRange};
+use crate::equations::Variation;
 use crate::equations::context::Context;
 use crate::equations::evaluate::{ElementEvaluation, Evaluation, Scratch};
 use crate::equations::on_grid::{GridDerivatives, on_grid_observation};
@@ -42,6 +43,8 @@ pub(crate) struct Recorder {
     pub(crate) is_whole: [bool; 2],
     pub(crate) equations: Equations,
     pub(crate) powers: StepPowers,
+    /// What parameters change, where any are asked for.
+    pub(crate) variation: Option<Box<Variation>>,
     /// Whether actuators move the elements, as along kinematics given in advance.
     pub(crate) takes_elements_work: bool,
     /// Whether the force of each element is without bound behind a jump at t = 0, and its impulse is given at once.
@@ -87,6 +90,7 @@ impl Recorder {
             is_whole: [true; 2],
             equations: Equations::new(cx.system, settings.fixed_step.is_some()),
             powers: StepPowers::default(),
+            variation: None,
             takes_elements_work: true,
             jolts: vec![false; cx.system.elements.len()],
             grid: vec![None; cx.system.elements.len()],
@@ -203,6 +207,9 @@ impl Recorder {
     /// # Errors
     /// [`RunError::ControlChatter`]; where the reference of a controller cannot be followed.
     pub(crate) fn commit(&mut self, cx: Context) -> Result<(), RunError> {
+        if let Some(variation) = &mut self.variation {
+            variation.commit(&self.equations);
+        }
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[STAGES];
         let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);

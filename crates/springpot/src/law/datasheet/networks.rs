@@ -48,7 +48,7 @@ pub fn can_fit(law: &Entry) -> bool {
     let values: Vec<f64> = law.params.iter().map(|param| param.range.high.min(0.5).max(param.range.low)).collect();
     law.inputs.is_empty()
         && law.params.iter().all(usual)
-        && (law.build)(&values, Derivative::Caputo).is_ok_and(|network| network.is_linear())
+        && law.build(&values, Derivative::Caputo).is_ok_and(|network| network.is_linear())
 }
 
 /// Fits K(ω) of a law to a measurement: the smallest Σ|K(ω_j) − K_j|²/|K_j|² over all its parameters, the least of the minima that
@@ -69,7 +69,7 @@ pub fn fit_network(law: &Entry, rows: &[Measured]) -> Result<FittedNetwork, FitE
     let best = found.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, unknowns)| unknowns).unwrap_or_default();
     let (cost, unknowns) = descend(law, rows, best, LAST_STEPS);
     let values = values(law, &unknowns);
-    let network = (law.build)(&values, Derivative::Caputo).map_err(|_| FitError::Undetermined { law: name() })?;
+    let network = law.build(&values, Derivative::Caputo).map_err(|_| FitError::Undetermined { law: name() })?;
     let free: Vec<usize> = (0..values.len()).filter(|&p| is_inside(&law.params[p], values[p])).collect();
     let slopes: Vec<Vec<f64>> = free.iter().map(|&p| slope(law, rows, &unknowns, p)).collect();
     if !cost.is_finite() || !are_independent(slopes.iter().cloned()) {
@@ -125,7 +125,7 @@ fn start(law: &Entry, rows: &[Measured], k: usize) -> Vec<f64> {
 
 /// Real and imaginary parts of (K(ω_j) − K_j)/|K_j|.
 fn deviations(law: &Entry, rows: &[Measured], unknowns: &[f64]) -> Option<Vec<f64>> {
-    let network = (law.build)(&values(law, unknowns), Derivative::Caputo).ok()?;
+    let network = law.build(&values(law, unknowns), Derivative::Caputo).ok()?;
     let of = |row: &Measured| {
         let ([re, im], size) = (network.complex_modulus(&at(), row.omega), row.storage.hypot(row.loss));
         [(re - row.storage) / size, (im - row.loss) / size]
@@ -222,7 +222,7 @@ mod tests {
     ];
 
     fn rows(law: &Entry, values: &[f64], noise: f64) -> Vec<Measured> {
-        let network = (law.build)(values, Derivative::Caputo).unwrap();
+        let network = law.build(values, Derivative::Caputo).unwrap();
         let row = |k: usize| {
             let omega = 10f64.powf(-2.0 + 0.125 * k as f64);
             let [storage, loss] = network.complex_modulus(&at(), omega);

@@ -1,4 +1,5 @@
 use super::*;
+use crate::dual::Dual;
 use crate::law::catalog::Build;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -176,7 +177,7 @@ fn the_catalog_says_which_laws_data_determine() {
     // Another law may have the same parameters, and is none of these; under another name the same law is.
     let kelvin_voigt = catalog.get("kelvin-voigt").unwrap();
     let with = |name: &'static str, build: Build| Entry { name: name.into(), build, ..Entry::clone(kelvin_voigt) };
-    let (spring, dashpot) = (|k: &[f64]| Network::spring(k[0]), |k: &[f64]| Network::dashpot(k[1]));
+    let (spring, dashpot) = (|k: &[Dual]| Network::spring(k[0]), |k: &[Dual]| Network::dashpot(k[1]));
     let maxwell = with("maxwell", Arc::new(move |k, _| Ok(Network::series([spring(k), dashpot(k)]))));
     let twice = with("twice", Arc::new(move |k, _| Ok(Network::parallel([spring(k), spring(k), dashpot(k)]))));
     let turned = with("turned", Arc::new(move |k, _| Ok(Network::parallel([dashpot(k), spring(k)]))));

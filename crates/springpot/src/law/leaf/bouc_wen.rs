@@ -5,6 +5,7 @@ use super::hysteresis::{self, Hysteresis, Matrix, Values};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
 use crate::collocation::{MAX_NODES, Nodes};
+use crate::dual::Dual;
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Guard, Holds, Network};
@@ -81,7 +82,7 @@ impl Leaf for BoucWen {
     fn by_input(&self, step: &Step, state: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
         if self.alpha_h.input == Some(input) {
             let (z, _) = self.solve(step, state.variables[0]);
-            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.alpha_h.slope * z[i + 1]);
+            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.alpha_h.slope.value * z[i + 1]);
         }
     }
 
@@ -157,8 +158,9 @@ pub(super) fn kind() -> LeafKind {
         name: "bouc-wen",
         equation: "F = alpha_h·z, z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n",
         params: params(),
-        build: LeafBuild::Values(|values, _| {
-            let &[alpha_h, a, beta, gamma, n] = values else { unreachable!("values follow params") };
+        build: LeafBuild::Values(|numbers, _| {
+            let values = Dual::values(numbers);
+            let &[alpha_h, a, beta, gamma, n] = &values[..] else { unreachable!("values follow params") };
             Ok(Network::leaf(BoucWen::new(alpha_h, a, beta, gamma, n)?))
         }),
     }

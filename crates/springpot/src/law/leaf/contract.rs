@@ -1,12 +1,14 @@
 //! What every leaf answers.
 
 use crate::collocation::MAX_NODES;
+use crate::dual::Dual;
 use crate::fractional::KernelError;
 use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Electric, InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{LeafAtRest, Tangent};
+use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef};
 
 /// Which time a leaf is asked about.
 #[derive(Debug, Clone, Copy)]
@@ -176,6 +178,32 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// s and order of the share s·t^−order of a singular start in F; `None` without one.
     fn singular(&self, _inputs: &[InputValue], _state: StateRef) -> Option<Term> {
         None
+    }
+
+    /// Hands over the numbers of its parameters, which carry derivatives where its law was built of such; false of a leaf of which no derivative
+    /// is known: a law with it is refused where one is asked for.
+    fn numbers(&self, _take: &mut dyn FnMut(Dual)) -> bool {
+        false
+    }
+
+    /// Adds to `forces`, blocks of derivatives node by node, what changes of its forces where strokes and rates at the nodes stay: by its own
+    /// numbers, by the start of the step, by what it keeps, and by its inputs. What the strokes and rates of `told` at the nodes change is
+    /// [`Response::d_stroke`] and [`Response::d_rate`].
+    fn vary(&self, _: &Step, _: StateRef, _told: &StepVariation, _own: VariationRef, _forces: &mut [f64]) {}
+
+    /// Takes what changes of an accepted step, which is not in the state yet, into what changes of the state.
+    fn commit_variation(&self, _: &Step, _: StateRef, _told: &StepVariation, _own: VariationMut) {}
+
+    /// Adds what changes of it at one time ([`Leaf::at`], [`Leaf::now`]).
+    fn vary_at(
+        &self,
+        _: When,
+        _: &Point,
+        _: StateRef,
+        _told: &PointVariation,
+        _own: VariationRef,
+        _sum: &mut ObservationVariation,
+    ) {
     }
 
     /// Rules over the inputs, to hold at every time.

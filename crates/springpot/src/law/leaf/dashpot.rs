@@ -1,17 +1,19 @@
 //! The linear dashpot.
 
-use super::contract::Leaf;
+use super::contract::{Leaf, When};
 use super::kind::{LeafBuild, LeafKind};
+use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::Network;
 use crate::law::state::StateRef;
 use crate::law::step::{LocalError, Observation, Point, Powers, Response, Step, Term};
+use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationRef, add};
 
 /// F = c·x'. Dissipates c·x'².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dashpot {
     /// Viscosity c ≥ 0, N·s/m.
-    pub viscosity: f64,
+    pub viscosity: Dual,
 }
 
 impl Leaf for Dashpot {
@@ -21,8 +23,8 @@ impl Leaf for Dashpot {
 
     fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
         for i in 0..step.nodes.count() {
-            response.force[i] += self.viscosity * step.rate[i + 1];
-            response.d_rate[i][i] += self.viscosity;
+            response.force[i] += self.viscosity.value * step.rate[i + 1];
+            response.d_rate[i][i] += self.viscosity.value;
         }
     }
 
@@ -32,16 +34,40 @@ impl Leaf for Dashpot {
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
         for (power, rate) in powers.iter_mut().zip(step.rate) {
-            power.dissipation += self.viscosity * rate * rate;
+            power.dissipation += self.viscosity.value * rate * rate;
         }
     }
 
     fn now(&self, at: &Point, _: StateRef) -> Observation {
-        Observation { derivative: at.rate, regular: self.viscosity * at.rate, singular: 0.0, stored: Some(0.0) }
+        Observation { derivative: at.rate, regular: self.viscosity.value * at.rate, singular: 0.0, stored: Some(0.0) }
+    }
+
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        take(self.viscosity);
+        true
+    }
+
+    fn vary(&self, step: &Step, _: StateRef, _: &StepVariation, own: VariationRef, forces: &mut [f64]) {
+        for (i, forces) in forces.chunks_exact_mut(own.count).enumerate() {
+            add(forces, step.rate[i + 1], own.number(0));
+        }
+    }
+
+    fn vary_at(
+        &self,
+        _: When,
+        at: &Point,
+        _: StateRef,
+        told: &PointVariation,
+        own: VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        add(sum.force, at.rate, own.number(0));
+        add(sum.force, self.viscosity.value, told.rate);
     }
 
     fn linearised(&self, _: &Point) -> Term {
-        Term { coefficient: self.viscosity, order: 1.0 }
+        Term { coefficient: self.viscosity.value, order: 1.0 }
     }
 
     fn is_linear(&self) -> bool {

@@ -1,10 +1,12 @@
 //! What gives a force that follows from the stroke alone.
 
-use super::contract::{Free, Leaf};
+use super::contract::{Free, Leaf, When};
+use crate::dual::Dual;
 use crate::law::network::Holds;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Response, Step, Term};
 use crate::law::tangent::LeafAtRest;
+use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationRef, add};
 
 /// F(x), linear or not: a leaf that keeps nothing and loses nothing.
 ///
@@ -55,6 +57,14 @@ pub trait Elastic: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// Hands over its numbers ([`Leaf::numbers`]).
+    fn numbers(&self, _take: &mut dyn FnMut(Dual)) -> bool {
+        false
+    }
+
+    /// Hands over ∂F/∂n and ∂(∫₀ˣ F dx)/∂n at the stroke `x` by each number n, in their order.
+    fn by_numbers(&self, _x: f64, _take: &mut dyn FnMut([f64; 2])) {}
+
     /// Hands over functions of x that pass zero where F has a kink ([`Leaf::guards`]).
     fn guards(&self, _x: f64, _take: &mut dyn FnMut(f64)) {}
 }
@@ -101,5 +111,37 @@ impl<T: Elastic> Leaf for T {
 
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
         Elastic::guards(self, at.stroke, take);
+    }
+
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        Elastic::numbers(self, take)
+    }
+
+    fn vary(&self, step: &Step, _: StateRef, _: &StepVariation, own: VariationRef, forces: &mut [f64]) {
+        for (i, forces) in forces.chunks_exact_mut(own.count).enumerate() {
+            let mut numbers = own.numbers.chunks_exact(own.count);
+            self.by_numbers(step.stroke[i + 1], &mut |[force, _]| {
+                numbers.next().into_iter().for_each(|number| add(forces, force, number));
+            });
+        }
+    }
+
+    fn vary_at(
+        &self,
+        _: When,
+        at: &Point,
+        _: StateRef,
+        told: &PointVariation,
+        own: VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        let mut numbers = own.numbers.chunks_exact(own.count);
+        self.by_numbers(at.stroke, &mut |[force, energy]| {
+            let Some(number) = numbers.next() else { return };
+            add(sum.force, force, number);
+            add(sum.stored, energy, number);
+        });
+        add(sum.force, self.slope(at.stroke), told.stroke);
+        add(sum.stored, self.force(at.stroke), told.stroke);
     }
 }

@@ -55,7 +55,7 @@ impl Leaf for Friction {
     fn by_input(&self, step: &Step, _: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
         if self.force.input == Some(input) {
             let turned = |i: usize| (step.rate[i + 1] / self.rate).tanh();
-            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.force.slope * turned(i));
+            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.force.slope.value * turned(i));
         }
     }
 
@@ -102,6 +102,6 @@ pub(super) fn kind() -> LeafKind {
             Param::new("f", "N", "friction force", Range::NOT_NEGATIVE),
             Param::new("v0", "m/s", "rate about which it turns over", positive),
         ],
-        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Friction::new(values[0], values[1])?))),
+        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Friction::new(values[0].value, values[1].value)?))),
     }
 }

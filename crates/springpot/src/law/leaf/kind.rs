@@ -2,6 +2,7 @@
 
 use super::table::Table;
 use super::{bouc_wen, dashpot, friction, polynomial, preload, spring, springpot, stop, table};
+use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use crate::law::catalog::Param;
 use crate::law::network::Network;
@@ -25,7 +26,7 @@ pub struct LeafKind {
 #[derive(Debug, Clone, Copy)]
 pub enum LeafBuild {
     /// Values (SI, in the order of the parameters, each within its range), and the derivative that springpots take.
-    Values(fn(&[f64], Derivative) -> Result<Network, RuleError>),
+    Values(fn(&[Dual], Derivative) -> Result<Network, RuleError>),
     /// The table in the file that its argument stands for.
     Table(fn(&Arc<Table>) -> Network),
 }

@@ -60,7 +60,7 @@ pub(super) fn kind() -> LeafKind {
             Param::new("k3", "N/m^3", "coefficient of x³", Range::ANY),
         ],
         build: LeafBuild::Values(|values, _| {
-            Ok(Network::leaf(Polynomial { coefficients: std::array::from_fn(|k| values[k]) }))
+            Ok(Network::leaf(Polynomial { coefficients: std::array::from_fn(|k| values[k].value) }))
         }),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
+use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 
@@ -9,7 +10,7 @@ use crate::law::network::{Holds, Network};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Preload {
     /// Force f of any sign, N.
-    pub force: f64,
+    pub force: Dual,
 }
 
 impl Elastic for Preload {
@@ -18,7 +19,7 @@ impl Elastic for Preload {
     }
 
     fn force(&self, _: f64) -> f64 {
-        self.force
+        self.force.value
     }
 
     fn slope(&self, _: f64) -> f64 {
@@ -26,11 +27,20 @@ impl Elastic for Preload {
     }
 
     fn energy(&self, x: f64) -> f64 {
-        self.force * x
+        self.force.value * x
+    }
+
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        take(self.force);
+        true
+    }
+
+    fn by_numbers(&self, x: f64, take: &mut dyn FnMut([f64; 2])) {
+        take([1.0, x]);
     }
 
     fn holds(&self) -> Holds {
-        if self.force == 0.0 { Holds::Never } else { Holds::AtTimes }
+        if self.force.value == 0.0 { Holds::Never } else { Holds::AtTimes }
     }
 
     fn is_linear(&self) -> bool {

@@ -1,25 +1,36 @@
 //! A force that an input commands.
 
-use super::contract::Leaf;
+use super::contract::{Leaf, When};
 use crate::collocation::MAX_NODES;
+use crate::dual::Dual;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
 use crate::law::tangent::LeafAtRest;
+use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationRef, add};
 
 /// F = −gain·(input − reference): expansion by heat or voltage, turned into force by a stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source {
     /// Force per unit of the input, N.
-    pub gain: f64,
+    pub gain: Dual,
     /// Input without force.
-    pub reference: f64,
+    pub reference: Dual,
     /// Which input.
     pub input: usize,
 }
 
 impl Source {
     fn force(&self, at: &Point) -> f64 {
-        -self.gain * (at.inputs[self.input].value - self.reference)
+        -self.gain.value * (at.inputs[self.input].value - self.reference.value)
+    }
+}
+
+impl Source {
+    /// Adds what changes of its force.
+    fn add_change(&self, at: &Point, input: Option<&[f64]>, own: VariationRef, force: &mut [f64]) {
+        add(force, self.reference.value - at.inputs[self.input].value, own.number(0));
+        add(force, self.gain.value, own.number(1));
+        input.into_iter().for_each(|input| add(force, -self.gain.value, input));
     }
 }
 
@@ -36,7 +47,7 @@ impl Leaf for Source {
 
     fn by_input(&self, step: &Step, _: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
         if input == self.input {
-            (0..step.nodes.count()).for_each(|i| slopes[i][i] -= self.gain);
+            (0..step.nodes.count()).for_each(|i| slopes[i][i] -= self.gain.value);
         }
     }
 
@@ -51,12 +62,37 @@ impl Leaf for Source {
         Observation { derivative: at.stroke, regular: self.force(at), singular: 0.0, stored: Some(0.0) }
     }
 
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        [self.gain, self.reference].into_iter().for_each(take);
+        true
+    }
+
+    fn vary(&self, step: &Step, _: StateRef, told: &StepVariation, own: VariationRef, forces: &mut [f64]) {
+        for (i, forces) in forces.chunks_exact_mut(own.count).enumerate() {
+            let at = step.point(i + 1);
+            let input = told.input_at(i + 1, self.input, at.inputs.len()).map(|[value, _]| value);
+            self.add_change(&at, input, own, forces);
+        }
+    }
+
+    fn vary_at(
+        &self,
+        _: When,
+        at: &Point,
+        _: StateRef,
+        told: &PointVariation,
+        own: VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        self.add_change(at, told.input(self.input, own.count).map(|[value, _]| value), own, sum.force);
+    }
+
     fn linearised(&self, _: &Point) -> Term {
         Term { coefficient: 0.0, order: 0.0 }
     }
 
     fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
-        let input = Some((self.input, -self.gain));
+        let input = Some((self.input, -self.gain.value));
         LeafAtRest { force: self.force(at), stiffness: None, term: self.linearised(at), input, damping: 0.0 }
     }
 

@@ -157,7 +157,7 @@ impl Leaf for Spencer {
     }
 
     fn by_input(&self, step: &Step, state: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
-        let slope = |c: &Coefficient| if c.input == Some(input) { c.slope } else { 0.0 };
+        let slope = |c: &Coefficient| if c.input == Some(input) { c.slope.value } else { 0.0 };
         let [fast, slow, alpha] = [&self.fast, &self.slow, &self.alpha].map(slope);
         let Solved { now, z, y_rate, by_drive, by_slip, .. } = self.solve(step, Self::start(state));
         let count = step.nodes.count();

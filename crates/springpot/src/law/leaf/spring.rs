@@ -2,6 +2,7 @@
 
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
+use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 
@@ -9,7 +10,7 @@ use crate::law::network::{Holds, Network};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spring {
     /// Stiffness k ≥ 0, N/m.
-    pub stiffness: f64,
+    pub stiffness: Dual,
 }
 
 impl Elastic for Spring {
@@ -18,19 +19,28 @@ impl Elastic for Spring {
     }
 
     fn force(&self, x: f64) -> f64 {
-        self.stiffness * x
+        self.stiffness.value * x
     }
 
     fn slope(&self, _: f64) -> f64 {
-        self.stiffness
+        self.stiffness.value
     }
 
     fn energy(&self, x: f64) -> f64 {
-        0.5 * self.stiffness * x * x
+        0.5 * self.stiffness.value * x * x
+    }
+
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        take(self.stiffness);
+        true
+    }
+
+    fn by_numbers(&self, x: f64, take: &mut dyn FnMut([f64; 2])) {
+        take([x, 0.5 * x * x]);
     }
 
     fn holds(&self) -> Holds {
-        if self.stiffness == 0.0 { Holds::Never } else { Holds::Always }
+        if self.stiffness.value == 0.0 { Holds::Never } else { Holds::Always }
     }
 
     fn is_linear(&self) -> bool {

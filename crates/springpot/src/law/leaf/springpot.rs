@@ -4,6 +4,7 @@ use super::contract::Leaf;
 use super::kind::{LeafBuild, LeafKind};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
+use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{Form, KernelError, Memory};
 use crate::law::catalog::{Param, Range, alpha};
@@ -19,9 +20,9 @@ use std::borrow::Cow;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coefficient {
     /// Value where the input is 0.
-    pub constant: f64,
+    pub constant: Dual,
     /// Change per unit of the input.
-    pub slope: f64,
+    pub slope: Dual,
     /// Which input; `None`: constant.
     pub input: Option<usize>,
     /// The rule that keeps it from turning negative, as the message says it.
@@ -39,25 +40,31 @@ pub struct Springpot {
     /// Coefficient c ≥ 0, N·s^alpha/m.
     pub coefficient: Coefficient,
     /// Order, 0 ≤ alpha ≤ 1.
-    pub alpha: f64,
+    pub alpha: Dual,
     /// Which derivative.
     pub derivative: Derivative,
 }
 
 impl Coefficient {
     /// A coefficient that never changes.
-    pub fn constant(value: f64) -> Self {
-        Self { constant: value, slope: 0.0, input: None, rule: "c ≥ 0".into(), parameter: "c".into() }
+    pub fn constant(value: impl Into<Dual>) -> Self {
+        Self {
+            constant: value.into(),
+            slope: Dual::default(),
+            input: None,
+            rule: "c ≥ 0".into(),
+            parameter: "c".into(),
+        }
     }
 
     /// constant + slope·input of the input counted from 0, never below 0.
-    pub(in crate::law) fn following([constant, slope]: [f64; 2], rule: &'static str, parameter: &'static str) -> Self {
+    pub(in crate::law) fn following([constant, slope]: [Dual; 2], rule: &'static str, parameter: &'static str) -> Self {
         Self { constant, slope, input: Some(0), rule: rule.into(), parameter: parameter.into() }
     }
 
     /// Whether it is 0 whatever the inputs.
     pub(super) fn is_none(&self) -> bool {
-        self.constant == 0.0 && (self.slope == 0.0 || self.input.is_none())
+        self.constant.value == 0.0 && (self.slope.value == 0.0 || self.input.is_none())
     }
 
     /// Whether it is 0 or more under the inputs; `what` is what messages call it.
@@ -76,10 +83,11 @@ impl Coefficient {
     /// Value and rate under the inputs.
     pub fn at(&self, inputs: &[InputValue]) -> InputValue {
         match self.input {
-            None => InputValue { value: self.constant, rate: 0.0 },
-            Some(i) => {
-                InputValue { value: self.constant + self.slope * inputs[i].value, rate: self.slope * inputs[i].rate }
-            }
+            None => InputValue { value: self.constant.value, rate: 0.0 },
+            Some(i) => InputValue {
+                value: self.constant.value + self.slope.value * inputs[i].value,
+                rate: self.slope.value * inputs[i].rate,
+            },
         }
     }
 }
@@ -107,7 +115,7 @@ impl Leaf for Springpot {
     }
 
     fn begin(&self, start: &Start, state: &mut State) -> Result<(), KernelError> {
-        state.push_memory(Memory::closed(self.alpha, self.derivative, start.stroke, start.jump)?);
+        state.push_memory(Memory::closed(self.alpha.value, self.derivative, start.stroke, start.jump)?);
         Ok(())
     }
 
@@ -144,7 +152,7 @@ impl Leaf for Springpot {
     }
 
     fn by_input(&self, step: &Step, state: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
-        if self.coefficient.input != Some(input) || self.coefficient.slope == 0.0 {
+        if self.coefficient.input != Some(input) || self.coefficient.slope.value == 0.0 {
             return;
         }
         let affine = state.memories[0].respond_at(&step.start(), step.nodes, step.places, step.form);
@@ -154,7 +162,7 @@ impl Leaf for Springpot {
                 affine.stroke[i][j] * (step.stroke[j + 1] - step.stroke[0]) + affine.rate[i][j] * step.rate[j + 1]
             };
             let derivative = affine.history[i] + (0..count).map(own).sum::<f64>();
-            slopes[i][i] += self.coefficient.slope * derivative;
+            slopes[i][i] += self.coefficient.slope.value * derivative;
         }
     }
 
@@ -177,8 +185,8 @@ impl Leaf for Springpot {
         errors.push(LocalError {
             error: memory.defect(&polynomial, stroke, rate, step.resolution),
             value: memory.regular_derivative(&polynomial, 1.0, stroke[1], rate[1]),
-            order: self.alpha,
-            sharpness: if self.alpha == 1.0 { 0.0 } else { 1.0 },
+            order: self.alpha.value,
+            sharpness: if self.alpha.value == 1.0 { 0.0 } else { 1.0 },
         });
     }
 
@@ -224,7 +232,7 @@ impl Leaf for Springpot {
     }
 
     fn linearised(&self, at: &Point) -> Term {
-        Term { coefficient: self.coefficient.at(at.inputs).value, order: self.alpha }
+        Term { coefficient: self.coefficient.at(at.inputs).value, order: self.alpha.value }
     }
 
     fn at_rest(&self, at: &Point, held: f64) -> LeafAtRest {
@@ -245,7 +253,7 @@ impl Leaf for Springpot {
 
     fn holds(&self) -> Holds {
         let Coefficient { constant, slope, .. } = self.coefficient;
-        if constant == 0.0 && slope == 0.0 { Holds::Never } else { Holds::Always }
+        if constant.value == 0.0 && slope.value == 0.0 { Holds::Never } else { Holds::Always }
     }
 
     fn is_linear(&self) -> bool {
@@ -255,7 +263,7 @@ impl Leaf for Springpot {
     fn singular(&self, inputs: &[InputValue], state: StateRef) -> Option<Term> {
         let memory = &state.memories[0];
         let coefficient = || self.coefficient.at(inputs).value * memory.singular_part(1.0);
-        memory.is_singular().then(|| Term { coefficient: coefficient(), order: self.alpha })
+        memory.is_singular().then(|| Term { coefficient: coefficient(), order: self.alpha.value })
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {

@@ -99,8 +99,8 @@ fn one_sided(name: &'static str, equation: &'static str, build: LeafBuild) -> Le
 /// What networks know of the one that pulls.
 pub(super) fn tension() -> LeafKind {
     let build = LeafBuild::Values(|values, _| {
-        RuleError::unless(values[0] >= 0.0, "k ≥ 0", "k")?;
-        Ok(Network::leaf(Stop::tension(values[0])))
+        RuleError::unless(values[0].value >= 0.0, "k ≥ 0", "k")?;
+        Ok(Network::leaf(Stop::tension(values[0].value)))
     });
     one_sided("tension", "F = k·max(x, 0)", build)
 }
@@ -108,8 +108,8 @@ pub(super) fn tension() -> LeafKind {
 /// What networks know of the one that pushes.
 pub(super) fn compression() -> LeafKind {
     let build = LeafBuild::Values(|values, _| {
-        RuleError::unless(values[0] >= 0.0, "k ≥ 0", "k")?;
-        Ok(Network::leaf(Stop::compression(values[0])))
+        RuleError::unless(values[0].value >= 0.0, "k ≥ 0", "k")?;
+        Ok(Network::leaf(Stop::compression(values[0].value)))
     });
     one_sided("compression", "F = k·min(x, 0)", build)
 }
@@ -126,7 +126,7 @@ pub(super) fn kind() -> LeafKind {
         ],
         build: LeafBuild::Values(|values, _| {
             let &[k, lower, upper] = values else { unreachable!("values follow params") };
-            Ok(Network::leaf(Stop::new(k, lower, upper)?))
+            Ok(Network::leaf(Stop::new(k.value, lower.value, upper.value)?))
         }),
     }
 }

@@ -30,7 +30,7 @@ impl Leaf for Viscous {
 
     fn by_input(&self, step: &Step, _: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
         if self.viscosity.input == Some(input) {
-            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.viscosity.slope * step.rate[i + 1]);
+            (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.viscosity.slope.value * step.rate[i + 1]);
         }
     }
 

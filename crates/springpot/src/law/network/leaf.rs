@@ -10,6 +10,7 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{AtRest, LeafAtRest, Tangent};
+use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -29,6 +30,13 @@ impl std::ops::Deref for LeafPart {
 }
 
 impl LeafPart {
+    /// How many numbers its parameters make.
+    fn number_count(&self) -> usize {
+        let mut count = 0;
+        self.leaf.numbers(&mut |_| count += 1);
+        count
+    }
+
     fn seen(&self, when: When, at: &Point, state: StateRef, observation: Observation, take: Take) -> Reported {
         take(Seen { leaf: &**self, when, at: *at, state, observation, factor: 1.0 });
         Reported { observation, rank: Part::report(self, at).0 }
@@ -157,6 +165,40 @@ impl Part for LeafPart {
 
     fn asymptote(&self, at: &Point, _: Onset) -> Term {
         self.leaf.linearised(at)
+    }
+
+    fn without_derivatives(&self) -> Option<String> {
+        let known = self.leaf.numbers(&mut |_| {});
+        (!known).then(|| self.name.as_ref().map_or(self.leaf.name(), |name| name).to_owned())
+    }
+
+    fn vary(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        forces: &mut [f64],
+    ) {
+        let size = self.leaf.size();
+        self.leaf.vary(step, state.take(size), told, own.take(self.number_count(), size), forces);
+    }
+
+    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
+        let size = self.leaf.size();
+        self.leaf.commit_variation(step, state.take(size), told, own.take(self.number_count(), size));
+    }
+
+    fn vary_at(
+        &self,
+        (when, at): (When, &Point),
+        state: &mut StateRef,
+        told: &PointVariation,
+        own: &mut VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        let size = self.leaf.size();
+        self.leaf.vary_at(when, at, state.take(size), told, own.take(self.number_count(), size), sum);
     }
 
     fn at_rest(&self, at: &Point, held: f64) -> Option<AtRest> {

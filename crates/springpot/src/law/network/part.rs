@@ -10,6 +10,7 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{AtRest, Tangent};
+use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef};
 use num_complex::Complex64;
 
 /// A part of a network: a leaf, parts side by side or one behind the other, or a whole law under heat.
@@ -188,6 +189,40 @@ pub(in crate::law) trait Part: std::fmt::Debug {
     /// What remains of it at short or at long times: the stiffest of parts side by side.
     fn asymptote(&self, at: &Point, onset: Onset) -> Term {
         asymptote(self.parts().iter().map(|part| part.ask().asymptote(at, onset)), onset, true)
+    }
+
+    /// The part of it of which no derivative is known ([`Leaf::numbers`]), as it is called.
+    fn without_derivatives(&self) -> Option<String> {
+        self.parts().iter().find_map(|part| part.ask().without_derivatives())
+    }
+
+    /// Adds what changes of its forces at the nodes ([`Leaf::vary`]).
+    fn vary(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        forces: &mut [f64],
+    ) {
+        self.parts().iter().for_each(|part| part.ask().vary(step, state, told, own, forces));
+    }
+
+    /// Takes what changes of an accepted step into what changes of its state.
+    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
+        self.parts().iter().for_each(|part| part.ask().commit_variation(step, state, told, own));
+    }
+
+    /// Adds what changes of it at one time.
+    fn vary_at(
+        &self,
+        (when, at): (When, &Point),
+        state: &mut StateRef,
+        told: &PointVariation,
+        own: &mut VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        self.parts().iter().for_each(|part| part.ask().vary_at((when, at), state, told, own, sum));
     }
 
     /// At rest since ever ([`Network::at_rest`]).

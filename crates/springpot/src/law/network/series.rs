@@ -164,6 +164,11 @@ impl Series {
 }
 
 impl Part for Series {
+    /// None is known.
+    fn without_derivatives(&self) -> Option<String> {
+        Some("what stands in series".to_owned())
+    }
+
     fn parts(&self) -> &[Network] {
         &self.parts
     }

@@ -57,7 +57,7 @@ impl Within for Dense<'_> {
 }
 
 /// The cubic with coefficients `u` at θ, its integral from 0, and the integral of that.
-fn integrals(u: [f64; 4], theta: f64) -> [f64; 3] {
+pub(super) fn integrals(u: [f64; 4], theta: f64) -> [f64; 3] {
     let [u0, u1, u2, u3] = u;
     let value = u0 + theta * (u1 + theta * (u2 + theta * u3));
     let once = theta * (u0 + theta * (u1 / 2.0 + theta * (u2 / 3.0 + theta * u3 / 4.0)));

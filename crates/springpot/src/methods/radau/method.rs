@@ -12,9 +12,10 @@ use crate::dynamics::Kinematics;
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
-use crate::equations::{Change, Equations, Look, Solved, Within};
+use crate::equations::{Change, Equations, Look, Node, Solved, Variation, Within};
 use crate::law::Course;
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
+use crate::sensitivity::SensitivityError;
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::settings::Settings;
@@ -182,6 +183,23 @@ impl Stepper for Radau {
         let changes = recorder.equations.starts_anew() && step.behind == Behind::Step;
         let behind = if changes { Behind::Change } else { step.behind };
         Ok(Trial::Accepted { step: Target { behind, ..step }, next })
+    }
+
+    fn vary(&mut self, _: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
+        let Recorder { equations, variation, .. } = recorder;
+        let Some(variation) = variation else { return Ok(()) };
+        if self.step.vary(equations, variation, step.size) {
+            return Ok(());
+        }
+        Err(SensitivityError::Unknown { what: format!("a motion without inertia at t = {} s", step.from) }.into())
+    }
+
+    fn vary_within(&mut self, variation: &mut Variation, theta: f64, size: f64) {
+        self.step.vary_within(variation, theta, size);
+    }
+
+    fn origin(&self) -> Option<Node<'_>> {
+        Some(self.step.origin.node())
     }
 
     fn gives_up(&self, _: Context, _: &Recorder, step: &Target, size: f64) -> Option<RunError> {

@@ -16,5 +16,6 @@ mod sizes;
 mod stages;
 mod start;
 mod step;
+mod variation;
 
 pub(crate) use method::{Radau, StepperState};

@@ -14,6 +14,11 @@ use num_complex::Complex64;
 
 /// Its own law is asked in reduced time.
 impl Part for Heated {
+    /// None is known.
+    fn without_derivatives(&self) -> Option<String> {
+        Some("a law under heat".to_owned())
+    }
+
     fn parts(&self) -> &[Network] {
         std::slice::from_ref(&self.law)
     }

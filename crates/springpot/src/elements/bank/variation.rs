@@ -1,0 +1,58 @@
+//! What parameters change of the elements of a bank.
+
+use super::{Banked, ElementBank, Kept};
+use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
+use crate::law::{Point, State, When};
+
+impl ElementBank {
+    /// The state of the law of element `e`; none where it takes no part.
+    pub(crate) fn law_state(&self, e: usize) -> Option<&State> {
+        self.elements[e].kept.as_ref().map(|kept| &kept.state)
+    }
+
+    /// What changes of the forces of element `e` at the nodes where strokes and rates there stay ([`crate::law::Leaf::vary`]).
+    pub(crate) fn vary(&self, e: usize, by: &StepVariation, own: &LawVariation, forces: &mut [f64]) {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            law.vary(&told.step(self.step), state, by, own, forces);
+        }
+    }
+
+    /// Takes what changes of the step into what changes of the state of element `e`; to be called before [`ElementBank::commit`].
+    pub(crate) fn commit_variation(&self, e: usize, by: &StepVariation, own: &mut LawVariation) {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            law.commit_variation(&told.step(self.step), state, by, own);
+        }
+    }
+
+    /// Adds what changes of element `e` at t_n + θh of the step, where it is told `at`.
+    pub(crate) fn vary_at(
+        &self,
+        e: usize,
+        (theta, at): (f64, &Point),
+        by: &PointVariation,
+        own: &LawVariation,
+        sum: &mut ObservationVariation,
+    ) {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            law.vary_at((When::Within(&told.step(self.step), theta), at), state, by, own, sum);
+        }
+    }
+
+    /// Adds what changes of element `e` between two steps, where it is told `at`.
+    pub(crate) fn vary_now(
+        &self,
+        e: usize,
+        at: &Point,
+        by: &PointVariation,
+        own: &LawVariation,
+        sum: &mut ObservationVariation,
+    ) {
+        let Banked { law, kept, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            law.vary_at((When::Between, at), state, by, own, sum);
+        }
+    }
+}

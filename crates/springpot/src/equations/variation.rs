@@ -1,0 +1,512 @@
+//! What parameters change at the nodes of a step: the equations of motion linearised there, and their right sides.
+
+use super::assembly::Equations;
+use super::node::Node;
+use super::resistance::add_tangents;
+use super::solve::Solve;
+use crate::collocation::STAGES;
+use crate::dynamics::{Kinematics, RneaDerivatives, Workspace, gravity_into, point_jacobian, rnea_at_into};
+use crate::elements::{Forces, Pull, Reading};
+use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
+use crate::law::{Network, Response};
+use crate::model::{FrictionLaw, Model};
+use crate::observe::{Axis, ElementQuantity, Quantity, Snapshot};
+use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
+use crate::system::{Motion, System};
+use std::sync::Arc;
+
+/// Derivatives of a run by its parameters, in blocks of one number for each parameter; velocities count as those of the extended robot.
+#[derive(Debug)]
+pub(crate) struct Variation {
+    by: Arc<Sensitivity>,
+    system: Arc<System>,
+    /// Of every coordinate and velocity of the run, which of the extended robot it is.
+    own_q: Vec<usize>,
+    own_v: Vec<usize>,
+    /// Coordinates of the extended robot.
+    q: Vec<f64>,
+    pub(crate) elements: Vec<ElementVariation>,
+    /// At the start of the step, at its nodes, and at a row.
+    pub(crate) nodes: [NodeVariation; ROW + 1],
+    forces: Forces,
+    workspace: Workspace,
+    tau: Vec<f64>,
+    pub(crate) solve: Solve,
+}
+
+/// The node of a row.
+pub(crate) const ROW: usize = STAGES + 1;
+
+/// An element over a step.
+#[derive(Debug)]
+pub(crate) struct ElementVariation {
+    pub(crate) law: LawVariation,
+    /// What changes of its stroke where the robot stays.
+    rest: Vec<f64>,
+    /// Stroke and rate, node by node.
+    pub(crate) stroke: Vec<f64>,
+    pub(crate) rate: Vec<f64>,
+    /// Inputs, value and rate, point by point; empty where no parameter moves any.
+    inputs: [Vec<f64>; 2],
+    /// Forces at the nodes, by all but strokes and rates there.
+    pub(crate) force: Vec<f64>,
+    /// Force and stored energy at the row.
+    row: [Vec<f64>; 2],
+}
+
+/// One node.
+#[derive(Debug)]
+pub(crate) struct NodeVariation {
+    t: f64,
+    pub(crate) kinematics: Kinematics,
+    /// ∂(RNEA + resistance + Σ g F)/∂q, /∂v, /∂a, F constant.
+    pub(crate) slopes: RneaDerivatives,
+    /// v and a of the extended robot.
+    v_now: Vec<f64>,
+    a_now: Vec<f64>,
+    /// ∂y/∂q and ∂y'/∂q of every element.
+    pub(crate) gradients: Vec<[Vec<f64>; 2]>,
+    /// Blocks of q, v and a.
+    pub(crate) q: Vec<f64>,
+    pub(crate) v: Vec<f64>,
+    pub(crate) a: Vec<f64>,
+    /// Of the equations of motion where the motion stays.
+    explicit: Vec<f64>,
+}
+
+impl Variation {
+    /// Of a run of `system`.
+    ///
+    /// # Errors
+    /// What has no derivative.
+    pub(crate) fn new(system: &System, by: &Arc<Sensitivity>) -> Result<Self, SensitivityError> {
+        let extended = by.extended.clone().unwrap_or_else(|| Arc::new(system.clone()));
+        check(system)?;
+        let (model, count) = (&extended.model, by.parameters.len());
+        let (mut own_q, mut own_v) = (Vec::new(), Vec::new());
+        for j in system.model.own_joints() {
+            let name = &system.model.joint_names()[j];
+            let Some(other) = model.joint_index(name) else {
+                return Err(SensitivityError::Unknown { what: format!("joint \"{name}\"") });
+            };
+            own_q.extend(model.q_range(other));
+            own_v.extend(model.v_range(other));
+        }
+        let Motion::Forward(forward) = &extended.motion else {
+            return Err(SensitivityError::Unknown { what: "motions that are given in advance".to_owned() });
+        };
+        let zeros = || vec![0.0; model.nv() * count];
+        let node = || NodeVariation {
+            t: 0.0,
+            kinematics: Kinematics::new(model),
+            slopes: RneaDerivatives::new(model),
+            v_now: vec![0.0; model.nv()],
+            a_now: vec![0.0; model.nv()],
+            gradients: extended.elements.iter().map(|_| [vec![0.0; model.nv()], vec![0.0; model.nv()]]).collect(),
+            q: zeros(),
+            v: zeros(),
+            a: zeros(),
+            explicit: zeros(),
+        };
+        let element = |(e, inputs): (usize, usize)| {
+            let mut rest = vec![0.0; count];
+            let mut moves_inputs = false;
+            for (p, parameter) in by.parameters.iter().enumerate() {
+                for seed in &parameter.seeds {
+                    match seed {
+                        Seed::Rest { element, by } if *element == e => rest[p] -= by,
+                        Seed::Input { element, .. } if *element == e => moves_inputs = true,
+                        _ => {}
+                    }
+                }
+            }
+            let points = || vec![0.0; (ROW + 1) * count];
+            let inputs = || vec![0.0; if moves_inputs { (ROW + 1) * inputs * count } else { 0 }];
+            ElementVariation {
+                law: LawVariation::default(),
+                rest,
+                stroke: points(),
+                rate: points(),
+                inputs: [inputs(), inputs()],
+                force: vec![0.0; STAGES * count],
+                row: [vec![0.0; count], vec![0.0; count]],
+            }
+        };
+        let elements = extended.elements.iter().map(|element| element.inputs.len()).enumerate().map(element).collect();
+        Ok(Self {
+            own_q,
+            own_v,
+            q: forward.q.clone(),
+            elements,
+            nodes: std::array::from_fn(|_| node()),
+            forces: Forces::default(),
+            workspace: Workspace::new(model),
+            tau: vec![0.0; model.nv()],
+            solve: Solve::default(),
+            by: by.clone(),
+            system: extended.clone(),
+        })
+    }
+
+    /// Number of parameters.
+    pub(crate) fn count(&self) -> usize {
+        self.by.parameters.len()
+    }
+
+    /// Number of velocities of the extended robot.
+    pub(crate) fn nv(&self) -> usize {
+        self.tau.len()
+    }
+
+    /// Which velocity of the extended robot each of these of the run is.
+    pub(crate) fn of_run(&self, velocities: &[usize]) -> Vec<usize> {
+        velocities.iter().map(|&k| self.own_v[k]).collect()
+    }
+
+    /// What changes at t = 0, of a run whose elements have begun and whose robot is at `start`.
+    ///
+    /// # Errors
+    /// A leaf that has no derivatives.
+    pub(crate) fn begin(&mut self, equations: &Equations, start: Node) -> Result<(), SensitivityError> {
+        let (by, count) = (self.by.clone(), self.count());
+        let node = &mut self.nodes[0];
+        for (p, parameter) in by.parameters.iter().enumerate() {
+            for seed in &parameter.seeds {
+                match seed {
+                    Seed::Position { velocity, by } => node.q[self.own_v[*velocity] * count + p] += by,
+                    Seed::Velocity { velocity, by } => node.v[self.own_v[*velocity] * count + p] += by,
+                    Seed::Place { velocity, by } => node.q[velocity * count + p] += by,
+                    _ => {}
+                }
+            }
+        }
+        for (e, element) in self.system.elements.iter().enumerate() {
+            let law = |seed: &Seed| match seed {
+                Seed::Law { element, law } if *element == e => Some(law.clone()),
+                _ => None,
+            };
+            let laws: Vec<Option<Network>> =
+                by.parameters.iter().map(|parameter| parameter.seeds.iter().find_map(law)).collect();
+            let Some(state) = equations.bank.law_state(e) else {
+                return Err(SensitivityError::Unknown {
+                    what: format!("\"{}\", which has a named scheme", element.name),
+                });
+            };
+            self.elements[e].law = LawVariation::begin(&element.law, &laws, state).map_err(|leaf| {
+                SensitivityError::Unknown { what: format!("{leaf} in the law of \"{}\"", element.name) }
+            })?;
+        }
+        self.settle(equations, start);
+        Ok(())
+    }
+
+    /// What changes of the accelerations at the start of the step, where `start` may be the far side of a jump of them.
+    pub(crate) fn settle(&mut self, equations: &Equations, start: Node) {
+        let count = self.count();
+        let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
+        self.see(0, start, &force);
+        let free = self.of_run(equations.free());
+        for e in 0..self.elements.len() {
+            self.measure(e, 0);
+        }
+        // M δa = −(K δq + D δv + explicit + Σ g δF).
+        let Self { nodes: [node, ..], elements, solve, tau, .. } = self;
+        node.a.fill(0.0);
+        let n = tau.len();
+        if !solve.factor_part(&node.slopes.d_a, n, &free) {
+            node.a.fill(f64::NAN);
+            return;
+        }
+        let mut forces = vec![0.0; elements.len() * count];
+        let (mut sum, mut spare) = (vec![0.0; count], vec![0.0; count]);
+        for (e, element) in elements.iter().enumerate() {
+            let told = PointVariation {
+                stroke: &element.stroke[..count],
+                rate: &element.rate[..count],
+                inputs: element.inputs.each_ref().map(|inputs| &inputs[..inputs.len() / (ROW + 1)]),
+                step: None,
+            };
+            sum.fill(0.0);
+            let mut of = ObservationVariation { force: &mut sum, stored: &mut spare };
+            equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, &element.law, &mut of);
+            forces[e * count..(e + 1) * count].copy_from_slice(&sum);
+        }
+        let mut right = vec![0.0; free.len()];
+        for p in 0..count {
+            for (right, &row) in right.iter_mut().zip(&free) {
+                let line = row * n..(row + 1) * n;
+                let by_motion: f64 = node.slopes.d_q[line.clone()]
+                    .iter()
+                    .zip(&node.slopes.d_v[line])
+                    .enumerate()
+                    .map(|(k, (by_q, by_v))| by_q * node.q[k * count + p] + by_v * node.v[k * count + p])
+                    .sum();
+                let of_elements: f64 =
+                    node.gradients.iter().enumerate().map(|(e, [g, _])| g[row] * forces[e * count + p]).sum();
+                *right = -(by_motion + node.explicit[row * count + p] + of_elements);
+            }
+            solve.solve(&mut right);
+            free.iter().zip(&right).for_each(|(&k, a)| node.a[k * count + p] = *a);
+        }
+    }
+
+    /// Sees node `i` of the step, where the run is at `at` and its elements pull with `force`: slopes there, and what changes where the motion stays.
+    pub(crate) fn see(&mut self, i: usize, at: Node, force: &[f64]) {
+        let Self { by, system, own_q, own_v, q, nodes, forces, workspace, tau, elements, .. } = self;
+        let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
+        own_q.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
+        for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
+            (node.v_now[k], node.a_now[k]) = (*v, *a);
+        }
+        node.t = at.t;
+        node.kinematics.update_velocity(model, q, &node.v_now);
+        forces.clear();
+        for (element, force) in system.elements.iter().zip(force) {
+            forces.push(&element.measure, Pull::constant(*force));
+        }
+        let slopes = &mut node.slopes;
+        forces.inverse_dynamics_derivatives_into(model, &node.kinematics, &node.a_now, workspace, slopes);
+        add_tangents(system, &node.v_now, &mut slopes.d_v);
+        let n = model.nv();
+        for (element, [gradient, bend]) in system.elements.iter().zip(&mut node.gradients) {
+            let mut reading = Reading::default();
+            element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
+            let hessian = element.measure.hessian(model, &node.kinematics);
+            for (bend, line) in bend.iter_mut().zip(hessian.chunks_exact(n)) {
+                *bend = line.iter().zip(&node.v_now).map(|(h, v)| h * v).sum();
+            }
+        }
+        node.explicit.fill(0.0);
+        for (p, parameter) in by.parameters.iter().enumerate() {
+            let mut add = |k: usize, value: f64| node.explicit[k * count + p] += value;
+            for seed in &parameter.seeds {
+                match seed {
+                    Seed::Drive { velocity, by } => add(own_v[*velocity], -by.value(at.t)),
+                    Seed::Damping { joint, by } => {
+                        let (k, ratio, speed) = felt(model, *joint, &node.v_now);
+                        add(k, by * ratio * speed);
+                    }
+                    Seed::Friction { joint, by } => {
+                        let (k, ratio, speed) = felt(model, *joint, &node.v_now);
+                        if let FrictionLaw::Smooth { speed: width } = model.friction_laws()[*joint] {
+                            add(k, by * ratio * (speed / width).tanh());
+                        }
+                    }
+                    Seed::Inertia(change) => {
+                        rnea_at_into(change, &node.kinematics, q, &node.a_now, &[], workspace, tau);
+                        tau.iter().enumerate().for_each(|(k, tau)| add(k, *tau));
+                    }
+                    Seed::Gravity(change) => {
+                        gravity_into(change, &node.kinematics, workspace, tau);
+                        tau.iter().enumerate().for_each(|(k, tau)| add(k, *tau));
+                    }
+                    Seed::Input { element, input, by } => {
+                        let inputs = system.elements[*element].inputs.len();
+                        let change = by.at(at.t);
+                        let place = ((i * inputs) + input) * count + p;
+                        let [values, rates] = &mut elements[*element].inputs;
+                        (values[place], rates[place]) = (change.value, change.first);
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// What changes of stroke and rate of element `e` at node `i`.
+    pub(crate) fn measure(&mut self, e: usize, i: usize) {
+        let (count, Self { nodes, elements, .. }) = (self.count(), self);
+        let (node, element) = (&nodes[i], &mut elements[e]);
+        let [gradient, bend] = &node.gradients[e];
+        let stroke = &mut element.stroke[i * count..(i + 1) * count];
+        let rate = &mut element.rate[i * count..(i + 1) * count];
+        stroke.copy_from_slice(&element.rest);
+        rate.fill(0.0);
+        for (k, (g, y)) in gradient.iter().zip(bend).enumerate() {
+            let (q, v) = (&node.q[k * count..(k + 1) * count], &node.v[k * count..(k + 1) * count]);
+            for p in 0..count {
+                stroke[p] += g * q[p];
+                rate[p] += y * q[p] + g * v[p];
+            }
+        }
+    }
+
+    /// What changes of the equation of velocity `row` at node `i` by parameter `p`, the forces of the elements apart, where q, v and a change as
+    /// the node has them.
+    pub(crate) fn unbalanced(&self, i: usize, row: usize, p: usize) -> f64 {
+        let (count, n, node) = (self.count(), self.nv(), &self.nodes[i]);
+        let line = row * n..(row + 1) * n;
+        let slopes = &node.slopes;
+        let by_motion: f64 = (0..n)
+            .zip(line)
+            .map(|(k, at)| {
+                let block = k * count + p;
+                slopes.d_q[at] * node.q[block] + slopes.d_v[at] * node.v[block] + slopes.d_a[at] * node.a[block]
+            })
+            .sum();
+        by_motion + node.explicit[row * count + p]
+    }
+
+    /// Asks the laws what changes of their forces where strokes and rates at the nodes stay.
+    pub(crate) fn ask(&mut self, equations: &Equations) {
+        let count = self.count();
+        for (e, ElementVariation { law, stroke, rate, inputs, force, .. }) in self.elements.iter_mut().enumerate() {
+            let told = of_step(count, [stroke, rate], inputs);
+            equations.bank.vary(e, &told, law, force);
+        }
+    }
+
+    /// Takes the accepted step into what changes of the laws' states; the bank has not taken it yet.
+    pub(crate) fn commit(&mut self, equations: &Equations) {
+        let count = self.count();
+        for (e, ElementVariation { law, stroke, rate, inputs, .. }) in self.elements.iter_mut().enumerate() {
+            let told = of_step(count, [stroke, rate], inputs);
+            equations.bank.commit_variation(e, &told, law);
+            let last = STAGES * count;
+            stroke.copy_within(last.., 0);
+            rate.copy_within(last.., 0);
+        }
+        self.nodes.swap(0, STAGES);
+    }
+
+    /// What changes of the force of element `e` at node `i` (from 1) by parameter `p`.
+    pub(crate) fn force(&self, response: &Response, e: usize, i: usize, p: usize) -> f64 {
+        let (count, element) = (self.count(), &self.elements[e]);
+        let by_motion: f64 = (0..STAGES)
+            .map(|m| {
+                let block = (m + 1) * count + p;
+                response.d_stroke[i - 1][m] * element.stroke[block] + response.d_rate[i - 1][m] * element.rate[block]
+            })
+            .sum();
+        element.force[(i - 1) * count + p] + by_motion
+    }
+
+    /// The motion at the row changes as where the next step starts.
+    pub(crate) fn take_start(&mut self) {
+        let [start, .., row] = &mut self.nodes;
+        row.q.copy_from_slice(&start.q);
+        row.v.copy_from_slice(&start.v);
+        row.a.copy_from_slice(&start.a);
+    }
+
+    /// Works out what changes at a row where the run is at `snapshot`, whose motion changes as node [`ROW`] has it: at θ of the step at hand, or
+    /// between two.
+    pub(crate) fn read(&mut self, equations: &Equations, theta: Option<f64>, snapshot: &Snapshot) {
+        let evaluation = &snapshot.evaluation;
+        let force: Vec<f64> = (0..self.elements.len()).map(|e| snapshot.force(e)).collect();
+        self.see(ROW, Node { t: evaluation.t, q: &evaluation.q, v: &evaluation.v, a: &evaluation.a }, &force);
+        let count = self.count();
+        for e in 0..self.elements.len() {
+            self.measure(e, ROW);
+            let ElementVariation { law, stroke, rate, inputs, row: [force, stored], .. } = &mut self.elements[e];
+            let own = |blocks: &'_ Vec<f64>| blocks.len() / (ROW + 1) * ROW;
+            let [values, rates] = &*inputs;
+            let told = PointVariation {
+                stroke: &stroke[ROW * count..],
+                rate: &rate[ROW * count..],
+                inputs: [&values[own(values)..], &rates[own(rates)..]],
+                step: theta.map(|_| of_step(count, [stroke, rate], inputs)),
+            };
+            force.fill(0.0);
+            stored.fill(0.0);
+            let mut sum = ObservationVariation { force, stored };
+            let point = evaluation.elements[e].point(evaluation.t);
+            match theta {
+                Some(theta) => equations.bank.vary_at(e, (theta, &point), &told, law, &mut sum),
+                None => equations.bank.vary_now(e, &point, &told, law, &mut sum),
+            }
+        }
+    }
+
+    /// What changes of a quantity at the row that was read last by parameter `p`; `None` where nothing is known of it.
+    pub(crate) fn value(&self, quantity: Quantity, p: usize, snapshot: &Snapshot) -> Option<f64> {
+        let (count, node) = (self.count(), &self.nodes[ROW]);
+        let of_velocity = |block: &[f64], k: usize| block[self.own_v[k] * count + p];
+        let force = |e: usize| self.elements[e].row[0][p];
+        Some(match quantity {
+            Quantity::Time => 0.0,
+            // One degree a joint: coordinates and velocities go together.
+            Quantity::Coordinate(k) => of_velocity(&node.q, k),
+            Quantity::Velocity(k) => of_velocity(&node.v, k),
+            Quantity::Acceleration(k) => of_velocity(&node.a, k),
+            Quantity::Torque(k) if snapshot.evaluation.driven[k].is_some() => self.driven(k, p, node.t),
+            Quantity::Torque(k) => {
+                let row = self.own_v[k];
+                let pulls = node.gradients.iter().enumerate().map(|(e, [g, _])| g[row] * force(e)).sum::<f64>();
+                self.unbalanced(ROW, row, p) + pulls
+            }
+            Quantity::Element(e, of) => match of {
+                ElementQuantity::Length => {
+                    let [gradient, _] = &node.gradients[e];
+                    gradient.iter().enumerate().map(|(k, g)| g * node.q[k * count + p]).sum()
+                }
+                ElementQuantity::Stroke => self.elements[e].stroke[ROW * count + p],
+                ElementQuantity::Rate => self.elements[e].rate[ROW * count + p],
+                ElementQuantity::Force => force(e),
+                ElementQuantity::Stored => self.elements[e].row[1][p],
+                ElementQuantity::InputValue(i) => {
+                    let [values, _] = &self.elements[e].inputs;
+                    let inputs = values.len() / ((ROW + 1) * count);
+                    if inputs == 0 { 0.0 } else { values[(ROW * inputs + i) * count + p] }
+                }
+                _ => return None,
+            },
+            Quantity::Gripper(axis) => {
+                let site = self.system.gripper.as_ref()?;
+                let jacobian = point_jacobian(&self.system.model, &node.kinematics, site);
+                let n = self.nv();
+                let row = match axis {
+                    Axis::X => 0,
+                    Axis::Y => 1,
+                    Axis::Z => 2,
+                };
+                (0..n).map(|k| jacobian[row * n + k] * node.q[k * count + p]).sum()
+            }
+            Quantity::GripperError | Quantity::Energy(_) => return None,
+        })
+    }
+
+    /// What changes of the force of the actuator of velocity `k`.
+    fn driven(&self, k: usize, p: usize, t: f64) -> f64 {
+        let seeds = self.by.parameters[p].seeds.iter();
+        seeds
+            .map(|seed| match seed {
+                Seed::Drive { velocity, by } if *velocity == k => by.value(t),
+                _ => 0.0,
+            })
+            .sum()
+    }
+}
+
+/// What changes of what a law is told of a step, without the row behind.
+fn of_step<'a>(count: usize, [stroke, rate]: [&'a Vec<f64>; 2], inputs: &'a [Vec<f64>; 2]) -> StepVariation<'a> {
+    let step = (STAGES + 1) * count;
+    let inputs = inputs.each_ref().map(|blocks| &blocks[..blocks.len() / (ROW + 1) * (STAGES + 1)]);
+    StepVariation { count, stroke: &stroke[..step], rate: &rate[..step], inputs }
+}
+
+/// Velocity, ratio and speed of a joint of the extended robot.
+fn felt(model: &Model, joint: usize, v: &[f64]) -> (usize, f64, f64) {
+    let (k, ratio) = (model.v_range(joint).start, model.followed(joint).map_or(1.0, |(_, ratio, _)| ratio));
+    (k, ratio, ratio * v[k])
+}
+
+/// What no derivative is known of.
+fn check(system: &System) -> Result<(), SensitivityError> {
+    let unknown = |what: &str| Err(SensitivityError::Unknown { what: what.to_owned() });
+    if !system.model.is_one_degree() {
+        return unknown("joints with quaternions");
+    }
+    if !system.control.is_empty() {
+        return unknown("what follows from the state");
+    }
+    if !system.events.is_empty() {
+        return unknown("events");
+    }
+    if (0..system.model.joint_count())
+        .any(|j| system.model.friction_laws()[j] == FrictionLaw::Sticking && system.model.friction()[j] > 0.0)
+    {
+        return unknown("friction that sticks");
+    }
+    Ok(())
+}

@@ -1,0 +1,161 @@
+//! What parameters change of a law: beside every number a block of derivatives, one for each parameter.
+
+use super::network::Network;
+use super::state::{State, StateSize};
+use crate::dual::Dual;
+
+/// What parameters change of what a law is told of a step: blocks of `count` derivatives.
+#[derive(Debug, Clone, Copy)]
+pub struct StepVariation<'a> {
+    /// Number of parameters.
+    pub count: usize,
+    /// Of x at the start and at the nodes, s + 1 blocks.
+    pub stroke: &'a [f64],
+    /// Of x' there.
+    pub rate: &'a [f64],
+    /// Of the inputs there, value and rate, point by point; empty where no parameter moves any.
+    pub inputs: [&'a [f64]; 2],
+}
+
+/// What parameters change of what a law is told of one time.
+#[derive(Debug, Clone, Copy)]
+pub struct PointVariation<'a> {
+    /// Of x, a block.
+    pub stroke: &'a [f64],
+    /// Of x'.
+    pub rate: &'a [f64],
+    /// Of the inputs, value and rate; empty where no parameter moves any.
+    pub inputs: [&'a [f64]; 2],
+    /// Of the step around it, where there is one.
+    pub step: Option<StepVariation<'a>>,
+}
+
+/// What parameters change of what a law is at one time: blocks of derivatives, to which every leaf adds its own.
+#[derive(Debug)]
+pub struct ObservationVariation<'a> {
+    /// Of F without the share of a singular start.
+    pub force: &'a mut [f64],
+    /// Of the stored energy.
+    pub stored: &'a mut [f64],
+}
+
+/// What parameters change of a law's own: its numbers, and what it keeps between steps.
+#[derive(Debug, Clone, Default)]
+pub struct LawVariation {
+    /// Number of parameters.
+    pub count: usize,
+    /// Of the numbers of its leaves, in their order.
+    numbers: Vec<f64>,
+    /// Of its inner variables.
+    variables: Vec<f64>,
+}
+
+/// The share of one part of a law.
+#[derive(Debug, Clone, Copy)]
+pub struct VariationRef<'a> {
+    /// Number of parameters.
+    pub count: usize,
+    /// Blocks of its numbers, in the order of [`super::Leaf::numbers`].
+    pub numbers: &'a [f64],
+    /// Blocks of its inner variables.
+    pub variables: &'a [f64],
+}
+
+/// As [`VariationRef`], to be changed.
+#[derive(Debug)]
+pub struct VariationMut<'a> {
+    /// Number of parameters.
+    pub count: usize,
+    /// Blocks of its numbers, which stay.
+    pub numbers: &'a [f64],
+    /// Blocks of its inner variables.
+    pub variables: &'a mut [f64],
+}
+
+impl LawVariation {
+    /// At t = 0: of the law as each parameter has it, with its derivatives in its numbers, where it moves any.
+    ///
+    /// # Errors
+    /// The name of a leaf whose derivatives are not known.
+    pub(crate) fn begin(law: &Network, by: &[Option<Network>], state: &State) -> Result<Self, String> {
+        if let Some(leaf) = law.without_derivatives() {
+            return Err(leaf);
+        }
+        let count = by.len();
+        let mut numbers = vec![0.0; law.numbers().len() * count];
+        for (p, law) in by.iter().enumerate() {
+            for (k, Dual { slope, .. }) in law.iter().flat_map(Network::numbers).enumerate() {
+                numbers[k * count + p] = slope;
+            }
+        }
+        Ok(Self { count, numbers, variables: vec![0.0; state.size().variables * count] })
+    }
+
+    /// All of it.
+    pub(crate) fn view(&self) -> VariationRef<'_> {
+        VariationRef { count: self.count, numbers: &self.numbers, variables: &self.variables }
+    }
+
+    /// All of it, to be changed.
+    pub(crate) fn view_mut(&mut self) -> VariationMut<'_> {
+        VariationMut { count: self.count, numbers: &self.numbers, variables: &mut self.variables }
+    }
+}
+
+impl<'a> VariationRef<'a> {
+    /// Splits off the share of the next leaf.
+    pub(super) fn take(&mut self, numbers: usize, size: StateSize) -> Self {
+        let (own, rest) = self.numbers.split_at(numbers * self.count);
+        let (variables, other) = self.variables.split_at(size.variables * self.count);
+        (self.numbers, self.variables) = (rest, other);
+        Self { count: self.count, numbers: own, variables }
+    }
+
+    /// The block of its number `k`.
+    pub fn number(&self, k: usize) -> &'a [f64] {
+        &self.numbers[k * self.count..(k + 1) * self.count]
+    }
+}
+
+impl<'a> VariationMut<'a> {
+    /// Splits off the share of the next leaf.
+    pub(super) fn take(&mut self, numbers: usize, size: StateSize) -> VariationMut<'a> {
+        let (own, rest) = self.numbers.split_at(numbers * self.count);
+        let variables = self.variables.split_off_mut(..size.variables * self.count).expect("a state of this law");
+        self.numbers = rest;
+        VariationMut { count: self.count, numbers: own, variables }
+    }
+}
+
+impl<'a> StepVariation<'a> {
+    /// The block of x at its start (0) or at a node.
+    pub fn stroke_at(&self, point: usize) -> &'a [f64] {
+        &self.stroke[point * self.count..(point + 1) * self.count]
+    }
+
+    /// The block of x' there.
+    pub fn rate_at(&self, point: usize) -> &'a [f64] {
+        &self.rate[point * self.count..(point + 1) * self.count]
+    }
+
+    /// The blocks of value and rate of input `input`, of `inputs` that the law has, there; none where no parameter moves it.
+    pub fn input_at(&self, point: usize, input: usize, inputs: usize) -> Option<[&'a [f64]; 2]> {
+        let from = (point * inputs + input) * self.count;
+        let [values, rates] = self.inputs;
+        Some([values.get(from..from + self.count)?, rates.get(from..from + self.count)?])
+    }
+}
+
+impl<'a> PointVariation<'a> {
+    /// The blocks of value and rate of input `input`, `count` long; none where no parameter moves it.
+    pub fn input(&self, input: usize, count: usize) -> Option<[&'a [f64]; 2]> {
+        let [values, rates] = self.inputs;
+        let own = input * count..(input + 1) * count;
+        Some([values.get(own.clone())?, rates.get(own)?])
+    }
+}
+
+/// Adds factor·block to a block.
+pub(super) fn add(to: &mut [f64], factor: f64, block: &[f64]) {
+    to.iter_mut().zip(block).for_each(|(to, x)| *to += factor * x);
+}

@@ -1,0 +1,147 @@
+//! What parameters change over a step of Radau IIA: the step with its size frozen, differentiated.
+//!
+//! Q_i = q + c_i h v + h² Σ_j (A²)_ij a_j and V_i = v + h Σ_j A_ij a_j are linear, and so are their changes. Those of the accelerations solve the
+//! linearised equations of motion of all stages at once, with the slopes at the stages themselves: J δa = −ρ, ρ what is unbalanced where the
+//! accelerations stay.
+
+use super::dense::integrals;
+use super::step::RadauStep;
+use crate::collocation::radau::{A, A_SQUARED};
+use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
+use crate::equations::{Equations, Variation};
+
+impl RadauStep {
+    /// Works out what changes over the step that was solved, of size `h`; false where nothing does so in one way.
+    pub(super) fn vary(&mut self, equations: &Equations, variation: &mut Variation, h: f64) -> bool {
+        let count = variation.count();
+        let free = variation.of_run(equations.free());
+        let elements = variation.elements.len();
+        let mut force = vec![0.0; elements];
+        for (i, stage) in self.stages.iter().enumerate() {
+            force.iter_mut().enumerate().for_each(|(e, force)| *force = equations.bank.response(e).force[i]);
+            let t = self.origin.t + RADAU_NODES[i] * h;
+            variation.see(i + 1, stage.node(t), &force);
+        }
+        // The stages where the accelerations stay.
+        let [start, stages @ .., _] = &mut variation.nodes;
+        for (i, stage) in stages.iter_mut().enumerate() {
+            stage.q.copy_from_slice(&start.q);
+            stage.v.copy_from_slice(&start.v);
+            stage.a.fill(0.0);
+            let moved = RADAU_NODES[i] * h;
+            for &k in &free {
+                for block in k * count..(k + 1) * count {
+                    stage.q[block] += moved * start.v[block];
+                }
+            }
+        }
+        for e in 0..elements {
+            (0..=STAGES).for_each(|i| variation.measure(e, i));
+        }
+        variation.ask(equations);
+        if !free.is_empty() && !self.solve_variation(equations, variation, &free, h) {
+            return false;
+        }
+        let [_, stages @ .., _] = &mut variation.nodes;
+        let changes = stages.each_ref().map(|stage| stage.a.clone());
+        for (i, stage) in stages.iter_mut().enumerate() {
+            for &k in &free {
+                for block in k * count..(k + 1) * count {
+                    let sum = |row: &[f64; STAGES]| -> f64 { (0..STAGES).map(|j| row[j] * changes[j][block]).sum() };
+                    stage.v[block] += h * sum(&A[i]);
+                    stage.q[block] += h * h * sum(&A_SQUARED[i]);
+                }
+            }
+        }
+        for e in 0..elements {
+            (1..=STAGES).for_each(|i| variation.measure(e, i));
+        }
+        true
+    }
+
+    /// What changes of the motion at θ of the step that was solved, of size `h`, into node [`ROW`].
+    pub(super) fn vary_within(&self, variation: &mut Variation, theta: f64, h: f64) {
+        let count = variation.count();
+        let [start, a, b, c, row] = &mut variation.nodes;
+        row.q.copy_from_slice(&start.q);
+        row.v.copy_from_slice(&start.v);
+        row.a.fill(0.0);
+        for k in 0..row.q.len() / count {
+            for block in k * count..(k + 1) * count {
+                let nodes = [start.a[block], a.a[block], b.a[block], c.a[block]];
+                let cubic = TABLEAU.rates.map(|line| line.iter().zip(nodes).map(|(l, a)| l * a).sum::<f64>());
+                let [value, once, twice] = integrals(cubic, theta);
+                row.a[block] = value;
+                row.q[block] += h * (theta * row.v[block] + h * twice);
+                row.v[block] += h * once;
+            }
+        }
+    }
+
+    /// J δa = −ρ: δa into the stages of `variation`.
+    fn solve_variation(&self, equations: &Equations, variation: &mut Variation, free: &[usize], h: f64) -> bool {
+        let (n, count, own) = (variation.nv(), variation.count(), free.len());
+        let size = STAGES * own;
+        let mut solve = std::mem::take(&mut variation.solve);
+        let regular = solve.factor(size, |matrix| {
+            for i in 0..STAGES {
+                let node = &variation.nodes[i + 1];
+                for j in 0..STAGES {
+                    let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
+                    for (r, &row) in free.iter().enumerate() {
+                        let line = &mut matrix[(i * own + r) * size + j * own..][..own];
+                        for (entry, &column) in line.iter_mut().zip(free) {
+                            let at = row * n + column;
+                            *entry = damping * node.slopes.d_v[at] + stiffness * node.slopes.d_q[at];
+                            if i == j {
+                                *entry += node.slopes.d_a[at];
+                            }
+                        }
+                    }
+                }
+                for e in 0..variation.elements.len() {
+                    let response = equations.bank.response(e);
+                    let [on, _] = &node.gradients[e];
+                    for j in 0..STAGES {
+                        for m in 0..STAGES {
+                            let [gradient, bend] = &variation.nodes[m + 1].gradients[e];
+                            let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
+                            let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
+                            let [by_gradient, by_bend] = [twice * stroke + once * rate, twice * rate];
+                            for (r, &row) in free.iter().enumerate() {
+                                let line = &mut matrix[(i * own + r) * size + j * own..][..own];
+                                for (entry, &column) in line.iter_mut().zip(free) {
+                                    *entry += on[row] * (by_gradient * gradient[column] + by_bend * bend[column]);
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        });
+        if regular {
+            let mut right = vec![0.0; size];
+            for p in 0..count {
+                for i in 0..STAGES {
+                    let forces: Vec<f64> = (0..variation.elements.len())
+                        .map(|e| variation.force(equations.bank.response(e), e, i + 1, p))
+                        .collect();
+                    let node = &variation.nodes[i + 1];
+                    for (r, &row) in free.iter().enumerate() {
+                        let of_elements: f64 =
+                            node.gradients.iter().zip(&forces).map(|([g, _], force)| g[row] * force).sum();
+                        right[i * own + r] = -(variation.unbalanced(i + 1, row, p) + of_elements);
+                    }
+                }
+                solve.solve(&mut right);
+                for i in 0..STAGES {
+                    for (r, &k) in free.iter().enumerate() {
+                        variation.nodes[i + 1].a[k * count + p] = right[i * own + r];
+                    }
+                }
+            }
+        }
+        variation.solve = solve;
+        regular
+    }
+}

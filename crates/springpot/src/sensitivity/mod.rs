@@ -1,0 +1,125 @@
+//! What a run is differentiated by: numbers of its system, and what each of them moves.
+
+use crate::law::Network;
+use crate::model::Model;
+use crate::signal::Signal;
+use crate::system::System;
+use std::sync::Arc;
+
+/// By what a run is differentiated.
+#[derive(Debug, Clone, Default)]
+pub struct Sensitivity {
+    /// The numbers, in the order of their columns.
+    pub parameters: Vec<Parameter>,
+    /// The system with the geometry that parameters move as locked joints of its robot, at 0, without mass; all else is that of the run, under the
+    /// same names. `None`: no parameter moves any.
+    pub extended: Option<Arc<System>>,
+    /// Whether derivatives share in the choice of steps.
+    pub control: bool,
+}
+
+/// A number that a run is differentiated by.
+#[derive(Debug, Clone)]
+pub struct Parameter {
+    /// What it is called.
+    pub name: String,
+    /// Its value, SI.
+    pub value: f64,
+    /// Its size where that may be 0: what a change of it is measured by.
+    pub typical: f64,
+    /// What it moves; several add up.
+    pub seeds: Vec<Seed>,
+}
+
+/// What one unit of a parameter moves.
+#[derive(Debug, Clone)]
+pub enum Seed {
+    /// Where the run starts: the coordinate of a velocity.
+    Position {
+        /// Which velocity.
+        velocity: usize,
+        /// By how much.
+        by: f64,
+    },
+    /// How fast it starts.
+    Velocity {
+        /// Which velocity.
+        velocity: usize,
+        /// By how much.
+        by: f64,
+    },
+    /// Numbers of a law.
+    Law {
+        /// Which element.
+        element: usize,
+        /// The law, built of numbers that carry their derivatives by the parameter ([`crate::law::Build`]).
+        law: Network,
+    },
+    /// The coordinate at which the stroke of an element is 0.
+    Rest {
+        /// Which element.
+        element: usize,
+        /// By how much.
+        by: f64,
+    },
+    /// An input of an element.
+    Input {
+        /// Which element.
+        element: usize,
+        /// Which of its inputs.
+        input: usize,
+        /// By how much, as a function of time.
+        by: Signal,
+    },
+    /// The force of an actuator.
+    Drive {
+        /// On which velocity.
+        velocity: usize,
+        /// By how much, as a function of time.
+        by: Signal,
+    },
+    /// The damping of a joint.
+    Damping {
+        /// Which joint.
+        joint: usize,
+        /// By how much.
+        by: f64,
+    },
+    /// The friction of a joint.
+    Friction {
+        /// Which joint.
+        joint: usize,
+        /// By how much.
+        by: f64,
+    },
+    /// Inertias: those of this model are by how much, of the robot of [`Sensitivity::extended`] where there is one.
+    Inertia(Arc<Model>),
+    /// The field of gravity: that of this model is by how much.
+    Gravity(Arc<Model>),
+    /// A locked joint of [`Sensitivity::extended`].
+    Place {
+        /// Which of its velocities.
+        velocity: usize,
+        /// By how much its coordinate.
+        by: f64,
+    },
+}
+
+/// Why a run cannot be differentiated.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SensitivityError {
+    /// No derivative is known of something that the run is made of.
+    #[error("no derivative by a parameter is known of {what}")]
+    Unknown {
+        /// What it is.
+        what: String,
+    },
+    /// What the parameter would move is not there.
+    #[error("\"{parameter}\" moves {what}, which there is not")]
+    Missing {
+        /// The parameter.
+        parameter: String,
+        /// What it moves.
+        what: String,
+    },
+}

@@ -1,0 +1,192 @@
+//! Derivatives of whole runs by their parameters, against differences of whole runs.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use springpot::Simulation;
+use springpot::dual::Dual;
+use springpot::law::{Catalog, Derivative, Network};
+use springpot::observe::{ElementQuantity, Quantity};
+use springpot::sensitivity::{Parameter, Seed, Sensitivity};
+use springpot::signal::Signal;
+use springpot::system::Settings;
+use std::sync::Arc;
+use support::cases;
+
+/// k, c of the strut, its rest length, q2(0), v.q2(0), damping of q2, a torque on q3, gravity.
+const VALUES: [f64; 8] = [120.0, 15.0, 0.35, 0.4, -0.3, 0.2, 0.5, -9.81];
+const NAMES: [&str; 8] = ["k", "c", "rest", "q2", "v2", "damping", "torque", "gravity"];
+
+fn arm(values: &[f64; 8], law: &str, rtol: f64) -> String {
+    let [k, c, rest, q2, v2, damping, torque, gravity] = values;
+    let law = law.replace("{k}", &format!("{k:?}")).replace("{c}", &format!("{c:?}"));
+    format!(
+        r#"
+[robot]
+gravity = [0, 0, {gravity:?}]
+[[robot.body]]
+name = "one"
+joint = {{ name = "q1", kind = "revolute", axis = [0, 0, 1], origin = [0, 0, 0.3] }}
+mass = 3
+com = [0.02, 0.1, 0.05]
+inertia = {{ xx = 0.03, yy = 0.02, zz = 0.04 }}
+[[robot.body]]
+name = "two"
+parent = "one"
+joint = {{ name = "q2", kind = "revolute", axis = [1, 0, 0], origin = [0, 0.1, 0.2], damping = {damping:?} }}
+mass = 2
+com = [0, 0.2, 0.03]
+inertia = {{ xx = 0.02, yy = 0.01, zz = 0.02 }}
+[[robot.body]]
+name = "three"
+parent = "two"
+joint = {{ name = "q3", kind = "revolute", axis = [1, 0, 0], origin = [0, 0.4, 0] }}
+mass = 1
+com = [0.01, 0.15, 0]
+inertia = {{ xx = 0.01, yy = 0.004, zz = 0.01 }}
+[[element]]
+name = "strut"
+from = {{ body = "one", point = [0.05, 0, 0] }}
+to = {{ body = "three", point = [0, 0.1, 0.05] }}
+rest_length = {rest:?}
+{law}
+[motion]
+kind = "forward"
+start = {{ q = {{ q1 = 0.3, q2 = {q2:?}, q3 = -0.5 }}, v = {{ q2 = {v2:?}, q1 = 0.7 }} }}
+torque = {{ q3 = "{torque:?}*cos(4*t)" }}
+[time]
+end = 0.7
+output_step = 0.1
+[solver]
+rtol = {rtol:e}
+memory_rtol = 1e-12
+"#
+    )
+}
+
+/// What is compared.
+fn quantities() -> Vec<Quantity> {
+    use ElementQuantity::{Force, Length, Rate, Stored, Stroke};
+    let of_robot = (0..3).flat_map(|k| [Quantity::Coordinate(k), Quantity::Velocity(k), Quantity::Acceleration(k)]);
+    let of_element = [Length, Stroke, Rate, Force, Stored].map(|of| Quantity::Element(0, of));
+    of_robot.chain([Quantity::Torque(2)]).chain(of_element).collect()
+}
+
+/// Times of the rows that are compared, none of which a step ends on.
+const ROWS: [f64; 3] = [0.1734, 0.4321, 0.6789];
+
+/// Takes steps until they have passed `t`.
+fn pass(simulation: &mut Simulation, t: f64) {
+    while simulation.t() < t {
+        simulation.step().unwrap();
+    }
+}
+
+/// All quantities at the rows.
+fn rows_of(text: &str) -> Vec<Vec<f64>> {
+    let plan = cases(text).plan(0).unwrap();
+    let mut simulation = Simulation::new(plan.system(), plan.settings.clone()).unwrap();
+    let row = |t: f64| {
+        pass(&mut simulation, t);
+        let snapshot = simulation.interpolate(t).unwrap();
+        quantities().into_iter().map(|quantity| snapshot.value(quantity)).collect()
+    };
+    ROWS.map(row).to_vec()
+}
+
+/// The fourth-order difference of all rows by a number.
+fn difference(what: &str, value: f64, rows: impl Fn(f64) -> Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    // Lengths that are differences of larger ones take smaller steps.
+    let d = if what == "rest" { 3e-4 } else { 5e-3 } * value.abs();
+    let [a, b, c, e] = [1.0, -1.0, 2.0, -2.0].map(|steps| rows(value + steps * d));
+    let of = |r: usize, k: usize| (8.0 * (a[r][k] - b[r][k]) - (c[r][k] - e[r][k])) / (12.0 * d);
+    (0..a.len()).map(|r| (0..a[r].len()).map(|k| of(r, k)).collect()).collect()
+}
+
+fn parameter(name: &str, value: f64, seeds: Vec<Seed>) -> Parameter {
+    Parameter { name: name.into(), value, typical: value.abs(), seeds }
+}
+
+/// A law of numbers of which one changes.
+fn law(name: &str, values: &[f64], which: usize) -> Network {
+    let entry = Catalog::standard().get(name).unwrap().clone();
+    let numbers: Vec<Dual> = values
+        .iter()
+        .enumerate()
+        .map(|(k, value)| Dual { value: *value, slope: if k == which { 1.0 } else { 0.0 } })
+        .collect();
+    (entry.build)(&numbers, Derivative::Caputo).unwrap()
+}
+
+/// Derivatives of q and v at the end by all of [`NAMES`], and by differences.
+fn compare(text: &str, name: &str, law_values: &[f64], more: &[(&str, usize)]) {
+    let at = |values: &[f64; 8], rtol: f64| arm(values, text, rtol);
+    let plan = cases(&at(&VALUES, 1e-11)).plan(0).unwrap();
+    let system = plan.system();
+    let heavier = cases(&at(&[&VALUES[..7], &[1.0]].concat().try_into().unwrap(), 1e-9)).plan(0).unwrap().system();
+    let seeds = |k: usize| match NAMES[k] {
+        "k" => Seed::Law { element: 0, law: law(name, law_values, 0) },
+        "c" => Seed::Law { element: 0, law: law(name, law_values, 1) },
+        "rest" => Seed::Rest { element: 0, by: 1.0 },
+        "q2" => Seed::Position { velocity: 1, by: 1.0 },
+        "v2" => Seed::Velocity { velocity: 1, by: 1.0 },
+        "damping" => Seed::Damping { joint: 1, by: 1.0 },
+        "torque" => Seed::Drive {
+            velocity: 2,
+            by: Signal::expression(springpot::signal::Expression::parse("cos(4*t)").unwrap()),
+        },
+        _ => Seed::Gravity(heavier.model.clone()),
+    };
+    let mut parameters: Vec<Parameter> =
+        (0..NAMES.len()).map(|k| parameter(NAMES[k], VALUES[k], vec![seeds(k)])).collect();
+    for (what, which) in more {
+        let seed = Seed::Law { element: 0, law: law(name, law_values, *which) };
+        parameters.push(parameter(what, law_values[*which], vec![seed]));
+    }
+    let by = Sensitivity { parameters, extended: None, control: false };
+    let settings = Settings { sensitivity: Some(Arc::new(by)), ..plan.settings.clone() };
+    let mut simulation = Simulation::new(system, settings).unwrap();
+    let rows = ROWS.map(|t| {
+        pass(&mut simulation, t);
+        let of = |quantity| simulation.derivatives(t, quantity).unwrap();
+        quantities().into_iter().map(of).collect::<Vec<_>>()
+    });
+    for p in 0..NAMES.len() + more.len() {
+        let (what, truth) = match more.get(p.wrapping_sub(NAMES.len())) {
+            None => (
+                NAMES[p],
+                difference(NAMES[p], VALUES[p], |value| {
+                    let mut values = VALUES;
+                    values[p] = value;
+                    rows_of(&at(&values, 1e-12))
+                }),
+            ),
+            Some((what, which)) => (
+                *what,
+                difference(what, law_values[*which], |value| {
+                    let [old, new] = [law_values[*which], value].map(|value| format!("{what} = {value:?}"));
+                    rows_of(&arm(&VALUES, &text.replace(&old, &new), 1e-12))
+                }),
+            ),
+        };
+        for (k, quantity) in quantities().into_iter().enumerate() {
+            let size = truth.iter().fold(0.0f64, |size, row| size.max(row[k].abs()));
+            for (r, row) in truth.iter().enumerate() {
+                let (found, miss) = (rows[r][k][p], (rows[r][k][p] - row[k]).abs() / size.max(1e-5));
+                // Of accelerations within a step the differences know no more.
+                let known = if matches!(quantity, Quantity::Acceleration(_)) { 1e-6 } else { 1e-7 };
+                assert!(
+                    miss < known,
+                    "{name} by {what}: {quantity:?} at {}: {found} for {}, {miss:e}",
+                    ROWS[r],
+                    row[k]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn an_arm_with_a_spring_and_a_dashpot() {
+    compare("law = \"kelvin-voigt\"\nparameters = { k = {k}, c = {c} }", "kelvin-voigt", &[120.0, 15.0], &[]);
+}
