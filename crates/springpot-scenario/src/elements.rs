@@ -1,19 +1,22 @@
 //! `[[element]]`: what it acts along, law, parameters, inputs.
 
+pub(crate) mod heat;
+pub(crate) mod material;
+pub(crate) mod past;
 mod shape;
 
-use super::document::{Node, shorten};
-use super::keys::{
+use self::material::{InputsOf, Material};
+use self::past::PastPlan;
+use crate::keys::{
     AT_START, BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, ON_JOINT, RESERVED_NAMES,
 };
-use super::material::{self, InputsOf, Material};
-use super::names;
-use super::past::{self, PastPlan};
-use super::plan::{ElementPlan, ShapePlan, SignalPlan};
-use super::reader::{Field, Read, Refused, Table, all};
-use super::refusal::RefusalKind;
-use super::robot::{Robot, checked_name, unique};
-use super::time::Duration;
+use crate::plan::{ElementPlan, ShapePlan, SignalPlan};
+use crate::reader::{Field, Read, Refused, Table, all};
+use crate::robot::{Robot, checked_name, unique};
+use crate::text::document::{Node, shorten};
+use crate::text::names;
+use crate::text::refusal::RefusalKind;
+use crate::time::Duration;
 use shape::Shape;
 use springpot::elements::{Component, Element};
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
@@ -106,7 +109,7 @@ fn why_not(key: &str, kind: &str) -> Option<String> {
 }
 
 /// The components that an element's table holds.
-fn bushing(element: &Node) -> Option<&[super::document::Entry]> {
+fn bushing(element: &Node) -> Option<&[crate::text::document::Entry]> {
     element.get("bushing").and_then(|bushing| bushing.entries())
 }
 
@@ -118,7 +121,7 @@ fn named(plan: ElementPlan, name: &str) -> ElementPlan {
     ElementPlan { element: Element { name, ..plan.element }, ..plan }
 }
 
-pub(crate) fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, super::Place>) -> Read<&'a str> {
+pub(crate) fn element_name<'a>(field: &Field<'a>, seen: &mut HashMap<String, crate::Place>) -> Read<&'a str> {
     let name = checked_name(field)?;
     if RESERVED_NAMES.contains(&name) {
         let message = format!("is {name:?}, which the columns of the results use");

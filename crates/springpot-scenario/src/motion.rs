@@ -7,15 +7,15 @@ mod idle;
 mod joints;
 mod prescribed;
 
-use super::feedback::TorqueTexts;
-use super::keys::{
+use crate::keys::{
     CONTROLLER, Each, FORWARD_RUNS, Keys, Need, OUTSIDE, SEPARATOR, START, Shape, TIME_COLUMN, TIME_UNIT, key,
     of_gripper,
 };
-use super::names;
-use super::reader::{Field, Read, Table};
-use super::refusal::{Place, RefusalKind};
-use super::robot::Robot;
+use crate::reader::{Field, Read, Table};
+use crate::robot::Robot;
+use crate::signals::feedback::TorqueTexts;
+use crate::text::names;
+use crate::text::refusal::{Place, RefusalKind};
 use controller::ControllerPlan;
 use serde_json::{Map, Value, json};
 use springpot::control::Controlled;

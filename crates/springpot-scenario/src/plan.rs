@@ -1,12 +1,18 @@
 //! The plan: a scenario validated and resolved, in SI units, with every default filled in.
 
-use super::events::EventPlan;
-use super::feedback::FeedbackText;
-use super::figures::{ColumnGlob, FigurePlan};
-use super::metrics::MetricPlan;
-use super::motion::MotionPlan;
-use super::past::PastPlan;
-use super::refusal::{Place, Remark};
+pub(crate) mod cure;
+pub(crate) mod events;
+pub(crate) mod metrics;
+mod resolved;
+mod system;
+
+use crate::elements::past::PastPlan;
+use crate::figures::{ColumnGlob, FigurePlan};
+use crate::motion::MotionPlan;
+use crate::plan::events::EventPlan;
+use crate::plan::metrics::MetricPlan;
+use crate::signals::feedback::FeedbackText;
+use crate::text::refusal::{Place, Remark};
 use springpot::control::Control;
 use springpot::elements::{Component, Element};
 use springpot::model::urdf::Urdf;
@@ -134,7 +140,7 @@ pub struct UrdfPlan {
     pub ignore_mimic: bool,
     /// Folders that are packages or hold some, as written.
     pub package_path: Vec<String>,
-    /// What the file says; its warnings are among those of [`super::Cases::warnings`].
+    /// What the file says; its warnings are among those of [`crate::Cases::warnings`].
     pub robot: Arc<Urdf>,
 }
 

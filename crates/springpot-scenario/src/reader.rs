@@ -1,13 +1,16 @@
 //! Reading tables by hand: every key is asked for by name, everything wrong is noted with its place.
 
-use super::constants::{self, Constant};
-use super::document::{self, Entry, Node, Value, shorten};
-use super::keys::{self, Bound, Key, Keys, Need, Shape, Slot};
-use super::names;
-use super::refusal::{Refusal, RefusalKind, Refusals, Remark};
-use super::signals::CsvCache;
-use super::units::{self, Unit};
-use super::urdf::UrdfCache;
+pub(crate) mod constants;
+pub(crate) mod spacing;
+
+use self::constants::Constant;
+use crate::keys::{self, Bound, Key, Keys, Need, Shape, Slot};
+use crate::robot::urdf::UrdfCache;
+use crate::signals::of_time::CsvCache;
+use crate::text::document::{self, Entry, Node, Value, shorten};
+use crate::text::names;
+use crate::text::refusal::{Refusal, RefusalKind, Refusals, Remark};
+use crate::units::{self, Unit};
 use springpot::law::Catalog;
 use std::cell::RefCell;
 use std::fmt;

@@ -1,12 +1,16 @@
 //! `[robot]`: bodies or a URDF file, gravity, gripper.
 
-use super::document::shorten;
-use super::keys::{ANCHOR, END_STOPS, FROM_URDF, ROBOT};
-use super::names;
-use super::plan::{BodyPlaces, EndStops, Gripper, UrdfPlan};
-use super::reader::{Field, Read, Refused, Table};
-use super::refusal::{Place, RefusalKind};
-use super::{bodies, urdf};
+mod bodies;
+mod changed;
+mod joint;
+pub(crate) mod urdf;
+
+use crate::keys::{ANCHOR, END_STOPS, FROM_URDF, ROBOT};
+use crate::plan::{BodyPlaces, EndStops, Gripper, UrdfPlan};
+use crate::reader::{Field, Read, Refused, Table};
+use crate::text::document::shorten;
+use crate::text::names;
+use crate::text::refusal::{Place, RefusalKind};
 use springpot::model::{Anchor, BodySpec, Dimension, JointKind, Model, Parent, Space, Units};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

@@ -1,13 +1,13 @@
 //! `[time]` and `[solver]`.
 
-use super::document::{Node, shorten};
-use super::keys::solver::{ADAPTIVE, FIXED, MAX_ROWS, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
-use super::keys::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
-use super::motion::MotionKind;
-use super::names;
-use super::reader::{Field, Read, Table};
-use super::refusal::RefusalKind;
-use super::spacing::Spacing;
+use crate::keys::solver::{ADAPTIVE, FIXED, MAX_ROWS, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
+use crate::keys::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
+use crate::motion::MotionKind;
+use crate::reader::spacing::Spacing;
+use crate::reader::{Field, Read, Table};
+use crate::text::document::{Node, shorten};
+use crate::text::names;
+use crate::text::refusal::RefusalKind;
 use springpot::methods::fixed::Method;
 use springpot::system::{FixedStep, RowTimes, Settings};
 

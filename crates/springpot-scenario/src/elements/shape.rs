@@ -1,11 +1,11 @@
 //! What an element acts along: points, a joint, two frames.
 
 use crate::keys::{ANCHOR, BETWEEN, BUSHING, END};
-use crate::names;
 use crate::plan::{FramePlan, ShapePlan};
 use crate::reader::{Field, Read, Table, all};
-use crate::refusal::{Place, RefusalKind};
 use crate::robot::Robot;
+use crate::text::names;
+use crate::text::refusal::{Place, RefusalKind};
 use springpot::elements::{Bushing, Cable, CableError, Component, Joint, JointMeasureError, Line, Measure};
 use springpot::model::{Anchor, Frame, Site};
 use springpot::spatial::Rotation;
@@ -88,7 +88,7 @@ pub(super) fn on_joint(table: &Table<'_>, robot: &Robot) -> Read<Shape> {
         }
         _ => {
             let known = model.joint_names().iter().map(String::as_str);
-            let message = format!("names no joint: {:?}", crate::document::shorten(name));
+            let message = format!("names no joint: {:?}", crate::text::document::shorten(name));
             field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, known)))
         }
     })?;

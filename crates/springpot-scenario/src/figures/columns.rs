@@ -1,9 +1,9 @@
 //! Columns as scenarios name them, and `[output]`.
 
-use super::super::keys::OUTPUT;
-use super::super::reader::{Field, Read, Table, all};
-use super::super::refusal::{Place, RefusalKind};
-use super::super::units::Unit;
+use crate::keys::OUTPUT;
+use crate::reader::{Field, Read, Table, all};
+use crate::text::refusal::{Place, RefusalKind};
+use crate::units::Unit;
 use std::sync::Arc;
 
 /// Name of a column, or a glob over names, not yet matched.

@@ -1,9 +1,9 @@
 //! Curves: columns over a column.
 
-use super::super::keys::{Key, Need, Shape, key};
-use super::super::reader::Read;
 use super::columns::{ColumnGlob, glob, globs};
 use super::{DRAWN, FigureKind, Reading};
+use crate::keys::{Key, Need, Shape, key};
+use crate::reader::Read;
 use serde_json::{Map, Value, json};
 
 /// Its word in `kind`.

@@ -1,12 +1,12 @@
 //! `data` of a figure: measured points from a CSV file.
 
-use super::super::csv::{self, CsvProblem};
-use super::super::document::shorten;
-use super::super::keys::{Key, Keys, Need, SEPARATOR, Shape, key};
-use super::super::reader::{Field, Read, all};
-use super::super::refusal::{Place, RefusalKind};
-use super::super::units::Unit;
 use super::curves::WORD;
+use crate::csv::{self, CsvProblem};
+use crate::keys::{Key, Keys, Need, SEPARATOR, Shape, key};
+use crate::reader::{Field, Read, all};
+use crate::text::document::shorten;
+use crate::text::refusal::{Place, RefusalKind};
+use crate::units::Unit;
 use serde_json::{Value, json};
 
 /// Most rows of a file of points.

@@ -10,9 +10,9 @@ pub(super) use options::KEYS;
 pub use options::{AxisLook, Look, LookOption, OPTIONS, Spelt, Takes};
 pub(super) use read::read;
 
-use super::super::refusal::Place;
-use super::super::units::{self, Unit};
 use super::columns::ColumnGlob;
+use crate::text::refusal::Place;
+use crate::units::{self, Unit};
 use serde_json::{Map, Value as Json, json};
 
 /// Smallest and largest side of a figure, m.

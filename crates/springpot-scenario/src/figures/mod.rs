@@ -22,13 +22,13 @@ pub use look::{
 pub use selection::Selection;
 pub use summary::{Statistic, Summarised, SweptAxis};
 
-use super::document::Value as DocumentValue;
-use super::keys::{Key, Keys, Need, Shape, key};
-use super::names;
-use super::reader::{Field, Read, Refused, Table, all};
-use super::refusal::{Place, RefusalKind};
-use super::sweep::Axis;
-use super::units;
+use crate::changes::sweep::Axis;
+use crate::keys::{Key, Keys, Need, Shape, key};
+use crate::reader::{Field, Read, Refused, Table, all};
+use crate::text::document::Value as DocumentValue;
+use crate::text::names;
+use crate::text::refusal::{Place, RefusalKind};
+use crate::units;
 use selection::Finder;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;

@@ -1,11 +1,11 @@
 //! Which cases a figure draws.
 
-use super::super::document::Node;
-use super::super::names;
-use super::super::path;
-use super::super::reader::{Field, Read, Table, all};
-use super::super::refusal::RefusalKind;
-use super::super::sweep::Axis;
+use crate::changes::path;
+use crate::changes::sweep::Axis;
+use crate::reader::{Field, Read, Table, all};
+use crate::text::document::Node;
+use crate::text::names;
+use crate::text::refusal::RefusalKind;
 
 /// One value of one sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

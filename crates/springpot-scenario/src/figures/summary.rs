@@ -1,12 +1,12 @@
 //! A statistic of columns over a swept parameter.
 
-use super::super::keys::{Key, Need, Shape, key};
-use super::super::names;
-use super::super::path;
-use super::super::reader::{Field, Read, all};
-use super::super::refusal::RefusalKind;
 use super::columns::ColumnGlob;
 use super::{FigureKind, Reading};
+use crate::changes::path;
+use crate::keys::{Key, Need, Shape, key};
+use crate::reader::{Field, Read, all};
+use crate::text::names;
+use crate::text::refusal::RefusalKind;
 use serde_json::{Map, Value, json};
 
 /// Its word in `kind`.

@@ -1,7 +1,7 @@
 //! `[[metric]]`.
 
-use super::super::metrics::MetricKind;
 use super::{Keys, Need, Shape, key};
+use crate::plan::metrics::MetricKind;
 
 /// The kinds that look for a band.
 const WITH_BAND: [&str; 5] = ["settling-time", "overshoot", "frequency", "log-decrement", "residual-vibration"];

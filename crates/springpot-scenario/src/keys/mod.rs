@@ -38,8 +38,8 @@ pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
 pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
 
-use super::names;
-use super::refusal::RefusalKind;
+use crate::text::names;
+use crate::text::refusal::RefusalKind;
 use serde_json::{Map, Value, json};
 use springpot::model::JointKind;
 use std::borrow::Cow;

@@ -2,10 +2,10 @@
 
 mod reference;
 
-use super::super::figures::{FIGURE, POINTS};
-use super::super::motion::{MOTION, MotionKind};
-use super::super::root::SCENARIO;
 use super::*;
+use crate::figures::{FIGURE, POINTS};
+use crate::motion::{MOTION, MotionKind};
+use crate::scenario::root::SCENARIO;
 use springpot::model::JointKind;
 use std::fs;
 

@@ -2,14 +2,14 @@
 
 use super::gripper_path;
 use super::joints::{ByJoint, Parts};
-use crate::document::shorten;
-use crate::feedback;
 use crate::keys::{self, CONTROLLER, ControllerKind, Gained, Gains, REFERENCE};
-use crate::names;
 use crate::reader::{Field, Read, Table, all};
-use crate::refusal::{Place, RefusalKind, Remark};
 use crate::robot::{OwnJoint, Robot};
-use crate::signals::Wanted;
+use crate::signals::feedback;
+use crate::signals::of_time::Wanted;
+use crate::text::document::shorten;
+use crate::text::names;
+use crate::text::refusal::{Place, RefusalKind, Remark};
 use serde_json::{Map, Value, json};
 use springpot::control::{AntiWindup, Controlled, Controller, Limit, Profile, Reference, Sampling};
 use springpot::law::Range;
@@ -231,7 +231,7 @@ fn at_gripper(
     }
     let gain = |key: &'static str, unit: &str| match table.get(key) {
         None => table.number(key),
-        Some(field) if field.node.entries().is_some() && !crate::constants::is_expression(field.node) => {
+        Some(field) if field.node.entries().is_some() && !crate::reader::constants::is_expression(field.node) => {
             let message = format!("is a table by joints, but {} acts at the gripper", kind.name);
             Err(field.refuse(RefusalKind::WrongType, message, Some(format!("write a number (in {unit})"))))
         }
@@ -343,7 +343,7 @@ fn by_joint(
 ) -> Read<Vec<f64>> {
     let mut values = vec![left_out; joints.robot.model().nv()];
     let Some(field) = table.get(key) else { return Ok(values) };
-    let is_table = field.node.entries().is_some() && !crate::constants::is_expression(field.node);
+    let is_table = field.node.entries().is_some() && !crate::reader::constants::is_expression(field.node);
     let given = if is_table { Some(joints.open(&field)?) } else { None };
     let driven: Vec<_> = joints.driven().collect();
     for (velocity, joint) in &driven {

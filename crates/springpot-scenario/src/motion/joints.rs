@@ -1,13 +1,13 @@
 //! What several kinds of motion say by joint: which joints, and how one moves.
 
-use crate::constants;
-use crate::feedback;
 use crate::keys::{FLOATING, Keys, POSE, SIGNAL, SPHERICAL, Shape};
 use crate::plan::SignalPlan;
+use crate::reader::constants;
 use crate::reader::{Field, Read, Table, all};
-use crate::refusal::{Place, RefusalKind};
 use crate::robot::{OwnJoint, Robot};
-use crate::signals::Wanted;
+use crate::signals::feedback;
+use crate::signals::of_time::Wanted;
+use crate::text::refusal::{Place, RefusalKind};
 use serde_json::{Value, json};
 use springpot::law::Range;
 use springpot::model::{JointKind, Space};

@@ -2,12 +2,12 @@
 
 use super::joints::{ByJoint, Parts, attitude, coordinate, path_of_joint, posed};
 use super::{Made, ready};
-use crate::path;
+use crate::changes::path;
 use crate::plan::SignalPlan;
 use crate::reader::{Field, Read, Refused, Table, all};
-use crate::refusal::RefusalKind;
 use crate::robot::{OwnJoint, Robot};
-use crate::signals;
+use crate::signals::of_time;
+use crate::text::refusal::RefusalKind;
 use serde_json::{Map, Value};
 use springpot::model::Space;
 use springpot::motion::{JointPath, Trajectory};
@@ -72,7 +72,7 @@ fn from_csv(
     (robot, joints): (&Robot, &[OwnJoint<'_>]),
     end: Option<f64>,
 ) -> Read<Vec<(JointPath, Value)>> {
-    let samples = signals::csv_table(table, csv, end)?;
+    let samples = of_time::csv_table(table, csv, end)?;
     let columns: Vec<Vec<String>> = joints.iter().map(columns_of).collect();
     let headers: HashSet<&str> = samples.table.headers().iter().map(String::as_str).collect();
     let missing = columns.iter().flatten().map(String::as_str).filter(|column| !headers.contains(column));
@@ -90,9 +90,9 @@ fn from_csv(
         None => table.get("unit"),
     };
     let column = |name: &String, joint: &OwnJoint<'_>| -> Read<SignalPlan> {
-        let signal = signals::samples_signal(csv, &samples, name, true)?;
+        let signal = of_time::samples_signal(csv, &samples, name, true)?;
         let signal = match (unit_of(joint), joint.units()) {
-            (Some(unit), Some(units)) => signals::in_unit(&unit, signal, units.coordinate)?,
+            (Some(unit), Some(units)) => of_time::in_unit(&unit, signal, units.coordinate)?,
             (Some(unit), None) => {
                 let message = match joint.space.quaternion() {
                     Some(0) => "stands for a spherical joint, whose columns are in rad",

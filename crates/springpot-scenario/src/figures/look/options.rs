@@ -1,8 +1,8 @@
 //! The options of the look of a figure: a field of [`Look`] and a row each.
 
-use super::super::super::keys::{Key, Need, Shape, key};
 use super::super::{CURVES, DRAWN, ROBOT};
 use super::{FigureFormat, FigureLabel, RangeEnd, Said};
+use crate::keys::{Key, Need, Shape, key};
 
 /// How a figure looks.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,11 +1,11 @@
 //! Reads the look of a figure.
 
-use super::super::super::constants;
-use super::super::super::document::Value;
-use super::super::super::reader::{Field, Read, Table, all};
-use super::super::super::refusal::RefusalKind;
 use super::super::columns::ColumnGlob;
 use super::{FIGURE_SIDES, FigureFormat, FigureLabel, Look, OPTIONS, RangeEnd, Said, Takes};
+use crate::reader::constants;
+use crate::reader::{Field, Read, Table, all};
+use crate::text::document::Value;
+use crate::text::refusal::RefusalKind;
 
 /// Reads it; `end` is that of the run, s, where all cases have one.
 pub(in crate::figures) fn read(table: &Table<'_>, is_robot: bool, end: Option<f64>) -> Read<Look> {

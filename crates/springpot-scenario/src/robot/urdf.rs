@@ -1,0 +1,169 @@
+//! `urdf` of `[robot]`: a robot from a URDF file.
+
+use crate::plan::{BodyPlaces, UrdfPlan};
+use crate::reader::{Field, Read, Refused, Table, all};
+use crate::robot::Parts;
+use crate::robot::changed;
+use crate::text::refusal::{RefusalKind, Remark};
+use springpot::model::urdf::{Urdf, UrdfError, UrdfOptions, UrdfProblem, UrdfWarningKind};
+use springpot::model::{Label, Model};
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Most moving joints of a robot in a scenario: every one makes columns.
+const MAX_JOINTS: usize = 10_000;
+/// Most folders of `package_path`.
+const MAX_FOLDERS: usize = 1_000;
+
+/// URDF files that were read, in the order of their first use, so that the cases of a sweep share them.
+#[derive(Debug, Default)]
+pub(crate) struct UrdfCache {
+    entries: Mutex<Vec<Entry>>,
+    /// Kinds of warnings that scenarios accept.
+    accepted: Mutex<HashSet<UrdfWarningKind>>,
+}
+
+#[derive(Debug)]
+struct Entry {
+    /// As the scenario names it: what is told of it is told elsewhere too.
+    written: String,
+    file: PathBuf,
+    options: UrdfOptions,
+    robot: Arc<Urdf>,
+}
+
+impl UrdfCache {
+    fn read(&self, written: &str, file: PathBuf, options: UrdfOptions) -> Result<Arc<Urdf>, UrdfError> {
+        let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(entry) = entries.iter().find(|entry| entry.file == file && entry.options == options) {
+            return Ok(entry.robot.clone());
+        }
+        let robot = Arc::new(Urdf::read(&file, &options)?);
+        entries.push(Entry { written: written.to_owned(), file, options, robot: robot.clone() });
+        Ok(robot)
+    }
+
+    /// Names of the kinds of all warnings, those included that are accepted already.
+    pub(crate) fn kinds(&self) -> Vec<&'static str> {
+        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        let kinds = entries.iter().flat_map(|entry| entry.robot.warnings.iter().map(|warning| warning.kind));
+        let mut kinds: Vec<UrdfWarningKind> = kinds.collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds.into_iter().map(UrdfWarningKind::name).collect()
+    }
+
+    /// What the files hold and the robots do without, each once, as `file: what`, the file as the scenario names it.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        let accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut seen = HashSet::new();
+        let all = entries.iter().flat_map(|Entry { written, robot, .. }| {
+            let told = robot.warnings.iter().filter(|warning| !accepted.contains(&warning.kind));
+            told.map(move |warning| format!("{written}: {warning}"))
+        });
+        all.filter(|warning| seen.insert(warning.clone())).collect()
+    }
+}
+
+/// Reads the file that `field`, the `urdf` of `table`, names.
+pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>) -> Read<Parts> {
+    let (floating_base, ignore_mimic) = (table.flag("floating_base"), table.flag("ignore_mimic"));
+    let accept_inertia = table.flag("accept_inertia");
+    let package_path = table.get("package_path").map_or(Ok(Vec::new()), |field| folders(&field));
+    let written = field.text()?.to_owned();
+    let accepted = table.get("accept").map_or(Ok(Vec::new()), |field| accepted(&field));
+    let (floating_base, ignore_mimic, package_path) = (floating_base?, ignore_mimic?, package_path?);
+    let accept_inertia = accept_inertia?;
+    field.ctx.robots.accepted.lock().unwrap_or_else(PoisonError::into_inner).extend(accepted?);
+
+    let options = UrdfOptions {
+        floating_base,
+        ignore_mimic,
+        accept_inertia,
+        package_path: package_path.iter().map(|folder| field.ctx.folder.join(folder)).collect(),
+    };
+    let robot = field.ctx.robots.read(&written, field.ctx.folder.join(&written), options);
+    let mut robot = robot.map_err(|error| refuse(field, &error))?;
+    if let Some(joints) = table.get("joint") {
+        changed::change(&joints, &mut Arc::make_mut(&mut robot).bodies)?;
+    }
+    let model = robot.model(gravity?).map_err(|error| refuse(field, &error))?;
+    if model.joint_count() == 0 {
+        let help = "floating_base = true lets it move as a whole".to_owned();
+        return Err(field.refuse(RefusalKind::Missing, "has no joint that moves: all are fixed", Some(help)));
+    }
+    if model.joint_count() > MAX_JOINTS {
+        let message = format!("has {} moving joints; at most {MAX_JOINTS} are taken", model.joint_count());
+        return Err(field.refuse(RefusalKind::TooLarge, message, None));
+    }
+    if let Some(column) = shared_column(&model) {
+        let message = format!("has joints whose names make the same column twice: {column:?}");
+        return Err(field.refuse(RefusalKind::BadName, message, Some("rename one of them in the URDF".to_owned())));
+    }
+    let place = BodyPlaces { table: field.node.place.clone(), fields: Vec::new() };
+    Ok(Parts {
+        bodies: robot.bodies.clone(),
+        places: vec![place; robot.bodies.len()],
+        model: Arc::new(model),
+        urdf: Some(UrdfPlan { written, ignore_mimic, package_path, robot }),
+    })
+}
+
+/// Kinds of warnings by their names.
+fn accepted(field: &Field<'_>) -> Read<Vec<UrdfWarningKind>> {
+    let items = field.items("an array of kinds of warnings")?;
+    all(items.iter().map(|item| {
+        let word = item.word("kind of warning")?;
+        UrdfWarningKind::ALL.into_iter().find(|kind| kind.name() == word).ok_or(Refused)
+    }))
+}
+
+/// One folder, or an array of them; says which are not there.
+fn folders(field: &Field<'_>) -> Read<Vec<String>> {
+    let folder = |item: &Field<'_>| -> Read<String> {
+        let written = item.text()?.to_owned();
+        let folder = item.ctx.folder.join(&written);
+        if !folder.is_dir() {
+            let message =
+                format!("`package_path` of [robot] names {written:?}, and there is no folder {}", folder.display());
+            let help = "it is relative to the scenario; meshes are looked for in it";
+            item.ctx.warn(Remark::at(&item.node.place, message).help(help));
+        }
+        Ok(written)
+    };
+    if field.node.text().is_some() {
+        return Ok(vec![folder(field)?]);
+    }
+    let items = field.items("the path of a folder, or an array of them")?;
+    if items.len() > MAX_FOLDERS {
+        let message = format!("holds {} folders; at most {MAX_FOLDERS} are taken", items.len());
+        return Err(field.refuse(RefusalKind::TooLarge, message, None));
+    }
+    all(items.iter().map(folder))
+}
+
+/// Refuses a file, with its own place in the words of the reader of URDF files.
+fn refuse(field: &Field<'_>, error: &UrdfError) -> Refused {
+    let help = match &*error.problem {
+        UrdfProblem::Unreadable { .. } | UrdfProblem::NotAFile => {
+            Some("write the path of a URDF file, relative to the scenario".to_owned())
+        }
+        problem if problem.is_of_no_mass() => {
+            Some("correct it, or write accept_inertia = true in [robot] to take it as it is".to_owned())
+        }
+        _ => None,
+    };
+    let refusal = field.refusal(RefusalKind::File, format!("cannot be used: {error}"));
+    field.ctx.refuse(refusal.label("this file").help_if(help))
+}
+
+/// A name that two of the numbers of q, or two of those of v, have.
+fn shared_column(model: &Model) -> Option<String> {
+    let twice = |labels: Vec<Label>| {
+        let mut seen = HashSet::new();
+        labels.into_iter().map(|label| label.name).find(|name| !seen.insert(name.clone()))
+    };
+    twice(model.q_labels()).or_else(|| twice(model.v_labels()))
+}

@@ -1,0 +1,16 @@
+//! A whole scenario: as it is written, with what the command line says in its place, and the cases that its sweeps make of it.
+
+mod cases;
+mod inputs;
+mod lone;
+mod overrides;
+mod portable;
+pub(crate) mod root;
+mod schema;
+mod written;
+
+pub use cases::{Cases, SweptValue};
+pub use lone::LoneElement;
+pub use portable::Portable;
+pub use schema::json_schema;
+pub use written::Scenario;

@@ -1,0 +1,44 @@
+//! The keys of a whole scenario, above the tables that it holds.
+
+use crate::figures::FIGURE;
+use crate::keys::{ELEMENT, EVENT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
+use crate::motion::MOTION;
+
+/// The whole scenario.
+pub(crate) static SCENARIO: Keys = Keys {
+    words: "A Springpot scenario.",
+    keys: &[
+        key("title", Shape::Text, Need::Optional, "Title, shown by check and in run.json."),
+        key("constants", Shape::Scalars, Need::Optional, "Numbers by name, for every expression."),
+        key(
+            "robot",
+            Shape::Table(&ROBOT),
+            Need::Required("[robot] with urdf = \"arm.urdf\", or a [[robot.body]] for each body"),
+            "Gravity, bodies or a URDF file, gripper.",
+        ),
+        key("element", Shape::Tables(&ELEMENT, None), Need::Optional, "Materials between two points."),
+        key("motion", Shape::Table(&MOTION), Need::Kind, "What moves the robot."),
+        key(
+            "event",
+            Shape::Tables(&EVENT, None),
+            Need::Optional,
+            "What is watched in forward runs, and what happens then.",
+        ),
+        key("metric", Shape::Tables(&METRIC, None), Need::Optional, "Numbers that say how good the run is."),
+        key(
+            "time",
+            Shape::Table(&TIME),
+            Need::Required("[time] with end = \"10 s\" and output_step = \"10 ms\""),
+            "Duration and rows.",
+        ),
+        key("solver", Shape::Table(&SOLVER), Need::Optional, "Accuracy and steps."),
+        key(
+            "sweep",
+            Shape::Tables(&SWEEP, Some(MAX_BLOCKS)),
+            Need::Optional,
+            "Parameters to vary; several blocks make a grid.",
+        ),
+        key("figure", Shape::Tables(&FIGURE, None), Need::Optional, "Figures to draw."),
+        key("output", Shape::Table(&OUTPUT), Need::Optional, "What is written."),
+    ],
+};
