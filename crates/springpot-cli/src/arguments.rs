@@ -1,7 +1,9 @@
 //! What the command line takes.
 
-use crate::plot::LookOptions;
+mod look;
+
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
+use look::LookOptions;
 use springpot::fractional::{Definition, Method};
 use springpot_run::sweep::Shard;
 use std::path::PathBuf;

@@ -23,39 +23,22 @@
 //! Exit codes: 0 done; 1 a run failed; 2 the input was refused; 130 interrupted.
 
 mod arguments;
-mod check;
-mod derivative;
 mod diagnostic;
 mod drawing;
-mod dynamics;
 mod excerpt;
-mod export;
-mod failures;
-mod fmu;
 mod frequency;
 mod grid;
-mod info;
-mod init;
-mod laws;
-mod manual;
-mod metrics;
+mod material;
 mod mistakes;
-mod modes;
-mod modulus;
 mod output;
 mod plain;
-mod plot;
+mod programs;
 mod progress;
-mod prony;
-mod report;
 mod results;
 mod robot;
-mod run;
+mod scenario;
 mod signals;
-mod starts;
-mod swept;
 mod terminal;
-mod view;
 
 use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;
@@ -156,25 +139,25 @@ fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
         }
     };
     let ending = match arguments.command {
-        Command::Run(options) => run::run(&with_fewer_jobs(options), catalog, disk),
-        Command::Merge(options) => run::merge(&options, catalog, disk),
-        Command::Check(options) => check::check(&options, catalog),
-        Command::Info(options) => info::info(&options, catalog),
-        Command::Dynamics(options) => dynamics::dynamics(&options, catalog),
-        Command::Derivative(options) => derivative::derivative(&options),
-        Command::Laws(options) => laws::laws(&options, catalog),
-        Command::Plot(options) => plot::plot(&options),
-        Command::Metrics(options) => metrics::metrics(&options, disk),
-        Command::View(options) => view::view(&options, disk),
-        Command::Report(options) => report::report(&options, disk),
-        Command::Export(options) => export::export(&options, disk),
-        Command::Fmu(options) => fmu::fmu(&options, catalog),
-        Command::Init(options) => init::init(&options, catalog),
-        Command::Completions(options) => manual::completions(&options),
-        Command::Man(options) => manual::man(&options),
-        Command::Prony(options) => prony::prony(&options, catalog),
-        Command::Modulus(options) => modulus::modulus(&options, catalog),
-        Command::Modes(options) => modes::modes(&options, catalog),
+        Command::Run(options) => scenario::run::run(&with_fewer_jobs(options), catalog, disk),
+        Command::Merge(options) => scenario::run::merge(&options, catalog, disk),
+        Command::Check(options) => scenario::check::check(&options, catalog),
+        Command::Info(options) => robot::info::info(&options, catalog),
+        Command::Dynamics(options) => robot::dynamics::dynamics(&options, catalog),
+        Command::Derivative(options) => material::derivative::derivative(&options),
+        Command::Laws(options) => material::laws::laws(&options, catalog),
+        Command::Plot(options) => results::plot::plot(&options),
+        Command::Metrics(options) => results::metrics::metrics(&options, disk),
+        Command::View(options) => results::view::view(&options, disk),
+        Command::Report(options) => results::report::report(&options, disk),
+        Command::Export(options) => results::export::export(&options, disk),
+        Command::Fmu(options) => programs::fmu::fmu(&options, catalog),
+        Command::Init(options) => scenario::init::init(&options, catalog),
+        Command::Completions(options) => programs::manual::completions(&options),
+        Command::Man(options) => programs::manual::man(&options),
+        Command::Prony(options) => material::prony::prony(&options, catalog),
+        Command::Modulus(options) => material::modulus::modulus(&options, catalog),
+        Command::Modes(options) => robot::modes::modes(&options, catalog),
     };
     ending.into()
 }

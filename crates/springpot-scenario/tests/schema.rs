@@ -169,7 +169,7 @@ fn scenarios() -> Vec<(String, String)> {
 fn every_scenario_is_taken() {
     let validator = Validator::new();
     let mut texts = scenarios();
-    let starter = "crates/springpot-cli/src/init/starter.toml";
+    let starter = "crates/springpot-cli/src/scenario/init/starter.toml";
     texts.push((starter.to_owned(), fs::read_to_string(format!("{ROOT}/{starter}")).unwrap()));
     for document in ["README.md", "docs/SCENARIO.md"] {
         let text = fs::read_to_string(format!("{ROOT}/{document}")).unwrap();

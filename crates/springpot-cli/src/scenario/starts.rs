@@ -1,7 +1,7 @@
 //! What is said of a survey: starts that deserve a warning, and cases that cannot run.
 
 use crate::diagnostic;
-use crate::run::{NAMED_LIMITS, in_case, in_cases};
+use crate::scenario::swept::{NAMED_LIMITS, in_case, in_cases};
 use springpot_run::numbers::{count, short};
 use springpot_run::sweep::CasesPassing;
 use springpot_run::{ElementSurvey, Found, Survey};

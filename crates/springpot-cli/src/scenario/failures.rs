@@ -1,7 +1,7 @@
 //! Cases that fail: those that say the same are one message, with its place and its cure.
 
 use crate::diagnostic;
-use crate::run::in_cases;
+use crate::scenario::swept::in_cases;
 use springpot_run::numbers::count;
 use springpot_run::{Survey, Trouble};
 use springpot_scenario::Cases;

@@ -3,7 +3,7 @@
 use super::terms;
 use crate::arguments::DynamicsOptions;
 use crate::robot::{Refused, is_scenario, refuse_urdf_flags};
-use crate::run::in_case;
+use crate::scenario::swept::in_case;
 use crate::{Ending, diagnostic, plain, printed, terminal};
 use serde::Serialize;
 use serde_json::{Map, Value, json};

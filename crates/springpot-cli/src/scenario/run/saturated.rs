@@ -1,7 +1,7 @@
 //! Controllers that never leave their limits.
 
 use crate::diagnostic;
-use crate::run::in_cases;
+use crate::scenario::swept::in_cases;
 use springpot::model::Dimension;
 use springpot_run::Finished;
 use springpot_run::numbers::short;

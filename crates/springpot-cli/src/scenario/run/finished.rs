@@ -1,8 +1,9 @@
 //! What is said of a run that came to an end.
 
-use super::{NAMED_LIMITS, in_cases};
 use crate::grid::{Grid, Set};
-use crate::{diagnostic, failures, plain, terminal};
+use crate::scenario::failures;
+use crate::scenario::swept::{NAMED_LIMITS, in_cases};
+use crate::{diagnostic, plain, terminal};
 use springpot_run::Finished;
 use springpot_run::numbers::{brief, count, rough, short};
 use springpot_run::sweep::{CaseResult, CasesPassing, Status};

@@ -7,19 +7,16 @@ mod saturated;
 use self::finished::Said;
 use self::prepare::{Unprepared, prepare};
 use crate::arguments::{MergeOptions, RunOptions};
-use crate::{Ending, diagnostic, failures, progress, signals, starts, swept, terminal, view};
+use crate::results::view;
+use crate::scenario::{failures, starts, swept};
+use crate::{Ending, diagnostic, progress, signals, terminal};
 use springpot::law::Catalog;
-use springpot_run::numbers::count;
 use springpot_run::sweep::{Progress, Status, SweepError};
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::FolderError;
 use springpot_run::{Finished, Prepared};
-use springpot_scenario::Cases;
 use std::path::Path;
 use std::time::Instant;
-
-/// Limits of joints that are named one by one.
-pub(crate) const NAMED_LIMITS: usize = 10;
 
 /// Why there are no results of a run.
 #[derive(Debug, thiserror::Error)]
@@ -169,23 +166,4 @@ fn execute(jobs: usize, quiet: bool, mut prepared: Prepared) -> Result<Finished,
     let (wanted, end) = (prepared.rows_wanted(), prepared.planned.plan.settings.end);
     let outcome = progress::show_while(wanted, end, &done, quiet, || prepared.sweep(jobs, signals::stop(), &done))?;
     Ok(prepared.finish(outcome, &done, &mut diagnostic::warn)?)
-}
-
-/// `message` with the swept values of its case in front, where anything is swept.
-pub(crate) fn in_case(cases: &Cases, index: usize, message: &str) -> String {
-    let name = cases.name(index);
-    if name.is_empty() { message.to_owned() } else { format!("{name}: {message}") }
-}
-
-/// `message` about the case `first` with its swept values in front, and how many others it holds for; as it is where
-/// it holds for all that were looked at.
-pub(crate) fn in_cases(cases: &Cases, looked_at: usize, first: usize, found: usize, message: &str) -> String {
-    if found >= looked_at {
-        message.to_owned()
-    } else if found == 1 {
-        in_case(cases, first, message)
-    } else {
-        let others = count(found - 1, "other case", "other cases");
-        format!("{} and {others}: {message}", cases.name(first))
-    }
 }

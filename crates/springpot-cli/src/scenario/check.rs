@@ -1,7 +1,8 @@
 //! `springpot check`.
 
 use crate::arguments::CheckOptions;
-use crate::{Ending, diagnostic, failures, plain, printed, signals, starts, swept, terminal};
+use crate::scenario::{failures, starts, swept};
+use crate::{Ending, diagnostic, plain, printed, signals, terminal};
 use springpot::elements::Element;
 use springpot::equations::ElementStart;
 use springpot::law::{Catalog, Entry, Expansion, Heat, Shift, Thermal};

@@ -1,10 +1,14 @@
 //! What is swept, in words.
 
 use crate::terminal;
+use springpot_run::numbers::count;
 use springpot_scenario::Cases;
 
 /// Values of a sweep that are printed.
 const PRINTED: usize = 12;
+
+/// Limits of joints that are named one by one.
+pub(crate) const NAMED_LIMITS: usize = 10;
 
 /// What a run is about to go through: a line for each sweep; nothing where nothing is swept.
 pub(crate) fn lines(cases: &Cases, width: Option<usize>) -> String {
@@ -34,4 +38,23 @@ fn values(cases: &Cases, axis: usize) -> String {
     }
     let first: Vec<String> = (0..3).map(label).collect();
     format!("{}, …, {} ({len} values)", first.join(", "), label(len - 1))
+}
+
+/// `message` with the swept values of its case in front, where anything is swept.
+pub(crate) fn in_case(cases: &Cases, index: usize, message: &str) -> String {
+    let name = cases.name(index);
+    if name.is_empty() { message.to_owned() } else { format!("{name}: {message}") }
+}
+
+/// `message` about the case `first` with its swept values in front, and how many others it holds for; as it is where
+/// it holds for all that were looked at.
+pub(crate) fn in_cases(cases: &Cases, looked_at: usize, first: usize, found: usize, message: &str) -> String {
+    if found >= looked_at {
+        message.to_owned()
+    } else if found == 1 {
+        in_case(cases, first, message)
+    } else {
+        let others = count(found - 1, "other case", "other cases");
+        format!("{} and {others}: {message}", cases.name(first))
+    }
 }

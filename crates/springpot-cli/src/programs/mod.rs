@@ -1,0 +1,4 @@
+//! Commands for other programs: fmu, completions, man.
+
+pub(crate) mod fmu;
+pub(crate) mod manual;

@@ -1,0 +1,8 @@
+//! Commands about a robot: info, dynamics, modes.
+
+pub(crate) mod dynamics;
+mod file;
+pub(crate) mod info;
+pub(crate) mod modes;
+
+pub(crate) use file::{Refused, Robot, is_scenario, read, refuse_urdf_flags};
