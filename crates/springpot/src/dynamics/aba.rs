@@ -31,9 +31,10 @@ pub fn aba_into<T: Scalar>(
     }
     let (n, degrees) = (model.joint_count(), model.degrees());
     let ws = workspace;
-    let (force, articulated) = (&mut ws.force[..=n], &mut ws.articulated[..n]);
-    let (bias, column) = (&mut ws.bias[..n], &mut ws.column[..degrees.len()]);
-    let (inverse_pivot, effort) = (&mut ws.inverse_pivot[..degrees.len()], &mut ws.effort[..degrees.len()]);
+    let (force, articulated) = (&mut ws.force[..=n], &mut ws.articulated.inertia[..n]);
+    let (bias, column) = (&mut ws.articulated.bias[..n], &mut ws.articulated.column[..degrees.len()]);
+    let (inverse_pivot, effort) =
+        (&mut ws.articulated.inverse_pivot[..degrees.len()], &mut ws.articulated.effort[..degrees.len()]);
     force[0] = Force::ZERO;
     for j in 0..n {
         let (link, velocity) = (kinematics.link(j + 1), kinematics.link_velocity(j + 1));
@@ -97,7 +98,7 @@ fn coupled<T: Scalar>(
     for j in (0..model.joint_count()).rev() {
         let load = workspace.force[j + 1];
         for k in model.degrees_of(j) {
-            a[model.degrees()[k].index] -= workspace.unit[k].dot(load);
+            a[model.degrees()[k].index] -= workspace.axes.unit[k].dot(load);
         }
         workspace.force[model.parent_link(j)] += load;
     }

@@ -30,15 +30,16 @@ pub fn coriolis_into<T: Scalar>(
     for j in (0..model.joint_count()).rev() {
         let (composite, sway) = (ws.composite[j], ws.body_coriolis[j]);
         for k in model.degrees_of(j) {
-            let (unit, rate) = (ws.unit[k], ws.unit_own_rate[k]);
+            let (unit, rate) = (ws.axes.unit[k], ws.axes.own_rate[k]);
             let column = composite * rate + sway.times(unit.angular);
             let (momentum, transposed) = (composite * unit, sway.transposed_times(unit));
             let own = degrees[k].index;
             coriolis[own * n + own] += unit.dot(column);
             for c in joint::carriers(model, k) {
                 let carrier = degrees[c].index;
-                coriolis[carrier * n + own] += ws.unit[c].dot(column);
-                coriolis[own * n + carrier] += ws.unit_own_rate[c].dot(momentum) + ws.unit[c].angular.dot(transposed);
+                coriolis[carrier * n + own] += ws.axes.unit[c].dot(column);
+                coriolis[own * n + carrier] +=
+                    ws.axes.own_rate[c].dot(momentum) + ws.axes.unit[c].angular.dot(transposed);
             }
         }
         if let Some(parent) = model.parent_link(j).checked_sub(1) {

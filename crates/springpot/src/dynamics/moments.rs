@@ -42,12 +42,12 @@ pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: O
             velocity += unit * v[degree.index];
             acceleration += rate * v[degree.index];
             acceleration += a.map_or(Motion::ZERO, |a| unit * a[degree.index]);
-            (ws.unit[k], ws.unit_rate[k], ws.unit_own_rate[k]) = (unit, rate, rate);
-            ws.unit_second_rate[k] = pushed.cross(unit) + carrier.cross(rate);
+            (ws.axes.unit[k], ws.axes.rate[k], ws.axes.own_rate[k]) = (unit, rate, rate);
+            ws.axes.second_rate[k] = pushed.cross(unit) + carrier.cross(rate);
         }
         if model.degrees_of(j).len() > 1 {
             for k in model.degrees_of(j) {
-                ws.unit_own_rate[k] = velocity.cross(ws.unit[k]);
+                ws.axes.own_rate[k] = velocity.cross(ws.axes.unit[k]);
             }
         }
         let inertia = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation).shifted(arm);

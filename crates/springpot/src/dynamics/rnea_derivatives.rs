@@ -67,10 +67,10 @@ pub fn rnea_derivatives_into<T: Scalar>(
     for j in (0..model.joint_count()).rev() {
         let (inertia, moving, load) = (ws.composite[j], ws.body_coriolis[j], ws.force[j + 1]);
         for k in model.degrees_of(j) {
-            let own = ws.unit[k];
-            let at_rest = inertia * ws.unit_second_rate[k] + moving.times(ws.unit_rate[k].angular) * two;
+            let own = ws.axes.unit[k];
+            let at_rest = inertia * ws.axes.second_rate[k] + moving.times(ws.axes.rate[k].angular) * two;
             let by_position = at_rest + own.cross_force(load);
-            let own_rate = ws.unit_rate[k] + ws.unit_own_rate[k];
+            let own_rate = ws.axes.rate[k] + ws.axes.own_rate[k];
             let by_velocity = inertia * own_rate + moving.times(own.angular) * two;
             let momentum = inertia * own;
             let swaying = moving.transposed_times(own) * two;
@@ -82,7 +82,7 @@ pub fn rnea_derivatives_into<T: Scalar>(
             for c in joint::carriers(model, k) {
                 let row = degrees[c].index;
                 let (upper, lower) = (row * n + column, column * n + row);
-                let carrier = ws.unit[c];
+                let carrier = ws.axes.unit[c];
                 // Degrees of one joint move with one another.
                 let turned = if degrees[c].link == j + 1 { at_rest } else { by_position };
                 d_q[upper] += carrier.dot(turned);
@@ -91,8 +91,8 @@ pub fn rnea_derivatives_into<T: Scalar>(
                 d_a[upper] += coupling;
                 d_a[lower] += coupling;
                 // The outer joint feels that the inner one moves.
-                d_q[lower] += ws.unit_second_rate[c].dot(momentum) + ws.unit_rate[c].angular.dot(swaying);
-                let carrier_rate = ws.unit_rate[c] + ws.unit_own_rate[c];
+                d_q[lower] += ws.axes.second_rate[c].dot(momentum) + ws.axes.rate[c].angular.dot(swaying);
+                let carrier_rate = ws.axes.rate[c] + ws.axes.own_rate[c];
                 d_v[lower] += carrier_rate.dot(momentum) + carrier.angular.dot(swaying);
             }
         }

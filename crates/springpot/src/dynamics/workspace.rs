@@ -22,8 +22,20 @@ pub struct Workspace<T = f64> {
     /// All that joint j carries, about the joint's origin or the reference point in world axes.
     pub(super) composite: Vec<Inertia<T>>,
     pub(super) columns: Vec<Vec3<T>>,
-    // Articulated bodies: what joint j carries when all joints beyond it are free.
-    pub(super) articulated: Vec<ArticulatedInertia<T>>,
+    pub(super) articulated: Articulated<T>,
+    pub(super) axes: Axes<T>,
+    pub(super) body_coriolis: Vec<BodyCoriolis<T>>,
+    /// ∂l/∂q and ∂l'/∂q of a pair.
+    pub(super) gradient: Vec<T>,
+    pub(super) rate_gradient: Vec<T>,
+    /// The mass matrix, where joints follow one another.
+    pub(super) mass: Vec<T>,
+}
+
+/// What joint j carries when all joints beyond it are free.
+#[derive(Debug, Clone)]
+pub(super) struct Articulated<T> {
+    pub(super) inertia: Vec<ArticulatedInertia<T>>,
     /// v × S q̇.
     pub(super) bias: Vec<Motion<T>>,
     /// U = I S.
@@ -32,17 +44,34 @@ pub struct Workspace<T = f64> {
     pub(super) inverse_pivot: Vec<T>,
     /// What is left of τ for the articulated body.
     pub(super) effort: Vec<T>,
-    // Columns of joint j at the reference point and their rates.
+}
+
+/// Axes of the degrees of freedom at the reference point, and their rates.
+#[derive(Debug, Clone)]
+pub(super) struct Axes<T> {
     pub(super) unit: Vec<Motion<T>>,
-    pub(super) unit_rate: Vec<Motion<T>>,
-    pub(super) unit_own_rate: Vec<Motion<T>>,
-    pub(super) unit_second_rate: Vec<Motion<T>>,
-    pub(super) body_coriolis: Vec<BodyCoriolis<T>>,
-    /// ∂l/∂q and ∂l'/∂q of a pair.
-    pub(super) gradient: Vec<T>,
-    pub(super) rate_gradient: Vec<T>,
-    /// The mass matrix, where joints follow one another.
-    pub(super) mass: Vec<T>,
+    pub(super) rate: Vec<Motion<T>>,
+    pub(super) own_rate: Vec<Motion<T>>,
+    pub(super) second_rate: Vec<Motion<T>>,
+}
+
+impl<T: Scalar> Articulated<T> {
+    fn new(joints: usize, degrees: usize) -> Self {
+        Self {
+            inertia: vec![ArticulatedInertia::ZERO; joints],
+            bias: vec![Motion::ZERO; joints],
+            column: vec![Force::ZERO; degrees],
+            inverse_pivot: vec![T::ZERO; degrees],
+            effort: vec![T::ZERO; degrees],
+        }
+    }
+}
+
+impl<T: Scalar> Axes<T> {
+    fn new(degrees: usize) -> Self {
+        let zero = || vec![Motion::ZERO; degrees];
+        Self { unit: zero(), rate: zero(), own_rate: zero(), second_rate: zero() }
+    }
 }
 
 impl<T: Scalar> Workspace<T> {
@@ -59,15 +88,8 @@ impl<T: Scalar> Workspace<T> {
             force: vec![Force::ZERO; n + 1],
             composite: vec![Inertia::ZERO; n],
             columns: vec![Vec3::ZERO; d],
-            articulated: vec![ArticulatedInertia::ZERO; n],
-            bias: vec![Motion::ZERO; n],
-            column: vec![Force::ZERO; d],
-            inverse_pivot: vec![T::ZERO; d],
-            effort: vec![T::ZERO; d],
-            unit: vec![Motion::ZERO; d],
-            unit_rate: vec![Motion::ZERO; d],
-            unit_own_rate: vec![Motion::ZERO; d],
-            unit_second_rate: vec![Motion::ZERO; d],
+            articulated: Articulated::new(n, d),
+            axes: Axes::new(d),
             body_coriolis: vec![BodyCoriolis::ZERO; n],
             gradient: vec![T::ZERO; d],
             rate_gradient: vec![T::ZERO; d],

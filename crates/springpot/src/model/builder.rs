@@ -52,7 +52,7 @@ impl ModelBuilder {
 
     /// Gives the world another name besides "world": that of the root link of a robot on a fixed base.
     pub fn name_world(&mut self, name: impl Into<String>) {
-        self.model.world_names.push(name.into());
+        self.model.names.worlds.push(name.into());
     }
 
     /// Takes inertias that no distribution of mass has as they are, as other programs do: principal moments below 0, or above the
@@ -69,9 +69,9 @@ impl ModelBuilder {
     /// negative mass, damping or friction, a speed of friction that is not positive, an inertia that no mass distribution has: a principal moment below −1e-12 of the
     /// largest, or the largest above the sum of the others by more than 1e-9 of itself. The builder is then as it was.
     pub fn push(&mut self, spec: BodySpec) -> Result<usize, ModelError> {
-        let body = self.model.body_names.len();
+        let body = self.model.names.bodies.len();
         validate::body(body, &spec, self.rules, self.takes_any_inertia)?;
-        if let Some(&first) = self.model.body_lookup.get(&spec.name) {
+        if let Some(&first) = self.model.names.body_lookup.get(&spec.name) {
             return Err(ModelError::DuplicateName { body, field: Field::Name, name: spec.name, first });
         }
         let coordinates = spec.joint.kind.numbers().filter(|(part, _)| !part.is_empty());
@@ -96,11 +96,11 @@ impl ModelBuilder {
         if frame.link > 0 {
             let central = Symmetric3::from_upper(spec.inertia);
             let own = Inertia::from_central(spec.mass, spec.com.into(), central);
-            model.inertias[frame.link - 1] += own.to_parent(&frame.placement);
+            model.masses.inertias[frame.link - 1] += own.to_parent(&frame.placement);
         }
         model.frames.push(frame);
-        model.body_lookup.insert(spec.name.clone(), body);
-        model.body_names.push(spec.name);
+        model.names.body_lookup.insert(spec.name.clone(), body);
+        model.names.bodies.push(spec.name);
         Ok(body)
     }
 
@@ -114,7 +114,7 @@ impl ModelBuilder {
         }
         let model = &mut self.model;
         if parts.is_empty() {
-            model.fixed_joints.push(joint.name);
+            model.names.fixed_joints.push(joint.name);
         } else {
             let joints = first..first + parts.len();
             model.described.push(DescribedJoint { name: joint.name, kind: joint.kind, joints });
@@ -142,16 +142,16 @@ impl ModelBuilder {
         model.described_as.push(model.described.len());
         model.parents.push(at.link);
         model.placements.push(at.placement * Placement { rotation: to_z, translation: Vec3::ZERO });
-        model.inertias.push(Inertia::ZERO);
+        model.masses.inertias.push(Inertia::ZERO);
         model.bodies_of_joints.push(body);
-        model.joint_names.push(part.name.clone());
-        model.velocity_names.push(part.velocity.clone());
+        model.names.joints.push(part.name.clone());
+        model.names.velocities.push(part.velocity.clone());
         // What a joint without numbers for coordinates says of these has no meaning.
         let is_number = part.space.dimension().is_some();
-        model.damping.push(if is_number { joint.damping[k] } else { 0.0 });
-        model.friction.push(if is_number { joint.friction[k] } else { 0.0 });
-        model.armature.push(if is_number { joint.armature[k] } else { 0.0 });
-        model.friction_laws.push(joint.friction_law[k]);
+        model.drivetrain.damping.push(if is_number { joint.damping[k] } else { 0.0 });
+        model.drivetrain.friction.push(if is_number { joint.friction[k] } else { 0.0 });
+        model.drivetrain.armature.push(if is_number { joint.armature[k] } else { 0.0 });
+        model.drivetrain.friction_laws.push(joint.friction_law[k]);
         model.limits.push(joint.limits[k]);
         self.mimics.push(joint.mimic.clone());
         Frame {
@@ -169,7 +169,7 @@ impl ModelBuilder {
     /// joint that can move without moving mass is named) or, with accepted inertias, not positive in a generic one; overflow of the combined inertias.
     pub fn finish(self) -> Result<Model, ModelError> {
         let mut model = self.model;
-        if model.body_names.is_empty() {
+        if model.names.bodies.is_empty() {
             return Err(ModelError::NoBodies);
         }
         if let Some(component) = model.gravity.iter().position(|g| !g.is_finite()) {
@@ -177,10 +177,10 @@ impl ModelBuilder {
         }
         numbering::number(&mut model, &self.mimics)?;
         if self.rules == Rules::UrdfLink || self.takes_any_inertia {
-            model.may_be_indefinite = mass_check::links(&model, self.takes_any_inertia)?;
+            model.masses.may_be_indefinite = mass_check::links(&model, self.takes_any_inertia)?;
         }
         mass_check::positive_definite(&model)?;
-        model.collect_subtree_masses();
+        model.masses.collect_subtrees(&model.parents);
         Ok(model)
     }
 }

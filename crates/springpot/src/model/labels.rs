@@ -16,12 +16,12 @@ pub struct Label {
 impl Model {
     /// Names of the coordinates, in the order of q.
     pub fn q_labels(&self) -> Vec<Label> {
-        self.labels(&self.joint_names, Space::coordinates)
+        self.labels(&self.names.joints, Space::coordinates)
     }
 
     /// Names of the velocities, in the order of v; accelerations and generalized forces have the same.
     pub fn v_labels(&self) -> Vec<Label> {
-        self.labels(&self.velocity_names, Space::velocities)
+        self.labels(&self.names.velocities, Space::velocities)
     }
 
     fn labels(&self, names: &[String], parts: fn(Space) -> &'static [Component]) -> Vec<Label> {

@@ -24,31 +24,31 @@ type Matrix6 = [Vec6; 6];
 pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
     let n = model.joint_count();
     let length = length_scale(model);
-    let mut articulated: Vec<Matrix6> = model.inertias.iter().map(matrix).collect();
+    let mut articulated: Vec<Matrix6> = model.masses.inertias.iter().map(matrix).collect();
     // What the diagonal blocks would be without the subtraction, the measure of their rounding error.
     let mut gross: Vec<[f64; 2]> = articulated.iter().map(block_traces).collect();
     let mut leads = vec![false; n];
-    for leader in model.followed.iter().flatten() {
+    for leader in model.numbering.followed.iter().flatten() {
         leads[*leader] = true;
     }
     for j in (0..n).rev() {
         let body = model.bodies_of_joints[j];
-        let name = || model.body_names[body].clone();
+        let name = || model.names.bodies[body].clone();
         if !gross[j].iter().all(|x| x.is_finite()) {
             return Err(ModelError::Overflow { body, name: name() });
         }
         let mut reduced = articulated[j];
         let mut lost = Vec::with_capacity(6);
         // Joints that follow one another share their inertia: a singularity of theirs is not looked for.
-        let degrees = if model.followed[j].is_some() || leads[j] { 0..0 } else { model.degrees_of(j) };
-        for degree in model.degrees[degrees].iter().rev() {
+        let degrees = if model.numbering.followed[j].is_some() || leads[j] { 0..0 } else { model.degrees_of(j) };
+        for degree in model.tree.degrees[degrees].iter().rev() {
             let Motion { angular, linear } = degree.unit(model.pitches[j]);
             let unit = [angular.0, linear.0];
             let unit = unit.as_flattened();
             // What it does not move is left out: it may be infinite.
             let moved = || (0..6).filter(|&k| unit[k] != 0.0);
             let column = reduced.map(|row| moved().map(|k| row[k] * unit[k]).sum::<f64>());
-            let armature = model.armature[j];
+            let armature = model.drivetrain.armature[j];
             let pivot = moved().map(|k| column[k] * unit[k]).sum::<f64>() + armature;
             let before = moved().map(|k| gross[j][k / 3] * unit[k] * unit[k]).sum::<f64>() + armature;
             if !pivot.is_finite() {
@@ -56,7 +56,7 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
             }
             // Of an inertia that was accepted, what it is measured by may be negative too.
             if pivot <= PIVOT_TOLERANCE * before.max(0.0) {
-                let joint = model.joint_names[j].clone();
+                let joint = model.names.joints[j].clone();
                 return Err(match pivot < -PIVOT_TOLERANCE * before.abs() {
                     true => ModelError::IndefiniteMassMatrix { body, name: name(), joint },
                     false => ModelError::SingularMassMatrix { body, name: name(), joint },
@@ -95,9 +95,9 @@ pub(super) fn positive_definite(model: &Model) -> Result<(), ModelError> {
 /// negative principal moment.
 pub(super) fn links(model: &Model, takes_any: bool) -> Result<bool, ModelError> {
     let mut any_negative = false;
-    for (inertia, &body) in model.inertias.iter().zip(&model.bodies_of_joints) {
+    for (inertia, &body) in model.masses.inertias.iter().zip(&model.bodies_of_joints) {
         let central = inertia.about_com().to_matrix();
-        let name = &model.body_names[body];
+        let name = &model.names.bodies[body];
         if central.iter().flatten().any(|x| !x.is_finite()) {
             return Err(ModelError::Overflow { body, name: name.clone() });
         }
@@ -116,7 +116,7 @@ pub(super) fn links(model: &Model, takes_any: bool) -> Result<bool, ModelError> 
 /// A length of the robot's own size, m.
 fn length_scale(model: &Model) -> f64 {
     let offsets = model.placements.iter().map(|p| p.translation.norm());
-    let centres = model.inertias.iter().filter(|i| i.mass > 0.0).map(|i| i.first_moment.norm() / i.mass);
+    let centres = model.masses.inertias.iter().filter(|i| i.mass > 0.0).map(|i| i.first_moment.norm() / i.mass);
     let largest = offsets.chain(centres).filter(|x| x.is_finite()).fold(0.0, f64::max);
     if largest > 0.0 { largest } else { 1.0 }
 }
@@ -131,7 +131,7 @@ fn generic_placement(model: &Model, j: usize, length: f64) -> Placement {
         return Placement { rotation: at_zero.rotation * turn, ..at_zero };
     }
     // Wherever a floating joint stands, it takes up all that it carries.
-    let [degree] = model.degrees[model.degrees_of(j)] else { return at_zero };
+    let [degree] = model.tree.degrees[model.degrees_of(j)] else { return at_zero };
     let Motion { angular: Vec3([.., turn]), linear: Vec3([.., shift]) } = degree.unit(model.pitches[j]);
     let coordinate = if turn == 0.0 { generic * length } else { generic };
     let (sin, cos) = (turn * coordinate).sin_cos();

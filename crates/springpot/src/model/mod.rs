@@ -29,6 +29,7 @@ mod labels;
 mod manifold;
 mod mass_check;
 mod numbering;
+mod parts;
 mod robot;
 mod spec;
 mod state;

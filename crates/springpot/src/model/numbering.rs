@@ -14,40 +14,37 @@ pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), 
     let leaders = leaders(model, mimics)?;
     let mut own = Vec::with_capacity(leaders.len());
     for (space, leader) in model.spaces.iter().zip(&leaders) {
-        own.push((model.nq, model.nv));
+        own.push((model.numbering.nq, model.numbering.nv));
         if leader.is_none() {
-            model.places.extend((0..space.nv()).map(|_| (space.nv() == 1).then_some(model.nq)));
-            model.nq += space.nq();
-            model.nv += space.nv();
+            model.numbering.places.extend((0..space.nv()).map(|_| (space.nv() == 1).then_some(model.numbering.nq)));
+            model.numbering.nq += space.nq();
+            model.numbering.nv += space.nv();
         }
     }
     for (j, leader) in leaders.iter().enumerate() {
         let (source, ratio, offset) = leader.unwrap_or((j, 1.0, 0.0));
         let (q, v) = own[source];
-        model.coordinates.push(Coordinates { q, v, ratio, offset });
-        model.followed.push(leader.map(|(source, ..)| source));
-        let mut carrier = model.last_degrees[model.parents[j]];
+        model.numbering.coordinates.push(Coordinates { q, v, ratio, offset });
+        model.numbering.followed.push(leader.map(|(source, ..)| source));
+        let mut carrier = model.tree.last_degrees[model.parents[j]];
         for (k, motion) in model.motions[j].degrees().into_iter().enumerate() {
-            model.degrees.push(Degree { link: j + 1, motion, index: v + k, ratio });
-            model.carriers.push(carrier);
-            carrier = model.degrees.len();
+            model.tree.degrees.push(Degree { link: j + 1, motion, index: v + k, ratio });
+            model.tree.carriers.push(carrier);
+            carrier = model.tree.degrees.len();
         }
-        model.last_degrees.push(carrier);
+        model.tree.last_degrees.push(carrier);
     }
-    model.rotors = vec![0.0; model.nv];
-    for (own, armature) in model.coordinates.iter().zip(&model.armature) {
-        model.rotors[own.v] += own.ratio * own.ratio * armature;
-    }
-    model.has_rotors = model.rotors.iter().any(|rotor| *rotor != 0.0);
+    model.drivetrain.collect_rotors(&model.numbering);
     // Without followers, degrees and velocities are the same; followers couple branches, so that nothing is known to stay 0.
-    model.pivots = if model.is_free_of_followers() { model.carriers.clone() } else { (0..model.nv).collect() };
+    model.tree.pivots =
+        if model.is_free_of_followers() { model.tree.carriers.clone() } else { (0..model.numbering.nv).collect() };
     Ok(())
 }
 
 /// The joint with coordinates of its own that each joint follows in the end.
 fn leaders(model: &Model, mimics: &[Option<Mimic>]) -> Result<Vec<Leader>, ModelError> {
     let names: HashMap<&str, usize> =
-        model.joint_names.iter().enumerate().map(|(j, name)| (name.as_str(), j)).collect();
+        model.names.joints.iter().enumerate().map(|(j, name)| (name.as_str(), j)).collect();
     let mut resolved: Vec<Option<Leader>> = vec![None; mimics.len()];
     let mut chain = Vec::new();
     for j in 0..mimics.len() {
@@ -61,7 +58,7 @@ fn leaders(model: &Model, mimics: &[Option<Mimic>]) -> Result<Vec<Leader>, Model
             chain.push((at, mimic));
             if chain.len() > mimics.len() {
                 let body = model.bodies_of_joints[j];
-                return Err(ModelError::MimicCycle { body, joint: model.joint_names[j].clone() });
+                return Err(ModelError::MimicCycle { body, joint: model.names.joints[j].clone() });
             }
             at = followed(model, &names, at, mimic)?;
         }

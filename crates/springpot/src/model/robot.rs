@@ -1,11 +1,10 @@
 //! The constant robot.
 
-use std::collections::BTreeMap;
-
 use super::degree::{Coordinates, Degree, DegreeMotion, JointMotion};
 use super::error::ModelError;
 use super::frame::{Frame, Site};
 use super::kind::{JointKind, Space};
+use super::parts::{DegreeTree, Drivetrain, Masses, Names, Numbering};
 use super::spec::{Anchor, FrictionLaw, Limits, Parent};
 use crate::spatial::{Inertia, Placement, Rotation, Vec3};
 use std::ops::Range;
@@ -24,8 +23,7 @@ use std::ops::Range;
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(super) gravity: [f64; 3],
-    pub(super) nq: usize,
-    pub(super) nv: usize,
+    pub(super) numbering: Numbering,
     // One entry per joint, indexed by j.
     pub(super) motions: Vec<JointMotion>,
     /// Shift of a helical joint, m/rad.
@@ -33,45 +31,18 @@ pub struct Model {
     pub(super) spaces: Vec<Space>,
     /// Which described joint it is, or is part of.
     pub(super) described_as: Vec<usize>,
-    pub(super) coordinates: Vec<Coordinates>,
-    /// The coordinate that each velocity moves; none for those of joints of several degrees.
-    pub(super) places: Vec<Option<usize>>,
-    pub(super) followed: Vec<Option<usize>>,
     pub(super) limits: Vec<Limits>,
     pub(super) parents: Vec<usize>,
     pub(super) placements: Vec<Placement>,
-    pub(super) inertias: Vec<Inertia>,
-    pub(super) subtree_masses: Vec<f64>,
-    pub(super) may_be_indefinite: bool,
     pub(super) bodies_of_joints: Vec<usize>,
-    pub(super) joint_names: Vec<String>,
-    /// What its velocity, or the joint before the names of several, is called.
-    pub(super) velocity_names: Vec<String>,
-    pub(super) armature: Vec<f64>,
-    pub(super) damping: Vec<f64>,
-    pub(super) friction: Vec<f64>,
-    pub(super) friction_laws: Vec<FrictionLaw>,
-    // One entry per degree of freedom, indexed by k; those of joint j follow those of joint j − 1.
-    pub(super) degrees: Vec<Degree>,
-    /// One more than the degree that carries degree k, or 0 where the world does.
-    pub(super) carriers: Vec<usize>,
-    /// One more than the last degree of each link, with the world's 0 first; where a link has none, its carrier's.
-    pub(super) last_degrees: Vec<usize>,
-    /// One more than the velocity that the elimination of velocity i touches next, or 0.
-    pub(super) pivots: Vec<usize>,
-    /// Armature felt along each velocity.
-    pub(super) rotors: Vec<f64>,
-    pub(super) has_rotors: bool,
+    pub(super) masses: Masses,
+    pub(super) drivetrain: Drivetrain,
+    pub(super) tree: DegreeTree,
     // One entry per described joint that moves.
     pub(super) described: Vec<DescribedJoint>,
-    /// Names of the fixed joints.
-    pub(super) fixed_joints: Vec<String>,
     // One entry per described body.
     pub(super) frames: Vec<Frame>,
-    pub(super) body_names: Vec<String>,
-    pub(super) body_lookup: BTreeMap<String, usize>,
-    /// What the world is called besides "world".
-    pub(super) world_names: Vec<String>,
+    pub(super) names: Names,
 }
 
 /// A joint that moves, as it is described: one joint of the [`Model`], or a chain of them.
@@ -89,68 +60,40 @@ impl Model {
     pub(super) fn empty(gravity: [f64; 3]) -> Self {
         Self {
             gravity,
-            nq: 0,
-            nv: 0,
+            numbering: Numbering::default(),
             motions: Vec::new(),
             pitches: Vec::new(),
             spaces: Vec::new(),
             described_as: Vec::new(),
-            coordinates: Vec::new(),
-            places: Vec::new(),
-            followed: Vec::new(),
             limits: Vec::new(),
             parents: Vec::new(),
             placements: Vec::new(),
-            inertias: Vec::new(),
-            subtree_masses: Vec::new(),
-            may_be_indefinite: false,
             bodies_of_joints: Vec::new(),
-            joint_names: Vec::new(),
-            velocity_names: Vec::new(),
-            armature: Vec::new(),
-            damping: Vec::new(),
-            friction: Vec::new(),
-            friction_laws: Vec::new(),
-            degrees: Vec::new(),
-            carriers: Vec::new(),
-            last_degrees: vec![0],
-            pivots: Vec::new(),
-            rotors: Vec::new(),
-            has_rotors: false,
+            masses: Masses::default(),
+            drivetrain: Drivetrain::default(),
+            tree: DegreeTree::of_the_world(),
             described: Vec::new(),
-            fixed_joints: Vec::new(),
-            world_names: Vec::new(),
             frames: Vec::new(),
-            body_names: Vec::new(),
-            body_lookup: BTreeMap::new(),
-        }
-    }
-
-    pub(super) fn collect_subtree_masses(&mut self) {
-        self.subtree_masses = self.inertias.iter().map(|inertia| inertia.mass).collect();
-        for j in (0..self.joint_count()).rev() {
-            if let Some(parent) = self.parents[j].checked_sub(1) {
-                self.subtree_masses[parent] += self.subtree_masses[j];
-            }
+            names: Names::default(),
         }
     }
 
     /// Number of coordinates q.
     #[inline]
     pub fn nq(&self) -> usize {
-        self.nq
+        self.numbering.nq
     }
 
     /// Number of velocities v.
     #[inline]
     pub fn nv(&self) -> usize {
-        self.nv
+        self.numbering.nv
     }
 
     /// The coordinate whose time derivative velocity `k` is; `None` for a joint of several degrees.
     #[inline]
     pub fn coordinate_of(&self, k: usize) -> Option<usize> {
-        self.places[k]
+        self.numbering.places[k]
     }
 
     /// Number of moving joints, those that follow another one included; joint j moves link j + 1.
@@ -166,22 +109,22 @@ impl Model {
 
     /// What the velocity of each moving joint is called; where it has several, what stands before theirs.
     pub fn velocity_names(&self) -> &[String] {
-        &self.velocity_names
+        &self.names.velocities
     }
 
     /// Names of the moving joints.
     pub fn joint_names(&self) -> &[String] {
-        &self.joint_names
+        &self.names.joints
     }
 
     /// Index of the moving joint called `name`.
     pub fn joint_index(&self, name: &str) -> Option<usize> {
-        self.joint_names.iter().position(|other| other == name)
+        self.names.joints.iter().position(|other| other == name)
     }
 
     /// Whether a fixed joint is called `name`.
     pub fn has_fixed_joint(&self, name: &str) -> bool {
-        self.fixed_joints.iter().any(|other| other == name)
+        self.names.fixed_joints.iter().any(|other| other == name)
     }
 
     /// What the coordinates of moving joint `joint` may be.
@@ -206,26 +149,26 @@ impl Model {
 
     /// Where moving joint `joint` finds its coordinates in q: those of the joint that it follows, if it follows one.
     pub fn q_range(&self, joint: usize) -> Range<usize> {
-        let first = self.coordinates[joint].q;
+        let first = self.numbering.coordinates[joint].q;
         first..first + self.spaces[joint].nq()
     }
 
     /// Where moving joint `joint` finds its velocities in v: those of the joint that it follows, if it follows one.
     pub fn v_range(&self, joint: usize) -> Range<usize> {
-        let first = self.coordinates[joint].v;
+        let first = self.numbering.coordinates[joint].v;
         first..first + self.spaces[joint].nv()
     }
 
     /// The joint with coordinates of its own that moving joint `joint` follows, and the ratio and offset of
     /// coordinate = ratio · its coordinate + offset; `None` for a joint with coordinates of its own.
     pub fn followed(&self, joint: usize) -> Option<(usize, f64, f64)> {
-        let Coordinates { ratio, offset, .. } = self.coordinates[joint];
-        self.followed[joint].map(|leader| (leader, ratio, offset))
+        let Coordinates { ratio, offset, .. } = self.numbering.coordinates[joint];
+        self.numbering.followed[joint].map(|leader| (leader, ratio, offset))
     }
 
     /// Whether every joint has coordinates of its own.
     pub fn is_free_of_followers(&self) -> bool {
-        self.followed.iter().all(Option::is_none)
+        self.numbering.followed.iter().all(Option::is_none)
     }
 
     /// Whether every joint has one degree of freedom, so that v = dq/dt and Christoffel symbols exist.
@@ -246,48 +189,48 @@ impl Model {
     /// Inertia of rotors as felt along each velocity, kg·m² or kg (nv): on the diagonal of the mass matrix.
     #[inline]
     pub fn rotors(&self) -> &[f64] {
-        &self.rotors
+        &self.drivetrain.rotors
     }
 
     /// [`Self::rotors`]; nothing where there is none.
     #[inline]
     pub(crate) fn felt_rotors(&self) -> &[f64] {
-        if self.has_rotors { &self.rotors } else { &[] }
+        if self.drivetrain.has_rotors { &self.drivetrain.rotors } else { &[] }
     }
 
     /// Inertia of the rotor per moving joint as felt along its coordinate, kg·m² or kg.
     pub fn armature(&self) -> &[f64] {
-        &self.armature
+        &self.drivetrain.armature
     }
 
     /// Viscous damping per moving joint, N·m·s/rad or N·s/m; no algorithm of `dynamics` adds it by itself.
     pub fn damping(&self) -> &[f64] {
-        &self.damping
+        &self.drivetrain.damping
     }
 
     /// Coulomb friction per moving joint, N·m or N; no algorithm of `dynamics` adds it by itself.
     pub fn friction(&self) -> &[f64] {
-        &self.friction
+        &self.drivetrain.friction
     }
 
     /// What the friction of each moving joint does at and near rest.
     pub fn friction_laws(&self) -> &[FrictionLaw] {
-        &self.friction_laws
+        &self.drivetrain.friction_laws
     }
 
     /// Names of the described bodies, in the order in which they were pushed.
     pub fn body_names(&self) -> &[String] {
-        &self.body_names
+        &self.names.bodies
     }
 
     /// Index of the body called `name`.
     pub fn body_index(&self, name: &str) -> Option<usize> {
-        self.body_lookup.get(name).copied()
+        self.names.body_lookup.get(name).copied()
     }
 
     /// The body called `name`, or the world: "world", or the root link of a robot on a fixed base.
     pub fn find_body(&self, name: &str) -> Option<Parent> {
-        let world = name == "world" || self.world_names.iter().any(|other| other == name);
+        let world = name == "world" || self.names.worlds.iter().any(|other| other == name);
         self.body_index(name).map(Parent::Body).or(world.then_some(Parent::World))
     }
 
@@ -346,18 +289,18 @@ impl Model {
     /// Inertia of the link that `joint` moves, about the origin of the link's frame and in its axes.
     #[inline]
     pub fn link_inertia(&self, joint: usize) -> &Inertia {
-        &self.inertias[joint]
+        &self.masses.inertias[joint]
     }
 
     /// Mass of all that `joint` carries, kg.
     #[inline]
     pub fn subtree_mass(&self, joint: usize) -> f64 {
-        self.subtree_masses[joint]
+        self.masses.subtrees[joint]
     }
 
     /// Of the velocities `v` (nv) those that are angular, rad/s.
     pub(crate) fn turning<'a>(&'a self, v: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let turns = self.degrees.iter().filter(|degree| !matches!(degree.motion, DegreeMotion::Shift(_)));
+        let turns = self.tree.degrees.iter().filter(|degree| !matches!(degree.motion, DegreeMotion::Shift(_)));
         turns.map(|degree| degree.ratio * v[degree.index])
     }
 
@@ -365,7 +308,7 @@ impl Model {
     /// lets it have, so that the mass matrix may not be positive definite everywhere.
     #[inline]
     pub fn may_be_indefinite(&self) -> bool {
-        self.may_be_indefinite
+        self.masses.may_be_indefinite
     }
 
     /// The link frame of `joint` in the frame of its parent link where the joint stands at 0 (a floating one: at the origin,
@@ -388,36 +331,36 @@ impl Model {
 
     #[inline]
     pub(crate) fn coordinates(&self, joint: usize) -> &Coordinates {
-        &self.coordinates[joint]
+        &self.numbering.coordinates[joint]
     }
 
     #[inline]
     pub(crate) fn degrees(&self) -> &[Degree] {
-        &self.degrees
+        &self.tree.degrees
     }
 
     /// The degrees of moving joint `joint`.
     #[inline]
     pub(crate) fn degrees_of(&self, joint: usize) -> Range<usize> {
         // Links stand in the order of their joints, and each has a degree at least.
-        self.last_degrees[joint]..self.last_degrees[joint + 1]
+        self.tree.last_degrees[joint]..self.tree.last_degrees[joint + 1]
     }
 
     /// One more than the degree that carries degree `k`, or 0.
     #[inline]
     pub(crate) fn carrier(&self, k: usize) -> usize {
-        self.carriers[k]
+        self.tree.carriers[k]
     }
 
     /// One more than the last degree on the way to `link`, or 0.
     #[inline]
     pub(crate) fn last_degree(&self, link: usize) -> usize {
-        self.last_degrees[link]
+        self.tree.last_degrees[link]
     }
 
     /// One more than the velocity that the elimination of velocity `i` touches next, or 0.
     #[inline]
     pub(crate) fn pivot(&self, i: usize) -> usize {
-        self.pivots[i]
+        self.tree.pivots[i]
     }
 }

@@ -1,0 +1,94 @@
+//! What a [`Model`](super::Model) is made of, by what is handed on together.
+
+use super::degree::{Coordinates, Degree};
+use super::spec::FrictionLaw;
+use crate::spatial::Inertia;
+use std::collections::BTreeMap;
+
+/// How q and v are numbered: one entry per joint, indexed by j, but for `places`.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Numbering {
+    pub(super) nq: usize,
+    pub(super) nv: usize,
+    pub(super) coordinates: Vec<Coordinates>,
+    /// The coordinate that each velocity moves; none for those of joints of several degrees.
+    pub(super) places: Vec<Option<usize>>,
+    pub(super) followed: Vec<Option<usize>>,
+}
+
+/// The degrees of freedom and the tree that they make, indexed by k; those of joint j follow those of joint j − 1.
+#[derive(Debug, Clone)]
+pub(super) struct DegreeTree {
+    pub(super) degrees: Vec<Degree>,
+    /// One more than the degree that carries degree k, or 0 where the world does.
+    pub(super) carriers: Vec<usize>,
+    /// One more than the last degree of each link, with the world's 0 first; where a link has none, its carrier's.
+    pub(super) last_degrees: Vec<usize>,
+    /// One more than the velocity that the elimination of velocity i touches next, or 0.
+    pub(super) pivots: Vec<usize>,
+}
+
+/// What moves with the links, one entry per joint.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Masses {
+    pub(super) inertias: Vec<Inertia>,
+    /// Of all that a joint carries, kg.
+    pub(super) subtrees: Vec<f64>,
+    pub(super) may_be_indefinite: bool,
+}
+
+/// What turns and rubs inside the joints, one entry per joint.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Drivetrain {
+    pub(super) armature: Vec<f64>,
+    pub(super) damping: Vec<f64>,
+    pub(super) friction: Vec<f64>,
+    pub(super) friction_laws: Vec<FrictionLaw>,
+    /// Armature felt along each velocity.
+    pub(super) rotors: Vec<f64>,
+    pub(super) has_rotors: bool,
+}
+
+/// What everything is called.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Names {
+    /// Of the joints that move.
+    pub(super) joints: Vec<String>,
+    /// What the velocity of each of them, or the joint before the names of several, is called.
+    pub(super) velocities: Vec<String>,
+    pub(super) fixed_joints: Vec<String>,
+    pub(super) bodies: Vec<String>,
+    pub(super) body_lookup: BTreeMap<String, usize>,
+    /// What the world is called besides "world".
+    pub(super) worlds: Vec<String>,
+}
+
+impl Masses {
+    /// Adds up what the joints carry, whose links hang on `parents`.
+    pub(super) fn collect_subtrees(&mut self, parents: &[usize]) {
+        self.subtrees = self.inertias.iter().map(|inertia| inertia.mass).collect();
+        for j in (0..self.subtrees.len()).rev() {
+            if let Some(parent) = parents[j].checked_sub(1) {
+                self.subtrees[parent] += self.subtrees[j];
+            }
+        }
+    }
+}
+
+impl Drivetrain {
+    /// Adds up the armatures felt along `nv` velocities, those of followers through their leaders.
+    pub(super) fn collect_rotors(&mut self, numbering: &Numbering) {
+        self.rotors = vec![0.0; numbering.nv];
+        for (own, armature) in numbering.coordinates.iter().zip(&self.armature) {
+            self.rotors[own.v] += own.ratio * own.ratio * armature;
+        }
+        self.has_rotors = self.rotors.iter().any(|rotor| *rotor != 0.0);
+    }
+}
+
+impl DegreeTree {
+    /// That of the world alone.
+    pub(super) fn of_the_world() -> Self {
+        Self { degrees: Vec::new(), carriers: Vec::new(), last_degrees: vec![0], pivots: Vec::new() }
+    }
+}
