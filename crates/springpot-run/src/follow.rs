@@ -100,8 +100,8 @@ impl Underway {
         if self.stride > 1 {
             notes.push(format!("one of {} rows is shown", self.stride));
         }
-        if record.cases_total > record.cases.len() {
-            notes.push(format!("the first {} of {} cases are shown", record.cases.len(), record.cases_total));
+        if record.totals.cases_total > record.cases.len() {
+            notes.push(format!("the first {} of {} cases are shown", record.cases.len(), record.totals.cases_total));
         }
         let (meshes, unseen) = meshes::files(record, &self.folder);
         notes.extend(unseen);

@@ -22,21 +22,11 @@ pub(crate) struct Record {
     columns: Vec<Described>,
     pub(crate) sweeps: Vec<Sweep>,
     pub(crate) cases: Vec<Listed>,
-    pub(crate) cases_total: usize,
-    pub(crate) cases_done: usize,
-    pub(crate) cases_failed: usize,
-    /// Of all cases.
-    pub(crate) rows: Option<u64>,
-    pub(crate) energy_residual: Option<f64>,
-    pub(crate) energy_turned_over: Option<f64>,
-    pub(crate) steps: u64,
-    /// s.
-    pub(crate) wall_time: f64,
+    #[serde(flatten)]
+    pub(crate) totals: Totals,
     /// What tells a run under way from others in its folder.
     pub(crate) id: String,
     pub(crate) warnings: Vec<String>,
-    pub(crate) limits: Vec<Value>,
-    pub(crate) ledger: Option<String>,
     pub(crate) plan: Value,
     pub(crate) scenario: Option<Recorded>,
     pub(crate) files: Vec<String>,
@@ -44,6 +34,23 @@ pub(crate) struct Record {
     pub(crate) scenes: Vec<Scene>,
     pub(crate) robots: Vec<RobotFile>,
     pub(crate) laws: Vec<LawText>,
+}
+
+/// What came of all cases together.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct Totals {
+    pub(crate) cases_total: usize,
+    pub(crate) cases_done: usize,
+    pub(crate) cases_failed: usize,
+    pub(crate) rows: Option<u64>,
+    pub(crate) energy_residual: Option<f64>,
+    pub(crate) energy_turned_over: Option<f64>,
+    pub(crate) ledger: Option<String>,
+    pub(crate) limits: Vec<Value>,
+    pub(crate) steps: u64,
+    /// s.
+    pub(crate) wall_time: f64,
 }
 
 #[derive(Debug, Deserialize)]

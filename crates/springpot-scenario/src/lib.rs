@@ -62,7 +62,7 @@ pub use plan::cure::Cure;
 pub use plan::events::EventPlan;
 pub use plan::metrics::{Band, Metric, MetricKind, MetricPlan};
 pub use plan::{
-    BodyPlaces, ElementPlan, EndStops, FramePlan, Gripper, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan,
+    BodyPlaces, ElementPlan, EndStops, FramePlan, Gripper, OutputPlan, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan,
 };
 pub use scenario::{Cases, LoneElement, Portable, Scenario, SweptValue, json_schema};
 pub use text::names::{list, suggest};

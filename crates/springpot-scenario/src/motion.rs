@@ -18,7 +18,7 @@ use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
 use controller::ControllerPlan;
 use serde_json::{Map, Value, json};
-use springpot::control::Controlled;
+use springpot::control::Control;
 use springpot::model::Model;
 use springpot::motion::gripper_path::Course;
 use springpot::system::Motion;
@@ -160,6 +160,8 @@ pub struct MotionPlan {
     /// Torques that are feedback, by velocity.
     feedback: TorqueTexts,
     controller: Option<ControllerPlan>,
+    /// Torques and inputs that follow from the state; nothing until the plan is whole.
+    control: Control,
 }
 
 /// What makes the motion of a run.
@@ -269,9 +271,15 @@ impl MotionPlan {
         self.controller.as_ref().map(ControllerPlan::words)
     }
 
-    /// The controller of `model`, its reference solved along `course`.
-    pub(crate) fn controller(&self, model: &Model, course: &Course<'_>) -> Option<Controlled> {
-        self.controller.as_ref().map(|controller| controller.made(model, course))
+    /// Takes what follows from the state, its controller apart.
+    pub(crate) fn follow(&mut self, control: Control) {
+        self.control = control;
+    }
+
+    /// What follows from the state of `model`; the reference of its controller is solved along `course`.
+    pub(crate) fn control(&self, model: &Model, course: &Course<'_>) -> Control {
+        let controller = self.controller.as_ref().map(|controller| controller.made(model, course));
+        Control { controller, ..self.control.clone() }
     }
 
     /// Whether it says how the gripper is to be turned, or its controller does.
@@ -329,7 +337,18 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<Mo
     };
     let (joints, torques) = ([places("joints"), places("prescribed")].concat(), places("torque"));
     let (place, has_orientation) = (field.node.place.clone(), field.node.get("rpy").is_some());
-    Ok(MotionPlan { kind, record, maker, place, joints, torques, has_orientation, feedback, controller })
+    Ok(MotionPlan {
+        kind,
+        record,
+        maker,
+        place,
+        joints,
+        torques,
+        has_orientation,
+        feedback,
+        controller,
+        control: Control::default(),
+    })
 }
 
 /// Where a table by joints says something of `joint`, or of the joint that has this coordinate.

@@ -3,17 +3,17 @@
 pub(crate) mod cure;
 pub(crate) mod events;
 pub(crate) mod metrics;
+mod output;
 mod resolved;
 mod system;
 
+pub use self::output::OutputPlan;
 use crate::elements::past::PastPlan;
-use crate::figures::{ColumnGlob, FigurePlan};
 use crate::motion::MotionPlan;
 use crate::plan::events::EventPlan;
 use crate::plan::metrics::MetricPlan;
 use crate::signals::feedback::FeedbackText;
 use crate::text::refusal::{Place, Remark};
-use springpot::control::Control;
 use springpot::elements::{Component, Element};
 use springpot::model::urdf::Urdf;
 use springpot::model::{Anchor, BodySpec, Model};
@@ -46,25 +46,16 @@ pub struct Plan {
     pub absent: Vec<(usize, ElementPlan)>,
     /// What moves the robot.
     pub motion: MotionPlan,
-    /// Torques and inputs that follow from the state.
-    pub(crate) feedback: Control,
     /// What is watched in forward runs.
     pub events: Vec<EventPlan>,
     /// What says how good it is.
     pub metrics: Vec<MetricPlan>,
-    /// Whether a joint has damping or friction, in this case or in another one of its sweep: the results tell what is
-    /// lost there.
-    pub tells_joint_losses: bool,
-    /// Whether the results tell the leaves of the elements' laws.
-    pub tells_leaves: bool,
     /// What deserves a warning in its files.
     pub warnings: Vec<Remark>,
     /// Duration, rows, accuracy and steps.
     pub settings: Settings,
-    /// The figures; the same in every case.
-    pub figures: Arc<[FigurePlan]>,
-    /// Globs of the columns to write; `None`: all.
-    pub columns: Option<Arc<[ColumnGlob]>>,
+    /// What its results hold and show.
+    pub output: OutputPlan,
 }
 
 impl Plan {

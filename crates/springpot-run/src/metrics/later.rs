@@ -205,7 +205,7 @@ impl Source {
         if cases.iter().all(|case| case.metrics.is_none()) {
             return Ok(None);
         }
-        if cases.len() < self.record.cases_done + self.record.cases_failed {
+        if cases.len() < self.record.totals.cases_done + self.record.totals.cases_failed {
             return Err(LaterError::Unlisted(self.folder.clone()));
         }
         Ok(Some(self.record.with_rows().into_iter().map(|case| case.metrics.as_deref()).collect()))

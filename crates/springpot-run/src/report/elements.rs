@@ -73,7 +73,7 @@ fn parameters(results: &Results, law: &LawText) -> Table {
             .unwrap_or_else(|| written::cut(labels::values(std::slice::from_ref(&input.written)).concat()));
         table.rows.push(vec![input.name.clone(), value, labels::written_unit(&input.unit), "input".to_owned()]);
     }
-    if results.record.cases_total > 1 && !table.rows.is_empty() {
+    if results.record.totals.cases_total > 1 && !table.rows.is_empty() {
         table.note = Some("Where other values are swept: those of the first case.".to_owned());
     }
     table

@@ -107,7 +107,7 @@ pub(super) fn summary(results: &Results) -> Option<Table> {
         let [least, largest, rms] = numbers;
         table.rows.push(vec![name.clone(), least, largest, rms, labels::written_unit(unit), meaning.to_owned()]);
     }
-    if results.record.cases_total > 1 {
+    if results.record.totals.cases_total > 1 {
         table.note = Some("Of the first case; summary.csv has all.".to_owned());
     }
     (!table.rows.is_empty()).then_some(table)

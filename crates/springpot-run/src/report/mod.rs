@@ -98,10 +98,11 @@ fn in_short(results: &Results) -> Vec<Block> {
 /// Names and values that say how a run went.
 fn facts(results: &Results) -> Vec<(&'static str, String)> {
     let record = &results.record;
-    let rows = record.rows.unwrap_or_else(|| record.cases.iter().map(|case| case.rows).fold(0, u64::saturating_add));
-    let cases = match record.cases_failed {
-        0 => format!("{} of {} done", record.cases_done, record.cases_total),
-        failed => format!("{} of {} done, {failed} failed", record.cases_done, record.cases_total),
+    let rows =
+        record.totals.rows.unwrap_or_else(|| record.cases.iter().map(|case| case.rows).fold(0, u64::saturating_add));
+    let cases = match record.totals.cases_failed {
+        0 => format!("{} of {} done", record.totals.cases_done, record.totals.cases_total),
+        failed => format!("{} of {} done, {failed} failed", record.totals.cases_done, record.totals.cases_total),
     };
     let mut facts = vec![("cases", cases)];
     if let Some(end) = record.plan["time"]["end"].as_f64() {
@@ -109,21 +110,21 @@ fn facts(results: &Results) -> Vec<(&'static str, String)> {
     }
     facts.push(("rows", rows.to_string()));
     facts.push(("columns", results.columns.len().to_string()));
-    facts.push(("steps", record.steps.to_string()));
+    facts.push(("steps", record.totals.steps.to_string()));
     if let Some(rtol) = record.plan["solver"]["rtol"].as_f64() {
         facts.push(("tolerance rtol", short(rtol)));
     }
     facts.push(("energy balance", balance(results)));
-    facts.push(("computing time", format!("{} s", rough(record.wall_time))));
+    facts.push(("computing time", format!("{} s", rough(record.totals.wall_time))));
     facts
 }
 
 /// The worst case's residual beside the energy that it turned over.
 fn balance(results: &Results) -> String {
     let record = &results.record;
-    match (record.energy_residual, record.energy_turned_over) {
+    match (record.totals.energy_residual, record.totals.energy_turned_over) {
         (Some(residual), Some(turned)) => format!("closes to {} J of {} J", rough(residual.abs()), four(turned)),
-        _ => record.ledger.clone().unwrap_or_else(|| "unknown".to_owned()),
+        _ => record.totals.ledger.clone().unwrap_or_else(|| "unknown".to_owned()),
     }
 }
 
@@ -136,7 +137,7 @@ fn warnings(results: &Results) -> Vec<String> {
         let lead = if name.is_empty() { String::new() } else { format!("{name}: ") };
         Some(format!("{lead}{}{at}", case.error.as_ref()?))
     });
-    let limits = record.limits.iter().map(written::limit);
+    let limits = record.totals.limits.iter().map(written::limit);
     let mut all: Vec<String> = record.warnings.iter().cloned().chain(failed).chain(limits).collect();
     if let Some(more @ 1..) = all.len().checked_sub(MOST_CASES) {
         all.truncate(MOST_CASES);
@@ -179,8 +180,8 @@ fn energy(results: &Results, drawn: &Drawn) -> Vec<Block> {
             rough(case.wall_time),
         ]);
     }
-    if record.cases_total > table.rows.len() {
-        table.note = Some(format!("The first {} of {} cases.", table.rows.len(), record.cases_total));
+    if record.totals.cases_total > table.rows.len() {
+        table.note = Some(format!("The first {} of {} cases.", table.rows.len(), record.totals.cases_total));
     }
     let words = "The residual is the largest difference, over a run, between the work that went into the robot and what became of it: kinetic and potential \
         energy, what elements store, what they and the joints dissipate. Energy that has been turned over is what it is measured by.";

@@ -33,8 +33,8 @@ impl Plan {
             "motion": self.motion.resolved(),
             "time": time,
             "solver": self.solver(),
-            "figures": self.figures.iter().map(FigurePlan::record).collect::<Vec<_>>(),
-            "columns": self.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
+            "figures": self.output.figures.iter().map(FigurePlan::record).collect::<Vec<_>>(),
+            "columns": self.output.columns.as_ref().map(|globs| globs.iter().map(|glob| &glob.text).collect::<Vec<_>>()),
         });
         if let Some(EndStops { stiffness, damping }) = self.end_stops {
             resolved["limits"] = json!({ "stiffness": stiffness, "damping": damping });

@@ -1,7 +1,6 @@
 //! From a plan to what the time loop runs.
 
 use crate::plan::{ElementPlan, EndStops, Plan};
-use springpot::control::Control;
 use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::Course;
 use springpot::observe::Observables;
@@ -29,11 +28,10 @@ impl Plan {
             motion: self.motion.made(&self.model, course),
             gripper: self.gripper.as_ref().map(|gripper| self.site(&gripper.anchor)),
             model: self.model.clone(),
-            tells_joint_losses: self.tells_joint_losses,
-            tells_leaves: self.tells_leaves,
+            tells_joint_losses: self.output.tells_joint_losses,
+            tells_leaves: self.output.tells_leaves,
             events: self.events.iter().map(|plan| plan.event.clone()).collect(),
-            control: Control { controller: self.motion.controller(&self.model, course), ..self.feedback.clone() }
-                .into(),
+            control: self.motion.control(&self.model, course).into(),
         };
         match self.end_stops {
             None => system,
@@ -63,7 +61,7 @@ impl Plan {
     /// The columns of the rows of all cases, in order: those of elements that are not enabled are among them.
     pub fn columns(&self) -> Vec<Column> {
         let observables = self.observables();
-        if self.tells_joint_losses { observables.with_joint_losses() } else { observables }.columns()
+        if self.output.tells_joint_losses { observables.with_joint_losses() } else { observables }.columns()
     }
 
     /// For each of [`Self::columns`] its place in a row of `system`, which was made of this plan; `None` where a cell is empty. Nothing where
@@ -89,7 +87,7 @@ impl Plan {
 
     fn observables_of<'a>(&self, elements: impl Iterator<Item = &'a ElementPlan>) -> Observables {
         let observables = Observables::new(&self.model, elements.map(|plan| &plan.element));
-        let observables = if self.tells_leaves { observables.with_leaves() } else { observables };
+        let observables = if self.output.tells_leaves { observables.with_leaves() } else { observables };
         match self.gripper {
             Some(_) => observables.with_gripper(self.motion.has_path() || self.motion.has_controller()),
             None => observables,

@@ -9,9 +9,9 @@ use crate::elements::past;
 use crate::figures::{self, ColumnGlob, FigurePlan};
 use crate::keys::OUTPUT;
 use crate::motion;
-use crate::plan::Plan;
 use crate::plan::events;
 use crate::plan::metrics::{self, MetricPlan};
+use crate::plan::{OutputPlan, Plan};
 use crate::reader::constants;
 use crate::reader::{Context, Read, Table};
 use crate::robot;
@@ -25,7 +25,6 @@ use crate::text::document::Node;
 use crate::text::refusal::{Place, RefusalKind, Refusals, Remark};
 use crate::time;
 use crate::units::Unit;
-use springpot::control::Control;
 use springpot::law::Catalog;
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
@@ -290,7 +289,8 @@ impl Cases {
         let read = read_plan(&ctx, &document);
         let plan = ctx.finish(read)?;
         let (figures, columns) = (self.figures.clone(), self.columns.clone());
-        Ok(Plan { figures, columns, tells_joint_losses: self.tell_joint_losses, ..plan })
+        let tells_joint_losses = self.tell_joint_losses;
+        Ok(Plan { output: OutputPlan { figures, columns, tells_joint_losses, ..plan.output }, ..plan })
     }
 
     fn context(&self) -> Context<'_> {
@@ -568,19 +568,16 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         elements: acting,
         absent,
         motion: motion?,
-        feedback: Control::default(),
         events: Vec::new(),
         metrics: Vec::new(),
-        tells_joint_losses: false,
-        tells_leaves: tells_leaves?,
         warnings: Vec::new(),
         settings: time.and(settings)?,
-        figures: Arc::new([]),
-        columns: None,
+        output: OutputPlan { tells_leaves: tells_leaves?, ..OutputPlan::default() },
     };
     plan.rest_at_start();
     past::settle(ctx, &mut plan)?;
-    plan.feedback = feedback::settle(ctx, &plan)?;
+    let control = feedback::settle(ctx, &plan)?;
+    plan.motion.follow(control);
     plan.events = events::read(&root, &plan)?;
     plan.metrics = metrics::read(&root, &plan)?;
     plan.warnings = ctx.warnings();

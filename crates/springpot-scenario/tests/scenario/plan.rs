@@ -77,7 +77,7 @@ fn the_example_is_planned_whole() {
     assert_eq!((solver.rtol, solver.atol, solver.memory_rtol), (1e-9, None, 1e-9 / 100.0));
     assert_eq!((solver.first_step, solver.max_step, solver.max_steps), (None, None, None));
 
-    let [figure] = &plan.figures[..] else { panic!("one figure") };
+    let [figure] = &plan.output.figures[..] else { panic!("one figure") };
     assert_eq!(figure.name, "order");
     assert_eq!(figure.title.as_deref(), Some("Generalized force Q₂ at 25 °C"));
     let FigureKind::Curves { x, y } = &figure.kind else { panic!("curves") };
@@ -85,7 +85,7 @@ fn the_example_is_planned_whole() {
     assert_eq!(y[0].text, "strut.Q.q2");
     assert_eq!(y[0].place.position(), (59, 6));
     assert!(figure.units.is_empty() && figure.selection.is_empty());
-    assert!(plan.columns.is_none());
+    assert!(plan.output.columns.is_none());
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn output_times_and_columns_are_taken() {
     assert_eq!(plan.settings.rows, RowTimes::Times([0.0, 0.5, 10.0].into()));
     assert_eq!(plan.settings.rows.count(), 3);
     let columns: Vec<&str> =
-        plan.columns.iter().flat_map(|globs| globs.iter()).map(|glob| glob.text.as_str()).collect();
+        plan.output.columns.iter().flat_map(|globs| globs.iter()).map(|glob| glob.text.as_str()).collect();
     assert_eq!(columns, ["t", "strut.*"]);
 }
 

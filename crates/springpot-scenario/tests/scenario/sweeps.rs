@@ -221,8 +221,8 @@ fn overrides_use_the_same_paths() {
     assert_eq!(plan.elements[0].element.scheme, Some(Scheme::L1));
     assert_eq!(plan.settings.rows, RowTimes::Step { step: 0.5, end: plan.settings.end });
     assert_eq!(plan.title.as_deref(), Some("other = title"));
-    assert_eq!(plan.columns.unwrap()[0].text, "t");
-    assert_eq!(plan.figures[0].title.as_deref(), Some("New"));
+    assert_eq!(plan.output.columns.unwrap()[0].text, "t");
+    assert_eq!(plan.output.figures[0].title.as_deref(), Some("New"));
     assert_eq!(plan.gravity, [0.0; 3]);
 }
 

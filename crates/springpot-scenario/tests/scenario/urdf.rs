@@ -78,7 +78,7 @@ fn a_urdf_is_planned_whole() {
     assert_eq!((plan.model.nq(), plan.model.nv()), (2, 2));
     assert_eq!(plan.model.damping(), [0.0, 0.4, 0.0]);
     assert_eq!(plan.model.friction(), [0.0, 0.1, 0.0]);
-    assert!(plan.tells_joint_losses);
+    assert!(plan.output.tells_joint_losses);
     // The root link is the world, whatever its name.
     let ShapePlan::Points(points) = &plan.elements[0].shape else { panic!("between points") };
     assert_eq!(points[0], Anchor { body: Parent::World, point: [0.0, 0.5, 3.0] });

@@ -43,14 +43,8 @@ struct Joint<'a> {
     kind: &'static str,
     parent: &'a str,
     link: &'a str,
-    axis: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    axis2: Option<[f64; 3]>,
-    /// Advance per turn.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    lead: Option<f64>,
-    origin: [f64; 3],
-    rpy: [f64; 3],
+    #[serde(flatten)]
+    geometry: Geometry,
     /// Indices of its own numbers in q and v; none where it follows another joint.
     q: Vec<usize>,
     v: Vec<usize>,
@@ -62,6 +56,19 @@ struct Joint<'a> {
     /// Mass of the link with all that is fixed to it, and with all that it carries.
     mass: f64,
     subtree_mass: f64,
+}
+
+/// Where it is and along what it moves, in the frame of its parent.
+#[derive(Serialize)]
+struct Geometry {
+    axis: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    axis2: Option<[f64; 3]>,
+    /// Advance per turn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lead: Option<f64>,
+    origin: [f64; 3],
+    rpy: [f64; 3],
 }
 
 /// Of a joint of one coordinate, or of each of several in their order.
@@ -167,11 +174,13 @@ fn joint<'a>(robot: &'a Robot, described: &DescribedJoint) -> Joint<'a> {
         kind: spec.kind.name(),
         parent: robot.body_name(body.parent),
         link: &body.name,
-        axis: spec.kind.has_axis().then_some(spec.axis),
-        axis2: spec.kind.has_axis2().then_some(spec.axis2),
-        lead: spec.kind.has_lead().then_some(spec.lead),
-        origin: spec.origin,
-        rpy: spec.rpy,
+        geometry: Geometry {
+            axis: spec.kind.has_axis().then_some(spec.axis),
+            axis2: spec.kind.has_axis2().then_some(spec.axis2),
+            lead: spec.kind.has_lead().then_some(spec.lead),
+            origin: spec.origin,
+            rpy: spec.rpy,
+        },
         q: own(model.q_range(start).start..model.q_range(j).end),
         v: own(model.v_range(start).start..model.v_range(j).end),
         follows: followed.map(|(leader, multiplier, offset)| Follows {
