@@ -3,16 +3,19 @@
 pub(crate) mod heat;
 pub(crate) mod material;
 pub(crate) mod past;
+pub(crate) mod plan;
 mod shape;
 
 use self::material::{InputsOf, Material};
 use self::past::PastPlan;
+use crate::elements::plan::{ElementPlan, ShapePlan};
 use crate::keys::{
     AT_START, BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, ON_JOINT, RESERVED_NAMES,
 };
-use crate::plan::{ElementPlan, ShapePlan, SignalPlan};
+use crate::reader::named::{checked_name, unique};
 use crate::reader::{Field, Read, Refused, Table, all};
-use crate::robot::{Robot, checked_name, unique};
+use crate::robot::Robot;
+use crate::signals::plan::SignalPlan;
 use crate::text::document::{Node, shorten};
 use crate::text::names;
 use crate::text::refusal::RefusalKind;

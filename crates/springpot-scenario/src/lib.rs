@@ -49,21 +49,23 @@ mod text;
 mod time;
 pub mod units;
 
-pub use changes::path::{equals_sign, toml_key};
+pub use changes::path::equals_sign;
 pub use elements::past::PastPlan;
+pub use elements::plan::{ElementPlan, FramePlan, ShapePlan};
 pub use figures::{
     AxisLook, ColumnGlob, FIGURE_SIDES, FigureFormat, FigureKind, FigureLabel, FigureNumbers, FigurePlan, FigurePoints,
     FigureUnit, LOOK_OPTIONS, Look, LookOption, RangeEnd, Said, Selection, Spelt, Statistic, Summarised, SweptAxis,
     Takes,
 };
-pub use keys::MAX_CASES;
+pub use keys::{MAX_CASES, MetricKind};
 pub use motion::MotionPlan;
 pub use plan::cure::Cure;
 pub use plan::events::EventPlan;
-pub use plan::metrics::{Band, Metric, MetricKind, MetricPlan};
-pub use plan::{
-    BodyPlaces, ElementPlan, EndStops, FramePlan, Gripper, OutputPlan, Plan, RobotPlan, ShapePlan, SignalPlan, UrdfPlan,
-};
+pub use plan::metrics::{Band, Metric, MetricPlan};
+pub use plan::{OutputPlan, Plan};
+pub use robot::described::{BodyPlaces, EndStops, Gripper, RobotPlan, UrdfPlan};
 pub use scenario::{Cases, LoneElement, Portable, Scenario, SweptValue, json_schema};
+pub use signals::plan::SignalPlan;
 pub use text::names::{list, suggest};
+pub use text::quoted::toml_key;
 pub use text::refusal::{Place, Refusal, RefusalKind, Refusals, Remark, Source};

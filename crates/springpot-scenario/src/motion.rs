@@ -13,7 +13,7 @@ use crate::keys::{
 };
 use crate::reader::{Field, Read, Table};
 use crate::robot::Robot;
-use crate::signals::feedback::TorqueTexts;
+use crate::signals::plan::TorqueTexts;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
 use controller::ControllerPlan;

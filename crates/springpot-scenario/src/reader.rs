@@ -1,12 +1,14 @@
 //! Reading tables by hand: every key is asked for by name, everything wrong is noted with its place.
 
 pub(crate) mod constants;
+pub(crate) mod files;
+pub(crate) mod named;
 pub(crate) mod spacing;
 
 use self::constants::Constant;
 use crate::keys::{self, Bound, Key, Keys, Need, Shape, Slot};
-use crate::robot::urdf::UrdfCache;
-use crate::signals::of_time::CsvCache;
+use crate::reader::files::CsvCache;
+use crate::reader::files::UrdfCache;
 use crate::text::document::{self, Entry, Node, Value, shorten};
 use crate::text::names;
 use crate::text::refusal::{Refusal, RefusalKind, Refusals, Remark};
@@ -36,6 +38,8 @@ pub(crate) struct Context<'a> {
     pub(crate) folder: &'a Path,
     pub(crate) tables: &'a CsvCache,
     pub(crate) robots: &'a UrdfCache,
+    /// The keys of the whole scenario, which paths begin with.
+    pub(crate) whole: &'static Keys,
     refusals: RefCell<Vec<Refusal>>,
     /// SI value of every swept number and its unit, by tag.
     swept: RefCell<Vec<Option<(f64, String)>>>,
@@ -47,8 +51,14 @@ pub(crate) struct Context<'a> {
 
 impl<'a> Context<'a> {
     pub(crate) fn new(catalog: &'a Catalog, folder: &'a Path, tables: &'a CsvCache, robots: &'a UrdfCache) -> Self {
+        static NONE: Keys = Keys { words: "", keys: &[] };
         let (refusals, swept, constants, warnings) = Default::default();
-        Self { catalog, folder, tables, robots, refusals, swept, constants, warnings }
+        Self { catalog, folder, tables, robots, whole: &NONE, refusals, swept, constants, warnings }
+    }
+
+    /// Of a scenario with these keys.
+    pub(crate) fn of_whole(self, whole: &'static Keys) -> Self {
+        Self { whole, ..self }
     }
 
     /// Notes a refusal.

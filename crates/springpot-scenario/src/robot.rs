@@ -2,19 +2,18 @@
 
 mod bodies;
 mod changed;
+pub(crate) mod described;
 mod joint;
 pub(crate) mod urdf;
 
+use self::described::{Parts, unknown_body};
 use crate::keys::{ANCHOR, END_STOPS, FROM_URDF, ROBOT};
-use crate::plan::{BodyPlaces, EndStops, Gripper, UrdfPlan};
-use crate::reader::{Field, Read, Refused, Table};
-use crate::text::document::shorten;
+use crate::reader::{Field, Read, Table};
+use crate::robot::described::{EndStops, Gripper};
 use crate::text::names;
-use crate::text::refusal::{Place, RefusalKind};
-use springpot::model::{Anchor, BodySpec, Dimension, JointKind, Model, Parent, Space, Units};
+use crate::text::refusal::RefusalKind;
+use springpot::model::{Anchor, Dimension, JointKind, Model, Parent, Space, Units};
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
-use std::sync::Arc;
 
 const RIGHT: &str = "urdf = \"arm.urdf\", or a [[robot.body]] for each body";
 
@@ -26,14 +25,6 @@ pub(crate) struct Robot {
     pub(crate) end_stops: Option<EndStops>,
     /// Kind of every joint by its name, fixed ones included.
     joint_kinds: HashMap<String, JointKind>,
-}
-
-/// Bodies and the model built of them, from either source.
-pub(crate) struct Parts {
-    pub(crate) bodies: Vec<BodySpec>,
-    pub(crate) places: Vec<BodyPlaces>,
-    pub(crate) model: Arc<Model>,
-    pub(crate) urdf: Option<UrdfPlan>,
 }
 
 /// A joint of the model that has coordinates of its own: a joint as it is described, or one coordinate of it.
@@ -187,40 +178,6 @@ impl Robot {
         let urdf = self.parts.urdf.as_ref().filter(|urdf| !urdf.robot.floating_base);
         let root = urdf.map(|urdf| urdf.robot.root.name.as_str()).filter(|name| *name != "world");
         root.into_iter().chain(["world"])
-    }
-}
-
-pub(super) fn unknown_body<'a>(field: &Field<'_>, name: &str, names: impl Iterator<Item = &'a str> + Clone) -> Refused {
-    let message = format!("names no body: {:?}", shorten(name));
-    field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, names)))
-}
-
-/// Refuses a name that breaks the rule of names.
-pub(crate) fn checked_name<'a>(field: &Field<'a>) -> Read<&'a str> {
-    let name = field.text()?;
-    if names::is_name(name) {
-        return Ok(name);
-    }
-    let message = format!("is {}, which is not a name", field.node.written());
-    let rule = "a name starts with a letter or _, then letters, digits, _ and - follow; letters are those from a to z and A to Z";
-    let help = match names::as_name(name) {
-        Some(right) => format!("{rule}; write {right:?}"),
-        None => rule.to_owned(),
-    };
-    Err(field.refuse(RefusalKind::BadName, message, Some(help)))
-}
-
-/// Notes where `name` was used first, or refuses the second use.
-pub(crate) fn unique(seen: &mut HashMap<String, Place>, field: &Field<'_>, name: &str) -> Read<()> {
-    match seen.entry(name.to_owned()) {
-        Entry::Vacant(entry) => {
-            entry.insert(field.node.place.clone());
-            Ok(())
-        }
-        Entry::Occupied(entry) => {
-            let message = format!("is {:?}, which is taken on line {}", name, entry.get().position().0);
-            Err(field.refuse(RefusalKind::BadName, message, Some("names are unique; choose another".to_owned())))
-        }
     }
 }
 

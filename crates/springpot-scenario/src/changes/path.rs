@@ -4,9 +4,9 @@ use crate::elements::kind_of;
 use crate::elements::material::{files_of, law_of};
 use crate::keys::{COMPONENT, COMPONENTS, ELEMENT, Keys, Shape};
 use crate::reader::{Context, Read};
-use crate::scenario::root::SCENARIO;
 use crate::text::document::{Entry, Node, Value, shorten};
 use crate::text::names;
+use crate::text::quoted::toml_key;
 use crate::text::refusal::{Place, RefusalKind};
 use std::sync::Arc;
 use toml::de::DeValue;
@@ -145,9 +145,9 @@ pub(crate) fn lead(ctx: &Context<'_>, document: &Node, path: &str, place: &Place
         let message = format!("{:?} is not a path: a [[sweep]] has no name", shorten(path));
         return Err(refuse(RefusalKind::BadName, message, "write --sweep PATH=v1,v2,…".to_owned()));
     }
-    if SCENARIO.get(&keys[0]).is_none() {
+    if ctx.whole.get(&keys[0]).is_none() {
         let message = format!("path {:?}: the scenario has no `{}`", shorten(path), shorten(&keys[0]));
-        return Err(refuse(RefusalKind::UnknownName, message, meant(document, &keys)));
+        return Err(refuse(RefusalKind::UnknownName, message, meant(ctx, document, &keys)));
     }
     let mut node = Some(document);
     let mut steps = Vec::with_capacity(keys.len() + 1);
@@ -256,13 +256,13 @@ fn below(node: &Node, walked: &mut Vec<String>, paths: &mut Vec<Vec<String>>) {
 }
 
 /// What to say of a path that begins with no part of a scenario: the whole path that ends like it, if one does.
-fn meant(document: &Node, keys: &[String]) -> String {
+fn meant(ctx: &Context<'_>, document: &Node, keys: &[String]) -> String {
     let all = all(document);
     let ends: Vec<String> = all.iter().filter(|path| path.ends_with(keys)).map(|path| dotted(path)).collect();
-    let sections = SCENARIO.names();
+    let sections = ctx.whole.names();
     // What need not be written in the file, as of [solver].
     let unwritten = || {
-        let tables = SCENARIO.keys.iter().filter_map(|row| match row.shape {
+        let tables = ctx.whole.keys.iter().filter_map(|row| match row.shape {
             Shape::Table(table) => Some((row.name, table)),
             _ => None,
         });
@@ -285,28 +285,6 @@ fn meant(document: &Node, keys: &[String]) -> String {
 /// Keys as a path.
 pub(crate) fn dotted(keys: &[String]) -> String {
     keys.iter().map(|key| toml_key(key)).collect::<Vec<_>>().join(".")
-}
-
-/// A key as TOML and the paths of `--set` take it: bare where it can be, else in quotes.
-pub fn toml_key(key: &str) -> String {
-    let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare {
-        return key.to_owned();
-    }
-    toml_text(key)
-}
-
-/// A text in the quotes of TOML, on one line.
-pub(crate) fn toml_text(text: &str) -> String {
-    let mut quoted = "\"".to_owned();
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => quoted.push_str(&format!("\\u{:04X}", u32::from(c))),
-            c => quoted.push(c),
-        }
-    }
-    quoted + "\""
 }
 
 /// The keys of the table that `steps` lead to, where it is an element or a component of a bushing.

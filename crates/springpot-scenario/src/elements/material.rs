@@ -2,10 +2,10 @@
 
 use crate::csv;
 use crate::elements::heat;
-use crate::plan::SignalPlan;
 use crate::reader::{Context, Field, Read, Refused, Table, all};
 use crate::signals::feedback;
 use crate::signals::of_time::{Wanted, celsius, how_outside, interval};
+use crate::signals::plan::SignalPlan;
 use crate::text::document::{Node, shorten};
 use crate::text::names;
 use crate::text::refusal::RefusalKind;

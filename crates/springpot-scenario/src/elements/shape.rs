@@ -1,7 +1,7 @@
 //! What an element acts along: points, a joint, two frames.
 
+use crate::elements::plan::{FramePlan, ShapePlan};
 use crate::keys::{ANCHOR, BETWEEN, BUSHING, END};
-use crate::plan::{FramePlan, ShapePlan};
 use crate::reader::{Field, Read, Table, all};
 use crate::robot::Robot;
 use crate::text::names;

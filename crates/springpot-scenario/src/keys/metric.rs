@@ -1,7 +1,7 @@
 //! `[[metric]]`.
 
 use super::{Keys, Need, Shape, key};
-use crate::plan::metrics::MetricKind;
+use serde::{Deserialize, Serialize};
 
 /// The kinds that look for a band.
 const WITH_BAND: [&str; 5] = ["settling-time", "overshoot", "frequency", "log-decrement", "residual-vibration"];
@@ -38,5 +38,92 @@ mod tests {
         let with: Vec<&str> =
             MetricKind::ALL.into_iter().filter(|kind| kind.takes_band()).map(MetricKind::name).collect();
         assert_eq!(with, WITH_BAND);
+    }
+}
+
+/// What is taken from a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MetricKind {
+    /// Smallest value.
+    Min,
+    /// Largest value.
+    Max,
+    /// Value of the last row.
+    Final,
+    /// Largest less smallest value.
+    PeakToPeak,
+    /// Mean over the time.
+    Mean,
+    /// Root of the mean square over the time.
+    Rms,
+    /// Time until it stays within the band.
+    SettlingTime,
+    /// How far it swings past the target.
+    Overshoot,
+    /// Of its swings.
+    Frequency,
+    /// Natural logarithm of how much a swing is larger than the next one to the same side.
+    LogDecrement,
+    /// Half the largest swing.
+    ResidualVibration,
+}
+
+impl MetricKind {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::Min,
+        Self::Max,
+        Self::Final,
+        Self::PeakToPeak,
+        Self::Mean,
+        Self::Rms,
+        Self::SettlingTime,
+        Self::Overshoot,
+        Self::Frequency,
+        Self::LogDecrement,
+        Self::ResidualVibration,
+    ];
+
+    /// What stands under `kind`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Min => "min",
+            Self::Max => "max",
+            Self::Final => "final",
+            Self::PeakToPeak => "peak-to-peak",
+            Self::Mean => "mean",
+            Self::Rms => "rms",
+            Self::SettlingTime => "settling-time",
+            Self::Overshoot => "overshoot",
+            Self::Frequency => "frequency",
+            Self::LogDecrement => "log-decrement",
+            Self::ResidualVibration => "residual-vibration",
+        }
+    }
+
+    /// The kind of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// Whether a band belongs to it.
+    pub const fn takes_band(self) -> bool {
+        self.has_target() || matches!(self, Self::Frequency | Self::LogDecrement | Self::ResidualVibration)
+    }
+
+    /// Whether a target belongs to it, whatever its band is.
+    pub(crate) const fn has_target(self) -> bool {
+        matches!(self, Self::SettlingTime | Self::Overshoot)
+    }
+
+    /// The unit of its value, where that of the column is `column`; empty for pure numbers.
+    pub const fn unit(self, column: &str) -> &str {
+        match self {
+            Self::SettlingTime => "s",
+            Self::Frequency => "Hz",
+            Self::Overshoot | Self::LogDecrement => "",
+            _ => column,
+        }
     }
 }

@@ -28,6 +28,7 @@ pub(crate) use element::{
 pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
 pub(crate) use heat::{ARRHENIUS, EXPANSION, SHIFT, THERMAL};
 pub(crate) use metric::METRIC;
+pub use metric::MetricKind;
 pub(crate) use motion::{
     FLOATING, FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, SPHERICAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN,
     TIME_UNIT, of_gripper,

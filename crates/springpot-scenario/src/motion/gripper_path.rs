@@ -2,9 +2,9 @@
 
 use super::joints::{ByJoint, Parts, rpy, signal};
 use super::{Made, Maker, record};
-use crate::plan::SignalPlan;
 use crate::reader::{Field, Read, Refused, Table, all};
 use crate::robot::{OwnJoint, Robot};
+use crate::signals::plan::SignalPlan;
 use crate::text::refusal::RefusalKind;
 use serde_json::{Map, Value, json};
 use springpot::model::Model;

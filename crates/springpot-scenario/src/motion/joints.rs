@@ -1,12 +1,12 @@
 //! What several kinds of motion say by joint: which joints, and how one moves.
 
 use crate::keys::{FLOATING, Keys, POSE, SIGNAL, SPHERICAL, Shape};
-use crate::plan::SignalPlan;
 use crate::reader::constants;
 use crate::reader::{Field, Read, Table, all};
 use crate::robot::{OwnJoint, Robot};
 use crate::signals::feedback;
 use crate::signals::of_time::Wanted;
+use crate::signals::plan::SignalPlan;
 use crate::text::refusal::{Place, RefusalKind};
 use serde_json::{Value, json};
 use springpot::law::Range;

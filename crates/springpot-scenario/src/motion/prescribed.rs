@@ -2,11 +2,11 @@
 
 use super::joints::{ByJoint, Parts, attitude, coordinate, path_of_joint, posed};
 use super::{Made, ready};
-use crate::changes::path;
-use crate::plan::SignalPlan;
 use crate::reader::{Field, Read, Refused, Table, all};
 use crate::robot::{OwnJoint, Robot};
 use crate::signals::of_time;
+use crate::signals::plan::SignalPlan;
+use crate::text::quoted::toml_key;
 use crate::text::refusal::RefusalKind;
 use serde_json::{Map, Value};
 use springpot::model::Space;
@@ -34,12 +34,8 @@ pub(super) fn read(table: &Table<'_>, robot: &Robot, end: Option<f64>) -> Read<M
             return Err(csv.refuse(RefusalKind::Rule, "stands beside `joints`", Some(help)));
         }
         (None, None) => {
-            let all: Vec<String> = robot
-                .joints_as_described()
-                .iter()
-                .map(|joint| format!("{} = …", path::toml_key(joint)))
-                .take(12)
-                .collect();
+            let all: Vec<String> =
+                robot.joints_as_described().iter().map(|joint| format!("{} = …", toml_key(joint))).take(12).collect();
             let right = format!("joints = {{ {} }} or csv = \"motion.csv\"", all.join(", "));
             return Err(table.missing("joints", &right));
         }

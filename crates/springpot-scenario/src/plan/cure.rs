@@ -1,6 +1,8 @@
 //! Where in a scenario the cause of a failed run stands, and what can be done.
 
-use crate::plan::{ElementPlan, Plan, SignalPlan};
+use crate::elements::plan::ElementPlan;
+use crate::plan::Plan;
+use crate::signals::plan::SignalPlan;
 use crate::text::refusal::Place;
 use springpot::law::heat;
 use springpot::system::RunError;

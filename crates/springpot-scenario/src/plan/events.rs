@@ -2,8 +2,8 @@
 
 use crate::keys::{ACTION, EVENT, RECORD, STOP};
 use crate::plan::Plan;
+use crate::reader::named::{checked_name, unique};
 use crate::reader::{Field, Read, Refused, Table, all};
-use crate::robot::{checked_name, unique};
 use crate::signals::feedback;
 use crate::signals::of_time::Wanted;
 use crate::text::document::shorten;

@@ -1,12 +1,13 @@
 //! `[[metric]]`: numbers that say how good a run is.
 
 use crate::keys::METRIC;
+use crate::keys::MetricKind;
 use crate::plan::Plan;
 use crate::reader::constants;
+use crate::reader::files::CsvCache;
+use crate::reader::files::UrdfCache;
+use crate::reader::named::{checked_name, unique};
 use crate::reader::{Context, Field, Read, Refused, Table, all};
-use crate::robot::urdf::UrdfCache;
-use crate::robot::{checked_name, unique};
-use crate::signals::of_time::CsvCache;
 use crate::text::document::{Entry, Node, Value, shorten};
 use crate::text::names;
 use crate::text::refusal::{Place, Refusal, RefusalKind, Refusals, Source};
@@ -24,93 +25,6 @@ const MAX_METRICS: usize = 1_000;
 
 /// What stands behind the commas of one that is a line.
 const BEHIND_COMMAS: [&str; 3] = ["window", "band", "target"];
-
-/// What is taken from a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MetricKind {
-    /// Smallest value.
-    Min,
-    /// Largest value.
-    Max,
-    /// Value of the last row.
-    Final,
-    /// Largest less smallest value.
-    PeakToPeak,
-    /// Mean over the time.
-    Mean,
-    /// Root of the mean square over the time.
-    Rms,
-    /// Time until it stays within the band.
-    SettlingTime,
-    /// How far it swings past the target.
-    Overshoot,
-    /// Of its swings.
-    Frequency,
-    /// Natural logarithm of how much a swing is larger than the next one to the same side.
-    LogDecrement,
-    /// Half the largest swing.
-    ResidualVibration,
-}
-
-impl MetricKind {
-    /// All of them.
-    pub const ALL: [Self; 11] = [
-        Self::Min,
-        Self::Max,
-        Self::Final,
-        Self::PeakToPeak,
-        Self::Mean,
-        Self::Rms,
-        Self::SettlingTime,
-        Self::Overshoot,
-        Self::Frequency,
-        Self::LogDecrement,
-        Self::ResidualVibration,
-    ];
-
-    /// What stands under `kind`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Min => "min",
-            Self::Max => "max",
-            Self::Final => "final",
-            Self::PeakToPeak => "peak-to-peak",
-            Self::Mean => "mean",
-            Self::Rms => "rms",
-            Self::SettlingTime => "settling-time",
-            Self::Overshoot => "overshoot",
-            Self::Frequency => "frequency",
-            Self::LogDecrement => "log-decrement",
-            Self::ResidualVibration => "residual-vibration",
-        }
-    }
-
-    /// The kind of that name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
-    }
-
-    /// Whether a band belongs to it.
-    pub const fn takes_band(self) -> bool {
-        self.has_target() || matches!(self, Self::Frequency | Self::LogDecrement | Self::ResidualVibration)
-    }
-
-    /// Whether a target belongs to it, whatever its band is.
-    const fn has_target(self) -> bool {
-        matches!(self, Self::SettlingTime | Self::Overshoot)
-    }
-
-    /// The unit of its value, where that of the column is `column`; empty for pure numbers.
-    pub const fn unit(self, column: &str) -> &str {
-        match self {
-            Self::SettlingTime => "s",
-            Self::Frequency => "Hz",
-            Self::Overshoot | Self::LogDecrement => "",
-            _ => column,
-        }
-    }
-}
 
 /// How far a column may stay from its target, or how large a swing must be to count.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

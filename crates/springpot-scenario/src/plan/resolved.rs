@@ -1,10 +1,13 @@
 //! The plan as JSON, for the record of a run.
 
 use crate::elements::heat;
+use crate::elements::plan::{ElementPlan, FramePlan, ShapePlan};
 use crate::figures::FigurePlan;
 use crate::keys::solver::ADAPTIVE;
 use crate::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
-use crate::plan::{ElementPlan, EndStops, FramePlan, Plan, ShapePlan, SignalPlan, UrdfPlan};
+use crate::plan::Plan;
+use crate::robot::described::{EndStops, UrdfPlan};
+use crate::signals::plan::SignalPlan;
 use serde_json::{Map, Value, json};
 use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
 use springpot::system::RowTimes;

@@ -1,6 +1,8 @@
 //! From a plan to what the time loop runs.
 
-use crate::plan::{ElementPlan, EndStops, Plan};
+use crate::elements::plan::ElementPlan;
+use crate::plan::Plan;
+use crate::robot::described::EndStops;
 use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::Course;
 use springpot::observe::Observables;

@@ -2,9 +2,10 @@
 
 use super::joint;
 use crate::keys::{BODY, INERTIA};
-use crate::plan::BodyPlaces;
+use crate::reader::named::{checked_name, unique};
 use crate::reader::{Field, Read, Table, all};
-use crate::robot::{Parts, checked_name, unique, unknown_body};
+use crate::robot::described::BodyPlaces;
+use crate::robot::described::{Parts, unknown_body};
 use crate::text::refusal::RefusalKind;
 use springpot::model::{BodySpec, JointKind, Model, ModelBuilder, ModelError, Parent};
 use std::collections::HashMap;

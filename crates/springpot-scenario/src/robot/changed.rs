@@ -2,8 +2,8 @@
 
 use super::joint::{axis2, lead, numbers};
 use crate::keys::CHANGED_JOINT;
+use crate::reader::named::unique;
 use crate::reader::{Field, Read, Table, all};
-use crate::robot::unique;
 use crate::text::document::shorten;
 use crate::text::names;
 use crate::text::refusal::RefusalKind;

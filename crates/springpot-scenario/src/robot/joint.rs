@@ -1,9 +1,9 @@
 //! `joint` of a body.
 
 use crate::keys::{FRICTION, JOINT, Keys, MIMIC};
-use crate::plan::BodyPlaces;
 use crate::reader::constants;
 use crate::reader::{Field, Read, Refused, Table};
+use crate::robot::described::BodyPlaces;
 use crate::text::names;
 use crate::text::refusal::RefusalKind;
 use springpot::model::{AxisNeed, Dimension, FrictionLaw, JointKind, JointSpec, Limits, MOST_COORDINATES, Mimic};

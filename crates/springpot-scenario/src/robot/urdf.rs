@@ -1,71 +1,19 @@
 //! `urdf` of `[robot]`: a robot from a URDF file.
 
-use crate::plan::{BodyPlaces, UrdfPlan};
 use crate::reader::{Field, Read, Refused, Table, all};
-use crate::robot::Parts;
 use crate::robot::changed;
+use crate::robot::described::Parts;
+use crate::robot::described::{BodyPlaces, UrdfPlan};
 use crate::text::refusal::{RefusalKind, Remark};
-use springpot::model::urdf::{Urdf, UrdfError, UrdfOptions, UrdfProblem, UrdfWarningKind};
+use springpot::model::urdf::{UrdfError, UrdfOptions, UrdfProblem, UrdfWarningKind};
 use springpot::model::{Label, Model};
 use std::collections::HashSet;
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Most moving joints of a robot in a scenario: every one makes columns.
 const MAX_JOINTS: usize = 10_000;
 /// Most folders of `package_path`.
 const MAX_FOLDERS: usize = 1_000;
-
-/// URDF files that were read, in the order of their first use, so that the cases of a sweep share them.
-#[derive(Debug, Default)]
-pub(crate) struct UrdfCache {
-    entries: Mutex<Vec<Entry>>,
-    /// Kinds of warnings that scenarios accept.
-    accepted: Mutex<HashSet<UrdfWarningKind>>,
-}
-
-#[derive(Debug)]
-struct Entry {
-    /// As the scenario names it: what is told of it is told elsewhere too.
-    written: String,
-    file: PathBuf,
-    options: UrdfOptions,
-    robot: Arc<Urdf>,
-}
-
-impl UrdfCache {
-    fn read(&self, written: &str, file: PathBuf, options: UrdfOptions) -> Result<Arc<Urdf>, UrdfError> {
-        let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(entry) = entries.iter().find(|entry| entry.file == file && entry.options == options) {
-            return Ok(entry.robot.clone());
-        }
-        let robot = Arc::new(Urdf::read(&file, &options)?);
-        entries.push(Entry { written: written.to_owned(), file, options, robot: robot.clone() });
-        Ok(robot)
-    }
-
-    /// Names of the kinds of all warnings, those included that are accepted already.
-    pub(crate) fn kinds(&self) -> Vec<&'static str> {
-        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        let kinds = entries.iter().flat_map(|entry| entry.robot.warnings.iter().map(|warning| warning.kind));
-        let mut kinds: Vec<UrdfWarningKind> = kinds.collect();
-        kinds.sort_unstable();
-        kinds.dedup();
-        kinds.into_iter().map(UrdfWarningKind::name).collect()
-    }
-
-    /// What the files hold and the robots do without, each once, as `file: what`, the file as the scenario names it.
-    pub(crate) fn warnings(&self) -> Vec<String> {
-        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        let accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut seen = HashSet::new();
-        let all = entries.iter().flat_map(|Entry { written, robot, .. }| {
-            let told = robot.warnings.iter().filter(|warning| !accepted.contains(&warning.kind));
-            told.map(move |warning| format!("{written}: {warning}"))
-        });
-        all.filter(|warning| seen.insert(warning.clone())).collect()
-    }
-}
 
 /// Reads the file that `field`, the `urdf` of `table`, names.
 pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>) -> Read<Parts> {
@@ -76,7 +24,7 @@ pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>
     let accepted = table.get("accept").map_or(Ok(Vec::new()), |field| accepted(&field));
     let (floating_base, ignore_mimic, package_path) = (floating_base?, ignore_mimic?, package_path?);
     let accept_inertia = accept_inertia?;
-    field.ctx.robots.accepted.lock().unwrap_or_else(PoisonError::into_inner).extend(accepted?);
+    field.ctx.robots.accept(accepted?);
 
     let options = UrdfOptions {
         floating_base,

@@ -1,26 +1,26 @@
 //! The cases of a scenario: the grid of its sweeps, each planned when it is asked for.
 
-use crate::Scenario;
+use super::overrides;
+use super::root::SCENARIO;
+use super::written::Scenario;
 use crate::changes::path;
 use crate::changes::sweep::{self, Axis};
 use crate::elements;
 use crate::elements::Elements;
-use crate::elements::past;
 use crate::figures::{self, ColumnGlob, FigurePlan};
 use crate::keys::OUTPUT;
 use crate::motion;
 use crate::plan::events;
 use crate::plan::metrics::{self, MetricPlan};
 use crate::plan::{OutputPlan, Plan};
+use crate::plan::{control, steady};
 use crate::reader::constants;
+use crate::reader::files::CsvCache;
+use crate::reader::files::UrdfCache;
 use crate::reader::{Context, Read, Table};
 use crate::robot;
 use crate::robot::Robot;
-use crate::robot::urdf::UrdfCache;
-use crate::scenario::overrides;
-use crate::scenario::root::SCENARIO;
-use crate::signals::feedback;
-use crate::signals::of_time::CsvCache;
+use crate::robot::described::RobotPlan;
 use crate::text::document::Node;
 use crate::text::refusal::{Place, RefusalKind, Refusals, Remark};
 use crate::time;
@@ -65,6 +65,25 @@ pub struct Cases {
     tell_joint_losses: bool,
     /// What is to be said of the sweeps.
     remarks: Vec<Remark>,
+}
+
+impl Scenario {
+    /// Validates everything: robot, elements, motion, time, solver, figures, and every swept value once.
+    ///
+    /// # Errors
+    /// All refusals that could be collected, in the order of the text.
+    pub fn cases(&self, catalog: &Catalog) -> Result<Cases, Refusals> {
+        Cases::new(self, catalog)
+    }
+
+    /// The robot alone, as the first case has it: `[robot]` is all that the scenario needs to hold.
+    ///
+    /// # Errors
+    /// All refusals about the robot and the sweeps that could be collected; the rest of the scenario is not looked at.
+    pub fn robot(&self, catalog: &Catalog) -> Result<RobotPlan, Refusals> {
+        let Robot { gravity, gripper, parts, .. } = Cases::robot(self, catalog)?;
+        Ok(RobotPlan { gravity, bodies: parts.bodies, model: parts.model, urdf: parts.urdf, gripper })
+    }
 }
 
 impl Cases {
@@ -294,7 +313,7 @@ impl Cases {
     }
 
     fn context(&self) -> Context<'_> {
-        Context::new(&self.catalog, &self.folder, &self.tables, &self.robots)
+        Context::new(&self.catalog, &self.folder, &self.tables, &self.robots).of_whole(&SCENARIO)
     }
 
     fn swept_value(&self, (axis, at): (usize, usize), k: usize, number: Option<f64>) -> SweptValue {
@@ -575,8 +594,8 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         output: OutputPlan { tells_leaves: tells_leaves?, ..OutputPlan::default() },
     };
     plan.rest_at_start();
-    past::settle(ctx, &mut plan)?;
-    let control = feedback::settle(ctx, &plan)?;
+    steady::settle(ctx, &mut plan)?;
+    let control = control::settle(ctx, &plan)?;
     plan.motion.follow(control);
     plan.events = events::read(&root, &plan)?;
     plan.metrics = metrics::read(&root, &plan)?;

@@ -1,6 +1,6 @@
 //! The files that a scenario names.
 
-use crate::Scenario;
+use super::written::Scenario;
 use crate::text::document::{Node, Value};
 use std::path::PathBuf;
 

@@ -1,14 +1,14 @@
 //! Elements without a robot: laws, parameters and inputs as a scenario writes them, for engines that have bodies of their own.
 
-use crate::Scenario;
+use super::written::Scenario;
 use crate::elements::material::{self, InputsOf, Material};
 use crate::elements::past::{self, PastPlan};
 use crate::elements::{MAX_ELEMENTS, check, element_name};
 use crate::keys::LONE;
-use crate::plan::SignalPlan;
+use crate::reader::files::CsvCache;
+use crate::reader::files::UrdfCache;
 use crate::reader::{Context, Read, Refused, Table, all};
-use crate::robot::urdf::UrdfCache;
-use crate::signals::of_time::CsvCache;
+use crate::signals::plan::SignalPlan;
 use crate::text::document::{Entry as Written, Node, shorten};
 use crate::text::names;
 use crate::text::refusal::{Place, Refusal, RefusalKind, Refusals};

@@ -4,22 +4,13 @@ mod removal;
 mod span;
 
 use self::removal::{forget_figures, take_out};
-use crate::Scenario;
+use super::written::{Override, Scenario};
 use crate::changes::path::{self, Target};
 use crate::reader::{Context, Read};
 use crate::text::document::{self, Entry, MAX_BYTES, Node, Value};
 use crate::text::refusal::{Place, Refusal, RefusalKind, Refusals, SWEEP_FORM, SWEEP_OPTION, Source};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// A value for a path.
-#[derive(Debug, Clone)]
-pub(crate) struct Override {
-    pub(crate) path: String,
-    pub(crate) place: Place,
-    /// `None`: what is there is taken out.
-    pub(crate) value: Option<Node>,
-}
 
 /// An option and what is written behind it: `PATH=…`.
 struct Assignment {

@@ -1,9 +1,10 @@
 //! A scenario together with the files that it names, to be put into another folder.
 
-use crate::Scenario;
-use crate::changes::path::{self, toml_text};
+use super::written::Scenario;
+use crate::changes::path::{self};
 use crate::elements::material;
 use crate::text::document::{Node, Value};
+use crate::text::quoted::toml_text;
 use crate::text::refusal::Source;
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -7,7 +7,7 @@ mod required;
 mod rules;
 mod shapes;
 
-use crate::scenario::root::SCENARIO;
+use super::root::SCENARIO;
 use serde_json::{Value, json};
 use springpot::law::Catalog;
 

@@ -1,16 +1,20 @@
 //! A scenario as it is written.
 
-use super::cases::Cases;
-use super::overrides::Override;
-use crate::plan::RobotPlan;
-use crate::robot::Robot;
 use crate::text::document::{MAX_BYTES, Node, Value};
 use crate::text::mistaken;
 use crate::text::refusal::{Place, Refusal, RefusalKind, Refusals, Source};
-use springpot::law::Catalog;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// A value for a path.
+#[derive(Debug, Clone)]
+pub(crate) struct Override {
+    pub(crate) path: String,
+    pub(crate) place: Place,
+    /// `None`: what is there is taken out.
+    pub(crate) value: Option<Node>,
+}
 
 /// A scenario as written: a TOML document and the overrides of `--set`.
 #[derive(Debug, Clone)]
@@ -100,23 +104,6 @@ impl Scenario {
             entries.retain(|entry| !matches!(entry.key.as_str(), "sweep" | "figure"));
         }
         self
-    }
-
-    /// Validates everything: robot, elements, motion, time, solver, figures, and every swept value once.
-    ///
-    /// # Errors
-    /// All refusals that could be collected, in the order of the text.
-    pub fn cases(&self, catalog: &Catalog) -> Result<Cases, Refusals> {
-        Cases::new(self, catalog)
-    }
-
-    /// The robot alone, as the first case has it: `[robot]` is all that the scenario needs to hold.
-    ///
-    /// # Errors
-    /// All refusals about the robot and the sweeps that could be collected; the rest of the scenario is not looked at.
-    pub fn robot(&self, catalog: &Catalog) -> Result<RobotPlan, Refusals> {
-        let Robot { gravity, gripper, parts, .. } = Cases::robot(self, catalog)?;
-        Ok(RobotPlan { gravity, bodies: parts.bodies, model: parts.model, urdf: parts.urdf, gripper })
     }
 }
 

@@ -2,3 +2,4 @@
 
 pub(crate) mod feedback;
 pub(crate) mod of_time;
+pub(crate) mod plan;

@@ -1,65 +1,20 @@
 //! Signals of a scenario: numbers, quantities, expressions, columns of CSV files.
 
-use crate::csv::{CsvError, CsvProblem, CsvTable, Dialect};
+use crate::csv::{CsvProblem, Dialect};
 use crate::keys::SIGNAL;
-use crate::plan::SignalPlan;
+use crate::reader::files::CsvSamples;
 use crate::reader::{Field, Read, Refused, Table};
+use crate::signals::plan::SignalPlan;
 use crate::text::document::{Node, Value, shorten};
 use crate::text::names;
 use crate::text::refusal::{RefusalKind, Remark};
 use crate::units::{self, Unit};
 use springpot::law::Range;
-use springpot::signal::{Expression, SampleError, Signal};
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use springpot::signal::{Expression, Signal};
 
 /// Times at which a signal is looked at before the run, besides 0 and the end.
 const PROBES: usize = 31;
 const NO_EXPONENTS: &dyn Fn(&str) -> Option<f64> = &|_| None;
-
-/// CSV files that were read and the signals made of them, so that the cases of a sweep share them.
-#[derive(Debug, Default)]
-pub(crate) struct CsvCache {
-    tables: Mutex<HashMap<(PathBuf, String), Arc<CsvTable>>>,
-    signals: Mutex<HashMap<(PathBuf, String, String, bool), Signal>>,
-}
-
-impl CsvCache {
-    fn table(&self, path: &Path, dialect: &Dialect) -> Result<Arc<CsvTable>, CsvError> {
-        let key = (path.to_owned(), format!("{dialect:?}"));
-        let mut tables = self.tables.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(table) = tables.get(&key) {
-            return Ok(table.clone());
-        }
-        let table = Arc::new(CsvTable::read_as(path, dialect)?);
-        tables.insert(key, table.clone());
-        Ok(table)
-    }
-
-    /// The signal of a column: a spline where it has to be smooth, else straight lines.
-    fn signal(&self, samples: &CsvSamples, column: &str, smooth: bool) -> Result<Signal, ColumnError> {
-        let table = &*samples.table;
-        let key = (table.file().to_owned(), format!("{:?}", samples.dialect), column.to_owned(), smooth);
-        let mut signals = self.signals.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(signal) = signals.get(&key) {
-            return Ok(signal.clone());
-        }
-        let (times, values) = (table.time(), table.column(column)?);
-        let signal = if smooth { Signal::spline(times, values) } else { Signal::linear(times, values) }?;
-        signals.insert(key, signal.clone());
-        Ok(signal)
-    }
-}
-
-/// Why a column makes no signal.
-#[derive(Debug, thiserror::Error)]
-enum ColumnError {
-    #[error(transparent)]
-    Csv(#[from] CsvError),
-    #[error(transparent)]
-    Samples(#[from] SampleError),
-}
 
 /// What a signal's place asks of it.
 #[derive(Debug, Clone, Copy)]
@@ -179,13 +134,6 @@ fn named(unit: &str) -> &str {
 
 fn unit_name_help(unit: &str) -> String {
     format!("write a unit of the dimension of {}", named(unit))
-}
-
-/// A CSV file, how it is written, and what holds outside its times.
-pub(crate) struct CsvSamples {
-    pub(crate) table: Arc<CsvTable>,
-    dialect: Dialect,
-    held: bool,
 }
 
 /// More than so many times the run are covered by no file whose times are in the unit that is said.

@@ -3,4 +3,5 @@
 pub(crate) mod document;
 pub(crate) mod mistaken;
 pub(crate) mod names;
+pub(crate) mod quoted;
 pub(crate) mod refusal;

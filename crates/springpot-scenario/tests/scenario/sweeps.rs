@@ -169,7 +169,7 @@ fn figures_select_swept_values() {
     let cases = cases(&text).unwrap();
     let wanted = [Selection { axis: 0, value: 1 }, Selection { axis: 1, value: 1 }];
     assert_eq!(cases.figures()[0].selection, wanted);
-    assert_eq!(cases.plan(5).unwrap().figures[0].selection, wanted);
+    assert_eq!(cases.plan(5).unwrap().output.figures[0].selection, wanted);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! `--set PATH=`: what is taken out of the document.
 
-use super::Override;
 use crate::changes::path::{self, Step};
 use crate::reader::{Context, Read, Refused};
+use crate::scenario::written::Override;
 use crate::text::document::{Node, Value};
 use crate::text::names;
 use crate::text::refusal::{RefusalKind, Remark};
