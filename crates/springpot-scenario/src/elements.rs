@@ -9,9 +9,8 @@ mod shape;
 use self::material::{InputsOf, Material};
 use self::past::PastPlan;
 use crate::elements::plan::{ElementPlan, ShapePlan};
-use crate::keys::{
-    AT_START, BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, ON_JOINT, RESERVED_NAMES,
-};
+use crate::keys::{AT_START, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, ON_JOINT, RESERVED_NAMES};
+use crate::reader::element::kind_of;
 use crate::reader::named::{checked_name, unique};
 use crate::reader::{Field, Read, Refused, Table, all};
 use crate::robot::Robot;
@@ -86,15 +85,6 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
         if is_enabled { elements.acting.push(plan) } else { elements.absent.push((place, plan)) }
     }
     Ok(elements)
-}
-
-/// What the element is by its keys.
-pub(crate) fn kind_of(element: &Node) -> &'static str {
-    match (element.get("joint"), element.get("bushing")) {
-        (Some(_), _) => ON_JOINT,
-        (None, Some(_)) => BUSHING,
-        (None, None) => BETWEEN,
-    }
 }
 
 /// Why a key of another kind of element cannot stand in this one.

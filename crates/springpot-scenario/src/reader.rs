@@ -1,6 +1,7 @@
 //! Reading tables by hand: every key is asked for by name, everything wrong is noted with its place.
 
 pub(crate) mod constants;
+pub(crate) mod element;
 pub(crate) mod files;
 pub(crate) mod named;
 pub(crate) mod spacing;

@@ -1,8 +1,8 @@
 //! `[time]` and `[solver]`.
 
+use crate::keys::MotionKind;
 use crate::keys::solver::{ADAPTIVE, FIXED, MAX_ROWS, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
 use crate::keys::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
-use crate::motion::MotionKind;
 use crate::reader::spacing::Spacing;
 use crate::reader::{Field, Read, Table};
 use crate::text::document::{Node, shorten};

@@ -1,8 +1,7 @@
 //! Dotted paths into a scenario: `element.strut.alpha`, `solver.rtol`, `robot.body.forearm.mass`.
 
-use crate::elements::kind_of;
-use crate::elements::material::{files_of, law_of};
 use crate::keys::{COMPONENT, COMPONENTS, ELEMENT, Keys, Shape};
+use crate::reader::element::{files_of, kind_of, law_of};
 use crate::reader::{Context, Read};
 use crate::text::document::{Entry, Node, Value, shorten};
 use crate::text::names;

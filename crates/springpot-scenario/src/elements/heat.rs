@@ -1,6 +1,7 @@
 //! `shift`, `thermal` and `expansion` of an element: what temperature does to its law.
 
 use crate::keys::{ARRHENIUS, EXPANSION, SHIFT, THERMAL};
+use crate::reader::element::HEATED;
 use crate::reader::{Field, Read, Refused, Table};
 use crate::signals::of_time::{celsius, how_outside};
 use crate::text::refusal::RefusalKind;
@@ -9,7 +10,6 @@ use springpot::law::heat::TEMPERATURE;
 use springpot::law::{Expansion, Heat, RuleError, Shift, Thermal};
 
 /// The keys that it is read from.
-pub(crate) const KEYS: [&str; 3] = ["shift", "thermal", "expansion"];
 
 /// Reads `shift`, `thermal` and `expansion`, the last in the units of a rotation where it is one.
 pub(crate) fn read(table: &Table<'_>, is_rotation: bool) -> Read<Heat> {
@@ -18,7 +18,7 @@ pub(crate) fn read(table: &Table<'_>, is_rotation: bool) -> Read<Heat> {
     let expansion = table.get("expansion").map(|field| expansion(&field, is_rotation)).transpose();
     let heat = Heat { shift: shift?, thermal: thermal?, expansion: expansion? };
     heat.check().map_err(|RuleError { rule, parameter }| {
-        let fields = KEYS.into_iter().filter_map(|key| table.get(key));
+        let fields = HEATED.into_iter().filter_map(|key| table.get(key));
         let fields: Vec<Field<'_>> = fields.collect();
         let node = fields.iter().find_map(|field| field.node.get(&parameter));
         let place = node.map_or(&table.node.place, |node| &node.place);
@@ -93,6 +93,6 @@ pub(crate) fn record(heat: &Heat) -> Map<String, Value> {
     });
     let expansion =
         expansion.map(|Expansion { coefficient, reference }| json!({ "coefficient": coefficient, "T_ref": reference }));
-    let tables = KEYS.into_iter().zip([shift, thermal, expansion]);
+    let tables = HEATED.into_iter().zip([shift, thermal, expansion]);
     tables.filter_map(|(key, table)| Some((key.to_owned(), table?))).collect()
 }

@@ -2,17 +2,17 @@
 
 use crate::csv;
 use crate::elements::heat;
-use crate::reader::{Context, Field, Read, Refused, Table, all};
+use crate::reader::{Field, Read, Refused, Table, all};
 use crate::signals::feedback;
 use crate::signals::of_time::{Wanted, celsius, how_outside, interval};
 use crate::signals::plan::SignalPlan;
-use crate::text::document::{Node, shorten};
+use crate::text::document::shorten;
 use crate::text::names;
 use crate::text::refusal::RefusalKind;
 use crate::time::Duration;
 use crate::units;
-use springpot::law::heat::{INPUT as TEMPERATURE, TEMPERATURE as RANGE};
-use springpot::law::{Entry, Heat, Input, NetworkText, NetworkTextError, Param, Table as LawTable};
+use springpot::law::heat::INPUT as TEMPERATURE;
+use springpot::law::{Entry, Heat, NetworkText, NetworkTextError, Param, Table as LawTable};
 use std::sync::Arc;
 
 /// Most values of a list of parameters.
@@ -69,12 +69,6 @@ pub(crate) fn read(table: &Table<'_>, is_rotation: bool, with: InputsOf<'_>) -> 
     Ok(Material { law, is_network: table.get("network").is_some(), files, parameters, inputs })
 }
 
-/// The parameters of a network that are names of files; of other laws none.
-pub(crate) fn files_of(element: &Node) -> Vec<String> {
-    let network = element.get("network").and_then(|network| NetworkText::parse(network.text()?).ok());
-    network.map_or(Vec::new(), |network| network.files().map(str::to_owned).collect())
-}
-
 /// The law where it acts on an angle: N reads N·m and m reads rad.
 fn on_rotation(law: &Entry) -> Entry {
     let mut law = law.clone();
@@ -105,28 +99,6 @@ fn unit_on_rotation(unit: &str) -> String {
         rest = after;
     }
     turned
-}
-
-/// The law of an element that says one; nothing where it is none.
-pub(crate) fn law_of(ctx: &Context<'_>, element: &Node) -> Option<Arc<Entry>> {
-    let law = match (element.get("law"), element.get("network")) {
-        (Some(law), None) => ctx.catalog.get(law.text()?).cloned()?,
-        (None, Some(network)) => Arc::new(NetworkText::parse(network.text()?).ok()?.entry()),
-        _ => return None,
-    };
-    let takes = law.inputs.iter().any(|input| input.name == TEMPERATURE);
-    let is_thermal = element.get("thermal").is_some();
-    let is_heated = heat::KEYS.iter().any(|key| element.get(key).is_some());
-    if !is_heated || takes != is_thermal {
-        return Some(law);
-    }
-    // The temperature is an input, or no longer one.
-    let mut heated = Entry::clone(&law);
-    match is_thermal {
-        true => heated.inputs.retain(|input| input.name != TEMPERATURE),
-        false => heated.inputs.push(Input::new(TEMPERATURE, "K", "temperature", RANGE)),
-    }
-    Some(Arc::new(heated))
 }
 
 fn by_name(field: &Field<'_>) -> Read<Arc<Entry>> {

@@ -8,6 +8,7 @@ mod controller;
 mod element;
 mod event;
 mod heat;
+mod kind_of_motion;
 mod metric;
 mod motion;
 mod output;
@@ -27,12 +28,10 @@ pub(crate) use element::{
 };
 pub(crate) use event::{ACTION, EVENT, RECORD, STOP};
 pub(crate) use heat::{ARRHENIUS, EXPANSION, SHIFT, THERMAL};
+pub(crate) use kind_of_motion::{MOTION, MotionKind};
 pub(crate) use metric::METRIC;
 pub use metric::MetricKind;
-pub(crate) use motion::{
-    FLOATING, FORCES, OUTSIDE, POSE, SEPARATOR, SIGNAL, SPHERICAL, START, START_POSE, START_VELOCITIES, TIME_COLUMN,
-    TIME_UNIT, of_gripper,
-};
+pub(crate) use motion::{FLOATING, FORCES, POSE, SEPARATOR, SIGNAL, SPHERICAL, START, START_POSE, START_VELOCITIES};
 pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, CHANGED_JOINT, END_STOPS, FRICTION, FROM_URDF, INERTIA, JOINT, MIMIC, ROBOT};
 pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};

@@ -4,7 +4,6 @@ mod reference;
 
 use super::*;
 use crate::figures::{FIGURE, POINTS};
-use crate::motion::{MOTION, MotionKind};
 use crate::scenario::root::SCENARIO;
 use springpot::model::JointKind;
 use std::fs;

@@ -2,7 +2,7 @@
 
 use super::written::Scenario;
 use crate::changes::path::{self};
-use crate::elements::material;
+use crate::reader::element;
 use crate::text::document::{Node, Value};
 use crate::text::quoted::toml_text;
 use crate::text::refusal::Source;
@@ -66,9 +66,9 @@ impl Moved<'_> {
     fn learn_tables(&mut self, document: &Node) {
         let elements = document.get("element").and_then(|elements| elements.items()).unwrap_or_default();
         for element in elements {
-            self.tables.extend(material::files_of(element));
+            self.tables.extend(element::files_of(element));
             let parts = element.get("bushing").and_then(|bushing| bushing.entries()).unwrap_or_default();
-            parts.iter().for_each(|part| self.tables.extend(material::files_of(&part.node)));
+            parts.iter().for_each(|part| self.tables.extend(element::files_of(&part.node)));
         }
     }
 

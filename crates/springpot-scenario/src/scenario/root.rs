@@ -1,8 +1,8 @@
 //! The keys of a whole scenario, above the tables that it holds.
 
 use crate::figures::FIGURE;
+use crate::keys::MOTION;
 use crate::keys::{ELEMENT, EVENT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
-use crate::motion::MOTION;
 
 /// The whole scenario.
 pub(crate) static SCENARIO: Keys = Keys {

@@ -29,7 +29,6 @@ mod labels;
 mod manifold;
 mod mass_check;
 mod numbering;
-mod parts;
 mod robot;
 mod spec;
 mod state;

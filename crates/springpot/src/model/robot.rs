@@ -1,10 +1,12 @@
 //! The constant robot.
 
+mod parts;
+
+use self::parts::{DegreeTree, Drivetrain, Masses, Names, Numbering};
 use super::degree::{Coordinates, Degree, DegreeMotion, JointMotion};
 use super::error::ModelError;
 use super::frame::{Frame, Site};
 use super::kind::{JointKind, Space};
-use super::parts::{DegreeTree, Drivetrain, Masses, Names, Numbering};
 use super::spec::{Anchor, FrictionLaw, Limits, Parent};
 use crate::spatial::{Inertia, Placement, Rotation, Vec3};
 use std::ops::Range;

@@ -1,8 +1,8 @@
 //! What a file must hold where no sweep can bring it.
 
 use super::rules::{alternatives, joints, of_elements, required_of, where_kind};
+use crate::keys::MOTION;
 use crate::keys::{ELEMENT, JOINT, Keys, Need, Shape};
-use crate::motion::MOTION;
 use crate::scenario::root::SCENARIO;
 use serde_json::{Map, Value, json};
 use springpot::law::heat::INPUT;

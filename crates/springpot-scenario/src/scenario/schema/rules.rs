@@ -3,10 +3,10 @@
 use super::shapes::{quantity, signal};
 use crate::elements::material::TABLE;
 use crate::figures::FIGURE;
+use crate::keys::MOTION;
 use crate::keys::{
     BETWEEN, BUSHING, COMPONENT, ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ON_JOINT, ROBOT, SHIFT, SIGNAL, TIME,
 };
-use crate::motion::MOTION;
 use serde_json::{Map, Value, json};
 use springpot::law::heat::INPUT;
 use springpot::law::{Catalog, Entry, Input, Param, Range};

@@ -1,71 +1,71 @@
-//! What a [`Model`](super::Model) is made of, by what is handed on together.
+//! What a [`Model`](crate::model::Model) is made of, by what is handed on together.
 
-use super::degree::{Coordinates, Degree};
-use super::spec::FrictionLaw;
+use crate::model::degree::{Coordinates, Degree};
+use crate::model::spec::FrictionLaw;
 use crate::spatial::Inertia;
 use std::collections::BTreeMap;
 
 /// How q and v are numbered: one entry per joint, indexed by j, but for `places`.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Numbering {
-    pub(super) nq: usize,
-    pub(super) nv: usize,
-    pub(super) coordinates: Vec<Coordinates>,
+pub(in crate::model) struct Numbering {
+    pub(in crate::model) nq: usize,
+    pub(in crate::model) nv: usize,
+    pub(in crate::model) coordinates: Vec<Coordinates>,
     /// The coordinate that each velocity moves; none for those of joints of several degrees.
-    pub(super) places: Vec<Option<usize>>,
-    pub(super) followed: Vec<Option<usize>>,
+    pub(in crate::model) places: Vec<Option<usize>>,
+    pub(in crate::model) followed: Vec<Option<usize>>,
 }
 
 /// The degrees of freedom and the tree that they make, indexed by k; those of joint j follow those of joint j − 1.
 #[derive(Debug, Clone)]
-pub(super) struct DegreeTree {
-    pub(super) degrees: Vec<Degree>,
+pub(in crate::model) struct DegreeTree {
+    pub(in crate::model) degrees: Vec<Degree>,
     /// One more than the degree that carries degree k, or 0 where the world does.
-    pub(super) carriers: Vec<usize>,
+    pub(in crate::model) carriers: Vec<usize>,
     /// One more than the last degree of each link, with the world's 0 first; where a link has none, its carrier's.
-    pub(super) last_degrees: Vec<usize>,
+    pub(in crate::model) last_degrees: Vec<usize>,
     /// One more than the velocity that the elimination of velocity i touches next, or 0.
-    pub(super) pivots: Vec<usize>,
+    pub(in crate::model) pivots: Vec<usize>,
 }
 
 /// What moves with the links, one entry per joint.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Masses {
-    pub(super) inertias: Vec<Inertia>,
+pub(in crate::model) struct Masses {
+    pub(in crate::model) inertias: Vec<Inertia>,
     /// Of all that a joint carries, kg.
-    pub(super) subtrees: Vec<f64>,
-    pub(super) may_be_indefinite: bool,
+    pub(in crate::model) subtrees: Vec<f64>,
+    pub(in crate::model) may_be_indefinite: bool,
 }
 
 /// What turns and rubs inside the joints, one entry per joint.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Drivetrain {
-    pub(super) armature: Vec<f64>,
-    pub(super) damping: Vec<f64>,
-    pub(super) friction: Vec<f64>,
-    pub(super) friction_laws: Vec<FrictionLaw>,
+pub(in crate::model) struct Drivetrain {
+    pub(in crate::model) armature: Vec<f64>,
+    pub(in crate::model) damping: Vec<f64>,
+    pub(in crate::model) friction: Vec<f64>,
+    pub(in crate::model) friction_laws: Vec<FrictionLaw>,
     /// Armature felt along each velocity.
-    pub(super) rotors: Vec<f64>,
-    pub(super) has_rotors: bool,
+    pub(in crate::model) rotors: Vec<f64>,
+    pub(in crate::model) has_rotors: bool,
 }
 
 /// What everything is called.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Names {
+pub(in crate::model) struct Names {
     /// Of the joints that move.
-    pub(super) joints: Vec<String>,
+    pub(in crate::model) joints: Vec<String>,
     /// What the velocity of each of them, or the joint before the names of several, is called.
-    pub(super) velocities: Vec<String>,
-    pub(super) fixed_joints: Vec<String>,
-    pub(super) bodies: Vec<String>,
-    pub(super) body_lookup: BTreeMap<String, usize>,
+    pub(in crate::model) velocities: Vec<String>,
+    pub(in crate::model) fixed_joints: Vec<String>,
+    pub(in crate::model) bodies: Vec<String>,
+    pub(in crate::model) body_lookup: BTreeMap<String, usize>,
     /// What the world is called besides "world".
-    pub(super) worlds: Vec<String>,
+    pub(in crate::model) worlds: Vec<String>,
 }
 
 impl Masses {
     /// Adds up what the joints carry, whose links hang on `parents`.
-    pub(super) fn collect_subtrees(&mut self, parents: &[usize]) {
+    pub(in crate::model) fn collect_subtrees(&mut self, parents: &[usize]) {
         self.subtrees = self.inertias.iter().map(|inertia| inertia.mass).collect();
         for j in (0..self.subtrees.len()).rev() {
             if let Some(parent) = parents[j].checked_sub(1) {
@@ -77,7 +77,7 @@ impl Masses {
 
 impl Drivetrain {
     /// Adds up the armatures felt along `nv` velocities, those of followers through their leaders.
-    pub(super) fn collect_rotors(&mut self, numbering: &Numbering) {
+    pub(in crate::model) fn collect_rotors(&mut self, numbering: &Numbering) {
         self.rotors = vec![0.0; numbering.nv];
         for (own, armature) in numbering.coordinates.iter().zip(&self.armature) {
             self.rotors[own.v] += own.ratio * own.ratio * armature;
@@ -88,7 +88,7 @@ impl Drivetrain {
 
 impl DegreeTree {
     /// That of the world alone.
-    pub(super) fn of_the_world() -> Self {
+    pub(in crate::model) fn of_the_world() -> Self {
         Self { degrees: Vec::new(), carriers: Vec::new(), last_degrees: vec![0], pivots: Vec::new() }
     }
 }
