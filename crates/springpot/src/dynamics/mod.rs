@@ -27,8 +27,6 @@ mod gravity;
 mod jacobian;
 mod joint;
 mod kinematics;
-#[cfg(test)]
-mod lanes_fit;
 mod moments;
 mod rnea;
 mod rnea_derivatives;

@@ -7,8 +7,6 @@ mod articulated;
 mod force;
 mod inertia;
 mod motion;
-#[cfg(test)]
-mod pair_of_lanes;
 mod placement;
 mod quaternion;
 mod rotation;
@@ -22,8 +20,6 @@ pub use articulated::ArticulatedInertia;
 pub use force::Force;
 pub use inertia::Inertia;
 pub use motion::Motion;
-#[cfg(test)]
-pub(crate) use pair_of_lanes::Two;
 pub use placement::Placement;
 pub use quaternion::Quaternion;
 pub use rotation::Rotation;

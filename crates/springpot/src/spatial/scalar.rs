@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::sincos;
 
-pub(super) mod sealed {
+mod sealed {
     pub trait Sealed {}
     impl Sealed for f64 {}
 }
