@@ -13,7 +13,6 @@ mod summary;
 pub use later::{AskedFigure, LaterFigure, NotDrawn};
 pub(crate) use look::DrawnLook;
 pub(crate) use panels::{Curves, DrawnCase, FigureColumn, MeasuredPoints};
-use summary::swept_numbers;
 
 use crate::sweep::{FigureData, Layout, Outcome, Wanted};
 use crate::table::folder::Folder;

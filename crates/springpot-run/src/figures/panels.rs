@@ -4,6 +4,7 @@ use super::look::DrawnLook;
 use crate::labels;
 use springpot::table::Column;
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
+use springpot_scenario::Statistic;
 use springpot_scenario::units::Unit;
 
 /// A column of a figure.
@@ -26,6 +27,12 @@ impl FigureColumn {
     /// What it is called.
     pub fn name(&self) -> String {
         self.label.clone().unwrap_or_else(|| labels::quantity(&self.column.name))
+    }
+
+    /// A statistic of it.
+    pub(crate) fn summed(self, statistic: Statistic) -> Self {
+        let name = || format!("{} of {}", statistic.name(), labels::quantity(&self.column.name));
+        Self { label: Some(self.label.unwrap_or_else(name)), ..self }
     }
 
     /// An SI value in the unit that it is drawn in.

@@ -1,11 +1,12 @@
 //! Statistics of columns, and metrics, over a swept parameter.
 
+use super::look::DrawnLook;
 use super::panels::{Curves, DrawnCase, FigureColumn};
 use super::source::{FreeSweeps, Source};
 use crate::labels;
-use crate::sweep::{Abscissa, CaseResult, FigureData, Summed, Total, Wanted};
+use crate::sweep::{Abscissa, CaseResult, FigureData, FigureTotal, Summed, Total, Wanted};
 use springpot::table::Column;
-use springpot_report::Rendered;
+use springpot_report::{Plot, Rendered};
 use springpot_scenario::units::Unit;
 use springpot_scenario::{Cases, FigurePlan, RangeEnd, RefusalKind, Refusals, Summarised, SweptAxis};
 
@@ -79,41 +80,61 @@ pub(super) fn swept_numbers(
     Ok((FigureColumn { column, unit, label: Some(labels::parameter(path)) }, values))
 }
 
-/// Cases that differ in the abscissa alone: values of the other sweeps, and of each statistic the points.
-struct Drawn {
+/// Numbers of cases over a swept parameter: those that differ in it alone make a curve of each number.
+#[derive(Default)]
+pub(super) struct CasesOver(Vec<CaseGroup>);
+
+/// Cases that differ in the abscissa alone: whose they are, values of the other sweeps, and of each number the points.
+struct CaseGroup {
+    source: Option<String>,
     values: Vec<(String, String)>,
     points: Vec<Vec<[f64; 2]>>,
+}
+
+impl CasesOver {
+    /// Takes the numbers of a case.
+    pub(super) fn take(&mut self, source: Option<String>, values: Vec<(String, String)>, x: f64, numbers: &[f64]) {
+        let known = self.0.iter().position(|other| other.source == source && other.values == values);
+        let at = known.unwrap_or_else(|| {
+            self.0.push(CaseGroup { source, values, points: vec![Vec::new(); numbers.len()] });
+            self.0.len() - 1
+        });
+        self.0[at].points.iter_mut().zip(numbers).for_each(|(points, number)| points.push([x, *number]));
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The figure of them.
+    pub(super) fn plot(mut self, title: Option<&str>, x: &FigureColumn, y: &[FigureColumn], look: &DrawnLook) -> Plot {
+        for points in self.0.iter_mut().flat_map(|group| &mut group.points) {
+            points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        }
+        let drawn = self.0.iter().map(|CaseGroup { source, values, points }| DrawnCase {
+            source: source.clone(),
+            values: values.clone(),
+            points: points.iter().map(Vec::as_slice).collect(),
+        });
+        Curves { title, x, y, look, is_marked: true, measured: &[] }.plot(drawn)
+    }
 }
 
 pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
     let data = source.drawn()?;
     let over = data.over.as_ref().ok_or("it has no abscissa")?;
     let sweeps = FreeSweeps::of(source, Some(over.axis));
-    let mut curves: Vec<Drawn> = Vec::new();
+    let mut cases = CasesOver::default();
     for &index in &data.cases {
-        let values = sweeps.values(source.cases, index);
-        let at = curves.iter().position(|other| other.values == values).unwrap_or_else(|| {
-            curves.push(Drawn { values, points: vec![Vec::new(); data.totals.len()] });
-            curves.len() - 1
-        });
         let x = over.values[source.cases.position(index)[over.axis]];
         let ended = source.ended(index);
-        for (total, points) in data.totals.iter().zip(&mut curves[at].points) {
-            points.push([x, ended.and_then(|case| value(total.what, case)).unwrap_or(f64::NAN)]);
-        }
-    }
-    for points in curves.iter_mut().flat_map(|curve| &mut curve.points) {
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let number = |total: &FigureTotal| ended.and_then(|case| value(total.what, case)).unwrap_or(f64::NAN);
+        let numbers: Vec<f64> = data.totals.iter().map(number).collect();
+        cases.take(None, sweeps.values(source.cases, index), x, &numbers);
     }
     let y: Vec<FigureColumn> = data.totals.iter().map(|total| total.y.clone()).collect();
-    let title = source.figure.title.as_deref();
-    let drawn = curves.iter().map(|Drawn { values, points }| DrawnCase {
-        source: None,
-        values: values.clone(),
-        points: points.iter().map(Vec::as_slice).collect(),
-    });
-    let what = Curves { title, x: &over.column, y: &y, look: &data.look, is_marked: true, measured: &[] };
-    what.plot(drawn).render().map_err(|error| error.to_string())
+    let plot = cases.plot(source.figure.title.as_deref(), &over.column, &y, &data.look);
+    plot.render().map_err(|error| error.to_string())
 }
 
 fn value(what: Total, case: &CaseResult) -> Option<f64> {

@@ -314,16 +314,11 @@ impl Wanted {
         });
         self.check_names(figure, &metrics.collect::<Vec<_>>())?;
         let column = |total: &Summed| match *total {
-            Summed::Column(statistic, k) => {
-                let column = self.drawn(figure, k)?;
-                let name = column.name();
-                let label = column.label.clone().unwrap_or_else(|| format!("{} of {name}", statistic.name()));
-                Ok(FigureColumn { label: Some(label), ..column })
-            }
+            Summed::Column(statistic, k) => Ok(self.drawn(figure, k)?.summed(statistic)),
             Summed::Metric(k) => {
                 let metric = &cases.metrics()[k].metric;
                 let column = figure_column(figure, &self.metric_column(metric))?;
-                Ok(FigureColumn { label: Some(column.label.clone().unwrap_or(metric.name.clone())), ..column })
+                Ok(FigureColumn { label: column.label.or_else(|| Some(metric.name.clone())), ..column })
             }
         };
         let columns = totals.iter().map(column).collect::<Result<Vec<_>, Refusals>>()?;

@@ -1,10 +1,10 @@
 //! Which columns and cases are drawn, and the curves that they make.
 
 use super::super::{Curves, DrawnCase, DrawnLook, FigureColumn, MeasuredPoints};
-use super::table::{Sweep, Table};
+use super::table::{self, Reading, Sweep, Table};
 use super::{AskedFigure, NotDrawn, look};
 use crate::labels;
-use crate::sweep::{KeptCurve, MAX_CURVES, is_within, most_points};
+use crate::sweep::{KeptCurve, MAX_CURVES, most_points};
 use crate::table::matches;
 use springpot::table::Column;
 use springpot_report::Plot;
@@ -27,7 +27,6 @@ pub(super) struct Wanted {
 struct Places {
     x: usize,
     y: Vec<usize>,
-    t: Option<usize>,
     /// For each sweep the value that is chosen.
     chosen: Vec<Option<String>>,
 }
@@ -37,16 +36,7 @@ impl Wanted {
         let table = &tables[0];
         let units = units(table, &asked.units)?;
         found_labels(table, look)?;
-        let drawn = |at: usize| {
-            let column = table.columns[at].clone();
-            let unit = units.iter().rev().find(|(glob, ..)| matches(glob, &column.name));
-            let unit = match unit {
-                None => None,
-                Some((_, text, unit)) => Some(fitting(&column, text, unit)?),
-            };
-            let label = label(look, &column);
-            Ok(FigureColumn { column, unit, label })
-        };
+        let drawn = |at: usize| drawn(&table.columns[at], &units, look);
         let mut places = Places::all(tables, &asked.x, &asked.columns)?;
         let names = |table: &Table, places: &Places| -> Vec<String> {
             places.y.iter().map(|&at| table.columns[at].name.clone()).collect()
@@ -61,9 +51,8 @@ impl Wanted {
         for (places, chosen) in places.iter_mut().zip(chosen(tables, &asked.selection)?) {
             places.chosen = chosen;
         }
-        if let Some((table, _)) =
-            tables.iter().zip(&places).find(|(_, places)| look.window.is_some() && places.t.is_none())
-        {
+        let has_time = |table: &&Table| table.columns.iter().any(|column| column.name == "t");
+        if let Some(table) = tables.iter().find(|table| look.window.is_some() && !has_time(table)) {
             return Err(NotDrawn::new(format!("--window: {} has no column t", table.name()), None));
         }
         let x = drawn(places[0].x)?;
@@ -106,8 +95,7 @@ impl Places {
                 }
             }
         }
-        let t = table.columns.iter().position(|column| column.name == "t");
-        Ok(Self { x, y, t, chosen: Vec::new() })
+        Ok(Self { x, y, chosen: Vec::new() })
     }
 }
 
@@ -149,7 +137,14 @@ pub(super) fn label(look: &Look, column: &Column) -> Option<String> {
     look.labels.iter().rev().find(is_meant).map(|label| label.text.clone())
 }
 
-pub(super) fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), NotDrawn> {
+/// A column as it is drawn.
+pub(super) fn drawn(column: &Column, units: &Units, look: &Look) -> Result<FigureColumn, NotDrawn> {
+    let unit = units.iter().rev().find(|(glob, ..)| matches(glob, &column.name));
+    let unit = unit.map(|(_, text, unit)| fitting(column, text, unit)).transpose()?;
+    Ok(FigureColumn { column: column.clone(), unit, label: label(look, column) })
+}
+
+fn fitting(column: &Column, text: &str, unit: &Unit) -> Result<(String, Unit), NotDrawn> {
     let own = Unit::parse(if column.unit.is_empty() { "1" } else { &column.unit }, &|_| None);
     match own {
         Ok(own) if own.dimension() == unit.dimension() => Ok((text.to_owned(), unit.clone())),
@@ -196,11 +191,8 @@ pub(super) fn chosen(tables: &[Table], selection: &[String]) -> Result<Vec<Vec<O
     Ok(chosen)
 }
 
-/// One curve under way: which case, and one run of points for each ordinate.
-struct Case {
-    position: Vec<usize>,
-    curves: Vec<KeptCurve>,
-}
+/// A case with a curve for each ordinate.
+type Case = table::Case<Vec<KeptCurve>>;
 
 /// Reads the rows and makes the figure: the first sweep that is not fixed makes curves, the others panels.
 pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Result<Plot, NotDrawn> {
@@ -224,7 +216,7 @@ pub(super) fn plot(tables: &[Table], wanted: &Wanted, title: Option<&str>) -> Re
         let source = source(tables, at);
         cases.iter().map(move |case| {
             let value = |&k: &usize| (sweeps[k].0.clone(), sweeps[k].1[case.position[k]].clone());
-            let points = case.curves.iter().map(KeptCurve::points).collect();
+            let points = case.kept.iter().map(KeptCurve::points).collect();
             DrawnCase { source: source.clone(), values: free.iter().map(value).collect(), points }
         })
     });
@@ -239,7 +231,7 @@ fn points(
     (x, y): (&FigureColumn, &[FigureColumn]),
 ) -> Vec<MeasuredPoints> {
     let Some(case) = cases.first() else { return Vec::new() };
-    let series = places.y.iter().zip(&case.curves).map(|(&at, curve)| {
+    let series = places.y.iter().zip(&case.kept).map(|(&at, curve)| {
         let column = &table.columns[at];
         let has_unit = !column.unit.is_empty();
         let of =
@@ -266,59 +258,34 @@ pub(super) type Sweeps = Vec<(String, Vec<String>)>;
 
 /// The points of every case that is drawn, in the order of the rows; `count` are the curves of all results so far.
 fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> Result<(Vec<Case>, Sweeps), NotDrawn> {
-    let mut cases: Vec<Case> = Vec::new();
-    let mut last: Option<(Vec<usize>, Option<usize>)> = None;
     // As many curves as run.json says; a run draws them from as many points.
     let values = places.chosen.iter().zip(&table.sweeps);
     let counts = values.map(|(chosen, sweep)| if chosen.is_some() { 1 } else { sweep.labels.len().max(1) });
     let share = counts.fold(places.y.len(), usize::saturating_mul);
     let most = most_points(share, share);
-    let is_log = [wanted.look.asked.x.is_log, wanted.look.asked.y.is_log];
-    let names: Vec<Vec<String>> = table.sweeps.iter().map(|sweep| sweep.labels.clone()).collect();
-    let sweeps = table.visit(&mut |record, line, position| {
-        let case = match &last {
-            Some((other, case)) if other == position => *case,
-            _ => {
-                let drawn =
-                    places.chosen.iter().zip(position).zip(&names).all(|((chosen, &at), labels)| {
-                        chosen.as_ref().is_none_or(|chosen| labels.get(at) == Some(chosen))
-                    });
-                let case = drawn.then(|| {
-                    let curves = vec![KeptCurve::on_axes(most, is_log); places.y.len()];
-                    cases.push(Case { position: position.to_vec(), curves });
-                    cases.len() - 1
-                });
-                last = Some((position.to_vec(), case));
-                case
-            }
-        };
-        let Some(case) = case else { return Ok(()) };
-        if *count + cases.len() * places.y.len() > MAX_CURVES {
+    let look = &wanted.look.asked;
+    let is_log = [look.x.is_log, look.y.is_log];
+    let mut begin = |_: &_, _, _: &[usize]| {
+        *count += places.y.len();
+        if *count > MAX_CURVES {
             let message = format!("the figure would hold more than {MAX_CURVES} curves");
             let help = "choose fewer columns, or some of the cases with --where PATH=VALUE".to_owned();
             return Err(NotDrawn::new(message, help));
         }
-        let number = |at: usize| table.number(record, at, line);
-        if let (Some(window), Some(t)) = (wanted.look.asked.window, places.t)
-            && !is_within(window, number(t)?)
-        {
-            return Ok(());
-        }
-        let x = number(places.x)?;
-        for (&at, points) in places.y.iter().zip(&mut cases[case].curves) {
-            points.push(x, number(at)?);
-        }
-        Ok(())
-    })?;
+        Ok(vec![KeptCurve::on_axes(most, is_log); places.y.len()])
+    };
+    let add = |curves: &mut Vec<KeptCurve>, numbers: &[f64]| {
+        curves.iter_mut().zip(&numbers[1..]).for_each(|(curve, y)| curve.push(numbers[0], *y));
+    };
+    let columns: Vec<usize> = [places.x].into_iter().chain(places.y.iter().copied()).collect();
+    let reading = Reading { columns: &columns, chosen: &places.chosen, window: look.window };
+    let (cases, sweeps) = table.cases(reading, &mut begin, add)?;
     if cases.is_empty() {
         return Err(NotDrawn::new("there are no rows to draw", None));
     }
-    if wanted.look.asked.window.is_some()
-        && cases.iter().all(|case| case.curves.iter().all(|curve| curve.points().is_empty()))
-    {
+    if look.window.is_some() && cases.iter().all(|case| case.kept.iter().all(|curve| curve.points().is_empty())) {
         return Err(NotDrawn::new("--window: no row lies in it", "choose times that the run has".to_owned()));
     }
-    *count += cases.len() * places.y.len();
     Ok((cases, named(sweeps)))
 }
 

@@ -1,11 +1,11 @@
 //! Statistics of columns, and metrics, over a swept parameter: what `kind = "summary"` of a figure draws, from the files of results.
 
-use super::super::{Curves, DrawnCase, FigureColumn, swept_numbers};
-use super::curves::{Sweeps, Units, chosen, fitting, found, found_labels, label, named, source, units};
-use super::table::{Sweep, Table};
+use super::super::FigureColumn;
+use super::super::summary::{CasesOver, swept_numbers};
+use super::curves::{Sweeps, Units, chosen, drawn as column, found, found_labels, label, named, source, units};
+use super::table::{self, Reading, Sweep, Table};
 use super::{AskedFigure, NotDrawn, look};
-use crate::sweep::is_within;
-use crate::table::{Totals, matches};
+use crate::table::Totals;
 use springpot::table::Column;
 use springpot_report::Plot;
 use springpot_scenario::{Look, Statistic, suggest};
@@ -50,20 +50,8 @@ enum What {
     Metric(String),
 }
 
-/// Cases that differ in the abscissa alone, as they are drawn.
-struct Drawn {
-    source: Option<String>,
-    values: Vec<(String, String)>,
-    points: Vec<Vec<[f64; 2]>>,
-}
-
-/// A case under way: index of the value of each sweep, the first field of the abscissa, statistics, metrics.
-struct Case {
-    position: Vec<usize>,
-    field: f64,
-    totals: Vec<Totals>,
-    metrics: Vec<f64>,
-}
+/// A case: the first field of the abscissa, and statistics.
+type Case = table::Case<(f64, Vec<Totals>)>;
 
 /// The figure: the swept path at `--x`, or the only one, as the abscissa.
 pub(super) fn plot(tables: &[Table], figure: &AskedFigure, look: &Look, asked: &[Asked]) -> Result<Plot, NotDrawn> {
@@ -72,7 +60,7 @@ pub(super) fn plot(tables: &[Table], figure: &AskedFigure, look: &Look, asked: &
     let chosen = chosen(tables, &figure.selection)?;
     let units = units(&tables[0], &figure.units)?;
     let (mut x, mut y) = (None, None);
-    let mut drawn: Vec<Drawn> = Vec::new();
+    let mut drawn = CasesOver::default();
     for (at, (table, chosen)) in tables.iter().zip(&chosen).enumerate() {
         let axis = axis(table, &path)?;
         let what = what(table, asked)?;
@@ -85,40 +73,24 @@ pub(super) fn plot(tables: &[Table], figure: &AskedFigure, look: &Look, asked: &
         if y.is_none() {
             y = Some(ordinates(table, &what, look, &units)?);
         }
-        let own = source(tables, at);
-        let named = named(sweeps);
-        for case in cases {
-            let values_of = free(&named, &case.position, axis, chosen);
-            let place =
-                drawn.iter().position(|other| other.source == own && other.values == values_of).unwrap_or_else(|| {
-                    drawn.push(Drawn { source: own.clone(), values: values_of, points: vec![Vec::new(); what.len()] });
-                    drawn.len() - 1
-                });
-            let x = values.get(case.position[axis]).copied().unwrap_or(case.field);
-            let (mut totals, mut metrics) = (case.totals.iter(), case.metrics.iter());
-            for (what, points) in what.iter().zip(&mut drawn[place].points) {
-                let value = match what {
-                    What::Statistic(statistic, _) => totals.next().map_or(f64::NAN, |totals| totals.value(*statistic)),
-                    What::Metric(_) => metrics.next().copied().unwrap_or(f64::NAN),
-                };
-                points.push([x, value]);
-            }
+        let metrics = metrics(table, &what, &sweeps)?;
+        let (own, named) = (source(tables, at), named(sweeps));
+        for Case { position, kept: (field, totals) } in &cases {
+            let mut totals = totals.iter();
+            let number = |what: &What| match what {
+                What::Statistic(statistic, _) => totals.next().map_or(f64::NAN, |totals| totals.value(*statistic)),
+                What::Metric(name) => metrics.get(&(position.clone(), name.clone())).copied().unwrap_or(f64::NAN),
+            };
+            let numbers: Vec<f64> = what.iter().map(number).collect();
+            let x = values.get(position[axis]).copied().unwrap_or(*field);
+            drawn.take(own.clone(), free(&named, position, axis, chosen), x, &numbers);
         }
     }
-    if drawn.is_empty() {
+    let (Some(x), Some(y), false) = (x, y, drawn.is_empty()) else {
         return Err(NotDrawn::new("there are no rows to draw", None));
-    }
-    for points in drawn.iter_mut().flat_map(|drawn| &mut drawn.points) {
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    }
-    let (Some(x), Some(y)) = (x, y) else { return Err(NotDrawn::new("there are no rows to draw", None)) };
+    };
     let look = look::drawn(look, &x, &y)?;
-    let cases = drawn.iter().map(|Drawn { source, values, points }| DrawnCase {
-        source: source.clone(),
-        values: values.clone(),
-        points: points.iter().map(Vec::as_slice).collect(),
-    });
-    Ok(Curves { title: figure.title.as_deref(), x: &x, y: &y, look: &look, is_marked: true, measured: &[] }.plot(cases))
+    Ok(drawn.plot(figure.title.as_deref(), &x, &y, &look))
 }
 
 /// The swept path that is the abscissa; `t` stands for the only one.
@@ -165,15 +137,7 @@ fn what(table: &Table, asked: &[Asked]) -> Result<Vec<What>, NotDrawn> {
 /// The ordinates as they are drawn.
 fn ordinates(table: &Table, what: &[What], look: &Look, units: &Units) -> Result<Vec<FigureColumn>, NotDrawn> {
     let one = |what: &What| match what {
-        What::Statistic(statistic, at) => {
-            let column = table.columns[*at].clone();
-            let unit = units.iter().rev().find(|(glob, ..)| matches(glob, &column.name));
-            let unit = unit.map(|(_, text, unit)| fitting(&column, text, unit)).transpose()?;
-            let label = label(look, &column);
-            let plain = FigureColumn { column, unit, label: None };
-            let label = label.unwrap_or_else(|| format!("{} of {}", statistic.name(), plain.name()));
-            Ok(FigureColumn { label: Some(label), ..plain })
-        }
+        What::Statistic(statistic, at) => Ok(column(&table.columns[*at], units, look)?.summed(*statistic)),
         What::Metric(name) => {
             let unit = table.metrics()?.iter().find(|metric| metric.name == *name).map(|metric| metric.unit.clone());
             let column = Column::new(format!("{METRIC}({name})"), unit.unwrap_or_default(), "");
@@ -192,73 +156,36 @@ fn cases(
     chosen: &[Option<String>],
     window: Option<[f64; 2]>,
 ) -> Result<(Vec<Case>, Vec<Sweep>), NotDrawn> {
-    let columns: Vec<usize> = what
-        .iter()
-        .filter_map(|what| match what {
-            What::Statistic(_, at) => Some(*at),
-            What::Metric(_) => None,
-        })
-        .collect();
-    let named: Vec<&String> = what
-        .iter()
-        .filter_map(|what| match what {
-            What::Metric(name) => Some(name),
-            What::Statistic(..) => None,
-        })
-        .collect();
-    let time = table.columns.iter().position(|column| column.name == "t");
+    let column = |what: &What| if let What::Statistic(_, at) = what { Some(*at) } else { None };
+    let columns: Vec<usize> = what.iter().filter_map(column).collect();
     let at_x = table.columns.iter().position(|column| column.name == path);
-    let labels: Vec<Vec<String>> = table.sweeps.iter().map(|sweep| sweep.labels.clone()).collect();
-    let is_drawn = |position: &[usize]| {
-        chosen
-            .iter()
-            .zip(position)
-            .zip(&labels)
-            .all(|((chosen, at), labels)| chosen.as_ref().is_none_or(|chosen| labels.get(*at) == Some(chosen)))
-    };
-    let mut cases: Vec<Case> = Vec::new();
     let listed = table.sweeps[axis].written(path).len();
-    let sweeps = table.visit(&mut |record, line, position| {
-        let number = |at: usize| table.number(record, at, line);
-        if cases.last().is_none_or(|case| case.position != position) {
-            if !is_drawn(position) {
-                return Ok(());
-            }
-            // The field may be a text where it is not needed.
-            let is_listed = position[axis] < listed;
-            let field = if is_listed { f64::NAN } else { at_x.map_or(Ok(f64::NAN), number)? };
-            let (totals, metrics) = (vec![Totals::default(); columns.len()], vec![f64::NAN; named.len()]);
-            cases.push(Case { position: position.to_vec(), field, totals, metrics });
-        }
-        if let (Some(window), Some(t)) = (window, time)
-            && !is_within(window, number(t)?)
-        {
-            return Ok(());
-        }
-        if let Some(case) = cases.last_mut() {
-            for (at, totals) in columns.iter().zip(&mut case.totals) {
-                totals.add(number(*at)?);
-            }
-        }
-        Ok(())
-    })?;
-    if !named.is_empty() {
-        let (mut sweeps, metrics) = (sweeps.clone(), table.metrics()?);
-        let places: HashMap<Vec<usize>, usize> =
-            cases.iter().enumerate().map(|(at, case)| (case.position.clone(), at)).collect();
-        for metric in &metrics {
-            let position = table.position(&mut sweeps, &metric.swept);
-            let place = named.iter().position(|name| **name == metric.name);
-            if let (Some(case), Some(place)) = (places.get(&position), place) {
-                cases[*case].metrics[place] = metric.value;
-            }
-        }
-        if let Some(name) = named.iter().find(|name| metrics.iter().all(|metric| metric.name != ***name)) {
-            let message = format!("{} has no metric {name:?}", table.name());
-            return Err(NotDrawn::new(message, suggest(name, metrics.iter().map(|metric| metric.name.as_str()))));
-        }
+    let mut begin = |record: &_, line, position: &[usize]| {
+        // The field may be a text where it is not needed.
+        let needed = at_x.filter(|_| position[axis] >= listed);
+        let field = needed.map_or(Ok(f64::NAN), |at| table.number(record, at, line))?;
+        Ok((field, vec![Totals::default(); columns.len()]))
+    };
+    let add = |kept: &mut (f64, Vec<Totals>), numbers: &[f64]| {
+        kept.1.iter_mut().zip(numbers).for_each(|(totals, number)| totals.add(*number));
+    };
+    table.cases(Reading { columns: &columns, chosen, window }, &mut begin, add)
+}
+
+/// Values of the metrics that are drawn, by the position of their case and their name.
+fn metrics(table: &Table, what: &[What], sweeps: &[Sweep]) -> Result<HashMap<(Vec<usize>, String), f64>, NotDrawn> {
+    let name = |what: &What| if let What::Metric(name) = what { Some(name.clone()) } else { None };
+    let named: Vec<String> = what.iter().filter_map(name).collect();
+    if named.is_empty() {
+        return Ok(HashMap::new());
     }
-    Ok((cases, sweeps))
+    let (mut sweeps, metrics) = (sweeps.to_vec(), table.metrics()?);
+    if let Some(name) = named.iter().find(|name| metrics.iter().all(|metric| metric.name != **name)) {
+        let message = format!("{} has no metric {name:?}", table.name());
+        return Err(NotDrawn::new(message, suggest(name, metrics.iter().map(|metric| metric.name.as_str()))));
+    }
+    let drawn = metrics.into_iter().filter(|metric| named.contains(&metric.name));
+    Ok(drawn.map(|metric| ((table.position(&mut sweeps, &metric.swept), metric.name), metric.value)).collect())
 }
 
 /// Names and values of the sweeps that are neither the abscissa nor chosen.

@@ -2,6 +2,7 @@
 
 use super::NotDrawn;
 use crate::results::of_other_version;
+use crate::sweep::is_within;
 use crate::table::{cut_field, matches, push_number};
 use crate::warning::Warn;
 use ::csv::{ByteRecord, Reader};
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 const CHUNK: usize = 1 << 18;
 
 /// Takes a row, its line in the file, and the index of the value that each sweep has there.
-pub(super) type Visit<'a> = &'a mut dyn FnMut(&ByteRecord, u64, &[usize]) -> Result<(), NotDrawn>;
+type Visit<'a> = &'a mut dyn FnMut(&ByteRecord, u64, &[usize]) -> Result<(), NotDrawn>;
 
 /// A table of results that has been opened; its rows are read when they are asked for.
 pub(super) struct Table {
@@ -32,6 +33,22 @@ pub(super) struct Table {
     pub(super) is_measured: bool,
     /// By column, how its numbers become SI, where its heading has a unit.
     units: Vec<Option<Unit>>,
+}
+
+/// What is read of the rows of a table.
+pub(super) struct Reading<'a> {
+    /// Columns whose numbers are taken.
+    pub(super) columns: &'a [usize],
+    /// For each sweep the value that is chosen.
+    pub(super) chosen: &'a [Option<String>],
+    /// Rows with t in between, where there is such a column.
+    pub(super) window: Option<[f64; 2]>,
+}
+
+/// A case: the index of the value that each sweep has there, and what is kept of its rows.
+pub(super) struct Case<K> {
+    pub(super) position: Vec<usize>,
+    pub(super) kept: K,
 }
 
 /// A row of metrics.csv.
@@ -128,7 +145,7 @@ impl Table {
     }
 
     /// Calls `visit` with every row; returns the sweeps with the values that run.json does not list.
-    pub(super) fn visit(&self, visit: Visit<'_>) -> Result<Vec<Sweep>, NotDrawn> {
+    fn visit(&self, visit: Visit<'_>) -> Result<Vec<Sweep>, NotDrawn> {
         let mut sweeps = self.sweeps.clone();
         let mut reader = reader(&self.file)?;
         let mut record = ByteRecord::new();
@@ -146,6 +163,45 @@ impl Table {
             visit(&record, record.position().map_or(0, ::csv::Position::line), &position)?;
         }
         Ok(sweeps)
+    }
+
+    /// What is kept of every case that is chosen, in the order of the rows; and the sweeps as [`Self::visit`] returns them. `begin` is
+    /// asked at the first row of a case, `add` takes the numbers of a row.
+    pub(super) fn cases<K>(
+        &self,
+        Reading { columns, chosen, window }: Reading<'_>,
+        begin: &mut dyn FnMut(&ByteRecord, u64, &[usize]) -> Result<K, NotDrawn>,
+        add: impl Fn(&mut K, &[f64]),
+    ) -> Result<(Vec<Case<K>>, Vec<Sweep>), NotDrawn> {
+        let window = window.zip(self.columns.iter().position(|column| column.name == "t"));
+        let mut numbers = Vec::with_capacity(columns.len());
+        let mut cases: Vec<Case<K>> = Vec::new();
+        let sweeps = self.visit(&mut |record, line, position| {
+            if cases.last().is_none_or(|case| case.position != position) {
+                let mut values = chosen.iter().zip(position).zip(&self.sweeps);
+                let is_chosen = values.all(|((chosen, &at), sweep)| {
+                    chosen.as_ref().is_none_or(|chosen| sweep.labels.get(at) == Some(chosen))
+                });
+                if !is_chosen {
+                    return Ok(());
+                }
+                cases.push(Case { position: position.to_vec(), kept: begin(record, line, position)? });
+            }
+            if let Some((window, t)) = window
+                && !is_within(window, self.number(record, t, line)?)
+            {
+                return Ok(());
+            }
+            numbers.clear();
+            for &column in columns {
+                numbers.push(self.number(record, column, line)?);
+            }
+            if let Some(case) = cases.last_mut() {
+                add(&mut case.kept, &numbers);
+            }
+            Ok(())
+        })?;
+        Ok((cases, sweeps))
     }
 
     /// The rows of metrics.csv.
