@@ -2,7 +2,7 @@
 
 use super::PyModel;
 use super::batch::Symbol::{Q, V};
-use super::batch::each;
+use super::batch::{each, one_result};
 use crate::error::model_error;
 use pyo3::prelude::*;
 use springpot::dynamics::{
@@ -25,98 +25,71 @@ impl PyModel {
     /// array([[-9.31],
     ///        [ 0.5 ]])
     #[pyo3(signature = (q, v, a, out=None))]
-    fn rnea<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Any<'py>,
-        v: &Any<'py>,
-        a: &Any<'py>,
-        out: Option<&Any<'py>>,
-    ) -> PyResult<Any<'py>> {
+    fn rnea<'py>(&self, q: &Any<'py>, v: &Any<'py>, a: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v")), (a, V("a"))];
-        let [tau] = each(py, &self.core, inputs, [&[self.nv()]], out, |model, scratch, [q, v, a], [tau]| {
+        one_result(&self.core, inputs, &[self.nv()], out, |model, scratch, [q, v, a], tau| {
             rnea_into(model, q, v, a, &[], &mut scratch.workspace, tau);
-        })?;
-        Ok(tau)
+        })
     }
 
     /// C(q, v) v + g(q), what the actuators hold without acceleration: shape ``(nv,)``, N·m or N.
     #[pyo3(signature = (q, v, out=None))]
-    fn nonlinear_effects<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Any<'py>,
-        v: &Any<'py>,
-        out: Option<&Any<'py>>,
-    ) -> PyResult<Any<'py>> {
+    fn nonlinear_effects<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v"))];
-        let [tau] = each(py, &self.core, inputs, [&[self.nv()]], out, |model, scratch, [q, v], [tau]| {
+        one_result(&self.core, inputs, &[self.nv()], out, |model, scratch, [q, v], tau| {
             nonlinear_effects_into(model, q, v, &[], &mut scratch.workspace, tau);
-        })?;
-        Ok(tau)
+        })
     }
 
     /// Forward dynamics, a = M⁻¹(tau − C v − g): shape ``(nv,)``, rad/s² or m/s².
     #[pyo3(signature = (q, v, tau, out=None))]
-    fn aba<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Any<'py>,
-        v: &Any<'py>,
-        tau: &Any<'py>,
-        out: Option<&Any<'py>>,
-    ) -> PyResult<Any<'py>> {
+    fn aba<'py>(&self, q: &Any<'py>, v: &Any<'py>, tau: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v")), (tau, V("tau"))];
-        let [a] = each(py, &self.core, inputs, [&[self.nv()]], out, |model, scratch, [q, v, tau], [a]| {
+        one_result(&self.core, inputs, &[self.nv()], out, |model, scratch, [q, v, tau], a| {
             scratch.kinematics.update_velocity(model, q, v);
             aba_into(model, &scratch.kinematics, tau, &[], &mut scratch.workspace, a);
-        })?;
-        Ok(a)
+        })
     }
 
     /// The mass matrix M(q), the basic metric tensor: shape ``(nv, nv)``.
     #[pyo3(signature = (q, out=None))]
-    fn crba<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+    fn crba<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
-        let [mass] = each(py, &self.core, [(q, Q("q"))], [&[n, n]], out, |model, scratch, [q], [mass]| {
+        one_result(&self.core, [(q, Q("q"))], &[n, n], out, |model, scratch, [q], mass| {
             scratch.kinematics.update_position(model, q);
             crba_into(model, &scratch.kinematics, &mut scratch.workspace, mass);
-        })?;
-        Ok(mass)
+        })
     }
 
     /// M(q)⁻¹: shape ``(nv, nv)``.
     #[pyo3(signature = (q, out=None))]
-    fn mass_inverse<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+    fn mass_inverse<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
-        let [inverse] = each(py, &self.core, [(q, Q("q"))], [&[n, n]], out, |model, scratch, [q], [inverse]| {
+        one_result(&self.core, [(q, Q("q"))], &[n, n], out, |model, scratch, [q], inverse| {
             scratch.kinematics.update_position(model, q);
             mass_inverse_into(model, &scratch.kinematics, &mut scratch.workspace, &mut scratch.matrix, inverse);
-        })?;
-        Ok(inverse)
+        })
     }
 
     /// The Coriolis matrix C(q, v), with C v the Coriolis and centrifugal forces: shape ``(nv, nv)``.
     ///
     /// For joints of one degree it is Γ_ab,c v^a; for floating bases the choice that Pinocchio makes too.
     #[pyo3(signature = (q, v, out=None))]
-    fn coriolis<'py>(&self, py: Python<'py>, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+    fn coriolis<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v"))]);
-        let [matrix] = each(py, &self.core, inputs, [&[n, n]], out, |model, scratch, [q, v], [matrix]| {
+        one_result(&self.core, inputs, &[n, n], out, |model, scratch, [q, v], matrix| {
             scratch.kinematics.update_velocity(model, q, v);
             coriolis_into(model, &scratch.kinematics, &mut scratch.workspace, matrix);
-        })?;
-        Ok(matrix)
+        })
     }
 
     /// The gravity vector g(q) = ∂V/∂q, the forces that hold the robot: shape ``(nv,)``, N·m or N.
     #[pyo3(signature = (q, out=None))]
-    fn gravity<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
-        let [forces] = each(py, &self.core, [(q, Q("q"))], [&[self.nv()]], out, |model, scratch, [q], [forces]| {
+    fn gravity<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+        one_result(&self.core, [(q, Q("q"))], &[self.nv()], out, |model, scratch, [q], forces| {
             scratch.kinematics.update_position(model, q);
             gravity_into(model, &scratch.kinematics, &mut scratch.workspace, forces);
-        })?;
-        Ok(forces)
+        })
     }
 
     /// Christoffel symbols of the first kind Γ_ab,c, the force index c last: shape ``(nv, nv, nv)``.
@@ -124,31 +97,29 @@ impl PyModel {
     /// Raises:
     ///     ModelError: where a joint has several degrees of freedom.
     #[pyo3(signature = (q, out=None))]
-    fn christoffel<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+    fn christoffel<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         if !self.core.model.is_one_degree() {
             let why = "Christoffel symbols exist where every joint has one degree of freedom; take coriolis(q, v)";
-            return Err(model_error(py, why));
+            return Err(model_error(q.py(), why));
         }
         let n = self.nv();
-        let [gamma] = each(py, &self.core, [(q, Q("q"))], [&[n, n, n]], out, |model, scratch, [q], [gamma]| {
+        one_result(&self.core, [(q, Q("q"))], &[n, n, n], out, |model, scratch, [q], gamma| {
             scratch.kinematics.update_position(model, q);
             christoffel_into(model, &scratch.kinematics, &mut scratch.workspace, gamma);
-        })?;
-        Ok(gamma)
+        })
     }
 
     /// ∂tau/∂q and ∂tau/∂v of :meth:`rnea`, each of shape ``(nv, nv)``: row b belongs to tau_b. ∂tau/∂a is :meth:`crba`.
     #[pyo3(signature = (q, v, a, out=None))]
     fn rnea_derivatives<'py>(
         &self,
-        py: Python<'py>,
         q: &Any<'py>,
         v: &Any<'py>,
         a: &Any<'py>,
         out: Option<&Any<'py>>,
     ) -> PyResult<[Any<'py>; 2]> {
         let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v")), (a, V("a"))]);
-        each(py, &self.core, inputs, [&[n, n]; 2], out, |model, scratch, [q, v, a], [by_q, by_v]| {
+        each(&self.core, inputs, [&[n, n]; 2], out, |model, scratch, [q, v, a], [by_q, by_v]| {
             scratch.kinematics.update_velocity(model, q, v);
             let slopes = &mut scratch.inverse_slopes;
             rnea_derivatives_into(model, &scratch.kinematics, a, &[], &mut scratch.workspace, slopes);
@@ -161,14 +132,13 @@ impl PyModel {
     #[pyo3(signature = (q, v, tau, out=None))]
     fn aba_derivatives<'py>(
         &self,
-        py: Python<'py>,
         q: &Any<'py>,
         v: &Any<'py>,
         tau: &Any<'py>,
         out: Option<&Any<'py>>,
     ) -> PyResult<[Any<'py>; 2]> {
         let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v")), (tau, V("tau"))]);
-        each(py, &self.core, inputs, [&[n, n]; 2], out, |model, scratch, [q, v, tau], [by_q, by_v]| {
+        each(&self.core, inputs, [&[n, n]; 2], out, |model, scratch, [q, v, tau], [by_q, by_v]| {
             scratch.kinematics.update_velocity(model, q, v);
             let slopes = &mut scratch.forward_slopes;
             aba_derivatives_into(model, &scratch.kinematics, tau, &[], &mut scratch.workspace, slopes);
@@ -179,91 +149,66 @@ impl PyModel {
 
     /// The centre of mass of all that moves: shape ``(3,)``, m.
     #[pyo3(signature = (q, out=None))]
-    fn com<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
-        let [centre] = each(py, &self.core, [(q, Q("q"))], [&[3]], out, |model, scratch, [q], [centre]| {
+    fn com<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+        one_result(&self.core, [(q, Q("q"))], &[3], out, |model, scratch, [q], centre| {
             scratch.kinematics.update_position(model, q);
             centre.copy_from_slice(&com(model, &scratch.kinematics).0);
-        })?;
-        Ok(centre)
+        })
     }
 
     /// The Jacobian of the centre of mass: shape ``(3, nv)``.
     #[pyo3(signature = (q, out=None))]
-    fn com_jacobian<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+    fn com_jacobian<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
-        let [jacobian] = each(py, &self.core, [(q, Q("q"))], [&[3, n]], out, |model, scratch, [q], [jacobian]| {
+        one_result(&self.core, [(q, Q("q"))], &[3, n], out, |model, scratch, [q], jacobian| {
             scratch.kinematics.update_position(model, q);
             com_jacobian_into(model, &scratch.kinematics, &mut scratch.workspace, jacobian);
-        })?;
-        Ok(jacobian)
+        })
     }
 
     /// Kinetic energy, J: a float, or shape ``(N,)``.
     #[pyo3(signature = (q, v, out=None))]
-    fn kinetic_energy<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Any<'py>,
-        v: &Any<'py>,
-        out: Option<&Any<'py>>,
-    ) -> PyResult<Any<'py>> {
+    fn kinetic_energy<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v"))];
-        let [energy] = each(py, &self.core, inputs, [&[]], out, |model, scratch, [q, v], [energy]| {
+        one_result(&self.core, inputs, &[], out, |model, scratch, [q, v], energy| {
             scratch.kinematics.update_velocity(model, q, v);
             energy[0] = kinetic_energy(model, &scratch.kinematics);
-        })?;
-        Ok(energy)
+        })
     }
 
     /// Potential energy in the field of gravity, J, 0 at the world's origin: a float, or shape ``(N,)``.
     #[pyo3(signature = (q, out=None))]
-    fn potential_energy<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
-        let [energy] = each(py, &self.core, [(q, Q("q"))], [&[]], out, |model, scratch, [q], [energy]| {
+    fn potential_energy<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+        one_result(&self.core, [(q, Q("q"))], &[], out, |model, scratch, [q], energy| {
             scratch.kinematics.update_position(model, q);
             energy[0] = potential_energy(model, &scratch.kinematics);
-        })?;
-        Ok(energy)
+        })
     }
 
     /// q ⊕ v: the configuration after one second at the constant velocities v: shape ``(nq,)``.
     #[pyo3(signature = (q, v, out=None))]
-    fn integrate<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Any<'py>,
-        v: &Any<'py>,
-        out: Option<&Any<'py>>,
-    ) -> PyResult<Any<'py>> {
+    fn integrate<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v"))];
-        let [moved] = each(py, &self.core, inputs, [&[self.nq()]], out, |model, _, [q, v], [moved]| {
+        one_result(&self.core, inputs, &[self.nq()], out, |model, _, [q, v], moved| {
             model.integrate_into(q, v, moved);
-        })?;
-        Ok(moved)
+        })
     }
 
     /// to ⊖ from\_: the velocities that lead from one configuration to the other in one second, the shorter way round: shape ``(nv,)``.
     #[pyo3(signature = (from_, to, out=None))]
-    fn difference<'py>(
-        &self,
-        py: Python<'py>,
-        from_: &Any<'py>,
-        to: &Any<'py>,
-        out: Option<&Any<'py>>,
-    ) -> PyResult<Any<'py>> {
+    fn difference<'py>(&self, from_: &Any<'py>, to: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(from_, Q("from_")), (to, Q("to"))];
-        let [v] = each(py, &self.core, inputs, [&[self.nv()]], out, |model, _, [from, to], [v]| {
+        one_result(&self.core, inputs, &[self.nv()], out, |model, _, [from, to], v| {
             model.difference_into(from, to, v);
-        })?;
-        Ok(v)
+        })
     }
 
     /// q with quaternions of length 1 (qw ≥ 0) and angles of continuous joints in (−π, π]: shape ``(nq,)``.
     #[pyo3(signature = (q, out=None))]
-    fn normalise<'py>(&self, py: Python<'py>, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
-        let [normal] = each(py, &self.core, [(q, Q("q"))], [&[self.nq()]], out, |model, _, [q], [normal]| {
+    fn normalise<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+        one_result(&self.core, [(q, Q("q"))], &[self.nq()], out, |model, _, [q], normal| {
             normal.copy_from_slice(q);
             model.normalise(normal);
-        })?;
-        Ok(normal)
+        })
     }
 }

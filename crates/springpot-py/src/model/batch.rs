@@ -72,17 +72,29 @@ impl fmt::Display for NoResult {
     }
 }
 
+/// As [`each`], of one result.
+pub(crate) fn one_result<'py, const I: usize>(
+    core: &Core,
+    inputs: [(&Bound<'py, PyAny>, Symbol); I],
+    shape: &[usize],
+    out: Option<&Bound<'py, PyAny>>,
+    work: impl Fn(&Model, &mut Scratch, [&[f64]; I], &mut [f64]) + Sync,
+) -> PyResult<Bound<'py, PyAny>> {
+    let [only] = each(core, inputs, [shape], out, |model, scratch, inputs, [out]| work(model, scratch, inputs, out))?;
+    Ok(only)
+}
+
 /// Applies `work` to every state that the arguments hold: one where all have one dimension, else one for each row.
 ///
 /// `shapes` are those of the results of one state; results of many have the number of states before them.
 pub(crate) fn each<'py, const I: usize, const O: usize>(
-    py: Python<'py>,
     core: &Core,
     inputs: [(&Bound<'py, PyAny>, Symbol); I],
     shapes: [&[usize]; O],
     out: Option<&Bound<'py, PyAny>>,
     work: impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]) + Sync,
 ) -> PyResult<[Bound<'py, PyAny>; O]> {
+    let py = inputs[0].0.py();
     guarded(py, || {
         let model = &*core.model;
         let symbols = inputs.map(|(_, symbol)| symbol);

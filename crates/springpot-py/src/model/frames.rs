@@ -2,7 +2,7 @@
 
 use super::PyModel;
 use super::batch::Symbol::{Q, V};
-use super::batch::each;
+use super::batch::{each, one_result};
 use crate::error::{model_error, type_error};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyMemoryError;
@@ -44,16 +44,10 @@ impl PyModel {
 
     /// Where a frame is: its rotation, shape ``(3, 3)``, which takes its components to those of the world, and its origin, shape ``(3,)``, m.
     #[pyo3(signature = (name, q, out=None))]
-    fn frame_placement<'py>(
-        &self,
-        py: Python<'py>,
-        name: &str,
-        q: &Any<'py>,
-        out: Option<&Any<'py>>,
-    ) -> PyResult<[Any<'py>; 2]> {
-        let frame = self.frame(py, name)?;
+    fn frame_placement<'py>(&self, name: &str, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<[Any<'py>; 2]> {
+        let frame = self.frame(q.py(), name)?;
         let shapes: [&[usize]; 2] = [&[3, 3], &[3]];
-        each(py, &self.core, [(q, Q("q"))], shapes, out, |model, scratch, [q], [rotation, position]| {
+        each(&self.core, [(q, Q("q"))], shapes, out, |model, scratch, [q], [rotation, position]| {
             scratch.kinematics.update_position(model, q);
             let placement = scratch.kinematics.frame(&frame);
             position.copy_from_slice(&placement.translation.0);
@@ -71,37 +65,28 @@ impl PyModel {
     ///
     /// ``name`` is one of :attr:`frame_names`.
     #[pyo3(signature = (name, q, out=None))]
-    fn frame_jacobian<'py>(
-        &self,
-        py: Python<'py>,
-        name: &str,
-        q: &Any<'py>,
-        out: Option<&Any<'py>>,
-    ) -> PyResult<Any<'py>> {
-        let (frame, n) = (self.frame(py, name)?, self.nv());
-        let [jacobian] = each(py, &self.core, [(q, Q("q"))], [&[6, n]], out, |model, scratch, [q], [jacobian]| {
+    fn frame_jacobian<'py>(&self, name: &str, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+        let (frame, n) = (self.frame(q.py(), name)?, self.nv());
+        one_result(&self.core, [(q, Q("q"))], &[6, n], out, |model, scratch, [q], jacobian| {
             scratch.kinematics.update_position(model, q);
             frame_jacobian_into(model, &scratch.kinematics, &frame, jacobian);
-        })?;
-        Ok(jacobian)
+        })
     }
 
     /// dJ/dt of :meth:`frame_jacobian`, so that (d²r/dt², dω/dt) = J a + (dJ/dt) v: shape ``(6, nv)``.
     #[pyo3(signature = (name, q, v, out=None))]
     fn frame_jacobian_rate<'py>(
         &self,
-        py: Python<'py>,
         name: &str,
         q: &Any<'py>,
         v: &Any<'py>,
         out: Option<&Any<'py>>,
     ) -> PyResult<Any<'py>> {
-        let (frame, n, inputs) = (self.frame(py, name)?, self.nv(), [(q, Q("q")), (v, V("v"))]);
-        let [rate] = each(py, &self.core, inputs, [&[6, n]], out, |model, scratch, [q, v], [rate]| {
+        let (frame, n, inputs) = (self.frame(q.py(), name)?, self.nv(), [(q, Q("q")), (v, V("v"))]);
+        one_result(&self.core, inputs, &[6, n], out, |model, scratch, [q, v], rate| {
             scratch.kinematics.update_velocity(model, q, v);
             frame_jacobian_rate_into(model, &scratch.kinematics, &frame, rate);
-        })?;
-        Ok(rate)
+        })
     }
 
     /// The distance of two points of bodies, m, and its gradient ∂l/∂q, shape ``(nv,)``.
@@ -110,16 +95,15 @@ impl PyModel {
     #[pyo3(signature = (from_, to, q, out=None))]
     fn pair_length<'py>(
         &self,
-        py: Python<'py>,
         from_: (String, [f64; 3]),
         to: (String, [f64; 3]),
         q: &Any<'py>,
         out: Option<&Any<'py>>,
     ) -> PyResult<[Any<'py>; 2]> {
-        let (from, to) = (self.site(py, &from_.0, from_.1)?, self.site(py, &to.0, to.1)?);
+        let (from, to) = (self.site(q.py(), &from_.0, from_.1)?, self.site(q.py(), &to.0, to.1)?);
         let (n, still) = (self.nv(), vec![0.0; self.nv()]);
         let shapes: [&[usize]; 2] = [&[], &[n]];
-        each(py, &self.core, [(q, Q("q"))], shapes, out, |model, scratch, [q], [length, gradient]| {
+        each(&self.core, [(q, Q("q"))], shapes, out, |model, scratch, [q], [length, gradient]| {
             scratch.kinematics.update_velocity(model, q, &still);
             length[0] = pair_into(model, &scratch.kinematics, &from, &to, gradient).length;
         })
