@@ -37,6 +37,7 @@ pub mod recording;
 mod robot;
 pub mod scene;
 mod surface;
+pub mod vector;
 
 pub use chart::{Axis, Curve, Panel, Plot, Scale};
 pub use mesh::MeshFile;

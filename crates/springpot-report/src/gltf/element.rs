@@ -6,6 +6,7 @@ use super::robot::{self, Parts, Sizes};
 use super::solid::{self, Solid};
 use super::track::{Keys, Tracks};
 use crate::scene::{Placement, SceneElement, SceneShape};
+use crate::vector::{difference, norm};
 use serde_json::json;
 
 /// Parts around a bar.
@@ -83,13 +84,13 @@ fn stretched(ends: impl Iterator<Item = [[f64; 3]; 2]>) -> Keys {
     let mut keys = Keys::default();
     let (mut turn, mut before) = (Placement::IDENTITY, [0.0, 0.0, 1.0]);
     for [from, to] in ends {
-        let along = solid::minus(to, from);
-        let length = solid::length(along);
+        let along = difference(to, from);
+        let length = norm(along);
         if length > LEAST {
             // On from the last direction: a bar that swings does not twist.
             turn = Placement { turn: solid::between(before, along), ..Placement::IDENTITY }.of(&turn);
-            let norm = turn.turn.iter().map(|part| part * part).sum::<f64>().sqrt();
-            turn.turn = turn.turn.map(|part| part / norm);
+            let size = norm(turn.turn);
+            turn.turn = turn.turn.map(|part| part / size);
             before = along;
         }
         keys.shifts.push(from);

@@ -6,6 +6,7 @@ use super::solid::{self, Solid};
 use crate::mesh::Part;
 use crate::scene::{Body, Freedom, Placement, Scene, SceneShape, Shape, Visual};
 use crate::surface;
+use crate::vector::{difference, norm};
 use std::collections::HashMap;
 
 /// Parts of round things around their axis.
@@ -26,9 +27,9 @@ impl Parts {
 
     /// A round bar from point to point.
     fn bar(&mut self, material: usize, a: [f64; 3], b: [f64; 3], radius: f64) {
-        let along = solid::minus(b, a);
+        let along = difference(b, a);
         let placement = Placement { turn: solid::from_z(along), shift: a };
-        self.add(material, Solid::rounded(radius, solid::length(along), ROUND).placed(&placement));
+        self.add(material, Solid::rounded(radius, norm(along), ROUND).placed(&placement));
     }
 
     fn ball(&mut self, material: usize, at: [f64; 3], radius: f64) {
@@ -81,7 +82,7 @@ impl Sizes {
                 (low[k], high[k]) = (low[k].min(at[k]), high[k].max(at[k]));
             }
         }
-        let size = solid::length(solid::minus(high, low));
+        let size = norm(difference(high, low));
         let size = if size > 1e-9 && size.is_finite() { size } else { 0.5 };
         // Many small members need thinner bars than three long ones.
         let bars = scene.bodies.iter().filter(|body| body.visuals.is_empty()).count();
@@ -113,7 +114,7 @@ pub(super) fn body(
 ) -> Parts {
     let (body, mut parts) = (&scene.bodies[index], Parts::default());
     let shade = if index.is_multiple_of(2) { paint::BODY } else { paint::NEXT_BODY };
-    let is_far = |at: &[f64; 3]| solid::length(*at) > 0.35 * r;
+    let is_far = |at: &[f64; 3]| norm(*at) > 0.35 * r;
     let children = scene.bodies.iter().filter(|child| child.parent == Some(index)).map(|child| child.origin);
     let gripper = scene.gripper.iter().filter(|spot| spot.body == Some(index)).map(|spot| spot.point);
     let mut ends: Vec<[f64; 3]> = children.chain(gripper).filter(is_far).collect();
@@ -133,7 +134,7 @@ pub(super) fn body(
     joint(document, &mut parts, body, is_drawn, r);
     for (_, at, _) in holds(scene).filter(|(of, _, is_frame)| *of == Some(index) && !is_frame) {
         let from = nearest(&ends, at);
-        if solid::length(solid::minus(at, from)) > 0.5 * r && !is_drawn {
+        if norm(difference(at, from)) > 0.5 * r && !is_drawn {
             parts.bar(paint::BRACKET.material(document), from, at, 0.3 * r);
         }
         parts.ball(paint::PIVOT.material(document), at, 0.6 * r);
@@ -242,6 +243,6 @@ fn nearest(ends: &[[f64; 3]], at: [f64; 3]) -> [f64; 3] {
             end.iter().zip(&at).map(|(a, b)| a * b).sum::<f64>() / end.iter().map(|part| part * part).sum::<f64>();
         end.map(|part| part * if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 })
     });
-    let far = |from: [f64; 3]| solid::length(solid::minus(at, from));
+    let far = |from: [f64; 3]| norm(difference(at, from));
     feet.fold(ZERO, |best, foot| if far(foot) < far(best) { foot } else { best })
 }

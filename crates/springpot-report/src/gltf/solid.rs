@@ -1,6 +1,7 @@
 //! Triangles of plain solids, with normals.
 
 use crate::scene::Placement;
+use crate::vector::{cross, difference, dot, norm};
 use std::f64::consts::{PI, TAU};
 
 /// Triangles of one material: positions, unit normals and corners.
@@ -111,8 +112,7 @@ impl Solid {
             if is_mirrored {
                 (b, c) = (c, b);
             }
-            let (u, v) = (minus(b, a), minus(c, a));
-            let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            let normal = cross(difference(b, a), difference(c, a));
             let first = solid.positions.len() as u32;
             [a, b, c].into_iter().for_each(|corner| solid.push(corner, normal));
             solid.triangles.push([first, first + 1, first + 2]);
@@ -140,17 +140,9 @@ impl Solid {
     }
 }
 
-pub(super) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(super) fn length(a: [f64; 3]) -> f64 {
-    a.iter().map(|part| part * part).sum::<f64>().sqrt()
-}
-
 /// Along z where there is no direction.
 fn unit(a: [f64; 3]) -> [f32; 3] {
-    let length = length(a);
+    let length = norm(a);
     if length > 0.0 && length.is_finite() { a.map(|part| (part / length) as f32) } else { [0.0, 0.0, 1.0] }
 }
 
@@ -161,22 +153,23 @@ pub(super) fn from_z(direction: [f64; 3]) -> [f64; 4] {
 
 /// The least turn that takes a direction into another.
 pub(super) fn between(a: [f64; 3], b: [f64; 3]) -> [f64; 4] {
-    let (long_a, long_b) = (length(a), length(b));
+    let (long_a, long_b) = (norm(a), norm(b));
     if !(long_a > 0.0 && long_b > 0.0) {
         return Placement::IDENTITY.turn;
     }
     let (a, b) = (a.map(|part| part / long_a), b.map(|part| part / long_b));
-    let w = 1.0 + a.iter().zip(&b).map(|(a, b)| a * b).sum::<f64>();
+    let w = 1.0 + dot(a, b);
     let turn = if w > 1e-9 {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], w]
+        let [x, y, z] = cross(a, b);
+        [x, y, z, w]
     } else if a[0].abs() > 0.5 {
         // Half a turn about any direction across.
         [a[1], -a[0], 0.0, 0.0]
     } else {
         [0.0, a[2], -a[1], 0.0]
     };
-    let norm = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
-    turn.map(|part| part / norm)
+    let length = norm(turn);
+    turn.map(|part| part / length)
 }
 
 #[cfg(test)]
@@ -220,7 +213,7 @@ mod tests {
             ([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]),
         ] {
             let turned = Placement { turn: between(a, b), ..Placement::IDENTITY }.direction(a);
-            let (scale, long) = (length(a), length(b));
+            let (scale, long) = (norm(a), norm(b));
             for k in 0..3 {
                 assert!((turned[k] / scale - b[k] / long).abs() < 1e-9, "{a:?} {b:?} {turned:?}");
             }

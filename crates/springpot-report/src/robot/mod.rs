@@ -4,10 +4,9 @@ mod element;
 mod labels;
 mod sketch;
 mod symbols;
-mod vector;
 mod view;
 
-use crate::{Rendered, ReportError, draw};
+use crate::{Rendered, ReportError, draw, vector};
 
 /// Name of the link that stands for the ground: its points are drawn with ground hatching.
 pub const WORLD: &str = "world";

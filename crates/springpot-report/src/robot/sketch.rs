@@ -3,10 +3,10 @@
 use super::element;
 use super::labels::{Frame, Request};
 use super::symbols::{ARM, BODY, ELEMENT, JOINT, RING, SLIDE, SPIRAL, Sheet, direction};
-use super::vector::{Vector, along, cross, distance, dot, unit};
 use super::view::View;
 use super::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, RobotDrawing, WORLD};
 use crate::draw::{Align, Color, Font, INK, Point, Scene, Stroke, Text, wrap_evenly};
+use crate::vector::{Vector, along, cross, distance, dot, unit};
 use crate::{PIXELS_PER_MM, WIDTH};
 use std::collections::HashMap;
 
@@ -444,8 +444,8 @@ fn page(robot: &RobotDrawing, sheet: Sheet, font: &Font) -> Scene {
 
 #[cfg(test)]
 mod tests {
-    use super::super::vector::difference;
     use super::*;
+    use crate::vector::difference;
 
     #[test]
     fn numbers_in_names_become_subscripts() {

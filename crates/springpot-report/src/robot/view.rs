@@ -1,7 +1,7 @@
 //! From where the robot is seen.
 
-use super::vector::{Vector, along, difference, distance, dot};
 use super::{RobotDrawing, WORLD};
+use crate::vector::{Vector, along, difference, distance, dot};
 
 /// An orthographic view: unit vectors to the right and upwards on the paper, and into it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,8 +111,8 @@ fn samples(robot: &RobotDrawing, lines: &[[Vector; 2]]) -> Vec<Vector> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::vector::cross;
     use super::*;
+    use crate::vector::cross;
 
     #[test]
     fn views_are_right_handed_and_orthonormal() {

@@ -1,6 +1,7 @@
 //! Where the bodies of a scene are, from the values of a row.
 
 use super::{Body, Freedom, Joint, Scene};
+use crate::vector::norm;
 use std::f64::consts::TAU;
 
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
@@ -187,7 +188,7 @@ impl Kinematics {
 }
 
 fn motion(bodies: &[Body], joint: &Joint, column: &impl Fn(&str) -> Option<usize>) -> Motion {
-    let length = joint.axis.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let length = norm(joint.axis);
     let axis = joint.axis.map(|part| if length > 0.0 { part / length } else { 0.0 });
     match joint.kind {
         Freedom::Fixed => Motion::None,
@@ -214,8 +215,8 @@ fn columns<const N: usize>(
 
 /// A quaternion of length 1; unturned where it has none.
 fn unit(turn: [f64; 4]) -> [f64; 4] {
-    let norm = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
-    if norm < LEAST_NORM { Placement::IDENTITY.turn } else { turn.map(|part| part / norm) }
+    let length = norm(turn);
+    if length < LEAST_NORM { Placement::IDENTITY.turn } else { turn.map(|part| part / length) }
 }
 
 /// Along the joints that it follows to the one that has a coordinate.

@@ -6,6 +6,7 @@ use crate::scene::{ground, sign_of};
 use springpot::equations::Pose;
 use springpot::model::{Anchor, JointKind, JointPart, Move, Parent};
 use springpot::system::System;
+use springpot_report::vector::{distance, nearest};
 use springpot_report::{ElementMark, ElementShape, JointMark, Link, Rendered, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan, ShapePlan};
 
@@ -195,7 +196,7 @@ impl Bone {
         let mut line = vec![self.origin];
         for end in ends {
             let on_line = line.chunks(2).any(|piece| match piece {
-                [_, other] => to_segment(end, self.origin, *other) <= near,
+                [_, _] => distance(nearest(piece, end), end) <= near,
                 _ => end == self.origin,
             });
             if !on_line {
@@ -207,25 +208,4 @@ impl Bone {
         }
         line
     }
-}
-
-/// Distance of a point from the straight line between two others.
-fn to_segment(point: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
-    let (along, out) = (difference(to, from), difference(point, from));
-    let share = (dot(out, along) / dot(along, along)).clamp(0.0, 1.0);
-    let foot = [0, 1, 2].map(|k| from[k] + share * along[k]);
-    distance(point, foot)
-}
-
-fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[k] - b[k])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let d = difference(a, b);
-    dot(d, d).sqrt()
 }

@@ -1,37 +1,44 @@
-//! Three numbers.
+//! Three numbers, and polylines through them.
 
-pub(super) type Vector = [f64; 3];
+/// Components x, y, z.
+pub(crate) type Vector = [f64; 3];
 
-pub(super) fn dot(a: Vector, b: Vector) -> f64 {
+pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(super) fn cross(a: Vector, b: Vector) -> Vector {
+pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// a + s·b
-pub(super) fn along(a: Vector, s: f64, b: Vector) -> Vector {
+pub(crate) fn along(a: Vector, s: f64, b: Vector) -> Vector {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
-pub(super) fn difference(a: Vector, b: Vector) -> Vector {
+pub(crate) fn difference(a: Vector, b: Vector) -> Vector {
     along(a, -1.0, b)
 }
 
-pub(super) fn distance(a: Vector, b: Vector) -> f64 {
+/// Distance of two points.
+pub fn distance(a: Vector, b: Vector) -> f64 {
     let d = difference(a, b);
     dot(d, d).sqrt()
 }
 
+/// The length of so many components.
+pub(crate) fn norm<const N: usize>(a: [f64; N]) -> f64 {
+    a.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
 /// The unit vector along `a`; `None` for zero.
-pub(super) fn unit(a: Vector) -> Option<Vector> {
+pub(crate) fn unit(a: Vector) -> Option<Vector> {
     let length = dot(a, a).sqrt();
     (length > 0.0).then(|| a.map(|v| v / length))
 }
 
 /// The point of a polyline (not empty) nearest to `point`.
-pub(super) fn nearest(line: &[Vector], point: Vector) -> Vector {
+pub fn nearest(line: &[Vector], point: Vector) -> Vector {
     let feet = line.windows(2).map(|pair| {
         let d = difference(pair[1], pair[0]);
         let t = dot(difference(point, pair[0]), d) / dot(d, d);
