@@ -224,15 +224,10 @@ impl Memory {
     }
 
     /// The singular part at the nodes of a step, such that h Σ_j A_ij σ_j is its exact integral up to every node:
-    /// σ = x(0)/(h Γ(2−alpha)) A⁻¹ (t_j^{1−alpha} − t_n^{1−alpha}); with one node its mean over the step.
+    /// σ = x(0)/(h Γ(2−alpha)) A⁻¹ (t_j^{1−alpha} − t_n^{1−alpha}); with one node its mean over the step. Three nodes may be at `places`.
     ///
     /// Collocation that takes the point values instead loses its order at a singular start; far from the start both agree.
-    pub fn singular_moments(&self, start: &StepStart, nodes: Nodes) -> [f64; MAX_NODES] {
-        self.singular_moments_at(start, nodes, None)
-    }
-
-    /// As [`Self::singular_moments`], the nodes of a step with three being at `places`.
-    pub fn singular_moments_at(&self, start: &StepStart, nodes: Nodes, places: Option<&Places>) -> [f64; MAX_NODES] {
+    pub fn singular_moments(&self, start: &StepStart, nodes: Nodes, places: Option<&Places>) -> [f64; MAX_NODES] {
         if self.jump == 0.0 {
             return [0.0; MAX_NODES];
         }
@@ -519,16 +514,11 @@ impl Memory {
         past.drop_surplus(shortest);
     }
 
-    /// As [`Self::commit`] for a step of rates that ends at `stroke`, which is known to `resolution`, above 0.
+    /// As [`Self::commit`] for a step of rates that ends at `stroke`, which is known to `resolution`, above 0; three nodes may be at `places`.
     ///
     /// Integrals of rates drift from the strokes, in a step by less than any tolerance; over 10⁵ steps the slowest modes, which
     /// are D^alpha x at small alpha, would be off by 10⁻⁷. What is owed is paid back as a rate, the faster the more it is.
-    pub fn commit_rates(&mut self, step: &RatePolynomial, stroke: f64, resolution: f64) {
-        self.commit_rates_at(step, None, stroke, resolution);
-    }
-
-    /// As [`Self::commit_rates`] of a step with three nodes at `places`.
-    pub fn commit_rates_at(&mut self, step: &RatePolynomial, places: Option<&Places>, stroke: f64, resolution: f64) {
+    pub fn commit_rates(&mut self, step: &RatePolynomial, places: Option<&Places>, stroke: f64, resolution: f64) {
         let Some(past) = &self.past else { return };
         let owed = (stroke - self.origin) - (self.travelled + step.travel());
         let mut paid = *step;

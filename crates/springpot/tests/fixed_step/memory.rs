@@ -33,7 +33,8 @@ fn the_mean_is_exact_for_straight_strokes() {
                     let affine = memory.respond(&start, Nodes::Midpoint, form);
                     let mut mean = affine.stroke[0][0] * middle + affine.rate[0][0] * 3.0 + affine.history[0];
                     // The singular share is its value in the middle, or its mean.
-                    mean += memory.singular_moments(&start, Nodes::Midpoint)[0] - memory.singular_part(t + 0.5 * h);
+                    mean +=
+                        memory.singular_moments(&start, Nodes::Midpoint, None)[0] - memory.singular_part(t + 0.5 * h);
                     let error = (mean - expected).abs() / expected;
                     assert!(error < 3e-10, "{alpha} {kind:?} {form:?} at {t}: {mean} {expected} {error:e}");
                 }

@@ -128,8 +128,7 @@ fn the_arm_is_read_word_for_word() {
     assert_eq!((joint.damping[0], joint.friction[0]), (0.1, 0.2));
     assert_eq!(joint.limits[0], Limits { lower: -1.0, upper: 1.0, velocity: 2.0, effort: 10.0 });
     assert_eq!((lower.joint.kind, lower.joint.damping[0]), (JointKind::Prismatic, 0.0));
-    assert_eq!((urdf.link_line("base"), urdf.link_line("lower"), urdf.link_line("none")), (Some(2), Some(10), None));
-    assert_eq!((urdf.joint_line("elbow"), urdf.joint_line("none")), (Some(24), None));
+    assert_eq!((urdf.root.line, urdf.lines[1].link, urdf.lines[1].joint), (2, 10, 24));
     let model = urdf.model([0.0, 0.0, -9.81]).unwrap();
     assert_eq!(model.find_body("base"), Some(Parent::World));
     assert_eq!(model.joint_names(), ["shoulder", "elbow"]);

@@ -128,7 +128,7 @@ impl Leaf for Springpot {
         let start = step.start();
         let affine = memory.respond_at(&start, step.nodes, step.places, step.form);
         let moments = match step.course {
-            Course::Sought if memory.is_singular() => memory.singular_moments_at(&start, step.nodes, step.places),
+            Course::Sought if memory.is_singular() => memory.singular_moments(&start, step.nodes, step.places),
             _ => [0.0; MAX_NODES],
         };
         let count = step.nodes.count();
@@ -172,7 +172,7 @@ impl Leaf for Springpot {
         match step.form {
             Form::Rates => {
                 let end = step.stroke[step.nodes.count()];
-                memory.commit_rates_at(&polynomial, step.places, end, step.resolution);
+                memory.commit_rates(&polynomial, step.places, end, step.resolution);
             }
             Form::Strokes => memory.commit_at(&polynomial, step.places),
         }

@@ -193,19 +193,6 @@ impl Urdf {
         builder.finish().map_err(|error| self.blame(error))
     }
 
-    /// Line of the link called `name`.
-    pub fn link_line(&self, name: &str) -> Option<usize> {
-        if name == self.root.name {
-            return Some(self.root.line);
-        }
-        self.bodies.iter().position(|body| body.name == name).map(|body| self.lines[body].link)
-    }
-
-    /// Line of the joint called `name`.
-    pub fn joint_line(&self, name: &str) -> Option<usize> {
-        self.bodies.iter().position(|body| body.joint.name == name).map(|body| self.lines[body].joint)
-    }
-
     /// The error with the place of the body that it is about.
     fn blame(&self, source: ModelError) -> UrdfError {
         let place = source.subject().and_then(|subject| {
