@@ -265,7 +265,7 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
     let most = most_points(share, share);
     let look = &wanted.look.asked;
     let is_log = [look.x.is_log, look.y.is_log];
-    let mut begin = |_: &_, _, _: &[usize]| {
+    let begin = |_: &_, _, _: &[usize]| {
         *count += places.y.len();
         if *count > MAX_CURVES {
             let message = format!("the figure would hold more than {MAX_CURVES} curves");
@@ -279,7 +279,7 @@ fn cases(table: &Table, places: &Places, wanted: &Wanted, count: &mut usize) -> 
     };
     let columns: Vec<usize> = [places.x].into_iter().chain(places.y.iter().copied()).collect();
     let reading = Reading { columns: &columns, chosen: &places.chosen, window: look.window };
-    let (cases, sweeps) = table.cases(reading, &mut begin, add)?;
+    let (cases, sweeps) = table.cases(reading, begin, add)?;
     if cases.is_empty() {
         return Err(NotDrawn::new("there are no rows to draw", None));
     }

@@ -160,7 +160,7 @@ fn cases(
     let columns: Vec<usize> = what.iter().filter_map(column).collect();
     let at_x = table.columns.iter().position(|column| column.name == path);
     let listed = table.sweeps[axis].written(path).len();
-    let mut begin = |record: &_, line, position: &[usize]| {
+    let begin = |record: &_, line, position: &[usize]| {
         // The field may be a text where it is not needed.
         let needed = at_x.filter(|_| position[axis] >= listed);
         let field = needed.map_or(Ok(f64::NAN), |at| table.number(record, at, line))?;
@@ -169,7 +169,7 @@ fn cases(
     let add = |kept: &mut (f64, Vec<Totals>), numbers: &[f64]| {
         kept.1.iter_mut().zip(numbers).for_each(|(totals, number)| totals.add(*number));
     };
-    table.cases(Reading { columns: &columns, chosen, window }, &mut begin, add)
+    table.cases(Reading { columns: &columns, chosen, window }, begin, add)
 }
 
 /// Values of the metrics that are drawn, by the position of their case and their name.

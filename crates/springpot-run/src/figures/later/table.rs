@@ -170,7 +170,7 @@ impl Table {
     pub(super) fn cases<K>(
         &self,
         Reading { columns, chosen, window }: Reading<'_>,
-        begin: &mut dyn FnMut(&ByteRecord, u64, &[usize]) -> Result<K, NotDrawn>,
+        mut begin: impl FnMut(&ByteRecord, u64, &[usize]) -> Result<K, NotDrawn>,
         add: impl Fn(&mut K, &[f64]),
     ) -> Result<(Vec<Case<K>>, Vec<Sweep>), NotDrawn> {
         let window = window.zip(self.columns.iter().position(|column| column.name == "t"));
