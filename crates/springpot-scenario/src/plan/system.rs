@@ -34,6 +34,7 @@ impl Plan {
             tells_leaves: self.output.tells_leaves,
             events: self.events.iter().map(|plan| plan.event.clone()).collect(),
             control: self.motion.control(&self.model, course).into(),
+            sensitivity: None,
         };
         match self.end_stops {
             None => system,

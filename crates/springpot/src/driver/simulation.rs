@@ -214,7 +214,7 @@ impl Simulation {
         self.interpolate(self.t())
     }
 
-    /// The derivative of a quantity at a time of the last step by each parameter of [`Settings::sensitivity`]; NaN where it is unknown.
+    /// The derivative of a quantity at a time of the last step by each parameter of [`System::sensitivity`]; NaN where it is unknown.
     ///
     /// # Errors
     /// As of [`Self::interpolate`].

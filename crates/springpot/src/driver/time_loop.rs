@@ -120,8 +120,8 @@ impl Driver {
 
     /// What parameters change at t = 0, where any are asked for.
     fn begin_variation(&mut self, cx: Context) -> Result<(), RunError> {
-        let Recorder { settings, equations, variation, .. } = &mut self.recorder;
-        let Some(by) = &settings.sensitivity else { return Ok(()) };
+        let Recorder { equations, variation, .. } = &mut self.recorder;
+        let Some(by) = &cx.system.sensitivity else { return Ok(()) };
         let Some(origin) = self.solver.stepper().origin() else {
             return Err(SensitivityError::Unknown {
                 what: "steps of one size, and of motions given in advance".into(),

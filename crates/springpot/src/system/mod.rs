@@ -22,6 +22,7 @@ use crate::elements::Element;
 use crate::model::{Model, Site};
 use crate::motion::Trajectory;
 use crate::observe::{ElementQuantity, Observables, Quantity, Table};
+use crate::sensitivity::Sensitivity;
 use crate::table::Column;
 use std::sync::Arc;
 
@@ -44,6 +45,8 @@ pub struct System {
     pub events: Vec<Event>,
     /// What follows from the state in forward runs.
     pub control: Arc<Control>,
+    /// By what its runs are differentiated; `None`: by nothing.
+    pub sensitivity: Option<Arc<Sensitivity>>,
 }
 
 /// Whether motion or forces are given.
@@ -87,6 +90,7 @@ impl System {
             tells_leaves: false,
             events: Vec::new(),
             control: Arc::default(),
+            sensitivity: None,
         }
     }
 

@@ -3,12 +3,10 @@
 use super::error::RunError;
 use super::fixed_step::FixedStep;
 use super::row_times::RowTimes;
-use crate::sensitivity::Sensitivity;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// How a run is carried out.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// End of the motion, s; it starts at 0.
     pub end: f64,
@@ -29,8 +27,6 @@ pub struct Settings {
     pub max_steps: Option<u64>,
     /// Steps of one size, of forward dynamics; `None`: the run chooses its steps.
     pub fixed_step: Option<FixedStep>,
-    /// By what the run is differentiated; `None`: by nothing.
-    pub sensitivity: Option<Arc<Sensitivity>>,
 }
 
 impl Settings {
@@ -46,7 +42,6 @@ impl Settings {
             max_step: None,
             max_steps: None,
             fixed_step: None,
-            sensitivity: None,
         }
     }
 

@@ -9,7 +9,6 @@ use springpot::law::{Catalog, Derivative, Network};
 use springpot::observe::{ElementQuantity, Quantity};
 use springpot::sensitivity::{Parameter, Seed, Sensitivity};
 use springpot::signal::Signal;
-use springpot::system::Settings;
 use std::sync::Arc;
 use support::cases;
 
@@ -125,7 +124,7 @@ fn law(name: &str, values: &[f64], which: usize) -> Network {
 fn compare(text: &str, name: &str, law_values: &[f64], more: &[(&str, usize)]) {
     let at = |values: &[f64; 8], rtol: f64| arm(values, text, rtol);
     let plan = cases(&at(&VALUES, 1e-11)).plan(0).unwrap();
-    let system = plan.system();
+    let mut system = plan.system();
     let heavier = cases(&at(&[&VALUES[..7], &[1.0]].concat().try_into().unwrap(), 1e-9)).plan(0).unwrap().system();
     let seeds = |k: usize| match NAMES[k] {
         "k" => Seed::Law { element: 0, law: law(name, law_values, 0) },
@@ -147,8 +146,8 @@ fn compare(text: &str, name: &str, law_values: &[f64], more: &[(&str, usize)]) {
         parameters.push(parameter(what, law_values[*which], vec![seed]));
     }
     let by = Sensitivity { parameters, extended: None, control: false };
-    let settings = Settings { sensitivity: Some(Arc::new(by)), ..plan.settings.clone() };
-    let mut simulation = Simulation::new(system, settings).unwrap();
+    system.sensitivity = Some(Arc::new(by));
+    let mut simulation = Simulation::new(system, plan.settings.clone()).unwrap();
     let rows = ROWS.map(|t| {
         pass(&mut simulation, t);
         let of = |quantity| simulation.derivatives(t, quantity).unwrap();
