@@ -52,6 +52,30 @@ pub fn ln_gamma(x: f64) -> f64 {
     ln_abs_gamma(x, 0.0)
 }
 
+/// The digamma function Γ'(x)/Γ(x) for x > 0, to 1e-15 of 1 + |ψ(x)|.
+///
+/// Upwards by ψ(x) = ψ(x+1) − 1/x to x ≥ 10, there by the asymptotic series (DLMF 5.5.2, 5.11.2).
+pub fn digamma(x: f64) -> f64 {
+    /// B_{2k}/(2k), k = 1 … 8.
+    const SERIES: [f64; 8] = [
+        1.0 / 12.0,
+        -1.0 / 120.0,
+        1.0 / 252.0,
+        -1.0 / 240.0,
+        1.0 / 132.0,
+        -691.0 / 32760.0,
+        1.0 / 12.0,
+        -3617.0 / 8160.0,
+    ];
+    let (mut x, mut below) = (x, 0.0);
+    while x < 10.0 {
+        below += 1.0 / x;
+        x += 1.0;
+    }
+    let square = 1.0 / (x * x);
+    x.ln() - 0.5 / x - square * SERIES.iter().rev().fold(0.0, |sum, b| sum * square + b) - below
+}
+
 /// ln |Γ(x + i y)| for x > 0 (Lanczos series in complex arithmetic).
 pub fn ln_abs_gamma(x: f64, y: f64) -> f64 {
     // Below 1/2 step up once by |Γ(z)| = |Γ(z+1)|/|z|.
@@ -153,6 +177,25 @@ mod tests {
         }
         assert!((gamma(170.5).ln() / ln_gamma(170.5) - 1.0).abs() < 1e-14);
         assert_eq!(reciprocal_gamma(-3.0), 0.0);
+    }
+
+    #[test]
+    fn digamma_meets_known_values() {
+        // ψ(1) = −γ, ψ(1/2) = −γ − 2 ln 2, ψ(1/4) = −γ − π/2 − 3 ln 2 (DLMF 5.4.12–15).
+        const EULER: f64 = 0.577_215_664_901_532_9;
+        for (x, value) in [
+            (1.0, -EULER),
+            (0.5, -EULER - 2.0 * 2f64.ln()),
+            (0.25, -EULER - PI / 2.0 - 3.0 * 2f64.ln()),
+            (2.0, 1.0 - EULER),
+        ] {
+            assert!((digamma(x) - value).abs() < 2e-15 * (1.0 + value.abs()), "digamma({x}) = {}", digamma(x));
+        }
+        // ψ(1 − x) − ψ(x) = π cot πx (DLMF 5.5.4).
+        for x in [1e-6f64, 0.02, 0.3, 0.77, 0.999] {
+            let expected = PI / (PI * x).tan();
+            assert!((digamma(1.0 - x) - digamma(x) - expected).abs() < 4e-15 * (1.0 + 2.0 * expected.abs()), "{x}");
+        }
     }
 
     #[test]

@@ -49,6 +49,44 @@ struct Kept {
     last: (f64, Vec<f64>),
 }
 
+/// A history at one lag, by its table where there is one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lag<'a> {
+    history: &'a History,
+    lag: f64,
+    table: Option<&'a Table>,
+}
+
+impl Lag<'_> {
+    /// w e^{−X} of a block.
+    #[inline(always)]
+    pub(super) fn weighted<S: Simd>(&self, simd: S, k: usize) -> f64x8<S> {
+        match self.table {
+            Some(table) => load(simd, &table.weighted[k]),
+            None => {
+                let [lambda, weight, _] = self.history.block(simd, k);
+                weight * decay(lambda * self.lag)
+            }
+        }
+    }
+
+    /// e^{−X} and ψ_0 … ψ_3 of a block.
+    #[inline(always)]
+    pub(super) fn moments<S: Simd>(&self, simd: S, k: usize) -> (f64x8<S>, [f64x8<S>; CUBIC]) {
+        match self.table {
+            Some(table) => {
+                let [a, b, c, d]: &[Block; CUBIC] = &table.psi.as_chunks().0[k];
+                (load(simd, &table.decay[k]), [load(simd, a), load(simd, b), load(simd, c), load(simd, d)])
+            }
+            None => {
+                let x = load(simd, &self.history.lambda[k]) * self.lag;
+                let decay = decay(x);
+                (decay, cubic_moments(x, decay))
+            }
+        }
+    }
+}
+
 /// Quadratic forms of the z: Σ w z² and Σ w λ z².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Squares {
@@ -286,15 +324,43 @@ impl History {
 
     /// Drops modes that are faster than lags of `lag` and longer need, once there are many of them.
     pub(super) fn drop_surplus(&mut self, lag: f64) {
-        let surplus = ((lag / self.kernel.delta).ln() / self.kernel.eta).floor();
-        if surplus < SURPLUS as f64 {
+        let surplus = self.surplus(lag);
+        if surplus == 0 {
             return;
         }
         let modes = self.kernel.modes();
-        let surplus = (surplus as usize).min(modes - 1);
         self.kernel.drop_fastest(surplus);
         let z = self.z.as_flattened()[surplus..modes].to_vec();
         self.take_modes(&z);
+    }
+
+    /// How many modes [`Self::drop_surplus`] drops.
+    pub(super) fn surplus(&self, lag: f64) -> usize {
+        let surplus = ((lag / self.kernel.delta).ln() / self.kernel.eta).floor();
+        if surplus < SURPLUS as f64 { 0 } else { (surplus as usize).min(self.kernel.modes() - 1) }
+    }
+
+    /// Width and coefficients of the last piece; none before the first.
+    pub(super) fn last(&self) -> (f64, &[f64]) {
+        (self.last.0, &self.last.1)
+    }
+
+    /// What the modes that are kept make of one lag.
+    pub(super) fn lag(&self, lag: f64) -> Lag<'_> {
+        let moments = CUBIC * self.z.len();
+        let table = self.tables.iter().find(|table| table.lag == lag && table.psi.len() == moments);
+        Lag { history: self, lag, table }
+    }
+
+    /// Number of blocks of modes.
+    pub(super) fn blocks(&self) -> usize {
+        self.z.len()
+    }
+
+    /// λ, w and z of a block.
+    #[inline(always)]
+    pub(super) fn block<S: Simd>(&self, simd: S, k: usize) -> [f64x8<S>; 3] {
+        [load(simd, &self.lambda[k]), load(simd, &self.weight[k]), load(simd, &self.z[k])]
     }
 
     /// Appends the state to `numbers`: modes with their rates and weights, and the last piece.
@@ -331,8 +397,15 @@ impl History {
         self.tables.clear();
     }
 
+    /// What such a mode has of the coefficients of the last piece, a cubic: its width times ψ_0 … ψ_3.
+    pub(super) fn fast_moments(&self, lambda: f64) -> [f64; CUBIC] {
+        let mut psi = [0.0; CUBIC];
+        moments(lambda * self.last.0, &mut psi);
+        psi.map(|psi| self.last.0 * psi)
+    }
+
     /// z of a mode that has forgotten all but the last piece.
-    fn fast_mode(&self, lambda: f64) -> f64 {
+    pub(super) fn fast_mode(&self, lambda: f64) -> f64 {
         let (width, y) = &self.last;
         let (mut few, mut many) = ([0.0; 2 * CUBIC], Vec::new());
         let psi = match few.get_mut(..y.len()) {

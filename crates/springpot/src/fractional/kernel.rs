@@ -232,7 +232,7 @@ impl Kernel {
 }
 
 /// sin(πα)/π = 1/(Γ(α)Γ(1−α)), without cancellation near α = 1.
-fn strength(alpha: f64) -> f64 {
+pub(super) fn strength(alpha: f64) -> f64 {
     (PI * alpha.min(1.0 - alpha)).sin() / PI
 }
 
@@ -295,7 +295,7 @@ impl Tail {
 }
 
 /// The points e^{−kη} down to 1e-20 with masses e^{−αkη}; the rest of the geometric series sits at 0.
-fn geometric_measure(alpha: f64, eta: f64) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn geometric_measure(alpha: f64, eta: f64) -> (Vec<f64>, Vec<f64>) {
     let count = (46.0 / eta).ceil() as usize;
     let mut points: Vec<f64> = (0..count).map(|k| (-(k as f64) * eta).exp()).collect();
     let mut masses: Vec<f64> = (0..count).map(|k| (-(k as f64) * alpha * eta).exp()).collect();

@@ -46,7 +46,7 @@ use crate::collocation::{MAX_NODES, Nodes, Places};
 use serde::{Deserialize, Serialize};
 
 /// Square of what the polynomial with its zeros at the nodes of a step has next to them; between them it is 0.003 to 0.018.
-const NEXT_TO_NODE: f64 = 1e-6;
+pub(super) const NEXT_TO_NODE: f64 = 1e-6;
 
 /// The start of a step as a memory sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -120,6 +120,13 @@ struct Prepared {
     affine: Affine,
 }
 
+/// What integrals of rates owe the strokes, m, and the rate at which a step pays, m/s.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Debt {
+    pub(super) owed: f64,
+    pub(super) rate: f64,
+}
+
 impl Prepared {
     fn is_for(&self, start: &StepStart, nodes: Nodes, places: Option<&Places>, form: Form) -> bool {
         self.start == *start && self.nodes == nodes && self.form == form && self.places.as_ref() == places
@@ -184,7 +191,7 @@ impl Memory {
         Ok(())
     }
 
-    fn is_fractional(&self) -> bool {
+    pub(super) fn is_fractional(&self) -> bool {
         self.alpha > 0.0 && self.alpha < 1.0
     }
 
@@ -241,18 +248,7 @@ impl Memory {
             };
             self.jump * self.singular_factor / power * grown / start.h
         };
-        if let Some(places) = places {
-            let impulses = places.positions().map(impulse);
-            return places.inverse().map(|row| row.iter().zip(impulses).map(|(a, i)| a * i).sum());
-        }
-        match nodes {
-            Nodes::One | Nodes::Midpoint => [impulse(1.0), 0.0, 0.0, 0.0],
-            Nodes::Radau | Nodes::Inner => {
-                let mut impulses = [0.0; MAX_NODES];
-                impulses.iter_mut().zip(nodes.positions()).for_each(|(value, c)| *value = impulse(*c));
-                nodes.inverse().map(|row| row.iter().zip(impulses).map(|(a, i)| a * i).sum())
-            }
-        }
+        collocated(impulse, nodes, places)
     }
 
     /// D^alpha x at the nodes of a step as an affine map of the step's strokes and rates.
@@ -496,19 +492,14 @@ impl Memory {
 
     /// Takes `step` into the past, D^alpha x at its end being that of `as_found`.
     fn take(&mut self, step: &RatePolynomial, as_found: &RatePolynomial, places: Option<&Places>) {
-        let first = match (self.prepared.take(), places) {
-            (_, Some(places)) => places.positions()[0],
-            (Some(prepared), None) => prepared.nodes.positions()[0],
-            // Whoever does not prepare steps asks for the next one with the same lags.
-            (None, None) => {
-                self.prepare_lags(step.h, Nodes::Radau);
-                Nodes::Radau.positions()[0]
-            }
-        };
+        let shortest = self.shortest_lag(step.h, places);
+        // Whoever does not prepare steps asks for the next one with the same lags.
+        if self.prepared.take().is_none() && places.is_none() {
+            self.prepare_lags(step.h, Nodes::Radau);
+        }
         let local = self.local.part(as_found, 1.0);
         let Some(past) = &mut self.past else { return };
         self.travelled += step.travel();
-        let shortest = Nodes::Radau.positions()[0].min(first) * step.h;
         past.extend(shortest);
         self.now = local + past.advance(step.h, &step.u, 0.0);
         past.drop_surplus(shortest);
@@ -519,16 +510,51 @@ impl Memory {
     /// Integrals of rates drift from the strokes, in a step by less than any tolerance; over 10⁵ steps the slowest modes, which
     /// are D^alpha x at small alpha, would be off by 10⁻⁷. What is owed is paid back as a rate, the faster the more it is.
     pub fn commit_rates(&mut self, step: &RatePolynomial, places: Option<&Places>, stroke: f64, resolution: f64) {
-        let Some(past) = &self.past else { return };
-        let owed = (stroke - self.origin) - (self.travelled + step.travel());
+        if self.past.is_none() {
+            return;
+        }
         let mut paid = *step;
-        if owed.abs() > resolution {
-            let largest = step.rate(0.0).abs().max(step.rate(1.0).abs());
-            // Of a debt that may be rounding, no more than the kernel errs: a short step would make much of it.
-            let bearable = 10.0 * past.kernel().tolerance * (owed.abs() / resolution) * largest;
-            paid.u[0] += (owed.abs() / step.h).min(bearable).copysign(owed);
+        if let Some(Debt { rate, .. }) = self.debt(step, stroke, resolution) {
+            paid.u[0] += rate;
         }
         self.take(&paid, step, places);
+    }
+
+    /// The debt behind a step that ends at `stroke`, where it is more than `resolution`.
+    pub(super) fn debt(&self, step: &RatePolynomial, stroke: f64, resolution: f64) -> Option<Debt> {
+        let past = self.past.as_ref()?;
+        let owed = (stroke - self.origin) - (self.travelled + step.travel());
+        if owed.abs() <= resolution || owed.is_nan() {
+            return None;
+        }
+        let largest = step.rate(0.0).abs().max(step.rate(1.0).abs());
+        // Of a debt that may be rounding, no more than the kernel errs: a short step would make much of it.
+        let bearable = 10.0 * past.kernel().tolerance * (owed.abs() / resolution) * largest;
+        Some(Debt { owed, rate: (owed.abs() / step.h).min(bearable).copysign(owed) })
+    }
+
+    /// The shortest lag that steps like the one to be committed ask for.
+    pub(super) fn shortest_lag(&self, h: f64, places: Option<&Places>) -> f64 {
+        let first = match (&self.prepared, places) {
+            (_, Some(places)) => places.positions()[0],
+            (Some(prepared), None) => prepared.nodes.positions()[0],
+            (None, None) => Nodes::Radau.positions()[0],
+        };
+        Nodes::Radau.positions()[0].min(first) * h
+    }
+
+    /// The past as exponentials.
+    pub(super) fn past(&self) -> Option<&History> {
+        self.past.as_ref()
+    }
+
+    pub(super) fn local(&self) -> &Local {
+        &self.local
+    }
+
+    /// x(0) of a singular start, else 0.
+    pub(super) fn singular_jump(&self) -> f64 {
+        self.jump
     }
 
     /// Puts a past before the first step: the modes as a function of their λ, x' just before t = 0, D^alpha x at t = 0, and the mean of
@@ -570,10 +596,26 @@ impl Memory {
     }
 
     /// The stroke that counts as unloaded at alpha = 0.
-    fn held(&self) -> f64 {
+    pub(super) fn held(&self) -> f64 {
         match self.kind {
             Kind::Caputo => self.origin,
             Kind::RiemannLiouville => 0.0,
+        }
+    }
+}
+
+/// Values at the nodes whose collocation has these integrals, over h, up to c; with one node the mean.
+pub(super) fn collocated(impulse: impl Fn(f64) -> f64, nodes: Nodes, places: Option<&Places>) -> [f64; MAX_NODES] {
+    if let Some(places) = places {
+        let impulses = places.positions().map(impulse);
+        return places.inverse().map(|row| row.iter().zip(impulses).map(|(a, i)| a * i).sum());
+    }
+    match nodes {
+        Nodes::One | Nodes::Midpoint => [impulse(1.0), 0.0, 0.0, 0.0],
+        Nodes::Radau | Nodes::Inner => {
+            let mut impulses = [0.0; MAX_NODES];
+            impulses.iter_mut().zip(nodes.positions()).for_each(|(value, c)| *value = impulse(*c));
+            nodes.inverse().map(|row| row.iter().zip(impulses).map(|(a, i)| a * i).sum())
         }
     }
 }

@@ -71,6 +71,7 @@ pub mod prony;
 pub mod scheme;
 pub mod step;
 mod table;
+mod tangent;
 
 pub use differintegral::{
     Definition, DefinitionNameError, DerivativeError, Differintegral, Estimate, Estimated, FunctionError, Method,
@@ -80,3 +81,6 @@ pub use kernel::{Kernel, KernelError};
 pub use kind::Kind;
 pub use memory::{Affine, Energy, Memory, StepStart};
 pub use step::{Form, RatePolynomial};
+pub use tangent::{
+    EnergyTangent, MemoryTangent, RecalledTangent, Singular, TangentEnd, TangentPoint, TangentSeeds, TangentStep,
+};

@@ -1,0 +1,109 @@
+//! How a step is taken into the derivative of a memory.
+
+use super::columns::{Columns, add};
+use super::{MemoryTangent, TangentStep};
+use crate::fractional::exponentials::moments;
+use crate::fractional::history::History;
+use crate::fractional::memory::{Debt, Memory};
+
+/// Where a step of rates ends, as [`Memory::commit_rates`] is told.
+#[derive(Debug, Clone, Copy)]
+pub struct TangentEnd<'a> {
+    /// x.
+    pub stroke: f64,
+    /// ∂x/∂θ, P numbers.
+    pub delta_stroke: &'a [f64],
+    /// To which x is known.
+    pub resolution: f64,
+}
+
+impl MemoryTangent {
+    /// Takes an accepted step into the past, before the memory does; `delta_u` is the derivative of the coefficients u_p of its polynomial,
+    /// 4 rows of P.
+    ///
+    /// With `end` what [`Memory::commit_rates`] does is differentiated, else [`Memory::commit`]. Of a debt the same share is paid as the
+    /// memory pays of its own, none where it pays none.
+    pub fn commit(&mut self, memory: &Memory, step: &TangentStep, delta_u: &[f64], end: Option<&TangentEnd>) {
+        self.is_told = false;
+        let Some(past) = memory.past() else { return };
+        let (h, polynomial, parameters) = (step.polynomial.h, &step.polynomial, self.parameters);
+        self.find_now(memory, past, step, delta_u);
+
+        let shortest = memory.shortest_lag(h, step.places);
+        let missing = past.kernel().missing(shortest);
+        let front: Vec<f64> = (1..=missing).rev().map(|k| past.kernel().faster(k).0).collect();
+        let mut fast = (missing > 0).then(|| self.settled(past, &front, h));
+
+        for p in 0..4 {
+            self.piece.row_mut(p).copy_from_slice(&delta_u[p * parameters..][..parameters]);
+        }
+        let travel = |piece: &Columns, out: &mut [f64]| {
+            (0..4).for_each(|p| add(out, h / (p + 1) as f64, piece.row(p)));
+        };
+        travel(&self.piece, &mut self.travelled);
+        let mut paid = *polynomial;
+        if let Some(end) = end
+            && let Some(Debt { owed, rate }) = memory.debt(polynomial, end.stroke, end.resolution)
+        {
+            paid.u[0] += rate;
+            let share = rate * h / owed;
+            let rows = self.piece.row_mut(0).iter_mut().zip(&mut self.travelled);
+            for (((rate, travelled), stroke), origin) in rows.zip(end.delta_stroke).zip(&self.origin) {
+                let payment = share * ((stroke - origin) - *travelled);
+                *rate += payment / h;
+                *travelled += payment;
+            }
+        }
+        if let Some(fast) = &mut fast {
+            self.grow(fast, &front, h);
+        }
+        self.modes.advance(past.lag(h), h, &self.piece);
+        self.fold(memory, past, step.start.t + h, h);
+        let surplus = if missing > 0 { 0 } else { past.surplus(shortest) };
+        if let Some(fast) = fast {
+            self.modes.put_in_front(fast);
+        }
+        self.modes.drop_front(surplus);
+        if let Some(by_order) = &mut self.by_order {
+            by_order.slow.advance(h, &paid.u, 0.0);
+            by_order.follow(&front, surplus);
+        }
+    }
+
+    /// δD^α x at the end of the step.
+    fn find_now(&mut self, memory: &Memory, past: &History, step: &TangentStep, delta_u: &[f64]) {
+        let h = step.polynomial.h;
+        let mut now = std::mem::take(&mut self.now);
+        now.fill(0.0);
+        let moments = super::order::local_moments(memory.local(), h, 1.0);
+        (0..4).for_each(|p| add(&mut now, moments[p], &delta_u[p * self.parameters..][..self.parameters]));
+        self.add_histories(past, [h], &mut now);
+        if let Some(by_order) = &self.by_order {
+            let moved = by_order.local(memory.local(), &step.polynomial, 1.0) + by_order.history(past, h);
+            add(&mut now, moved, &self.alpha);
+        }
+        self.now = now;
+    }
+
+    /// What modes of these rates have of the last piece, a step of h later.
+    fn settled(&self, past: &History, rates: &[f64], h: f64) -> Columns {
+        let mut modes = Columns::new(self.parameters, rates.len());
+        for (k, lambda) in rates.iter().enumerate() {
+            let share = (-lambda * h).exp();
+            if !past.is_empty() {
+                let factors = past.fast_moments(*lambda);
+                (0..4).for_each(|p| add(modes.row_mut(k), share * factors[p], self.piece.row(p)));
+            }
+        }
+        modes
+    }
+
+    /// Adds what such modes take in of the piece.
+    fn grow(&self, modes: &mut Columns, rates: &[f64], h: f64) {
+        for (k, lambda) in rates.iter().enumerate() {
+            let mut psi = [0.0; 4];
+            moments(lambda * h, &mut psi);
+            (0..4).for_each(|p| add(modes.row_mut(k), h * psi[p], self.piece.row(p)));
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! The derivative of what a springpot stores and dissipates.
+
+use super::columns::add;
+use super::{MemoryTangent, TangentPoint, TangentStep};
+use crate::collocation::Nodes;
+use crate::fractional::exponentials::moments;
+use crate::fractional::history::{History, Squares};
+use crate::fractional::lanes::sum;
+use crate::fractional::memory::Memory;
+use crate::fractional::step::RatePolynomial;
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f64x8};
+
+/// The derivative of [`crate::fractional::Energy`], P numbers each.
+#[derive(Debug)]
+pub struct EnergyTangent<'a> {
+    /// ∂/∂θ of what is stored.
+    pub stored: &'a mut [f64],
+    /// ∂/∂θ of the rate of dissipation; infinite at the time of a jump.
+    pub dissipation: &'a mut [f64],
+}
+
+impl EnergyTangent<'_> {
+    fn rows(&mut self) -> [&mut [f64]; 2] {
+        [&mut *self.stored, &mut *self.dissipation]
+    }
+}
+
+/// What both forms have of δu_p and of δα.
+#[derive(Default)]
+struct Grown {
+    by_u: [[f64; 4]; 2],
+    by_order: [f64; 2],
+}
+
+impl MemoryTangent {
+    /// The derivative of [`Memory::energy`] at θ, 0 ≤ θ ≤ 1, whose kinematics are those of `point`.
+    ///
+    /// With Z_k = e^{−λ_k θh} z_k + θh Σ_p u_p θ^p ψ_p(λ_k θh): δψ = Σ w Z δZ + d2 x' δx' + ½δα(Σ ẇ Z² + ḋ2 x'²), and likewise the rate of
+    /// dissipation with λ and all of d1, d2, d3.
+    pub fn energy(
+        &self,
+        memory: &Memory,
+        step: &TangentStep,
+        theta: f64,
+        point: &TangentPoint,
+        delta_u: &[f64],
+        out: &mut EnergyTangent,
+    ) {
+        out.stored.fill(0.0);
+        out.dissipation.fill(0.0);
+        let Some(past) = memory.past() else { return self.energy_at_limit(memory, point, out) };
+        if theta == 0.0 && past.is_empty() {
+            return;
+        }
+        let polynomial = &step.polynomial;
+        let longer = if polynomial.h > 0.0 { past.extended(Nodes::Radau.positions()[0] * polynomial.h) } else { None };
+        let grown = self.add_modes(past, polynomial, theta, out.rows());
+        self.add_grown(&grown, theta, delta_u, out.rows());
+        if let Some(longer) = &longer {
+            let front = longer.kernel().modes() - past.kernel().modes();
+            self.add_front(longer, front, polynomial, theta, delta_u, out.rows());
+        }
+        let settled = longer.as_ref().unwrap_or(past);
+        let stored_by = if theta == 0.0 { past } else { settled };
+        self.add_settled([stored_by, settled], polynomial, theta, point, delta_u, out.rows());
+        self.add_jumps(past, step, theta, point, out.rows());
+    }
+
+    fn energy_at_limit(&self, memory: &Memory, point: &TangentPoint, out: &mut EnergyTangent) {
+        if memory.alpha() == 0.0 {
+            self.limit(memory, point.delta_stroke, point.delta_rate, out.stored);
+            out.stored.iter_mut().for_each(|stored| *stored *= point.stroke - memory.held());
+        } else {
+            add(out.dissipation, 2.0 * point.rate, point.delta_rate);
+        }
+    }
+
+    /// The modes that are kept, with what moves by δz added.
+    fn add_modes(
+        &self,
+        past: &History,
+        step: &RatePolynomial,
+        theta: f64,
+        [stored, dissipation]: [&mut [f64]; 2],
+    ) -> Grown {
+        let lag = theta * step.h;
+        let at = past.lag(lag);
+        let scaled = scaled(step, theta);
+        let mut grown = Grown::default();
+        dispatch!(Level::new(), simd => {
+            let (mut by_u, mut by_order) = ([[f64x8::splat(simd, 0.0); 4]; 2], [f64x8::splat(simd, 0.0); 2]);
+            for k in 0..past.blocks() {
+                let [lambda, weight, z] = past.block(simd, k);
+                let (decay, psi) = at.moments(simd, k);
+                let value = mode(z, decay, psi, &scaled, lag);
+                let forms = [weight * value, weight * value * lambda * 2.0];
+                for q in 0..2 {
+                    for p in 0..4 {
+                        by_u[q][p] += forms[q] * psi[p] * lag;
+                    }
+                    if let Some(order) = &self.by_order {
+                        by_order[q] += forms[q] * value * order.ratio(simd, k) * 0.5;
+                    }
+                }
+            }
+            for q in 0..2 {
+                for p in 0..4 {
+                    grown.by_u[q][p] = sum(by_u[q][p]);
+                }
+                grown.by_order[q] = sum(by_order[q]);
+            }
+            self.modes.contract(
+                simd,
+                #[inline(always)]
+                |k| {
+                    let [lambda, weight, z] = past.block(simd, k);
+                    let (decay, psi) = at.moments(simd, k);
+                    let form = weight * mode(z, decay, psi, &scaled, lag) * decay;
+                    [form, form * lambda * 2.0]
+                },
+                [&mut *stored, &mut *dissipation],
+            );
+        });
+        if let Some(order) = &self.by_order {
+            let Squares { weighted, with_rates } = order.slow.squares(lag, &scaled);
+            grown.by_order[0] += 0.5 * weighted;
+            grown.by_order[1] += with_rates;
+        }
+        grown
+    }
+
+    fn add_grown(&self, grown: &Grown, theta: f64, delta_u: &[f64], [stored, dissipation]: [&mut [f64]; 2]) {
+        for (q, out) in [stored, dissipation].into_iter().enumerate() {
+            let mut power = 1.0;
+            for p in 0..4 {
+                add(out, power * grown.by_u[q][p], &delta_u[p * self.parameters..][..self.parameters]);
+                power *= theta;
+            }
+            add(out, grown.by_order[q], &self.alpha);
+        }
+    }
+
+    /// The `front` fastest modes of a history, which the memory makes for short steps alone; they have seen the last piece.
+    fn add_front(
+        &self,
+        longer: &History,
+        front: usize,
+        step: &RatePolynomial,
+        theta: f64,
+        delta_u: &[f64],
+        out: [&mut [f64]; 2],
+    ) {
+        let (lag, scaled) = (theta * step.h, scaled(step, theta));
+        let (mut grown, mut by_last) = (Grown::default(), [[0.0; 4]; 2]);
+        let kernel = longer.kernel();
+        for k in 0..front {
+            let (lambda, weight) = (kernel.lambda[k], kernel.weight[k]);
+            let mut psi = [0.0; 4];
+            moments(lambda * lag, &mut psi);
+            let decay = (-lambda * lag).exp();
+            let taken: f64 = scaled.iter().zip(psi).map(|(y, psi)| y * psi).sum();
+            let value = decay * longer.fast_mode(lambda) + lag * taken;
+            // What is stored at the start of a step was stored without them.
+            let stored = if theta == 0.0 { 0.0 } else { weight * value };
+            for (q, form) in [stored, 2.0 * weight * lambda * value].into_iter().enumerate() {
+                let last = longer.fast_moments(lambda);
+                for p in 0..4 {
+                    grown.by_u[q][p] += form * lag * psi[p];
+                    by_last[q][p] += form * decay * last[p];
+                }
+                if let Some(order) = &self.by_order {
+                    grown.by_order[q] += 0.5 * value * order.weight(lambda, form);
+                }
+            }
+        }
+        let [stored, dissipation] = out;
+        for (by_last, out) in by_last.iter().zip([&mut *stored, &mut *dissipation]) {
+            (0..4).for_each(|p| add(out, by_last[p], self.piece.row(p)));
+        }
+        self.add_grown(&grown, theta, delta_u, [stored, dissipation]);
+    }
+
+    /// What is faster than the modes of a history, one for what is stored and one for the dissipation.
+    fn add_settled(
+        &self,
+        pasts: [&History; 2],
+        step: &RatePolynomial,
+        theta: f64,
+        point: &TangentPoint,
+        delta_u: &[f64],
+        [stored, dissipation]: [&mut [f64]; 2],
+    ) {
+        let (rate, bend) = (point.rate, step.bend(theta));
+        let [[_, inertia, _], [d1, d2, d3]] = pasts.map(History::fast_tail);
+        add(stored, inertia * rate, point.delta_rate);
+        add(dissipation, 2.0 * (d1 * rate - d2 * bend), point.delta_rate);
+        let by_bend = 2.0 * (d3 * bend - d2 * rate);
+        if step.h > 0.0 {
+            let slopes = [1.0, 2.0 * theta, 3.0 * theta * theta];
+            for (p, slope) in slopes.into_iter().enumerate() {
+                let row = &delta_u[(p + 1) * self.parameters..][..self.parameters];
+                add(dissipation, by_bend * slope / step.h, row);
+            }
+        }
+        if let Some(order) = &self.by_order {
+            let [[_, inertia, _], [d1, d2, d3]] = pasts.map(|past| order.fast_tail(past.kernel()));
+            add(stored, 0.5 * inertia * rate * rate, &self.alpha);
+            add(dissipation, rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend, &self.alpha);
+        }
+    }
+
+    /// Jumps that are not in the modes, each as j e^{−λ·age} in δz.
+    fn add_jumps(
+        &self,
+        past: &History,
+        step: &TangentStep,
+        theta: f64,
+        point: &TangentPoint,
+        [stored, dissipation]: [&mut [f64]; 2],
+    ) {
+        let polynomial = &step.polynomial;
+        let (lag, scaled, bend) = (theta * polynomial.h, scaled(polynomial, theta), polynomial.bend(theta));
+        for jump in &self.jumps {
+            let age = step.start.t + lag - jump.t;
+            let (at, since) = (past.lag(lag), past.lag(age));
+            let [mut plain, mut rated] = dispatch!(Level::new(), simd => {
+                let mut totals = [f64x8::splat(simd, 0.0); 2];
+                for k in 0..past.blocks() {
+                    let [lambda, _, z] = past.block(simd, k);
+                    let (decay, psi) = at.moments(simd, k);
+                    let value = since.weighted(simd, k) * mode(z, decay, psi, &scaled, lag);
+                    totals[0] += value;
+                    totals[1] += value * lambda * 2.0;
+                }
+                [sum(totals[0]), sum(totals[1])]
+            });
+            if age == 0.0 {
+                let [d1, d2, _] = past.fast_tail();
+                plain += d1 * point.rate - d2 * bend;
+                rated = if point.rate == 0.0 { rated } else { f64::INFINITY.copysign(point.rate) };
+            } else {
+                for k in 1..=past.kernel().missing(age) {
+                    let (lambda, weight) = past.kernel().faster(k);
+                    let settled = weight * (-lambda * age).exp() * (point.rate - bend / lambda);
+                    plain += settled / lambda;
+                    rated += 2.0 * settled;
+                }
+            }
+            jump.add(plain, stored);
+            jump.add(rated, dissipation);
+        }
+    }
+}
+
+/// u_p θ^p.
+fn scaled(step: &RatePolynomial, theta: f64) -> [f64; 4] {
+    let mut power = 1.0;
+    step.u.map(|u| {
+        let coefficient = power * u;
+        power *= theta;
+        coefficient
+    })
+}
+
+/// A block of modes at the lag, whose moments are `decay` and `psi`.
+#[inline(always)]
+fn mode<S: Simd>(z: f64x8<S>, decay: f64x8<S>, psi: [f64x8<S>; 4], y: &[f64; 4], lag: f64) -> f64x8<S> {
+    let [a, b, c, d] = psi;
+    decay * z + (a * y[0] + b * y[1] + c * y[2] + d * y[3]) * lag
+}

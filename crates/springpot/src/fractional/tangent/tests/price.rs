@@ -1,0 +1,61 @@
+//! What a derivative costs beside its memory.
+
+use super::super::{MemoryTangent, Singular, TangentEnd, TangentPoint, TangentSeeds, TangentStep};
+use crate::collocation::{Nodes, RADAU_NODES};
+use crate::fractional::{Form, Kind, Memory, RatePolynomial, StepStart};
+use std::hint::black_box;
+use std::time::Instant;
+
+/// Nanoseconds of a step of the memory, and of a derivative by P parameters beside it.
+fn price(parameters: usize, order: f64) -> [f64; 2] {
+    let h = 1e-3;
+    let mut memory = Memory::new(0.5, Kind::Caputo, 0.0, 0.0, 1e-11, RADAU_NODES[0] * h, 100.0).unwrap();
+    let mut alpha = vec![0.0; parameters];
+    alpha[0] = order;
+    let zeros = vec![0.0; parameters];
+    let seeds = TangentSeeds { alpha: &alpha, origin: &zeros, jump: &zeros };
+    let mut tangent = MemoryTangent::new(&memory, &seeds).unwrap();
+    let delta_u = vec![0.1; 4 * parameters];
+    let ones = vec![1.0; parameters];
+    let mut explicit = vec![0.0; 3 * parameters];
+    let mut spent = [0.0; 2];
+    let mut best = [f64::INFINITY; 2];
+    for n in 0..12_000 {
+        let t = n as f64 * h;
+        let rates: Vec<f64> = [0.0].iter().chain(&RADAU_NODES).map(|c| (8.0 * (t + c * h)).cos()).collect();
+        let polynomial = RatePolynomial::through_rates(h, Nodes::Radau, &rates);
+        let stroke = (8.0 * t).sin() / 8.0;
+        let start = StepStart { t, h, stroke, rate: rates[0] };
+        let step = TangentStep { start, nodes: Nodes::Radau, places: None, form: Form::Rates, polynomial };
+        let point = TangentPoint { stroke, rate: rates[0], delta_stroke: &ones, delta_rate: &ones };
+        let end = TangentEnd { stroke, delta_stroke: &ones, resolution: 1e-15 };
+        let begin = Instant::now();
+        memory.prepare(&start, Nodes::Radau, Form::Rates);
+        black_box(memory.respond(&start, Nodes::Radau, Form::Rates));
+        let middle = Instant::now();
+        tangent.explicit(&memory, &step, Singular::Moments, &point, &mut explicit);
+        tangent.commit(&memory, &step, &delta_u, Some(&end));
+        let late = Instant::now();
+        black_box(&explicit);
+        memory.commit_rates(&polynomial, stroke, 1e-15);
+        let own = (late - middle).as_secs_f64();
+        spent[0] += begin.elapsed().as_secs_f64() - own;
+        spent[1] += own;
+        if n % 100 == 99 {
+            best = std::array::from_fn(|k| best[k].min(spent[k] * 1e7));
+            spent = [0.0; 2];
+        }
+    }
+    best
+}
+
+#[test]
+#[ignore = "a measurement, for its table"]
+fn of_a_step() {
+    for order in [0.0, 1.0] {
+        for parameters in [1, 8, 16, 32, 64] {
+            let [memory, tangent] = price(parameters, order);
+            println!("alpha {order}, P = {parameters}: memory {memory:.0} ns, derivative {tangent:.0} ns");
+        }
+    }
+}
