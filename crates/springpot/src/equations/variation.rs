@@ -180,6 +180,12 @@ impl Variation {
                 }
             }
         }
+        if equations.is_singular() {
+            return Err(SensitivityError::Unknown { what: "a singular start".to_owned() });
+        }
+        let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
+        self.see(0, start, &force);
+        (0..self.elements.len()).for_each(|e| self.measure(e, 0));
         for (e, element) in self.system.elements.iter().enumerate() {
             let law = |seed: &Seed| match seed {
                 Seed::Law { element, law } if *element == e => Some(law.clone()),
@@ -192,7 +198,8 @@ impl Variation {
                     what: format!("\"{}\", which has a named scheme", element.name),
                 });
             };
-            self.elements[e].law = LawVariation::begin(&element.law, &laws, state).map_err(|leaf| {
+            let start = self.elements[e].stroke[..count].to_vec();
+            self.elements[e].law = LawVariation::begin(&element.law, &laws, &start, state).map_err(|leaf| {
                 SensitivityError::Unknown { what: format!("{leaf} in the law of \"{}\"", element.name) }
             })?;
         }

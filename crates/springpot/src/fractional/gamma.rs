@@ -145,26 +145,6 @@ pub fn upper_gamma_ratio_inverse(a: f64, ratio: f64) -> f64 {
     high
 }
 
-/// ψ(x) = Γ'(x)/Γ(x) for x > 0, to rounding; NaN elsewhere.
-///
-/// ψ(x) = ψ(x + 1) − 1/x up to x ≥ 10, then the asymptotic series (Abramowitz & Stegun, 6.3.5 and 6.3.18).
-pub fn digamma(x: f64) -> f64 {
-    // B_2n/(2n), n = 1 … 7.
-    const SERIES: [f64; 7] =
-        [1.0 / 12.0, -1.0 / 120.0, 1.0 / 252.0, -1.0 / 240.0, 1.0 / 132.0, -691.0 / 32_760.0, 1.0 / 12.0];
-    if x.is_nan() || x <= 0.0 {
-        return f64::NAN;
-    }
-    let (mut x, mut below) = (x, 0.0);
-    while x < 10.0 {
-        below += x.recip();
-        x += 1.0;
-    }
-    let square = (x * x).recip();
-    let tail = SERIES.iter().rev().fold(0.0, |sum, b| (sum + b) * square);
-    x.ln() - 0.5 / x - tail - below
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -218,23 +198,5 @@ mod tests {
                 assert!((upper_gamma_ratio(a, x) / ratio - 1.0).abs() < 1e-8);
             }
         }
-    }
-
-    #[test]
-    fn digamma_where_it_is_known() {
-        const EULER: f64 = 0.577_215_664_901_532_9;
-        let known =
-            [(1.0, -EULER), (0.5, -EULER - 2.0 * (2.0f64).ln()), (2.0, 1.0 - EULER), (10.0, 2.251_752_589_066_721)];
-        for (x, value) in known {
-            assert!((digamma(x) - value).abs() < 4e-16 * (1.0 + value.abs()) * 4.0, "{x}: {}", digamma(x));
-        }
-        // Γ grows by ψ.
-        for x in [0.02, 0.3, 1.7, 4.4, 30.0] {
-            let d = 1e-3 * x;
-            let at = |x: f64| ln_gamma(x);
-            let difference = (8.0 * (at(x + d) - at(x - d)) - (at(x + 2.0 * d) - at(x - 2.0 * d))) / (12.0 * d);
-            assert!((digamma(x) / difference - 1.0).abs() < 1e-9, "{x}");
-        }
-        assert!(digamma(0.0).is_nan() && digamma(-1.5).is_nan());
     }
 }

@@ -23,8 +23,8 @@ use super::tangent::AtRest;
 use super::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
-use crate::fractional::KernelError;
 use crate::fractional::Kind as Derivative;
+use crate::fractional::{KernelError, MemoryTangent};
 use num_complex::Complex64;
 use part::Onset;
 use std::sync::Arc;
@@ -261,6 +261,17 @@ impl Network {
     /// The part of it of which no derivative by a parameter is known, as it is called.
     pub fn without_derivatives(&self) -> Option<String> {
         self.ask().without_derivatives()
+    }
+
+    /// Appends what parameters change of its memories at t = 0 ([`super::Leaf::begin_variation`]).
+    pub(super) fn begin_variation(
+        &self,
+        start: &[f64],
+        state: &State,
+        own: &LawVariation,
+        memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        self.ask().begin_variation(start, &mut state.view(), &mut own.view(), memories)
     }
 
     /// What parameters change of its forces at the nodes of a step where strokes and rates there stay, node by node, a block for each

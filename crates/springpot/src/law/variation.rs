@@ -3,6 +3,7 @@
 use super::network::Network;
 use super::state::{State, StateSize};
 use crate::dual::Dual;
+use crate::fractional::MemoryTangent;
 
 /// What parameters change of what a law is told of a step: blocks of `count` derivatives.
 #[derive(Debug, Clone, Copy)]
@@ -46,6 +47,8 @@ pub struct LawVariation {
     pub count: usize,
     /// Of the numbers of its leaves, in their order.
     numbers: Vec<f64>,
+    /// Of its memories.
+    memories: Vec<MemoryTangent>,
     /// Of its inner variables.
     variables: Vec<f64>,
 }
@@ -57,6 +60,8 @@ pub struct VariationRef<'a> {
     pub count: usize,
     /// Blocks of its numbers, in the order of [`super::Leaf::numbers`].
     pub numbers: &'a [f64],
+    /// Of its memories.
+    pub memories: &'a [MemoryTangent],
     /// Blocks of its inner variables.
     pub variables: &'a [f64],
 }
@@ -68,16 +73,18 @@ pub struct VariationMut<'a> {
     pub count: usize,
     /// Blocks of its numbers, which stay.
     pub numbers: &'a [f64],
+    /// Of its memories.
+    pub memories: &'a mut [MemoryTangent],
     /// Blocks of its inner variables.
     pub variables: &'a mut [f64],
 }
 
 impl LawVariation {
-    /// At t = 0: of the law as each parameter has it, with its derivatives in its numbers, where it moves any.
+    /// At t = 0, where x(0) changes by `start`: of the law as each parameter has it, with its derivatives in its numbers, where it moves any.
     ///
     /// # Errors
     /// The name of a leaf whose derivatives are not known.
-    pub(crate) fn begin(law: &Network, by: &[Option<Network>], state: &State) -> Result<Self, String> {
+    pub(crate) fn begin(law: &Network, by: &[Option<Network>], start: &[f64], state: &State) -> Result<Self, String> {
         if let Some(leaf) = law.without_derivatives() {
             return Err(leaf);
         }
@@ -88,17 +95,27 @@ impl LawVariation {
                 numbers[k * count + p] = slope;
             }
         }
-        Ok(Self { count, numbers, variables: vec![0.0; state.size().variables * count] })
+        let mut begun =
+            Self { count, numbers, memories: Vec::new(), variables: vec![0.0; state.size().variables * count] };
+        let mut memories = Vec::new();
+        law.begin_variation(start, state, &begun, &mut memories).map_err(|error| error.to_string())?;
+        begun.memories = memories;
+        Ok(begun)
     }
 
     /// All of it.
     pub(crate) fn view(&self) -> VariationRef<'_> {
-        VariationRef { count: self.count, numbers: &self.numbers, variables: &self.variables }
+        VariationRef { count: self.count, numbers: &self.numbers, memories: &self.memories, variables: &self.variables }
     }
 
     /// All of it, to be changed.
     pub(crate) fn view_mut(&mut self) -> VariationMut<'_> {
-        VariationMut { count: self.count, numbers: &self.numbers, variables: &mut self.variables }
+        VariationMut {
+            count: self.count,
+            numbers: &self.numbers,
+            memories: &mut self.memories,
+            variables: &mut self.variables,
+        }
     }
 }
 
@@ -107,8 +124,10 @@ impl<'a> VariationRef<'a> {
     pub(super) fn take(&mut self, numbers: usize, size: StateSize) -> Self {
         let (own, rest) = self.numbers.split_at(numbers * self.count);
         let (variables, other) = self.variables.split_at(size.variables * self.count);
-        (self.numbers, self.variables) = (rest, other);
-        Self { count: self.count, numbers: own, variables }
+        // None of a law that is only beginning.
+        let (memories, others) = self.memories.split_at(size.memories.min(self.memories.len()));
+        (self.numbers, self.memories, self.variables) = (rest, others, other);
+        Self { count: self.count, numbers: own, memories, variables }
     }
 
     /// The block of its number `k`.
@@ -122,8 +141,9 @@ impl<'a> VariationMut<'a> {
     pub(super) fn take(&mut self, numbers: usize, size: StateSize) -> VariationMut<'a> {
         let (own, rest) = self.numbers.split_at(numbers * self.count);
         let variables = self.variables.split_off_mut(..size.variables * self.count).expect("a state of this law");
+        let memories = self.memories.split_off_mut(..size.memories).expect("a state of this law");
         self.numbers = rest;
-        VariationMut { count: self.count, numbers: own, variables }
+        VariationMut { count: self.count, numbers: own, memories, variables }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
-use crate::fractional::KernelError;
+use crate::fractional::{KernelError, MemoryTangent};
 use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
@@ -184,6 +184,20 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// is known: a law with it is refused where one is asked for.
     fn numbers(&self, _take: &mut dyn FnMut(Dual)) -> bool {
         false
+    }
+
+    /// Appends what changes of its memories at t = 0, where x(0) changes by `start`, a block.
+    ///
+    /// # Errors
+    /// [`KernelError`] where there is no derivative by its order.
+    fn begin_variation(
+        &self,
+        _start: &[f64],
+        _: StateRef,
+        _own: VariationRef,
+        _memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        Ok(())
     }
 
     /// Adds to `forces`, blocks of derivatives node by node, what changes of its forces where strokes and rates at the nodes stay: by its own

@@ -1,12 +1,15 @@
 //! The springpot: a fractional derivative of the stroke.
 
-use super::contract::Leaf;
+use super::contract::{Leaf, When};
 use super::kind::{LeafBuild, LeafKind};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
 use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
-use crate::fractional::{Form, KernelError, Memory};
+use crate::fractional::{
+    EnergyTangent, Form, KernelError, Memory, MemoryTangent, RatePolynomial, Singular, StepStart, TangentEnd,
+    TangentPoint, TangentSeeds, TangentStep,
+};
 use crate::law::catalog::{Param, Range, alpha};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
@@ -14,6 +17,7 @@ use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::Course;
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::LeafAtRest;
+use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef, add};
 use std::borrow::Cow;
 
 /// A coefficient that may follow an input: constant + slope·input.
@@ -102,6 +106,43 @@ impl Springpot {
         }
         let singular = if at.t == 0.0 { f64::NAN } else { memory.singular_part(at.t) };
         Observation { derivative: derivative + singular, regular: c * derivative, singular: c * singular, stored: None }
+    }
+}
+
+/// Blocks of c's numbers: constant, slope, alpha.
+const ALPHA: usize = 2;
+
+impl Coefficient {
+    /// Adds factor·δc, where the input of `inputs` that it follows changes by `input`.
+    fn add_change(
+        &self,
+        inputs: &[InputValue],
+        input: Option<&[f64]>,
+        own: &VariationRef,
+        factor: f64,
+        sum: &mut [f64],
+    ) {
+        add(sum, factor, own.number(0));
+        let Some(followed) = self.input else { return };
+        add(sum, factor * inputs[followed].value, own.number(1));
+        input.into_iter().for_each(|input| add(sum, factor * self.slope.value, input));
+    }
+}
+
+impl Springpot {
+    fn tangent_step<'a>(step: &Step<'a>) -> TangentStep<'a> {
+        let Step { nodes, places, form, .. } = *step;
+        TangentStep { start: step.start(), nodes, places, form, polynomial: step.polynomial() }
+    }
+
+    /// D^alpha x at node `i` of a step, the share of a singular start as the course takes it.
+    fn derivative_at(memory: &Memory, step: &Step, i: usize) -> f64 {
+        let start = step.start();
+        let affine = memory.respond_at(&start, step.nodes, step.places, step.form);
+        let own = |j: usize| {
+            affine.stroke[i][j] * (step.stroke[j + 1] - step.stroke[0]) + affine.rate[i][j] * step.rate[j + 1]
+        };
+        affine.history[i] + (0..step.nodes.count()).map(own).sum::<f64>()
     }
 }
 
@@ -229,6 +270,96 @@ impl Leaf for Springpot {
     fn now(&self, at: &Point, state: StateRef) -> Observation {
         let memory = &state.memories[0];
         self.observation(memory, at, memory.now(at.stroke, at.rate), || memory.stored(at.stroke, at.rate))
+    }
+
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        [self.coefficient.constant, self.coefficient.slope, self.alpha].into_iter().for_each(take);
+        true
+    }
+
+    fn begin_variation(
+        &self,
+        start: &[f64],
+        state: StateRef,
+        own: VariationRef,
+        memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        let none = vec![0.0; start.len()];
+        let jump = if self.derivative == Derivative::RiemannLiouville { start } else { &none };
+        let seeds = TangentSeeds { alpha: own.number(ALPHA), origin: start, jump };
+        memories.push(MemoryTangent::new(&state.memories[0], &seeds)?);
+        Ok(())
+    }
+
+    fn vary(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, forces: &mut [f64]) {
+        let (memory, tangent) = (&state.memories[0], &own.memories[0]);
+        let at_start = TangentPoint {
+            stroke: step.stroke[0],
+            rate: step.rate[0],
+            delta_stroke: told.stroke_at(0),
+            delta_rate: told.rate_at(0),
+        };
+        let mut derivatives = vec![0.0; forces.len()];
+        let singular = if step.course == Course::Sought { Singular::Moments } else { Singular::Values };
+        tangent.explicit(memory, &Self::tangent_step(step), singular, &at_start, &mut derivatives);
+        for (i, forces) in forces.chunks_exact_mut(own.count).enumerate() {
+            let inputs = step.point(i + 1).inputs;
+            add(forces, self.coefficient.at(inputs).value, &derivatives[i * own.count..(i + 1) * own.count]);
+            let followed = self.coefficient.input.and_then(|input| told.input_at(i + 1, input, inputs.len()));
+            let derivative = Self::derivative_at(memory, step, i);
+            self.coefficient.add_change(inputs, followed.map(|[value, _]| value), &own, derivative, forces);
+        }
+    }
+
+    fn commit_variation(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationMut) {
+        let tangent_step = Self::tangent_step(step);
+        let mut changes = vec![0.0; 4 * own.count];
+        tangent_step.delta_polynomial(told.stroke, told.rate, &mut changes);
+        let last = step.nodes.count();
+        let end =
+            TangentEnd { stroke: step.stroke[last], delta_stroke: told.stroke_at(last), resolution: step.resolution };
+        let end = (step.form == Form::Rates).then_some(&end);
+        own.memories[0].commit(&state.memories[0], &tangent_step, &changes, end);
+    }
+
+    fn vary_at(
+        &self,
+        when: When,
+        at: &Point,
+        state: StateRef,
+        told: &PointVariation,
+        own: VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        let (memory, tangent, count) = (&state.memories[0], &own.memories[0], own.count);
+        let point = TangentPoint { stroke: at.stroke, rate: at.rate, delta_stroke: told.stroke, delta_rate: told.rate };
+        let (mut changes, mut derivatives) = (vec![0.0; 4 * count], vec![0.0; count]);
+        let (tangent_step, theta, derivative, energy) = match (when, told.step) {
+            (When::Within(step, theta), Some(around)) => {
+                let tangent_step = Self::tangent_step(step);
+                tangent_step.delta_polynomial(around.stroke, around.rate, &mut changes);
+                tangent.at(memory, &tangent_step, theta, &point, &changes, &mut derivatives);
+                let seen = self.at(step, theta, at, state);
+                let energy = memory.energy(&tangent_step.polynomial, theta, at.stroke, at.rate).stored;
+                (tangent_step, theta, seen.derivative, energy)
+            }
+            _ => {
+                tangent.now(memory, told.stroke, told.rate, &mut derivatives);
+                let start = StepStart { t: at.t, h: 0.0, stroke: at.stroke, rate: at.rate };
+                let polynomial = RatePolynomial { h: 0.0, u: [0.0; 4] };
+                let still = TangentStep { start, nodes: Nodes::Radau, places: None, form: Form::Rates, polynomial };
+                (still, 0.0, memory.now(at.stroke, at.rate), memory.stored(at.stroke, at.rate))
+            }
+        };
+        let c = self.coefficient.at(at.inputs).value;
+        let followed = self.coefficient.input.and_then(|input| told.input(input, count)).map(|[value, _]| value);
+        add(sum.force, c, &derivatives);
+        self.coefficient.add_change(at.inputs, followed, &own, derivative, sum.force);
+        let (mut stored, mut dissipation) = (vec![0.0; count], vec![0.0; count]);
+        let mut change = EnergyTangent { stored: &mut stored, dissipation: &mut dissipation };
+        tangent.energy(memory, &tangent_step, theta, &point, &changes, &mut change);
+        add(sum.stored, c, &stored);
+        self.coefficient.add_change(at.inputs, followed, &own, energy, sum.stored);
     }
 
     fn linearised(&self, at: &Point) -> Term {

@@ -3,7 +3,7 @@
 use super::part::{Onset, Part, Reported, Seen, Take};
 use super::{Guard, Holds, Network};
 use crate::collocation::{MAX_NODES, Nodes};
-use crate::fractional::{KernelError, Memory, RatePolynomial};
+use crate::fractional::{KernelError, Memory, MemoryTangent, RatePolynomial};
 use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::past::Recalled;
 use crate::law::rule::RuleError;
@@ -170,6 +170,17 @@ impl Part for LeafPart {
     fn without_derivatives(&self) -> Option<String> {
         let known = self.leaf.numbers(&mut |_| {});
         (!known).then(|| self.name.as_ref().map_or(self.leaf.name(), |name| name).to_owned())
+    }
+
+    fn begin_variation(
+        &self,
+        start: &[f64],
+        state: &mut StateRef,
+        own: &mut VariationRef,
+        memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        let size = self.leaf.size();
+        self.leaf.begin_variation(start, state.take(size), own.take(self.number_count(), size), memories)
     }
 
     fn vary(

@@ -2,7 +2,7 @@
 
 use super::{LeafPart, Network};
 use crate::collocation::MAX_NODES;
-use crate::fractional::KernelError;
+use crate::fractional::{KernelError, MemoryTangent};
 use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::network::{Guard, Holds};
 use crate::law::past::Recalled;
@@ -194,6 +194,17 @@ pub(in crate::law) trait Part: std::fmt::Debug {
     /// The part of it of which no derivative is known ([`Leaf::numbers`]), as it is called.
     fn without_derivatives(&self) -> Option<String> {
         self.parts().iter().find_map(|part| part.ask().without_derivatives())
+    }
+
+    /// Appends what changes of its memories at t = 0 ([`Leaf::begin_variation`]).
+    fn begin_variation(
+        &self,
+        start: &[f64],
+        state: &mut StateRef,
+        own: &mut VariationRef,
+        memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        self.parts().iter().try_for_each(|part| part.ask().begin_variation(start, state, own, memories))
     }
 
     /// Adds what changes of its forces at the nodes ([`Leaf::vary`]).

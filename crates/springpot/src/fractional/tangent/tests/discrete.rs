@@ -205,7 +205,7 @@ fn go(
         }
         tangent.commit(memory, &step, &delta_u, pays.then_some(&end));
         if pays {
-            memory.commit_rates_at(&step.polynomial, places.as_ref(), stroke, end.resolution);
+            memory.commit_rates(&step.polynomial, places.as_ref(), stroke, end.resolution);
         } else {
             memory.commit_at(&step.polynomial, places.as_ref());
         }
