@@ -6,9 +6,9 @@ use super::roots::try_step;
 use crate::account::recorder::Recorder;
 use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
-use crate::equations::Variation;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, Sampler};
+use crate::equations::{Node, Variation};
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
@@ -120,25 +120,22 @@ impl Driver {
 
     /// What parameters change at t = 0, where any are asked for.
     fn begin_variation(&mut self, cx: Context) -> Result<(), RunError> {
-        let Recorder { equations, variation, .. } = &mut self.recorder;
+        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
-        let Some(origin) = self.solver.stepper().origin() else {
-            return Err(SensitivityError::Unknown {
-                what: "steps of one size, and of motions given in advance".into(),
-            }
-            .into());
-        };
+        if !self.solver.stepper().varies() {
+            return Err(SensitivityError::Unknown { what: "steps of one size".into() }.into());
+        }
         let mut begun = Variation::new(cx.system, by)?;
-        begun.begin(equations, origin)?;
+        begun.begin(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a })?;
         *variation = Some(Box::new(begun));
         Ok(())
     }
 
     /// What parameters change on the far side of what was crossed.
     fn settle_variation(&mut self) {
-        let Recorder { equations, variation, .. } = &mut self.recorder;
-        if let (Some(variation), Some(origin)) = (variation, self.solver.stepper().origin()) {
-            variation.settle(equations, origin);
+        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
+        if let Some(variation) = variation {
+            variation.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a });
         }
     }
 

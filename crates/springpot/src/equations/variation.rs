@@ -28,11 +28,16 @@ pub(crate) struct Variation {
     pub(crate) elements: Vec<ElementVariation>,
     /// At the start of the step, at its nodes, and at a row.
     pub(crate) nodes: [NodeVariation; ROW + 1],
+    /// How large q and v have changed so far, in the blocks of the nodes.
+    sizes: [Vec<f64>; 2],
     forces: Forces,
     workspace: Workspace,
     tau: Vec<f64>,
     pub(crate) solve: Solve,
 }
+
+/// Share of the largest change below which that of one velocity counts as so large.
+const BESIDE: f64 = 1e-4;
 
 /// The node of a row.
 pub(crate) const ROW: usize = STAGES + 1;
@@ -92,8 +97,9 @@ impl Variation {
             own_q.extend(model.q_range(other));
             own_v.extend(model.v_range(other));
         }
-        let Motion::Forward(forward) = &extended.motion else {
-            return Err(SensitivityError::Unknown { what: "motions that are given in advance".to_owned() });
+        let start = match &extended.motion {
+            Motion::Forward(forward) => forward.q.clone(),
+            Motion::Given(_) => model.neutral(),
         };
         let zeros = || vec![0.0; model.nv() * count];
         let node = || NodeVariation {
@@ -136,9 +142,10 @@ impl Variation {
         Ok(Self {
             own_q,
             own_v,
-            q: forward.q.clone(),
+            q: start,
             elements,
             nodes: std::array::from_fn(|_| node()),
+            sizes: [zeros(), zeros()],
             forces: Forces::default(),
             workspace: Workspace::new(model),
             tau: vec![0.0; model.nv()],
@@ -146,6 +153,32 @@ impl Variation {
             by: by.clone(),
             system: extended.clone(),
         })
+    }
+
+    /// Whether its errors share in the choice of steps.
+    pub(crate) fn shares_in_steps(&self) -> bool {
+        self.by.control
+    }
+
+    /// How large q and v of velocity `row` have changed by parameter `p`, those at the end of the step at hand among them. What hardly changes
+    /// beside the others is measured by them.
+    pub(crate) fn size(&self, row: usize, p: usize) -> [f64; 2] {
+        let (count, last) = (self.count(), &self.nodes[STAGES]);
+        let of = |sizes: &[f64], end: &[f64]| {
+            let own = |k: usize| sizes[k * count + p].max(end[k * count + p].abs());
+            let largest = (0..self.nv()).map(own).fold(0.0, f64::max);
+            own(row).max(BESIDE * largest)
+        };
+        let [q, v] = &self.sizes;
+        [of(q, &last.q), of(v, &last.v)]
+    }
+
+    /// Takes in how large the changes where the next step starts are.
+    fn take_sizes(&mut self) {
+        let Self { nodes: [start, ..], sizes: [q, v], .. } = self;
+        for (sizes, now) in [(q, &start.q), (v, &start.v)] {
+            sizes.iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
+        }
     }
 
     /// Number of parameters.
@@ -204,6 +237,7 @@ impl Variation {
             })?;
         }
         self.settle(equations, start);
+        self.take_sizes();
         Ok(())
     }
 
@@ -220,6 +254,9 @@ impl Variation {
         let Self { nodes: [node, ..], elements, solve, tau, .. } = self;
         node.a.fill(0.0);
         let n = tau.len();
+        if free.is_empty() {
+            return;
+        }
         if !solve.factor_part(&node.slopes.d_a, n, &free) {
             node.a.fill(f64::NAN);
             return;
@@ -320,6 +357,16 @@ impl Variation {
         }
     }
 
+    /// The motion changes at node `i` as at the start: it is given.
+    pub(crate) fn follow(&mut self, i: usize) {
+        let [start, others @ ..] = &mut self.nodes;
+        let node = &mut others[i - 1];
+        node.q.copy_from_slice(&start.q);
+        node.v.copy_from_slice(&start.v);
+        node.a.copy_from_slice(&start.a);
+        (0..self.elements.len()).for_each(|e| self.measure(e, i));
+    }
+
     /// What changes of stroke and rate of element `e` at node `i`.
     pub(crate) fn measure(&mut self, e: usize, i: usize) {
         let (count, Self { nodes, elements, .. }) = (self.count(), self);
@@ -374,6 +421,7 @@ impl Variation {
             rate.copy_within(last.., 0);
         }
         self.nodes.swap(0, STAGES);
+        self.take_sizes();
     }
 
     /// What changes of the force of element `e` at node `i` (from 1) by parameter `p`.

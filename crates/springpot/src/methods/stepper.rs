@@ -2,10 +2,10 @@
 
 use crate::account::recorder::Recorder;
 use crate::dynamics::Kinematics;
+use crate::equations::Variation;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::{Change, Equations, Look};
-use crate::equations::{Node, Variation};
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::settings::Settings;
@@ -134,9 +134,9 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
     /// Works out what parameters change of the motion at θ of the step at hand, as a row is asked for.
     fn vary_within(&mut self, _: &mut Variation, _theta: f64, _size: f64) {}
 
-    /// Where the next step starts.
-    fn origin(&self) -> Option<Node<'_>> {
-        None
+    /// Whether it works out what parameters change ([`Self::vary`]).
+    fn varies(&self) -> bool {
+        true
     }
 
     /// Takes over what changes where the step starts.

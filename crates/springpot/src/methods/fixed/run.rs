@@ -135,6 +135,10 @@ impl Stepper for Fixed {
         self.by.step
     }
 
+    fn varies(&self) -> bool {
+        false
+    }
+
     fn fixed_step(&self) -> Option<f64> {
         Some(self.by.step)
     }

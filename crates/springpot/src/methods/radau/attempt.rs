@@ -66,6 +66,7 @@ impl Radau {
             if whole || self.has_inner_variables {
                 (error, worst) = self.recorder_error(cx, recorder, h, whole, (error, worst));
             }
+            error = error.max(self.variation_error(recorder, h));
         }
         let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
         if error > 1.0 || error.is_nan() {
@@ -90,6 +91,19 @@ impl Radau {
         self.last = Some((h, error));
         // A step that changes little keeps its size, and with it the tables of the exponentials.
         Ok(Ok(if (1.0..KEPT).contains(&factor) { 1.0 } else { factor.clamp(0.2, 8.0) }))
+    }
+
+    /// The error of what parameters change over the step, where that shares in the choice of steps.
+    fn variation_error(&mut self, recorder: &mut Recorder, h: f64) -> f64 {
+        let Recorder { equations, variation, .. } = recorder;
+        let Some(variation) = variation.as_deref_mut().filter(|variation| variation.shares_in_steps()) else {
+            return 0.0;
+        };
+        if self.step.vary(equations, variation, h) {
+            self.step.estimate_variation(equations, variation, h)
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// Velocities whose energy is beyond double precision.

@@ -12,7 +12,7 @@ use crate::dynamics::Kinematics;
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
-use crate::equations::{Change, Equations, Look, Node, Solved, Variation, Within};
+use crate::equations::{Change, Equations, Look, Solved, Variation, Within};
 use crate::law::Course;
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
 use crate::sensitivity::SensitivityError;
@@ -188,7 +188,8 @@ impl Stepper for Radau {
     fn vary(&mut self, _: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
         let Recorder { equations, variation, .. } = recorder;
         let Some(variation) = variation else { return Ok(()) };
-        if self.step.vary(equations, variation, step.size) {
+        // What shares in the choice of steps was worked out with the step.
+        if variation.shares_in_steps() || self.step.vary(equations, variation, step.size) {
             return Ok(());
         }
         Err(SensitivityError::Unknown { what: format!("a motion without inertia at t = {} s", step.from) }.into())
@@ -196,10 +197,6 @@ impl Stepper for Radau {
 
     fn vary_within(&mut self, variation: &mut Variation, theta: f64, size: f64) {
         self.step.vary_within(variation, theta, size);
-    }
-
-    fn origin(&self) -> Option<Node<'_>> {
-        Some(self.step.origin.node())
     }
 
     fn gives_up(&self, _: Context, _: &Recorder, step: &Target, size: f64) -> Option<RunError> {
