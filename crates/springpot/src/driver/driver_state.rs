@@ -1,6 +1,7 @@
 //! The state of a driver, and whose it is.
 
 use crate::account::recorder::RecorderState;
+use crate::equations::VariationState;
 use crate::equations::control::SamplerState;
 use crate::methods::solver::SolverState;
 use crate::system::System;
@@ -14,6 +15,7 @@ use std::fmt::{self, Write as _};
 pub(super) struct DriverState {
     pub(super) system: u64,
     pub(super) recorder: RecorderState,
+    pub(super) variation: Option<VariationState>,
     pub(super) sampler: Option<SamplerState>,
     pub(super) solver: SolverState,
     pub(super) t: f64,

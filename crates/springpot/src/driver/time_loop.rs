@@ -8,7 +8,7 @@ use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, Sampler};
-use crate::equations::{Node, Variation};
+use crate::equations::{Node, Variation, VariationState};
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
@@ -128,6 +128,19 @@ impl Driver {
         let mut begun = Variation::new(cx.system, by)?;
         begun.begin(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a })?;
         *variation = Some(Box::new(begun));
+        Ok(())
+    }
+
+    /// Goes on with what parameters changed, where any are asked for.
+    fn load_variation(&mut self, cx: Context, state: Option<VariationState>) -> Result<(), RunError> {
+        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
+        let Some(by) = &cx.system.sensitivity else { return Ok(()) };
+        let mut loaded = Variation::new(cx.system, by)?;
+        let start = Node { t: at.t, q: &at.q, v: &at.v, a: &at.a };
+        if !state.is_some_and(|state| loaded.load(state, equations, start)) {
+            return Err(RunError::OtherRun);
+        }
+        *variation = Some(Box::new(loaded));
         Ok(())
     }
 
@@ -585,6 +598,7 @@ impl Driver {
         DriverState {
             system: self.fingerprint(cx),
             recorder: self.recorder.state(),
+            variation: self.recorder.variation.as_ref().map(|variation| variation.save()),
             sampler: self.sampler.as_ref().map(|sampler| sampler.state()),
             solver: self.solver.save(),
             t: self.t,
@@ -601,7 +615,8 @@ impl Driver {
     /// # Errors
     /// [`RunError::OtherRun`], and the driver as it was.
     pub(super) fn go_on(&mut self, cx: Context, state: DriverState) -> Result<(), RunError> {
-        let DriverState { system, recorder, sampler, solver, t, h, crossing, tick, steps, rejected_steps } = state;
+        let DriverState { system, recorder, variation, sampler, solver, t, h, crossing, tick, steps, rejected_steps } =
+            state;
         if system != self.fingerprint(cx) || !self.solver.fits(&solver) || !self.recorder.go_on(recorder) {
             return Err(RunError::OtherRun);
         }
@@ -619,7 +634,7 @@ impl Driver {
         (self.t, self.h, self.step, self.crossing) = (t, h, None, crossing);
         self.planned = h;
         (self.tick, self.steps, self.rejected_steps) = (tick, steps, rejected_steps);
-        Ok(())
+        self.load_variation(cx, variation)
     }
 
     /// What the run did, but for its rows.

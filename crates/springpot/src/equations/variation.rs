@@ -13,6 +13,7 @@ use crate::model::{FrictionLaw, Model};
 use crate::observe::{Axis, ElementQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Derivatives of a run by its parameters, in blocks of one number for each parameter; velocities count as those of the extended robot.
@@ -36,11 +37,23 @@ pub(crate) struct Variation {
     pub(crate) solve: Solve,
 }
 
+/// Share of what the motion comes to that a change by the whole of a parameter is expected to come to at least.
+const BEGUN: f64 = 1e-3;
+
 /// Share of the largest change below which that of one velocity counts as so large.
 const BESIDE: f64 = 1e-4;
 
 /// The node of a row.
 pub(crate) const ROW: usize = STAGES + 1;
+
+/// What of it outlasts a step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct VariationState {
+    /// Blocks of q, v and a where the next step starts.
+    motion: [Vec<f64>; 3],
+    sizes: [Vec<f64>; 2],
+    laws: Vec<LawVariation>,
+}
 
 /// An element over a step.
 #[derive(Debug)]
@@ -161,16 +174,19 @@ impl Variation {
     }
 
     /// How large q and v of velocity `row` have changed by parameter `p`, those at the end of the step at hand among them. What hardly changes
-    /// beside the others is measured by them.
-    pub(crate) fn size(&self, row: usize, p: usize) -> [f64; 2] {
+    /// beside the others is measured by them, and what begins like no power of t, alike on every scale of it, by the travel and the speed of the
+    /// motion itself, `moved`.
+    pub(crate) fn size(&self, row: usize, p: usize, moved: [f64; 2]) -> [f64; 2] {
         let (count, last) = (self.count(), &self.nodes[STAGES]);
+        let typical = self.by.parameters[p].typical.abs();
+        let expected = |size: f64| if typical > 0.0 { BEGUN * size / typical } else { 0.0 };
         let of = |sizes: &[f64], end: &[f64]| {
             let own = |k: usize| sizes[k * count + p].max(end[k * count + p].abs());
             let largest = (0..self.nv()).map(own).fold(0.0, f64::max);
             own(row).max(BESIDE * largest)
         };
-        let [q, v] = &self.sizes;
-        [of(q, &last.q), of(v, &last.v)]
+        let ([q, v], [travel, speed]) = (&self.sizes, moved.map(expected));
+        [of(q, &last.q).max(travel), of(v, &last.v).max(speed)]
     }
 
     /// Takes in how large the changes where the next step starts are.
@@ -417,11 +433,39 @@ impl Variation {
             let told = of_step(count, [stroke, rate], inputs);
             equations.bank.commit_variation(e, &told, law);
             let last = STAGES * count;
-            stroke.copy_within(last.., 0);
-            rate.copy_within(last.., 0);
+            for blocks in [stroke, rate] {
+                blocks.copy_within(last..last + count, 0);
+            }
+            for blocks in inputs {
+                let own = blocks.len() / (ROW + 1);
+                blocks.copy_within(STAGES * own..(STAGES + 1) * own, 0);
+            }
         }
         self.nodes.swap(0, STAGES);
         self.take_sizes();
+    }
+
+    /// What outlasts the steps.
+    pub(crate) fn save(&self) -> VariationState {
+        let [NodeVariation { q, v, a, .. }, ..] = &self.nodes;
+        let laws = self.elements.iter().map(|element| element.law.clone()).collect();
+        VariationState { motion: [q.clone(), v.clone(), a.clone()], sizes: self.sizes.clone(), laws }
+    }
+
+    /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
+    pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
+        let VariationState { motion: [q, v, a], sizes, laws } = state;
+        let blocks = self.sizes[0].len();
+        if laws.len() != self.elements.len() || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks) {
+            return false;
+        }
+        let [node, ..] = &mut self.nodes;
+        (node.q, node.v, node.a, self.sizes) = (q, v, a, sizes);
+        self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
+        let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
+        self.see(0, start, &force);
+        (0..self.elements.len()).for_each(|e| self.measure(e, 0));
+        true
     }
 
     /// What changes of the force of element `e` at node `i` (from 1) by parameter `p`.

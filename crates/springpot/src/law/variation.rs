@@ -4,6 +4,7 @@ use super::network::Network;
 use super::state::{State, StateSize};
 use crate::dual::Dual;
 use crate::fractional::MemoryTangent;
+use serde::{Deserialize, Serialize};
 
 /// What parameters change of what a law is told of a step: blocks of `count` derivatives.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +42,7 @@ pub struct ObservationVariation<'a> {
 }
 
 /// What parameters change of a law's own: its numbers, and what it keeps between steps.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct LawVariation {
     /// Number of parameters.
     pub count: usize,

@@ -244,3 +244,27 @@ fn a_slider_at_rest_in_equilibrium() {
         }
     }
 }
+
+#[test]
+fn states_take_derivatives_with_them() {
+    let law_text = "law = \"fractional-kelvin-voigt\"\nparameters = { k = {k}, c = {c}, alpha = 0.4 }";
+    let plan = cases(&arm(&VALUES, [law_text, ""], 1e-8)).plan(0).unwrap();
+    let network = |which| law("fractional-kelvin-voigt", &[VALUES[0], VALUES[1], 0.4], which);
+    let alpha = parameter("alpha", 0.4, vec![Seed::Law { element: 0, law: network(2) }]);
+    let v = parameter("v", 0.3, vec![Seed::Velocity { velocity: 1, by: 1.0 }]);
+    let mut system = plan.system();
+    let by = Sensitivity { parameters: vec![alpha, v], extended: None, control: true };
+    system.sensitivity = Some(Arc::new(by));
+    let system = Arc::new(system);
+    let begin = || Simulation::new(system.clone(), plan.settings.clone()).unwrap();
+    let (mut first, mut second) = (begin(), begin());
+    pass(&mut first, 0.3);
+    let state = first.state().unwrap();
+    second.set_state(&state).unwrap();
+    let all = |simulation: &mut Simulation| {
+        pass(simulation, 0.6);
+        let of = |quantity| simulation.derivatives(0.6, quantity).unwrap();
+        quantities().into_iter().map(of).collect::<Vec<_>>()
+    };
+    assert_eq!(all(&mut first), all(&mut second));
+}

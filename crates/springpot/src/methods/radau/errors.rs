@@ -18,7 +18,7 @@ pub(super) struct Errors {
     /// The energy turned over so far, J.
     pub(super) energy: f64,
     /// How fast and how far each free velocity moves until the end of this step.
-    sized: Vec<[f64; 2]>,
+    pub(super) sized: Vec<[f64; 2]>,
     /// Errors that are allowed in this step, of each free velocity and of its coordinate.
     pub(super) allowed: Vec<[f64; 2]>,
     /// What rounding makes of each free velocity in this step.

@@ -87,7 +87,8 @@ impl RadauStep {
             self.filter.solve(&mut error);
             let mut sum = 0.0;
             for (r, &k) in free.iter().enumerate() {
-                let [q, v] = variation.size(k, p).map(|size| self.errors.tolerance.rtol * size);
+                let [speed, travel] = self.errors.sized[r];
+                let [q, v] = variation.size(k, p, [travel, speed]).map(|size| self.errors.tolerance.rtol * size);
                 let share = |error: f64, allowed: f64| if error == 0.0 { 0.0 } else { (error / allowed).powi(2) };
                 sum += share(error[r], v) + share(r_q[r] + step * error[r], q);
             }
