@@ -126,7 +126,7 @@ fn law(name: &str, values: &[f64], which: usize) -> Network {
 /// Derivatives of q and v at the end by all of [`NAMES`], and by differences.
 fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], more: &[(&str, usize)]) {
     let at = |values: &[f64; 8], rtol: f64| arm(values, [text, motion], rtol);
-    let plan = cases(&at(&VALUES, 1e-11)).plan(0).unwrap();
+    let plan = cases(&at(&VALUES, 1e-9)).plan(0).unwrap();
     let mut system = plan.system();
     let heavier = cases(&at(&[&VALUES[..7], &[1.0]].concat().try_into().unwrap(), 1e-9)).plan(0).unwrap().system();
     let seeds = |k: usize| match NAMES[k] {
@@ -149,7 +149,7 @@ fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], more: &[(&
         let seed = Seed::Law { element: 0, law: law(name, law_values, *which) };
         parameters.push(parameter(what, law_values[*which], vec![seed]));
     }
-    let by = Sensitivity { parameters, extended: None, control: false };
+    let by = Sensitivity { parameters, extended: None, control: true };
     system.sensitivity = Some(Arc::new(by));
     let mut simulation = Simulation::new(system, plan.settings.clone()).unwrap();
     let rows = ROWS.map(|t| {
@@ -181,7 +181,7 @@ fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], more: &[(&
                 let (found, miss) = (rows[r][k][p], (rows[r][k][p] - row[k]).abs() / size.max(1e-5));
                 // Of accelerations within a step the differences know no more.
                 let is_loose = matches!(quantity, Quantity::Acceleration(_)) || what == "alpha";
-                let known = if is_loose { 2e-6 } else { 1.5e-7 };
+                let known = if is_loose { 5e-6 } else { 1.5e-7 };
                 assert!(
                     miss < known,
                     "{name} by {what}: {quantity:?} at {}: {found} for {}, {miss:e}",
@@ -239,7 +239,6 @@ fn a_slider_at_rest_in_equilibrium() {
         for quantity in [Quantity::Coordinate(0), Quantity::Velocity(0), Quantity::Element(0, ElementQuantity::Force)] {
             let found = still.derivatives(t, quantity).unwrap()[0];
             let truth = snapshot.value(quantity);
-            eprintln!("{quantity:?} {t} {found} {truth} {:e} {} steps", found - truth, still.report().steps);
             assert!((found - truth).abs() < 2e-8 * if matches!(quantity, Quantity::Element(..)) { 50.0 } else { 1.0 });
         }
     }
