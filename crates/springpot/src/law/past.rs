@@ -205,7 +205,7 @@ impl Past {
             Self::Held(age) => {
                 let mut state = law.begin(&Start { jump: start.stroke, ..*start })?;
                 state.open(tolerance, SHORTEST * age, age + horizon)?;
-                if law.has_inner_variables() && start.stroke != 0.0 {
+                if law.has_inner_variables() && (start.stroke != 0.0 || !is_dead(law, start.inputs)) {
                     relax(law, start, *age, &mut state);
                 }
                 state.memories_mut().iter_mut().for_each(|memory| memory.age(*age));
@@ -280,9 +280,19 @@ pub(crate) fn jolt(
 
 /// Whether strokes inside follow from moduli alone: those of a linear law that gives no force where nothing was ever stretched.
 fn shares_by_modulus(law: &Network, inputs: &[InputValue]) -> bool {
+    law.is_linear() && is_dead(law, inputs)
+}
+
+/// Whether no part of a law gives a force where nothing was ever stretched.
+fn is_dead(law: &Network, inputs: &[InputValue]) -> bool {
     let origin = Start { stroke: 0.0, jump: 0.0, inputs };
     let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs };
-    law.is_linear() && law.begin(&origin).is_ok_and(|state| law.now(&at, &state).force() == 0.0)
+    law.begin(&origin).is_ok_and(|state| {
+        // Held since ever parts in series have come to rest under no force, at strokes of their own.
+        let mut leaves = Vec::new();
+        law.leaves_now(&at, &state, &mut leaves);
+        law.now(&at, &state).force() == 0.0 && leaves.iter().all(|leaf| leaf.stroke == 0.0)
+    })
 }
 
 /// The state after stretches of x(0) from 0, each with its age, s, and its share.

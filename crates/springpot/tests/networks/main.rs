@@ -10,6 +10,7 @@ mod orders;
 mod pasts;
 mod piezo;
 mod series;
+mod starts;
 #[path = "../support/mod.rs"]
 mod support;
 mod tolerance;

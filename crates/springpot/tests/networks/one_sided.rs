@@ -11,7 +11,7 @@ use springpot::fractional::mittag_leffler::MittagLeffler;
 use springpot::law::{Derivative, Network, NetworkText, Start};
 use std::f64::consts::PI;
 
-fn network(text: &str, values: &[f64]) -> Network {
+pub(crate) fn network(text: &str, values: &[f64]) -> Network {
     NetworkText::parse(text).unwrap().entry().build(values, Derivative::Caputo).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! Who takes the stroke at t = 0.
 
-use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, Series};
+use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, MOST_SECANTS, Play, Series};
 use crate::fractional::{KernelError, Kind as Derivative, Memory};
 use crate::law::network::Network;
 use crate::law::network::part::{Onset, Part};
@@ -18,6 +18,9 @@ pub(super) fn begin(series: &Series, start: &Start, state: &mut State) -> Result
         None if start.jump != 0.0 => Onset::Short,
         Some(Derivative::Caputo) | None => Onset::Long,
     };
+    if let Some(rest) = (onset == Onset::Long).then(|| relaxed(series, start)).transpose()?.flatten() {
+        return begin_at(series, &rest, start, state);
+    }
     let free = series.play().map_or(0.0, |play| play.free(start.stroke));
     let left = start.stroke - free;
     let at = Point { t: 0.0, stroke: left, rate: 0.0, inputs: start.inputs };
@@ -73,6 +76,84 @@ pub(super) fn begin(series: &Series, start: &Start, state: &mut State) -> Result
     }
     Ok(())
 }
+
+/// Begins the parts at these strokes, at rest.
+fn begin_at(series: &Series, strokes: &[f64], start: &Start, state: &mut State) -> Result<(), KernelError> {
+    strokes.iter().for_each(|stroke| state.push_variable(*stroke));
+    if series.play().is_some() {
+        state.push_variable(0.0);
+    }
+    let mut parts = series.parts().iter().zip(strokes);
+    parts.try_for_each(|(part, &stroke)| part.ask().begin(&Start { stroke, jump: 0.0, ..*start }, state))
+}
+
+/// The strokes of the parts held since ever, where some part gives a force that was not stretched and another flows: what flows has flowed till
+/// it carries no more than it does at rest, and the others have that force too. Nothing where no part gives such a force, or none flows.
+fn relaxed(series: &Series, start: &Start) -> Result<Option<Vec<f64>>, KernelError> {
+    let parts = series.parts();
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: start.inputs };
+    let Shares { of_parts, order, .. } = shares(series, &at, Onset::Long);
+    if order == 0.0 {
+        return Ok(None);
+    }
+    let unstretched = |k: usize| match series.is_free(k) {
+        true => Ok(0.0),
+        false => at_rest(&parts[k], 0.0, start).map(|[force, _]| force),
+    };
+    let forces = (0..parts.len()).map(unstretched).collect::<Result<Vec<_>, _>>()?;
+    if forces.iter().all(|force| *force == 0.0) {
+        return Ok(None);
+    }
+    // What flows is at rest under Σ (F − F_m)/c_m = 0; a play that cannot carry that stays slack.
+    let flowing = of_parts.iter().zip(&forces).map(|(share, own)| share * own).sum::<f64>();
+    let carries = |play: &Play| flowing == 0.0 || play.end(if flowing > 0.0 { 1 } else { -1 }).is_finite();
+    let force = if series.play().is_none_or(carries) { flowing } else { 0.0 };
+    let mut strokes = vec![0.0; parts.len()];
+    for k in (0..parts.len()).filter(|&k| !series.lets_go(k) && of_parts[k] == 0.0) {
+        strokes[k] = stroke_under(&parts[k], force, start)?;
+    }
+    let mut left = start.stroke - strokes.iter().sum::<f64>();
+    if let Some(play) = series.play() {
+        let side = i8::from(force > 0.0) - i8::from(force < 0.0);
+        let x = if side == 0 { play.free(left) } else { play.end(side) + force / play.stiffness() };
+        let own = play.spread(x, force, side);
+        (0..parts.len()).filter(|k| play.has(*k)).for_each(|k| strokes[k] = own[k]);
+        left -= x;
+    }
+    strokes.iter_mut().zip(&of_parts).for_each(|(stroke, share)| *stroke += share * left);
+    Ok(Some(strokes))
+}
+
+/// The stroke at which a part at rest has the force `force`, which grows with it.
+fn stroke_under(part: &Network, force: f64, start: &Start) -> Result<f64, KernelError> {
+    let (mut x, mut low, mut high) = (0.0f64, f64::NEG_INFINITY, f64::INFINITY);
+    for _ in 0..MOST_SECANTS {
+        let [own, slope] = at_rest(part, x, start)?;
+        let missing = force - own;
+        match missing {
+            0.0 => break,
+            missing if missing > 0.0 => low = x,
+            _ => high = x,
+        }
+        let newton = x + missing / slope;
+        let next = match low + high {
+            _ if low < newton && newton < high => newton,
+            both if both.is_finite() => 0.5 * both,
+            // Flat where it is not stretched.
+            _ if x == 0.0 => FIRST.copysign(missing),
+            _ => 2.0 * x,
+        };
+        let is_there = (next - x).abs() <= 2.0 * f64::EPSILON * next.abs();
+        x = next;
+        if is_there {
+            break;
+        }
+    }
+    Ok(x)
+}
+
+/// The first stroke that is looked at where a force is flat, m.
+const FIRST: f64 = 1e-9;
 
 /// Strokes of parts, and of a play.
 type Placed = (Vec<f64>, Option<f64>);
@@ -189,7 +270,7 @@ fn derivative(part: &Network, start: &Start) -> Option<Derivative> {
 pub(super) fn recall(series: &Series, whole: &Recalled, at: &Point, state: &mut StateMut) {
     let parts = series.parts();
     let mut inner: Vec<Vec<[Complex64; 2]>> = vec![Vec::new(); parts.len()];
-    let rest = shares(series, at, Onset::Long).of_parts;
+    let rest = rest_of(series, whole.mean(), at);
     for &[s, stroke] in whole.exponentials() {
         let compliances: Vec<Complex64> = parts.iter().map(|part| part.modulus(at, s).inv()).collect();
         let compliance: Complex64 = compliances.iter().sum();
@@ -199,8 +280,26 @@ pub(super) fn recall(series: &Series, whole: &Recalled, at: &Point, state: &mut 
     }
     let strokes = &mut state.take(series.own_size()).variables[..parts.len()];
     for (k, (part, (exponentials, stroke))) in parts.iter().zip(inner.into_iter().zip(strokes)).enumerate() {
-        let own = whole.with(rest[k] * whole.mean(), exponentials);
+        let own = whole.with(rest[k], exponentials);
         *stroke = own.stroke(0.0);
         part.ask().recall(&own, at, state);
     }
+}
+
+/// The strokes of linear parts at rest under the stroke `mean`.
+fn rest_of(series: &Series, mean: f64, at: &Point) -> Vec<f64> {
+    let parts = series.parts();
+    let start = Start { stroke: mean, jump: 0.0, inputs: at.inputs };
+    let Shares { of_parts, order, .. } = shares(series, at, Onset::Long);
+    let mut strokes: Vec<f64> = of_parts.iter().map(|share| share * mean).collect();
+    if order > 0.0 {
+        return relaxed(series, &start).ok().flatten().unwrap_or(strokes);
+    }
+    let gives = |part: &Network| at_rest(part, 0.0, &start).is_ok_and(|[force, _]| force != 0.0);
+    if parts.iter().any(gives) {
+        let holding: Vec<usize> = (0..parts.len()).filter(|&k| of_parts[k] != 0.0).collect();
+        // A part that cannot begin was refused before.
+        let _ = balance(series, &holding, &start, &mut strokes, &mut None);
+    }
+    strokes
 }

@@ -1,0 +1,118 @@
+//! What parts of a series have at t = 0, after each past.
+
+use crate::one_sided::network;
+use crate::{along, departure, force, slider};
+use springpot::law::{Derivative, LeafState, Network, NetworkText, Past, Point, Start};
+
+fn built(text: &str, values: &[f64], derivative: Derivative) -> Network {
+    (NetworkText::parse(text).unwrap().entry().build)(values, derivative).unwrap()
+}
+
+/// Force and leaves at t = 0.
+fn at_start(law: &Network, stroke: f64, jump: f64) -> (f64, Vec<LeafState>) {
+    let state = law.begin(&Start { stroke, jump, inputs: &[] }).unwrap();
+    let at = Point { t: 0.0, stroke, rate: 0.0, inputs: &[] };
+    let mut leaves = Vec::new();
+    law.leaves_now(&at, &state, &mut leaves);
+    (law.now(&at, &state).force(), leaves)
+}
+
+fn strokes(leaves: &[LeafState]) -> Vec<f64> {
+    leaves.iter().map(|leaf| leaf.stroke).collect()
+}
+
+fn assert_near(found: &[f64], wanted: &[f64], what: &str) {
+    let is_near = found.len() == wanted.len() && found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-14);
+    assert!(is_near, "{what}: {found:?}, not {wanted:?}");
+}
+
+/// Held since ever what flows carries nothing, so that what a preload stretches is at rest under no force; the past of a preload is that of all else.
+#[test]
+fn a_preload_has_relaxed() {
+    let (k, l, c, a, f) = (1000.0, 300.0, 50.0, 0.5, 0.3);
+    let flows = [("springpot(c, a)", vec![c, a]), ("dashpot(c)", vec![c]), ("friction(c, v0)", vec![c, 0.01])];
+    for (flow, own) in &flows {
+        let with = |values: &[f64]| [values, own].concat();
+        let law =
+            built(&format!("series(spring(k), parallel(spring(l), preload(f)), {flow})"), &with(&[k, l, f]), CAPUTO);
+        let (pull, leaves) = at_start(&law, 0.002, 0.0);
+        assert_eq!(pull, 0.0, "{flow}");
+        assert_near(&strokes(&leaves), &[0.0, -f / l, -f / l, 0.002 + f / l], flow);
+        let law = built(&format!("series(parallel(spring(l), preload(f)), {flow})"), &with(&[l, f]), CAPUTO);
+        let (pull, leaves) = at_start(&law, 0.0, 0.0);
+        assert_eq!(pull, 0.0, "{flow}");
+        assert_near(&strokes(&leaves), &[-f / l, -f / l, f / l], flow);
+    }
+    let law = "series(parallel(spring(k), preload(g)), parallel(spring(l), preload(f)), springpot(c, a))";
+    let (pull, leaves) = at_start(&built(law, &[k, -0.1, l, f, c, a], CAPUTO), 0.0, 0.0);
+    assert!(pull.abs() < 1e-15);
+    assert_near(&strokes(&leaves), &[1e-4, 1e-4, -1e-3, -1e-3, 9e-4], "two of them");
+    // What flows beside a preload carries that, and all others have it.
+    let law = "series(tension(k), spring(l), parallel(springpot(c, a), preload(f)))";
+    let (pull, leaves) = at_start(&built(law, &[k, l, c, a, f], CAPUTO), 0.0, 0.0);
+    assert_eq!(pull, f);
+    assert_near(&strokes(&leaves)[..2], &[f / k, f / l], "beside what flows");
+    // A rope takes what it can for free.
+    for (f, wanted) in [(f, [0.0, -1e-3, -1e-3, 1e-3]), (-f, [-1e-3, 1e-3, 1e-3, 0.0])] {
+        let law = "series(tension(k), parallel(spring(l), preload(f)), springpot(c, a))";
+        let (pull, leaves) = at_start(&built(law, &[k, l, f, c, a], CAPUTO), 0.0, 0.0);
+        assert_eq!(pull, 0.0);
+        assert_near(&strokes(&leaves), &wanted, "behind a rope");
+    }
+    // Unloaded, it acts from t = 0 on.
+    let law = "series(spring(k), parallel(spring(l), preload(f)), springpot(c, a))";
+    let (pull, leaves) = at_start(&built(law, &[k, l, f, c, a], JUMPED), 0.0, 0.0);
+    assert!((pull - f * k / (k + l)).abs() < 1e-15);
+    assert_near(&strokes(&leaves), &[f / (k + l), -f / (k + l), -f / (k + l), 0.0], "unloaded");
+}
+
+const CAPUTO: Derivative = Derivative::Caputo;
+const JUMPED: Derivative = Derivative::RiemannLiouville;
+
+/// A polynomial that is flat where it is not stretched finds where a preload has it.
+#[test]
+fn a_flat_spring_has_relaxed() {
+    let law = "series(parallel(polynomial(k1, k2, k3), preload(f)), spring(k), dashpot(c))";
+    let (pull, leaves) = at_start(&built(law, &[0.0, 0.0, 5e4, -0.4, 900.0, 5.0], CAPUTO), 0.0, 0.0);
+    assert!(pull.abs() < 1e-12, "{pull}");
+    assert!((leaves[0].stroke - (0.4f64 / 5e4).cbrt()).abs() < 1e-14, "{}", leaves[0].stroke);
+}
+
+/// A linear law with a preload, held since ever, gives the force of that without; prescribed and pushed, and it closes its balance.
+#[test]
+fn a_preload_in_series_moves_nothing() {
+    let pushed = "kind = \"forward\"\nstart = { v = { q = 0.3 } }".to_owned();
+    for motion in [along("0.01*sin(4*t)"), pushed] {
+        for (bare, text, values) in [
+            ("series(spring(k), spring(l), springpot(c, a))", "spring(k), parallel(spring(l), preload(f))", [50.0, 0.5]),
+            ("series(spring(k), spring(l), springpot(c, a))", "spring(k), parallel(spring(l), preload(f))", [50.0, 0.9]),
+        ] {
+            let wanted = force(&slider(&[network(bare, &[1000.0, 300.0, values[0], values[1]])], &motion, 3.0, 60, 1e-9));
+            for f in [-0.3, 0.03, 3.0] {
+                let law = network(&format!("series({text}, springpot(c, a))"), &[1000.0, 300.0, f, values[0], values[1]]);
+                let run = slider(&[law], &motion, 3.0, 60, 1e-9);
+                let off = departure(&force(&run), &wanted);
+                assert!(off < 1e-8, "{f}: {off:e}");
+                let left = run.column("energy.residual").iter().fold(0.0f64, |most, left| most.max(left.abs()));
+                assert!(left < 1e-9, "{f}: {left:e} J");
+            }
+        }
+    }
+}
+
+/// Stretched and held for a while a preload has relaxed for as long: by the relaxation of a Maxwell element whose spring is both in series.
+#[test]
+fn a_preload_relaxes_while_it_is_held() {
+    let (k, l, c, alpha, f, age) = (1000.0, 300.0, 50.0, 0.5, 0.3, 0.02);
+    let law = built("series(spring(k), parallel(spring(l), preload(f)), springpot(c, a))", &[k, l, f, c, alpha], JUMPED);
+    let start = Start { stroke: 0.0, jump: 0.0, inputs: &[] };
+    let state = Past::Held(age).state(&law, &start, 1e-11, 1.0).unwrap();
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
+    // F = f·k/(k + l)·E_α(−(K/c)·t^α) with 1/K = 1/k + 1/l.
+    let both = k * l / (k + l);
+    let z = num_complex::Complex64::new(-both / c * f64::powf(age, alpha), 0.0);
+    let left = springpot::fractional::mittag_leffler::mittag_leffler(alpha, 1.0, z).unwrap().re;
+    let wanted = f * k / (k + l) * left;
+    let found = law.now(&at, &state).force();
+    assert!((found - wanted).abs() < 1e-7 * f, "{found}, not {wanted}");
+}
