@@ -116,3 +116,29 @@ fn a_preload_relaxes_while_it_is_held() {
     let found = law.now(&at, &state).force();
     assert!((found - wanted).abs() < 1e-7 * f, "{found}, not {wanted}");
 }
+
+/// A stop without play is a spring, wherever its end is.
+#[test]
+fn a_stop_without_play_is_a_spring() {
+    let pushed = "kind = \"forward\"\nstart = { v = { q = 0.3 } }".to_owned();
+    for motion in [along("0.01*sin(4*t)"), pushed] {
+        for (rest, values) in [
+            ("dashpot(c)", &[100.0][..]),
+            ("springpot(c, a)", &[50.0, 0.5]),
+            ("parallel(spring(l), springpot(c, a))", &[200.0, 50.0, 0.5]),
+        ] {
+            let spring = network(&format!("series(spring(k), {rest})"), &[&[1000.0], values].concat());
+            let wanted = force(&slider(&[spring], &motion, 2.0, 40, 1e-9));
+            for end in [0.0, 0.002] {
+                let stop = [&[1000.0, end, end], values].concat();
+                let law = network(&format!("series(stop(k, lower, upper), {rest})"), &stop);
+                let found = force(&slider(&[law], &motion, 2.0, 40, 1e-9));
+                match end {
+                    0.0 => assert_eq!(found, wanted, "{rest}"),
+                    _ if rest.starts_with("parallel") => assert!(departure(&found, &wanted) > 1e-3, "{rest}"),
+                    _ => assert!(departure(&found, &wanted) < 1e-8, "{rest}"),
+                }
+            }
+        }
+    }
+}

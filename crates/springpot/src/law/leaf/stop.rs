@@ -59,7 +59,8 @@ impl Elastic for Stop {
     }
 
     fn slope(&self, x: f64) -> f64 {
-        if x > self.upper || x < self.lower { self.stiffness } else { 0.0 }
+        // With no play it is a spring, at its end too.
+        if x > self.upper || x < self.lower || self.lower == self.upper { self.stiffness } else { 0.0 }
     }
 
     fn energy(&self, x: f64) -> f64 {
