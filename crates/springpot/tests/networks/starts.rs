@@ -84,12 +84,22 @@ fn a_preload_in_series_moves_nothing() {
     let pushed = "kind = \"forward\"\nstart = { v = { q = 0.3 } }".to_owned();
     for motion in [along("0.01*sin(4*t)"), pushed] {
         for (bare, text, values) in [
-            ("series(spring(k), spring(l), springpot(c, a))", "spring(k), parallel(spring(l), preload(f))", [50.0, 0.5]),
-            ("series(spring(k), spring(l), springpot(c, a))", "spring(k), parallel(spring(l), preload(f))", [50.0, 0.9]),
+            (
+                "series(spring(k), spring(l), springpot(c, a))",
+                "spring(k), parallel(spring(l), preload(f))",
+                [50.0, 0.5],
+            ),
+            (
+                "series(spring(k), spring(l), springpot(c, a))",
+                "spring(k), parallel(spring(l), preload(f))",
+                [50.0, 0.9],
+            ),
         ] {
-            let wanted = force(&slider(&[network(bare, &[1000.0, 300.0, values[0], values[1]])], &motion, 3.0, 60, 1e-9));
+            let wanted =
+                force(&slider(&[network(bare, &[1000.0, 300.0, values[0], values[1]])], &motion, 3.0, 60, 1e-9));
             for f in [-0.3, 0.03, 3.0] {
-                let law = network(&format!("series({text}, springpot(c, a))"), &[1000.0, 300.0, f, values[0], values[1]]);
+                let law =
+                    network(&format!("series({text}, springpot(c, a))"), &[1000.0, 300.0, f, values[0], values[1]]);
                 let run = slider(&[law], &motion, 3.0, 60, 1e-9);
                 let off = departure(&force(&run), &wanted);
                 assert!(off < 1e-8, "{f}: {off:e}");
@@ -104,7 +114,8 @@ fn a_preload_in_series_moves_nothing() {
 #[test]
 fn a_preload_relaxes_while_it_is_held() {
     let (k, l, c, alpha, f, age) = (1000.0, 300.0, 50.0, 0.5, 0.3, 0.02);
-    let law = built("series(spring(k), parallel(spring(l), preload(f)), springpot(c, a))", &[k, l, f, c, alpha], JUMPED);
+    let law =
+        built("series(spring(k), parallel(spring(l), preload(f)), springpot(c, a))", &[k, l, f, c, alpha], JUMPED);
     let start = Start { stroke: 0.0, jump: 0.0, inputs: &[] };
     let state = Past::Held(age).state(&law, &start, 1e-11, 1.0).unwrap();
     let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
@@ -141,4 +152,34 @@ fn a_stop_without_play_is_a_spring() {
             }
         }
     }
+}
+
+/// Behind a jump at t = 0 all parts of a series have its force, springpots in what their derivatives are.
+#[test]
+fn a_jump_is_in_all_parts() {
+    let cases: [(&str, &[f64], f64); 7] = [
+        ("series(spring(k), springpot(c, a))", &[1000.0, 50.0, 0.5], 0.005),
+        ("series(tension(k), springpot(c, a))", &[1000.0, 50.0, 0.5], 0.005),
+        ("series(tension(k), springpot(c, a), springpot(d, b))", &[1000.0, 50.0, 0.5, 20.0, 0.2], 0.005),
+        ("series(tension(k), dashpot(d), springpot(c, a))", &[1000.0, 20.0, 50.0, 0.5], 0.005),
+        ("series(stop(k, lower, upper), springpot(c, a))", &[1000.0, 0.002, 0.004, 50.0, 0.5], -0.005),
+        ("series(friction(f, v0), spring(k), springpot(c, a))", &[1.0, 0.01, 500.0, 50.0, 0.5], -0.005),
+        ("series(friction(f, v0), spring(k), springpot(c, a))", &[1.0, 0.01, 500.0, 50.0, 0.5], 0.005),
+    ];
+    for (text, values, stroke) in cases {
+        let (pull, leaves) = at_start(&built(text, values, JUMPED), stroke, stroke);
+        assert!(pull.abs() > 0.9, "{text}: {pull}");
+        for leaf in &leaves {
+            assert!((leaf.force - pull).abs() < 1e-13 * pull.abs(), "{text}: {leaf:?} under {pull}");
+        }
+    }
+    let law = "series(spring(k), springpot(c, a))";
+    let law = built(law, &[1000.0, 50.0, 0.5], JUMPED);
+    let state = law.begin(&Start { stroke: 0.005, jump: 0.005, inputs: &[] }).unwrap();
+    assert_eq!(law.now(&Point { t: 0.0, stroke: 0.005, rate: 0.0, inputs: &[] }, &state).derivative, 0.1);
+    // Side by side the springpot of the highest order has what is left.
+    let law = "series(spring(k), parallel(spring(l), springpot(c, a), springpot(d, b)))";
+    let (pull, leaves) = at_start(&built(law, &[1000.0, 300.0, 50.0, 0.5, 20.0, 0.8], JUMPED), 0.005, 0.005);
+    let forces: Vec<f64> = leaves.iter().map(|leaf| leaf.force).collect();
+    assert_eq!((pull, forces), (5.0, vec![5.0, 0.0, 0.0, 5.0]));
 }

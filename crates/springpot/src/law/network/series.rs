@@ -401,24 +401,23 @@ impl Part for Series {
             }
         }
         for k in (0..self.parts.len()).filter(|k| self.slides(*k)) {
-            // Where it slides as fast as that no force tells its rate, and nothing else moves.
+            // Where it slides as fast as that no force tells its rate, and nothing else moves; behind a jump it is what gives way.
             let slide = self.parts[k].ask().slides(at.inputs).unwrap_or(NO_FRICTION);
             let others: f64 = (0..self.parts.len()).filter(|other| *other != k).map(|other| rates[other]).sum();
-            rates[k] = slide.rate_under(whole).unwrap_or(at.rate - others);
+            let unknown = || if at.t == 0.0 { slide.most(whole) } else { at.rate - others };
+            rates[k] = slide.rate_under(whole).unwrap_or_else(unknown);
         }
         if let Some(play) = slack {
             // What is slack moves as the whole does but for how the others come back.
             let others: f64 = (0..self.parts.len()).filter(|k| !play.has(*k)).map(|k| rates[k]).sum();
             rates[play.first()] = at.rate - others;
         }
-        let mut sum = Reported::sum(
-            at,
-            self.parts
-                .iter()
-                .zip(strokes)
-                .zip(rates)
-                .map(|((part, &stroke), rate)| part.ask().now(&Point { stroke, rate, ..*at }, state, take)),
-        );
+        let each = self.parts.iter().zip(strokes).zip(rates).map(|((part, &stroke), rate)| {
+            let inside = Point { stroke, rate, ..*at };
+            let owed = if at.t == 0.0 { start::owed(part, &inside, whole, state) } else { Vec::new() };
+            start::now_with(part, &inside, &owed, state, take)
+        });
+        let mut sum = Reported::sum(at, each);
         (sum.observation.regular, sum.observation.singular) = (whole, 0.0);
         sum
     }

@@ -9,6 +9,9 @@ use crate::collocation::MAX_NODES;
 use crate::law::leaf::Slide;
 use crate::law::network::MOST_IN_SERIES;
 
+/// Beyond this share of its force friction does not tell its rate.
+const MOST_SHARE: f64 = 1.0 - 4.0 * f64::EPSILON;
+
 /// Iterations for the rates, and how often one of them is halved.
 const MOST_ITERATIONS: usize = 200;
 const MOST_HALVINGS: usize = 40;
@@ -74,7 +77,12 @@ impl Slide {
     /// The rate at which it has the force `force`; `None` where that is all it has.
     pub(super) fn rate_under(&self, force: f64) -> Option<f64> {
         let share = force / self.force;
-        (share.abs() < 1.0 - 4.0 * f64::EPSILON).then(|| self.rate * share.atanh())
+        (share.abs() < MOST_SHARE).then(|| self.rate * share.atanh())
+    }
+
+    /// The largest rate that its force tells, in the direction of `force`.
+    pub(super) fn most(&self, force: f64) -> f64 {
+        self.rate * MOST_SHARE.atanh().copysign(force)
     }
 
     /// atanh(F/f) under the force of the weakest where its v/v0 is `angle`, and the slope of it.

@@ -3,9 +3,9 @@
 use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, MOST_SECANTS, Play, Series};
 use crate::fractional::{KernelError, Kind as Derivative, Memory};
 use crate::law::network::Network;
-use crate::law::network::part::{Onset, Part};
+use crate::law::network::part::{Onset, Part, Reported, Take};
 use crate::law::past::Recalled;
-use crate::law::state::{State, StateMut};
+use crate::law::state::{State, StateMut, StateRef};
 use crate::law::step::{Point, Start, Term};
 use num_complex::Complex64;
 
@@ -257,6 +257,57 @@ fn balance(
         }
     }
     Ok(())
+}
+
+/// Behind a jump at t = 0: by how much the force of each leaf of a part is more than its memory knows, so that the part has the force `whole`.
+/// Springs and dashpots have what their strokes and rates say; what is left is the springpots'. Empty where nothing is.
+pub(super) fn owed(part: &Network, at: &Point, whole: f64, state: &StateRef) -> Vec<f64> {
+    let known = part.ask().now(at, &mut state.clone(), &mut |_| ()).observation.force();
+    let (missing, mut shares) = (whole - known, Vec::new());
+    // No number where the force is infinite.
+    if missing.abs() > KNOWN * whole.abs() && part.ask().size().memories > 0 {
+        share_out(part, at, missing, &mut shares);
+    }
+    shares
+}
+
+/// How well forces of parts at rest are known to be one.
+const KNOWN: f64 = 1e-10;
+
+/// The share of each leaf in a force that is there at once: parts side by side leave it to those of the highest order, one behind the other
+/// all have it.
+fn share_out(part: &Network, at: &Point, force: f64, shares: &mut Vec<f64>) {
+    match part {
+        Network::Leaf(leaf) => shares.push(if leaf.size().memories > 0 { force } else { 0.0 }),
+        Network::Series(series) => series.parts().iter().for_each(|part| share_out(part, at, force, shares)),
+        _ => {
+            let whole = part.ask().asymptote(at, Onset::Short);
+            for part in part.parts() {
+                let Term { coefficient, order } = part.ask().asymptote(at, Onset::Short);
+                let own = if order == whole.order { coefficient / whole.coefficient } else { 0.0 };
+                share_out(part, at, own * force, shares);
+            }
+        }
+    }
+}
+
+/// A part between two steps, its leaves with what they are [`owed`].
+pub(super) fn now_with(part: &Network, at: &Point, owed: &[f64], state: &mut StateRef, take: Take) -> Reported {
+    if owed.is_empty() {
+        return part.ask().now(at, state, take);
+    }
+    let (mut left, mut told) = (owed.iter(), None);
+    let mut sum = part.ask().now(at, state, &mut |mut leaf| {
+        let own = left.next().copied().unwrap_or(0.0);
+        if leaf.leaf.size().memories > 0 {
+            leaf.observation.regular += own;
+            leaf.observation.derivative += own / leaf.leaf.linearised(&leaf.at).coefficient;
+            told = told.or(Some(leaf.observation.derivative));
+        }
+        take(leaf);
+    });
+    sum.observation.derivative = told.unwrap_or(sum.observation.derivative);
+    sum
 }
 
 /// The derivative that the first springpot takes.
