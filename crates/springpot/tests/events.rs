@@ -445,3 +445,27 @@ fn a_function_of_time_that_passes_zero_too_often_is_refused() {
     let error = try_run(&text.replace("sin(1e9*t)", "log(t - 1)"), false).error;
     assert!(matches!(error, Some(RunError::NotFinite { .. })), "{error:?}");
 }
+
+/// A mass bounces on a pad that does not stick to it: meeting it is an event each time, and so is letting go.
+#[test]
+fn a_force_that_rests_passes_zero_where_it_comes_and_goes() {
+    let (k, g, height) = (1000.0f64, 9.81f64, 0.1f64);
+    let law = "network = \"series(compression(k), spring(k))\"\nparameters = { k = 2000 }";
+    let events = event("all", "when = \"e.force\"")
+        + &event("meets", "when = \"e.force\"\ndirection = \"falling\"")
+        + &event("leaves", "when = \"e.force\"\ndirection = \"rising\"");
+    let text = slider("1", -g, law, &state("0.1", "0")) + &events + &every(1.5, 0.01, 1e-10);
+    let run = done(&text);
+    // tan(θ/2) = -v ω/g of the angle θ for which it stays on the pad, from the speed v at which it comes.
+    let (speed, omega) = ((2.0 * g * height).sqrt(), k.sqrt());
+    let [falls, stays] = [speed / g, 2.0 / omega * (PI - (speed * omega / g).atan())];
+    let meets: Vec<f64> = (0..10).map(|n| falls + f64::from(n) * (2.0 * falls + stays)).filter(|t| *t < 1.5).collect();
+    let leaves: Vec<f64> = meets.iter().map(|t| t + stays).filter(|t| *t < 1.5).collect();
+    assert!(meets.len() > 3);
+    near(&run.at(1, "t"), &meets, 1e-8, "meets");
+    near(&run.at(2, "t"), &leaves, 1e-8, "leaves");
+    assert_eq!(run.at(0, "t").len(), meets.len() + leaves.len());
+    // In a Simulation that an event ends as well.
+    let stops = text.replace("name = \"leaves\"", "name = \"leaves\"\naction = \"stop\"");
+    near(&[*done(&stops).column("t").last().unwrap()], &leaves[..1], 1e-8, "stops");
+}

@@ -23,6 +23,9 @@ const CLOSE: f64 = 1e-13;
 const ROUNDING: f64 = 1e-12;
 const LEAST: f64 = 1e-14;
 
+/// In place of the sign of a function that has been 0 for a while: it passes zero where it leaves it.
+const RESTS: i8 = 2;
+
 /// A function has passed zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Passage {
@@ -59,7 +62,7 @@ pub(crate) struct Functions {
 /// Of every event, what outlasts a step.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Sides {
-    /// Sign of the function; 0 until it has left zero, and of functions of t alone.
+    /// Sign of the function; 0 until it has left zero, and of functions of t alone; [`RESTS`].
     pub(crate) signs: Vec<i8>,
     /// Its value at the present time.
     values: Vec<f64>,
@@ -132,7 +135,7 @@ impl Functions {
         self.go_to(cx, driver, t, &events)?;
         for &event in &events {
             let (now, sign) = (self.clear_side(&all[event]), &mut signs[event]);
-            if *sign != 0 && now == -*sign {
+            if *sign != 0 && now != 0 && (now == -*sign || *sign == RESTS) {
                 passages.push(Passage { event, t, rises: now > 0 });
             }
             // Where a step ends at an event, the function is as near to zero as times can be told.
@@ -182,7 +185,7 @@ impl Functions {
             let all = cx.system.watched_events();
             // What stays away from zero need not be asked more closely.
             let apart = |functions: &mut Self, event: usize, sides: &mut Sides, driver: &mut Driver| {
-                let known = functions.needs[event] < Needs::Forces && sides.signs[event] != 0;
+                let known = functions.needs[event] < Needs::Forces && sides.signs[event].abs() == 1;
                 if !known {
                     return Ok(false);
                 }
@@ -218,6 +221,7 @@ impl Functions {
         passages: &mut Vec<Passage>,
     ) -> Result<(), RunError> {
         let (all, close) = (cx.system.watched_events(), close(step) * (step.to - step.from));
+        let earliest = step.from + 0.5 * close;
         let early = EARLY.into_iter().filter(|_| events.iter().any(|&event| signs[event] == 0));
         let mut places: Vec<f64> =
             early.map(|theta| step.from + theta * (step.to - step.from)).chain(places.iter().copied()).collect();
@@ -230,16 +234,37 @@ impl Functions {
             let values = events.iter().map(|&event| self.finite_value(&all[event])).collect::<Result<Vec<_>, _>>()?;
             for (k, &event) in events.iter().enumerate() {
                 let sign = &mut signs[event];
-                if *sign == 0 {
+                if sign.abs() != 1 {
                     self.go_to(cx, driver, t, &[event])?;
-                    *sign = self.clear_side(&all[event]);
+                    let now = self.clear_side(&all[event]);
+                    if *sign == RESTS && now != 0 {
+                        let (side, from) = (f64::from(now), before[1].0);
+                        let mut failed = None;
+                        let mut back = |back: f64| match self.go_to(cx, driver, (t - back).max(earliest), &[event]) {
+                            Ok(()) => side * self.value(&all[event]),
+                            Err(error) => {
+                                failed.get_or_insert(error);
+                                f64::NAN
+                            }
+                        };
+                        let left = zero_within(&mut back, 0.0, t - from, close);
+                        if let Some(error) = failed {
+                            return Err(error);
+                        }
+                        passages.push(Passage { event, t: (t - left).max(earliest), rises: now > 0 });
+                    }
+                    *sign = match now {
+                        // Nothing but 0 all along: it has come to rest there.
+                        0 if *sign == RESTS || (values[k] == 0.0 && before[1].1[k] == 0.0) => RESTS,
+                        now => now,
+                    };
                     continue;
                 }
                 let side = f64::from(*sign);
                 let [first, left] = [0, 1].map(|at| (before[at].0, side * before[at].1[k]));
                 let here = (t, side * values[k]);
                 let mut failed = None;
-                let mut at = |t: f64| match self.go_to(cx, driver, t.max(step.from + 0.5 * close), &[event]) {
+                let mut at = |t: f64| match self.go_to(cx, driver, t.max(earliest), &[event]) {
                     Ok(()) => side * self.value(&all[event]),
                     Err(error) => {
                         failed.get_or_insert(error);
