@@ -109,6 +109,20 @@ fn mimic_joints_follow_joints_of_one_degree() {
     }
 }
 
+/// A joint that turns freely, or shifts in a plane, follows none.
+#[test]
+fn joints_of_several_degrees_follow_none() {
+    for (written, kind) in [("ball", "spherical"), ("planar", "planar")] {
+        let text = elbow_with("<mimic joint=\"shoulder\"/>");
+        let text = text.replace("type=\"prismatic\"", &format!("type=\"{written}\""));
+        let message = format!(
+            "line 25, column 5: joint \"elbow\" mimics joint \"shoulder\", but joint \"elbow\" is {kind}; only \
+                joints of one degree can"
+        );
+        refused(&text, &message);
+    }
+}
+
 /// A chain of three revolute joints a, b, c, of which each follows the one that is named, if one is.
 fn chain(followed: [&str; 3]) -> String {
     let mut text = String::from("<robot name=\"chain\">\n<link name=\"0\"/>\n");

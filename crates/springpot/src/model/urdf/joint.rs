@@ -47,6 +47,13 @@ pub(super) fn read<'a>(
         spec.axis = read_axis(reader, node, axis, &owner)?;
     }
     if kind.nv() != 1 {
+        if let Some(mimic) = mimic.filter(|_| !ignore_mimic && kind.nv() > 1 && kind != JointKind::Floating) {
+            let target = read_mimic(reader, mimic, &owner)?.joint;
+            let joint = name.to_owned();
+            return Err(
+                reader.fail(mimic, UrdfProblem::MimicOfManyDegrees { culprit: joint.clone(), joint, target, kind })
+            );
+        }
         let unused =
             [(axis.filter(|_| !kind.has_axis()), "axis"), (limit, "limit"), (dynamics, "dynamics"), (mimic, "mimic")];
         for (element, name) in unused {
