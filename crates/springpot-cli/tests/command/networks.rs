@@ -150,7 +150,11 @@ fn leaves_that_yield_stand_beside_others() {
     for (leaf, given, words) in [
         ("tension(k), compression(l)", "k = 100, l = 5", "`tension(k)` only pulls and `compression(l)` only pushes"),
         ("series(compression(l), series(spring(k), tension(k)))", "k = 100, l = 5", "only pulls and"),
-        ("parallel(tension(k), compression(l))", "k = 100, l = 5", yields),
+        (
+            "parallel(tension(k), compression(l))",
+            "k = 100, l = 5",
+            "has parts beside each other of which one lets go: in a series that has to stand by itself",
+        ),
         ("tension(l)", "k = 100, l = 0", "`tension(l)` gives none"),
         ("preload(f)", "k = 100, f = 1", yields),
         ("polynomial(k, l, m)", "k = 100, l = 1, m = 0", yields),

@@ -185,6 +185,9 @@ impl NetworkText {
                     let network = self.part(part, values, derivative)?;
                     let what = match network.holds() {
                         Holds::Always | Holds::LetsGo => return Ok(network),
+                        Holds::AtTimes if lets_go_aside(&network) => {
+                            "has parts beside each other of which one lets go: in a series that has to stand by itself"
+                        }
                         Holds::AtTimes => "does not hold at times: what stands behind it would be free",
                         Holds::Never => "gives none",
                     };
@@ -504,4 +507,8 @@ fn in_arguments(unit: &str, params: &[Param], arguments: &[(String, Range<usize>
     params.iter().zip(arguments).fold(unit.to_owned(), |unit, (param, (argument, _))| {
         unit.replace(&format!("^{}", param.name), &format!("^{argument}"))
     })
+}
+/// Whether parts stand beside each other of which one is free at some strokes, or slides.
+fn lets_go_aside(network: &Network) -> bool {
+    matches!(network, Network::Parallel(parts) if parts.iter().any(|part| part.holds() == Holds::LetsGo || lets_go_aside(part)))
 }
