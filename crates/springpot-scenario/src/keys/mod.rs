@@ -315,6 +315,16 @@ impl Keys {
     }
 }
 
+impl Shape {
+    /// The unit of a signal, of three, or nothing.
+    pub(crate) fn signal_unit(self) -> &'static str {
+        match self {
+            Self::Signal(unit) | Self::Signals(unit) => unit,
+            _ => "",
+        }
+    }
+}
+
 /// Where the number under a key goes.
 pub(crate) enum Slot<'t> {
     Number(&'t mut f64),

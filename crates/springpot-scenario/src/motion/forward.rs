@@ -2,7 +2,7 @@
 
 use super::controller::{self, ControllerPlan, Joints};
 use super::idle;
-use super::joints::{ByJoint, Parts, open_free, path_of_joint, signal, zero};
+use super::joints::{ByJoint, Parts, open_free, path_of_joint, zero};
 use super::{Made, ready};
 use crate::keys::{FORCES, START, START_POSE, START_VELOCITIES};
 use crate::reader::{Field, Read, Table, all};
@@ -70,7 +70,14 @@ pub(super) fn read(
             let which: Vec<&str> = kinds.iter().filter(|(_, is)| *is).map(|(kind, _)| *kind).collect();
             let message = format!("[motion] moves joint {:?} in more than one way: {}", joint.name, which.join(", "));
             let refusal = place.refuse(RefusalKind::Rule, message);
-            return Err(table.ctx.refuse(refusal.help("leave it in one of them")));
+            let help = match joint.coordinate_part() {
+                Some(_) if moved => format!(
+                    "leave joint {:?} in one of them: what {} of `prescribed` leaves out is moved too, and stays at 0",
+                    joint.joint, joint.joint
+                ),
+                _ => "leave it in one of them".to_owned(),
+            };
+            return Err(table.ctx.refuse(refusal.help(help)));
         }
         if is_locked {
             return Ok((Drive::Locked, json!("locked")));
@@ -257,7 +264,10 @@ fn force(field: &Field<'_>, joint: &OwnJoint<'_>, end: Option<f64>) -> Read<Vec<
     }
     let table = open_free(field, &FORCES, joint.space, "of forces and torques")?;
     all(joint.space.velocities().iter().map(|&(name, _)| match table.get(name) {
-        Some(field) => signal(&field, false, end),
+        Some(field) => {
+            let unit = field.row.map_or("", |row| row.shape.signal_unit());
+            feedback::read(&field, Wanted { unit, range: Range::ANY, smooth: false, end })
+        }
         None => Ok(zero(&field.node.place)),
     }))
 }

@@ -1,6 +1,6 @@
 //! What several kinds of motion say by joint: which joints, and how one moves.
 
-use crate::keys::{FLOATING, Keys, POSE, SIGNAL, SPHERICAL, Shape};
+use crate::keys::{FLOATING, Keys, POSE, SIGNAL, SPHERICAL};
 use crate::reader::constants;
 use crate::reader::{Field, Read, Table, all};
 use crate::robot::{OwnJoint, Robot};
@@ -20,10 +20,7 @@ fn wanted(unit: &str, end: Option<f64>) -> Wanted<'_> {
 
 /// A signal in the unit of its key; `smooth` as in [`Wanted`].
 pub(super) fn signal(field: &Field<'_>, smooth: bool, end: Option<f64>) -> Read<SignalPlan> {
-    let unit = match field.row.map(|row| row.shape) {
-        Some(Shape::Signal(unit) | Shape::Signals(unit)) => unit,
-        _ => "",
-    };
+    let unit = field.row.map_or("", |row| row.shape.signal_unit());
     feedback::read_of_time(field, Wanted { smooth, ..wanted(unit, end) })
 }
 

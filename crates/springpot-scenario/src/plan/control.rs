@@ -8,6 +8,7 @@ use crate::text::document::shorten;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind, Remark};
 use springpot::control::{Control, Feedback, InputFeedback, Sampling, Sense, TorqueFeedback};
+use springpot::model::Dimension;
 use springpot::observe::Axis;
 use springpot::signal::ColumnExpression;
 use springpot::signal::expression::ExpressionError;
@@ -31,9 +32,19 @@ const OF_GRIPPER: [(&str, Sense); 6] = [
 fn senses(plan: &Plan) -> Vec<(String, Sense)> {
     let mut senses = Vec::new();
     let model = &plan.model;
+    let (q_labels, v_labels) = (model.q_labels(), model.v_labels());
     for j in model.own_joints() {
         let (velocity, name, rate) = (model.v_range(j).start, &model.joint_names()[j], &model.velocity_names()[j]);
-        let Some(place) = model.coordinate_of(velocity) else { continue };
+        let Some(place) = model.coordinate_of(velocity) else {
+            let coordinates = model.q_range(j).map(|place| (place, Sense::Part { place, joint: j }));
+            senses.extend(coordinates.map(|(place, sense)| (format!("q.{}", q_labels[place].name), sense)));
+            for k in model.v_range(j) {
+                let rate = &v_labels[k].name;
+                senses
+                    .extend([(format!("v.{rate}"), Sense::Velocity(k)), (format!("a.{rate}"), Sense::Acceleration(k))]);
+            }
+            continue;
+        };
         senses.push((format!("q.{name}"), Sense::Coordinate { place, velocity }));
         senses.push((format!("v.{rate}"), Sense::Velocity(velocity)));
         senses.push((format!("a.{rate}"), Sense::Acceleration(velocity)));
@@ -143,6 +154,19 @@ impl FeedbackText {
         {
             return Err(self.not_known_yet(ctx, names[expression.columns()[k]]));
         }
+        let jumps = |sense: &Sense| match *sense {
+            Sense::Part { place, .. } => plan.model.q_labels()[place].dimension == Dimension::Quaternion,
+            _ => false,
+        };
+        if self.sample.is_none()
+            && let Some(k) = seen.iter().position(jumps)
+        {
+            let name = names[expression.columns()[k]];
+            let message = format!("{}: {name} changes its sign where the joint is half a turn away from 0", self.owner);
+            let help = "sample it, { expression = …, unit = …, sample = \"1 ms\" }, or let the torque follow from velocities and from elements";
+            let at = text.find(name).map(|start| start..start + name.len());
+            return Err(ctx.refuse(self.node.place_in_text(at).refuse(RefusalKind::Rule, message).help(help)));
+        }
         let law = Feedback::new(expression, seen).scaled(self.scale, self.offset);
         Ok((law, self.sample.map(|period| Sampling { period, delay: 0 })))
     }
@@ -189,6 +213,11 @@ impl FeedbackText {
             return Some((what, format!("feedback may name {}", names::list(known))));
         }
         let unknown = format!("unknown name `{name}`");
+        if let Some(help) =
+            names::inside(name, senses.iter().filter(|(_, sense)| is_known(sense)).map(|(name, _)| name.as_str()))
+        {
+            return Some((unknown, help));
+        }
         match suggestion.or_else(|| names::nearest(name, senses.iter().map(|(name, _)| name.as_str()))) {
             Some(right) if senses.iter().any(|(name, sense)| name == right && !is_known(sense)) => {
                 let help = format!(

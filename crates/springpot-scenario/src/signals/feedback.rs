@@ -47,7 +47,7 @@ pub(crate) fn read_of_time(field: &Field<'_>, wanted: Wanted<'_>) -> Read<Signal
     match node.text() {
         Some(text) if names_state(text) && units::split_quantity(text).is_none() => {
             let message = format!("{field} follows from the state, but has to be a signal of t");
-            let help = "feedback may stand in the inputs of elements and the torques of joints of one degree, where motion.kind = \"forward\"";
+            let help = "feedback may stand in the inputs of elements and the torques of joints, where motion.kind = \"forward\"";
             Err(field.ctx.refuse(node.place.refuse(RefusalKind::Rule, message).help(help)))
         }
         _ => of_time::read(field, wanted),

@@ -121,6 +121,13 @@ pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + C
     }
 }
 
+/// What to write for a name that is that of several, `q.c` where there are `q.c.z` and `q.c.rz`.
+pub(crate) fn inside<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+    let is_inside = |known: &&str| known.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+    let parts: Vec<String> = known.filter(is_inside).map(|known| format!("`{known}`")).collect();
+    (!parts.is_empty()).then(|| format!("write one of {}", parts.join(", ")))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

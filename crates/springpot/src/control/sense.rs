@@ -12,6 +12,13 @@ pub enum Sense {
         /// Place in v.
         velocity: usize,
     },
+    /// A coordinate of a joint of several that move together, floating or spherical, by its place in q, m or a number of a quaternion.
+    Part {
+        /// Place in q.
+        place: usize,
+        /// The joint of the model.
+        joint: usize,
+    },
     /// A velocity, rad/s or m/s.
     Velocity(usize),
     /// Coordinate y of an element, m or rad.
@@ -40,6 +47,9 @@ impl Sense {
 
     /// Whether it is a place: how fast it changes hangs on no acceleration.
     pub fn is_place(self) -> bool {
-        matches!(self, Self::Coordinate { .. } | Self::Length(_) | Self::Stroke(_) | Self::Gripper(_))
+        matches!(
+            self,
+            Self::Coordinate { .. } | Self::Part { .. } | Self::Length(_) | Self::Stroke(_) | Self::Gripper(_)
+        )
     }
 }

@@ -158,6 +158,26 @@ impl Model {
     }
 }
 
+impl Space {
+    /// ∂q_i/∂v of coordinate `i` of a joint that stands at `q`: by how much it changes under each of its velocities, ṗ = R u and
+    /// q̇ = ½ q ⊗ (ω, 0) of a floating joint, the latter of a spherical one.
+    pub(crate) fn slopes(self, q: &[f64], i: usize) -> [f64; 6] {
+        let Some(first) = self.quaternion() else { return [1.0, 0.0, 0.0, 0.0, 0.0, 0.0] };
+        let mut slopes = [0.0; 6];
+        let units = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        if i < first {
+            let turned = Rotation::from_quaternion(attitude(&q[first..]));
+            slopes.iter_mut().zip(units).for_each(|(slope, unit)| *slope = (turned * Vec3(unit)).0[i]);
+            return slopes;
+        }
+        // (½ω, 0) is a quaternion without length.
+        for (slope, [x, y, z]) in slopes[first..].iter_mut().zip(units) {
+            *slope = (attitude(&q[first..]) * Quaternion([0.5 * x, 0.5 * y, 0.5 * z, 0.0])).0[i - first];
+        }
+        slopes
+    }
+}
+
 fn vector(v: &[f64]) -> Vec3 {
     Vec3([v[0], v[1], v[2]])
 }
@@ -251,4 +271,37 @@ fn splitmix(state: &mut u64) -> f64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::{BodySpec, JointSpec, ModelBuilder, Parent};
+
+    #[test]
+    fn slopes_are_those_of_small_steps() {
+        let body = BodySpec {
+            name: "b".into(),
+            parent: Parent::World,
+            joint: JointSpec::floating("f", [0.0; 3]),
+            mass: 1.0,
+            com: [0.0; 3],
+            inertia: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        };
+        let mut builder = ModelBuilder::new([0.0; 3]);
+        builder.push(body).unwrap();
+        let model = builder.finish().unwrap();
+        let (q, h) = (model.random(7), 1e-6);
+        for i in 0..model.nq() {
+            let slopes = model.joint_space(0).slopes(&q, i);
+            for k in 0..model.nv() {
+                let mut v = vec![0.0; model.nv()];
+                v[k] = h;
+                let ahead = model.integrate(&q, &v)[i];
+                v[k] = -h;
+                let back = model.integrate(&q, &v)[i];
+                let wanted = (ahead - back) / (2.0 * h);
+                assert!((slopes[k] - wanted).abs() < 1e-9, "{i} {k}: {} {wanted}", slopes[k]);
+            }
+        }
+    }
 }

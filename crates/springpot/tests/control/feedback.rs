@@ -196,3 +196,44 @@ fn a_floating_base_follows_its_arm() {
     let off = largest(base.iter().zip(&arm).map(|(base, arm)| 12.0 * base + 2.0 * arm));
     assert!(off < 1e-9, "{off:e}");
 }
+
+/// A ball with an inertia and no mass off its centre, on a joint that turns freely.
+fn ball(kind: &str, inertia: [f64; 3], motion: &str) -> String {
+    let [xx, yy, zz] = inertia;
+    format!(
+        "[robot]\ngravity = [0, 0, 0]\n[[robot.body]]\nname = \"b\"\nmass = 2\njoint = {{ name = \"s\", kind = \"{kind}\" }}\n\
+         inertia = {{ xx = {xx}, yy = {yy}, zz = {zz} }}\n[motion]\nkind = \"forward\"\n{motion}\n"
+    )
+}
+
+/// J ω' = −d ω where J is that of a ball; of another body what is dissipated is what the actuators take.
+#[test]
+fn a_ball_joint_is_damped() {
+    let motion = "start = { v = { s = { wx = 3, wy = -2, wz = 1 } } }\n\
+        torque = { s = { wx = \"-0.5*v.s.wx\", wy = \"-0.5*v.s.wy\", wz = \"-0.5*v.s.wz\" } }";
+    let times = every(3.0, 0.1, 1e-10);
+    let round = run(&format!("{}{times}", ball("spherical", [0.4; 3], motion)));
+    for (name, start) in [("v.s.wx", 3.0), ("v.s.wy", -2.0), ("v.s.wz", 1.0)] {
+        let exact: Vec<f64> = round.t().iter().map(|t| start * (-0.5 / 0.4 * t).exp()).collect();
+        let off = distance(&exact, &round.column(name));
+        assert!(off < 1e-9, "{name}: {off:e}");
+    }
+    let long = run(&format!("{}{times}", ball("spherical", [0.2, 0.4, 0.5], motion)));
+    assert!(long.residual() < 1e-9, "{:e}", long.residual());
+    let sampled = motion
+        .replace("\"-0.5*v.s.wy\"", "{ expression = \"-0.5*v.s.wy + q.s.qx\", unit = \"N*m\", sample = \"10 ms\" }");
+    assert!(run(&format!("{}{times}", ball("spherical", [0.2, 0.4, 0.5], &sampled))).residual() < 1e-9);
+}
+
+/// m x" = −k x of a body that floats, turned by 30 degrees about z: its axes are not those of the world.
+#[test]
+fn a_floating_body_is_held() {
+    let motion = "start = { q = { s = { x = 0.3, y = -0.1, rpy = [0, 0, \"30 deg\"] } } }\n\
+        torque = { s = { vx = \"-50*(q.s.x*cos(pi/6) + q.s.y*sin(pi/6))\", vy = \"-50*(q.s.y*cos(pi/6) - q.s.x*sin(pi/6))\" } }";
+    let held = run(&format!("{}{}", ball("floating", [0.4; 3], motion), every(3.0, 0.1, 1e-10)));
+    for (name, start) in [("q.s.x", 0.3), ("q.s.y", -0.1)] {
+        let exact: Vec<f64> = held.t().iter().map(|t| start * (5.0 * t).cos()).collect();
+        let off = distance(&exact, &held.column(name));
+        assert!(off < 1e-9, "{name}: {off:e}");
+    }
+}

@@ -49,7 +49,7 @@ impl Eye<'_> {
     pub(super) fn value(&self, sense: Sense) -> f64 {
         let site = || self.system.gripper.as_ref().expect("a gripper that is named");
         match sense {
-            Sense::Coordinate { place, .. } => self.q[place],
+            Sense::Coordinate { place, .. } | Sense::Part { place, .. } => self.q[place],
             Sense::Velocity(k) => self.v[k],
             Sense::Length(e) => (self.element)(e)[0],
             Sense::Stroke(e) => self.system.elements[e].stroke((self.element)(e)[0]),
@@ -68,7 +68,7 @@ impl Eye<'_> {
             Sense::Velocity(k) => a[k],
             Sense::Length(e) | Sense::Stroke(e) => (self.element)(e)[1],
             Sense::Gripper(along) => self.value(Sense::GripperVelocity(along)),
-            Sense::Rate(_) | Sense::GripperVelocity(_) => {
+            Sense::Part { .. } | Sense::Rate(_) | Sense::GripperVelocity(_) => {
                 let [by_q, by_v] = self.slopes(sense);
                 dot(&by_q, self.v) + dot(&by_v, a)
             }
@@ -77,6 +77,7 @@ impl Eye<'_> {
         // Where nothing moves yet, what moves first is told by the second derivative.
         let second = match sense {
             Sense::Coordinate { velocity, .. } => a[velocity],
+            Sense::Part { .. } if first == 0.0 => dot(&self.slopes(sense)[0], a),
             Sense::Length(e) | Sense::Stroke(e) if first == 0.0 => self.jet(Sense::Rate(e), a).first,
             Sense::Gripper(along) if first == 0.0 => self.jet(Sense::GripperVelocity(along), a).first,
             _ => 0.0,
@@ -91,6 +92,11 @@ impl Eye<'_> {
         let site = || self.system.gripper.as_ref().expect("a gripper that is named");
         match sense {
             Sense::Coordinate { velocity, .. } => slopes[0][velocity] = 1.0,
+            Sense::Part { place, joint } => {
+                let (own, range) = (model.q_range(joint), model.v_range(joint));
+                let by_joint = model.joint_space(joint).slopes(&self.q[own.clone()], place - own.start);
+                slopes[0][range.clone()].copy_from_slice(&by_joint[..range.len()]);
+            }
             Sense::Velocity(k) => slopes[1][k] = 1.0,
             Sense::Length(e) | Sense::Stroke(e) => {
                 slopes[0] = self.system.elements[e].measure.read(model, self.kinematics).1;
