@@ -244,8 +244,8 @@ other columns of a run; parameters are those of the laws, start.q and start.v, a
 kept, set and serialized. A motion that is given in advance has no tau.JOINT. The scenario and every file that it names are in the FMU, \
 with the shared library of this platform.
 
-Exit codes: 0 done, 1 the scenario cannot start, or the file cannot be written, 2 the scenario was refused (several cases, events that act, \
-named schemes), or the library is not there.")]
+Exit codes: 0 done, 1 the scenario cannot start, or the file cannot be written, 2 the scenario was refused (several cases, named \
+schemes), or the library is not there.")]
     Fmu(FmuOptions),
     /// Write a commented scenario to start from.
     #[command(after_help = "\

@@ -126,7 +126,11 @@ impl PySimulation {
         if let Ok(name) = joint.cast::<PyString>() {
             let name = name.to_cow()?;
             return self.v_names.iter().position(|own| *own == name).ok_or_else(|| {
-                let help = springpot_scenario::suggest(&name, self.v_names.iter().map(String::as_str));
+                // The velocity of what was named as a coordinate.
+                let named = self.model.q_labels().iter().position(|label| label.name == *name);
+                let of_it = named.and_then(|place| (0..nv).find(|k| self.model.coordinate_of(*k) == Some(place)));
+                let suggest = || springpot_scenario::suggest(&name, self.v_names.iter().map(String::as_str));
+                let help = of_it.map_or_else(suggest, |k| format!("did you mean `{}`?", self.v_names[k]));
                 value_error(format!("no velocity is called \"{name}\"; {help}"))
             });
         }

@@ -7,7 +7,7 @@ use crate::robot::Robot;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
 use springpot::elements::{Bushing, Cable, CableError, Component, Joint, JointMeasureError, Line, Measure};
-use springpot::model::{Anchor, Frame, Site};
+use springpot::model::{Anchor, Frame, Site, Space};
 use springpot::spatial::Rotation;
 
 /// A measure, and what the scenario says of it.
@@ -86,6 +86,10 @@ pub(super) fn on_joint(table: &Table<'_>, robot: &Robot) -> Read<Shape> {
         JointMeasureError::Kind { .. } | JointMeasureError::Several { .. } => {
             field.refuse(RefusalKind::Rule, format!("is {name:?}: {error}"), other_joints(robot))
         }
+        _ if let Some((joint, kind)) = free_joint(name, robot) => {
+            let message = format!("is {name:?}, but joint {joint:?} is {kind}: an element acts on a coordinate that is a number of its own");
+            field.refuse(RefusalKind::Rule, message, other_joints(robot))
+        }
         _ => {
             let known = model.joint_names().iter().map(String::as_str);
             let message = format!("names no joint: {:?}", crate::text::document::shorten(name));
@@ -93,6 +97,16 @@ pub(super) fn on_joint(table: &Table<'_>, robot: &Robot) -> Read<Shape> {
         }
     })?;
     Ok(Shape { measure: joint.into(), plan: ShapePlan::Joint(name.to_owned()), ends: vec![field.node.place.clone()] })
+}
+
+/// The joint that turns freely, and its kind, of whose numbers this is one.
+fn free_joint<'a>(name: &'a str, robot: &Robot) -> Option<(&'a str, &'static str)> {
+    let (joint, _) = name.rsplit_once('.')?;
+    let model = robot.model();
+    let space = model.joint_space(model.joint_index(joint)?);
+    let labels = [model.q_labels(), model.v_labels()];
+    let is_part = space.quaternion().is_some() && labels.iter().flatten().any(|label| label.name == name);
+    is_part.then(|| (joint, if space == Space::Pose { "floating" } else { "spherical" }))
 }
 
 /// The joints that an element can act on.

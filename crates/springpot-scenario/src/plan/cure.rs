@@ -2,10 +2,11 @@
 
 use crate::elements::plan::ElementPlan;
 use crate::plan::Plan;
+use crate::plan::events::EventPlan;
 use crate::signals::plan::SignalPlan;
 use crate::text::refusal::Place;
-use springpot::law::heat;
-use springpot::system::RunError;
+use springpot::law::{InputValue, heat};
+use springpot::system::{Action, RunError, Setting};
 
 /// What an error calls the force of a controller.
 const CONTROLLER: &str = "the force of the controller";
@@ -26,6 +27,9 @@ impl Plan {
         let place_of = |plan: Option<&ElementPlan>| plan.map(|plan| plan.place.clone());
         let ends_of = |plan: Option<&ElementPlan>| plan.map(|plan| plan.ends.first().unwrap_or(&plan.place).clone());
         let (place, help) = match error {
+            RunError::Rule { t, element: name, .. } if let Some(place) = self.breaking_event(name, *t) => {
+                (Some(place), Some("set a value under which the law's rule holds".to_owned()))
+            }
             RunError::Rule { element: name, .. } => {
                 let plan = element(name);
                 let input = plan.and_then(|plan| plan.inputs.first()).map(|input| input.place.clone());
@@ -90,6 +94,29 @@ impl Plan {
             _ => (None, None),
         };
         Cure { place, help }
+    }
+
+    /// The event whose `set` breaks a rule of an element that its own inputs keep.
+    fn breaking_event(&self, name: &str, t: f64) -> Option<Place> {
+        let at = self.elements.iter().position(|plan| plan.element.name == name)?;
+        let plan = &self.elements[at];
+        let input = |value| InputValue { value, rate: 0.0 };
+        let own: Vec<InputValue> = plan.inputs.iter().map(|plan| input(plan.signal.value(t))).collect();
+        let breaks = |inputs: &[InputValue]| plan.element.law.check_inputs(inputs).is_err();
+        let sets = |event: &EventPlan| {
+            let mut inputs = own.clone();
+            let Action::Set(settings) = &event.event.action else { return false };
+            for setting in settings {
+                if let Setting::Input { element, input: place, value } = *setting
+                    && element == at
+                {
+                    inputs[place] = input(value);
+                }
+            }
+            breaks(&inputs)
+        };
+        let event = self.events.iter().find(|event| sets(event)).filter(|_| !breaks(&own))?;
+        Some(event.place.clone())
     }
 
     /// Where a signal stands that is named by what it drives.

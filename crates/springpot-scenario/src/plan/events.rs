@@ -130,6 +130,17 @@ fn when(field: &Field<'_>, seen: &Seen) -> Read<(ColumnExpression, Vec<Quantity>
     let text = field.text()?;
     let names: Vec<&str> = seen.names.iter().map(String::as_str).collect();
     let when = ColumnExpression::parse(text, &field.ctx.constants(), &names).map_err(|error| {
+        let several = match &error {
+            ExpressionError::UnknownName { name, .. } => {
+                names::inside(name, names.iter().copied()).map(|help| (name, help))
+            }
+            _ => None,
+        };
+        if let Some((name, help)) = several {
+            let place = field.node.place_in_text(error.span());
+            let message = format!("{field}: unknown name `{name}`");
+            return field.ctx.refuse(place.refuse(RefusalKind::BadQuantity, message).help(help));
+        }
         let help = match &error {
             ExpressionError::UnknownName { name, suggestion: None, .. } => names::suggest(name, names.iter().copied()),
             ExpressionError::Condition { .. } => compared(text, &names),

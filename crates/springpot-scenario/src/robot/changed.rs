@@ -1,8 +1,9 @@
 //! `[[robot.joint]]`: what a scenario says of joints of a URDF file.
 
-use super::joint::{axis2, lead, numbers};
+use super::joint::{axis2, lead, mark, numbers};
 use crate::keys::CHANGED_JOINT;
 use crate::reader::named::unique;
+use crate::robot::described::BodyPlaces;
 use crate::reader::{Field, Read, Table, all};
 use crate::text::document::shorten;
 use crate::text::names;
@@ -10,8 +11,8 @@ use crate::text::refusal::RefusalKind;
 use springpot::model::{BodySpec, JointKind, JointSpec, Limits, MOST_COORDINATES};
 use std::collections::HashMap;
 
-/// Changes the joints of `bodies` as `field` says.
-pub(crate) fn change(field: &Field<'_>, bodies: &mut [BodySpec]) -> Read<()> {
+/// Changes the joints of `bodies` as `field` says; `places` are to know where.
+pub(crate) fn change(field: &Field<'_>, bodies: &mut [BodySpec], places: &mut [BodyPlaces]) -> Read<()> {
     let mut seen = HashMap::new();
     let items = field.items("an array of tables: [[robot.joint]]")?;
     all(items.iter().map(|item| {
@@ -36,6 +37,22 @@ pub(crate) fn change(field: &Field<'_>, bodies: &mut [BodySpec]) -> Read<()> {
         if let Some(field) = table.get("kind") {
             field.word("kind of joint")?;
         }
+        places[own]
+            .fields
+            .extend(table.fields().map(|field| (format!("joint.{}", field.key), field.node.place.clone())));
+        let joint = &bodies[own].joint;
+        let follower = bodies.iter().find(|body| body.joint.mimic.as_ref().is_some_and(|m| m.joint == joint.name));
+        if let (Some(field), Some(kind), Some(follower)) =
+            (table.get("kind"), kind.filter(|kind| kind.nv() != 1), follower)
+        {
+            let message = format!(
+                "is {:?}, but joint {:?} follows this one in the file: a joint follows one coordinate",
+                kind.name(),
+                follower.joint.name
+            );
+            let help = "give it a kind of one coordinate, or write ignore_mimic = true in [robot]".to_owned();
+            return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
+        }
         let joint = &mut bodies[own].joint;
         if let (Some(kind), Some(field)) = (kind, table.get("kind")) {
             if kind.has_axis() && !joint.kind.has_axis() {
@@ -47,6 +64,7 @@ pub(crate) fn change(field: &Field<'_>, bodies: &mut [BodySpec]) -> Read<()> {
             (joint.axis2, joint.lead) = (axis2(&table, kind)?, lead(&table, kind)?);
         }
         joint.armature = numbers(&table, "armature", joint.kind, 0.0)?;
+        mark(&table, ("armature", joint.kind), Some(&joint.armature), &mut places[own]);
         Ok(())
     }))
     .map(|_| ())

@@ -4,10 +4,16 @@ use crate::keys::{FRICTION, JOINT, Keys, MIMIC};
 use crate::reader::constants;
 use crate::reader::{Field, Read, Refused, Table};
 use crate::robot::described::BodyPlaces;
+use crate::text::document::shortest;
 use crate::text::names;
 use crate::text::refusal::RefusalKind;
+use crate::units;
 use springpot::model::{AxisNeed, Dimension, FrictionLaw, JointKind, JointSpec, Limits, MOST_COORDINATES, Mimic};
 use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+/// Farthest advance in a turn, m.
+const FARTHEST: f64 = 1e9;
 
 /// The kind of each joint by its name, as far as it is written.
 pub(super) type Kinds<'a> = HashMap<&'a str, JointKind>;
@@ -59,7 +65,12 @@ pub(super) fn read(
     let friction = friction(&table, kind, places);
     let armature = numbers(&table, "armature", kind, 0.0);
     let limits = limits(&table, kind);
-    let mimic = table.get("mimic").map(|field| mimic(&field, kind, kinds)).transpose();
+    // Of a joint of several coordinates that is refused already.
+    let follows = table.get("mimic").filter(|_| kind.nv() == 1);
+    let mimic = follows.map(|field| mimic(&field, kind, kinds)).transpose();
+    for (key, values) in [("damping", &damping), ("armature", &armature)] {
+        mark(&table, (key, kind), values.as_ref().ok(), places);
+    }
     let friction = friction?;
     Ok(JointSpec {
         name: name?.to_owned(),
@@ -90,6 +101,20 @@ pub(super) fn lead(table: &Table<'_>, kind: JointKind) -> Read<f64> {
     }
     let field = table.require("lead")?;
     let lead = field.quantity()?;
+    let unit = field.node.text().and_then(units::split_quantity).map_or("", |(_, unit)| unit);
+    if unit.contains("rad") || unit.contains("deg") {
+        let message = format!(
+            "is {}, the advance in an angle, but `lead` is that in a whole turn, a length",
+            field.node.written()
+        );
+        let help = format!("write the advance in each turn: lead = \"{} m\"", shortest(lead * TAU));
+        return Err(field.refuse(RefusalKind::BadQuantity, message, Some(help)));
+    }
+    if lead.abs() > FARTHEST {
+        let message = format!("is {} m in each turn, outside ±1e9 m", shortest(lead));
+        let help = "write the advance in each turn, such as \"5 mm\"".to_owned();
+        return Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)));
+    }
     if lead != 0.0 {
         return Ok(lead);
     }
@@ -120,6 +145,18 @@ fn by_coordinate<T: Copy>(
     let Some(field) = field else { return Ok(values) };
     let slides = |dimension| dimension == Dimension::Length;
     let entries = field.node.entries().filter(|_| !constants::is_expression(field.node)).unwrap_or_default();
+    let unit = field.node.text().and_then(units::split_quantity).map_or("", |(_, unit)| unit);
+    let has_both = [true, false].iter().all(|wanted| kind.numbers().any(|(_, dimension)| slides(dimension) == *wanted));
+    if has_both && !unit.is_empty() {
+        let names: Vec<String> = kind.numbers().map(|(name, _)| format!("{name} = …")).collect();
+        let message = format!(
+            "is {}, but a {} joint shifts and turns: one unit does not fit both",
+            field.node.written(),
+            kind.name()
+        );
+        let help = format!("write {{ {} }}, each in its unit", names.join(", "));
+        return Err(field.refuse(RefusalKind::BadQuantity, message, Some(help)));
+    }
     let is_whole = entries.iter().any(|entry| whole.is_some_and(|keys| keys.get(&entry.key).is_some()));
     if entries.is_empty() || is_whole || kind.dimension().is_some() {
         for (value, (_, dimension)) in values.iter_mut().zip(kind.numbers()) {
@@ -148,6 +185,20 @@ pub(super) fn numbers(
     left_out: f64,
 ) -> Read<[f64; MOST_COORDINATES]> {
     by_coordinate(table.get(key), kind, None, left_out, |field, slides| field.joint_quantity(slides))
+}
+
+/// Has what is wrong with a negative number of a table said where it stands.
+pub(super) fn mark(
+    table: &Table<'_>,
+    (key, kind): (&'static str, JointKind),
+    values: Option<&[f64; MOST_COORDINATES]>,
+    places: &mut BodyPlaces,
+) {
+    let Some((field, values)) = table.get(key).zip(values) else { return };
+    let wrong = kind.numbers().zip(values).find(|(_, value)| **value < 0.0);
+    let own = wrong.and_then(|((name, _), _)| field.node.get(name));
+    let place = own.map_or(&field.node.place, |node| &node.place);
+    places.fields.insert(0, (format!("joint.{key}"), place.clone()));
 }
 
 fn limits(table: &Table<'_>, kind: JointKind) -> Read<[Limits; MOST_COORDINATES]> {
@@ -236,6 +287,23 @@ fn leader(field: &Field<'_>, kinds: &Kinds<'_>) -> Read<(String, Dimension)> {
             format!("write one of {}", parts.join(", "))
         };
         return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
+    }
+    // A velocity, or a number of a quaternion.
+    let parted = name.rsplit_once('.').and_then(|(joint, part)| Some((joint, part, *kinds.get(joint)?)));
+    if let Some((joint, part, kind)) = parted {
+        let message =
+            format!("is {name:?}, no coordinate of {joint:?} that a joint can follow: the joint is {}", kind.name());
+        let rate = kind.rates().position(|rate| rate == part).and_then(|at| kind.numbers().nth(at));
+        let parts: Vec<String> = match rate {
+            Some((own, _)) => vec![own.to_owned()],
+            None => kind.numbers().map(|(own, _)| own.to_owned()).collect(),
+        };
+        let right: Vec<String> = parts.iter().map(|own| format!("`{joint}.{own}`")).collect();
+        let help = match right.is_empty() {
+            true => "follow a joint that has one coordinate".to_owned(),
+            false => format!("did you mean {}?", right.join(" or ")),
+        };
+        return Err(field.refuse(RefusalKind::UnknownName, message, Some(help)));
     }
     let message = format!("names no joint: {:?}", crate::text::document::shorten(name));
     let names = known.iter().map(|(name, _)| name.as_str());

@@ -34,10 +34,23 @@ pub(super) fn read(table: &Table<'_>, field: &Field<'_>, gravity: Read<[f64; 3]>
     };
     let robot = field.ctx.robots.read(&written, field.ctx.folder.join(&written), options);
     let mut robot = robot.map_err(|error| refuse(field, &error))?;
+    let place = BodyPlaces { table: field.node.place.clone(), fields: Vec::new() };
+    let mut changes = vec![place; robot.bodies.len()];
     if let Some(joints) = table.get("joint") {
-        changed::change(&joints, &mut Arc::make_mut(&mut robot).bodies)?;
+        changed::change(&joints, &mut Arc::make_mut(&mut robot).bodies, &mut changes)?;
     }
-    let model = robot.model(gravity?).map_err(|error| refuse(field, &error))?;
+    let model = robot.model(gravity?).map_err(|error| {
+        let UrdfProblem::Model { source } = &*error.problem else { return refuse(field, &error) };
+        let subject = source.subject().and_then(|subject| Some((changes.get(subject.body)?, subject.field.key())));
+        let own = subject.and_then(|(changes, key)| changes.fields.iter().find(|(field, _)| field == key));
+        match own {
+            // It is the scenario that says so, not the file.
+            Some((_, place)) => {
+                field.ctx.refuse(place.refuse(RefusalKind::Rule, source.to_string()).label("not physical"))
+            }
+            None => refuse(field, &error),
+        }
+    })?;
     if model.joint_count() == 0 {
         let help = "floating_base = true lets it move as a whole".to_owned();
         return Err(field.refuse(RefusalKind::Missing, "has no joint that moves: all are fixed", Some(help)));

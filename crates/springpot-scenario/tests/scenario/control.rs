@@ -205,7 +205,7 @@ fn the_state_stands_in_inputs_and_torques_alone() {
                     [motion]\nkind = \"forward\"\ntorque = { f = { vz = 0 } }\n[motion.controller]\nkind = \"pd-gravity\"\nkp = 1\n\
                     reference = { kind = \"move\", to = {}, duration = 1 }\n";
     let alone = &floating[..floating.find("[motion.controller]").unwrap()];
-    assert_all_refused(alone, &[(&[("vz = 0", "vz = ‸\"9.81 - v.f.vz\"")], Rule, words)]);
+    assert_all_refused(alone, &[(&[("vz = 0", "vz = \"9.81 - ‸v.f.vv\"")], BadQuantity, "unknown name `v.f.vv`")]);
     assert_all_refused(
         floating,
         &[(

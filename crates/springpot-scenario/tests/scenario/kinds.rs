@@ -165,6 +165,27 @@ fn what_is_wrong_with_a_joint_is_refused_with_its_place() {
     assert_all_refused(
         TREE,
         &[
+            (
+                &[(helical, "lead = ‸\"5 mm/rad\"")],
+                BadQuantity,
+                "is \"5 mm/rad\", the advance in an angle, but `lead` is that in a whole turn, a length\n  help: write the advance in each turn: lead = \"0.031415926535897934 m\"",
+            ),
+            (&[(helical, "lead = ‸1e300")], OutOfRange, "outside ±1e9 m"),
+            (
+                &[("damping = { z = \"20 N*s/m\", rz = \"0.1 N*m*s/rad\" }", "damping = ‸\"20 N*s/m\"")],
+                BadQuantity,
+                "one unit does not fit both\n  help: write { z = …, rz = … }, each in its unit",
+            ),
+            (
+                &[(mimic, "joint = ‸\"c.wz\"")],
+                UnknownName,
+                "no coordinate of \"c\" that a joint can follow: the joint is cylindrical\n  help: did you mean `c.rz`?",
+            ),
+            (
+                &[(mimic, "joint = ‸\"s.qx\"")],
+                UnknownName,
+                "the joint is spherical\n  help: follow a joint that has one coordinate",
+            ),
             (&[(helical, "lead = ‸0")], OutOfRange, "is 0, but a helical joint advances by its lead in each turn"),
             (
                 &[("joint = { name = \"h\"", "joint = ‸{ name = \"h\""), (&format!("{helical}, "), "")],
@@ -195,7 +216,7 @@ fn what_is_wrong_with_a_joint_is_refused_with_its_place() {
             (&[("damping = { first = 0.5 }", "damping = { ‸frist = 0.5 }")], UnknownKey, "`first`"),
             (&[("rz = \"0.1 N*m*s/rad\"", "rz = \"0.1 ‸N*s/m\"")], BadQuantity, "this place takes `N*m*s/rad`"),
             (
-                &[("damping = { z = \"20 N*s/m\"", "damping = ‸{ z = -1")],
+                &[("damping = { z = \"20 N*s/m\"", "damping = { z = ‸-1")],
                 Rule,
                 "joint.damping of body \"sleeve\" is -1; it must be 0 or more",
             ),
@@ -236,6 +257,13 @@ fn what_is_wrong_with_a_joint_is_refused_with_its_place() {
 }
 
 #[test]
+fn one_cause_is_told_once() {
+    let said = refusals(&edited(TREE, &[("lower = { z", "mimic = { joint = \"h\" }, lower = { z")]));
+    assert_eq!(said.len(), 1, "{said}");
+    assert!(said.to_string().contains("`mimic` of the joint of body \"sleeve\" has no meaning"), "{said}");
+}
+
+#[test]
 fn an_element_on_a_joint_of_several_names_one_coordinate() {
     let with = |joint: &str| {
         format!("{TREE}[[element]]\nname = \"e\"\njoint = {joint}\nlaw = \"spring\"\nparameters = {{ k = 1 }}\n")
@@ -248,6 +276,37 @@ fn an_element_on_a_joint_of_several_names_one_coordinate() {
     assert!(refused.contains("names no joint: \"c.zz\"") && refused.contains("c.z"), "{refused}");
     let refused = refusals(&with("\"s\"")).to_string();
     assert!(refused.contains("joint \"s\" is spherical"), "{refused}");
+    let refused = refusals(&with("\"s.qx\"")).to_string();
+    assert!(refused.contains("is \"s.qx\", but joint \"s\" is spherical"), "{refused}");
+}
+
+#[test]
+fn feedback_sees_joints_that_turn_freely() {
+    let sees = |torque: &str| edited(TREE, &[("s = { wx = \"0.1*t\" }", &format!("s = {{ wx = {torque} }}"))]);
+    for torque in ["\"-0.5*v.s.wx\"", "{ expression = \"-q.s.qx - a.s.wy\", unit = \"N*m\", sample = \"10 ms\" }"] {
+        plan(&sees(torque));
+    }
+    assert_all_refused(
+        TREE,
+        &[
+            (
+                &[("s = { wx = \"0.1*t\" }", "s = { wx = \"-‸q.s.qx\" }")],
+                Rule,
+                "q.s.qx changes its sign where the joint is half a turn away from 0\n  help: sample it",
+            ),
+            (&[("s = { wx = \"0.1*t\" }", "s = { wx = \"-‸a.s.wx\" }")], Rule, "follows from the forces"),
+            (
+                &[("s = { wx = \"0.1*t\" }", "s = { wx = \"-‸v.c\" }")],
+                BadQuantity,
+                "unknown name `v.c`\n  help: write one of `v.c.vz`, `v.c.wz`",
+            ),
+            (
+                &[("[time]", "[[event]]\nname = \"x\"\nwhen = \"‸q.c - 0.1\"\n\n[time]")],
+                BadQuantity,
+                "unknown name `q.c`\n  help: write one of `q.c.z`, `q.c.rz`",
+            ),
+        ],
+    );
 }
 
 #[test]
@@ -305,6 +364,11 @@ fn joints_of_a_urdf_file_get_other_kinds_and_rotors() {
         ("name = \"hip\"\nkind = \"revolute\"", "but the joint is spherical in the file and has no axis"),
         ("name = \"j5\"\naxis = [1, 0, 0]", "unknown key `axis`"),
         ("name = \"j5\"\nkind = \"screw\"", "which is no kind of joint"),
+        ("name = \"j5\"\narmature = -1", "a.toml:5:12: joint.armature of body \"nut\" is -1; it must be 0 or more"),
+        (
+            "name = \"j5\"\nkind = \"universal\"\naxis2 = [0, 2, 0]",
+            "a.toml:6:9: the axis2 of joint \"j5\" is parallel to its axis",
+        ),
         ("armature = 1", "has no `name`"),
         ("name = \"j5\"\n[[robot.joint]]\nname = \"j5\"", "which is taken on line 4"),
     ];

@@ -53,6 +53,7 @@ fn page(asked: &Asked, modes: &Modes, names: &[String]) -> String {
     let shown = coordinates.iter().take(MOST_COORDINATES);
     let mut places: Vec<String> = shown
         .map(|(name, q, unit)| {
+            let unit = if *unit == "1" { "" } else { unit };
             let space = if unit.is_empty() { "" } else { terminal::NO_BREAK };
             let [nb, q] = [terminal::NO_BREAK, &short(*q)];
             format!("{}{nb}={nb}{q}{space}{unit}", plain::line(name))

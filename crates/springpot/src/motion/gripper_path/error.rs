@@ -5,9 +5,10 @@
 pub enum PathError {
     /// The path leaves what the robot can reach.
     #[error(
-        "the gripper cannot reach its path at t = {t} s: {} it stays {distance:.3e} m and {angle:.3e} rad away; bring the path \
+        "the gripper cannot reach its path at t = {t} s: {} it stays {distance:.3e} m{} away; bring the path \
          nearer{}",
         when(*.t, *.at),
+        if *.angle == 0.0 { String::new() } else { format!(" and {angle:.3e} rad") },
         if *.at == 0.0 { ", or give a guess that is nearer to it" } else { "" }
     )]
     OutOfReach {
@@ -17,7 +18,7 @@ pub enum PathError {
         at: f64,
         /// Distance to the wanted point, m.
         distance: f64,
-        /// Angle to the wanted orientation, rad.
+        /// Angle to the wanted orientation, rad; 0 where none is asked for.
         angle: f64,
     },
     /// The path goes through a singular configuration in which the velocities are infinite or not determined.
