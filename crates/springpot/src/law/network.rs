@@ -202,6 +202,14 @@ impl Network {
         Self::Series(Series::new(parts))
     }
 
+    /// A series with the past that this derivative stands for: it says who has a force that is there unstretched where no springpot does.
+    pub(super) fn after(self, derivative: Derivative) -> Self {
+        match self {
+            Self::Series(series) => Self::Series(series.after(derivative)),
+            other => other,
+        }
+    }
+
     /// A law under `heat`, of so many `inputs`, of which `takes` is the temperature.
     pub(super) fn heated(law: Self, heat: Heat, inputs: usize, takes: Option<usize>) -> Self {
         Self::Heated(Box::new(Heated::new(law, heat, inputs, takes)))

@@ -195,7 +195,7 @@ impl NetworkText {
                     Err(RuleError { rule, parameter: self.first_parameter(part) })
                 });
                 let built = built.collect::<Result<Vec<_>, _>>()?;
-                let series = Network::series(built);
+                let series = Network::series(built).after(derivative);
                 self.carries(parts, &series)?;
                 Ok(series)
             }

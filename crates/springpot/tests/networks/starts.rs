@@ -2,6 +2,7 @@
 
 use crate::one_sided::network;
 use crate::{along, departure, force, slider};
+use springpot::fractional::mittag_leffler::mittag_leffler;
 use springpot::law::{Derivative, LeafState, Network, NetworkText, Past, Point, Start};
 
 fn built(text: &str, values: &[f64], derivative: Derivative) -> Network {
@@ -60,10 +61,12 @@ fn a_preload_has_relaxed() {
         assert_near(&strokes(&leaves), &wanted, "behind a rope");
     }
     // Unloaded, it acts from t = 0 on.
-    let law = "series(spring(k), parallel(spring(l), preload(f)), springpot(c, a))";
-    let (pull, leaves) = at_start(&built(law, &[k, l, f, c, a], JUMPED), 0.0, 0.0);
-    assert!((pull - f * k / (k + l)).abs() < 1e-15);
-    assert_near(&strokes(&leaves), &[f / (k + l), -f / (k + l), -f / (k + l), 0.0], "unloaded");
+    for (flow, own) in &flows {
+        let law = format!("series(spring(k), parallel(spring(l), preload(f)), {flow})");
+        let (pull, leaves) = at_start(&built(&law, &[&[k, l, f], &own[..]].concat(), JUMPED), 0.0, 0.0);
+        assert!((pull - f * k / (k + l)).abs() < 1e-15, "{flow}: {pull}");
+        assert_near(&strokes(&leaves), &[f / (k + l), -f / (k + l), -f / (k + l), 0.0], flow);
+    }
 }
 
 const CAPUTO: Derivative = Derivative::Caputo;
@@ -110,22 +113,23 @@ fn a_preload_in_series_moves_nothing() {
     }
 }
 
-/// Stretched and held for a while a preload has relaxed for as long: by the relaxation of a Maxwell element whose spring is both in series.
+/// Stretched and held for a while a preload has relaxed for as long: by F = f·k/(k + l)·E_α(−(K/c)·t^α) with 1/K = 1/k + 1/l.
 #[test]
 fn a_preload_relaxes_while_it_is_held() {
-    let (k, l, c, alpha, f, age) = (1000.0, 300.0, 50.0, 0.5, 0.3, 0.02);
-    let law =
-        built("series(spring(k), parallel(spring(l), preload(f)), springpot(c, a))", &[k, l, f, c, alpha], JUMPED);
-    let start = Start { stroke: 0.0, jump: 0.0, inputs: &[] };
-    let state = Past::Held(age).state(&law, &start, 1e-11, 1.0).unwrap();
-    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
-    // F = f·k/(k + l)·E_α(−(K/c)·t^α) with 1/K = 1/k + 1/l.
-    let both = k * l / (k + l);
-    let z = num_complex::Complex64::new(-both / c * f64::powf(age, alpha), 0.0);
-    let left = springpot::fractional::mittag_leffler::mittag_leffler(alpha, 1.0, z).unwrap().re;
-    let wanted = f * k / (k + l) * left;
-    let found = law.now(&at, &state).force();
-    assert!((found - wanted).abs() < 1e-7 * f, "{found}, not {wanted}");
+    let (k, l, c, f, age) = (1000.0, 300.0, 50.0, 0.3, 0.02);
+    for (flow, alpha) in [("springpot(c, a)", 0.5), ("dashpot(c)", 1.0)] {
+        let own = if alpha == 1.0 { vec![c] } else { vec![c, alpha] };
+        let law = format!("series(spring(k), parallel(spring(l), preload(f)), {flow})");
+        let law = built(&law, &[&[k, l, f], &own[..]].concat(), JUMPED);
+        let start = Start { stroke: 0.0, jump: 0.0, inputs: &[] };
+        let state = Past::Held(age).state(&law, &start, 1e-11, 1.0).unwrap();
+        let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
+        let both = k * l / (k + l);
+        let z = num_complex::Complex64::new(-both / c * f64::powf(age, alpha), 0.0);
+        let left = mittag_leffler(alpha, 1.0, z).unwrap().re;
+        let (found, wanted) = (law.now(&at, &state).force(), f * k / (k + l) * left);
+        assert!((found - wanted).abs() < 1e-7 * f, "{flow}: {found}, not {wanted}");
+    }
 }
 
 /// A stop without play is a spring, wherever its end is.

@@ -19,7 +19,7 @@ use super::part::{self, Onset, Part, Reported, Take};
 use super::{Guard, Holds, MOST_IN_SERIES, Network};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
-use crate::fractional::KernelError;
+use crate::fractional::{KernelError, Kind as Derivative};
 use crate::law::leaf::Slide;
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
@@ -39,6 +39,8 @@ pub struct Series {
     parts: Vec<Network>,
     /// Those that let go at some strokes or rates.
     loose: Option<Loose>,
+    /// Whether its past is that of the Riemann–Liouville derivative, where no memory among its parts says so.
+    is_unloaded: bool,
 }
 
 type Matrix = [[f64; MAX_NODES]; MAX_NODES];
@@ -78,7 +80,12 @@ const MOST_SECANTS: usize = 200;
 
 impl Series {
     pub(super) fn new(parts: Vec<Network>) -> Self {
-        Self { loose: Loose::of(&parts), parts }
+        Self { loose: Loose::of(&parts), parts, is_unloaded: false }
+    }
+
+    /// With the past that this derivative stands for.
+    pub(super) fn after(self, derivative: Derivative) -> Self {
+        Self { is_unloaded: derivative == Derivative::RiemannLiouville, ..self }
     }
 
     /// Splits off what it keeps itself: the strokes of its parts, and when a play last changed sides.

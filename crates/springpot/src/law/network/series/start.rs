@@ -15,7 +15,7 @@ pub(super) fn begin(series: &Series, start: &Start, state: &mut State) -> Result
     // What was held since ever has relaxed; what begins at t = 0 has not.
     let onset = match parts.iter().find_map(|part| derivative(part, start)) {
         Some(Derivative::RiemannLiouville) => Onset::Short,
-        None if start.jump != 0.0 => Onset::Short,
+        None if start.jump != 0.0 || series.is_unloaded => Onset::Short,
         Some(Derivative::Caputo) | None => Onset::Long,
     };
     if let Some(rest) = (onset == Onset::Long).then(|| relaxed(series, start)).transpose()?.flatten() {
