@@ -6,7 +6,7 @@ use springpot::fractional::mittag_leffler::mittag_leffler;
 use springpot::law::{Derivative, LeafState, Network, NetworkText, Past, Point, Start};
 
 fn built(text: &str, values: &[f64], derivative: Derivative) -> Network {
-    (NetworkText::parse(text).unwrap().entry().build)(values, derivative).unwrap()
+    NetworkText::parse(text).unwrap().entry().build(values, derivative).unwrap()
 }
 
 /// Force and leaves at t = 0.
