@@ -63,6 +63,7 @@ impl Lag<'_> {
     pub(super) fn weighted<S: Simd>(&self, simd: S, k: usize) -> f64x8<S> {
         match self.table {
             Some(table) => load(simd, &table.weighted[k]),
+            None if self.lag == 0.0 => load(simd, &self.history.weight[k]),
             None => {
                 let [lambda, weight, _] = self.history.block(simd, k);
                 weight * decay(lambda * self.lag)
@@ -77,6 +78,10 @@ impl Lag<'_> {
             Some(table) => {
                 let [a, b, c, d]: &[Block; CUBIC] = &table.psi.as_chunks().0[k];
                 (load(simd, &table.decay[k]), [load(simd, a), load(simd, b), load(simd, c), load(simd, d)])
+            }
+            None if self.lag == 0.0 => {
+                let [one, half] = [f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.5)];
+                (one, [one, half, one * (1.0 / 3.0), half * 0.5])
             }
             None => {
                 let x = load(simd, &self.history.lambda[k]) * self.lag;

@@ -24,7 +24,6 @@ impl MemoryTangent {
     /// With `end` what [`Memory::commit_rates`] does is differentiated, else [`Memory::commit`]. Of a debt the same share is paid as the
     /// memory pays of its own, none where it pays none.
     pub fn commit(&mut self, memory: &Memory, step: &TangentStep, delta_u: &[f64], end: Option<&TangentEnd>) {
-        self.is_told = false;
         let Some(past) = memory.past() else { return };
         let (h, polynomial, parameters) = (step.polynomial.h, &step.polynomial, self.parameters);
         self.find_now(memory, past, step, delta_u);

@@ -6,8 +6,8 @@ use crate::collocation::Nodes;
 use crate::fractional::exponentials::moments;
 use crate::fractional::history::{History, Squares};
 use crate::fractional::lanes::sum;
-use crate::fractional::memory::Memory;
-use crate::fractional::step::RatePolynomial;
+use crate::fractional::memory::{Memory, StepStart};
+use crate::fractional::step::{Form, RatePolynomial};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
@@ -65,6 +65,14 @@ impl MemoryTangent {
         let stored_by = if theta == 0.0 { past } else { settled };
         self.add_settled([stored_by, settled], polynomial, theta, point, delta_u, out.rows());
         self.add_jumps(past, step, theta, point, out.rows());
+    }
+
+    /// The derivative of [`Memory::stored`] at t, between two steps, and of the rate of dissipation there.
+    pub fn energy_now(&self, memory: &Memory, t: f64, point: &TangentPoint, out: &mut EnergyTangent) {
+        let start = StepStart { t, h: 0.0, stroke: point.stroke, rate: point.rate };
+        let polynomial = RatePolynomial { h: 0.0, u: [0.0; 4] };
+        let step = TangentStep { start, nodes: Nodes::Radau, places: None, form: Form::Rates, polynomial };
+        self.energy(memory, &step, 0.0, point, &[], out);
     }
 
     fn energy_at_limit(&self, memory: &Memory, point: &TangentPoint, out: &mut EnergyTangent) {
@@ -133,7 +141,8 @@ impl MemoryTangent {
     fn add_grown(&self, grown: &Grown, theta: f64, delta_u: &[f64], [stored, dissipation]: [&mut [f64]; 2]) {
         for (q, out) in [stored, dissipation].into_iter().enumerate() {
             let mut power = 1.0;
-            for p in 0..4 {
+            // At the start of a step nothing of it has grown.
+            for p in 0..if theta == 0.0 { 0 } else { 4 } {
                 add(out, power * grown.by_u[q][p], &delta_u[p * self.parameters..][..self.parameters]);
                 power *= theta;
             }

@@ -14,6 +14,9 @@ use crate::fractional::memory::{Memory, collocated};
 use serde::{Deserialize, Serialize};
 
 /// Largest step, in units of the age of a jump, behind which the jump goes into the modes.
+///
+/// Measured on x'' = −50 D^α x behind a jump of 1, α = 0.1 … 0.98, equal steps: the motion at t = 1 moves by 2e-8 where it is folded at 0.3,
+/// 5e-10 at 0.1, 5e-11 at 0.05 and 2e-12 here, so that the next step may be five times as long.
 pub(super) const FOLD: f64 = 0.02;
 
 /// A share of the stroke that jumped.

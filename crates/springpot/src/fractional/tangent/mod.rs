@@ -15,6 +15,10 @@
 //! history of its own here, and a memory has the same bits whether it is differentiated or not. Coefficients with s^α in their unit are
 //! held as numbers in SI units.
 //!
+//! So differentiated, with the sizes of accepted steps held, a run has the derivatives of its own numbers and not only those that it comes
+//! near to: internal differentiation (H. G. Bock, Springer Ser. Chem. Phys. 18 (1981) 102–125). What a kernel errs by, ε, ∂/∂α errs by
+//! times |ψ(1−α) − ln t|, and by 0.6 ε/α more. Orders of 0 and 1 keep no past and are no parameters.
+//!
 //! ```
 //! use springpot::collocation::{Nodes, RADAU_NODES};
 //! use springpot::fractional::{Form, Kind, Memory, MemoryTangent, RatePolynomial, StepStart, TangentSeeds, TangentStep};
@@ -151,7 +155,8 @@ pub struct MemoryTangent {
     travelled: Vec<f64>,
     /// δD^α x after the last committed step without singular parts.
     now: Vec<f64>,
-    is_told: bool,
+    /// In the place of it.
+    told: Option<Vec<f64>>,
     /// Shares of the stroke that jumped.
     jumps: Vec<Jump>,
     /// δz.
@@ -172,7 +177,7 @@ impl MemoryTangent {
     /// order does not have.
     ///
     /// # Panics
-    /// Where the seeds are not as many as each other.
+    /// Where the seeds are not as many as each other, and where α is a parameter of a memory whose longest steps have dropped slow modes.
     pub fn new(memory: &Memory, seeds: &TangentSeeds) -> Result<Self, KernelError> {
         let parameters = seeds.alpha.len();
         assert!(seeds.origin.len() == parameters && seeds.jump.len() == parameters, "P numbers of every seed");
@@ -185,7 +190,7 @@ impl MemoryTangent {
             origin: seeds.origin.to_vec(),
             travelled: vec![0.0; parameters],
             now: vec![0.0; parameters],
-            is_told: false,
+            told: None,
             jumps: Vec::new(),
             modes: Columns::new(parameters, 0),
             piece: Columns::new(parameters, 4),
@@ -220,18 +225,17 @@ impl MemoryTangent {
         self.parameters
     }
 
-    /// From now on [`Self::now`] is what was found by other means, until a step is committed: the derivative of [`Memory::tell`].
+    /// From now on [`Self::now`] is what was found by other means, P numbers: the derivative of [`Memory::tell`].
     pub fn tell(&mut self, delta: &[f64]) {
-        self.now.copy_from_slice(delta);
-        self.is_told = true;
+        self.told.get_or_insert_with(|| vec![0.0; delta.len()]).copy_from_slice(delta);
     }
 
     /// The derivative of [`Memory::now`], where those of x and x' are `delta_stroke` and `delta_rate`.
     pub fn now(&self, memory: &Memory, delta_stroke: &[f64], delta_rate: &[f64], out: &mut [f64]) {
-        if memory.is_fractional() || self.is_told {
-            out.copy_from_slice(&self.now);
-        } else {
-            self.limit(memory, delta_stroke, delta_rate, out);
+        match &self.told {
+            Some(told) => out.copy_from_slice(told),
+            None if memory.is_fractional() => out.copy_from_slice(&self.now),
+            None => self.limit(memory, delta_stroke, delta_rate, out),
         }
     }
 

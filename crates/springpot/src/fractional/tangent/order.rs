@@ -202,7 +202,8 @@ fn slow_tail(kernel: &Kernel) -> (Kernel, usize) {
         let cut = kernel.lambda[fast] * (-eta).exp();
         kernel.lambda[fast + 1..].iter().zip(nodes).all(|(lambda, node)| (lambda / cut - node).abs() <= SAME * node)
     };
-    let tail = rules.iter().map(|(nodes, _)| nodes.len()).find(|&n| is_tail(&rules[n - 1].0)).unwrap_or(1);
+    let tail = rules.iter().map(|(nodes, _)| nodes.len()).find(|&n| is_tail(&rules[n - 1].0));
+    let tail = tail.expect("the tail of a kernel that is new, or extended");
     let cut = kernel.lambda[modes - tail - 1] * (-eta).exp();
 
     // −η k e^{−αkη}; beyond the last point k and more by a geometric series at 0.

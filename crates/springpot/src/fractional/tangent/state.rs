@@ -7,8 +7,7 @@ use super::jump::Jump;
 impl MemoryTangent {
     /// Appends all numbers that the run has changed to `numbers`.
     pub fn save(&self, numbers: &mut Vec<f64>) {
-        let told = f64::from(u8::from(self.is_told));
-        numbers.extend([self.modes.rows() as f64, self.jumps.len() as f64, told]);
+        numbers.extend([self.modes.rows() as f64, self.jumps.len() as f64]);
         for values in [&self.origin, &self.travelled, &self.now] {
             numbers.extend_from_slice(values);
         }
@@ -27,7 +26,7 @@ impl MemoryTangent {
     /// Takes back what [`Self::save`] wrote of the derivative of the same memory by the same parameters, from the front of `numbers`; `None`
     /// where it is not that.
     pub fn load(&mut self, numbers: &mut &[f64]) -> Option<()> {
-        let &[modes, jumps, told] = numbers.split_off(..3)? else { return None };
+        let &[modes, jumps] = numbers.split_off(..2)? else { return None };
         if ![modes, jumps].iter().all(|count| *count >= 0.0 && *count <= numbers.len() as f64) {
             return None;
         }
@@ -47,7 +46,6 @@ impl MemoryTangent {
             let size = numbers.split_off(..parameters)?.to_vec();
             self.jumps.push(Jump { t, size, is_start: is_start != 0.0 });
         }
-        self.is_told = told != 0.0;
         self.by_order.as_mut().map_or(Some(()), |by_order| by_order.load(modes as usize, numbers))
     }
 }

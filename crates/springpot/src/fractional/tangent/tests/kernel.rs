@@ -37,6 +37,20 @@ fn is_as_good_as_the_kernel() {
     }
 }
 
+/// Kernels of extreme orders and spans have a tail that is found.
+#[test]
+fn has_a_tail_of_its_own_at_extremes() {
+    for alpha in [1e-12, 1e-3, 0.01, 0.5, 0.99, 0.9999, 1.0 - f64::EPSILON] {
+        for (delta, horizon) in [(1e-3, 1e4), (1e-12, 3600.0), (0.9, 1.0), (1e-100, 1.0)] {
+            for tolerance in [1e-2, 1e-4, 1e-8, 1e-12] {
+                let kernel = Kernel::new(alpha, tolerance, delta, horizon).unwrap();
+                let by_order = ByOrder::of(&kernel);
+                assert!(by_order.kernel_by_order(&kernel, horizon).is_finite(), "{alpha} {delta} {tolerance:e}");
+            }
+        }
+    }
+}
+
 /// Modes in front and modes dropped keep it.
 #[test]
 fn follows_the_kernel() {

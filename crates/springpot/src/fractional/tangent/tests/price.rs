@@ -1,13 +1,13 @@
 //! What a derivative costs beside its memory.
 
-use super::super::{MemoryTangent, Singular, TangentEnd, TangentPoint, TangentSeeds, TangentStep};
+use super::super::{EnergyTangent, MemoryTangent, Singular, TangentEnd, TangentPoint, TangentSeeds, TangentStep};
 use crate::collocation::{Nodes, RADAU_NODES};
 use crate::fractional::{Form, Kind, Memory, RatePolynomial, StepStart};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Nanoseconds of a step of the memory, and of a derivative by P parameters beside it.
-fn price(parameters: usize, order: f64) -> [f64; 2] {
+/// Nanoseconds of a step of the memory, of a derivative by P parameters beside it, and of its energies at the start and at the nodes.
+fn price(parameters: usize, order: f64) -> [f64; 3] {
     let h = 1e-3;
     let mut memory = Memory::new(0.5, Kind::Caputo, 0.0, 0.0, 1e-11, RADAU_NODES[0] * h, 100.0).unwrap();
     let mut alpha = vec![0.0; parameters];
@@ -18,8 +18,9 @@ fn price(parameters: usize, order: f64) -> [f64; 2] {
     let delta_u = vec![0.1; 4 * parameters];
     let ones = vec![1.0; parameters];
     let mut explicit = vec![0.0; 3 * parameters];
-    let mut spent = [0.0; 2];
-    let mut best = [f64::INFINITY; 2];
+    let [mut stored, mut dissipation] = [zeros.clone(), zeros.clone()];
+    let mut spent = [0.0; 3];
+    let mut best = [f64::INFINITY; 3];
     for n in 0..12_000 {
         let t = n as f64 * h;
         let rates: Vec<f64> = [0.0].iter().chain(&RADAU_NODES).map(|c| (8.0 * (t + c * h)).cos()).collect();
@@ -34,16 +35,23 @@ fn price(parameters: usize, order: f64) -> [f64; 2] {
         black_box(memory.respond(&start, Nodes::Radau, Form::Rates));
         let middle = Instant::now();
         tangent.explicit(&memory, &step, Singular::Moments, &point, &mut explicit);
+        let account = Instant::now();
+        let mut out = EnergyTangent { stored: &mut stored, dissipation: &mut dissipation };
+        for theta in [0.0, RADAU_NODES[0], RADAU_NODES[1], 1.0] {
+            tangent.energy(&memory, &step, theta, &point, &delta_u, &mut out);
+        }
+        spent[2] += account.elapsed().as_secs_f64();
+        let rest = account.elapsed().as_secs_f64();
         tangent.commit(&memory, &step, &delta_u, Some(&end));
         let late = Instant::now();
         black_box(&explicit);
         memory.commit_rates(&polynomial, stroke, 1e-15);
         let own = (late - middle).as_secs_f64();
         spent[0] += begin.elapsed().as_secs_f64() - own;
-        spent[1] += own;
+        spent[1] += own - rest;
         if n % 100 == 99 {
             best = std::array::from_fn(|k| best[k].min(spent[k] * 1e7));
-            spent = [0.0; 2];
+            spent = [0.0; 3];
         }
     }
     best
@@ -54,8 +62,10 @@ fn price(parameters: usize, order: f64) -> [f64; 2] {
 fn of_a_step() {
     for order in [0.0, 1.0] {
         for parameters in [1, 8, 16, 32, 64] {
-            let [memory, tangent] = price(parameters, order);
-            println!("alpha {order}, P = {parameters}: memory {memory:.0} ns, derivative {tangent:.0} ns");
+            let [memory, tangent, energies] = price(parameters, order);
+            println!(
+                "alpha {order}, P = {parameters}: memory {memory:.0} ns, derivative {tangent:.0} ns, of energies {energies:.0} ns"
+            );
         }
     }
 }

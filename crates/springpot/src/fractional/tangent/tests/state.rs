@@ -178,6 +178,45 @@ fn orders_at_the_limits_are_no_parameters() {
     }
 }
 
+/// Between two steps energies are those at the end of the last one.
+#[test]
+fn energies_between_two_steps() {
+    let mut random = random(3);
+    let mut memory = Memory::new(0.37, Kind::Caputo, 0.2, 0.0, 1e-10, 1e-3, 5.0).unwrap();
+    let zeros = [0.0; 3];
+    let seeds = TangentSeeds { alpha: &[1.0, 0.0, 0.3], origin: &zeros, jump: &zeros };
+    let mut tangent = MemoryTangent::new(&memory, &seeds).unwrap();
+    random.go(&mut memory, &mut tangent, 4);
+    let rates = [0.3, 0.4, 0.6, 0.5];
+    let polynomial = RatePolynomial::through_rates(0.02, Nodes::Radau, &rates);
+    let start = StepStart { t: random.t, h: 0.02, stroke: 0.2, rate: rates[0] };
+    let step = TangentStep { start, nodes: Nodes::Radau, places: None, form: Form::Rates, polynomial };
+    let (delta_u, rate) = (random.numbers(4), random.numbers(1));
+    let point = TangentPoint { stroke: 0.2, rate: 0.5, delta_stroke: &zeros, delta_rate: &rate };
+    let [mut a, mut b, mut c, mut d] = [zeros; 4];
+    tangent.energy(&memory, &step, 1.0, &point, &delta_u, &mut EnergyTangent { stored: &mut a, dissipation: &mut b });
+    tangent.commit(&memory, &step, &delta_u, None);
+    memory.commit(&polynomial);
+    tangent.energy_now(&memory, start.t + start.h, &point, &mut EnergyTangent { stored: &mut c, dissipation: &mut d });
+    for (end, now) in a.iter().zip(&c) {
+        assert!((end - now).abs() < 1e-12 * a[0].abs(), "{a:?} {c:?}");
+    }
+}
+
+/// What is told stands in the place of what is known, as with the memory.
+#[test]
+fn what_is_told_is_said() {
+    for alpha in [0.0, 0.5] {
+        let memory = Memory::new(alpha, Kind::Caputo, 0.0, 0.0, 1e-8, 1e-3, 1.0).unwrap();
+        let seeds = TangentSeeds { alpha: &[0.0], origin: &[0.0], jump: &[0.0] };
+        let mut tangent = MemoryTangent::new(&memory, &seeds).unwrap();
+        tangent.tell(&[3.0]);
+        let mut now = [0.0];
+        tangent.now(&memory, &[1.0], &[2.0], &mut now);
+        assert_eq!(now, [3.0]);
+    }
+}
+
 /// A closed memory knows what holds at t = 0, and goes on as one that was open from the first.
 #[test]
 fn opens_with_its_memory() {
@@ -192,6 +231,7 @@ fn opens_with_its_memory() {
     tangent.open(&memory);
     let again = MemoryTangent::new(&memory, &seeds).unwrap();
     let [mut a, mut b] = [Vec::new(), Vec::new()];
-    (tangent.save(&mut a), again.save(&mut b));
+    tangent.save(&mut a);
+    again.save(&mut b);
     assert_eq!(a, b);
 }

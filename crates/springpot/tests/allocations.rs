@@ -1,10 +1,11 @@
-//! The `_into` algorithms do not allocate.
+//! The `_into` algorithms do not allocate, nor do memories and their derivatives once they have begun.
 
 #![allow(unsafe_code, reason = "a global allocator that counts")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
+use springpot::collocation::{Nodes, RADAU_NODES};
 use springpot::dynamics::{
     AbaDerivatives, Kinematics, PairForce, RneaDerivatives, Workspace, aba_derivatives_into, aba_into, add_wrench,
     add_wrench_derivative, angular_jacobian_into, angular_jacobian_rate_into, cholesky_into, cholesky_solve_into,
@@ -12,6 +13,10 @@ use springpot::dynamics::{
     gravity_into, inverse_from_cholesky_into, kinetic_energy, mass_inverse_into, nonlinear_effects_into,
     pair_hessian_into, pair_into, point_jacobian_into, point_jacobian_rate_into, potential_energy,
     rnea_derivatives_into, rnea_into,
+};
+use springpot::fractional::{
+    EnergyTangent, Form, Kind, Memory, MemoryTangent, RatePolynomial, Singular, StepStart, TangentEnd, TangentPoint,
+    TangentSeeds, TangentStep,
 };
 use springpot::model::{Anchor, BodySpec, JointSpec, Mimic, Model, ModelBuilder, Parent};
 use springpot::spatial::{Force, Vec3};
@@ -94,6 +99,39 @@ fn nor_where_a_joint_follows_another() {
     let mut following = specs();
     following[6].joint.mimic = Some(Mimic { joint: "q3".into(), multiplier: -0.5, offset: 0.1 });
     check(&build(following));
+}
+
+#[test]
+fn nor_do_memories_and_their_derivatives() {
+    let zeros = [0.0; 9];
+    let mut memory = Memory::new(0.4, Kind::RiemannLiouville, 0.1, 0.1, 1e-9, 1e-3, 10.0).unwrap();
+    let seeds = TangentSeeds { alpha: &[0.5; 9], origin: &[1.0; 9], jump: &[1.0; 9] };
+    let mut tangent = MemoryTangent::new(&memory, &seeds).unwrap();
+    let (mut explicit, mut at) = ([0.0; 27], [0.0; 9]);
+    let [mut stored, mut dissipation] = [zeros; 2];
+    let (delta_u, mut t) = ([0.3; 36], 0.0f64);
+    let mut step = |h: f64| {
+        let mut rates = [(3.0 * t).cos(); 4];
+        rates.iter_mut().skip(1).zip(RADAU_NODES).for_each(|(rate, c)| *rate = (3.0 * (t + c * h)).cos());
+        let polynomial = RatePolynomial::through_rates(h, Nodes::Radau, &rates);
+        let start = StepStart { t, h, stroke: 0.1, rate: rates[0] };
+        let step = TangentStep { start, nodes: Nodes::Radau, places: None, form: Form::Rates, polynomial };
+        let point = TangentPoint { stroke: 0.1, rate: rates[0], delta_stroke: &zeros, delta_rate: &zeros };
+        memory.prepare(&start, Nodes::Radau, Form::Rates);
+        tangent.explicit(&memory, &step, Singular::Moments, &point, &mut explicit);
+        tangent.at(&memory, &step, 0.3, &point, &delta_u, &mut at);
+        let mut out = EnergyTangent { stored: &mut stored, dissipation: &mut dissipation };
+        tangent.energy(&memory, &step, 0.3, &point, &delta_u, &mut out);
+        let end = TangentEnd { stroke: 0.2, delta_stroke: &zeros, resolution: 1e-16 };
+        tangent.commit(&memory, &step, &delta_u, Some(&end));
+        memory.commit_rates(&polynomial, 0.2, 1e-16);
+        t += h;
+    };
+    // Tables of eight sizes of steps are kept.
+    (0..9).for_each(|k| step(0.01 + 1e-4 * f64::from(k)));
+    let count = allocations(|| (0..50).for_each(|k| step(0.02 + 1e-4 * f64::from(k))));
+    assert_eq!(count, 0);
+    assert!(explicit.iter().chain(&at).all(|x| x.is_finite()));
 }
 
 fn check(model: &Model) {
