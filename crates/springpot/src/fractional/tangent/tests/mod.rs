@@ -6,6 +6,7 @@ mod jumps;
 mod kernel;
 mod price;
 mod replay;
+mod slider;
 mod state;
 
 /// A sequence of numbers in [0, 1) (D. E. Knuth's MMIX).
