@@ -65,7 +65,7 @@ impl MemoryTangent {
         self.modes.drop_front(surplus);
         if let Some(by_order) = &mut self.by_order {
             by_order.slow.advance(h, &paid.u, 0.0);
-            by_order.follow(&front, surplus);
+            by_order.follow(past.kernel(), &front, surplus);
         }
     }
 

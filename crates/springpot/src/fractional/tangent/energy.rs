@@ -98,37 +98,39 @@ impl MemoryTangent {
         let mut grown = Grown::default();
         dispatch!(Level::new(), simd => {
             let (mut by_u, mut by_order) = ([[f64x8::splat(simd, 0.0); 4]; 2], [f64x8::splat(simd, 0.0); 2]);
-            for k in 0..past.blocks() {
-                let [lambda, weight, z] = past.block(simd, k);
-                let (decay, psi) = at.moments(simd, k);
-                let value = mode(z, decay, psi, &scaled, lag);
-                let forms = [weight * value, weight * value * lambda * 2.0];
-                for q in 0..2 {
-                    for p in 0..4 {
-                        by_u[q][p] += forms[q] * psi[p] * lag;
-                    }
-                    if let Some(order) = &self.by_order {
-                        by_order[q] += forms[q] * value * order.ratio(simd, k) * 0.5;
-                    }
-                }
-            }
-            for q in 0..2 {
-                for p in 0..4 {
-                    grown.by_u[q][p] = sum(by_u[q][p]);
-                }
-                grown.by_order[q] = sum(by_order[q]);
-            }
+            let mut seen = 0;
             self.modes.contract(
                 simd,
                 #[inline(always)]
                 |k| {
                     let [lambda, weight, z] = past.block(simd, k);
                     let (decay, psi) = at.moments(simd, k);
-                    let form = weight * mode(z, decay, psi, &scaled, lag) * decay;
-                    [form, form * lambda * 2.0]
+                    let value = mode(z, decay, psi, &scaled, lag);
+                    let stored = weight * value;
+                    let forms = [stored, stored * lambda * 2.0];
+                    // Many parameters ask for a block again.
+                    if k == seen {
+                        seen += 1;
+                        for q in 0..2 {
+                            let grown = forms[q] * lag;
+                            for p in 0..4 {
+                                by_u[q][p] += grown * psi[p];
+                            }
+                            if let Some(order) = &self.by_order {
+                                by_order[q] += forms[q] * value * order.ratio(simd, k) * 0.5;
+                            }
+                        }
+                    }
+                    [forms[0] * decay, forms[1] * decay]
                 },
                 [&mut *stored, &mut *dissipation],
             );
+            for q in 0..2 {
+                for p in 0..4 {
+                    grown.by_u[q][p] = sum(by_u[q][p]);
+                }
+                grown.by_order[q] = sum(by_order[q]);
+            }
         });
         if let Some(order) = &self.by_order {
             let Squares { weighted, with_rates } = order.slow.squares(lag, &scaled);
@@ -213,7 +215,7 @@ impl MemoryTangent {
             }
         }
         if let Some(order) = &self.by_order {
-            let [[_, inertia, _], [d1, d2, d3]] = pasts.map(|past| order.fast_tail(past.kernel()));
+            let [[_, inertia, _], [d1, d2, d3]] = pasts.map(|past| order.fast_tail(past));
             add(stored, 0.5 * inertia * rate * rate, &self.alpha);
             add(dissipation, rate * (d1 * rate - 2.0 * d2 * bend) + d3 * bend * bend, &self.alpha);
         }

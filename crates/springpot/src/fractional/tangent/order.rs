@@ -36,6 +36,10 @@ pub(super) struct ByOrder {
     /// ẇ/w of the modes of the memory; 0 for those of its tail, for which `slow` stands.
     ratio: Vec<Block>,
     modes: usize,
+    /// The fastest rate, and ẇ/w of a mode of the trapezoidal rule that has it.
+    top: [f64; 2],
+    /// η/(1 − e^{−η(n−α)}), n = 1, 2, 3.
+    steepness: [f64; 3],
     /// The tail with ẇ for weights, and what it has seen of x'.
     pub(super) slow: History,
 }
@@ -61,15 +65,19 @@ impl ByOrder {
             digamma: digammas,
             ratio: blocks(&ratios),
             modes: kernel.modes(),
+            top: [kernel.lambda[0], ratio(kernel.alpha, kernel.lambda[0])],
+            steepness: [1.0, 2.0, 3.0].map(|n| -kernel.eta / (-kernel.eta * (n - kernel.alpha)).exp_m1()),
             slow: History::new(slow),
         }
     }
 
-    /// With the modes of these rates in front, and without the `surplus` fastest.
-    pub(super) fn follow(&mut self, front: &[f64], surplus: usize) {
+    /// Does what a kernel does that puts modes of these rates in front, or drops the `surplus` fastest.
+    pub(super) fn follow(&mut self, kernel: &Kernel, front: &[f64], surplus: usize) {
         if front.is_empty() && surplus == 0 {
             return;
         }
+        let top = front.first().copied().unwrap_or(kernel.lambda[surplus]);
+        self.top = [top, ratio(self.alpha, top)];
         let mut ratios: Vec<f64> = front.iter().map(|lambda| ratio(self.alpha, *lambda)).collect();
         ratios.extend_from_slice(&self.ratio.as_flattened()[..self.modes]);
         ratios.drain(..surplus);
@@ -79,12 +87,15 @@ impl ByOrder {
 
     /// Appends ẇ/w and the state of the tail to `numbers`.
     pub(super) fn save(&self, numbers: &mut Vec<f64>) {
+        numbers.extend(self.top);
         numbers.extend_from_slice(&self.ratio.as_flattened()[..self.modes]);
         self.slow.save(numbers);
     }
 
     /// Takes back what [`Self::save`] wrote of so many modes of a memory, from the front of `numbers`; `None` where it is not that.
     pub(super) fn load(&mut self, modes: usize, numbers: &mut &[f64]) -> Option<()> {
+        let &[top, ratio] = numbers.split_off(..2)? else { return None };
+        self.top = [top, ratio];
         (self.ratio, self.modes) = (blocks(numbers.split_off(..modes)?), modes);
         self.slow.load(numbers)
     }
@@ -139,18 +150,16 @@ impl ByOrder {
             }
             sum(total)
         });
-        let [_, d2, _] = self.fast_tail(past.kernel());
+        let [_, d2, _] = self.fast_tail(past);
         kept + self.slow.mean(lag) + d2 * past.last_value() / lag
     }
 
     /// ∂/∂α of [`Kernel::fast_tail`], λ_0 held: d_n [π cot πα + ln λ_0 + η/(1 − e^{−η(n−α)})].
-    pub(super) fn fast_tail(&self, kernel: &Kernel) -> [f64; 3] {
-        let tail = kernel.fast_tail();
-        let first = ratio(self.alpha, kernel.lambda[0]);
-        std::array::from_fn(|k| {
-            let power = (k + 1) as f64 - self.alpha;
-            tail[k] * (first - kernel.eta / (-kernel.eta * power).exp_m1())
-        })
+    pub(super) fn fast_tail(&self, past: &History) -> [f64; 3] {
+        let top = past.kernel().lambda[0];
+        let first = if top == self.top[0] { self.top[1] } else { ratio(self.alpha, top) };
+        let tail = past.fast_tail();
+        std::array::from_fn(|k| tail[k] * (first + self.steepness[k]))
     }
 
     /// ∂/∂α of the share of a step in D^α x at θ.
