@@ -248,6 +248,9 @@ fn trapezoid_step(alpha: f64, tolerance: f64) -> f64 {
     low
 }
 
+/// Largest number of nodes of a slow tail.
+pub(super) const LARGEST_TAIL: usize = 8;
+
 /// Gauss rule of the slow tail {e^{−kη}, e^{−αkη}}, k ≥ 0, in units of its fastest rate.
 struct Tail {
     nodes: Vec<f64>,
@@ -271,7 +274,7 @@ impl Tail {
         let last = 344;
         let mut best: Option<(usize, Self)> = None;
         let mut low = 0;
-        for (nodes, weights) in gauss_rules(&points, &masses, 8) {
+        for (nodes, weights) in gauss_rules(&points, &masses, 1..=LARGEST_TAIL) {
             let holds = |k: usize| {
                 let s = reach_at(k);
                 let error = (exponentials(&points, &masses, s) - exponentials(&nodes, &weights, s)).abs();
@@ -290,7 +293,7 @@ impl Tail {
                 best = Some((count, Self { nodes, masses: weights }));
             }
         }
-        best.expect("eight sizes were tried")
+        best.expect("some sizes were tried")
     }
 }
 

@@ -55,7 +55,8 @@
 //! integral. On equal steps the moments of (t−s)^{b−1} against the polynomials are exact, and the sum over the past is
 //! a convolution, done by FFT. On other steps, in streams and for functions, only the newest piece meets the exact
 //! kernel; the past goes through a [`kernel`] of exponentials, each with one number that is carried from step to step.
-//! [`Memory`] is the same mathematics for a time loop that asks for implicit answers: [`memory`] tells of it.
+//! [`Memory`] is the same mathematics for a time loop that asks for implicit answers: [`memory`] tells of it. A
+//! [`MemoryTangent`] beside it has its derivative by parameters, by the order too.
 
 mod differintegral;
 mod exponentials;

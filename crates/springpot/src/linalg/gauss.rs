@@ -2,17 +2,18 @@
 
 use super::eigen::diagonalise;
 use super::{dot, norm};
+use std::ops::RangeInclusive;
 
-/// Gauss rules of 1 to `largest` points of the measure with these masses, not negative, at these points, nodes descending: each rule
+/// Gauss rules of so many points, ascending sizes, of the measure with these masses, not negative, at these points, nodes descending: each rule
 /// (nodes, weights) of k points integrates polynomials of degree 2k − 1 exactly.
 ///
 /// Lanczos with full reorthogonalisation, then the eigenvalues of the leading blocks of the Jacobi matrix (G. H. Golub, J. H. Welsch,
 /// Math. Comp. 23 (1969) 221–230).
-pub(crate) fn gauss_rules(points: &[f64], masses: &[f64], largest: usize) -> Vec<(Vec<f64>, Vec<f64>)> {
+pub(crate) fn gauss_rules(points: &[f64], masses: &[f64], sizes: RangeInclusive<usize>) -> Vec<(Vec<f64>, Vec<f64>)> {
     let total: f64 = masses.iter().sum();
     let mut basis: Vec<Vec<f64>> = vec![masses.iter().map(|m| (m / total).sqrt()).collect()];
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
-    for j in 0..largest {
+    for j in 0..*sizes.end() {
         let mut next: Vec<f64> = basis[j].iter().zip(points).map(|(v, y)| v * y).collect();
         diagonal.push(dot(&next, &basis[j]));
         for _ in 0..2 {
@@ -44,12 +45,12 @@ pub(crate) fn gauss_rules(points: &[f64], masses: &[f64], largest: usize) -> Vec
             order.iter().map(|&i| total * first[i] * first[i]).collect(),
         )
     };
-    (1..=largest).map(rule).collect()
+    sizes.map(rule).collect()
 }
 
 /// The rule of `size` points alone.
 pub(crate) fn gauss_rule(points: &[f64], masses: &[f64], size: usize) -> (Vec<f64>, Vec<f64>) {
-    gauss_rules(points, masses, size).pop().expect("at least one point")
+    gauss_rules(points, masses, size..=size).pop().expect("at least one point")
 }
 
 #[cfg(test)]
@@ -63,7 +64,7 @@ mod tests {
         let moment = |points: &[f64], masses: &[f64], degree: i32| -> f64 {
             points.iter().zip(masses).map(|(point, mass)| mass * point.powi(degree)).sum()
         };
-        for (k, (nodes, weights)) in gauss_rules(&points, &masses, 6).into_iter().enumerate() {
+        for (k, (nodes, weights)) in gauss_rules(&points, &masses, 1..=6).into_iter().enumerate() {
             assert!(nodes.is_sorted_by(|a, b| a > b) && weights.iter().all(|weight| *weight > 0.0));
             for degree in 0..2 * (k as i32 + 1) {
                 let (exact, rule) = (moment(&points, &masses, degree), moment(&nodes, &weights, degree));

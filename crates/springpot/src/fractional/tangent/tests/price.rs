@@ -1,8 +1,9 @@
 //! What a derivative costs beside its memory.
 
+use super::super::order::ByOrder;
 use super::super::{EnergyTangent, MemoryTangent, Singular, TangentEnd, TangentPoint, TangentSeeds, TangentStep};
 use crate::collocation::{Nodes, RADAU_NODES};
-use crate::fractional::{Form, Kind, Memory, RatePolynomial, StepStart};
+use crate::fractional::{Form, Kernel, Kind, Memory, RatePolynomial, StepStart};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -67,5 +68,19 @@ fn of_a_step() {
                 "alpha {order}, P = {parameters}: memory {memory:.0} ns, derivative {tangent:.0} ns, of energies {energies:.0} ns"
             );
         }
+    }
+}
+
+#[test]
+#[ignore = "a measurement"]
+fn of_a_kernel() {
+    for tolerance in [1e-8, 1e-11] {
+        let begin = Instant::now();
+        let kernels: Vec<Kernel> =
+            (1..100).map(|k| Kernel::new(0.01 * f64::from(k), tolerance, 1e-5, 10.0).unwrap()).collect();
+        let middle = Instant::now();
+        kernels.iter().for_each(|kernel| drop(black_box(ByOrder::of(kernel))));
+        let [kernel, by_order] = [middle - begin, middle.elapsed()].map(|time| time.as_secs_f64() * 1e6 / 99.0);
+        println!("{tolerance:e}: kernel {kernel:.0} µs, its derivative {by_order:.0} µs");
     }
 }
