@@ -31,7 +31,7 @@ fn a_jump_is_a_power_of_its_age() {
             // The stroke is owed nothing of the jump, however much the memory pays.
             let end = TangentEnd { stroke, delta_stroke: &[jumped], resolution: 1e-20 };
             tangent.commit(&memory, &step, &[0.0; 4], Some(&end));
-            memory.commit_rates(&polynomial, stroke, 1e-20);
+            memory.commit_rates(&polynomial, None, stroke, 1e-20);
             let (mut now, mut part) = ([0.0], [0.0]);
             tangent.now(&memory, &[jumped], &[0.0], &mut now);
             tangent.singular_part(&memory, t, &mut part);
@@ -55,7 +55,7 @@ fn oscillator(alpha: f64, count: usize, fold: f64) -> [f64; 2] {
     for n in 0..count {
         let start = StepStart { t: n as f64 * h, h, stroke: x, rate: v };
         let affine = memory.respond(&start, Nodes::Radau, Form::Rates);
-        let moments = memory.singular_moments(&start, Nodes::Radau);
+        let moments = memory.singular_moments(&start, Nodes::Radau, None);
         // v_i + 50h Σ_j A_ij D_j = v_0.
         let mut system = [[0.0; 4]; 3];
         for i in 0..3 {

@@ -46,7 +46,7 @@ fn price(parameters: usize, order: f64) -> [f64; 3] {
         tangent.commit(&memory, &step, &delta_u, Some(&end));
         let late = Instant::now();
         black_box(&explicit);
-        memory.commit_rates(&polynomial, stroke, 1e-15);
+        memory.commit_rates(&polynomial, None, stroke, 1e-15);
         let own = (late - middle).as_secs_f64();
         spent[0] += begin.elapsed().as_secs_f64() - own;
         spent[1] += own - rest;

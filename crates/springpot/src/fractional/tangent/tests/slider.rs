@@ -53,7 +53,7 @@ impl Slider {
         let [_, c, k, ..] = self.numbers;
         let start = StepStart { t: self.t, h, stroke: self.x, rate: self.v };
         let (affine, matrix) = (self.memory.respond(&start, Nodes::Radau, Form::Rates), Nodes::Radau.matrix());
-        let moments = self.memory.singular_moments(&start, Nodes::Radau);
+        let moments = self.memory.singular_moments(&start, Nodes::Radau, None);
         let known: [f64; 3] = std::array::from_fn(|j| {
             affine.history[j] - self.memory.singular_part(start.t + RADAU_NODES[j] * h) + moments[j]
         });

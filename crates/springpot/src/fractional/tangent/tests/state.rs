@@ -49,7 +49,7 @@ impl Random {
             tangent.energy(memory, &step, 0.4, &point, &delta_u, &mut EnergyTangent { stored, dissipation });
             let end = TangentEnd { stroke: 0.3, delta_stroke: &stroke, resolution: 1e-9 };
             tangent.commit(memory, &step, &delta_u, Some(&end));
-            memory.commit_rates(&polynomial, 0.3, 1e-9);
+            memory.commit_rates(&polynomial, None, 0.3, 1e-9);
             self.t += h;
             let mut now = vec![0.0; parameters];
             tangent.now(memory, &stroke, &rate, &mut now);
