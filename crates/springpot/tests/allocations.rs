@@ -124,7 +124,7 @@ fn nor_do_memories_and_their_derivatives() {
         tangent.energy(&memory, &step, 0.3, &point, &delta_u, &mut out);
         let end = TangentEnd { stroke: 0.2, delta_stroke: &zeros, resolution: 1e-16 };
         tangent.commit(&memory, &step, &delta_u, Some(&end));
-        memory.commit_rates(&polynomial, 0.2, 1e-16);
+        memory.commit_rates(&polynomial, None, 0.2, 1e-16);
         t += h;
     };
     // Tables of eight sizes of steps are kept.

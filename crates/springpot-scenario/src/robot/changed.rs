@@ -3,8 +3,8 @@
 use super::joint::{axis2, lead, mark, numbers};
 use crate::keys::CHANGED_JOINT;
 use crate::reader::named::unique;
-use crate::robot::described::BodyPlaces;
 use crate::reader::{Field, Read, Table, all};
+use crate::robot::described::BodyPlaces;
 use crate::text::document::shorten;
 use crate::text::names;
 use crate::text::refusal::RefusalKind;

@@ -107,7 +107,7 @@ impl Slider {
         step.delta_polynomial(&[], &delta_rate, &mut delta_u);
         let last = TangentEnd { stroke: end, delta_stroke: &self.dx, resolution: 1e-17 };
         self.tangent.commit(&self.memory, &step, &delta_u, Some(&last));
-        self.memory.commit_rates(&polynomial, end, 1e-17);
+        self.memory.commit_rates(&polynomial, None, end, 1e-17);
         (self.t, self.x, self.v, self.dv) = (self.t + h, end, rates[2], delta[2]);
     }
 
