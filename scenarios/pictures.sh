@@ -23,6 +23,7 @@ tendon_finger tension
 foam_pad settling
 foam_pad_temperature force
 warm_mount loops_warming
+filled_mount loops
 torsional_coupling loop
 bumper loop
 one_mass_exact motion

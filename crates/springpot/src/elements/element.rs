@@ -73,12 +73,12 @@ impl Element {
     /// With another past. One that was held has the Riemann–Liouville derivative, a periodic one Caputo's.
     ///
     /// # Errors
-    /// [`RuleError`] where the law does not take a periodic stroke: it is not linear, or an input changes what is in a series.
+    /// [`RuleError`] where the law does not take a periodic stroke: it is not linear but for jenkins elements side by side, or an input changes what is in a series.
     pub fn with_past(self, past: Past) -> Result<Self, RuleError> {
         if let Past::Periodic(_) = past {
             let refuse = |rule: &str| Err(RuleError { rule: rule.to_owned(), parameter: "past".into() });
-            if !self.law.is_linear() {
-                return refuse("to be linear where its past is steady");
+            if !self.law.recalls() {
+                return refuse("to be linear, or jenkins elements beside what is, where its past is steady");
             }
             // A temperature from outside was always that at t = 0.
             let (law, inputs) =

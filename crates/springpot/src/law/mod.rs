@@ -35,6 +35,8 @@ pub mod tangent;
 pub mod variation;
 
 mod damper;
+mod filled_rubber;
+mod harmonic;
 mod kelvin_voigt;
 mod magnetorheological;
 mod named;

@@ -11,11 +11,12 @@ pub(super) use part::Part;
 pub(super) use series::Ready;
 pub use series::Series;
 
+use super::harmonic::Sine;
 use super::heat::Heat;
-use super::leaf::{Coefficient, Dashpot, Free, Leaf, Source, Spring, Springpot, When};
+use super::leaf::{Coefficient, Dashpot, Free, Jenkins, Leaf, Source, Spring, Springpot, When};
 use super::past::Recalled;
 use super::rule::RuleError;
-use super::state::State;
+use super::state::{State, StateRef, StateSize};
 use super::step::{
     Electric, InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term,
 };
@@ -153,6 +154,15 @@ impl Network {
         self.ask().free()
     }
 
+    /// Whether it is a spring that slips, or such a one and others one behind the other ([`Leaf::slips`]).
+    pub(super) fn slips(&self) -> bool {
+        match self {
+            Self::Leaf(leaf) => leaf.slips().is_some(),
+            Self::Series(series) => series.parts().iter().any(Self::slips),
+            _ => false,
+        }
+    }
+
     /// F = k·x, k in N/m.
     pub fn spring(stiffness: impl Into<Dual>) -> Self {
         Self::leaf(Spring { stiffness: stiffness.into() })
@@ -184,7 +194,7 @@ impl Network {
     }
 
     /// Parts one behind the other: one force, strokes add. None: rigid, which no element may be. A series among the parts is none of its own: its
-    /// parts are those of the whole.
+    /// parts are those of the whole. Springs that slip and plain ones beside them are one leaf, a spring that slips.
     ///
     /// # Panics
     /// Where a part is a law under heat, which is always a whole one.
@@ -195,6 +205,12 @@ impl Network {
         };
         let mut parts: Vec<Self> = parts.into_iter().flat_map(own).collect();
         assert!(parts.iter().all(|part| part.as_heated().is_none()), "a law under heat is a whole one");
+        parts = with_one_that_slips(parts);
+        if let [Self::Leaf(leaf)] = &parts[..]
+            && leaf.slips().is_some()
+        {
+            return parts.remove(0);
+        }
         while parts.len() > MOST_IN_SERIES {
             let nested = parts.drain(..MOST_IN_SERIES).collect();
             parts.push(Self::Series(Series::new(nested)));
@@ -495,7 +511,13 @@ impl Network {
         self.ask().hidden_errors()
     }
 
-    /// Puts the stroke before t = 0 into the state of a law that is linear, its memories opened.
+    /// Whether its state is known after a stroke that was periodic since ever: it is linear, or what is not knows it ([`Leaf::recalls`]) and stands in no
+    /// series.
+    pub fn recalls(&self) -> bool {
+        self.ask().recalls()
+    }
+
+    /// Puts the stroke before t = 0 into the state of a law that recalls it, its memories opened.
     pub(super) fn recall(&self, stroke: &Recalled, at: &Point, state: &mut State) {
         self.ask().recall(stroke, at, &mut state.view_mut());
     }
@@ -511,6 +533,16 @@ impl Network {
         [modulus.re, modulus.im]
     }
 
+    /// K' and K'', N/m, of the first harmonic of F under x = x_0 + A·sin ωt since ever, x_0 the stroke of `at`, A > 0 the `amplitude`, m, ω > 0 `omega`,
+    /// rad/s: K* = (1/πA) ∮ F·(sin ωt + i cos ωt) d(ωt). A turn loses π K'' A². Of a linear law it is [`Self::complex_modulus`].
+    ///
+    /// Parts side by side add. Linear parts, jenkins elements and what follows from stroke and rate at one time, such as polynomials, stops and friction, are
+    /// exact to rounding; what has a state, alone or in a series, is driven until it is steady, to 1e-7 of |K*|. `None` where it does not become so.
+    pub fn first_harmonic(&self, at: &Point, amplitude: f64, omega: f64) -> Option<[f64; 2]> {
+        let harmonic = self.ask().harmonic(&Sine { at: Point { rate: 0.0, ..*at }, amplitude, omega })?;
+        Some([harmonic.re, harmonic.im])
+    }
+
     /// Whether F is an affine function of strokes and rates.
     pub fn is_linear(&self) -> bool {
         self.ask().is_linear()
@@ -521,4 +553,34 @@ impl Network {
     pub fn at_rest(&self, at: &Point, held: f64) -> Option<AtRest> {
         self.ask().at_rest(at, held)
     }
+}
+
+/// Parts of a series where all springs that slip, and the plain ones where there is such, are one, in the place and under the name of the first that slips.
+fn with_one_that_slips(mut parts: Vec<Network>) -> Vec<Network> {
+    let slips = |part: &Network| match part {
+        Network::Leaf(leaf) => leaf.slips(),
+        _ => None,
+    };
+    let Some(first) = parts.iter().position(|part| slips(part).is_some()) else { return parts };
+    let compliance: f64 = parts.iter().filter_map(plain_spring).map(f64::recip).sum();
+    let mut whole = parts.iter().filter_map(slips).reduce(Jenkins::behind).expect("one that slips");
+    if compliance > 0.0 {
+        whole = whole.behind_spring(compliance.recip());
+    }
+    let Network::Leaf(LeafPart { name, .. }) = &parts[first] else { return parts };
+    parts[first] = Network::Leaf(LeafPart { name: name.clone(), leaf: Arc::new(whole) });
+    let mut at = 0..;
+    parts.retain(|part| at.next() == Some(first) || (slips(part).is_none() && plain_spring(part).is_none()));
+    parts
+}
+
+/// The stiffness of a leaf that is a spring and nothing else, N/m: no memory, no input, no force at x = 0.
+fn plain_spring(part: &Network) -> Option<f64> {
+    let Network::Leaf(leaf) = part else { return None };
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
+    let nothing = StateRef { memories: &[], variables: &[], ready: &[] };
+    let is_plain = leaf.is_linear() && leaf.size() == StateSize::default();
+    let Term { coefficient, order } = leaf.linearised(&at);
+    (is_plain && order == 0.0 && coefficient > 0.0 && Leaf::now(&**leaf, &at, nothing).force() == 0.0)
+        .then_some(coefficient)
 }

@@ -29,6 +29,11 @@ const SOON: f64 = 1e-10;
 /// Ages, in units of the first, and weights of the stretches that are one at t = 0 but for the third order of that.
 const TOGETHER: [[f64; 2]; 3] = [[1.0, 3.0], [2.0, -3.0], [3.0, 1.0]];
 
+/// Harmonics below this share of the largest turn no stroke round; looks at a period of the highest, and halvings that find a turn.
+const UNHEARD: f64 = 1e-13;
+const LOOKS: usize = 16;
+const HALVINGS: usize = 50;
+
 /// Nodes on a contour: 0.6 digits each.
 const CONTOUR: usize = 24;
 
@@ -147,6 +152,33 @@ impl Recalled {
         self.mean + self.sum(|s| (s * t).exp())
     }
 
+    /// Where one that is periodic turned round in the last period, in order, and at last where it is at t = 0.
+    pub(super) fn turns(&self) -> Vec<f64> {
+        let period = self.last / LAST;
+        let largest = self.exponentials.iter().fold(0.0f64, |largest, [_, x]| largest.max(x.norm()));
+        let heard = self.exponentials.iter().filter(|[_, x]| x.norm() > UNHEARD * largest);
+        let highest = heard.fold(0.0f64, |highest, [s, _]| highest.max(s.im)) * period / TAU;
+        let count = LOOKS * highest.ceil().max(1.0) as usize;
+        let rate = |t: f64| self.sum(|s| s * (s * t).exp());
+        let time = |k: usize| period * (k as f64 / count as f64 - 1.0);
+        let mut turns = Vec::new();
+        let mut before = rate(time(0));
+        for k in 1..=count {
+            let here = rate(time(k));
+            if (before > 0.0) != (here > 0.0) {
+                let (mut low, mut high) = (time(k - 1), time(k));
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (low + high);
+                    if (rate(middle) > 0.0) == (before > 0.0) { low = middle } else { high = middle }
+                }
+                turns.push(self.stroke(high));
+            }
+            before = here;
+        }
+        turns.push(self.stroke(0.0));
+        turns
+    }
+
     /// The mean.
     pub(super) fn mean(&self) -> f64 {
         self.mean
@@ -192,7 +224,7 @@ impl Past {
     /// [`KernelError`] where a memory cannot be.
     ///
     /// # Panics
-    /// For a periodic stroke of a law that is not linear.
+    /// For a periodic stroke of a law that does not recall it ([`Network::recalls`]).
     pub fn state(&self, law: &Network, start: &Start, tolerance: f64, horizon: f64) -> Result<State, KernelError> {
         match self {
             Self::OfDerivative => law.begin(start),
@@ -212,7 +244,7 @@ impl Past {
                 Ok(state)
             }
             Self::Periodic(past) => {
-                assert!(law.is_linear(), "a periodic past of a law that is not linear");
+                assert!(law.recalls(), "a periodic past of a law that does not recall it");
                 recalled(law, start, &past.recalled(), past.period, [tolerance, horizon])
             }
         }

@@ -1,7 +1,7 @@
 //! The laws that come with Springpot.
 
 use super::catalog::Catalog;
-use super::{damper, kelvin_voigt, magnetorheological, named, piezo, piezo_stack, thermoviscoelastic};
+use super::{damper, filled_rubber, kelvin_voigt, magnetorheological, named, piezo, piezo_stack, thermoviscoelastic};
 use std::sync::Arc;
 
 impl Catalog {
@@ -26,6 +26,7 @@ impl Catalog {
             damper::fractional_bouc_wen_damper(),
             damper::bingham(),
             damper::fractional_bingham(),
+            filled_rubber::filled_rubber(),
         ];
         Self { entries: entries.into_iter().chain(named::entries()).map(Arc::new).collect() }
     }

@@ -181,10 +181,17 @@ impl NetworkText {
                 Ok(Network::parallel(parts.collect::<Result<Vec<_>, _>>()?))
             }
             PartKind::Series(parts) => {
-                let built = parts.iter().map(|part| {
-                    let network = self.part(part, values, derivative)?;
+                let built = parts.iter().map(|part| self.part(part, values, derivative));
+                let built = built.collect::<Result<Vec<_>, _>>()?;
+                // Springs that slip and plain ones are one leaf; what slips knows what is left of the stroke, but not beside others that let go.
+                if let whole @ Network::Leaf(_) = Network::series(built.clone()) {
+                    return Ok(whole);
+                }
+                let lets_go = built.iter().any(|network| network.holds() == Holds::LetsGo);
+                let built = parts.iter().zip(built).map(|(part, network)| {
                     let what = match network.holds() {
                         Holds::Always | Holds::LetsGo => return Ok(network),
+                        Holds::AtTimes if network.slips() && !lets_go => return Ok(network),
                         Holds::AtTimes if lets_go_aside(&network) => {
                             "has parts beside each other of which one lets go: in a series that has to stand by itself"
                         }

@@ -31,7 +31,13 @@ reference = { kind = "joints", q1 = 0.3, q2 = "0.2*sin(3*t)", q3 = 0 }
         control.replace("fractional-pid", "computed-torque").replace("ki = 5\n", "compensate_elements = true\n");
     let taken_off = taken_off.replace("lambda = 0.6\nmu = 0.7\n", "");
     let motion = |more: &str| arm(&(strut.clone() + &free("start = { v = { q1 = 1 } }") + more));
-    for text in [motion(""), motion(control), motion(&taken_off)] {
+    let law = strut.find("law = ").unwrap();
+    let law = format!(
+        "{}law = \"filled-rubber\"\nparameters = {{ k = 20, c = 9, alpha = 0.3, k_f = [300, 100], F_f = [1, 2] }}\n",
+        &strut[..law]
+    );
+    let rubber = arm(&(law + &free("start = { v = { q1 = 1 } }")));
+    for text in [motion(""), motion(control), motion(&taken_off), rubber] {
         let system = system(&text);
         for method in METHODS {
             let mut robot = Loop::new(&system, method, 2e-3, MEMORY).unwrap();

@@ -35,7 +35,7 @@ pub(crate) fn departure(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Laws of every kind, by name.
-pub(crate) const LAWS: [(&str, &str); 6] = [
+pub(crate) const LAWS: [(&str, &str); 7] = [
     ("springpot", "law = \"springpot\"\nparameters = { c = 50, alpha = 0.4 }"),
     ("zener", "law = \"fractional-zener\"\nparameters = { k_e = 20, k_m = 100, c = 30, alpha = 0.5 }"),
     (
@@ -44,6 +44,10 @@ pub(crate) const LAWS: [(&str, &str); 6] = [
     ),
     ("maxwell", "law = \"maxwell\"\nparameters = { k = 30, c = 6 }"),
     ("kelvin-voigt", "law = \"kelvin-voigt\"\nparameters = { k = 30, c = 6 }"),
+    (
+        "filled-rubber",
+        "law = \"filled-rubber\"\nparameters = { k = 20, c = 30, alpha = 0.3, k_f = [60, 30], F_f = [1, 2] }",
+    ),
     (
         "mixed",
         "network = \"parallel(polynomial(k, z, k3), series(spring(ks), springpot(d, alpha)), bouc-wen(ah, A, b, g, n), \

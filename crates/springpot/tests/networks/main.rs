@@ -3,6 +3,8 @@
 mod bouc_wen;
 mod convergence;
 mod dampers;
+mod harmonics;
+mod jenkins;
 mod named;
 mod nonlinear;
 mod one_sided;

@@ -4,7 +4,7 @@ use crate::{along, departure, force, slider};
 use springpot::collocation::{MAX_NODES, Nodes};
 use springpot::elements::{ElementBank, MemoryRange};
 use springpot::fractional::Form;
-use springpot::law::leaf::{BoucWen, Friction, Polynomial, Preload, Stop};
+use springpot::law::leaf::{BoucWen, Friction, Jenkins, Polynomial, Preload, Stop};
 use springpot::law::{Derivative, Elastic, Holds, Network, NetworkText, Start, Table};
 use std::f64::consts::PI;
 
@@ -34,6 +34,10 @@ fn leaves() -> Vec<Network> {
         Network::leaf(BoucWen::new(50.0, 1.0, 100.0, 250.0, 2.0).unwrap()),
         Network::leaf(BoucWen::new(50.0, 1.0, -5.0, 15.0, 1.0).unwrap()),
         Network::leaf(BoucWen::new(50.0, 0.5, 300.0, 400.0, 2.5).unwrap()),
+        // Sticks, slips, and slips and comes back within the step.
+        Network::leaf(Jenkins::new(50.0, 8.0).unwrap()),
+        Network::leaf(Jenkins::new(50.0, 2.0).unwrap()),
+        Network::leaf(Jenkins::new(50.0, 0.9).unwrap()),
     ]
 }
 

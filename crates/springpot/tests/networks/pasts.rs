@@ -2,10 +2,24 @@
 
 use crate::departure;
 use crate::support::{Run, cases, run_system};
+use springpot::elements::Element;
 use springpot::fractional::mittag_leffler::{Complex64, MittagLeffler};
+use springpot_scenario::Plan;
 
 /// A slider along x whose one element has this law, and a stroke of q(t).
 pub(crate) fn slider(element: &str, q: &str, end: f64) -> Run {
+    let plan = plan(element, q, end);
+    let run = run_system(&plan.system(), &plan.settings);
+    assert!(run.error.is_none(), "{:?}", run.error);
+    run
+}
+
+/// The element of such a slider.
+pub(crate) fn element(element: &str) -> Element {
+    plan(element, "t", 1.0).system().elements[0].clone()
+}
+
+fn plan(element: &str, q: &str, end: f64) -> Plan {
     let text = format!(
         "[robot]\ngravity = [0, 0, 0]\n[[robot.body]]\nname = \"b\"\nmass = 1\n\
          joint = {{ name = \"q\", kind = \"prismatic\", axis = [1, 0, 0], origin = [1, 0, 0] }}\n\
@@ -14,10 +28,7 @@ pub(crate) fn slider(element: &str, q: &str, end: f64) -> Run {
          [motion]\nkind = \"prescribed\"\njoints = {{ q = \"{q}\" }}\n[time]\nend = {end}\noutput_step = {step}\n",
         step = end / 25.0
     );
-    let plan = cases(&text).plan(0).expect("a valid plan");
-    let run = run_system(&plan.system(), &plan.settings);
-    assert!(run.error.is_none(), "{:?}", run.error);
-    run
+    cases(&text).plan(0).expect("a valid plan")
 }
 
 /// 1/Γ(1 − a) by E_{1,1−a}(0).

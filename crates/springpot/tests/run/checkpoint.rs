@@ -72,6 +72,11 @@ fn forward(rest: &str) -> String {
     format!("\n[motion]\nkind = \"forward\"\n{rest}\n[solver]\nrtol = 1e-6\n")
 }
 
+/// Its springs slip after some millimetres.
+fn filled_rubber() -> String {
+    strut("law = \"filled-rubber\"\nparameters = { k = 20, c = 10, alpha = 0.3, k_f = [300, 100], F_f = [1, 1.5] }")
+}
+
 #[test]
 fn robots_that_move_by_themselves() {
     let struts = [
@@ -80,6 +85,7 @@ fn robots_that_move_by_themselves() {
         magnetorheological(0.8, "riemann-liouville"),
         springpot(1.0, "caputo"),
         springpot(0.1, "caputo"),
+        filled_rubber(),
     ];
     let motions = [
         "torque = { q1 = \"2*sign(sin(9*t))\", q2 = \"abs(sin(5*t))\" }",
@@ -168,6 +174,7 @@ fn motions_given_in_advance() {
         (thermoviscoelastic(0.5, 25.0, "riemann-liouville"), &prescribed("0.2 + 0.1*sin(8*t)", "0.3")),
         (magnetorheological(0.2, "caputo"), PATH),
         (scheme, &kinked),
+        (filled_rubber(), &kinked),
     ] {
         states += goes_on(&cases(&format!("{ARM}{element}{motion}{}", every(0.8, 0.017))), 5);
     }

@@ -345,6 +345,7 @@ fn the_catalog_is_complete_and_in_order() {
             "fractional-bouc-wen-damper",
             "bingham",
             "fractional-bingham",
+            "filled-rubber",
             "maxwell",
             "fractional-maxwell",
             "zener",
@@ -389,9 +390,9 @@ fn the_catalog_is_complete_and_in_order() {
 
 #[test]
 fn a_law_without_any_coefficient_is_refused() {
-    // A piezo stack is stiff whatever its parameters, all of which are positive.
-    let is_stack = |entry: &Arc<Entry>| entry.name.starts_with("piezo-stack");
-    for (k, entry) in Catalog::standard().entries().iter().enumerate().filter(|(_, entry)| !is_stack(entry)) {
+    // A piezo stack, and springs of a filler, are stiff whatever their parameters, all of which are positive.
+    let is_stiff = |entry: &Arc<Entry>| entry.name.starts_with("piezo-stack") || entry.name == "filled-rubber";
+    for (k, entry) in Catalog::standard().entries().iter().enumerate().filter(|(_, entry)| !is_stiff(entry)) {
         let zeros: Vec<f64> =
             entry.params.iter().map(|p| if p.name == "alpha" { 0.5 } else { 0.0f64.max(p.range.low) }).collect();
         let broken = entry.build(&zeros, Derivative::Caputo).expect_err(&entry.name);

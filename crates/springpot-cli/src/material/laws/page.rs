@@ -92,10 +92,19 @@ const STACK: [(&str, &str); 14] = [
     ("U", "\"50 + 40*sin(6*t)\""),
 ];
 
+/// Of springs that slip at 2 and at 20 mm.
+const FILLED: [(&str, &str); 2] = [("k_f", "[\"5 N/cm\", \"2 N/cm\"]"), ("F_f", "[\"1 N\", \"4 N\"]")];
+
 /// An element of the law with parameters of a usual size.
 fn example(law: &Entry) -> String {
-    let is_stack = law.params.iter().any(|param| param.name == "F_block");
-    let own = |name: &str| STACK.iter().find(|(own, _)| is_stack && *own == name).map(|(_, value)| (*value).to_owned());
+    let has = |name: &str| law.params.iter().any(|param| param.name == name);
+    let is_stack = has("F_block");
+    let table: &[(&str, &str)] = match (is_stack, has("F_f")) {
+        (true, _) => &STACK,
+        (_, true) => &FILLED,
+        _ => &[],
+    };
+    let own = |name: &str| table.iter().find(|(own, _)| *own == name).map(|(_, value)| (*value).to_owned());
     let value = |param: &Param| match (usual(&param.unit, param.range), param.is_list) {
         (value, false) => value,
         (value, true) => format!("[{value}, {}]", twice(&value)),

@@ -1,5 +1,6 @@
 //! What every leaf answers.
 
+use super::jenkins::Jenkins;
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::{KernelError, MemoryTangent};
@@ -9,6 +10,7 @@ use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Electric, InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{LeafAtRest, Tangent};
 use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef};
+use num_complex::Complex64;
 
 /// Which time a leaf is asked about.
 #[derive(Debug, Clone, Copy)]
@@ -78,6 +80,15 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// step: an inner variable ends as far beyond it as it began before it.
     fn commit(&self, _step: &Step, _state: StateMut) {}
 
+    /// Whether its state is known after a stroke that was periodic since ever: memories alone do that, inner variables by [`Leaf::recall`].
+    fn recalls(&self) -> bool {
+        self.is_linear()
+    }
+
+    /// Gives its inner variables what a stroke leaves that was periodic since ever: `turns` is where it turned round in the last period, in order, and at last
+    /// x(0).
+    fn recall(&self, _turns: &[f64], _variables: &mut [f64]) {}
+
     /// Appends how well the step knows each of its memories and inner variables.
     fn local_errors(&self, _step: &Step, _state: StateRef, _errors: &mut Vec<LocalError>) {}
 
@@ -104,6 +115,12 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
 
     /// What it is like under small and fast strokes about `at`.
     fn linearised(&self, at: &Point) -> Term;
+
+    /// K* = K' + iK'', N/m, of the first harmonic of its force under a sine of its stroke about that of `at` since ever, of this `amplitude`, m, at the rate
+    /// `omega`, rad/s, where there is a formula. What is linear needs none, and what keeps nothing is integrated.
+    fn harmonic(&self, _at: &Point, _amplitude: f64, _omega: f64) -> Option<Complex64> {
+        None
+    }
 
     /// The leaf at rest since ever at the stroke of `at`; `held` is x(0), from which Caputo's derivative counts.
     ///
@@ -138,6 +155,11 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
 
     /// How it slides under the inputs, of friction: the other leaf that may stand in a series though it lets go.
     fn slides(&self, _inputs: &[InputValue]) -> Option<Slide> {
+        None
+    }
+
+    /// Itself where it is a spring that slips, which is one with the springs behind it in a series, and takes what the others leave while it slips.
+    fn slips(&self) -> Option<Jenkins> {
         None
     }
 

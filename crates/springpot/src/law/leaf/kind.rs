@@ -1,7 +1,7 @@
 //! The kinds of leaves that networks may name.
 
 use super::table::Table;
-use super::{bouc_wen, dashpot, friction, polynomial, preload, spring, springpot, stop, table};
+use super::{bouc_wen, dashpot, friction, jenkins, polynomial, preload, spring, springpot, stop, table};
 use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use crate::law::catalog::Param;
@@ -46,6 +46,7 @@ impl LeafKind {
             friction::kind(),
             preload::kind(),
             bouc_wen::kind(),
+            jenkins::kind(),
         ]
     }
 }

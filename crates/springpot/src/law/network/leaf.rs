@@ -4,6 +4,7 @@ use super::part::{Onset, Part, Reported, Seen, Take};
 use super::{Guard, Holds, Network};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Memory, MemoryTangent, RatePolynomial};
+use crate::law::harmonic::{Sine, self};
 use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::past::Recalled;
 use crate::law::rule::RuleError;
@@ -106,8 +107,16 @@ impl Part for LeafPart {
         self.leaf.singular(inputs, state.take(self.leaf.size())).into_iter().for_each(take);
     }
 
+    fn recalls(&self) -> bool {
+        self.leaf.recalls()
+    }
+
     fn recall(&self, stroke: &Recalled, _: &Point, state: &mut StateMut) {
-        state.take(self.leaf.size()).memories.iter_mut().for_each(|memory| recall(memory, stroke));
+        let StateMut { memories, variables, .. } = state.take(self.leaf.size());
+        memories.iter_mut().for_each(|memory| recall(memory, stroke));
+        if !variables.is_empty() {
+            self.leaf.recall(&stroke.turns(), variables);
+        }
     }
 
     fn for_each_leaf(&self, take: &mut dyn FnMut(&LeafPart)) {
@@ -157,6 +166,18 @@ impl Part for LeafPart {
     fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
         let Term { coefficient, order } = self.leaf.linearised(at);
         coefficient * if order == 0.0 { Complex64::ONE } else { s.powf(order) }
+    }
+
+    fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
+        if self.leaf.is_linear() {
+            return Some(Part::modulus(self, &sine.at, Complex64::new(0.0, sine.omega)));
+        }
+        let formula = self.leaf.harmonic(&sine.at, sine.amplitude, sine.omega);
+        match self.leaf.size() == StateSize::default() {
+            _ if formula.is_some() => formula,
+            true => Some(harmonic::at_once(&*self.leaf, sine)),
+            false => harmonic::driven(&Network::Leaf(self.clone()), sine),
+        }
     }
 
     fn is_linear(&self) -> bool {

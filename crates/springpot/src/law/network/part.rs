@@ -3,6 +3,7 @@
 use super::{LeafPart, Network};
 use crate::collocation::MAX_NODES;
 use crate::fractional::{KernelError, MemoryTangent};
+use crate::law::harmonic::Sine;
 use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::network::{Guard, Holds};
 use crate::law::past::Recalled;
@@ -110,6 +111,11 @@ pub(in crate::law) trait Part: std::fmt::Debug {
         self.parts().iter().for_each(|part| part.ask().singularities(inputs, state, take));
     }
 
+    /// Whether its state is known after a stroke that was periodic since ever.
+    fn recalls(&self) -> bool {
+        self.parts().iter().all(|part| part.ask().recalls())
+    }
+
     /// Puts the stroke before t = 0 into the state.
     fn recall(&self, stroke: &Recalled, at: &Point, state: &mut StateMut) {
         self.parts().iter().for_each(|part| part.ask().recall(stroke, at, state));
@@ -179,6 +185,11 @@ pub(in crate::law) trait Part: std::fmt::Debug {
     /// F/x under e^{st} where it is linear.
     fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
         self.parts().iter().map(|part| part.ask().modulus(at, s)).sum()
+    }
+
+    /// K* of the first harmonic under a sine since ever, linear or not; `None` where no steady turn is found.
+    fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
+        self.parts().iter().map(|part| part.ask().harmonic(sine)).sum()
     }
 
     /// Whether F is an affine function of strokes and rates.

@@ -20,7 +20,8 @@ use super::{Guard, Holds, MOST_IN_SERIES, Network};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Kind as Derivative};
-use crate::law::leaf::Slide;
+use crate::law::leaf::{Jenkins, Slide};
+use crate::law::harmonic::{Sine, self};
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Course, InputValue, LocalError, Point, Power, Powers, Response, Start, Step, Term};
@@ -113,6 +114,14 @@ impl Series {
         self.lets_go(k) && !self.is_free(k)
     }
 
+    /// Part `k` where it is a spring that slips.
+    fn slips(&self, k: usize) -> Option<Jenkins> {
+        match &self.parts[k] {
+            Network::Leaf(leaf) => leaf.slips(),
+            _ => None,
+        }
+    }
+
     /// Whether part `k` is one that lets go.
     fn lets_go(&self, k: usize) -> bool {
         self.loose.as_ref().is_some_and(|loose| loose.has(k))
@@ -191,6 +200,11 @@ impl Part for Series {
 
     fn begin(&self, start: &Start, state: &mut State) -> Result<(), KernelError> {
         start::begin(self, start, state)
+    }
+
+    /// The strokes of its parts follow from their moduli alone.
+    fn recalls(&self) -> bool {
+        self.is_linear()
     }
 
     fn recall(&self, stroke: &Recalled, at: &Point, state: &mut StateMut) {
@@ -474,6 +488,13 @@ impl Part for Series {
 
     fn has_memories_in_series(&self) -> bool {
         self.size().memories > 0
+    }
+
+    fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
+        match self.is_linear() {
+            true => Some(self.modulus(&sine.at, Complex64::new(0.0, sine.omega))),
+            false => harmonic::driven(&Network::Series(self.clone()), sine),
+        }
     }
 
     fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {

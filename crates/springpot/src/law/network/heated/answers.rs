@@ -3,6 +3,7 @@
 use super::{Heated, SHARPNESS, by_the_wall};
 use crate::collocation::MAX_NODES;
 use crate::fractional::KernelError;
+use crate::law::harmonic::Sine;
 use crate::law::network::part::{Onset, Part, Reported, Seen, Take};
 use crate::law::network::{Guard, Network};
 use crate::law::past::Recalled;
@@ -227,6 +228,12 @@ impl Part for Heated {
     fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
         let place = self.still(at);
         self.law.modulus(&place.point(), s * place.factor)
+    }
+
+    /// At the temperature of the inputs, or of the start.
+    fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
+        let place = self.still(&sine.at);
+        self.law.ask().harmonic(&Sine { at: place.point(), omega: sine.omega * place.factor, ..*sine })
     }
 
     fn asymptote(&self, at: &Point, onset: Onset) -> Term {

@@ -15,8 +15,13 @@ const NEARLY: f64 = 1e-9;
 /// Square of what counts as rounding of forces.
 const ROUNDED: f64 = 1e-28;
 
-/// A part that is softer than this share of the stiffest counts as that soft.
+/// Rounding of a stroke of its own, in units of it.
+const STROKES: f64 = 8.0 * f64::EPSILON;
+
+/// A part that is softer than this share of the stiffest counts as that soft; a spring that slips as this share of its own stiffness, since what it slips is as
+/// well known as forces over that.
 const SOFTEST: f64 = 1e-30;
+pub(super) const SLIPPING: f64 = 1e-5;
 
 /// One part over a step, as it is told of it.
 #[derive(Debug, Clone, Copy, Default)]
@@ -98,6 +103,13 @@ impl Lines {
         for (k, Line { compliance, .. }) in self.each.iter_mut().enumerate() {
             if series.lets_go(k) {
                 continue;
+            }
+            if let Some(own) = series.slips(k) {
+                for (i, row) in
+                    compliance.iter_mut().enumerate().take(count).filter(|(_, row)| **row == [0.0; MAX_NODES])
+                {
+                    row[i] = SLIPPING * own.stiffness();
+                }
             }
             invert(compliance, count, floor);
             for (row, own) in self.tangent.iter_mut().zip(&*compliance) {
@@ -260,9 +272,15 @@ fn finish(
     side: Side,
 ) -> Solved {
     let mut shares = [0.0; MOST_IN_SERIES];
+    let last = step.nodes.count() - 1;
+    let slips = |(k, line): (usize, &Line)| {
+        series.slips(k).is_some_and(|own| line.compliance[last][last] * own.stiffness() > 2.0)
+    };
+    let is_slipping = lines.each.iter().enumerate().any(slips);
     for (k, share) in shares.iter_mut().enumerate().take(series.parts.len()) {
-        // Where nothing is carried what the others err shows later, in how they come back.
+        // Where nothing is carried, or no more than what slips does, what the others err shows later, in how they come back.
         *share = match side {
+            _ if is_slipping => 1.0,
             _ if series.slides(k) => series.softness(lines.tangent[step.nodes.count() - 1][step.nodes.count() - 1]),
             0 => 1.0,
             _ => lines.share(&tangent, k, step.nodes.count()),
@@ -285,7 +303,8 @@ fn search(series: &Series, step: &Step, starts: &[f64], state: StateRef, sought:
     let (count, parts) = (step.nodes.count(), series.parts.len());
     // Spread evenly a nonlinear part would begin far from where it is: the stiffness where it was shares the way out.
     let mut inner = resting(starts, step);
-    let (mut search, mut lines) = (Search::default(), Lines::default());
+    let slipping = (0..parts).find(|k| series.slips(*k).is_some());
+    let (mut search, mut lines) = (Search { slips: slipping.is_some(), ..Search::default() }, Lines::default());
     let [_, start] = series.split(starts);
     let mut side = 1;
     let (mut force, mut tangent) = ([0.0; MAX_NODES], Matrix::default());
@@ -315,6 +334,14 @@ fn search(series: &Series, step: &Step, starts: &[f64], state: StateRef, sought:
             None => {
                 (force, tangent) = (lines.force(missing), lines.tangent);
                 lines.stretch(series, &force, step, &mut inner);
+                // What slips takes what is left, which no force tells so well.
+                if let Some(k) = slipping {
+                    for i in 1..=count {
+                        let others = (0..parts).filter(|other| *other != k).map(|other| inner[other].stroke[i]);
+                        inner[k].stroke[i] = step.stroke[i] - others.sum::<f64>();
+                    }
+                    inner[k].take_rates(step.nodes, step.h);
+                }
             }
             Some(loose) => {
                 let gap = lines.gap(series, step, missing, start);
@@ -386,6 +413,8 @@ struct Search {
     apart: Option<f64>,
     halvings: usize,
     ways: usize,
+    /// Whether a part slips, so that what is beside it may be as stiff as it likes where its forces do not come nearer.
+    slips: bool,
     is_rounding: bool,
     /// Change of the strokes on the last whole way, in units of the largest.
     change: f64,
@@ -401,7 +430,8 @@ impl Search {
             apart += lines.iter().map(|line| (line.force[i] - mean).powi(2)).sum::<f64>();
             size += lines.iter().map(|line| line.force[i].powi(2)).sum::<f64>();
         }
-        self.is_rounding = self.ways > 1 && apart <= ROUNDED * size;
+        let is_rounding = apart <= ROUNDED * size || (self.slips && apart <= of_strokes(lines, count, inner));
+        self.is_rounding = self.ways > 1 && is_rounding;
         let is_nearer = match self.apart {
             _ if self.ways < 2 => apart.is_finite(),
             Some(before) => apart < before || self.is_rounding,
@@ -425,6 +455,16 @@ impl Search {
     fn enough(&self) -> f64 {
         if self.is_rounding { NEARLY } else { ENOUGH }
     }
+}
+
+/// Square of what rounding of the strokes makes of the forces.
+fn of_strokes(lines: &[Line], count: usize, inner: &[Inner; MOST_IN_SERIES]) -> f64 {
+    let of = |(line, inner): (&Line, &Inner)| {
+        let rounding = |j: usize| STROKES * inner.stroke[0].abs().max(inner.stroke[j + 1].abs());
+        let row = |row: &[f64; MAX_NODES]| (0..count).map(|j| row[j].abs() * rounding(j)).sum::<f64>().powi(2);
+        line.compliance[..count].iter().map(row).sum::<f64>()
+    };
+    lines.iter().zip(inner).map(of).sum()
 }
 
 /// The inverse of the leading `count` rows and columns, by elimination with pivots; a pivot below `floor` counts as that.

@@ -1,6 +1,7 @@
 //! Who takes the stroke at t = 0.
 
 use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, MOST_SECANTS, Play, Series};
+use super::solve::SLIPPING;
 use crate::fractional::{KernelError, Kind as Derivative, Memory};
 use crate::law::network::Network;
 use crate::law::network::part::{Onset, Part, Reported, Take};
@@ -180,7 +181,12 @@ fn at_rest(part: &Network, stroke: f64, start: &Start) -> Result<[f64; 2], Kerne
     part.ask().begin(&Start { stroke, jump: 0.0, ..*start }, &mut state)?;
     let at = Point { t: 0.0, stroke, rate: 0.0, inputs: start.inputs };
     let force = part.ask().now(&at, &mut state.view(), &mut |_| ()).observation.regular;
-    Ok([force, part.ask().asymptote(&at, Onset::Long).coefficient])
+    let slope = match part {
+        // What slips yields, though not without end.
+        Network::Leaf(leaf) if leaf.slips().is_some_and(|own| force.abs() >= own.limit()) => SLIPPING,
+        _ => 1.0,
+    };
+    Ok([force, slope * part.ask().asymptote(&at, Onset::Long).coefficient])
 }
 
 /// What is slack counts as this soft, in units of the stiffest part.
