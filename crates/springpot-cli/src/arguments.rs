@@ -114,15 +114,18 @@ series with a damper g_k tau_k. The error is verified after building. Numbers wi
 Abaqus and Ansys need a long-term modulus above 0. Without --equilibrium a spring takes the place of what relaxes after the \
 window; the bound includes it, and a comment says so.")]
     Prony(PronyOptions),
-    /// Stiffness and loss of an element under steady sines, over the frequency.
+    /// Stiffness and loss of an element under steady sines, over frequency and amplitude.
     #[command(after_help = "\
 Examples:
   springpot modulus scenarios/thermoviscoelastic_order.toml strut
   springpot modulus pad.toml pad --from '0.1 Hz' --to '1 kHz' --out pad.csv
   springpot modulus pad.toml pad --amplitude '2 mm' --out pad.svg
+  springpot modulus scenarios/filled_mount.toml mount --amplitude '0.1 mm,1 mm,5 mm'
+  springpot modulus scenarios/filled_mount.toml mount --from 10 --to 10 --amplitude '0.1 mm,1 mm,5 mm'
 
-K* = K' + i K'' is the force over the stroke of a sine that has lasted for ever; a cycle of the amplitude X loses \
-pi K'' X^2. Inputs have their values at t = 0, sweeps their first ones. The law must be linear. \
+K* = K' + i K'' is the force over the stroke of a sine that has lasted for ever, of a law that is not linear the first harmonic \
+of the force; a cycle of the amplitude X loses pi K'' X^2. Inputs have their values at t = 0, sweeps their first ones. \
+Where the law is not linear, or amplitudes are several, every row has its amplitude. Where --from is --to there is one frequency. \
 Frequencies without a unit are in Hz.")]
     Modulus(ModulusOptions),
     /// Natural frequencies and damping about rest, and answers to sines.
@@ -542,9 +545,9 @@ pub(crate) struct ModulusOptions {
     /// Number of frequencies, evenly on a logarithmic scale
     #[arg(long, value_name = "N", default_value_t = 121, allow_hyphen_values = true)]
     pub(crate) points: usize,
-    /// Amplitude of the stroke, for the loss of a cycle
-    #[arg(long, value_name = "STROKE", default_value = "1 mm", allow_hyphen_values = true)]
-    pub(crate) amplitude: String,
+    /// Amplitude of the stroke, or several of them; of a law that is not linear it must be given [default: 1 mm, or 1 mrad]
+    #[arg(long, value_name = "STROKE[,STROKE…]", allow_hyphen_values = true)]
+    pub(crate) amplitude: Option<String>,
     /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,

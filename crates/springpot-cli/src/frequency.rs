@@ -66,5 +66,5 @@ pub(crate) fn band(from: &str, to: &str, points: usize) -> Result<Vec<f64>, (Str
 pub(crate) fn printed(count: usize) -> (impl Iterator<Item = usize>, String) {
     let (last, printed) = (count - 1, count.min(PRINTED));
     let left_out = format!("\n{printed} of {count} frequencies; all of them: --json or --out FILE.csv\n");
-    ((0..printed).map(move |k| k * last / (printed - 1)), if printed < count { left_out } else { String::new() })
+    ((0..printed).map(move |k| k * last / (printed - 1).max(1)), if printed < count { left_out } else { String::new() })
 }

@@ -1,4 +1,4 @@
-//! `springpot modulus`: an element under a steady sine of its stroke, over the frequency.
+//! `springpot modulus`: an element under a steady sine of its stroke, over the frequency and the amplitude.
 
 use crate::arguments::ModulusOptions;
 use crate::grid::{Grid, Set};
@@ -10,11 +10,15 @@ use springpot_run::numbers::{four, short};
 use springpot_scenario::units::parse_quantity;
 use springpot_scenario::{ElementPlan, ShapePlan, suggest};
 use std::f64::consts::{PI, TAU};
+use std::num::NonZero;
 use std::path::Path;
 
-/// K*(ω) at one frequency.
+/// K* at one frequency and amplitude.
+#[derive(Clone, Copy)]
 struct Row {
     hertz: f64,
+    /// m, or rad.
+    amplitude: f64,
     storage: f64,
     loss: f64,
     /// Energy lost in a cycle of the amplitude, J.
@@ -24,8 +28,22 @@ struct Row {
 /// No mount is pressed so far, m.
 const HUGE: f64 = 1.0;
 
+/// The amplitude where none is asked for and none matters, m or rad.
+const USUAL: f64 = 1e-3;
+
 /// What is wrong, and what would be right.
 type Problem = (String, String);
+
+/// What is asked for.
+struct Asked {
+    band: Vec<f64>,
+    /// m, or rad.
+    amplitudes: Vec<f64>,
+    /// The same as they are written.
+    written: Vec<String>,
+    /// Whether rows say their amplitude: where it matters, or there are several.
+    is_over_amplitude: bool,
+}
 
 pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
     let scenario = diagnostic::scenario(&options.file, &options.overrides);
@@ -49,31 +67,57 @@ pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
         diagnostic::error_with_help(format!("there is no element {:?}", options.element), help);
         return Ending::Refused;
     };
-    match asked(options).and_then(|(band, amplitude)| Ok((rows(element, band, amplitude)?, amplitude))) {
-        Ok((rows, amplitude)) => {
-            warn_of_amplitude(element, amplitude, &options.amplitude);
-            tell(options, element, &rows, amplitude)
-        }
+    let asked = match asked(options, element) {
+        Ok(asked) => asked,
         Err((message, help)) => {
             diagnostic::error_with_help(message, help);
-            Ending::Refused
+            return Ending::Refused;
+        }
+    };
+    for amplitude in &asked.amplitudes {
+        warn_of_amplitude(element, *amplitude);
+    }
+    match rows(element, &asked) {
+        Ok(rows) => tell(options, element, &rows, &asked),
+        Err((message, help)) => {
+            diagnostic::error_with_help(message, help);
+            Ending::Failed
         }
     }
 }
 
-/// The frequencies, Hz, and the amplitude of the stroke, m or rad.
-fn asked(options: &ModulusOptions) -> Result<(Vec<f64>, f64), Problem> {
-    let band = frequency::band(&options.from, &options.to, options.points)?;
-    let text = &options.amplitude;
-    let amplitude = ["m", "rad"].into_iter().find_map(|unit| parse_quantity(text, unit, &|_| None).ok());
-    match amplitude.filter(|amplitude| *amplitude > 0.0 && amplitude.is_finite()) {
-        Some(amplitude) => Ok((band, amplitude)),
-        None => Err((format!("--amplitude {text}: not a stroke above 0"), "write '1 mm' or '1 deg'".to_owned())),
-    }
+fn asked(options: &ModulusOptions, element: &ElementPlan) -> Result<Asked, Problem> {
+    let one = |text: &str| frequency::angular(text).ok().filter(|omega| *omega > 0.0);
+    let band = match (one(&options.from), one(&options.to)) {
+        (Some(from), Some(to)) if from == to => vec![from / TAU],
+        _ => frequency::band(&options.from, &options.to, options.points)?,
+    };
+    let is_linear = element.element.law.is_linear();
+    let (unit, examples) = match element.element.measure.is_rotation() {
+        true => ("rad", ["1 deg", "0.1 deg,1 deg,5 deg"]),
+        false => ("m", ["1 mm", "0.1 mm,1 mm,5 mm"]),
+    };
+    let Some(text) = &options.amplitude else {
+        if !is_linear {
+            let name = &element.element.name;
+            let message = format!("the law of element {name:?} is not linear: its modulus depends on the amplitude");
+            return Err((message, format!("write --amplitude '{}', or several: '{}'", examples[0], examples[1])));
+        }
+        return Ok(Asked { band, amplitudes: vec![USUAL], written: Vec::new(), is_over_amplitude: false });
+    };
+    let read = |part: &str| {
+        let amplitude = parse_quantity(part, unit, &|_| None).ok().filter(|value| *value > 0.0 && value.is_finite());
+        let help = || format!("write '{}', or several: '{}'", examples[0], examples[1]);
+        amplitude.ok_or_else(|| (format!("--amplitude {}: not a stroke above 0", part.trim()), help()))
+    };
+    let amplitudes = text.split(',').map(read).collect::<Result<Vec<_>, _>>()?;
+    let is_over_amplitude = !is_linear || amplitudes.len() > 1;
+    let written = text.split(',').map(|part| part.trim().to_owned()).collect();
+    Ok(Asked { band, amplitudes, written, is_over_amplitude })
 }
 
 /// Warns of strokes beyond the element's own length, and of more than a turn.
-fn warn_of_amplitude(element: &ElementPlan, amplitude: f64, written: &str) {
+fn warn_of_amplitude(element: &ElementPlan, amplitude: f64) {
     let length = element.element.rest.abs();
     let why = match (&element.shape, element.element.measure.is_rotation()) {
         (ShapePlan::Points(_), _) if length > 0.0 && amplitude >= length => {
@@ -84,38 +128,58 @@ fn warn_of_amplitude(element: &ElementPlan, amplitude: f64, written: &str) {
         _ => return,
     };
     let help = "plain numbers are in m and rad: write '2 mm' or '2 deg'".to_owned();
-    diagnostic::warning(format!("--amplitude {written} of element {:?}: {why}", element.element.name), Some(help));
+    let unit = stroke_unit(element);
+    diagnostic::warning(
+        format!("--amplitude {} {unit} of element {:?}: {why}", short(amplitude), element.element.name),
+        Some(help),
+    );
 }
 
-fn rows(element: &ElementPlan, band: Vec<f64>, amplitude: f64) -> Result<Vec<Row>, Problem> {
+/// The rows, amplitudes outermost, worked out on all cores.
+fn rows(element: &ElementPlan, asked: &Asked) -> Result<Vec<Row>, Problem> {
     let element = &element.element;
-    if !element.law.is_linear() {
-        let message = format!("the law of element {:?} is not linear: its modulus depends on the stroke", element.name);
-        return Err((message, "run it under the sine that is meant, and look at the loop".to_owned()));
-    }
     let mut inputs = vec![InputValue::default(); element.inputs.len()];
     element.inputs_at(0.0, &mut inputs);
     let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
-    let row = |hertz: f64| {
-        let [storage, loss] = element.law.complex_modulus(&at, TAU * hertz);
-        Row { hertz, storage, loss, cycle: PI * loss * amplitude * amplitude }
+    let row = |(amplitude, hertz): (f64, f64)| {
+        let modulus = match element.law.is_linear() {
+            true => Some(element.law.complex_modulus(&at, TAU * hertz)),
+            false => element.law.first_harmonic(&at, amplitude, TAU * hertz),
+        };
+        let [storage, loss] = modulus.ok_or_else(|| {
+            let [hertz, amplitude] = [hertz, amplitude].map(short);
+            let message = format!("element {:?} comes to no steady turn at {hertz} Hz and {amplitude}", element.name);
+            (message, "run it under the sine that is meant, and look at the loop".to_owned())
+        })?;
+        Ok(Row { hertz, amplitude, storage, loss, cycle: PI * loss * amplitude * amplitude })
     };
-    Ok(band.into_iter().map(row).collect())
+    let amplitudes = asked.amplitudes.iter();
+    let wanted: Vec<(f64, f64)> =
+        amplitudes.flat_map(|amplitude| asked.band.iter().map(|hertz| (*amplitude, *hertz))).collect();
+    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let share = wanted.len().div_ceil(cores);
+    let work = |wanted: &[(f64, f64)]| wanted.iter().map(|one| row(*one)).collect::<Result<Vec<Row>, Problem>>();
+    let work = &work;
+    std::thread::scope(|scope| {
+        let started: Vec<_> = wanted.chunks(share).map(|wanted| scope.spawn(move || work(wanted))).collect();
+        let joined = started.into_iter().map(|share| share.join().unwrap_or_else(|why| std::panic::resume_unwind(why)));
+        Ok(joined.collect::<Result<Vec<_>, Problem>>()?.concat())
+    })
 }
 
 /// Prints the rows, or writes them as the ending of the file says.
-fn tell(options: &ModulusOptions, element: &ElementPlan, rows: &[Row], amplitude: f64) -> Ending {
+fn tell(options: &ModulusOptions, element: &ElementPlan, rows: &[Row], asked: &Asked) -> Ending {
     let Some(out) = &options.out else {
         let text = match options.json {
-            true => format!("{:#}\n", json(element, rows, amplitude)),
-            false => table(element, rows, amplitude),
+            true => format!("{:#}\n", json(element, rows, asked)),
+            false => table(element, rows, asked),
         };
         return printed(terminal::try_print(&text));
     };
     match &*drawing::ending(out) {
-        "csv" => write(out, &csv(element, rows)),
-        "json" => write(out, &format!("{:#}\n", json(element, rows, amplitude))),
-        ending if drawing::ENDINGS.contains(&ending) => drawing::write(out, &plot(element, rows)),
+        "csv" => write(out, &csv(element, rows, asked)),
+        "json" => write(out, &format!("{:#}\n", json(element, rows, asked))),
+        ending if drawing::ENDINGS.contains(&ending) => drawing::write(out, &plot(element, rows, asked)),
         _ => {
             let help = "write a name that ends in .csv, .json, .svg, .png or .pdf".to_owned();
             diagnostic::error_with_help(format!("--out {}: no kind of file", out.display()), help);
@@ -133,42 +197,62 @@ fn unit(element: &ElementPlan) -> &'static str {
     if element.element.measure.is_rotation() { "N*m/rad" } else { "N/m" }
 }
 
-fn table(element: &ElementPlan, rows: &[Row], amplitude: f64) -> String {
-    let stroke = if element.element.measure.is_rotation() { "rad" } else { "m" };
-    let unit = unit(element);
-    let mut grid = Grid::new([
+/// The unit of its stroke.
+fn stroke_unit(element: &ElementPlan) -> &'static str {
+    if element.element.measure.is_rotation() { "rad" } else { "m" }
+}
+
+fn table(element: &ElementPlan, rows: &[Row], asked: &Asked) -> String {
+    let (stroke, unit, is_over) = (stroke_unit(element), unit(element), asked.is_over_amplitude);
+    let head = [
         ("f, Hz".to_owned(), Set::Number),
+        (format!("X, {stroke}"), Set::Number),
         (format!("K', {unit}"), Set::Number),
         (format!("K'', {unit}"), Set::Number),
         ("tan delta".to_owned(), Set::Number),
         ("loss a cycle, J".to_owned(), Set::Number),
-    ]);
-    let (printed, left_out) = frequency::printed(rows.len());
-    for k in printed {
-        let Row { hertz, storage, loss, cycle } = &rows[k];
-        grid.row([*hertz, *storage, *loss, loss / storage, *cycle].iter().map(|value| four(*value)).collect());
+    ];
+    let shown = |k: &usize| is_over || *k != 1;
+    let mut grid = Grid::new(head.into_iter().enumerate().filter(|(k, _)| shown(k)).map(|(_, column)| column));
+    let mut left_out = String::new();
+    for rows in rows.chunks(asked.band.len()) {
+        let (printed, of_band) = frequency::printed(rows.len());
+        for Row { hertz, amplitude, storage, loss, cycle } in printed.map(|k| rows[k]) {
+            let values = [hertz, amplitude, storage, loss, loss / storage, cycle].map(four);
+            grid.row(values.into_iter().enumerate().filter(|(k, _)| shown(k)).map(|(_, value)| value).collect());
+        }
+        left_out = of_band;
     }
-    let mut text = format!(
-        "element {} under x = {} {stroke} sin(2 pi f t), steady: K* = K' + i K''\n\n",
-        element.element.name,
-        short(amplitude)
-    );
+    let name = &element.element.name;
+    let mut text = match is_over {
+        false => format!(
+            "element {name} under x = {} {stroke} sin(2 pi f t), steady: K* = K' + i K''\n\n",
+            short(asked.amplitudes[0])
+        ),
+        true => format!("element {name} under x = X sin(2 pi f t), first harmonic: K* = K' + i K''\n\n"),
+    };
     text.push_str(&grid.text(terminal::stdout_width()));
     text.push_str(&left_out);
     text
 }
 
-fn csv(element: &ElementPlan, rows: &[Row]) -> String {
-    let unit = unit(element);
-    let mut text = format!("frequency [Hz],storage [{unit}],loss [{unit}],tan_delta,cycle [J]\n");
-    for Row { hertz, storage, loss, cycle } in rows {
-        text.push_str(&format!("{hertz},{storage},{loss},{},{cycle}\n", loss / storage));
+fn csv(element: &ElementPlan, rows: &[Row], asked: &Asked) -> String {
+    let (unit, is_over) = (unit(element), asked.is_over_amplitude);
+    let of_amplitude = if is_over { format!("amplitude [{}],", stroke_unit(element)) } else { String::new() };
+    let mut text = format!("frequency [Hz],{of_amplitude}storage [{unit}],loss [{unit}],tan_delta,cycle [J]\n");
+    for Row { hertz, amplitude, storage, loss, cycle } in rows {
+        let of_amplitude = if is_over { format!("{amplitude},") } else { String::new() };
+        text.push_str(&format!("{hertz},{of_amplitude}{storage},{loss},{},{cycle}\n", loss / storage));
     }
     text
 }
 
-fn json(element: &ElementPlan, rows: &[Row], amplitude: f64) -> serde_json::Value {
+fn json(element: &ElementPlan, rows: &[Row], asked: &Asked) -> serde_json::Value {
     let column = |of: fn(&Row) -> f64| rows.iter().map(of).collect::<Vec<_>>();
+    let amplitude = match asked.is_over_amplitude {
+        true => json!(column(|row| row.amplitude)),
+        false => json!(asked.amplitudes[0]),
+    };
     json!({
         "element": element.element.name, "unit": unit(element), "amplitude": amplitude,
         "frequency": column(|row| row.hertz), "storage": column(|row| row.storage), "loss": column(|row| row.loss),
@@ -176,23 +260,41 @@ fn json(element: &ElementPlan, rows: &[Row], amplitude: f64) -> serde_json::Valu
     })
 }
 
-/// Storage and loss over the frequency.
-fn plot(element: &ElementPlan, rows: &[Row]) -> Plot {
-    let curve = |label: &str, of: &dyn Fn(&Row) -> f64| Curve {
-        label: label.to_owned(),
-        x: rows.iter().map(|row| row.hertz).collect(),
+/// Storage and loss over the frequency, a curve of each amplitude; over the amplitude where there is one frequency.
+fn plot(element: &ElementPlan, rows: &[Row], asked: &Asked) -> Plot {
+    let axis = |label: String| Axis { label, scale: Scale::Log, ..Axis::default() };
+    let is_of_frequency = asked.band.len() > 1 || asked.amplitudes.len() == 1;
+    let of_x: fn(&Row) -> f64 = if is_of_frequency { |row| row.hertz } else { |row| row.amplitude };
+    let curve = |rows: &[Row], label: String, of: fn(&Row) -> f64| Curve {
+        label,
+        is_marked: !is_of_frequency || rows.len() == 1,
+        x: rows.iter().map(of_x).collect(),
         y: rows.iter().map(of).collect(),
         ..Curve::default()
     };
-    let axis = |label: String| Axis { label, scale: Scale::Log, ..Axis::default() };
-    Plot {
-        title: Some(format!("Storage and loss of {}", element.element.name)),
-        x: axis("frequency, Hz".to_owned()),
-        y: axis(format!("dynamic stiffness, {}", unit(element).replace('*', "·"))),
-        panels: vec![Panel {
-            curves: vec![curve("storage K′", &|row| row.storage), curve("loss K″", &|row| row.loss)],
-            ..Panel::default()
-        }],
-        ..Plot::default()
+    let [storage, loss]: [fn(&Row) -> f64; 2] = [|row| row.storage, |row| row.loss];
+    let (name, unit, stroke) = (&element.element.name, unit(element).replace('*', "·"), stroke_unit(element));
+    let x = match is_of_frequency {
+        true => axis("frequency, Hz".to_owned()),
+        false => axis(format!("amplitude, {stroke}")),
+    };
+    let at_one = match (is_of_frequency, asked.amplitudes.as_slice()) {
+        (false, _) => format!(" at {} Hz", short(asked.band[0])),
+        (true, [amplitude]) if asked.is_over_amplitude => format!(" at {} {stroke}", short(*amplitude)),
+        (true, _) => String::new(),
+    };
+    let title = Some(format!("Storage and loss of {name}{at_one}"));
+    let has_many = is_of_frequency && asked.amplitudes.len() > 1;
+    if !has_many {
+        let curves = vec![curve(rows, "storage K′".into(), storage), curve(rows, "loss K″".into(), loss)];
+        let y = axis(format!("dynamic stiffness, {unit}"));
+        return Plot { title, x, y, panels: vec![Panel { curves, ..Panel::default() }], ..Plot::default() };
     }
+    let panel = |title: &str, of: fn(&Row) -> f64| {
+        let of_one = |(rows, written): (&[Row], &String)| curve(rows, written.clone(), of);
+        let curves = rows.chunks(asked.band.len()).zip(&asked.written).map(of_one).collect();
+        Panel { title: Some(title.to_owned()), y: Some(axis(format!("dynamic stiffness, {unit}"))), curves }
+    };
+    let panels = vec![panel("storage K′", storage), panel("loss K″", loss)];
+    Plot { title, x, legend_title: Some("amplitude".to_owned()), panels, ..Plot::default() }
 }
