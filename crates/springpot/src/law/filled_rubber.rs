@@ -27,11 +27,11 @@ pub(super) fn filled_rubber() -> Entry {
                 return Err(RuleError { rule: "one value of k_f and F_f at least".into(), parameter: "k_f".into() });
             }
             let (stiffnesses, forces) = fillers.split_at(fillers.len() / 2);
-            RuleError::unless(stiffnesses.iter().all(|k| *k > 0.0), "k_f > 0", "k_f")?;
-            RuleError::unless(forces.iter().all(|force| *force > 0.0), "F_f > 0", "F_f")?;
+            RuleError::unless(stiffnesses.iter().all(|k| k.value > 0.0), "k_f > 0", "k_f")?;
+            RuleError::unless(forces.iter().all(|force| force.value > 0.0), "F_f > 0", "F_f")?;
             let mut parts = vec![Network::spring(k), Network::springpot(c, alpha, derivative)];
             for (stiffness, force) in stiffnesses.iter().zip(forces) {
-                parts.push(Network::leaf(Jenkins::new(*stiffness, *force)?));
+                parts.push(Network::leaf(Jenkins::new(stiffness.value, force.value)?));
             }
             Ok(Network::parallel(parts))
         }),

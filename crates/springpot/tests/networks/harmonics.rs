@@ -96,7 +96,7 @@ fn what_follows_from_one_time_is_integrated_between_its_kinks() {
 #[test]
 fn what_has_a_state_is_driven_until_it_is_steady() {
     let network = |text: &str, values: &[f64]| {
-        (NetworkText::parse(text).unwrap().entry().build)(values, Derivative::Caputo).unwrap()
+        NetworkText::parse(text).unwrap().entry().build(values, Derivative::Caputo).unwrap()
     };
     let (omega, amplitude) = (6.0, 0.1);
     let (turn, turns, rows) = (TAU / omega, 12.0, 400);

@@ -275,7 +275,7 @@ fn steps_need_not_be_many() {
 #[test]
 fn springs_behind_it_are_part_of_it() {
     let network =
-        |text: &str, values: &[f64]| (NetworkText::parse(text).unwrap().entry().build)(values, Derivative::Caputo);
+        |text: &str, values: &[f64]| NetworkText::parse(text).unwrap().entry().build(values, Derivative::Caputo);
     // 1/k = 1/300 + 1/600 + 1/200, and the weaker of both slips alone.
     let chain = network(
         "series(spring(a), slow: jenkins(k, f), series(spring(b), jenkins(a, g)))",
@@ -325,7 +325,7 @@ fn behind_a_dashpot(own: Jenkins, beside: f64, c: f64, [amplitude, omega, end]: 
 #[test]
 fn in_a_series_it_takes_what_the_others_leave() {
     let build = |text: &str, values: &[f64]| {
-        (NetworkText::parse(text).unwrap().entry().build)(values, Derivative::Caputo).unwrap()
+        NetworkText::parse(text).unwrap().entry().build(values, Derivative::Caputo).unwrap()
     };
     let own = Jenkins::new(60.0, 2.0).unwrap();
     let motion = along("0.2*sin(5*t)");

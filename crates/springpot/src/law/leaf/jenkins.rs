@@ -257,6 +257,6 @@ pub(super) fn kind() -> LeafKind {
         name: "jenkins",
         equation: "dF = k·dx, cut at ±F_y",
         params: params(),
-        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Jenkins::new(values[0], values[1])?))),
+        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Jenkins::new(values[0].value, values[1].value)?))),
     }
 }

@@ -4,7 +4,7 @@ use super::part::{Onset, Part, Reported, Seen, Take};
 use super::{Guard, Holds, Network};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Memory, MemoryTangent, RatePolynomial};
-use crate::law::harmonic::{Sine, self};
+use crate::law::harmonic::{self, Sine};
 use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::past::Recalled;
 use crate::law::rule::RuleError;

@@ -1,7 +1,7 @@
 //! Who takes the stroke at t = 0.
 
-use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, MOST_SECANTS, Play, Series};
 use super::solve::SLIPPING;
+use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, MOST_SECANTS, Play, Series};
 use crate::fractional::{KernelError, Kind as Derivative, Memory};
 use crate::law::network::Network;
 use crate::law::network::part::{Onset, Part, Reported, Take};
