@@ -88,7 +88,8 @@ fn a_path_out_of_reach_is_named_with_time_and_distance() {
     assert_eq!(ended.code, Some(1));
     assert!(ended.stderr.contains(": the gripper cannot reach its path at t = 0.25"), "{}", ended.stderr);
     assert!(
-        ended.stderr.contains(" m and ") && ended.stderr.contains("after the row at t = 0.2 s of 1 s"),
+        ended.stderr.contains(" m away; bring the path nearer")
+            && ended.stderr.contains("after the row at t = 0.2 s of 1 s"),
         "{}",
         ended.stderr
     );
