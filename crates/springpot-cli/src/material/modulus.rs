@@ -290,11 +290,11 @@ fn plot(element: &ElementPlan, rows: &[Row], asked: &Asked) -> Plot {
         let y = axis(format!("dynamic stiffness, {unit}"));
         return Plot { title, x, y, panels: vec![Panel { curves, ..Panel::default() }], ..Plot::default() };
     }
-    let panel = |title: &str, of: fn(&Row) -> f64| {
+    let panel = |label: &str, of: fn(&Row) -> f64| {
         let of_one = |(rows, written): (&[Row], &String)| curve(rows, written.clone(), of);
         let curves = rows.chunks(asked.band.len()).zip(&asked.written).map(of_one).collect();
-        Panel { title: Some(title.to_owned()), y: Some(axis(format!("dynamic stiffness, {unit}"))), curves }
+        Panel { y: Some(axis(format!("{label}, {unit}"))), curves, ..Panel::default() }
     };
     let panels = vec![panel("storage K′", storage), panel("loss K″", loss)];
-    Plot { title, x, legend_title: Some("amplitude".to_owned()), panels, ..Plot::default() }
+    Plot { title, x, legend_title: Some("amplitude".to_owned()), columns: Some(1), panels, ..Plot::default() }
 }
