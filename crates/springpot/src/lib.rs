@@ -14,6 +14,7 @@
 //! | [`dynamics`] | kinematics, RNEA, CRBA, ABA and their derivatives, Coriolis terms, pairs of anchors | `model` |
 //! | [`collocation`] | nodes of a step, their matrices and quadratures | nothing |
 //! | [`fractional`] | derivatives and integrals of order −2 … 2: samples, streams, functions; kernel, memory, named schemes | `collocation` |
+//! | [`identification`] | least squares of any residuals: bounds, starts, what a minimum says | nothing |
 //! | [`law`] | stroke history → force; the catalog of laws | `fractional` |
 //! | [`signal`] | functions of time with exact derivatives | nothing |
 //! | [`elements`] | an element: measure (distance of points, coordinate of a joint), law, inputs; all of them without a robot | `dynamics`, `law`, `signal` |
@@ -85,6 +86,7 @@ pub mod dynamics;
 pub mod elements;
 pub mod equations;
 pub mod fractional;
+pub mod identification;
 pub mod law;
 mod linalg;
 pub mod linear;

@@ -4,18 +4,21 @@ mod complex;
 mod eigen;
 mod gauss;
 mod hessenberg;
+mod independence;
 mod least_norm;
-mod least_squares;
 mod lu;
 mod svd;
+mod triangle;
 
 pub(crate) use complex::ComplexLu;
 pub(crate) use eigen::symmetric_eigenvalues;
 pub(crate) use gauss::{gauss_rule, gauss_rules};
 pub(crate) use hessenberg::eigenvalues;
+pub(crate) use independence::{are_independent, cholesky_solve};
 pub(crate) use least_norm::LeastNorm;
-pub(crate) use least_squares::{Unknown, are_independent, cholesky_solve, levenberg_marquardt};
 pub(crate) use lu::Lu;
+pub(crate) use svd::column_singular_values;
+pub(crate) use triangle::Triangle;
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()

@@ -15,6 +15,15 @@ pub(super) struct Svd {
     sigma: Vec<f64>,
 }
 
+/// Singular values of a matrix of m columns, each with its right singular vector, m numbers; the columns follow one another.
+pub(crate) fn column_singular_values(columns: &[f64], m: usize) -> Vec<(f64, Vec<f64>)> {
+    if m == 0 {
+        return Vec::new();
+    }
+    let Svd { v, sigma, .. } = Svd::new(columns, columns.len() / m);
+    sigma.into_iter().zip(v).collect()
+}
+
 impl Svd {
     /// One-sided Jacobi rotations on the rows of J, m × `n` (M. R. Hestenes, J. SIAM 6 (1958) 51–90).
     pub(super) fn new(matrix: &[f64], n: usize) -> Self {

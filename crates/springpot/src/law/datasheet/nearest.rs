@@ -1,8 +1,10 @@
 //! Parameters within their bounds by least squares, from many starts.
 
 use super::{Datum, Identified, Model, Quantity, sin_cos};
-use crate::linalg::{Unknown, are_independent, levenberg_marquardt};
+use crate::identification::{self, Failed, Parameter, Rows, Scale, Series, Settings};
+use crate::linalg::are_independent;
 use std::f64::consts::FRAC_PI_2;
+use std::sync::atomic::AtomicBool;
 
 /// Largest relative deviation of what counts as met exactly.
 pub(super) const EXACT: f64 = 1e-9;
@@ -17,6 +19,10 @@ type Unknowns = [f64; 3];
 struct Problem<'a> {
     data: &'a [Datum],
     free: [bool; 3],
+    /// What is not free.
+    fixed: Unknowns,
+    parameters: Vec<Parameter>,
+    series: [Series; 1],
     /// Typical stiffness, N/m.
     stiffness: f64,
     /// Typical frequency, rad/s.
@@ -25,24 +31,19 @@ struct Problem<'a> {
 
 /// The law nearest to the data; `None` where they leave a parameter open.
 pub(super) fn nearest(model: Model, data: &[Datum]) -> Option<Identified> {
-    let problem = Problem::new(model, data)?;
-    let mut best: Option<(f64, Unknowns)> = None;
-    for order in ORDERS {
-        for share in SHARES {
-            let start = match model {
-                Model::Spring => [1.0, 0.0, 1.0],
-                Model::Dashpot => [0.0, 1.0, 1.0],
-                Model::Springpot => [0.0, 1.0 - share, order],
-                Model::KelvinVoigt => [share, 1.0 - share, 1.0],
-                Model::FractionalKelvinVoigt => [share, 1.0 - share, order],
-            };
-            let (cost, found) = problem.descend(start);
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, found));
-            }
-        }
-    }
-    let (_, [k, c, order]) = best?;
+    let mut problem = Problem::new(model, data)?;
+    let start = |(order, share): (f64, f64)| match model {
+        Model::Spring => [1.0, 0.0, 1.0],
+        Model::Dashpot => [0.0, 1.0, 1.0],
+        Model::Springpot => [0.0, 1.0 - share, order],
+        Model::KelvinVoigt => [share, 1.0 - share, 1.0],
+        Model::FractionalKelvinVoigt => [share, 1.0 - share, order],
+    };
+    let starts: Vec<Unknowns> = ORDERS.iter().flat_map(|order| SHARES.map(|share| start((*order, share)))).collect();
+    problem.begin(&starts);
+    let settings = Settings { starts: starts.len(), ..Settings::default() };
+    let found = identification::fit(&problem, &settings, &AtomicBool::new(false)).ok()?;
+    let [k, c, order] = problem.whole(&found.values);
     problem.determines(&[k, c, order]).then(|| Identified {
         model,
         stiffness: k * problem.stiffness,
@@ -62,7 +63,15 @@ impl<'a> Problem<'a> {
             _ => Some(datum.value),
         });
         let stiffnesses: Vec<f64> = stiffnesses.collect();
-        (!stiffnesses.is_empty()).then(|| Self { data, free: model.free(), stiffness: mean(stiffnesses), omega })
+        (!stiffnesses.is_empty()).then(|| Self {
+            data,
+            free: model.free(),
+            fixed: [0.0, 0.0, 1.0],
+            parameters: Vec::new(),
+            series: [Series::new("deviation")],
+            stiffness: mean(stiffnesses),
+            omega,
+        })
     }
 
     /// Relative deviation of one datum and its derivatives by the unknowns.
@@ -99,16 +108,46 @@ impl<'a> Problem<'a> {
         (model / wanted - 1.0, by.map(|d| (weights[0] * d[0] + weights[1] * d[1]) / wanted))
     }
 
-    /// The least cost that is reached from `start`, and where.
-    fn descend(&self, start: Unknowns) -> (f64, Unknowns) {
+    /// Where it is looked for from.
+    fn begin(&mut self, starts: &[Unknowns]) {
         let bounds = [[0.0, f64::INFINITY], [0.0, f64::INFINITY], [0.0, 1.0]];
-        let unknowns = std::array::from_fn(|i| Unknown { free: self.free[i], bounds: bounds[i] });
-        levenberg_marquardt(&unknowns, start, self.data.len(), |row, at| self.deviation(&self.data[row], at))
+        let parameter = |i: usize| Parameter {
+            start: starts.iter().map(|start| start[i]).collect(),
+            scale: Scale::Linear,
+            ..Parameter::new(["k", "c", "alpha"][i], 1.0, bounds[i])
+        };
+        self.parameters = (0..3).filter(|i| self.free[*i]).map(parameter).collect();
+    }
+
+    /// All unknowns, of the free ones.
+    fn whole(&self, free: &[f64]) -> Unknowns {
+        let mut free = free.iter();
+        std::array::from_fn(|i| self.free[i].then(|| free.next()).flatten().copied().unwrap_or(self.fixed[i]))
     }
 
     /// Whether every free parameter changes the data in its own way.
     fn determines(&self, at: &Unknowns) -> bool {
         let rows: Vec<[f64; 3]> = self.data.iter().map(|datum| self.deviation(datum, at).1).collect();
         are_independent((0..3).filter(|&i| self.free[i]).map(|i| rows.iter().map(|row| row[i]).collect()))
+    }
+}
+
+impl identification::Problem for Problem<'_> {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    fn series(&self) -> &[Series] {
+        &self.series
+    }
+
+    fn rows(&self, values: &[f64], _: &[bool], take: &mut dyn FnMut(Rows<'_>)) -> Result<(), Failed> {
+        let at = self.whole(values);
+        for datum in self.data {
+            let (value, by) = self.deviation(datum, &at);
+            let jacobian: Vec<f64> = (0..3).filter(|i| self.free[*i]).map(|i| by[i]).collect();
+            take(Rows { series: 0, residuals: &[value], jacobian: &jacobian });
+        }
+        Ok(())
     }
 }

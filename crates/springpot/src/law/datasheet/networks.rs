@@ -2,21 +2,20 @@
 
 use super::fit::{FitError, Measured, check_rows, misfit};
 use crate::fractional::Kind as Derivative;
+use crate::identification::{self, Failed, Parameter, Rows, Series, Settings};
 use crate::law::catalog::{Entry, Param};
 use crate::law::network::Network;
 use crate::law::step::Point;
-use crate::linalg::{Lu, are_independent};
+use std::sync::atomic::AtomicBool;
 
 /// Places from which the least minimum is looked for.
-const STARTS: usize = 96;
+const STARTS: usize = 48;
 /// Rows that are looked at on the way there.
 const FEW: usize = 48;
-const STEPS: usize = 60;
-const LAST_STEPS: usize = 400;
-/// Step of the differences, in the logarithm of a parameter.
-const STEP: f64 = 1e-5;
-/// An order this near to an end of its range has come to it.
-const END: f64 = 1e-3;
+/// Singular values of the column-scaled derivatives below this share of the largest: rows leave a combination open.
+const OPEN: f64 = 1e-7;
+/// Step of the differences, as a share.
+const STEP: f64 = 1e-3;
 
 /// A law fitted to a measurement.
 #[derive(Debug, Clone)]
@@ -52,7 +51,7 @@ pub fn can_fit(law: &Entry) -> bool {
 }
 
 /// Fits K(ω) of a law to a measurement: the smallest Σ|K(ω_j) − K_j|²/|K_j|² over all its parameters, the least of the minima that
-/// Levenberg–Marquardt steps in their logarithms (orders: in ln alpha/(1 − alpha)) find from evenly spread places.
+/// [`identification`] finds from evenly spread places.
 ///
 /// # Errors
 /// [`FitError`]: a law that is not linear or has inputs, numbers that are not positive, fewer rows than it takes, or rows that leave a
@@ -64,24 +63,24 @@ pub fn fit_network(law: &Entry, rows: &[Measured]) -> Result<FittedNetwork, FitE
     }
     check_rows(&law.name, rows, law.params.len().div_ceil(2) + 1)?;
     let few: Vec<Measured> = rows.iter().step_by(rows.len().div_ceil(FEW)).copied().collect();
-    let starts = (0..STARTS).map(|k| start(law, rows, k));
-    let found = starts.map(|start| descend(law, &few, start, STEPS));
-    let best = found.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, unknowns)| unknowns).unwrap_or_default();
-    let (cost, unknowns) = descend(law, rows, best, LAST_STEPS);
-    let values = values(law, &unknowns);
+    let starts: Vec<Vec<f64>> = (0..STARTS).map(|k| values(law, &start(law, rows, k))).collect();
+    let sought = |rows: &[Measured], starts: &[Vec<f64>]| {
+        let problem = Deviations::new(law, rows, starts);
+        let settings = Settings { starts: starts.len(), ..Settings::default() };
+        identification::fit(&problem, &settings, &AtomicBool::new(false))
+            .map_err(|_| FitError::Undetermined { law: name() })
+    };
+    let near = sought(&few, &starts)?;
+    let found = if few.len() == rows.len() { near } else { sought(rows, &[near.values])? };
+    let values = found.values.clone();
     let network = law.build(&values, Derivative::Caputo).map_err(|_| FitError::Undetermined { law: name() })?;
-    let free: Vec<usize> = (0..values.len()).filter(|&p| is_inside(&law.params[p], values[p])).collect();
-    let slopes: Vec<Vec<f64>> = free.iter().map(|&p| slope(law, rows, &unknowns, p)).collect();
-    if !cost.is_finite() || !are_independent(slopes.iter().cloned()) {
+    let is_open = |undetermined: &identification::Undetermined| undetermined.ratio < OPEN;
+    if !found.cost.is_finite() || !found.unseen.is_empty() || found.undetermined.iter().any(is_open) {
         return Err(FitError::Undetermined { law: name() });
     }
-    let mut spreads = vec![None; values.len()];
-    let variance = cost / (2 * rows.len() - free.len()).max(1) as f64;
-    for (place, inverse) in diagonal_of_inverse(&slopes).into_iter().enumerate() {
-        let p = free[place];
-        let by_unknown = if is_order(&law.params[p]) { values[p] * (1.0 - values[p]) } else { values[p] };
-        spreads[p] = Some(by_unknown * (inverse * variance).sqrt());
-    }
+    // Without what correlated deviations widen, as for the laws in closed form.
+    let spread = |p: usize| found.at_bound[p].is_none().then(|| found.sd(p) / found.widening);
+    let spreads = (0..values.len()).map(spread).collect();
     let mut fitted = FittedNetwork { values, spreads, network, rms: 0.0, largest: 0.0, farthest: 0 };
     (fitted.rms, fitted.largest, fitted.farthest) = misfit(rows, |omega| fitted.complex_stiffness(omega));
     Ok(fitted)
@@ -94,10 +93,6 @@ fn at() -> Point<'static> {
 /// It lies between 0 and 1.
 fn is_order(param: &Param) -> bool {
     param.range.high <= 1.0
-}
-
-fn is_inside(param: &Param, value: f64) -> bool {
-    !is_order(param) || (value > END && value < 1.0 - END)
 }
 
 fn values(law: &Entry, unknowns: &[f64]) -> Vec<f64> {
@@ -124,84 +119,77 @@ fn start(law: &Entry, rows: &[Measured], k: usize) -> Vec<f64> {
 }
 
 /// Real and imaginary parts of (K(ω_j) − K_j)/|K_j|.
-fn deviations(law: &Entry, rows: &[Measured], unknowns: &[f64]) -> Option<Vec<f64>> {
-    let network = law.build(&values(law, unknowns), Derivative::Caputo).ok()?;
-    let of = |row: &Measured| {
-        let ([re, im], size) = (network.complex_modulus(&at(), row.omega), row.storage.hypot(row.loss));
-        [(re - row.storage) / size, (im - row.loss) / size]
-    };
-    let all: Vec<f64> = rows.iter().flat_map(of).collect();
-    all.iter().all(|value| value.is_finite()).then_some(all)
+struct Deviations<'a> {
+    law: &'a Entry,
+    rows: &'a [Measured],
+    parameters: Vec<Parameter>,
+    series: [Series; 1],
 }
 
-/// The derivative of the deviations by unknown `p`.
-fn slope(law: &Entry, rows: &[Measured], unknowns: &[f64], p: usize) -> Vec<f64> {
-    let moved = |h: f64| {
-        let mut unknowns = unknowns.to_vec();
-        unknowns[p] += h;
-        deviations(law, rows, &unknowns)
-    };
-    match (moved(STEP), moved(-STEP)) {
-        (Some(up), Some(down)) => up.iter().zip(down).map(|(up, down)| (up - down) / (2.0 * STEP)).collect(),
-        _ => vec![0.0; 2 * rows.len()],
+impl<'a> Deviations<'a> {
+    fn new(law: &'a Entry, rows: &'a [Measured], starts: &[Vec<f64>]) -> Self {
+        let parameter = |(p, param): (usize, &Param)| {
+            let bounds = [0.0, if is_order(param) { 1.0 } else { f64::INFINITY }];
+            let start: Vec<f64> = starts.iter().map(|start| start[p]).collect();
+            Parameter { start, ..Parameter::new(&*param.name, starts[0][p], bounds) }
+        };
+        let parameters = law.params.iter().enumerate().map(parameter).collect();
+        Self { law, rows, parameters, series: [Series::new("deviation")] }
     }
-}
 
-/// Downhill to a minimum of the sum of squares: that sum and the unknowns.
-fn descend(law: &Entry, rows: &[Measured], start: Vec<f64>, most: usize) -> (f64, Vec<f64>) {
-    let square = |vector: &[f64]| vector.iter().map(|x| x * x).sum::<f64>();
-    let Some(mut own) = deviations(law, rows, &start) else { return (f64::INFINITY, start) };
-    let (mut x, mut cost, mut damping) = (start, square(&own), 1e-3);
-    let mut lu = Lu::default();
-    for _ in 0..most {
-        let n = x.len();
-        let slopes: Vec<Vec<f64>> = (0..n).map(|p| slope(law, rows, &x, p)).collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let (before, mut taken) = (cost, f64::INFINITY);
-        while damping < 1e12 {
-            let mut step: Vec<f64> = slopes.iter().map(|slope| -dot(slope, &own)).collect();
-            let solvable = lu.factor(n, |matrix| {
-                for (k, entry) in matrix.iter_mut().enumerate() {
-                    let (a, b) = (k / n, k % n);
-                    *entry = dot(&slopes[a], &slopes[b]);
-                    *entry += if a == b { damping * *entry + 1e-14 } else { 0.0 };
-                }
-            });
-            if solvable {
-                lu.solve(&mut step);
-                let longest = step.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-                let factor = (2.0 / longest).min(1.0);
-                let tried: Vec<f64> = x.iter().zip(&step).map(|(x, step)| x + factor * step).collect();
-                if let Some(next) = deviations(law, rows, &tried).filter(|next| square(next) < cost) {
-                    (x, cost, own, taken) = (tried, square(&next), next, longest);
-                    damping = (0.2 * damping).max(1e-14);
-                    break;
-                }
+    /// K at all rows, real and imaginary parts.
+    fn stiffness(&self, values: &[f64]) -> Result<Vec<f64>, Failed> {
+        let network = (self.law.build)(values, Derivative::Caputo).map_err(|error| Failed(error.to_string()))?;
+        Ok(self.rows.iter().flat_map(|row| network.complex_modulus(&at(), row.omega)).collect())
+    }
+
+    /// ∂K/∂p: fourth-order differences, towards the inside at an end of the range. A law is built of plain numbers.
+    fn slope(&self, values: &[f64], p: usize) -> Result<Vec<f64>, Failed> {
+        let [low, high] = self.parameters[p].bounds;
+        let value = values[p];
+        let room = if high.is_finite() { (value - low).min(high - value) } else { value - low };
+        let (weights, h): (&[(f64, f64)], f64) = match room > 0.0 {
+            true => (&[(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)], STEP * room),
+            false => {
+                let h = 0.1 * STEP * self.parameters[p].typical.min(1.0);
+                let forward = &[(0.0, -25.0), (1.0, 48.0), (2.0, -36.0), (3.0, 16.0), (4.0, -3.0)];
+                (forward, if value > low { -h } else { h })
             }
-            damping *= 4.0;
+        };
+        let mut slope = vec![0.0; 2 * self.rows.len()];
+        for (steps, weight) in weights {
+            let mut moved = values.to_vec();
+            moved[p] += steps * h;
+            let factor = weight / (12.0 * h);
+            slope.iter_mut().zip(self.stiffness(&moved)?).for_each(|(slope, k)| *slope += factor * k);
         }
-        if taken < 1e-13 || cost >= before * (1.0 - 1e-13) || cost < 1e-28 {
-            break;
-        }
+        Ok(slope)
     }
-    (cost, x)
 }
 
-/// The diagonal of (JᵀJ)⁻¹ of these columns of J.
-fn diagonal_of_inverse(columns: &[Vec<f64>]) -> Vec<f64> {
-    let n = columns.len();
-    let mut lu = Lu::default();
-    let product = |a: usize, b: usize| columns[a].iter().zip(&columns[b]).map(|(a, b)| a * b).sum::<f64>();
-    if !lu.factor(n, |matrix| (0..n * n).for_each(|k| matrix[k] = product(k / n, k % n))) {
-        return vec![f64::INFINITY; n];
+impl identification::Problem for Deviations<'_> {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
     }
-    let entry = |k: usize, lu: &mut Lu| {
-        let mut unit = vec![0.0; n];
-        unit[k] = 1.0;
-        lu.solve(&mut unit);
-        unit[k].max(0.0)
-    };
-    (0..n).map(|k| entry(k, &mut lu)).collect()
+
+    fn series(&self) -> &[Series] {
+        &self.series
+    }
+
+    fn rows(&self, values: &[f64], wanted: &[bool], take: &mut dyn FnMut(Rows<'_>)) -> Result<(), Failed> {
+        let stiffness = self.stiffness(values)?;
+        let n = values.len();
+        let size = |k: usize| self.rows[k / 2].storage.hypot(self.rows[k / 2].loss);
+        let goal = |k: usize| [self.rows[k / 2].storage, self.rows[k / 2].loss][k % 2];
+        let residuals: Vec<f64> = stiffness.iter().enumerate().map(|(k, own)| (own - goal(k)) / size(k)).collect();
+        let mut jacobian = vec![0.0; residuals.len() * n];
+        for p in (0..n).filter(|p| wanted[*p]) {
+            let slope = self.slope(values, p)?;
+            slope.into_iter().enumerate().for_each(|(k, slope)| jacobian[k * n + p] = slope / size(k));
+        }
+        take(Rows { series: 0, residuals: &residuals, jacobian: &jacobian });
+        Ok(())
+    }
 }
 
 #[cfg(test)]
