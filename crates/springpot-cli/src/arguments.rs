@@ -166,6 +166,19 @@ and drawn into FILE-fit.svg.
 
 Exit codes: 0 done, 1 the figure cannot be written, 2 no such law, or the data determine none.")]
     Laws(LawsOptions),
+    /// Shift a modulus measured at several temperatures to one master curve.
+    #[command(after_help = "\
+Examples:
+  springpot master dma.csv --reference '20 degC'
+  springpot master dma.csv --reference '20 degC' --vertical --out master
+  springpot master dma.csv --reference 293.15 --law fractional-zener --json
+
+The columns are frequency, storage, and loss or tan_delta (or modulus and tan_delta), and T, with units behind the names: frequency [Hz], \
+E' [MPa], T [degC]. Each temperature's curve is shifted onto its neighbour; WLF and Arrhenius are fitted to the shifts. Into the folder \
+--out: shifts.csv, master.csv, master.json, and two figures.
+
+Exit codes: 0 done, 1 curves do not overlap or a file cannot be written, 2 the table was refused.")]
+    Master(MasterOptions),
     /// Draw columns of a finished run.
     #[command(after_help = "\
 Examples:
@@ -297,6 +310,34 @@ pub(crate) struct LawsOptions {
     pub(crate) length: Option<String>,
     /// Figure of a CSV file and its law, .svg or .png [default: FILE-fit.svg]
     #[arg(long, value_name = "FILE", requires = "from")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MasterOptions {
+    /// CSV file with a header row: frequency, storage and loss or tan_delta, T
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Temperature of the master curve, in K or with a unit
+    #[arg(long, value_name = "TEMPERATURE", allow_hyphen_values = true)]
+    pub(crate) reference: String,
+    /// Shift moduli too, by a factor b_T of each temperature
+    #[arg(long)]
+    pub(crate) vertical: bool,
+    /// Fit this law to the master curve
+    #[arg(long, value_name = "NAME")]
+    pub(crate) law: Option<String>,
+    /// With --law and moduli: area of the part, such as '4 cm^2' [default: 1 m^2]
+    #[arg(long, value_name = "AREA", requires = "law", allow_hyphen_values = true)]
+    pub(crate) area: Option<String>,
+    /// With --law and moduli: its length, such as '10 mm' [default: 1 m]
+    #[arg(long, value_name = "LENGTH", requires = "law", allow_hyphen_values = true)]
+    pub(crate) length: Option<String>,
+    /// Folder for the files [default: results/FILE]
+    #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]

@@ -146,6 +146,7 @@ fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
         Command::Dynamics(options) => robot::dynamics::dynamics(&options, catalog),
         Command::Derivative(options) => material::derivative::derivative(&options),
         Command::Laws(options) => material::laws::laws(&options, catalog),
+        Command::Master(options) => material::master::master(&options, catalog),
         Command::Plot(options) => results::plot::plot(&options),
         Command::Metrics(options) => results::metrics::metrics(&options, disk),
         Command::View(options) => results::view::view(&options, disk),

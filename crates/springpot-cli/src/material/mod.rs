@@ -1,6 +1,7 @@
-//! Commands about a material: laws, modulus, prony, derivative.
+//! Commands about a material: laws, master curves, modulus, prony, derivative.
 
 pub(crate) mod derivative;
 pub(crate) mod laws;
+pub(crate) mod master;
 pub(crate) mod modulus;
 pub(crate) mod prony;

@@ -27,6 +27,7 @@ pub mod catalog;
 pub mod datasheet;
 pub mod heat;
 pub mod leaf;
+pub mod master;
 pub mod network;
 pub mod past;
 pub mod state;

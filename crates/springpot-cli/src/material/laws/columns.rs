@@ -21,19 +21,21 @@ pub(super) struct Table {
 }
 
 /// A column and how its numbers become SI.
-struct Column {
-    index: usize,
+pub(super) struct Column {
+    pub(super) index: usize,
     header: String,
     unit: Unit,
     factor: f64,
     /// It is the tangent of the phase, as a number or as the angle.
-    phase: Option<Phase>,
+    pub(super) phase: Option<Phase>,
+    /// It is |K| beside a phase, of which storage is a part.
+    pub(super) is_magnitude: bool,
     /// It is a modulus.
-    is_modulus: bool,
+    pub(super) is_modulus: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Phase {
+pub(super) enum Phase {
     Tangent,
     Angle,
 }
@@ -44,27 +46,33 @@ enum Role {
     Of(Quantity, bool),
 }
 
-/// Reads the file, in SI.
-pub(super) fn read(file: &Path, sample: &Sample) -> Result<Table, Refused> {
-    let broken = |problem: &CsvProblem| {
-        let help = match problem {
-            CsvProblem::NoHeader { .. } => Some(NAMES.to_owned()),
-            _ => None,
-        };
-        at(file, problem.line(), problem.to_string(), help)
+/// A table that cannot be read, and what would be right.
+pub(super) fn broken(file: &Path, problem: &CsvProblem) -> Refused {
+    let help = match problem {
+        CsvProblem::NoHeader { .. } => Some(NAMES.to_owned()),
+        _ => None,
     };
+    at(file, problem.line(), problem.to_string(), help)
+}
+
+/// Opens a table, with `;` between its columns where it has these.
+pub(super) fn open(file: &Path) -> Result<CsvRows<File>, Refused> {
     if let Some((message, help)) = mistakes::table_is_scenario(file) {
         return Err(Refused::new(message, help));
     }
-    let opened = File::open(file).map_err(|source| broken(&CsvProblem::Unreadable { source }))?;
-    let mut cells = match CsvRows::new(opened) {
+    let opened = || File::open(file).map_err(|source| broken(file, &CsvProblem::Unreadable { source }));
+    match CsvRows::new(opened()?) {
         // Where commas are decimal points.
-        Err(CsvProblem::OtherSeparator { separator, .. }) => {
-            let again = File::open(file).map_err(|source| broken(&CsvProblem::Unreadable { source }))?;
-            CsvRows::separated(again, separator).map_err(|problem| broken(&problem))?
-        }
-        cells => cells.map_err(|problem| broken(&problem))?,
-    };
+        Err(CsvProblem::OtherSeparator { separator, .. }) => CsvRows::separated(opened()?, separator),
+        cells => cells,
+    }
+    .map_err(|problem| broken(file, &problem))
+}
+
+/// Reads the file, in SI.
+pub(super) fn read(file: &Path, sample: &Sample) -> Result<Table, Refused> {
+    let broken = |problem: &CsvProblem| broken(file, problem);
+    let mut cells = open(file)?;
     let header_line = cells.header_line();
     let [omega, storage, loss] = columns(cells.headers(), sample)
         .map_err(|refused| Refused { message: place(file, Some(header_line), &refused.message), ..refused })?;
@@ -77,8 +85,8 @@ pub(super) fn read(file: &Path, sample: &Sample) -> Result<Table, Refused> {
         }
         let read =
             |column: &Column| number(&row, column).map_err(|(message, help)| at(file, Some(row.line()), message, help));
-        let (frequency, real) = (read(&omega)?, read(&storage)?);
-        let imaginary = read(&loss)? * if loss.phase.is_some() { real } else { 1.0 };
+        let frequency = read(&omega)?;
+        let [real, imaginary] = parts([&storage, &loss], [read(&storage)?, read(&loss)?]);
         if let Some(warmth) = warmth {
             let number = row.number(warmth).map_err(|problem| broken(&problem))?;
             if temperatures.iter().all(|(known, _)| (known - number).abs() > SAME_TEMPERATURE) {
@@ -108,11 +116,17 @@ pub(super) fn read(file: &Path, sample: &Sample) -> Result<Table, Refused> {
     Ok(Table { rows, lines, columns: [omega, storage, loss].map(|column| column.header) })
 }
 
+/// Storage and loss of what stands in their columns: both, storage or the magnitude, and the tangent of the phase.
+pub(super) fn parts([storage, loss]: [&Column; 2], [first, second]: [f64; 2]) -> [f64; 2] {
+    let real = if storage.is_magnitude { first / second.hypot(1.0) } else { first };
+    [real, if loss.phase.is_some() { real * second } else { second }]
+}
+
 /// Temperatures that differ by less are one, K.
 const SAME_TEMPERATURE: f64 = 2.0;
 
 /// The name before a unit in brackets.
-fn without_unit(header: &str) -> &str {
+pub(super) fn without_unit(header: &str) -> &str {
     header.split(['[', '(', ',']).next().unwrap_or(header).trim()
 }
 
@@ -122,12 +136,12 @@ pub(super) fn place(file: &Path, line: Option<u64>, message: &str) -> String {
     format!("{}{line}: {message}", file.display())
 }
 
-fn at(file: &Path, line: Option<u64>, message: impl AsRef<str>, help: impl Into<Option<String>>) -> Refused {
+pub(super) fn at(file: &Path, line: Option<u64>, message: impl AsRef<str>, help: impl Into<Option<String>>) -> Refused {
     Refused::new(place(file, line, message.as_ref()), help)
 }
 
 /// A cell in SI; what is wrong with it, and what would be right.
-fn number(row: &CsvRow, column: &Column) -> Result<f64, (String, Option<String>)> {
+pub(super) fn number(row: &CsvRow, column: &Column) -> Result<f64, (String, Option<String>)> {
     let written = row.number(column.index).map_err(|problem| (problem.to_string(), None))?;
     let value = column.unit.to_si(written) * column.factor;
     let value = match column.phase {
@@ -150,7 +164,7 @@ const NAMES: &str = "the columns are frequency, storage, and loss or tan_delta, 
                      frequency [rad/s], E' [MPa]";
 
 /// The columns of frequency, storage and loss.
-fn columns(headers: &[String], sample: &Sample) -> Result<[Column; 3], Refused> {
+pub(super) fn columns(headers: &[String], sample: &Sample) -> Result<[Column; 3], Refused> {
     let known: Vec<(usize, Role, &str)> = headers
         .iter()
         .enumerate()
@@ -172,10 +186,13 @@ fn columns(headers: &[String], sample: &Sample) -> Result<[Column; 3], Refused> 
     };
     let of = |quantity: Quantity| find(&move |role| matches!(role, Role::Of(found, _) if *found == quantity));
     let omega = find(&|role| matches!(role, Role::Frequency))?.ok_or_else(|| missing("the frequency"))?;
-    let storage = of(Quantity::Storage)?.ok_or_else(|| missing("the storage"))?;
-    let loss = match of(Quantity::Loss)? {
-        None => of(Quantity::LossFactor)?.ok_or_else(|| missing("loss or tan_delta"))?,
-        Some(loss) => loss,
+    let (storage, loss) = match (of(Quantity::Storage)?, of(Quantity::Loss)?, of(Quantity::LossFactor)?) {
+        (Some(storage), Some(loss), _) | (Some(storage), None, Some(loss)) => (storage, loss),
+        (Some(_), None, None) => return Err(missing("loss or tan_delta")),
+        (None, _, phase) => match (of(Quantity::Stiffness)?, phase) {
+            (Some(magnitude), Some(phase)) => (magnitude, phase),
+            _ => return Err(missing("the storage")),
+        },
     };
     let read = |(index, role, unit): (usize, &Role, &str)| column(index, &headers[index], role, unit, sample);
     let columns = [read(omega)?, read(storage)?, read(loss)?];
@@ -189,7 +206,7 @@ fn columns(headers: &[String], sample: &Sample) -> Result<[Column; 3], Refused> 
 fn role(header: &str) -> Option<(Role, &str)> {
     let of = |name: &str| match names::quantity(name) {
         _ if names::is_frequency(name) => Some(Role::Frequency),
-        found => found.map(|(quantity, is_modulus)| Role::Of(quantity, is_modulus)),
+        found => names::column(name).or(found).map(|(quantity, is_modulus)| Role::Of(quantity, is_modulus)),
     };
     let split = |open: char, close: char| header.trim().strip_suffix(close)?.rsplit_once(open);
     let (name, unit) = match of(header) {
@@ -212,6 +229,7 @@ fn column(index: usize, header: &str, role: &Role, unit: &str, sample: &Sample) 
         unit,
         factor,
         phase: None,
+        is_magnitude: matches!(role, Role::Of(Quantity::Stiffness, _)),
         is_modulus: false,
     };
     let fits = |own: &Unit, wanted: &str| parsed(wanted).map(|wanted| wanted.dimension() == own.dimension());

@@ -45,18 +45,18 @@ pub(super) fn text(
 }
 
 /// A law fitted to rows, whatever its form.
-struct Found {
+pub(crate) struct Found {
     /// Values and spreads, in the order of the law's parameters.
-    values: Vec<f64>,
-    spreads: Vec<Option<f64>>,
-    rms: f64,
-    largest: f64,
+    pub(crate) values: Vec<f64>,
+    pub(crate) spreads: Vec<Option<f64>>,
+    pub(crate) rms: f64,
+    pub(crate) largest: f64,
     farthest: usize,
-    stiffness: Box<figure::Stiffness<'static>>,
+    pub(crate) stiffness: Box<figure::Stiffness<'static>>,
 }
 
 impl Found {
-    fn of(law: &Entry, rows: &[Measured]) -> Result<Self, FitError> {
+    pub(crate) fn of(law: &Entry, rows: &[Measured]) -> Result<Self, FitError> {
         if Model::of(law).is_none() && can_fit(law) {
             let found = fit_network(law, rows)?;
             let (values, spreads) = (found.values.clone(), found.spreads.clone());
@@ -91,6 +91,11 @@ fn drawing(file: &Path, options: &LawsOptions) -> Result<PathBuf, Refused> {
             "write a name that ends in .svg or .png".to_owned(),
         )),
     }
+}
+
+/// Why the rows of a master curve determine no law.
+pub(crate) fn refused_by(error: &FitError, catalog: &Catalog, file: &Path) -> Refused {
+    refused(error, catalog, file, &Table { rows: Vec::new(), lines: Vec::new(), columns: Default::default() })
 }
 
 /// The message with its line, and what would be right.

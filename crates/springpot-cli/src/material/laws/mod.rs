@@ -7,6 +7,10 @@ mod names;
 mod page;
 mod sample;
 mod sheet;
+mod warm;
+
+pub(crate) use measured::{Found, refused_by};
+pub(crate) use warm::{Warm, read as read_warm};
 
 use crate::arguments::LawsOptions;
 use crate::{Ending, diagnostic, printed, terminal};
@@ -23,14 +27,14 @@ const NO_MODULUS: &str = "area and length have no use: nothing is in Pa";
 const MODULI: &str = "give a modulus its unit, such as E' = 2 MPa, or E' [MPa] as the name of a column";
 
 /// Why data are refused, and where they stand.
-struct Refused {
+pub(crate) struct Refused {
     message: String,
     help: Option<String>,
     at: Option<Range<usize>>,
 }
 
 impl Refused {
-    fn new(message: impl Into<String>, help: impl Into<Option<String>>) -> Self {
+    pub(crate) fn new(message: impl Into<String>, help: impl Into<Option<String>>) -> Self {
         Self { message: message.into(), help: help.into(), at: None }
     }
 
@@ -39,7 +43,7 @@ impl Refused {
     }
 
     /// Prints it on stderr, with the place in `data`.
-    fn show(self, data: &str) {
+    pub(crate) fn show(self, data: &str) {
         match (self.at, self.help) {
             (Some(span), help) => {
                 let source = Source { name: "--from".to_owned(), text: data.into() };
@@ -84,7 +88,7 @@ fn found(
     law: Option<&Entry>,
     options: &LawsOptions,
 ) -> Result<(String, Option<Ending>), Refused> {
-    let sample = Sample::new(options)?;
+    let sample = Sample::new(&options.area, &options.length)?;
     let file = Path::new(data);
     if file.is_file() || file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
         return measured::text(catalog, file, law, sample, options);

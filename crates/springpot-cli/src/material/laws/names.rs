@@ -22,6 +22,16 @@ pub(super) fn quantity(name: &str) -> Option<(Quantity, bool)> {
     })
 }
 
+/// What columns of tables are called besides.
+pub(super) fn column(name: &str) -> Option<(Quantity, bool)> {
+    Some(match &*plain(name) {
+        "modulus" => (Quantity::Stiffness, true),
+        "e_stor" | "g_stor" => (Quantity::Storage, true),
+        "e_loss" | "g_loss" => (Quantity::Loss, true),
+        _ => return None,
+    })
+}
+
 pub(super) fn is_frequency(name: &str) -> bool {
     matches!(&*plain(name), "frequency" | "freq" | "f") || is_angular(name)
 }

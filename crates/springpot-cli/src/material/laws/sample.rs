@@ -1,7 +1,6 @@
 //! The sample that moduli were measured on, and angles for loss factors.
 
 use super::Refused;
-use crate::arguments::LawsOptions;
 use springpot_scenario::units::{UnitError, parse_quantity};
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,6 +11,8 @@ pub(super) struct Sample {
     area: Option<f64>,
     /// m.
     length: Option<f64>,
+    /// Moduli stay what they are: those of a sample of 1 m² and 1 m.
+    is_implied: bool,
 }
 
 /// What is missing of a size.
@@ -28,9 +29,12 @@ impl Sample {
     /// What would complete it.
     pub(super) const CURE: &str = "give the sample: --area '4 cm^2' --length '10 mm', or area = 4 cm^2, length = 10 mm among the values of a data sheet";
 
-    pub(super) fn new(options: &LawsOptions) -> Result<Self, Refused> {
+    /// The one for which moduli are stiffnesses.
+    pub(super) const IMPLIED: Self = Self { area: Some(1.0), length: Some(1.0), is_implied: true };
+
+    pub(super) fn new(area: &Option<String>, length: &Option<String>) -> Result<Self, Refused> {
         let mut sample = Self::default();
-        for ((name, unit, example), given) in Self::SIZES.into_iter().zip([&options.area, &options.length]) {
+        for ((name, unit, example), given) in Self::SIZES.into_iter().zip([area, length]) {
             let Some(text) = given else { continue };
             let why = match sample.set(name, text) {
                 Ok(()) | Err(Missized::Twice) => continue,
@@ -60,7 +64,7 @@ impl Sample {
     }
 
     pub(super) fn is_given(&self) -> bool {
-        self.area.is_some() || self.length.is_some()
+        !self.is_implied && (self.area.is_some() || self.length.is_some())
     }
 
     /// A/L, m; `None` where one of them is not known.
