@@ -41,6 +41,7 @@ pages! {
     own_robot: "how-to/own-robot.md";
     joints: "how-to/joints.md";
     own_material: "how-to/own-material.md";
+    master: "how-to/master.md";
     own_law: "how-to/own-law.md";
     own_controller: "how-to/own-controller.md";
     look: "how-to/look.md";

@@ -25,6 +25,7 @@ mod joints;
 mod laws;
 mod looks;
 mod manual;
+mod master;
 mod measured;
 mod messages;
 mod metrics;

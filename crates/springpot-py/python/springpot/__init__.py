@@ -21,7 +21,7 @@ from ._errors import ModelError, RunError, ScenarioError, SpringpotError, Spring
 from ._case import Case
 from ._cluster import sweep
 from ._figure import Figure
-from ._law import datasheet, fit, law, laws, network, prony
+from ._law import Master, datasheet, fit, law, laws, master, network, prony
 from ._run import Run, run
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
 
@@ -32,6 +32,7 @@ __all__ = [
     "Case",
     "Figure",
     "Law",
+    "Master",
     "Model",
     "ModelError",
     "Prony",
@@ -49,6 +50,7 @@ __all__ = [
     "fractional",
     "law",
     "laws",
+    "master",
     "network",
     "prony",
     "run",

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _springpot
 from ._springpot import Law, Prony
@@ -130,3 +131,76 @@ def fit(
     """
     measured = np.asarray(modulus, dtype=np.complex128)
     return _springpot.fit_modulus(omega, measured.real, measured.imag, law, area, length)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Master:
+    """A master curve: what :func:`springpot.master` found.
+
+    Attributes:
+        reference: T_ref, K.
+        T: temperatures of the curves, K, coldest first, shape ``(M,)``.
+        log10_a_T, log10_b_T: their shifts, shape ``(M,)``: E*(f·a_T; T_ref) = b_T·E*(f; T).
+        sd, sd_b: their standard deviations from T_ref on, shape ``(M,)``.
+        curve: ``frequency`` (reduced), ``storage``, ``loss`` and ``T`` of all rows, shape ``(N,)``, lowest frequency first.
+        wlf: ``C1``, ``C2`` (K), ``T_ref``, ``sd`` of both, their ``correlation``, ``rms`` of what it misses a step by in decades, ``bic``;
+            ``None`` with two temperatures.
+        arrhenius: ``energy`` (J/mol), ``T_ref``, ``sd``, ``rms``, ``bic``.
+        shift: that of the two which BIC prefers, as the table ``shift`` of an element.
+        scatter: of storage and loss about a common curve, as shares of abs(E*).
+    """
+
+    reference: float
+    T: NDArray[np.float64]
+    log10_a_T: NDArray[np.float64]
+    sd: NDArray[np.float64]
+    log10_b_T: NDArray[np.float64]
+    sd_b: NDArray[np.float64]
+    curve: dict[str, NDArray[np.float64]]
+    wlf: dict[str, Any] | None
+    arrhenius: dict[str, Any]
+    shift: dict[str, Any]
+    scatter: tuple[float, float]
+
+    def __repr__(self) -> str:
+        return f"Master({len(self.T)} temperatures, {len(self.curve['T'])} rows, shift={self.shift})"
+
+
+def master(
+    frequency: ArrayLike,
+    storage: ArrayLike,
+    loss: ArrayLike,
+    T: ArrayLike,
+    reference: Number,
+    *,
+    vertical: bool = False,
+) -> Master:
+    """Shifts a modulus that was measured at several temperatures to one master curve, as ``springpot master`` does.
+
+    Args:
+        frequency: Hz, or rad/s: the curve is in the same, shape ``(N,)``.
+        storage, loss: E' and E'', Pa or N/m, shape ``(N,)``.
+        T: K, shape ``(N,)``; temperatures within 2 K of the next one are one curve.
+        reference: T_ref, K or a text such as ``"20 degC"``, among the temperatures or between them.
+        vertical: whether moduli are shifted too.
+
+    >>> import numpy as np, springpot as sp
+    >>> f, T = (a.ravel() for a in np.meshgrid(np.logspace(-1, 2, 16), 273.15 + np.arange(0.0, 45.0, 5.0)))
+    >>> a_T = 10 ** (-12 * (T - 293.15) / (80 + T - 293.15))
+    >>> E = sp.law("fractional-zener", k_e=2e6, k_m=1.5e9, c=4e7, alpha=0.5).modulus(2 * np.pi * f * a_T)
+    >>> found = sp.master(f, E.real, E.imag, T, "20 degC")
+    >>> round(found.wlf["C1"], 1), round(found.wlf["C2"])
+    (12.0, 80)
+
+    Raises:
+        ValueError: numbers that are not positive, one temperature alone, a reference outside of them.
+        RunError: two neighbours that do not overlap, or are too flat to be shifted; it says which.
+    """
+    found = _springpot.master(frequency, storage, loss, T, reference, vertical)
+    chosen = {name: value for name, value in found["chosen"].items() if name in ("kind", "C1", "C2", "energy", "T_ref")}
+    return Master(
+        reference=found["chosen"]["T_ref"],
+        **{name: found[name] for name in ("T", "log10_a_T", "sd", "log10_b_T", "sd_b", "curve", "wlf", "arrhenius")},
+        shift=chosen,
+        scatter=tuple(found["scatter"]),
+    )

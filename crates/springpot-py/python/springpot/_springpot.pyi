@@ -94,6 +94,14 @@ def fit_modulus(
     area: Number | None = None,
     length: Number | None = None,
 ) -> tuple[Law, float, dict[str, float | None]]: ...
+def master(
+    frequency: ArrayLike,
+    storage: ArrayLike,
+    loss: ArrayLike,
+    temperature: ArrayLike,
+    reference: Number,
+    vertical: bool = False,
+) -> dict[str, Any]: ...
 def parse(text: Number, expected: str) -> float: ...
 def parse_unit(text: str) -> tuple[float, float, list[float]]: ...
 

@@ -1,6 +1,7 @@
 //! Laws by name and networks by text.
 
 mod datasheet;
+mod master;
 mod prony;
 mod read;
 
@@ -22,6 +23,7 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyLaw>()?;
     module.add_function(wrap_pyfunction!(laws, module)?)?;
     datasheet::register(module)?;
+    master::register(module)?;
     prony::register(module)
 }
 

@@ -172,7 +172,7 @@ fn shift_factors_that_pyvisco_prints() {
     let mut printed = table("time_user_raw__shift_factors.csv");
     printed.sort_by(|a, b| a[0].total_cmp(&b[0]));
     assert_eq!((rows.len(), found.shifts.len(), printed.len()), (210, 21, 21));
-    // Above the glass transition, where rows say it: a quarter of a decade over nineteen.
+    // Above the glass transition, where rows say it: a quarter of a decade over eighteen.
     let mut compared = 0;
     for (own, printed) in found.shifts.iter().zip(&printed) {
         let celsius = own.temperature - 273.15;

@@ -10,7 +10,7 @@ use std::f64::consts::{LN_10, TAU};
 /// Points of a law's curve.
 const POINTS: usize = 200;
 /// Temperatures that the legend names at most.
-const NAMED: usize = 12;
+const NAMED: usize = 9;
 const ZERO: f64 = 273.15;
 
 /// Draws and writes them.
@@ -56,11 +56,12 @@ fn moduli(told: &Told<'_>) -> Plot {
             });
             curves.push(curve(&law.name, points));
         }
-        Panel { title: Some(title.to_owned()), curves, ..Panel::default() }
+        let y = Some(axis(format!("{title}, {unit}"), Scale::Log));
+        Panel { y, curves, ..Panel::default() }
     };
     Plot {
         x: axis(format!("reduced frequency at {} degC, Hz", short(found.reference - ZERO)), Scale::Log),
-        y: axis(format!("modulus, {unit}"), Scale::Log),
+        columns: Some(1),
         panels: vec![panel("storage", 0), panel("loss", 1)],
         ..Plot::default()
     }

@@ -4,7 +4,7 @@ mod figure;
 mod told;
 
 use crate::arguments::MasterOptions;
-use crate::laws::{Found, Refused, Warm, read_warm, refused_by};
+use crate::material::laws::{Found, Refused, Warm, read_warm, refused_by};
 use crate::{Ending, diagnostic, output, printed, terminal};
 use springpot::law::datasheet::Measured;
 use springpot::law::heat::TEMPERATURE;
