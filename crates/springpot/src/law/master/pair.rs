@@ -47,10 +47,20 @@ impl<'a> Pair<'a> {
         Self { colder, warmer, vertical }
     }
 
-    /// The shift: the best on a grid, then the least squares with a common polynomial of the degree that BIC prefers.
+    /// The shift: the best on a grid, then the least squares with a common polynomial of the degree that BIC prefers. A vertical shift begins
+    /// with none: where both curves are powers of the frequency, nothing tells it from the other one.
     pub(super) fn step(&self) -> Result<Step, MasterError> {
         let (colder, warmer) = (self.colder.temperature, self.warmer.temperature);
-        let start = self.coarse().ok_or(MasterError::NoOverlap { colder, warmer })?;
+        let near = self.coarse(false).and_then(|start| self.refined(start));
+        if let Some(step) = near {
+            return Ok(step);
+        }
+        let start = self.coarse(self.vertical).ok_or(MasterError::NoOverlap { colder, warmer })?;
+        self.refined(start).ok_or(MasterError::Flat { colder, warmer })
+    }
+
+    /// The least squares from near the shift and the vertical one; `None` where they say nothing.
+    fn refined(&self, start: [f64; 2]) -> Option<Step> {
         let mut best: Option<(Step, f64)> = None;
         let mut worse = 0;
         for degree in 1..=HIGHEST {
@@ -65,21 +75,18 @@ impl<'a> Pair<'a> {
                 break;
             }
         }
-        match best {
-            Some((step, _)) if step.sd < FLAT => Ok(step),
-            _ => Err(MasterError::Flat { colder, warmer }),
-        }
+        best.map(|(step, _)| step).filter(|step| step.sd < FLAT)
     }
 
     /// The shift on the grid with the least geometric mean of both moduli's mean squares; `None` where nothing overlaps.
-    fn coarse(&self) -> Option<[f64; 2]> {
+    fn coarse(&self, vertical: bool) -> Option<[f64; 2]> {
         let ends = |curve: &Curve| [curve.points[0][0], curve.points[curve.points.len() - 1][0]];
         let ([a, b], [c, d]) = (ends(self.colder), ends(self.warmer));
         let count = ((b - a + d - c) / GRID).ceil() as usize;
         let tried = (0..=count).map(|k| a - d + GRID * k as f64);
         let all: Vec<(f64, [f64; 2])> = tried
             .filter_map(|shift| {
-                let (squares, rise) = self.apart(shift)?;
+                let (squares, rise) = self.apart(shift, vertical)?;
                 let likelihood: f64 = weighed(squares).iter().map(|square| (square + EXACT * EXACT).ln()).sum();
                 Some((likelihood, [shift, rise]))
             })
@@ -87,7 +94,7 @@ impl<'a> Pair<'a> {
         let (_, found) = all.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         let is_at_end = found[0] == all[0].1[0] || found[0] == all[all.len() - 1].1[0];
         // Storage rises with the frequency: without a level in common there is nothing to lay on one another.
-        let is_apart = !self.vertical && self.gap() > APART;
+        let is_apart = !vertical && self.gap() > APART;
         if is_at_end || is_apart { None } else { Some(*found) }
     }
 
@@ -101,7 +108,7 @@ impl<'a> Pair<'a> {
     }
 
     /// Mean squares of E' and E'' as shares of |E*| between the curves where both have rows, the vertical shift that makes them least.
-    fn apart(&self, shift: f64) -> Option<([f64; 2], f64)> {
+    fn apart(&self, shift: f64, vertical: bool) -> Option<([f64; 2], f64)> {
         let mut differences = Vec::new();
         for [x, storage, loss] in &self.warmer.points {
             if let Some([a, b]) = between(&self.colder.points, x + shift) {
@@ -117,7 +124,7 @@ impl<'a> Pair<'a> {
             return None;
         }
         let count = differences.len() as f64;
-        let rise = match self.vertical {
+        let rise = match vertical {
             true => -differences.iter().map(|([a, b], w)| a * w[0].powi(2) + b * w[1].powi(2)).sum::<f64>() / count,
             false => 0.0,
         };
