@@ -6,8 +6,7 @@ use springpot::law::{Catalog, Derivative, InputValue, Point, Shift};
 /// A fractional Zener solid, Pa, at ω/2π in Hz.
 fn zener(hertz: f64) -> [f64; 2] {
     let catalog = Catalog::standard();
-    let network =
-        (catalog.get("fractional-zener").unwrap().build)(&[2e6, 1.5e9, 4e7, 0.5], Derivative::Caputo).unwrap();
+    let network = catalog.get("fractional-zener").unwrap().build(&[2e6, 1.5e9, 4e7, 0.5], Derivative::Caputo).unwrap();
     let inputs: [InputValue; 0] = [];
     network.complex_modulus(&Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs }, std::f64::consts::TAU * hertz)
 }

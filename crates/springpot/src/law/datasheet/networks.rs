@@ -139,7 +139,7 @@ impl<'a> Deviations<'a> {
 
     /// K at all rows, real and imaginary parts.
     fn stiffness(&self, values: &[f64]) -> Result<Vec<f64>, Failed> {
-        let network = (self.law.build)(values, Derivative::Caputo).map_err(|error| Failed(error.to_string()))?;
+        let network = self.law.build(values, Derivative::Caputo).map_err(|error| Failed(error.to_string()))?;
         Ok(self.rows.iter().flat_map(|row| network.complex_modulus(&at(), row.omega)).collect())
     }
 
