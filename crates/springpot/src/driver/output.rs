@@ -41,7 +41,7 @@ impl<'a> Output<'a> {
     /// Writes the rows of what the driver just did.
     pub(super) fn emit(&mut self, cx: Context, driver: &mut Driver) -> Result<(), RunError> {
         while let Some(at) = self.next(&driver.recorder.settings).filter(|at| driver.shows(*at)) {
-            let theta = driver.read(cx, at, self.written.rows, &mut self.snapshot)?;
+            let theta = driver.show(cx, at, self.written.rows, &mut self.snapshot)?;
             if let Some(theta) = theta {
                 let t = self.snapshot.t();
                 if self.written.departure.is_none() {
@@ -63,13 +63,13 @@ impl<'a> Output<'a> {
         if self.written.last == Some(t) {
             return Ok(());
         }
-        driver.read(cx, t, self.written.rows, &mut self.snapshot)?;
+        driver.show(cx, t, self.written.rows, &mut self.snapshot)?;
         self.write(cx, driver)
     }
 
     /// Tells the row at the time of an event.
     pub(super) fn event(&mut self, cx: Context, driver: &mut Driver, event: usize, at: f64) -> Result<(), RunError> {
-        driver.read(cx, at, self.written.rows, &mut self.snapshot)?;
+        driver.show(cx, at, self.written.rows, &mut self.snapshot)?;
         self.take_row(cx, driver)?;
         self.rows.event(event, &self.row)?;
         Ok(())

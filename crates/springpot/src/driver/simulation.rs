@@ -249,7 +249,7 @@ impl Simulation {
         while self.driver.is_disturbed() {
             self.cross()?;
         }
-        self.driver.read(self.events.cx(&self.system), t, 0, snapshot)?;
+        self.driver.show(self.events.cx(&self.system), t, 0, snapshot)?;
         Ok(())
     }
 

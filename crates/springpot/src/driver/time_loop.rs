@@ -514,6 +514,28 @@ impl Driver {
         Ok(Some(theta))
     }
 
+    /// As [`Self::read`], with the derivatives that rows tell.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn show(
+        &mut self,
+        cx: Context,
+        at: f64,
+        row: usize,
+        snapshot: &mut Snapshot,
+    ) -> Result<Option<f64>, RunError> {
+        let theta = self.read(cx, at, row, snapshot)?;
+        let Some(by) = &cx.system.sensitivity else { return Ok(theta) };
+        let mut derivatives = std::mem::take(&mut snapshot.derivatives);
+        derivatives.clear();
+        let variation = if by.columns.is_empty() { None } else { self.vary(theta, snapshot) };
+        let value = |of, by| variation.and_then(|variation| variation.value(of, by, snapshot)).unwrap_or(f64::NAN);
+        derivatives.extend(by.columns.iter().map(|derivative| value(derivative.of, derivative.by)));
+        snapshot.derivatives = derivatives;
+        Ok(theta)
+    }
+
     /// What parameters change at the row that was read into `snapshot` last, at θ of the step at hand or between two.
     pub(super) fn vary(&mut self, theta: Option<f64>, snapshot: &Snapshot) -> Option<&Variation> {
         let Self { solver, recorder: Recorder { equations, variation, .. }, step, .. } = self;

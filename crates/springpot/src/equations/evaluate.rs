@@ -73,7 +73,14 @@ impl Evaluation {
 impl Snapshot {
     /// Room for what is known of a system.
     pub(crate) fn new(system: &System) -> Self {
-        Self { evaluation: Evaluation::new(system), elements: Vec::new(), actuators: 0.0, joints: 0.0, residual: 0.0 }
+        Self {
+            evaluation: Evaluation::new(system),
+            elements: Vec::new(),
+            actuators: 0.0,
+            joints: 0.0,
+            residual: 0.0,
+            derivatives: Vec::new(),
+        }
     }
 }
 

@@ -561,7 +561,7 @@ impl Variation {
                 };
                 (0..n).map(|k| jacobian[row * n + k] * node.q[k * count + p]).sum()
             }
-            Quantity::GripperError | Quantity::Energy(_) => return None,
+            Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => return None,
         })
     }
 

@@ -152,7 +152,7 @@ impl Linearisation {
                     | ElementQuantity::Heat => return None,
                 })
             }
-            Quantity::Time | Quantity::GripperError | Quantity::Energy(_) => None,
+            Quantity::Time | Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => None,
         }
     }
 }
@@ -177,7 +177,7 @@ fn check(of: Quantity) -> Result<(), NoResponse> {
             | ElementQuantity::Temperature
             | ElementQuantity::Heat,
         ) => Err(NoResponse::Energy),
-        Quantity::Time | Quantity::GripperError => Err(NoResponse::NotLinear),
+        Quantity::Time | Quantity::GripperError | Quantity::Derivative(_) => Err(NoResponse::NotLinear),
         _ => Ok(()),
     }
 }

@@ -22,6 +22,7 @@ pub struct ModelBuilder {
     model: Model,
     rules: Rules,
     takes_any_inertia: bool,
+    takes_idle_joints: bool,
     /// Body of each joint name, fixed joints included.
     joint_lookup: HashMap<String, usize>,
     /// What each moving joint follows.
@@ -45,6 +46,7 @@ impl ModelBuilder {
             model: Model::empty(gravity),
             rules,
             takes_any_inertia: false,
+            takes_idle_joints: false,
             joint_lookup: HashMap::new(),
             mimics: Vec::new(),
         }
@@ -60,6 +62,12 @@ impl ModelBuilder {
     /// [`ModelBuilder::finish`] looks at one generic configuration, and what integrates the motion at those that it meets.
     pub fn accept_inertia(&mut self) {
         self.takes_any_inertia = true;
+    }
+
+    /// Takes robots whose mass matrix is singular in every configuration: joints that carry no mass. Their forces follow from a motion as of any
+    /// robot; no motion follows from forces.
+    pub fn accept_idle_joints(&mut self) {
+        self.takes_idle_joints = true;
     }
 
     /// Adds a body and returns its index.
@@ -179,7 +187,9 @@ impl ModelBuilder {
         if self.rules == Rules::UrdfLink || self.takes_any_inertia {
             model.masses.may_be_indefinite = mass_check::links(&model, self.takes_any_inertia)?;
         }
-        mass_check::positive_definite(&model)?;
+        if !self.takes_idle_joints {
+            mass_check::positive_definite(&model)?;
+        }
         model.masses.collect_subtrees(&model.parents);
         Ok(model)
     }

@@ -282,6 +282,31 @@ impl Model {
         reach
     }
 
+    /// The same robot with other inertias, whatever they are: of every described body that about the origin of its joint's frame and in its axes, and
+    /// the armature of every moving joint. Of inertias that are differences it gives the differences of whatever is linear in them.
+    ///
+    /// # Panics
+    /// Where there are more or fewer of them.
+    #[must_use]
+    pub fn with_inertias(&self, bodies: &[Inertia], armature: &[f64]) -> Self {
+        assert_eq!((bodies.len(), armature.len()), (self.frames.len(), self.joint_count()), "bodies and joints");
+        let mut model = self.clone();
+        model.masses.inertias.fill(Inertia::ZERO);
+        for (frame, inertia) in self.frames.iter().zip(bodies).filter(|(frame, _)| frame.link > 0) {
+            model.masses.inertias[frame.link - 1] += inertia.to_parent(&frame.placement);
+        }
+        model.masses.collect_subtrees(&model.parents);
+        model.drivetrain.armature = armature.to_vec();
+        model.drivetrain.collect_rotors(&model.numbering);
+        model
+    }
+
+    /// The same robot in another field of gravity, m/s², world axes.
+    #[must_use]
+    pub fn with_gravity(&self, gravity: [f64; 3]) -> Self {
+        Self { gravity, ..self.clone() }
+    }
+
     /// The link that moving joint `joint` hangs on; 0 is the world, joint j moves link j + 1.
     #[inline]
     pub fn parent_link(&self, joint: usize) -> usize {

@@ -21,6 +21,8 @@ struct Shape {
     pub(crate) joint_losses: bool,
     /// Whether rows tell the leaves of elements.
     pub(crate) leaves: bool,
+    /// How many derivatives rows tell.
+    pub(crate) derivatives: usize,
 }
 
 /// How many numbers an element has.
@@ -41,7 +43,7 @@ struct ElementShape {
 impl Shape {
     /// Calls `visit` with every quantity in the order of the rows.
     pub(crate) fn each(self, elements: impl IntoIterator<Item = ElementShape>, visit: &mut impl FnMut(Quantity)) {
-        let Self { nq, nv, gripper, wanted, joint_losses, leaves: tells_leaves } = self;
+        let Self { nq, nv, gripper, wanted, joint_losses, leaves: tells_leaves, derivatives } = self;
         visit(Quantity::Time);
         (0..nq).map(Quantity::Coordinate).for_each(&mut *visit);
         (0..nv).map(Quantity::Velocity).for_each(&mut *visit);
@@ -76,6 +78,7 @@ impl Shape {
         }
         let told = |energy: &EnergyQuantity| *energy != EnergyQuantity::Joints || joint_losses;
         EnergyQuantity::ALL.into_iter().filter(told).map(Quantity::Energy).for_each(&mut *visit);
+        (0..derivatives).map(Quantity::Derivative).for_each(&mut *visit);
     }
 }
 
@@ -86,6 +89,7 @@ pub struct Observables {
     coordinates: Vec<Label>,
     velocities: Vec<Label>,
     elements: Vec<ObservedElement>,
+    derivatives: Vec<Column>,
 }
 
 impl Observables {
@@ -105,10 +109,11 @@ impl Observables {
         };
         let (nq, nv) = (model.nq(), model.nv());
         Self {
-            shape: Shape { nq, nv, gripper: false, wanted: false, joint_losses: false, leaves: false },
+            shape: Shape { nq, nv, gripper: false, wanted: false, joint_losses: false, leaves: false, derivatives: 0 },
             coordinates: model.q_labels(),
             velocities: model.v_labels(),
             elements: elements.into_iter().map(element).collect(),
+            derivatives: Vec::new(),
         }
     }
 
@@ -128,6 +133,12 @@ impl Observables {
     #[must_use]
     pub fn with_leaves(self) -> Self {
         Self { shape: Shape { leaves: true, ..self.shape }, ..self }
+    }
+
+    /// With these derivatives behind all else.
+    #[must_use]
+    pub fn with_derivatives(self, derivatives: Vec<Column>) -> Self {
+        Self { shape: Shape { derivatives: derivatives.len(), ..self.shape }, derivatives, ..self }
     }
 
     /// All quantities, in the order of the rows.
@@ -170,6 +181,9 @@ impl Observables {
     /// # Panics
     /// Where an index is none of this system.
     pub fn column(&self, quantity: Quantity) -> Column {
+        if let Quantity::Derivative(k) = quantity {
+            return self.derivatives[k].clone();
+        }
         let named = self.named(quantity);
         let meaning = match quantity {
             Quantity::Element(e, ElementQuantity::InputValue(i)) => {
@@ -204,6 +218,7 @@ impl Observables {
             Quantity::Gripper(axis) => Quantity::Gripper(axis),
             Quantity::GripperError => Quantity::GripperError,
             Quantity::Energy(energy) => Quantity::Energy(energy),
+            Quantity::Derivative(k) => Quantity::Derivative(&self.derivatives[k].name),
         }
     }
 
@@ -221,6 +236,7 @@ impl Observables {
             Quantity::Element(e, quantity) => quantity.unit(&self.elements[e], &self.velocities),
             Quantity::Gripper(_) | Quantity::GripperError => "m",
             Quantity::Energy(_) => "J",
+            Quantity::Derivative(k) => &self.derivatives[k].unit,
         }
     }
 }

@@ -35,6 +35,8 @@ pub enum Quantity<Id = usize> {
     GripperError,
     /// A term of the energy balance, J.
     Energy(EnergyQuantity),
+    /// The derivative of one of these by a parameter ([`crate::sensitivity::Sensitivity::columns`]).
+    Derivative(Id),
 }
 
 /// What must be known for a quantity, each with all before it.
@@ -125,9 +127,12 @@ impl Quantity {
             Self::Element(_, ElementQuantity::Length | ElementQuantity::Stroke | ElementQuantity::Rate) => {
                 Needs::Readings
             }
-            Self::Element(..) | Self::Acceleration(_) | Self::Torque(_) | Self::GripperError | Self::Energy(_) => {
-                Needs::Forces
-            }
+            Self::Element(..)
+            | Self::Acceleration(_)
+            | Self::Torque(_)
+            | Self::GripperError
+            | Self::Energy(_)
+            | Self::Derivative(_) => Needs::Forces,
         }
     }
 }
@@ -138,6 +143,9 @@ impl<'a> Quantity<&'a str> {
     /// Names of elements hold no dot, but one before the component of a bushing; those of joints may, and the parts of a floating
     /// joint follow one. What is no quantity of every element is taken for an input.
     pub fn read(name: &'a str) -> Option<Self> {
+        if Self::of_derivative(name).is_some() {
+            return Some(Self::Derivative(name));
+        }
         let Some((first, rest)) = name.split_once('.') else { return (name == "t").then_some(Self::Time) };
         match first {
             "q" => return Some(Self::Coordinate(rest)),
@@ -155,6 +163,11 @@ impl<'a> Quantity<&'a str> {
         axis().map(Self::Gripper).or_else(|| energy().map(Self::Energy)).or_else(of_element)
     }
 
+    /// The column and the parameter that `d(COLUMN)/d(PARAMETER)` names.
+    pub fn of_derivative(name: &'a str) -> Option<(&'a str, &'a str)> {
+        name.strip_prefix("d(")?.strip_suffix(')')?.split_once(")/d(")
+    }
+
     /// What it holds, in a few words; an input says its name, which [`super::Observables`] replace by the words of its law.
     pub fn meaning(&self) -> String {
         match self {
@@ -167,6 +180,10 @@ impl<'a> Quantity<&'a str> {
             Self::Gripper(axis) => format!("world {} of the gripper", axis.name()),
             Self::GripperError => "distance of the gripper from the wanted point".into(),
             Self::Energy(energy) => energy.meaning().into(),
+            Self::Derivative(name) => {
+                let (of, by) = Quantity::of_derivative(name).unwrap_or((name, ""));
+                format!("derivative of {of} by {by}")
+            }
         }
     }
 }
@@ -184,6 +201,7 @@ impl fmt::Display for Quantity<&str> {
             Self::Gripper(axis) => write!(f, "gripper.{}", axis.name()),
             Self::GripperError => f.write_str("gripper.error"),
             Self::Energy(energy) => write!(f, "energy.{}", energy.key()),
+            Self::Derivative(name) => f.write_str(name),
         }
     }
 }

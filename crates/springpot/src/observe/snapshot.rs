@@ -14,6 +14,8 @@ pub struct Snapshot {
     pub(crate) joints: f64,
     /// Residual of the energy balance, J; NaN where unknown.
     pub(crate) residual: f64,
+    /// Of [`crate::sensitivity::Sensitivity::columns`]; empty where nobody asked for them.
+    pub(crate) derivatives: Vec<f64>,
 }
 
 impl Snapshot {
@@ -70,6 +72,7 @@ impl Snapshot {
             Quantity::Energy(EnergyQuantity::Actuators) => self.actuators,
             Quantity::Energy(EnergyQuantity::Joints) => self.joints,
             Quantity::Energy(EnergyQuantity::Residual) => self.residual,
+            Quantity::Derivative(k) => self.derivatives.get(k).copied().unwrap_or(f64::NAN),
         }
     }
 }

@@ -18,8 +18,23 @@ impl Quantity<&str> {
             Self::GripperError => "distance of the gripper from its path".into(),
             Self::Energy(EnergyQuantity::Residual) => "energy residual".into(),
             Self::Energy(energy) => format!("{} energy", energy.key()),
+            Self::Derivative(name) => derivative(name),
         }
     }
+}
+
+/// ∂F/∂alpha, of strut: what is differentiated by its symbol, and the last name of the parameter.
+fn derivative(name: &str) -> String {
+    let Some((of, by)) = Quantity::of_derivative(name) else { return name.to_owned() };
+    let symbol = Quantity::read(of).map_or_else(|| of.to_owned(), |quantity| quantity.symbol());
+    let (symbol, whose) = match symbol.split_once(" of ") {
+        Some((symbol, whose)) => (symbol.to_owned(), format!(" of {whose}")),
+        None => (symbol, String::new()),
+    };
+    // The letter behind the words: "force F".
+    let symbol = symbol.rsplit(' ').next().unwrap_or_default();
+    let by = by.rsplit('.').next().unwrap_or(by);
+    format!("∂{symbol}/∂{by}{whose}")
 }
 
 /// Parts of a floating joint's coordinates.
@@ -77,6 +92,8 @@ mod tests {
             ("gripper.error", "distance of the gripper from its path"),
             ("energy.kinetic", "kinetic energy"),
             ("energy.residual", "energy residual"),
+            ("d(strut.force)/d(alpha)", "∂F/∂alpha of strut"),
+            ("d(q.q2)/d(motion.start.v.q1)", "∂q₂/∂q1"),
         ] {
             let quantity = Quantity::read(name).unwrap();
             assert_eq!((quantity.symbol().as_str(), quantity.to_string().as_str()), (symbol, name));

@@ -2,8 +2,10 @@
 
 use crate::law::Network;
 use crate::model::Model;
+use crate::observe::Quantity;
 use crate::signal::Signal;
 use crate::system::System;
+use crate::table::Column;
 use std::sync::Arc;
 
 /// By what a run is differentiated.
@@ -16,6 +18,19 @@ pub struct Sensitivity {
     pub extended: Option<Arc<System>>,
     /// Whether derivatives share in the choice of steps.
     pub control: bool,
+    /// The derivatives that rows tell, in their order.
+    pub columns: Vec<DerivativeColumn>,
+}
+
+/// A derivative that rows tell.
+#[derive(Debug, Clone)]
+pub struct DerivativeColumn {
+    /// Of what.
+    pub of: Quantity,
+    /// By which of [`Sensitivity::parameters`].
+    pub by: usize,
+    /// Its name, unit and meaning.
+    pub column: Column,
 }
 
 /// A number that a run is differentiated by.

@@ -16,6 +16,7 @@ mod look;
 mod of_columns;
 mod parse;
 mod program;
+mod slope;
 mod terms;
 mod within;
 
@@ -25,3 +26,4 @@ pub use formula::Expression;
 pub use of_columns::ColumnExpression;
 pub use parse::{is_of_module, number_length};
 pub use program::{MAX_DEPTH, MAX_KINKS, MAX_LENGTH, is_name};
+pub use slope::SlopeError;

@@ -104,7 +104,11 @@ impl System {
         if self.tells_joint_losses {
             observables = observables.with_joint_losses();
         }
-        if self.tells_leaves { observables.with_leaves() } else { observables }
+        if self.tells_leaves {
+            observables = observables.with_leaves();
+        }
+        let Some(by) = &self.sensitivity else { return observables };
+        observables.with_derivatives(by.columns.iter().map(|derivative| derivative.column.clone()).collect())
     }
 
     /// The velocities that forces drive; none where the motion is given in advance.

@@ -149,7 +149,7 @@ fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], more: &[(&
         let seed = Seed::Law { element: 0, law: law(name, law_values, *which) };
         parameters.push(parameter(what, law_values[*which], vec![seed]));
     }
-    let by = Sensitivity { parameters, extended: None, control: true };
+    let by = Sensitivity { parameters, control: true, ..Sensitivity::default() };
     system.sensitivity = Some(Arc::new(by));
     let mut simulation = Simulation::new(system, plan.settings.clone()).unwrap();
     let rows = ROWS.map(|t| {
@@ -229,7 +229,7 @@ fn a_slider_at_rest_in_equilibrium() {
         Simulation::new(system, plan.settings.clone()).unwrap()
     };
     let seeds = vec![Seed::Velocity { velocity: 0, by: 1.0 }];
-    let by = Sensitivity { parameters: vec![parameter("v", 1.0, seeds)], extended: None, control: true };
+    let by = Sensitivity { parameters: vec![parameter("v", 1.0, seeds)], control: true, ..Sensitivity::default() };
     let mut still = of(&cases(&text(0.0, 1e-9)).plan(0).unwrap(), Some(by));
     let mut moving = of(&cases(&text(1.0, 1e-11)).plan(0).unwrap(), None);
     for t in [0.05, 0.5, 1.0, 2.0] {
@@ -252,7 +252,7 @@ fn states_take_derivatives_with_them() {
     let alpha = parameter("alpha", 0.4, vec![Seed::Law { element: 0, law: network(2) }]);
     let v = parameter("v", 0.3, vec![Seed::Velocity { velocity: 1, by: 1.0 }]);
     let mut system = plan.system();
-    let by = Sensitivity { parameters: vec![alpha, v], extended: None, control: true };
+    let by = Sensitivity { parameters: vec![alpha, v], control: true, ..Sensitivity::default() };
     system.sensitivity = Some(Arc::new(by));
     let system = Arc::new(system);
     let begin = || Simulation::new(system.clone(), plan.settings.clone()).unwrap();

@@ -333,7 +333,7 @@ impl Recorder {
         let is_unknown_at_start =
             |e: usize| !self.equations.bank.takes_part(e) || self.equations.bank.begins_singular(e);
         match quantity {
-            Quantity::GripperError => true,
+            Quantity::GripperError | Quantity::Derivative(_) => true,
             Quantity::Energy(_)
             | Quantity::Element(_, ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input)
                 if !self.knows_energies() =>

@@ -24,13 +24,15 @@ pub(super) fn program_of(
     if let Some(at) = condition(text, columns) {
         return Err(ExpressionError::Condition { found: text[at.clone()].to_owned(), at });
     }
-    let (program, named) = (Vec::new(), Vec::new());
-    let mut parser = Parser { text, constants, columns, at: 0, depth: 0, height: 0, program, named };
-    parser.expression(0)?;
-    match parser.peek() {
-        None => Ok((parser.program, parser.named)),
-        Some(_) => Err(parser.unexpected("an operator")),
+    Parser { constants, columns, ..Parser::of(text) }.whole()
+}
+
+/// The program of an expression in which constants of these names stay open: they are its columns, by their places here.
+pub(super) fn program_of_open(text: &str, open: &[&str]) -> Result<Vec<Op>, ExpressionError> {
+    if text.len() > MAX_LENGTH {
+        return Err(ExpressionError::TooLong { length: text.len(), limit: MAX_LENGTH });
     }
+    Parser { open, ..Parser::of(text) }.whole().map(|(program, _)| program)
 }
 
 /// Where a text compares or decides, as other languages do, with signs that no column has in its name.
@@ -76,6 +78,8 @@ struct Parser<'a> {
     text: &'a str,
     constants: &'a [(String, f64)],
     columns: &'a [&'a str],
+    /// Constants that are columns of the program.
+    open: &'a [&'a str],
     at: usize,
     depth: usize,
     /// Intermediate results on the stack after the program so far.
@@ -85,7 +89,21 @@ struct Parser<'a> {
     named: Vec<usize>,
 }
 
-impl Parser<'_> {
+impl<'a> Parser<'a> {
+    fn of(text: &'a str) -> Self {
+        let (program, named) = (Vec::new(), Vec::new());
+        Self { text, constants: &[], columns: &[], open: &[], at: 0, depth: 0, height: 0, program, named }
+    }
+
+    /// The program of the whole text, and the columns that it names.
+    fn whole(mut self) -> Result<(Vec<Op>, Vec<usize>), ExpressionError> {
+        self.expression(0)?;
+        match self.peek() {
+            None => Ok((self.program, self.named)),
+            Some(_) => Err(self.unexpected("an operator")),
+        }
+    }
+
     /// An operand and every operator after it that binds more tightly than `floor`.
     fn expression(&mut self, floor: u8) -> Result<(), ExpressionError> {
         if self.depth == MAX_DEPTH {
@@ -172,6 +190,9 @@ impl Parser<'_> {
             Some(Name::Operand(op)) => self.emit(op),
             Some(Name::Function(op)) if self.peek() == Some('(') => self.call(name, op, at.start),
             Some(Name::Function(_)) => Err(ExpressionError::NeedsParentheses { function: name.to_owned(), at }),
+            None if self.open.contains(&name) => {
+                self.emit(Op::Column(self.open.iter().position(|open| *open == name).unwrap_or(0)))
+            }
             None => match self.constants.iter().find(|(constant, _)| constant == name) {
                 Some(&(_, value)) => self.emit(Op::Number(value)),
                 None if !self.columns.is_empty() => {
