@@ -15,6 +15,7 @@ use crate::motion::MotionPlan;
 use crate::plan::events::EventPlan;
 use crate::plan::metrics::MetricPlan;
 use crate::robot::described::{BodyPlaces, EndStops, Gripper, UrdfPlan};
+use crate::sensitivity::plan::SensitivityPlan;
 use crate::text::refusal::Remark;
 use springpot::model::{BodySpec, Model};
 use springpot::system::Settings;
@@ -53,6 +54,8 @@ pub struct Plan {
     pub warnings: Vec<Remark>,
     /// Duration, rows, accuracy and steps.
     pub settings: Settings,
+    /// By what it is differentiated, and what.
+    pub sensitivity: Option<SensitivityPlan>,
     /// What its results hold and show.
     pub output: OutputPlan,
 }

@@ -182,6 +182,9 @@ pub(crate) fn lead(ctx: &Context<'_>, document: &Node, path: &str, place: &Place
             Value::Array(items) if items.iter().all(|item| item.entries().is_some()) && !items.is_empty() => {
                 let name = |item: &Arc<Node>| item.get("name").and_then(|name| name.text()).map(str::to_owned);
                 let found = items.iter().position(|item| name(item).as_deref() == Some(key));
+                // What has no names is counted.
+                let counted = || key.parse().ok().filter(|&at: &usize| at < items.len() && name(&items[at]).is_none());
+                let found = found.or_else(counted);
                 let Some(index) = found else {
                     let names: Vec<String> = items.iter().filter_map(name).collect();
                     let message = format!("path {:?}: no {} is named {:?}", shorten(path), walked(), shorten(key));

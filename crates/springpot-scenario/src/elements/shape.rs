@@ -7,7 +7,7 @@ use crate::robot::Robot;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
 use springpot::elements::{Bushing, Cable, CableError, Component, Joint, JointMeasureError, Line, Measure};
-use springpot::model::{Anchor, Frame, Site, Space};
+use springpot::model::{Anchor, Frame, Model, Site, Space};
 use springpot::spatial::Rotation;
 
 /// A measure, and what the scenario says of it.
@@ -16,6 +16,37 @@ pub(super) struct Shape {
     pub(super) plan: ShapePlan,
     /// Where its points stand, or its joint.
     pub(super) ends: Vec<Place>,
+}
+
+impl ShapePlan {
+    /// The measure on a robot; `None` where it has none there.
+    pub(crate) fn measure(&self, model: &Model) -> Option<Measure> {
+        let site = |anchor: &Anchor| model.resolve(anchor).ok();
+        Some(match self {
+            Self::Points(points) => match &points[..] {
+                [from, to] => Line { from: site(from)?, to: site(to)? }.into(),
+                points => Cable::new(points.iter().map(site).collect::<Option<Vec<_>>>()?).ok()?.into(),
+            },
+            Self::Joint(joint) => Joint::named(model, joint).ok()?.into(),
+            Self::Bushing { from, to, component } => {
+                let frame = |plan: &FramePlan| model.resolve_frame(&plan.anchor, &Rotation::from_rpy(plan.rpy)).ok();
+                Bushing::new(model, frame(from)?, frame(to)?, *component).into()
+            }
+        })
+    }
+
+    /// The same shape between other points: of frames their origins.
+    pub(crate) fn with_anchors(&self, anchors: &[Anchor]) -> Self {
+        match (self, anchors) {
+            (Self::Points(_), anchors) => Self::Points(anchors.to_vec()),
+            (Self::Bushing { from, to, component }, [first, second]) => Self::Bushing {
+                from: FramePlan { anchor: *first, ..*from },
+                to: FramePlan { anchor: *second, ..*to },
+                component: *component,
+            },
+            _ => self.clone(),
+        }
+    }
 }
 
 /// A body by the name that the file gives it, and what is said of it.

@@ -33,7 +33,7 @@ pub(super) fn glob(field: &Field<'_>) -> Read<ColumnGlob> {
     Ok(ColumnGlob { text: text.to_owned(), place: field.node.place.clone() })
 }
 
-pub(super) fn globs(field: &Field<'_>) -> Read<Vec<ColumnGlob>> {
+pub(crate) fn globs(field: &Field<'_>) -> Read<Vec<ColumnGlob>> {
     if field.node.text().is_some() {
         return glob(field).map(|glob| vec![glob]);
     }

@@ -3,7 +3,7 @@
 //! A kind of figure is a variant of [`FigureKind`] and a row of [`KINDS`]; its keys are rows of [`FIGURE`] that name it, and what it
 //! reads and records of them is in a file of its own.
 
-mod columns;
+pub(crate) mod columns;
 mod curves;
 mod data;
 mod look;

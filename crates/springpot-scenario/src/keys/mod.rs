@@ -13,6 +13,7 @@ mod metric;
 mod motion;
 mod output;
 mod robot;
+mod sensitivity;
 pub(crate) mod solver;
 mod sweep;
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub use metric::MetricKind;
 pub(crate) use motion::{FLOATING, FORCES, POSE, SEPARATOR, SIGNAL, SPHERICAL, START, START_POSE, START_VELOCITIES};
 pub(crate) use output::OUTPUT;
 pub(crate) use robot::{ANCHOR, BODY, CHANGED_JOINT, END_STOPS, FRICTION, FROM_URDF, INERTIA, JOINT, MIMIC, ROBOT};
+pub(crate) use sensitivity::{ADJOINT, PARAMETER, PRIOR, SENSITIVITY};
 pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
 pub use sweep::MAX_CASES;
 pub(crate) use sweep::{MAX_BLOCKS, MAX_TOGETHER, SPAN, SWEEP};
@@ -100,8 +102,10 @@ pub(crate) enum Shape {
     Range,
     /// Any number of numbers in a unit, zero and above, or a table that says them.
     NumbersOr(&'static str, &'static Keys),
-    /// An end of a span: a number in the unit of what is swept.
+    /// A number in the unit of a parameter, such as an end of a span.
     SweptNumber,
+    /// So many numbers at least and at most in the unit of the parameter; where one may stand, it may stand alone.
+    SweptNumbers(usize, usize),
     /// A number in the unit of a column.
     OfColumn,
     /// A function of time in a unit.

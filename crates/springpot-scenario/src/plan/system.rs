@@ -34,8 +34,13 @@ impl Plan {
             tells_leaves: self.output.tells_leaves,
             events: self.events.iter().map(|plan| plan.event.clone()).collect(),
             control: self.motion.control(&self.model, course).into(),
-            sensitivity: None,
+            sensitivity: self.sensitivity.as_ref().and_then(|plan| plan.engine.clone()),
         };
+        self.with_end_stops(system)
+    }
+
+    /// The system with the stops that limits of joints are.
+    pub(crate) fn with_end_stops(&self, system: System) -> System {
         match self.end_stops {
             None => system,
             Some(EndStops { stiffness, damping }) => {
@@ -64,7 +69,9 @@ impl Plan {
     /// The columns of the rows of all cases, in order: those of elements that are not enabled are among them.
     pub fn columns(&self) -> Vec<Column> {
         let observables = self.observables();
-        if self.output.tells_joint_losses { observables.with_joint_losses() } else { observables }.columns()
+        let observables = if self.output.tells_joint_losses { observables.with_joint_losses() } else { observables };
+        let derivatives = self.sensitivity.as_ref().map_or_else(Vec::new, |plan| plan.columns.clone());
+        observables.with_derivatives(derivatives).columns()
     }
 
     /// For each of [`Self::columns`] its place in a row of `system`, which was made of this plan; `None` where a cell is empty. Nothing where

@@ -21,11 +21,14 @@ use crate::reader::{Context, Read, Table};
 use crate::robot;
 use crate::robot::Robot;
 use crate::robot::described::RobotPlan;
+use crate::sensitivity::{self, Asked};
 use crate::text::document::Node;
 use crate::text::refusal::{Place, RefusalKind, Refusals, Remark};
 use crate::time;
 use crate::units::Unit;
+use springpot::Simulation;
 use springpot::law::Catalog;
+use springpot::system::RunError;
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -52,6 +55,8 @@ pub struct Cases {
     robots: UrdfCache,
     document: Node,
     axes: Vec<Axis>,
+    /// By what runs are differentiated.
+    sensitivity: Option<Asked>,
     /// By axis, value and target: the SI value, where it was read as a number; shorter than the axis for long ones.
     numbers: Vec<Vec<Vec<Option<f64>>>>,
     figures: Arc<[FigurePlan]>,
@@ -116,6 +121,7 @@ impl Cases {
             robots: UrdfCache::default(),
             document: scenario.document.clone(),
             axes: Vec::new(),
+            sensitivity: None,
             numbers: Vec::new(),
             figures: Arc::new([]),
             columns: None,
@@ -305,11 +311,41 @@ impl Cases {
         assert!(i < self.len(), "case {i} of {}", self.len());
         let ctx = self.context();
         let document = self.document_at(&self.position(i));
-        let read = read_plan(&ctx, &document);
-        let plan = ctx.finish(read)?;
+        let plan = self.read_case(ctx, document)?;
         let (figures, columns) = (self.figures.clone(), self.columns.clone());
         let tells_joint_losses = self.tell_joint_losses;
         Ok(Plan { output: OutputPlan { figures, columns, tells_joint_losses, ..plan.output }, ..plan })
+    }
+
+    /// Reads a case, and by what it is differentiated.
+    fn read_case(&self, ctx: Context<'_>, mut document: Node) -> Result<Plan, Refusals> {
+        let Some(asked) = &self.sensitivity else {
+            let read = read_plan(&ctx, &document);
+            return ctx.finish(read);
+        };
+        let first = self.first_tag(self.axes.len());
+        let read = sensitivity::mark(&ctx, &mut document, asked, first).and_then(|()| {
+            let plan = read_plan(&ctx, &document)?;
+            let root = Table::of(&ctx, &document, "the scenario", &SCENARIO)?;
+            let sensitivity = sensitivity::judge(&root, &plan, asked, first)?;
+            Ok(Plan { sensitivity: Some(sensitivity), ..plan })
+        });
+        ctx.finish(read)
+    }
+
+    /// Refuses what the engine knows no derivative of in the first case.
+    fn try_sensitivity(&self, first: &Plan) -> Result<(), Refusals> {
+        let Some(asked) = self.sensitivity.as_ref().filter(|_| first.sensitivity.as_ref().is_some_and(|plan| plan.is_asked())) else {
+            return Ok(());
+        };
+        // What else keeps it from starting is told by the run.
+        let Err(RunError::Sensitivity(error)) = Simulation::new(first.system(), first.settings.clone()) else {
+            return Ok(());
+        };
+        let ctx = self.context();
+        let read = Table::of(&ctx, &self.document, "the scenario", &SCENARIO);
+        let read = read.and_then(|root| Err::<(), _>(sensitivity::refuse_unknown(&root, asked, &error.to_string())));
+        ctx.finish(read)
     }
 
     fn context(&self) -> Context<'_> {
@@ -366,15 +402,17 @@ impl Cases {
                     return Err(ctx.refuse(refusal.help("sweep it: --sweep PATH=v1,v2,…; or remove its [[sweep]]")));
                 }
             }
-            Ok(axes)
+            let asked = sensitivity::read(&root, &axes, &scenario.sensitivity)?;
+            Ok((axes, asked))
         })();
         let mut remarks = ctx.warnings();
-        let axes = ctx.finish(read)?;
+        let (axes, asked) = ctx.finish(read)?;
         remarks.extend(axes.iter().filter_map(Axis::read_otherwise));
         self.remarks = remarks;
         self.document = document;
         self.parameters = axes.iter().flat_map(|axis| &axis.targets).map(|target| target.written.clone()).collect();
         self.axes = axes;
+        self.sensitivity = asked;
         Ok(())
     }
 
@@ -398,6 +436,7 @@ impl Cases {
     /// Plans the first case, then every other value of every sweep with the rest at their first values.
     fn try_values(&mut self) -> Result<(), Refusals> {
         let first = self.plan(0)?;
+        self.try_sensitivity(&first)?;
         self.judge_unswept()?;
         let columns = columns_of(&first);
         let losses = Cell::new(has_joint_losses(&first));
@@ -589,6 +628,7 @@ fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         motion: motion?,
         events: Vec::new(),
         metrics: Vec::new(),
+        sensitivity: None,
         warnings: Vec::new(),
         settings: time.and(settings)?,
         output: OutputPlan { tells_leaves: tells_leaves?, ..OutputPlan::default() },

@@ -7,6 +7,7 @@ use self::removal::{forget_figures, take_out};
 use super::written::{Override, Scenario};
 use crate::changes::path::{self, Target};
 use crate::reader::{Context, Read};
+use crate::sensitivity::{More, OPTION};
 use crate::text::document::{self, Entry, MAX_BYTES, Node, Value};
 use crate::text::refusal::{Place, Refusal, RefusalKind, Refusals, SWEEP_FORM, SWEEP_OPTION, Source};
 use std::ops::Range;
@@ -135,6 +136,25 @@ impl Scenario {
             Value::Array(values.collect::<Result<_, _>>()?)
         };
         self.sweeps.push(read.with(Some(Node { value, place, tag: None })));
+        Ok(())
+    }
+}
+
+impl Scenario {
+    /// Differentiates by the numbers at these paths too, or by parameters of these names: `PATH,PATH`.
+    ///
+    /// # Errors
+    /// An empty path.
+    pub fn differentiate(&mut self, paths: &str) -> Result<(), Refusals> {
+        let source = Arc::new(Source { name: OPTION.to_owned(), text: paths.into() });
+        for part in split(paths, 0..paths.len(), ',') {
+            let place = Place { source: source.clone(), span: part.clone() };
+            if part.is_empty() {
+                let refusal = place.refuse(RefusalKind::Syntax, format!("a path of {OPTION} is empty"));
+                return Err(refusal.help("write PATH,PATH, as in element.strut.alpha,motion.start.v.q1").into());
+            }
+            self.sensitivity.push(More { written: paths[part].to_owned(), place });
+        }
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::figures::FIGURE;
 use crate::keys::MOTION;
-use crate::keys::{ELEMENT, EVENT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, ROBOT, SOLVER, SWEEP, Shape, TIME, key};
+use crate::keys::{ELEMENT, EVENT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER, SWEEP, Shape, TIME, key};
 
 /// The whole scenario.
 pub(crate) static SCENARIO: Keys = Keys {
@@ -38,6 +38,8 @@ pub(crate) static SCENARIO: Keys = Keys {
             Need::Optional,
             "Parameters to vary; several blocks make a grid.",
         ),
+        key("parameter", Shape::Tables(&PARAMETER, None), Need::Optional, "Numbers that may be changed."),
+        key("sensitivity", Shape::Table(&SENSITIVITY), Need::Optional, "Derivatives of the columns."),
         key("figure", Shape::Tables(&FIGURE, None), Need::Optional, "Figures to draw."),
         key("output", Shape::Table(&OUTPUT), Need::Optional, "What is written."),
     ],

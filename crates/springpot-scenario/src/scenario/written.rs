@@ -1,5 +1,6 @@
 //! A scenario as it is written.
 
+use crate::sensitivity::More;
 use crate::text::document::{MAX_BYTES, Node, Value};
 use crate::text::mistaken;
 use crate::text::refusal::{Place, Refusal, RefusalKind, Refusals, Source};
@@ -25,6 +26,8 @@ pub struct Scenario {
     pub(super) overrides: Vec<Override>,
     /// Sweeps that take the place of its own, or stand beside them: paths and `values`.
     pub(super) sweeps: Vec<Override>,
+    /// By what it is differentiated besides.
+    pub(super) sensitivity: Vec<More>,
 }
 
 impl Scenario {
@@ -89,7 +92,7 @@ impl Scenario {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let source = Arc::new(Source { name, text: text.into() });
         let document = Node::document(&source)?;
-        Ok(Self { document, source, folder: folder.into(), overrides: Vec::new(), sweeps: Vec::new() })
+        Ok(Self { document, source, folder: folder.into(), overrides: Vec::new(), sweeps: Vec::new(), sensitivity: Vec::new() })
     }
 
     /// The text as written.

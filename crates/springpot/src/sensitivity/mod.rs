@@ -138,3 +138,18 @@ pub enum SensitivityError {
         what: String,
     },
 }
+
+/// Whether derivatives of a quantity are known.
+pub fn has_derivative(quantity: Quantity) -> bool {
+    use crate::observe::ElementQuantity::{Force, InputValue, Length, Rate, Stored, Stroke};
+    match quantity {
+        Quantity::Time
+        | Quantity::Coordinate(_)
+        | Quantity::Velocity(_)
+        | Quantity::Acceleration(_)
+        | Quantity::Torque(_)
+        | Quantity::Gripper(_) => true,
+        Quantity::Element(_, of) => matches!(of, Length | Stroke | Rate | Force | Stored | InputValue(_)),
+        Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => false,
+    }
+}

@@ -85,6 +85,14 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             json!({ "description": words, "anyOf": [array, object(keys.words, keys, catalog)] })
         }
         Shape::SweptNumber => quantity("the unit of the parameter", &words),
+        Shape::SweptNumbers(least, most) => {
+            let one = quantity("the unit of the parameter", "A value.");
+            let several = json!({ "type": "array", "items": one, "minItems": least, "maxItems": most });
+            match least {
+                1 => json!({ "description": words, "anyOf": [one, several] }),
+                _ => json!({ "description": words, "allOf": [several] }),
+            }
+        }
         Shape::OfColumn => quantity("the unit of the column", &words),
         Shape::Signal(unit) => signal(unit, &words),
         Shape::Signals(unit) => {

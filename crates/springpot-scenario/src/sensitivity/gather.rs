@@ -1,0 +1,189 @@
+//! What a parameter moves, before it is told to the engine.
+
+use super::extended::{Extended, Site, Virtual};
+use crate::elements::plan::ShapePlan;
+use crate::plan::Plan;
+use crate::text::document::Node;
+use springpot::dual::Dual;
+use springpot::model::BodySpec;
+use springpot::sensitivity::Seed;
+use springpot::signal::Signal;
+use springpot::spatial::{Inertia, Symmetric3, Vec3};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Done, or why a number cannot be a parameter.
+pub(super) type Moved = Result<(), String>;
+
+/// By how much a number changes with a parameter.
+#[derive(Debug, Clone)]
+pub(super) enum Slope {
+    Number(f64),
+    /// As a function of time.
+    Signal(Signal),
+}
+
+impl Slope {
+    pub(super) fn number(self) -> Result<f64, String> {
+        match self {
+            Self::Number(by) => Ok(by),
+            Self::Signal(_) => Err("it is a function of time".to_owned()),
+        }
+    }
+
+    pub(super) fn signal(self) -> Signal {
+        match self {
+            Self::Number(by) => Signal::constant(by),
+            Self::Signal(by) => by,
+        }
+    }
+}
+
+/// Where numbers stand.
+pub(super) struct Scene<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) document: &'a Node,
+}
+
+impl Scene<'_> {
+    /// The first or the last point, or frame, of element `e`.
+    pub(super) fn end(&self, e: usize, is_first: bool) -> Site {
+        match &self.plan.elements[e].shape {
+            ShapePlan::Points(points) => Site::Point(e, if is_first { 0 } else { points.len() - 1 }),
+            _ => Site::Point(e, usize::from(!is_first)),
+        }
+    }
+
+    /// How the first or the last frame of element `e` is turned.
+    pub(super) fn rpy(&self, e: usize, is_first: bool) -> [f64; 3] {
+        match &self.plan.elements[e].shape {
+            ShapePlan::Bushing { from, to, .. } => if is_first { from.rpy } else { to.rpy },
+            _ => [0.0; 3],
+        }
+    }
+}
+
+/// What changes of a body.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct BodySlope {
+    pub(super) mass: f64,
+    pub(super) com: [f64; 3],
+    pub(super) inertia: [[f64; 3]; 3],
+}
+
+impl BodySlope {
+    /// What changes of its inertia about the origin of its frame: m, m·c, J + m(c·c 1 − c cᵀ).
+    fn of(&self, body: &BodySpec) -> Inertia {
+        let (dc, c, m, dm) = (self.com, body.com, body.mass, self.mass);
+        let central = Symmetric3::from_upper(self.inertia);
+        let entry = |i: usize, j: usize| {
+            let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let one = if i == j { 1.0 } else { 0.0 };
+            dm * (dot(c, c) * one - c[i] * c[j]) + m * (2.0 * dot(c, dc) * one - dc[i] * c[j] - c[i] * dc[j])
+        };
+        let steiner = Symmetric3 {
+            xx: entry(0, 0),
+            yy: entry(1, 1),
+            zz: entry(2, 2),
+            xy: entry(0, 1),
+            xz: entry(0, 2),
+            yz: entry(1, 2),
+        };
+        let first_moment = std::array::from_fn(|i| dm * c[i] + m * dc[i]);
+        Inertia { mass: dm, first_moment: Vec3(first_moment), rotational: central + steiner }
+    }
+}
+
+/// What one parameter moves.
+#[derive(Debug, Default)]
+pub(super) struct Gather {
+    pub(super) q: Vec<(usize, f64)>,
+    pub(super) v: Vec<(usize, f64)>,
+    /// By element, the slopes of its parameters.
+    laws: BTreeMap<usize, Vec<f64>>,
+    pub(super) rest: Vec<(usize, f64)>,
+    pub(super) inputs: Vec<(usize, usize, Signal)>,
+    pub(super) drives: Vec<(usize, Signal)>,
+    pub(super) damping: Vec<(usize, f64)>,
+    pub(super) friction: Vec<(usize, f64)>,
+    pub(super) armature: Vec<(usize, f64)>,
+    bodies: BTreeMap<usize, BodySlope>,
+    pub(super) gravity: [f64; 3],
+    pub(super) moves_gravity: bool,
+    places: Vec<(Virtual, f64)>,
+}
+
+impl Gather {
+    pub(super) fn law(&mut self, e: usize, count: usize) -> &mut Vec<f64> {
+        self.laws.entry(e).or_insert_with(|| vec![0.0; count])
+    }
+
+    pub(super) fn body(&mut self, body: usize) -> &mut BodySlope {
+        self.bodies.entry(body).or_default()
+    }
+
+    /// Shifts what stands at `site` along `axis`.
+    pub(super) fn shift(&mut self, site: Site, axis: [f64; 3], by: f64) {
+        self.places.push((Virtual { site, turns: false, axis }, by));
+    }
+
+    /// Turns what stands at `site` about `axis`.
+    pub(super) fn turn(&mut self, site: Site, axis: [f64; 3], by: f64) {
+        self.places.push((Virtual { site, turns: true, axis }, by));
+    }
+
+    /// The joints that it moves beyond those of the robot.
+    pub(super) fn virtuals(&self) -> impl Iterator<Item = &Virtual> {
+        self.places.iter().map(|(joint, _)| joint)
+    }
+
+    /// What the engine takes, of a robot that was extended by the joints of all parameters.
+    pub(super) fn seeds(self, plan: &Plan, extended: &Extended) -> Vec<Seed> {
+        let model = extended.model();
+        let joint = |j: usize| model.joint_index(&plan.model.joint_names()[j]).expect("a joint of the robot");
+        let mut seeds = Vec::new();
+        // What the robot's coordinates at t = 0 change by.
+        let mut start = vec![0.0; model.nv()];
+        for &(velocity, by) in &self.q {
+            start[extended.own(velocity)] += by;
+            seeds.push(Seed::Position { velocity, by });
+        }
+        seeds.extend(self.v.iter().map(|&(velocity, by)| Seed::Velocity { velocity, by }));
+        for (virtual_joint, by) in &self.places {
+            let velocity = extended.velocity(virtual_joint);
+            start[velocity] += by;
+            seeds.push(Seed::Place { velocity, by: *by });
+        }
+        for (element, slopes) in self.laws {
+            let planned = &plan.elements[element];
+            let numbers: Vec<Dual> =
+                planned.parameters.iter().zip(slopes).map(|(&value, slope)| Dual { value, slope }).collect();
+            if let Ok(law) = (planned.element.entry.build)(&numbers, planned.element.derivative) {
+                seeds.push(Seed::Law { element, law });
+            }
+        }
+        seeds.extend(self.rest.iter().map(|&(element, by)| Seed::Rest { element, by }));
+        let rests = plan.elements.iter().enumerate().filter(|(_, element)| element.rest_at_start);
+        for (element, _) in rests.filter(|_| start.iter().any(|by| *by != 0.0)) {
+            let by = extended.gradient(element).iter().zip(&start).map(|(g, by)| g * by).sum();
+            seeds.push(Seed::Rest { element, by });
+        }
+        seeds.extend(self.inputs.into_iter().map(|(element, input, by)| Seed::Input { element, input, by }));
+        seeds.extend(self.drives.into_iter().map(|(velocity, by)| Seed::Drive { velocity, by }));
+        seeds.extend(self.damping.iter().map(|&(j, by)| Seed::Damping { joint: joint(j), by }));
+        seeds.extend(self.friction.iter().map(|&(j, by)| Seed::Friction { joint: joint(j), by }));
+        if !self.bodies.is_empty() || !self.armature.is_empty() {
+            let mut bodies = vec![Inertia::ZERO; model.body_names().len()];
+            for (body, slope) in &self.bodies {
+                bodies[extended.body(*body)] = slope.of(&plan.bodies[*body]);
+            }
+            let mut armature = vec![0.0; model.joint_count()];
+            self.armature.iter().for_each(|&(j, by)| armature[joint(j)] += by);
+            seeds.push(Seed::Inertia(Arc::new(model.with_inertias(&bodies, &armature))));
+        }
+        if self.moves_gravity {
+            seeds.push(Seed::Gravity(Arc::new(model.with_gravity(self.gravity))));
+        }
+        seeds
+    }
+}

@@ -1,0 +1,270 @@
+//! What one case is differentiated by: values, units, and what the engine is told.
+
+use super::asked::{Asked, By};
+use super::constants;
+use super::extended::{Extended, Virtual};
+use super::gather::{Gather, Scene, Slope};
+use super::mark::values;
+use super::plan::{ParameterPlan, SensitivityPlan};
+use super::rows;
+use crate::changes::path::{Step, Target};
+use crate::figures::read_columns;
+use crate::keys::{PARAMETER, PRIOR};
+use crate::plan::Plan;
+use crate::reader::{Field, Read, Refused, Table, all};
+use crate::text::document::{Node, shorten};
+use crate::text::glob::matches;
+use crate::text::names;
+use crate::text::refusal::{Place, RefusalKind};
+use springpot::observe::Quantity;
+use springpot::sensitivity::{DerivativeColumn, Parameter, Sensitivity, has_derivative};
+use springpot::table::Column;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Most derivatives that rows tell.
+const MAX_COLUMNS: usize = 65_536;
+
+/// By what `plan` is differentiated, whose numbers are tagged from `first` on in the document of `root`.
+pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) -> Read<SensitivityPlan> {
+    let ctx = root.ctx;
+    let scene = Scene { plan, document: root.node };
+    let values = values(ctx, asked, first);
+    let gathered = all(asked.by.iter().map(|by| gather(root, &scene, by)).collect::<Vec<_>>());
+    let (values, gathered) = (values?, gathered?);
+    let read = asked.by.iter().zip(&values).map(|(by, (value, unit))| parameter(root, &scene, by, *value, unit));
+    let parameters = all(read.collect::<Vec<_>>())?;
+    let plain = SensitivityPlan { parameters, columns: Vec::new(), left_out: Vec::new(), engine: None };
+    if !asked.is_asked {
+        return Ok(plain);
+    }
+    let mut virtuals: Vec<Virtual> = Vec::new();
+    for joint in gathered.iter().flat_map(Gather::virtuals) {
+        if !virtuals.contains(joint) {
+            virtuals.push(*joint);
+        }
+    }
+    let base = plan.system_at_start();
+    let extended = Extended::new(plan, &base, virtuals).map_err(|why| {
+        let message = format!("{} cannot be a parameter: {why}", asked.by[0].name);
+        ctx.refuse(asked.by[0].place.refuse(RefusalKind::Rule, message))
+    })?;
+    let told = plain.parameters.iter().zip(gathered).map(|(parameter, gather)| Parameter {
+        name: parameter.name.clone(),
+        value: parameter.value,
+        typical: parameter.typical,
+        seeds: gather.seeds(plan, &extended),
+    });
+    let told = told.collect();
+    let Chosen { columns, known, left_out } = columns(root, plan, asked, &plain.parameters)?;
+    let engine = Sensitivity {
+        parameters: told,
+        extended: extended.is_extended().then(|| extended.system.clone()),
+        control: asked.control,
+        columns: known,
+    };
+    Ok(SensitivityPlan { columns, left_out, engine: Some(Arc::new(engine)), ..plain })
+}
+
+/// What a parameter moves.
+fn gather(root: &Table<'_>, scene: &Scene<'_>, by: &By) -> Read<Gather> {
+    let mut gather = Gather::default();
+    let moved = by.targets.iter().map(|target| {
+        moves(root, scene, target, &mut gather).map_err(|why| {
+            let message = format!("{} cannot be a parameter: {why}", target.written);
+            root.ctx.refuse(target.place.refuse(RefusalKind::Rule, message))
+        })
+    });
+    all(moved.collect::<Vec<_>>())?;
+    Ok(gather)
+}
+
+fn moves(root: &Table<'_>, scene: &Scene<'_>, target: &Target, gather: &mut Gather) -> Result<(), String> {
+    let name = match &target.steps[..] {
+        [Step::Key(section), Step::Key(name)] if section == "constants" => name,
+        steps => {
+            let row = rows::find(steps).ok_or("no derivative by it is known")?;
+            return (row.moves)(gather, scene, steps, Slope::Number(1.0));
+        }
+    };
+    let slopes = constants::slopes(root.node, name, &root.ctx.constants())?;
+    for (steps, slope) in constants::followers(root.node, &slopes) {
+        let what = || format!("{} follows from it, and ", written(root.node, &steps));
+        let slope = slope.map_err(|why| what() + &why)?;
+        let row = rows::find(&steps).ok_or_else(|| what() + "no derivative by that is known")?;
+        (row.moves)(gather, scene, &steps, slope).map_err(|why| what() + &why)?;
+    }
+    Ok(())
+}
+
+/// Steps as a path.
+fn written(document: &Node, steps: &[Step]) -> String {
+    let (mut node, mut keys) = (Some(document), Vec::new());
+    for step in steps {
+        node = node.and_then(|node| match step {
+            Step::Key(key) => {
+                keys.push(key.clone());
+                node.get(key).map(|node| &**node)
+            }
+            Step::Index(k) => {
+                let item = node.items().and_then(|items| items.get(*k)).map(|item| &**item);
+                let name = item.and_then(|item| item.get("name")?.text().map(str::to_owned));
+                keys.push(name.unwrap_or_else(|| k.to_string()));
+                item
+            }
+        });
+    }
+    keys.retain(|key| !matches!(key.as_str(), "parameters" | "inputs" | "bushing"));
+    crate::changes::path::dotted(&keys)
+}
+
+/// Value, unit and size of a parameter, and what its block says besides.
+fn parameter(root: &Table<'_>, scene: &Scene<'_>, by: &By, value: f64, unit: &str) -> Read<ParameterPlan> {
+    let own_size = if value == 0.0 { 1.0 } else { value.abs() };
+    let block = by.block.and_then(|k| Some(root.get("parameter")?.item(root.node.get("parameter")?.items()?.get(k)?)));
+    let typical = match &block {
+        None => own_size,
+        Some(item) => {
+            let table = Table::of(root.ctx, item.node, format!("parameter {:?}", shorten(&by.name)), &PARAMETER)?;
+            block_of(&table, &|name| rows::exponent(scene, &by.targets[0].steps, name), value, unit)?.unwrap_or(own_size)
+        }
+    };
+    let paths = by.targets.iter().map(|target| target.written.clone()).collect();
+    Ok(ParameterPlan { name: by.name.clone(), paths, value, unit: unit.to_owned(), typical, place: by.place.clone() })
+}
+
+/// Judges a `[[parameter]]` whose number has a unit; its typical size, where it says one.
+fn block_of(
+    table: &Table<'_>,
+    exponents: &dyn Fn(&str) -> Option<f64>,
+    value: f64,
+    unit: &str,
+) -> Read<Option<f64>> {
+    let number = |field: &Field<'_>| field.number_with(unit, exponents);
+    let numbers = |field: &Field<'_>| match field.node.items() {
+        Some(items) => all(items.iter().map(|item| number(&field.item(item))).collect::<Vec<_>>()),
+        None => number(field).map(|one| vec![one]),
+    };
+    let bounds = match table.get("bounds") {
+        None => None,
+        Some(field) => match numbers(&field)?[..] {
+            [low, high] if low < high => Some((low, high)),
+            [low, high] => {
+                let message = format!("goes from {low} to {high}");
+                let help = "write the smaller bound first".to_owned();
+                return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
+            }
+            _ => return Err(field.wrong_type("two numbers, [low, high]")),
+        },
+    };
+    let starts = table.get("start").map(|field| numbers(&field)).transpose()?;
+    if let Some((low, high)) = bounds {
+        let starts = starts.as_deref().unwrap_or(std::slice::from_ref(&value));
+        if let Some(outside) = starts.iter().find(|start| !(low..=high).contains(*start)) {
+            let field = table.get("start").map_or_else(|| table.require("bounds"), Ok)?;
+            let message = format!("and its bounds do not go together: {outside} is outside {low} … {high}");
+            let help = "write bounds that hold where it starts".to_owned();
+            return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
+        }
+    }
+    if let Some(field) = table.get("scale") {
+        let scale = field.word("scale")?;
+        let low = bounds.map_or(value, |(low, _)| low);
+        if scale == "log" && low < 0.0 {
+            let message = format!("is \"log\", but values may be {low}");
+            return Err(field.refuse(RefusalKind::Rule, message, Some("write bounds from 0 on, or \"linear\"".to_owned())));
+        }
+    }
+    if let Some(field) = table.get("prior") {
+        let prior = field.table(&PRIOR)?;
+        let (mean, sd) = (prior.require("mean").and_then(|field| number(&field)), prior.require("sd")?);
+        let positive = number(&sd)?;
+        mean?;
+        if positive <= 0.0 {
+            let message = format!("is {positive}, but must be positive");
+            return Err(sd.refuse(RefusalKind::OutOfRange, message, None));
+        }
+    }
+    let Some(field) = table.get("typical") else { return Ok(None) };
+    let typical = number(&field)?;
+    if typical > 0.0 {
+        return Ok(Some(typical));
+    }
+    let message = format!("is {typical}, but must be positive");
+    Err(field.refuse(RefusalKind::OutOfRange, message, Some("write about how large the parameter is".to_owned())))
+}
+
+/// The columns of derivatives.
+struct Chosen {
+    /// Of all cases.
+    columns: Vec<Column>,
+    /// Those that the system knows.
+    known: Vec<DerivativeColumn>,
+    left_out: Vec<String>,
+}
+
+/// What is differentiated, column by column.
+fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[ParameterPlan]) -> Read<Chosen> {
+    let refuse = |place: &Place, kind, message: String, help: String| Err(root.ctx.refuse(place.refuse(kind, message).help(help)));
+    let all = plan.columns();
+    let written = read_columns(root)?;
+    let observables = plan.acting_observables();
+    let acting: HashMap<String, Quantity> =
+        observables.quantities().into_iter().map(|quantity| (observables.named(quantity).to_string(), quantity)).collect();
+    let globs = asked.of.as_deref().or(written.as_deref());
+    for glob in asked.of.iter().flatten() {
+        if !all.iter().any(|column| matches(&glob.text, &column.name)) {
+            let help = names::suggest(&glob.text, all.iter().map(|column| column.name.as_str()));
+            return refuse(&glob.place, RefusalKind::UnknownName, format!("{:?} matches no column", glob.text), help);
+        }
+    }
+    let (mut columns, mut known, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    for column in all.iter().filter(|column| column.name != "t") {
+        let by_glob = |glob: &&crate::ColumnGlob| matches(&glob.text, &column.name);
+        if !globs.is_none_or(|globs| globs.iter().any(|glob| by_glob(&glob))) {
+            continue;
+        }
+        let quantity = acting.get(&column.name);
+        let is_absent = quantity.is_none() && plan.lacks(&column.name);
+        if !is_absent && !quantity.copied().is_some_and(has_derivative) {
+            if let Some(glob) = asked.of.iter().flatten().find(|glob| glob.text == column.name) {
+                let message = format!("{:?} cannot be differentiated: no derivative is known of it", column.name);
+                return refuse(&glob.place, RefusalKind::Rule, message, "leave it out of `of`".to_owned());
+            }
+            left_out.push(column.name.clone());
+            continue;
+        }
+        for (by, parameter) in parameters.iter().enumerate() {
+            let name = format!("d({})/d({})", column.name, parameter.name);
+            let meaning = format!("derivative of {} by {}", column.name, parameter.name);
+            let told = Column::new(name, over(&column.unit, &parameter.unit), meaning);
+            known.extend(quantity.map(|&of| DerivativeColumn { of, by, column: told.clone() }));
+            columns.push(told);
+        }
+    }
+    if columns.len() > MAX_COLUMNS {
+        let place = root.get("sensitivity").map_or_else(|| parameters[0].place.clone(), |field| field.node.place.clone());
+        let message = format!("makes {} columns of derivatives; at most {MAX_COLUMNS} are told", columns.len());
+        return refuse(&place, RefusalKind::TooLarge, message, "choose columns, of = [\"q.*\"], or fewer parameters".to_owned());
+    }
+    Ok(Chosen { columns, known, left_out })
+}
+
+/// The unit of a quotient.
+fn over(unit: &str, by: &str) -> String {
+    match (unit, by) {
+        (unit, "" | "1") => unit.to_owned(),
+        ("" | "1", by) if by.contains(['*', '/']) => format!("1/({by})"),
+        ("" | "1", by) => format!("1/{by}"),
+        (unit, by) if by.contains(['*', '/']) => format!("{unit}/({by})"),
+        (unit, by) => format!("{unit}/{by}"),
+    }
+}
+
+/// Where a refusal of what the engine does not know points.
+pub(crate) fn refuse_unknown(root: &Table<'_>, asked: &Asked, why: &str) -> Refused {
+    let place = root.get("sensitivity").map(|field| field.node.place.clone());
+    let place = place.or_else(|| asked.by.first().map(|by| by.place.clone()));
+    let message = format!("the run cannot be differentiated: {why}");
+    root.ctx.refuse(place.as_ref().unwrap_or(&root.node.place).refuse(RefusalKind::Rule, message))
+}

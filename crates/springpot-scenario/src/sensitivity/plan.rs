@@ -1,0 +1,43 @@
+//! By what a run is differentiated, as it is read.
+
+use crate::text::refusal::Place;
+use springpot::sensitivity::Sensitivity;
+use springpot::table::Column;
+use std::sync::Arc;
+
+/// By what a run is differentiated, and what.
+#[derive(Debug, Clone)]
+pub struct SensitivityPlan {
+    /// The numbers, in the order of the columns.
+    pub parameters: Vec<ParameterPlan>,
+    /// The derivatives `d(COLUMN)/d(PARAMETER)` that rows tell, behind all other columns.
+    pub columns: Vec<Column>,
+    /// Columns that are written and that no derivative is known of: nobody asked for them by name.
+    pub left_out: Vec<String>,
+    /// What the engine is told; `None` where nothing is differentiated: the parameters are only there.
+    pub(crate) engine: Option<Arc<Sensitivity>>,
+}
+
+/// A number that a run is differentiated by.
+#[derive(Debug, Clone)]
+pub struct ParameterPlan {
+    /// Its name, or its path.
+    pub name: String,
+    /// Its paths.
+    pub paths: Vec<String>,
+    /// Its value, SI.
+    pub value: f64,
+    /// The SI unit of its value; empty for a pure number.
+    pub unit: String,
+    /// What a change of it is measured by, SI.
+    pub typical: f64,
+    /// Where it stands: its block, or what asks for it.
+    pub place: Place,
+}
+
+impl SensitivityPlan {
+    /// Whether rows tell derivatives.
+    pub fn is_asked(&self) -> bool {
+        self.engine.is_some()
+    }
+}
