@@ -501,6 +501,9 @@ pub(crate) struct RunOptions {
     /// Sweep a parameter: PATH=v1,v2,... or PATH=FROM:TO:COUNT[:log]; may be given several times
     #[arg(long = "sweep", value_name = "PATH=VALUES", conflicts_with = "resume")]
     pub(crate) sweeps: Vec<String>,
+    /// Differentiate every column by these numbers too: paths, or names of parameters; may be given several times
+    #[arg(long, value_name = "PATH,PATH", conflicts_with = "resume")]
+    pub(crate) sensitivity: Vec<String>,
     /// Folder of the results [default: results/<file stem>]
     #[arg(long, value_name = "DIR", conflicts_with = "resume")]
     pub(crate) out: Option<PathBuf>,
@@ -561,8 +564,11 @@ pub(crate) struct CheckOptions {
     /// Sweep a parameter: PATH=v1,v2,... or PATH=FROM:TO:COUNT[:log]; may be given several times
     #[arg(long = "sweep", value_name = "PATH=VALUES")]
     pub(crate) sweeps: Vec<String>,
+    /// Differentiate every column by these numbers too: paths, or names of parameters; may be given several times
+    #[arg(long, value_name = "PATH,PATH")]
+    pub(crate) sensitivity: Vec<String>,
     /// Print the JSON schema of scenario files, with which editors complete them
-    #[arg(long, conflicts_with_all = ["file", "overrides", "sweeps", "quiet"])]
+    #[arg(long, conflicts_with_all = ["file", "overrides", "sweeps", "sensitivity", "quiet"])]
     pub(crate) schema: bool,
     /// Print nothing but warnings and errors
     #[arg(long, short)]

@@ -24,6 +24,9 @@ pub struct Asked {
     pub overrides: Vec<String>,
     /// Parameters that are swept, `PATH=v1,v2,…` ([`Scenario::sweep`]).
     pub sweeps: Vec<String>,
+    /// By what it is differentiated besides, `PATH,PATH` ([`Scenario::differentiate`]).
+    #[serde(default)]
+    pub sensitivity: Vec<String>,
 }
 
 /// A scenario that was looked through: its cases, the first of them, and the columns.
@@ -50,13 +53,13 @@ impl Asked {
         let whole = file.canonicalize().unwrap_or_else(|_| file.to_owned());
         let folder = whole.parent().unwrap_or(Path::new("")).to_owned();
         let text = scenario.source().text.to_string();
-        Ok(Self { name, file: Some(whole), folder, text, overrides: Vec::new(), sweeps: Vec::new() })
+        Ok(Self { name, file: Some(whole), ..Self::text(text, "", folder) })
     }
 
     /// A text that messages call `name`; paths in it are relative to `folder`.
     pub fn text(text: impl Into<String>, name: impl Into<String>, folder: impl Into<PathBuf>) -> Self {
-        let (overrides, sweeps) = (Vec::new(), Vec::new());
-        Self { name: name.into(), file: None, folder: folder.into(), text: text.into(), overrides, sweeps }
+        let (overrides, sweeps, sensitivity) = (Vec::new(), Vec::new(), Vec::new());
+        Self { name: name.into(), file: None, folder: folder.into(), text: text.into(), overrides, sweeps, sensitivity }
     }
 
     /// The scenario, with everything set and swept.
@@ -71,12 +74,18 @@ impl Asked {
         let mut scenario = Scenario::parse(&self.text, &*self.name, folder)?;
         self.overrides.iter().try_for_each(|assignment| scenario.set(assignment))?;
         self.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
+        self.sensitivity.iter().try_for_each(|paths| scenario.differentiate(paths))?;
         Ok(scenario)
     }
 
     /// What run.json says of it.
     pub(crate) fn record(&self) -> Value {
-        json!({ "name": self.name, "text": self.text, "set": self.overrides, "sweep": self.sweeps })
+        let mut record =
+            json!({ "name": self.name, "text": self.text, "set": self.overrides, "sweep": self.sweeps });
+        if !self.sensitivity.is_empty() {
+            record["sensitivity"] = json!(self.sensitivity);
+        }
+        record
     }
 
     /// Whether its file says something else by now; one that is gone does not matter.

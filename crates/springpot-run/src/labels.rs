@@ -30,9 +30,21 @@ pub fn quantity(name: &str) -> String {
         Quantity::Acceleration(name) => letter(name, "\u{308}"),
         Quantity::Energy(EnergyQuantity::Actuators) => Some("work of the actuators".to_owned()),
         Quantity::Energy(EnergyQuantity::Joints) => Some("energy lost in joints".to_owned()),
+        Quantity::Derivative(name) => derivative(name),
         _ => None,
     };
     own.unwrap_or_else(|| quantity.symbol())
+}
+
+/// ∂F/∂α of strut.
+fn derivative(name: &str) -> Option<String> {
+    let (of, by) = Quantity::of_derivative(name)?;
+    let symbol = quantity(of);
+    let (symbol, whose) = symbol.split_once(" of ").unwrap_or((&symbol, ""));
+    // The letter behind the words: "force F".
+    let symbol = symbol.rsplit(' ').next()?;
+    let whose = if whose.is_empty() { String::new() } else { format!(" of {whose}") };
+    Some(format!("∂{symbol}/∂{}{whose}", parameter(by)))
 }
 
 /// What several columns have in common: "force F", "coordinate q"; of different quantities what their unit measures.
@@ -75,7 +87,7 @@ fn kind(name: &str) -> Option<String> {
             _,
             ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input | ElementQuantity::Heat,
         ) => "energy".into(),
-        Quantity::Time | Quantity::GripperError | Quantity::Element(..) => {
+        Quantity::Time | Quantity::GripperError | Quantity::Element(..) | Quantity::Derivative(_) => {
             let symbol = quantity.symbol();
             symbol.split_once(" of ").map_or(symbol.clone(), |(kind, _)| kind.into())
         }
@@ -166,6 +178,8 @@ mod tests {
         assert_eq!(axis(&column("t", "s"), None), "time t, s");
         assert_eq!(axis(&column("a.q12", "rad/s^2"), None), "q\u{308}₁₂, rad/s²");
         assert_eq!(axis(&column("arm.derivative", "m/s^alpha"), None), "Dᵅ x of arm, m/sᵅ");
+        assert_eq!(axis(&column("d(strut.force)/d(alpha)", "N"), None), "∂F/∂α of strut, N");
+        assert_eq!(axis(&column("d(q.q2)/d(element.strut.c)", "rad/(N*s/m)"), None), "∂q₂/∂c, rad/(N·s/m)");
         assert_eq!(axis(&column("strut.Q.elbow", "N*m"), None), "Q at elbow of strut, N·m");
         assert_eq!(written_unit("25 degC"), "25 °C");
         let written =

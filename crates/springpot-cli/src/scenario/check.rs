@@ -10,7 +10,7 @@ use springpot::system::{RowTimes, Stop};
 use springpot_run::numbers::{count, short};
 use springpot_run::sweep::Layout;
 use springpot_run::{Depth, Survey, Trouble};
-use springpot_scenario::{Cases, ElementPlan, Plan, Refusals, ShapePlan, SignalPlan, json_schema};
+use springpot_scenario::{Cases, ElementPlan, ParameterPlan, Plan, Refusals, ShapePlan, SignalPlan, json_schema};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -41,6 +41,7 @@ pub(crate) fn check(options: &CheckOptions, catalog: &Catalog) -> Ending {
 fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<Ending, Refusals> {
     let mut scenario = diagnostic::scenario(file, &options.overrides)?;
     options.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
+    options.sensitivity.iter().try_for_each(|paths| scenario.differentiate(paths))?;
     let cases = scenario.cases(catalog)?;
     let plan = cases.plan(0)?;
     let system = plan.system();
@@ -102,6 +103,9 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
     for axis in 0..cases.axis_count() {
         line("", &swept::words(cases, axis));
     }
+    for (k, words) in parameters_of(plan).into_iter().enumerate() {
+        line(if k == 0 { "by" } else { "" }, &words);
+    }
     let figures: Vec<&str> = cases.figures().iter().map(|figure| figure.name.as_str()).collect();
     if !figures.is_empty() {
         line("figures", &figures.join(", "));
@@ -136,6 +140,26 @@ fn text(cases: &Cases, plan: &Plan, switches: u64, survey: &Survey) -> String {
         line("element", &format!("{}: not enabled", absent.element.name));
     }
     text
+}
+
+/// By what the run is differentiated, and what of it.
+fn parameters_of(plan: &Plan) -> Vec<String> {
+    let Some(sensitivity) = &plan.sensitivity else { return Vec::new() };
+    let parameter = |parameter: &ParameterPlan| {
+        let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+        let path = parameter.paths.join(", ");
+        let path = if path == parameter.name { String::new() } else { format!(" ({path})") };
+        format!("{}{path} = {}{unit}", parameter.name, short(parameter.value))
+    };
+    let mut words: Vec<String> = sensitivity.parameters.iter().map(parameter).collect();
+    if sensitivity.is_asked() {
+        words.push(count(sensitivity.columns.len(), "derivative", "derivatives"));
+    }
+    let left_out = &sensitivity.left_out;
+    if !left_out.is_empty() {
+        words.push(format!("no derivative is known of {}", left_out.join(", ")));
+    }
+    words
 }
 
 /// What temperature does to an element whose lengths are in `unit`.

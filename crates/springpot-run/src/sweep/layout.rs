@@ -3,6 +3,7 @@
 use super::curve::most_points;
 use super::wanted::{FigureData, Total, Wanted, WantedCurve, WantedMetric, WantedTotal};
 use crate::{figures, metrics};
+use springpot::observe::Quantity;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Plan, Refusals};
 
@@ -37,6 +38,9 @@ impl Layout {
                 for glob in globs {
                     selected.extend(wanted.found(glob)?);
                 }
+                // Derivatives stand behind all else, whatever is asked for.
+                let columns = wanted.columns().iter().enumerate();
+                selected.extend(columns.filter(|(_, column)| is_derivative(column)).map(|(k, _)| k));
                 selected.sort_unstable();
                 selected.dedup();
                 selected
@@ -150,4 +154,9 @@ impl Layout {
     pub fn figures(&self) -> &[FigureData] {
         &self.figures
     }
+}
+
+/// Whether a column is the derivative of another one.
+fn is_derivative(column: &Column) -> bool {
+    Quantity::of_derivative(&column.name).is_some()
 }

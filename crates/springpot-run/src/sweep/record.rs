@@ -5,6 +5,7 @@ use super::{CaseResult, Happened, MAX_LISTED, Outcome};
 use crate::record::MOST_SHOWN;
 use crate::table::Format;
 use serde_json::{Map, Value, json};
+use springpot::observe::Quantity;
 use springpot_scenario::{Cases, Plan, SweptValue};
 use std::ops::Range;
 
@@ -49,6 +50,7 @@ impl Outcome {
         });
         match record {
             Value::Object(mut map) => {
+                map.extend(sensitivity(plan));
                 if !layout.events().is_empty() {
                     map.insert("events".to_owned(), counts(layout, &self.events));
                 }
@@ -85,6 +87,24 @@ pub(crate) fn begun(cases: &Cases, plan: &Plan, layout: &Layout, range: Range<us
         Value::Object(map) => map,
         _ => unreachable!("the literal above is an object"),
     }
+}
+
+/// By what the first case is differentiated, and what; nothing where it is not.
+fn sensitivity(plan: &Plan) -> Option<(String, Value)> {
+    let sensitivity = plan.sensitivity.as_ref().filter(|sensitivity| sensitivity.is_asked())?;
+    let parameters = sensitivity.parameters.iter().map(|parameter| {
+        json!({
+            "name": parameter.name, "path": parameter.paths.join(", "), "value": parameter.value,
+            "unit": parameter.unit, "typical": parameter.typical,
+        })
+    });
+    let columns = sensitivity.columns.iter().map(|column| {
+        let (of, by) = Quantity::of_derivative(&column.name).unwrap_or_default();
+        json!({ "name": column.name, "column": of, "parameter": by, "unit": column.unit })
+    });
+    let (parameters, columns): (Value, Value) = (parameters.collect(), columns.collect());
+    let record = json!({ "parameters": parameters, "columns": columns, "lost": [], "method": "forward" });
+    Some(("sensitivity".to_owned(), record))
 }
 
 /// Swept values of a case by path.

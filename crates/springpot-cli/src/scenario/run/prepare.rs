@@ -61,7 +61,8 @@ pub(super) fn prepare(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> R
             let holder = format!("springpot run {}", file.display());
             let with = Surroundings { catalog, disk, stop, holder: &holder };
             let (overrides, sweeps) = (options.overrides.clone(), options.sweeps.clone());
-            let asked = Asked { overrides, sweeps, ..Asked::read(file)? };
+            let sensitivity = options.sensitivity.clone();
+            let asked = Asked { overrides, sweeps, sensitivity, ..Asked::read(file)? };
             let new = NewRun {
                 asked,
                 out: options.out.clone(),

@@ -1,0 +1,316 @@
+//! Derivatives by the numbers of a file: from paths to columns, against differences of whole runs, and what is refused.
+
+use springpot::Simulation;
+use springpot::law::Catalog;
+use springpot::observe::Quantity;
+use springpot_scenario::{Plan, Refusals, Scenario};
+
+/// A robot of three bodies with a line, a cable, a bushing and a law on a joint, numbers of all kinds in its file.
+const ARM: &str = r#"
+[constants]
+f = "0.4 Hz"
+k_0 = 80
+k_1 = { expression = "k_0 + 50*f" }
+[robot]
+gravity = [0.3, 0, -9.81]
+gripper = { body = "three", point = [0.1, 0.2, 0.05] }
+[[robot.body]]
+name = "one"
+joint = { name = "q1", kind = "revolute", axis = [0.1, 0.2, 1], origin = [0, 0, 0.3], rpy = [0.1, 0.2, 0.3], damping = 0.3 }
+mass = 3
+com = [0.02, 0.1, 0.05]
+inertia = { xx = 0.03, yy = 0.02, zz = 0.04, xy = 0.002 }
+[[robot.body]]
+name = "link"
+joint = { name = "fixed", kind = "fixed", origin = [0, 0.05, 0.1], rpy = [0, 0.1, 0] }
+mass = 0.4
+com = [0, 0.02, 0]
+[[robot.body]]
+name = "two"
+joint = { name = "q2", kind = "revolute", axis = [1, 0, 0.1], origin = [0, 0.1, 0.1], friction = { force = 0.1, speed = 0.5 } }
+mass = 2
+com = [0, 0.2, 0.03]
+inertia = { xx = 0.02, yy = 0.01, zz = 0.02 }
+[[robot.body]]
+name = "three"
+joint = { name = "q3", kind = "prismatic", axis = [0.2, 1, 0], origin = [0, 0.3, 0], armature = 0.2 }
+mass = 1
+com = [0.01, 0.15, 0]
+inertia = { xx = 0.01, yy = 0.004, zz = 0.01 }
+[[element]]
+name = "strut"
+from = { body = "world", point = [0.05, 0.5, 0] }
+to = { body = "two", point = [0, 0.1, 0.05] }
+rest_length = "start"
+law = "kelvin-voigt"
+parameters = { k = { expression = "k_1" }, c = 15 }
+[[element]]
+name = "tendon"
+from = { body = "one", point = [0.1, 0, 0] }
+via = [{ body = "two", point = [0.1, 0.05, 0.1] }]
+to = { body = "three", point = [0.1, 0.1, 0.05] }
+rest_length = 0.2
+law = "kelvin-voigt"
+parameters = { k = 40, c = 5 }
+[[element]]
+name = "mount"
+from = { body = "one", point = [0, 0.1, 0.2], rpy = [0.1, 0, 0.2] }
+to = { body = "two", point = [0, 0.05, 0.02], rpy = [0, 0.1, 0] }
+[element.bushing]
+x = { law = "kelvin-voigt", parameters = { k = 30, c = 2 }, rest = 0.01 }
+rx = { law = "kelvin-voigt", parameters = { k = 4, c = 0.3 } }
+[[element]]
+name = "slide"
+joint = "q3"
+rest = 0.05
+law = "kelvin-voigt"
+parameters = { k = 90, c = 3 }
+[motion]
+kind = "forward"
+start = { q = { q1 = 0.3, q2 = 0.4, q3 = 0.05 }, v = { q2 = -0.3 } }
+torque = { q1 = 0.4, q2 = "0.5*cos(2*pi*f*t)" }
+[time]
+end = 0.4
+output_step = 0.1
+[solver]
+rtol = 1e-10
+memory_rtol = 1e-12
+"#;
+
+const COLUMNS: [&str; 9] = [
+    "q.q1", "q.q2", "q.q3", "v.q2", "strut.force", "tendon.length", "mount.rx.force", "slide.force", "gripper.y",
+];
+
+/// Times that are compared, none of which a step ends on.
+const ROWS: [f64; 2] = [0.1734, 0.3821];
+
+fn scenario(text: &str) -> Scenario {
+    Scenario::parse(text, "arm.toml", "").unwrap()
+}
+
+fn plan(scenario: &Scenario) -> Result<Plan, Refusals> {
+    scenario.cases(&Catalog::standard())?.plan(0)
+}
+
+fn said(scenario: &Scenario) -> String {
+    plan(scenario).map(|_| ()).unwrap_err().to_string()
+}
+
+/// The columns called `names` at [`ROWS`].
+fn rows(plan: &Plan, names: &[String]) -> Vec<Vec<f64>> {
+    let system = plan.system();
+    let observables = system.observables();
+    let find = |name: &String| {
+        let found = observables.quantities().into_iter().find(|of| observables.named(*of).to_string() == *name);
+        found.unwrap_or_else(|| panic!("no column {name}"))
+    };
+    let quantities: Vec<Quantity> = names.iter().map(find).collect();
+    let mut simulation = Simulation::new(system, plan.settings.clone()).unwrap();
+    let row = |t: f64| {
+        while simulation.t() < t {
+            simulation.step().unwrap();
+        }
+        let snapshot = simulation.interpolate(t).unwrap();
+        quantities.iter().map(|quantity| snapshot.value(*quantity)).collect()
+    };
+    ROWS.map(row).to_vec()
+}
+
+/// Compares derivatives of all columns by the numbers at these paths with differences of whole runs.
+fn compare(text: &str, paths: &[(&str, f64)]) {
+    let mut asked = scenario(text);
+    let all: Vec<&str> = paths.iter().map(|(path, _)| *path).collect();
+    asked.differentiate(&all.join(",")).unwrap();
+    let asked = plan(&asked).unwrap_or_else(|refusals| panic!("{refusals}"));
+    let told: Vec<String> =
+        COLUMNS.iter().flat_map(|column| all.iter().map(move |path| format!("d({column})/d({path})"))).collect();
+    let found = rows(&asked, &told);
+    let names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
+    for (p, (path, step)) in paths.iter().enumerate() {
+        let value = asked.sensitivity.as_ref().unwrap().parameters[p].value;
+        let at = |steps: f64| {
+            let mut moved = scenario(text);
+            moved.set(&format!("{path}={:?}", value + steps * step)).unwrap();
+            rows(&plan(&moved).unwrap_or_else(|refusals| panic!("{refusals}")), &names)
+        };
+        let [a, b, c, d] = [1.0, -1.0, 2.0, -2.0].map(at);
+        for (k, column) in COLUMNS.iter().enumerate() {
+            let truth = |r: usize| (8.0 * (a[r][k] - b[r][k]) - (c[r][k] - d[r][k])) / (12.0 * step);
+            let size = (0..ROWS.len()).map(|r| truth(r).abs()).fold(1e-4, f64::max);
+            for r in 0..ROWS.len() {
+                let of = found[r][k * paths.len() + p];
+                let miss = (of - truth(r)).abs() / size;
+                assert!(miss < 2e-6, "d({column})/d({path}) at {}: {of} for {}, {miss:e}", ROWS[r], truth(r));
+            }
+        }
+    }
+}
+
+#[test]
+fn laws_starts_and_forces() {
+    compare(
+        ARM,
+        &[
+            ("element.strut.c", 0.05),
+            ("element.mount.rx.k", 0.02),
+            ("element.slide.rest", 1e-3),
+            ("element.mount.x.rest", 1e-3),
+            ("motion.start.q.q1", 2e-3),
+            ("motion.start.v.q3", 5e-3),
+            ("motion.torque.q1", 5e-3),
+            ("robot.body.one.joint.damping", 5e-3),
+            ("robot.body.two.joint.friction.force", 5e-3),
+            ("robot.gravity.0", 1e-2),
+        ],
+    );
+}
+
+#[test]
+fn constants_through_expressions_and_signals() {
+    compare(ARM, &[("constants.f", 2e-3), ("constants.k_0", 0.2)]);
+}
+
+#[test]
+fn masses_and_inertias() {
+    compare(
+        ARM,
+        &[
+            ("robot.body.two.mass", 5e-3),
+            ("robot.body.link.mass", 5e-3),
+            ("robot.body.two.com.1", 1e-3),
+            ("robot.body.link.com.2", 1e-3),
+            ("robot.body.one.inertia.xy", 5e-5),
+            ("robot.body.two.joint.armature", 2e-3),
+        ],
+    );
+}
+
+#[test]
+fn geometry() {
+    compare(
+        ARM,
+        &[
+            ("robot.body.two.joint.origin.1", 1e-3),
+            ("robot.body.link.joint.rpy.1", 2e-3),
+            ("robot.body.one.joint.rpy.0", 2e-3),
+            ("robot.body.one.joint.axis.1", 2e-3),
+            ("robot.body.three.joint.axis.0", 2e-3),
+            ("element.strut.from.point.1", 1e-3),
+            ("element.tendon.via.0.point.2", 5e-4),
+            ("element.mount.to.rpy.1", 2e-3),
+            ("element.mount.from.point.0", 1e-3),
+            ("robot.gripper.point.0", 1e-3),
+        ],
+    );
+}
+
+#[test]
+fn parameters_have_names_units_and_add_up() {
+    let text = format!(
+        "{ARM}\n[[parameter]]\nname = \"stiffness\"\npath = [\"element.tendon.k\", \"element.slide.k\"]\ntypical = \"1 kN/m\"\n\
+         [[parameter]]\npath = \"motion.start.q.q1\"\nbounds = [\"0 deg\", \"90 deg\"]\n\
+         [sensitivity]\nof = [\"q.*\", \"tendon.force\"]\ncontrol = false\n"
+    );
+    let plan = plan(&scenario(&text)).unwrap_or_else(|refusals| panic!("{refusals}"));
+    let sensitivity = plan.sensitivity.as_ref().unwrap();
+    let parameters: Vec<_> =
+        sensitivity.parameters.iter().map(|one| (&*one.name, one.value, &*one.unit, one.typical)).collect();
+    assert_eq!(parameters, [("stiffness", 40.0, "N/m", 1000.0), ("motion.start.q.q1", 0.3, "rad", 0.3)]);
+    let names: Vec<(&str, &str)> = sensitivity.columns.iter().map(|column| (&*column.name, &*column.unit)).collect();
+    assert_eq!(names[0], ("d(q.q1)/d(stiffness)", "rad/(N/m)"));
+    assert_eq!(names[1], ("d(q.q1)/d(motion.start.q.q1)", "rad/rad"));
+    assert_eq!(names.last(), Some(&("d(tendon.force)/d(motion.start.q.q1)", "N/rad")));
+    assert_eq!(names.len(), 8);
+    let columns = plan.columns();
+    assert!(columns[columns.len() - 8..].iter().zip(&names).all(|(column, (name, _))| column.name == *name));
+    // Both move by one number.
+    let found = rows(&plan, &[names[0].0.to_owned()]);
+    let mut each = scenario(ARM);
+    each.differentiate("element.tendon.k,element.slide.k").unwrap();
+    let each = self::plan(&each).unwrap();
+    let parts = rows(&each, &["d(q.q1)/d(element.tendon.k)".to_owned(), "d(q.q1)/d(element.slide.k)".to_owned()]);
+    for (sum, parts) in found.iter().zip(parts) {
+        assert!((sum[0] - parts[0] - parts[1]).abs() < 1e-12 * (1.0 + sum[0].abs()));
+    }
+}
+
+#[test]
+fn derivatives_without_control_change_nothing_else() {
+    let names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
+    let text = format!("{ARM}\n[sensitivity]\nby = [\"element.strut.c\"]\ncontrol = false\n");
+    assert_eq!(rows(&plan(&scenario(&text)).unwrap(), &names), rows(&plan(&scenario(ARM)).unwrap(), &names));
+}
+
+#[test]
+fn what_cannot_be_a_parameter_is_refused_by_its_path() {
+    for (path, words) in [
+        ("time.end", "time.end cannot be a parameter: rows say when the run is looked at"),
+        ("solver.rtol", "solver.rtol cannot be a parameter: it says how exactly is computed"),
+        ("element.strut.k", "it is an expression"),
+        ("element.strut.k", "it follows from constants.k_1"),
+        ("motion.torque.q2", "it follows from constants.f"),
+        ("element.strut.rest_length", "element.strut.rest_length cannot be a parameter: it is the text \"start\""),
+        ("element.strut.law", "it is the text \"kelvin-voigt\""),
+        ("element.strut.enabled", "element.strut.enabled cannot be a parameter"),
+        ("robot.body.two.com", "as in robot.body.two.com.0"),
+        ("robot.body.two.joint.friction", "as in robot.body.two.joint.friction.force"),
+        ("robot.body.two.joint.friction.speed", "robot.body.two.joint.friction.speed cannot be a parameter"),
+        ("robot.body.four.mass", "no robot.body is named \"four\""),
+        ("element.strut.cc", "did you mean"),
+        ("constants.g", "there is no such constant"),
+        ("element.tendon.k,element.tendon.k", "element.tendon.k is a parameter twice"),
+    ] {
+        let mut asked = scenario(ARM);
+        asked.differentiate(path).unwrap();
+        let said = said(&asked);
+        assert!(said.contains(words) && said.starts_with("--sensitivity:1:"), "{path}: {said}");
+    }
+    let with = |tables: &str| said(&scenario(&format!("{ARM}\n{tables}")));
+    for (tables, words) in [
+        ("[sensitivity]", "[sensitivity] has no parameter"),
+        ("[sensitivity]\nby = []", "[sensitivity] has no parameter"),
+        ("[sensitivity]\nby = \"element.tendon.k\"\nof = \"q.q9\"", "\"q.q9\" matches no column"),
+        ("[sensitivity]\nby = \"element.tendon.k\"\nmethod = \"adjoint\"", "no run knows yet"),
+        ("[sensitivity]\nby = \"element.tendon.k\"\nhow = 1", "unknown key `how`"),
+        ("[[parameter]]\nname = \"k\"", "has no `path`"),
+        ("[[parameter]]\npath = \"element.tendon.k\"\nbounds = [60, 50]", "goes from 60 to 50"),
+        ("[[parameter]]\npath = \"element.tendon.k\"\nbounds = [50, 60]", "40 is outside 50 … 60"),
+        ("[[parameter]]\npath = \"element.tendon.k\"\nbounds = [\"1 N\", \"2 N\"]", "expected N/m"),
+        ("[[parameter]]\npath = \"element.tendon.k\"\nscale = \"square\"", "no scale"),
+        ("[[parameter]]\npath = \"element.tendon.k\"\nprior = { mean = 40, sd = 0 }", "must be positive"),
+        (
+            "[sensitivity]\nby = \"element.tendon.k\"\n[[sweep]]\nparameter = \"element.tendon.k\"\nvalues = [1, 2]",
+            "element.tendon.k cannot be a parameter: it is swept",
+        ),
+    ] {
+        let said = with(tables);
+        assert!(said.contains(words), "{tables}: {said}");
+    }
+}
+
+#[test]
+fn what_the_engine_does_not_know_is_refused_by_name() {
+    let text = ARM.replace(
+        "torque = { q1 = 0.4, q2 = \"0.5*cos(2*pi*f*t)\" }",
+        "controller = { kind = \"pd\", kp = 20, kd = 2, reference = { q1 = 0, q2 = 0, q3 = 0 } }",
+    );
+    let mut asked = scenario(&text);
+    asked.differentiate("element.tendon.k").unwrap();
+    let said = said(&asked);
+    assert!(said.contains("the run cannot be differentiated: no derivative by a parameter is known of"), "{said}");
+}
+
+#[test]
+fn an_order_at_its_end_needs_another_memory() {
+    for alpha in ["0", "1", "0.5"] {
+        let text = ARM.replace("law = \"kelvin-voigt\"\nparameters = { k = 40, c = 5 }", &format!("law = \"springpot\"\nparameters = {{ c = 5, alpha = {alpha} }}"));
+        let mut asked = scenario(&text);
+        asked.differentiate("element.tendon.alpha").unwrap();
+        match plan(&asked) {
+            Err(refusals) if alpha != "0.5" => assert!(refusals.to_string().contains("start at 0.01 or 0.99"), "{refusals}"),
+            // Whatever else the leaf lacks.
+            Err(refusals) => assert!(!refusals.to_string().contains("start at"), "{refusals}"),
+            Ok(_) => assert_eq!(alpha, "0.5"),
+        }
+    }
+}
