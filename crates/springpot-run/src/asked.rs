@@ -80,8 +80,7 @@ impl Asked {
 
     /// What run.json says of it.
     pub(crate) fn record(&self) -> Value {
-        let mut record =
-            json!({ "name": self.name, "text": self.text, "set": self.overrides, "sweep": self.sweeps });
+        let mut record = json!({ "name": self.name, "text": self.text, "set": self.overrides, "sweep": self.sweeps });
         if !self.sensitivity.is_empty() {
             record["sensitivity"] = json!(self.sensitivity);
         }

@@ -45,6 +45,7 @@ pages! {
     own_law: "how-to/own-law.md";
     own_controller: "how-to/own-controller.md";
     look: "how-to/look.md";
+    gradients: "how-to/gradients.md";
     papers: "how-to/papers.md";
     cluster: "how-to/cluster.md";
     engines: "ENGINES.md";
@@ -64,6 +65,7 @@ pages! {
     scenario_metrics: "scenario/metrics.md";
     scenario_time: "scenario/time.md";
     scenario_sweep: "scenario/sweep.md";
+    scenario_sensitivity: "scenario/sensitivity.md";
     scenario_figures: "scenario/figures.md";
     scenario_results: "scenario/results.md";
     keys: "reference/keys.md";

@@ -14,6 +14,6 @@ pub mod text;
 
 pub use format::Format;
 pub use number::{push_fields, push_number};
-pub use statistics::{Statistics, Totals};
 pub use springpot_scenario::matches;
+pub use statistics::{Statistics, Totals};
 pub use text::{CUT, cut, cut_field, push_text, quoted};

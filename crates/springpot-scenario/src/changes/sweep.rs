@@ -230,7 +230,8 @@ fn targets(field: &Field<'_>, document: &Node) -> Read<Vec<Target>> {
     all(fields.iter().map(|field| {
         let target = path::resolve(field.ctx, document, field.text()?, &field.node.place)?;
         match target.ends() {
-            ("sweep" | "figure" | "output" | "title" | "parameter" | "sensitivity", _) | ("robot" | "element" | "metric", "name") => {
+            ("sweep" | "figure" | "output" | "title" | "parameter" | "sensitivity", _)
+            | ("robot" | "element" | "metric", "name") => {
                 let message = format!("is {:?}, which cannot be swept", shorten(&target.written));
                 let help = "names, figures and outputs are the same in every case".to_owned();
                 Err(field.refuse(RefusalKind::Rule, message, Some(help)))

@@ -20,19 +20,19 @@ pub(crate) static PARAMETER: Keys = Keys {
             Need::Written("path = \"element.NAME.PARAMETER\""),
             "Path of the number such as \"element.NAME.alpha\", or paths that take the same value.",
         ),
-        key(
-            "bounds",
-            Shape::SweptNumbers(2, 2),
-            Need::Said("what its place takes"),
-            "Smallest and largest value.",
-        ),
+        key("bounds", Shape::SweptNumbers(2, 2), Need::Said("what its place takes"), "Smallest and largest value."),
         key(
             "scale",
             Shape::Words(|| vec!["log", "logit", "linear"]),
             Need::Said("by its bounds"),
             "In which variable it moves: by default `\"log\"` from 0 on, `\"logit\"` between two bounds, else `\"linear\"`.",
         ),
-        key("start", Shape::SweptNumbers(1, MAX_STARTS), Need::Said("the value of the file"), "Where a search begins: one value, or several."),
+        key(
+            "start",
+            Shape::SweptNumbers(1, MAX_STARTS),
+            Need::Said("the value of the file"),
+            "Where a search begins: one value, or several.",
+        ),
         key(
             "typical",
             Shape::SweptNumber,

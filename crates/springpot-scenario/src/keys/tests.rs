@@ -189,7 +189,7 @@ fn the_pages_have_the_same_keys() {
         |kind: MotionKind| -> Vec<&'static Key> { MOTION.of(kind.name()).filter(|key| !key.only.is_empty()).collect() };
     let all = |keys: &'static Keys| -> Vec<&'static Key> { keys.keys.iter().collect() };
     // The two keys of prescribed joints stand in sentences.
-    let sections: [(Places, Vec<&'static Key>); 18] = [
+    let sections: [(Places, Vec<&'static Key>); 20] = [
         (&[("robot", "[robot]"), ("urdf", "Keys")], all(&ROBOT)),
         (&[("robot", "Bodies")], all(&BODY)),
         (&[("robot", "Joints")], all(&JOINT)),
@@ -207,6 +207,8 @@ fn the_pages_have_the_same_keys() {
         (&[("time", "[time]")], all(&TIME)),
         (&[("time", "[solver]")], all(&SOLVER)),
         (&[("sweep", "[[sweep]]")], all(&SWEEP)),
+        (&[("sensitivity", "[[parameter]]")], all(&PARAMETER)),
+        (&[("sensitivity", "[sensitivity]")], all(&SENSITIVITY)),
         (&[("figures", "[[figure]]")], all(&FIGURE)),
     ];
     let mut compared = 0;
@@ -253,6 +255,7 @@ fn the_pages_have_the_same_keys() {
         &ACTION,
         &END_STOPS,
         &REFERENCE,
+        &PRIOR,
     ] {
         for key in keys.keys {
             let named = [
@@ -291,6 +294,8 @@ fn the_index_leads_to_every_key() {
         ("## [time]", &[&TIME, &TIMES]),
         ("## [solver]", &[&SOLVER]),
         ("## [[sweep]]", &[&SWEEP, &SPAN]),
+        ("## [[parameter]]", &[&PARAMETER, &PRIOR]),
+        ("## [sensitivity]", &[&SENSITIVITY]),
         ("## [[figure]]", &[&FIGURE, &POINTS]),
         ("## [output]", &[&OUTPUT]),
     ] {

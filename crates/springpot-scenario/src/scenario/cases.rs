@@ -335,7 +335,9 @@ impl Cases {
 
     /// Refuses what the engine knows no derivative of in the first case.
     fn try_sensitivity(&self, first: &Plan) -> Result<(), Refusals> {
-        let Some(asked) = self.sensitivity.as_ref().filter(|_| first.sensitivity.as_ref().is_some_and(|plan| plan.is_asked())) else {
+        let Some(asked) =
+            self.sensitivity.as_ref().filter(|_| first.sensitivity.as_ref().is_some_and(|plan| plan.is_asked()))
+        else {
             return Ok(());
         };
         // What else keeps it from starting is told by the run.

@@ -2,7 +2,10 @@
 
 use crate::figures::FIGURE;
 use crate::keys::MOTION;
-use crate::keys::{ELEMENT, EVENT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER, SWEEP, Shape, TIME, key};
+use crate::keys::{
+    ELEMENT, EVENT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER, SWEEP, Shape, TIME,
+    key,
+};
 
 /// The whole scenario.
 pub(crate) static SCENARIO: Keys = Keys {

@@ -92,7 +92,14 @@ impl Scenario {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let source = Arc::new(Source { name, text: text.into() });
         let document = Node::document(&source)?;
-        Ok(Self { document, source, folder: folder.into(), overrides: Vec::new(), sweeps: Vec::new(), sensitivity: Vec::new() })
+        Ok(Self {
+            document,
+            source,
+            folder: folder.into(),
+            overrides: Vec::new(),
+            sweeps: Vec::new(),
+            sensitivity: Vec::new(),
+        })
     }
 
     /// The text as written.

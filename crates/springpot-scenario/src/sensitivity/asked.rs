@@ -80,7 +80,10 @@ pub(crate) fn read(root: &Table<'_>, axes: &[Axis], more: &[More]) -> Read<Optio
     let more = more.iter().map(|more| one(ctx, root.node, &blocks, &more.written, &more.place));
     asked.by.extend(all(more.collect::<Vec<_>>())?);
     if asked.is_asked && asked.by.is_empty() {
-        let place = written.map_or_else(|| root.get("sensitivity").map(|field| field.node.place.clone()), |field| Some(field.node.place.clone()));
+        let place = written.map_or_else(
+            || root.get("sensitivity").map(|field| field.node.place.clone()),
+            |field| Some(field.node.place.clone()),
+        );
         let message = "[sensitivity] has no parameter: nothing says by what is differentiated";
         let refusal = place.as_ref().unwrap_or(&root.node.place).refuse(RefusalKind::Missing, message);
         let help = "write by = [\"element.NAME.PARAMETER\"], or a [[parameter]] with such a path";
@@ -104,7 +107,8 @@ fn apart(ctx: &Context<'_>, by: &[By]) -> Read<()> {
     let all: Vec<(&By, &Target)> = by.iter().flat_map(|by| by.targets.iter().map(move |target| (by, target))).collect();
     for (k, (own, target)) in all.iter().enumerate() {
         if let Some((earlier, _)) = all[..k].iter().find(|(_, earlier)| earlier.overlaps(target)) {
-            let message = format!("{} is a parameter twice: of {:?} and of {:?}", target.written, earlier.name, own.name);
+            let message =
+                format!("{} is a parameter twice: of {:?} and of {:?}", target.written, earlier.name, own.name);
             let refusal = target.place.refuse(RefusalKind::Rule, message);
             return Err(ctx.refuse(refusal.help("leave one of them out")));
         }

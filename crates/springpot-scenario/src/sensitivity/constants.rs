@@ -12,8 +12,25 @@ const SILENT: [&str; 10] =
 
 /// Keys whose texts are no expressions.
 const TEXTS: [&str; 19] = [
-    "name", "body", "parent", "joint", "kind", "law", "network", "derivative", "scheme", "past", "unit", "csv", "column",
-    "time", "time_unit", "separator", "outside", "urdf", "direction",
+    "name",
+    "body",
+    "parent",
+    "joint",
+    "kind",
+    "law",
+    "network",
+    "derivative",
+    "scheme",
+    "past",
+    "unit",
+    "csv",
+    "column",
+    "time",
+    "time_unit",
+    "separator",
+    "outside",
+    "urdf",
+    "direction",
 ];
 
 /// Name, value and slope of every constant.
@@ -74,7 +91,9 @@ fn below(
                 }
                 return;
             }
-            for entry in entries.iter().filter(|entry| !TEXTS.contains(&entry.key.as_str()) || entry.node.text().is_none()) {
+            for entry in
+                entries.iter().filter(|entry| !TEXTS.contains(&entry.key.as_str()) || entry.node.text().is_none())
+            {
                 walked.push(Step::Key(entry.key.clone()));
                 below(&entry.node, walked, constants, found);
                 walked.pop();

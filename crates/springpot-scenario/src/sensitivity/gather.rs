@@ -57,7 +57,13 @@ impl Scene<'_> {
     /// How the first or the last frame of element `e` is turned.
     pub(super) fn rpy(&self, e: usize, is_first: bool) -> [f64; 3] {
         match &self.plan.elements[e].shape {
-            ShapePlan::Bushing { from, to, .. } => if is_first { from.rpy } else { to.rpy },
+            ShapePlan::Bushing { from, to, .. } => {
+                if is_first {
+                    from.rpy
+                } else {
+                    to.rpy
+                }
+            }
             _ => [0.0; 3],
         }
     }

@@ -126,7 +126,8 @@ fn parameter(root: &Table<'_>, scene: &Scene<'_>, by: &By, value: f64, unit: &st
         None => own_size,
         Some(item) => {
             let table = Table::of(root.ctx, item.node, format!("parameter {:?}", shorten(&by.name)), &PARAMETER)?;
-            block_of(&table, &|name| rows::exponent(scene, &by.targets[0].steps, name), value, unit)?.unwrap_or(own_size)
+            block_of(&table, &|name| rows::exponent(scene, &by.targets[0].steps, name), value, unit)?
+                .unwrap_or(own_size)
         }
     };
     let paths = by.targets.iter().map(|target| target.written.clone()).collect();
@@ -134,12 +135,7 @@ fn parameter(root: &Table<'_>, scene: &Scene<'_>, by: &By, value: f64, unit: &st
 }
 
 /// Judges a `[[parameter]]` whose number has a unit; its typical size, where it says one.
-fn block_of(
-    table: &Table<'_>,
-    exponents: &dyn Fn(&str) -> Option<f64>,
-    value: f64,
-    unit: &str,
-) -> Read<Option<f64>> {
+fn block_of(table: &Table<'_>, exponents: &dyn Fn(&str) -> Option<f64>, value: f64, unit: &str) -> Read<Option<f64>> {
     let number = |field: &Field<'_>| field.number_with(unit, exponents);
     let numbers = |field: &Field<'_>| match field.node.items() {
         Some(items) => all(items.iter().map(|item| number(&field.item(item))).collect::<Vec<_>>()),
@@ -172,7 +168,11 @@ fn block_of(
         let low = bounds.map_or(value, |(low, _)| low);
         if scale == "log" && low < 0.0 {
             let message = format!("is \"log\", but values may be {low}");
-            return Err(field.refuse(RefusalKind::Rule, message, Some("write bounds from 0 on, or \"linear\"".to_owned())));
+            return Err(field.refuse(
+                RefusalKind::Rule,
+                message,
+                Some("write bounds from 0 on, or \"linear\"".to_owned()),
+            ));
         }
     }
     if let Some(field) = table.get("prior") {
@@ -205,12 +205,17 @@ struct Chosen {
 
 /// What is differentiated, column by column.
 fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[ParameterPlan]) -> Read<Chosen> {
-    let refuse = |place: &Place, kind, message: String, help: String| Err(root.ctx.refuse(place.refuse(kind, message).help(help)));
+    let refuse = |place: &Place, kind, message: String, help: String| {
+        Err(root.ctx.refuse(place.refuse(kind, message).help(help)))
+    };
     let all = plan.columns();
     let written = read_columns(root)?;
     let observables = plan.acting_observables();
-    let acting: HashMap<String, Quantity> =
-        observables.quantities().into_iter().map(|quantity| (observables.named(quantity).to_string(), quantity)).collect();
+    let acting: HashMap<String, Quantity> = observables
+        .quantities()
+        .into_iter()
+        .map(|quantity| (observables.named(quantity).to_string(), quantity))
+        .collect();
     let globs = asked.of.as_deref().or(written.as_deref());
     for glob in asked.of.iter().flatten() {
         if !all.iter().any(|column| matches(&glob.text, &column.name)) {
@@ -243,9 +248,15 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
         }
     }
     if columns.len() > MAX_COLUMNS {
-        let place = root.get("sensitivity").map_or_else(|| parameters[0].place.clone(), |field| field.node.place.clone());
+        let place =
+            root.get("sensitivity").map_or_else(|| parameters[0].place.clone(), |field| field.node.place.clone());
         let message = format!("makes {} columns of derivatives; at most {MAX_COLUMNS} are told", columns.len());
-        return refuse(&place, RefusalKind::TooLarge, message, "choose columns, of = [\"q.*\"], or fewer parameters".to_owned());
+        return refuse(
+            &place,
+            RefusalKind::TooLarge,
+            message,
+            "choose columns, of = [\"q.*\"], or fewer parameters".to_owned(),
+        );
     }
     Ok(Chosen { columns, known, left_out })
 }

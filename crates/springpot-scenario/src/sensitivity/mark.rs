@@ -41,7 +41,8 @@ fn one(ctx: &Context<'_>, document: &mut Node, target: &Target, tag: usize) -> R
         };
         let (target, at) = value;
         let place = target.place.clone();
-        let number = |value: f64, tag| Node { value: Value::Number { value, integer: None }, place: place.clone(), tag };
+        let number =
+            |value: f64, tag| Node { value: Value::Number { value, integer: None }, place: place.clone(), tag };
         match at {
             Left::Number(value) => path::set(document, &target, number(value, Some(tag))),
             Left::Vector(vector, which) => {
@@ -72,9 +73,9 @@ fn one(ctx: &Context<'_>, document: &mut Node, target: &Target, tag: usize) -> R
         Value::Table(_) if node.get("csv").is_some() => return refuse("it is a column of a file", None),
         Value::Array(_) | Value::Table(_) => {
             let help = match &node.value {
-                Value::Table(entries) => {
-                    entries.first().map(|entry| format!("go on to one of its numbers, as in {}.{}", target.written, entry.key))
-                }
+                Value::Table(entries) => entries
+                    .first()
+                    .map(|entry| format!("go on to one of its numbers, as in {}.{}", target.written, entry.key)),
                 _ => Some(format!("go on to one of its numbers, as in {}.0", target.written)),
             };
             return refuse(&format!("it is {} and no number", node.kind()), help);
@@ -131,9 +132,10 @@ fn why_not(document: &Node, target: &Target) -> (String, Option<String>) {
     let of_a_constant = "differentiate by a number of the equations, such as element.NAME.PARAMETER".to_owned();
     let is_of_file = document.get("robot").is_some_and(|robot| robot.get("urdf").is_some());
     match (section, last) {
-        ("robot", _) if is_of_file && node.is_none() => {
-            ("numbers in a URDF file have no path".to_owned(), Some("write the robot as [[robot.body]] blocks".to_owned()))
-        }
+        ("robot", _) if is_of_file && node.is_none() => (
+            "numbers in a URDF file have no path".to_owned(),
+            Some("write the robot as [[robot.body]] blocks".to_owned()),
+        ),
         ("time", _) => ("rows say when the run is looked at, not what it does".to_owned(), Some(of_a_constant)),
         ("solver", _) => ("it says how exactly is computed, not what".to_owned(), Some(of_a_constant)),
         (_, "sample" | "delay" | "period") => (format!("no derivative is known of a `{last}`"), None),

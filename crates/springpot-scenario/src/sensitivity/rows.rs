@@ -47,8 +47,9 @@ const fn row(
     Row { path, left_out, is_signal: false, moves }
 }
 
-const fn signal(path: &'static [At], moves: fn(&mut Gather, &Scene<'_>, &[Step], Slope) -> Moved) -> Row {
-    Row { path, left_out: LeftOut::Zero, is_signal: true, moves }
+/// Where functions of time may stand.
+const fn signal(row: Row) -> Row {
+    Row { is_signal: true, ..row }
 }
 
 use At::{Any, Item, Key};
@@ -86,14 +87,14 @@ static ROWS: &[Row] = &[
     row(&[Key("element"), Item, Key("via"), Item, Key("point"), Item], Nothing, via_point),
     row(&[Key("element"), Item, Key("from"), Key("rpy"), Item], NONE, end_rpy),
     row(&[Key("element"), Item, Key("to"), Key("rpy"), Item], NONE, end_rpy),
-    signal(&[Key("element"), Item, Key("inputs"), Any], input),
-    signal(&[Key("element"), Item, Key("bushing"), Any, Key("inputs"), Any], input),
+    signal(row(&[Key("element"), Item, Key("inputs"), Any], Nothing, input)),
+    signal(row(&[Key("element"), Item, Key("bushing"), Any, Key("inputs"), Any], Nothing, input)),
     row(&[Key("motion"), Key("start"), Key("q"), Any], Zero, start_q),
     row(&[Key("motion"), Key("start"), Key("q"), Any, Any], Zero, start_q),
     row(&[Key("motion"), Key("start"), Key("v"), Any], Zero, start_v),
     row(&[Key("motion"), Key("start"), Key("v"), Any, Any], Zero, start_v),
-    signal(&[Key("motion"), Key("torque"), Any], torque),
-    signal(&[Key("motion"), Key("torque"), Any, Any], torque),
+    signal(row(&[Key("motion"), Key("torque"), Any], Zero, torque)),
+    signal(row(&[Key("motion"), Key("torque"), Any, Any], Zero, torque)),
 ];
 
 /// The row of the number that `steps` lead to.
@@ -203,7 +204,11 @@ fn axis(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) ->
     let joint = &scene.plan.bodies[body].joint;
     let is_of_one_axis = matches!(
         joint.kind,
-        JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic | JointKind::Helical | JointKind::Cylindrical
+        JointKind::Revolute
+            | JointKind::Continuous
+            | JointKind::Prismatic
+            | JointKind::Helical
+            | JointKind::Cylindrical
     );
     if !is_of_one_axis {
         return Err(format!("no derivative is known of the axis of {} joints", joint.kind.name()));
@@ -212,11 +217,8 @@ fn axis(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) ->
     let length = joint.axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     let n = joint.axis.map(|x| x / length);
     let across: [f64; 3] = std::array::from_fn(|i| (unit(k)[i] - n[i] * n[k]) / length);
-    let turn = [
-        n[1] * across[2] - n[2] * across[1],
-        n[2] * across[0] - n[0] * across[2],
-        n[0] * across[1] - n[1] * across[0],
-    ];
+    let turn =
+        [n[1] * across[2] - n[2] * across[1], n[2] * across[0] - n[0] * across[2], n[0] * across[1] - n[1] * across[0]];
     let size = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
     if size > 0.0 {
         let turn = turn.map(|x| x / size);

@@ -142,6 +142,8 @@ fn takes(key: &Key, sections: &[Section]) -> String {
         Shape::Range => "two numbers in the unit that is drawn".to_owned(),
         Shape::NumbersOr(of, keys) => format!("array of numbers{}, ≥ 0, or {}", unit(of), link("table", keys)),
         Shape::SweptNumber => "number in the unit of the parameter".to_owned(),
+        Shape::SweptNumbers(1, most) => format!("number in the unit of the parameter, or array of {most} at most"),
+        Shape::SweptNumbers(..) => "two numbers in the unit of the parameter".to_owned(),
         Shape::OfColumn => "number in the unit of the column".to_owned(),
         Shape::Signal(of) => format!("{}{}", link("signal", &SIGNAL), unit(of)),
         Shape::Signals(of) => format!("three {}{}", link("signals", &SIGNAL), unit(of)),

@@ -109,7 +109,10 @@ fn slope_of(op: Op, operands: &[Part]) -> Result<Option<Vec<Op>>, SlopeError> {
         },
         Multiply => {
             let v = &operands[1].value[..];
-            sum(du.map(|du| join(&[du, v, &[Multiply]])), operands[1].slope.as_deref().map(|dv| join(&[u, dv, &[Multiply]])))
+            sum(
+                du.map(|du| join(&[du, v, &[Multiply]])),
+                operands[1].slope.as_deref().map(|dv| join(&[u, dv, &[Multiply]])),
+            )
         }
         Divide => {
             let v = &operands[1].value[..];
@@ -119,7 +122,8 @@ fn slope_of(op: Op, operands: &[Part]) -> Result<Option<Vec<Op>>, SlopeError> {
         Power => {
             let v = &operands[1].value[..];
             let by_base = |du: &[Op]| join(&[v, u, v, &[Number(1.0), Subtract, Power, Multiply], du, &[Multiply]]);
-            let by_power = |dv: &[Op]| join(&[u, v, &[Power], u, &[Op::Smooth(Smooth::Log), Multiply], dv, &[Multiply]]);
+            let by_power =
+                |dv: &[Op]| join(&[u, v, &[Power], u, &[Op::Smooth(Smooth::Log), Multiply], dv, &[Multiply]]);
             sum(du.map(by_base), operands[1].slope.as_deref().map(by_power))
         }
         Negate => du.map(|du| join(&[du, &[Negate]])),
@@ -206,7 +210,10 @@ mod tests {
                     let d = 1e-3;
                     let difference = (8.0 * (at(d) - at(-d)) - (at(2.0 * d) - at(-2.0 * d))) / (12.0 * d);
                     let found = slope.value(t);
-                    assert!((found - difference).abs() < 1e-10 * (1.0 + found.abs()), "{text} by {which} at {t}: {found} {difference}");
+                    assert!(
+                        (found - difference).abs() < 1e-10 * (1.0 + found.abs()),
+                        "{text} by {which} at {t}: {found} {difference}"
+                    );
                 }
             }
         }
