@@ -87,7 +87,8 @@ impl Package {
         if cases.len() > 1 {
             return Err(PackageError::Cases { cases: cases.len() });
         }
-        let plan = cases.plan(0)?;
+        // An FMU tells no derivatives.
+        let plan = Plan { sensitivity: None, ..cases.plan(0)? };
         if let Some(planned) = plan.elements.iter().find(|planned| planned.element.scheme.is_some()) {
             return Err(PackageError::Scheme { element: planned.element.name.clone() });
         }

@@ -78,6 +78,7 @@ pub(super) fn plan(
     }
     let read = scenario.cases(catalog).and_then(|cases| cases.plan(0));
     let mut plan = read.map_err(|error| error.to_string())?;
+    plan.sensitivity = None;
     if let Some(end) = end {
         plan.settings.end = end;
     }

@@ -83,13 +83,13 @@ impl Extended {
     /// # Errors
     /// A motion that is given in advance; a robot that cannot be built so.
     pub(super) fn new(plan: &Plan, base: &System, virtuals: Vec<Virtual>) -> Result<Self, String> {
-        let Motion::Forward(forward) = &base.motion else {
-            return Err("no derivative by a parameter is known of motions that are given in advance".to_owned());
-        };
         if virtuals.is_empty() {
             let (bodies, own) = ((0..plan.bodies.len()).collect(), (0..plan.model.nv()).collect());
             return Ok(Self { virtuals, velocities: Vec::new(), bodies, own, system: Arc::new(base.clone()) });
         }
+        let Motion::Forward(forward) = &base.motion else {
+            return Err("no derivative by geometry is known of motions that are given in advance".to_owned());
+        };
         let mut made = Bodies { virtuals, specs: Vec::new() };
         let mut bodies = Vec::with_capacity(plan.bodies.len());
         let moved = |bodies: &[usize], parent: Parent| match parent {

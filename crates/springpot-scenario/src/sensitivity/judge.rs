@@ -46,8 +46,7 @@ pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) 
     }
     let base = plan.system_at_start();
     let extended = Extended::new(plan, &base, virtuals).map_err(|why| {
-        let message = format!("{} cannot be a parameter: {why}", asked.by[0].name);
-        ctx.refuse(asked.by[0].place.refuse(RefusalKind::Rule, message))
+        refuse_unknown(root, asked, &why)
     })?;
     let told = plain.parameters.iter().zip(gathered).map(|(parameter, gather)| Parameter {
         name: parameter.name.clone(),
