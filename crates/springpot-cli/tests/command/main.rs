@@ -44,6 +44,7 @@ mod results;
 mod resume;
 mod robots;
 mod second_week;
+mod sensitivity;
 mod shapes;
 mod shards;
 mod staircases;

@@ -45,9 +45,7 @@ pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) 
         }
     }
     let base = plan.system_at_start();
-    let extended = Extended::new(plan, &base, virtuals).map_err(|why| {
-        refuse_unknown(root, asked, &why)
-    })?;
+    let extended = Extended::new(plan, &base, virtuals).map_err(|why| refuse_unknown(root, asked, &why))?;
     let told = plain.parameters.iter().zip(gathered).map(|(parameter, gather)| Parameter {
         name: parameter.name.clone(),
         value: parameter.value,

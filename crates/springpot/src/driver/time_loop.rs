@@ -181,9 +181,6 @@ impl Driver {
         stop: &Stop,
         looked_ahead: impl FnOnce(&Self),
     ) -> Result<Self, RunError> {
-        if cx.system.sensitivity.is_some() {
-            return Err(SensitivityError::Unknown { what: "runs that go on from a checkpoint".into() }.into());
-        }
         let mut driver = Self::unstarted(cx, settings, stop)?;
         looked_ahead(&driver);
         driver.recorder.equations.begin_control(cx.system, settings.end)?;
