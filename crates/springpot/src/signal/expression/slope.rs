@@ -207,11 +207,11 @@ mod tests {
                             constants.iter().map(|(name, value, slope)| (name.clone(), value + slope * d)).collect();
                         Expression::parse_with(text, &moved).unwrap().value(t)
                     };
-                    let d = 1e-3;
+                    let d = 1e-4;
                     let difference = (8.0 * (at(d) - at(-d)) - (at(2.0 * d) - at(-2.0 * d))) / (12.0 * d);
                     let found = slope.value(t);
                     assert!(
-                        (found - difference).abs() < 1e-10 * (1.0 + found.abs()),
+                        (found - difference).abs() < 1e-9 * (1.0 + found.abs()),
                         "{text} by {which} at {t}: {found} {difference}"
                     );
                 }
