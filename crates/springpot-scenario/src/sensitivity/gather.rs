@@ -4,11 +4,13 @@ use super::extended::{Extended, Site, Virtual};
 use crate::elements::plan::ShapePlan;
 use crate::plan::Plan;
 use crate::text::document::Node;
+use springpot::actuation::Drive;
 use springpot::dual::Dual;
 use springpot::model::BodySpec;
 use springpot::sensitivity::Seed;
 use springpot::signal::Signal;
 use springpot::spatial::{Inertia, Symmetric3, Vec3};
+use springpot::system::{Motion, System};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -43,9 +45,34 @@ impl Slope {
 pub(super) struct Scene<'a> {
     pub(super) plan: &'a Plan,
     pub(super) document: &'a Node,
+    /// What is simulated.
+    pub(super) system: &'a System,
 }
 
 impl Scene<'_> {
+    /// What drives the joint of a velocity, where forces move the robot.
+    pub(super) fn drive(&self, velocity: usize) -> Option<&Drive> {
+        let Motion::Forward(forward) = &self.system.motion else { return None };
+        let model = &self.system.model;
+        let at = model.own_joints().position(|j| model.v_range(j).contains(&velocity))?;
+        forward.drives.get(at)
+    }
+
+    /// Whether `[motion]` says under `key` how the joint of a velocity is led.
+    pub(super) fn says(&self, key: &str, velocity: usize) -> bool {
+        let model = &self.plan.model;
+        let Some(j) = model.own_joints().find(|&j| model.v_range(j).contains(&velocity)) else { return false };
+        let names = [&*model.joint_names()[j], &*model.described_joint(j).name];
+        let said = self.document.get("motion").and_then(|motion| motion.get(key));
+        let entries = said.and_then(|said| said.entries()).unwrap_or_default();
+        let items = said.and_then(|said| said.items()).unwrap_or_default();
+        entries
+            .iter()
+            .map(|entry| entry.key.as_str())
+            .chain(items.iter().filter_map(|item| item.text()))
+            .any(|said| names.contains(&said))
+    }
+
     /// The first or the last point, or frame, of element `e`.
     pub(super) fn end(&self, e: usize, is_first: bool) -> Site {
         match &self.plan.elements[e].shape {

@@ -28,7 +28,8 @@ const MAX_COLUMNS: usize = 65_536;
 /// By what `plan` is differentiated, whose numbers are tagged from `first` on in the document of `root`.
 pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) -> Read<SensitivityPlan> {
     let ctx = root.ctx;
-    let scene = Scene { plan, document: root.node };
+    let base = plan.system_at_start();
+    let scene = Scene { plan, document: root.node, system: &base };
     let values = values(ctx, asked, first);
     let gathered = all(asked.by.iter().map(|by| gather(root, &scene, by)).collect::<Vec<_>>());
     let (values, gathered) = (values?, gathered?);
@@ -44,7 +45,6 @@ pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) 
             virtuals.push(*joint);
         }
     }
-    let base = plan.system_at_start();
     let extended = Extended::new(plan, &base, virtuals).map_err(|why| refuse_unknown(root, asked, &why))?;
     let told = plain.parameters.iter().zip(gathered).map(|(parameter, gather)| Parameter {
         name: parameter.name.clone(),

@@ -2,6 +2,7 @@
 
 use super::gather::{Gather, Moved, Scene, Slope};
 use crate::changes::path::Step;
+use springpot::actuation::Drive;
 use springpot::elements::Component;
 use springpot::model::JointKind;
 
@@ -364,13 +365,30 @@ fn velocity(scene: &Scene<'_>, steps: &[Step]) -> Result<usize, String> {
     joint.map(|j| model.v_range(j).start).ok_or_else(|| "no derivative is known of joints with quaternions".to_owned())
 }
 
+/// Why the start of a joint that nothing moves cannot be a parameter.
+const COASTS: &str = "no derivative is known of joints that go on as they start, since they carry no mass";
+
 fn start_q(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
-    gather.q.push((velocity(scene, &steps[3..])?, slope.number()?));
+    let velocity = velocity(scene, &steps[3..])?;
+    // Where a joint starts that is prescribed, its path says.
+    match scene.drive(velocity) {
+        Some(Drive::Prescribed(_)) if scene.says("prescribed", velocity) => return Ok(()),
+        Some(Drive::Prescribed(_)) => return Err(COASTS.to_owned()),
+        _ => {}
+    }
+    gather.q.push((velocity, slope.number()?));
     Ok(())
 }
 
 fn start_v(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
-    gather.v.push((velocity(scene, &steps[3..])?, slope.number()?));
+    let velocity = velocity(scene, &steps[3..])?;
+    match scene.drive(velocity) {
+        Some(Drive::Prescribed(_)) if scene.says("prescribed", velocity) => return Ok(()),
+        Some(Drive::Locked) if scene.says("locked", velocity) => return Ok(()),
+        Some(Drive::Prescribed(_) | Drive::Locked) => return Err(COASTS.to_owned()),
+        _ => {}
+    }
+    gather.v.push((velocity, slope.number()?));
     Ok(())
 }
 

@@ -84,7 +84,7 @@ const COLUMNS: [&str; 9] =
 const ROWS: [f64; 2] = [0.1734, 0.3821];
 
 fn scenario(text: &str) -> Scenario {
-    Scenario::parse(text, "arm.toml", "").unwrap()
+    Scenario::parse(text, "arm.toml", concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios")).unwrap()
 }
 
 fn plan(scenario: &Scenario) -> Result<Plan, Refusals> {
@@ -116,15 +116,15 @@ fn rows(plan: &Plan, names: &[String]) -> Vec<Vec<f64>> {
 }
 
 /// Compares derivatives of all columns by the numbers at these paths with differences of whole runs.
-fn compare(text: &str, paths: &[(&str, f64)]) {
+fn compare(text: &str, columns: &[&str], paths: &[(&str, f64)]) {
     let mut asked = scenario(text);
     let all: Vec<&str> = paths.iter().map(|(path, _)| *path).collect();
     asked.differentiate(&all.join(",")).unwrap();
     let asked = plan(&asked).unwrap_or_else(|refusals| panic!("{refusals}"));
     let told: Vec<String> =
-        COLUMNS.iter().flat_map(|column| all.iter().map(move |path| format!("d({column})/d({path})"))).collect();
+        columns.iter().flat_map(|column| all.iter().map(move |path| format!("d({column})/d({path})"))).collect();
     let found = rows(&asked, &told);
-    let names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
+    let names: Vec<String> = columns.iter().map(|name| (*name).to_owned()).collect();
     for (p, (path, step)) in paths.iter().enumerate() {
         let value = asked.sensitivity.as_ref().unwrap().parameters[p].value;
         let at = |steps: f64| {
@@ -134,13 +134,20 @@ fn compare(text: &str, paths: &[(&str, f64)]) {
             rows(&plan(&moved).unwrap_or_else(|refusals| panic!("{refusals}")), &names)
         };
         let [a, b, c, d] = [1.0, -1.0, 2.0, -2.0].map(at);
-        for (k, column) in COLUMNS.iter().enumerate() {
+        for (k, column) in columns.iter().enumerate() {
             let truth = |r: usize| (8.0 * (a[r][k] - b[r][k]) - (c[r][k] - d[r][k])) / (12.0 * step);
-            let size = (0..ROWS.len()).map(|r| truth(r).abs()).fold(1e-4, f64::max);
+            let size = (0..ROWS.len()).map(|r| truth(r).abs()).fold(0.0, f64::max);
             for r in 0..ROWS.len() {
                 let of = found[r][k * paths.len() + p];
-                let miss = (of - truth(r)).abs() / size;
-                assert!(miss < 1e-7, "d({column})/d({path}) at {}: {of} for {}, {miss:e}", ROWS[r], truth(r));
+                let miss = (of - truth(r)).abs();
+                // What the runs that are compared may be off.
+                let known = 1e-7 * size + 2e-12 * (1.0 + a[r][k].abs()) / step;
+                assert!(
+                    miss < known,
+                    "d({column})/d({path}) at {}: {of} for {}, {miss:e} > {known:e}",
+                    ROWS[r],
+                    truth(r)
+                );
             }
         }
     }
@@ -150,6 +157,7 @@ fn compare(text: &str, paths: &[(&str, f64)]) {
 fn laws_starts_and_forces() {
     compare(
         ARM,
+        &COLUMNS,
         &[
             ("element.strut.c", 0.05),
             ("element.mount.rx.k", 0.02),
@@ -167,13 +175,14 @@ fn laws_starts_and_forces() {
 
 #[test]
 fn constants_through_expressions_and_signals() {
-    compare(ARM, &[("constants.f", 2e-3), ("constants.k_0", 0.2)]);
+    compare(ARM, &COLUMNS, &[("constants.f", 2e-3), ("constants.k_0", 0.2)]);
 }
 
 #[test]
 fn masses_and_inertias() {
     compare(
         ARM,
+        &COLUMNS,
         &[
             ("robot.body.two.mass", 5e-3),
             ("robot.body.link.mass", 5e-3),
@@ -189,6 +198,7 @@ fn masses_and_inertias() {
 fn geometry() {
     compare(
         ARM,
+        &COLUMNS,
         &[
             ("robot.body.two.joint.origin.1", 1e-3),
             ("robot.body.link.joint.rpy.1", 2e-3),
@@ -318,4 +328,55 @@ fn an_order_at_its_end_needs_another_memory() {
             Ok(_) => assert_eq!(alpha, "0.5"),
         }
     }
+}
+
+#[test]
+fn a_robot_from_a_file_with_locked_joints_and_a_follower() {
+    let text = r#"
+[robot]
+urdf = "robots/panda.urdf"
+gravity = [0, 0, -9.81]
+[robot.gripper]
+body = "panda_hand_tcp"
+point = [0, 0, 0]
+[[element]]
+name = "strut"
+from = { body = "world", point = [0.35, 0.1, 0] }
+to = { body = "panda_link4", point = [0, 0, 0.1] }
+rest_length = "start"
+law = "kelvin-voigt"
+parameters = { k = "40 N/cm", c = "70 N*s/m" }
+[[element]]
+name = "pad"
+from = { body = "panda_rightfinger", point = [0, 0, 0.04] }
+to = { body = "panda_leftfinger", point = [0, 0, 0.04] }
+rest_length = "4 cm"
+law = "kelvin-voigt"
+parameters = { k = "2 N/cm", c = "6 N*s/m" }
+[motion]
+kind = "forward"
+locked = ["panda_joint1", "panda_joint3", "panda_joint5", "panda_joint6", "panda_joint7"]
+start = { q = { panda_joint2 = 0.3, panda_joint4 = -1.8, panda_joint6 = 2, panda_finger_joint1 = 0.03 } }
+[time]
+end = 0.4
+output_step = 0.1
+[solver]
+rtol = 1e-10
+"#;
+    compare(
+        text,
+        &["q.panda_joint2", "q.panda_joint4", "q.panda_finger_joint1", "strut.force", "pad.force", "gripper.z"],
+        &[
+            ("element.strut.to.point.2", 1e-3),
+            ("element.pad.from.point.1", 1e-3),
+            ("element.pad.c", 0.02),
+            ("motion.start.q.panda_joint2", 1e-3),
+            ("motion.start.q.panda_joint1", 1e-3),
+            ("motion.start.v.panda_joint3", 1e-3),
+            ("robot.gravity.1", 1e-2),
+        ],
+    );
+    let mut asked = scenario(text);
+    asked.differentiate("robot.body.panda_link4.mass").unwrap();
+    assert!(said(&asked).contains("numbers in a URDF file have no path"), "{}", said(&asked));
 }
