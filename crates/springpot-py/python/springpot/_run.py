@@ -331,6 +331,7 @@ def run(
     *,
     format: str = "csv",
     figures: bool = True,
+    sensitivity: str | Sequence[str] | None = None,
 ) -> Run:
     """Runs a scenario, all cases of its sweeps on all cores, without the GIL.
 
@@ -344,12 +345,15 @@ def run(
         progress: ``True`` for a bar (tqdm where it is installed), or a callable that is told the share that is done, 0 … 1.
         format: of the rows in ``out``: ``"csv"``, ``"parquet"`` or ``"npz"``.
         figures: whether the scenario's figures are drawn into ``out``.
+        sensitivity: paths of numbers, or names of parameters, by which every column is differentiated besides those of the scenario:
+            ``run["d(q.q2)/d(element.strut.alpha)"]``.
 
     Raises:
         ScenarioError: the scenario is refused.
         RunError: its only case fails; in a sweep ``Run.failures`` has them.
     """
-    study = Study(scenario, set, sweeps_of(sweep))
+    asked = [sensitivity] if isinstance(sensitivity, str) else list(sensitivity or [])
+    study = Study(scenario, set, sweeps_of(sweep), asked)
     _warn(study.warnings)
     with shown(progress) as told:
         if out is None:

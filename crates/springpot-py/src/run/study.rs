@@ -34,12 +34,17 @@ pub(crate) struct Study {
 
 #[pymethods]
 impl Study {
-    /// `sweeps`: texts `PATH=v1,v2,…`.
+    /// `sweeps`: texts `PATH=v1,v2,…`; `sensitivity`: paths, or names of parameters.
     #[new]
-    #[pyo3(signature = (scenario, set = None, sweeps = Vec::new()))]
-    fn new(scenario: &Bound<'_, PyAny>, set: Option<&Bound<'_, PyAny>>, sweeps: Vec<String>) -> PyResult<Self> {
+    #[pyo3(signature = (scenario, set = None, sweeps = Vec::new(), sensitivity = Vec::new()))]
+    fn new(
+        scenario: &Bound<'_, PyAny>,
+        set: Option<&Bound<'_, PyAny>>,
+        sweeps: Vec<String>,
+        sensitivity: Vec<String>,
+    ) -> PyResult<Self> {
         let py = scenario.py();
-        guarded(py, || Self::of(py, Asked { sweeps, ..asked(scenario, set)? }))
+        guarded(py, || Self::of(py, Asked { sweeps, sensitivity, ..asked(scenario, set)? }))
     }
 
     /// What `to_bytes` made; files that the scenario names must be there too.
