@@ -271,7 +271,7 @@ fn a_path_that_leaves_the_reach_is_an_error_with_time_and_distance() {
     assert!((t - 1.0).abs() < 1e-6, "{failure}");
     assert!(distance > 1e-9 && distance < 0.1, "{failure}");
     let message = run.error.as_ref().unwrap().to_string();
-    assert!(message.contains("cannot reach its path at t = ") && message.contains(" m and "), "{message}");
+    assert!(message.contains("cannot reach its path at t = ") && message.contains(" m "), "{message}");
     // The rows before it are complete and right.
     let reached = run.report.t_reached.unwrap();
     assert!(reached <= t && reached > 0.9, "{reached}");
