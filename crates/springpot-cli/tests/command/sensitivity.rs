@@ -49,7 +49,7 @@ y = ["d(q.*)/d(k)"]
 
 /// The columns of the last row of results.csv.
 fn last_row(place: &Place, folder: &str) -> Vec<(String, String)> {
-    let text = place.read(&format!("{folder}/results.csv"));
+    let text = place.read(format!("{folder}/results.csv"));
     let fields = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
     let names = fields(text.lines().next().unwrap());
     names.into_iter().zip(fields(text.lines().last().unwrap())).collect()

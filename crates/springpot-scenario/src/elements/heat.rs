@@ -9,8 +9,6 @@ use serde_json::{Map, Value, json};
 use springpot::law::heat::TEMPERATURE;
 use springpot::law::{Expansion, Heat, RuleError, Shift, Thermal};
 
-/// The keys that it is read from.
-
 /// Reads `shift`, `thermal` and `expansion`, the last in the units of a rotation where it is one.
 pub(crate) fn read(table: &Table<'_>, is_rotation: bool) -> Read<Heat> {
     let shift = table.get("shift").map(|field| shift(&field)).transpose();
