@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What the bytes of a study begin with.
-const TAG: &str = "springpot study 1\n";
+const TAG: &str = "springpot study 2\n";
 
 /// The cases of a scenario, each of which can be run in any process.
 #[pyclass(frozen, module = "springpot._springpot")]
