@@ -229,6 +229,7 @@ impl Variation {
                 }
             }
         }
+        // What laws keep begins at the strokes and inputs of t = 0.
         if equations.is_singular() {
             return Err(SensitivityError::Unknown { what: "a singular start".to_owned() });
         }
@@ -247,9 +248,15 @@ impl Variation {
                     what: format!("\"{}\", which has a named scheme", element.name),
                 });
             };
-            let start = self.elements[e].stroke[..count].to_vec();
-            self.elements[e].law = LawVariation::begin(&element.law, &laws, &start, state).map_err(|leaf| {
-                SensitivityError::Unknown { what: format!("{leaf} in the law of \"{}\"", element.name) }
+            let keeps = element.law.has_inner_variables() || !state.memories().is_empty();
+            if keeps && !element.past.is_of_derivative() {
+                return Err(SensitivityError::Unknown { what: format!("the past of \"{}\"", element.name) });
+            }
+            let at = equations.bank.point(e, 0);
+            let own = &self.elements[e];
+            let begun = LawVariation::begin(&element.law, &laws, &at, &own.told_at_start(count), state);
+            self.elements[e].law = begun.map_err(|leaf| SensitivityError::Unknown {
+                what: format!("{leaf} in the law of \"{}\"", element.name),
             })?;
         }
         self.settle(equations, start);
@@ -280,12 +287,7 @@ impl Variation {
         let mut forces = vec![0.0; elements.len() * count];
         let (mut sum, mut spare) = (vec![0.0; count], vec![0.0; count]);
         for (e, element) in elements.iter().enumerate() {
-            let told = PointVariation {
-                stroke: &element.stroke[..count],
-                rate: &element.rate[..count],
-                inputs: element.inputs.each_ref().map(|inputs| &inputs[..inputs.len() / (ROW + 1)]),
-                step: None,
-            };
+            let told = element.told_at_start(count);
             sum.fill(0.0);
             let mut of = ObservationVariation { force: &mut sum, stored: &mut spare };
             equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, &element.law, &mut of);
@@ -574,6 +576,18 @@ impl Variation {
                 _ => 0.0,
             })
             .sum()
+    }
+}
+
+impl ElementVariation {
+    /// What changes of what its law is told of the start of the step.
+    fn told_at_start(&self, count: usize) -> PointVariation<'_> {
+        PointVariation {
+            stroke: &self.stroke[..count],
+            rate: &self.rate[..count],
+            inputs: self.inputs.each_ref().map(|inputs| &inputs[..inputs.len() / (ROW + 1)]),
+            step: None,
+        }
     }
 }
 

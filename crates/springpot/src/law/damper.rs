@@ -49,13 +49,13 @@ pub(super) fn spencer() -> Entry {
             let leaf = Spencer {
                 fast: coefficient([c_0a, c_0b], "c_0a + u·c_0b ≥ 0", "c_0b")?,
                 slow: coefficient([c_1a, c_1b], "c_1a + u·c_1b ≥ 0", "c_1b")?,
-                inner_stiffness: k_0.value,
-                stiffness: k_1.value,
-                rest: x_0.value,
+                inner_stiffness: k_0,
+                stiffness: k_1,
+                rest: x_0,
                 alpha: coefficient([alpha_a, alpha_b], "alpha_a + u·alpha_b ≥ 0", "alpha_b")?,
-                hysteresis: hysteresis_of([a, beta, gamma, n])?,
+                hysteresis: Hysteresis::new(a, beta, gamma, n)?,
             };
-            Ok(Network::leaf(Lagged::new(leaf, eta.value)?))
+            Ok(Network::leaf(Lagged::new(leaf, eta)?))
         }),
     }
 }
@@ -74,7 +74,7 @@ pub(super) fn bouc_wen_damper() -> Entry {
             let &[c_0a, c_0b, ref rest @ ..] = values else { unreachable!("values follow params") };
             some_of(c_0a, c_0b, rest)?;
             let viscosity = coefficient([c_0a, c_0b], "c_0a + u·c_0b ≥ 0", "c_0b")?;
-            Ok(Network::parallel([Network::leaf(Lagged::new(Viscous { viscosity }, rest[8].value)?), beside_it(rest)?]))
+            Ok(Network::parallel([Network::leaf(Lagged::new(Viscous { viscosity }, rest[8])?), beside_it(rest)?]))
         }),
     }
 }
@@ -113,7 +113,7 @@ pub(super) fn bingham() -> Entry {
             let &[f_ya, f_yb, v_0, c_a, c_b, f_0, eta] = values else { unreachable!("values follow params") };
             at_least_one_positive(&[("F_ya", f_ya), ("F_yb", f_yb), ("c_a", c_a), ("c_b", c_b)])?;
             let viscosity = coefficient([c_a, c_b], "c_a + u·c_b ≥ 0", "c_b")?;
-            let viscous = Network::leaf(Lagged::new(Viscous { viscosity }, eta.value)?);
+            let viscous = Network::leaf(Lagged::new(Viscous { viscosity }, eta)?);
             Ok(Network::parallel([yields([f_ya, f_yb, v_0], eta)?, viscous, Network::leaf(Preload { force: f_0 })]))
         }),
     }
@@ -210,26 +210,21 @@ fn coefficient(pair: [Dual; 2], rule: &'static str, parameter: &'static str) -> 
     Ok(Coefficient::following(pair, rule, parameter))
 }
 
-fn hysteresis_of(numbers: [Dual; 4]) -> Result<Hysteresis, RuleError> {
-    let [a, beta, gamma, n] = numbers.map(|number| number.value);
-    Hysteresis::new(a, beta, gamma, n)
-}
-
 fn yields([f_ya, f_yb, v_0]: [Dual; 3], eta: Dual) -> Result<Network, RuleError> {
     let force = coefficient([f_ya, f_yb], "F_ya + u·F_yb ≥ 0", "F_yb")?;
     RuleError::unless(v_0.value > 0.0, "v_0 > 0", "v_0")?;
-    Ok(Network::leaf(Lagged::new(Friction { force, rate: v_0.value }, eta.value)?))
+    Ok(Network::leaf(Lagged::new(Friction { force, rate: v_0 }, eta)?))
 }
 
 /// k_0·(x − x_0) + alpha·z of k_0, x_0, alpha_a, alpha_b, A, beta, gamma, n and eta.
 fn beside_it(values: &[Dual]) -> Result<Network, RuleError> {
     let &[k_0, x_0, alpha_a, alpha_b, a, beta, gamma, n, eta] = values else { unreachable!("values follow params") };
     let alpha = coefficient([alpha_a, alpha_b], "alpha_a + u·alpha_b ≥ 0", "alpha_b")?;
-    let hysteresis = BoucWen::varying(alpha, hysteresis_of([a, beta, gamma, n])?);
+    let hysteresis = BoucWen::varying(alpha, Hysteresis::new(a, beta, gamma, n)?);
     Ok(Network::parallel([
         Network::spring(k_0),
         Network::leaf(Preload { force: -k_0 * x_0 }),
-        Network::leaf(Lagged::new(hysteresis, eta.value)?),
+        Network::leaf(Lagged::new(hysteresis, eta)?),
     ]))
 }
 
@@ -244,5 +239,5 @@ fn lagged_springpot(
         let rule = "derivative = \"caputo\", past = \"held\": the coefficient of its springpot lags behind a command that is known from t = 0 on";
         return Err(RuleError { rule: rule.into(), parameter: Cow::Borrowed("alpha") });
     }
-    Ok(Network::leaf(Lagged::new(Springpot { coefficient, alpha, derivative }, eta.value)?))
+    Ok(Network::leaf(Lagged::new(Springpot { coefficient, alpha, derivative }, eta)?))
 }

@@ -41,8 +41,7 @@ pub(super) fn magnetorheological_bouc_wen() -> Entry {
                 unreachable!("values follow params")
             };
             at_least_one_positive(&[("E_c", e_c), ("mu_0", mu_0), ("mu", mu), ("alpha_h", alpha_h)])?;
-            let hysteresis = BoucWen::new(alpha_h.value, a.value, beta.value, gamma.value, n.value)?;
-            let hysteresis = Network::leaf(hysteresis);
+            let hysteresis = Network::leaf(BoucWen::new(alpha_h, a, beta, gamma, n)?);
             Ok(Network::parallel(parts([e_c, mu_0, mu, alpha], derivative).into_iter().chain([hysteresis])))
         }),
     }

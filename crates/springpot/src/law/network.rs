@@ -21,7 +21,7 @@ use super::step::{
     Electric, InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term,
 };
 use super::tangent::AtRest;
-use super::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
+use super::variation::{LawVariation, ObservationVariation, PointVariation, PowersVariation, StepVariation};
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
@@ -287,38 +287,48 @@ impl Network {
         self.ask().without_derivatives()
     }
 
-    /// Appends what parameters change of its memories at t = 0 ([`super::Leaf::begin_variation`]).
-    pub(super) fn begin_variation(
+    /// Appends what parameters change of its memories at t = 0 ([`super::Leaf::begin_memories`]).
+    pub(super) fn begin_memories(
         &self,
         start: &[f64],
         state: &State,
         own: &LawVariation,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
-        self.ask().begin_variation(start, &mut state.view(), &mut own.view(), memories)
+        self.ask().begin_memories(start, &mut state.view(), &mut own.view(), memories)
+    }
+
+    /// Puts what parameters change of its state at t = 0, where `told` is what changes of its start.
+    pub fn begin_variation(&self, at: &Point, state: &State, told: &PointVariation, own: &mut LawVariation) {
+        self.ask().begin_variation(at, &mut state.view(), told, &mut own.view_mut());
     }
 
     /// What parameters change of its forces at the nodes of a step where strokes and rates there stay, node by node, a block for each
     /// ([`super::Leaf::vary`]).
-    pub(crate) fn vary(
-        &self,
-        step: &Step,
-        state: &State,
-        told: &StepVariation,
-        own: &LawVariation,
-        forces: &mut [f64],
-    ) {
+    pub fn vary(&self, step: &Step, state: &State, told: &StepVariation, own: &LawVariation, forces: &mut [f64]) {
         forces.fill(0.0);
         self.ask().vary(step, &mut state.view(), told, &mut own.view(), forces);
     }
 
     /// Takes what changes of an accepted step, which is not in the state yet, into what changes of that.
-    pub(crate) fn commit_variation(&self, step: &Step, state: &State, told: &StepVariation, own: &mut LawVariation) {
+    pub fn commit_variation(&self, step: &Step, state: &State, told: &StepVariation, own: &mut LawVariation) {
         self.ask().commit_variation(step, &mut state.view(), told, &mut own.view_mut());
     }
 
+    /// Adds what parameters change of its energy flows at the start and at the nodes of a step.
+    pub fn vary_powers(
+        &self,
+        step: &Step,
+        state: &State,
+        told: &StepVariation,
+        own: &LawVariation,
+        sum: &mut PowersVariation,
+    ) {
+        self.ask().vary_powers(step, &mut state.view(), told, &mut own.view(), sum);
+    }
+
     /// Adds what parameters change of it at one time: within a step, or between two.
-    pub(crate) fn vary_at(
+    pub fn vary_at(
         &self,
         (when, at): (When, &Point),
         state: &State,

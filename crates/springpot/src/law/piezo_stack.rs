@@ -43,8 +43,8 @@ pub(super) fn piezo_stack_bouc_wen() -> Entry {
             let (common, &[alpha_h, a, beta, gamma, n]) = values.split_at(COMMON) else {
                 unreachable!("values follow params")
             };
-            let hysteresis = Hysteresis::new(a.value, beta.value, gamma.value, n.value)?;
-            stack(common, VoltageDrop::BoucWen { alpha_h: alpha_h.value, hysteresis }, derivative)
+            let hysteresis = Hysteresis::new(a, beta, gamma, n)?;
+            stack(common, VoltageDrop::BoucWen { alpha_h, hysteresis }, derivative)
         }),
     }
 }
@@ -115,7 +115,7 @@ fn with_plays() -> Vec<Param> {
 fn of_plays(values: &[Dual], feed_forward: bool, derivative: Derivative) -> Result<Network, RuleError> {
     let (common, plays) = values.split_at(COMMON);
     let (weights, widths) = plays.split_at(plays.len() / 2);
-    let stops = PrandtlIshlinskii::new(&Dual::values(weights), &Dual::values(widths))?.stops().to_vec();
+    let stops = PrandtlIshlinskii::new(weights, widths)?.stops().to_vec();
     stack(common, VoltageDrop::Stops { stops, feed_forward }, derivative)
 }
 
@@ -134,8 +134,6 @@ fn stack(values: &[Dual], drop: VoltageDrop, derivative: Derivative) -> Result<N
         Network::series([spring, Network::springpot(coefficient, alpha_creep, derivative)])
     };
     let coupling = f_block / v_max;
-    let [coupling, capacitance, resistance, stiffness] =
-        [coupling, capacitance, resistance, stiffness].map(|number| number.value);
     let electric = Stack { coupling, capacitance, resistance, stiffness, drop, range: [v_min.value, v_max.value] };
     Ok(Network::parallel([elastic, Network::springpot(c, alpha, derivative), Network::leaf(electric)]))
 }

@@ -1,6 +1,7 @@
 //! Hysteresis after Prandtl and Ishlinskii, and its exact inverse.
 
 use super::rule::RuleError;
+use crate::dual::{Dual, Real};
 
 /// y = (1 − Σ a_i)·x + Σ a_i·p_i, p_i the play of the half width r_i: max(x − r_i, min(x + r_i, p_i)), all 0 at first.
 ///
@@ -29,9 +30,9 @@ pub struct PrandtlIshlinskii {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// b ≥ 0.
-    pub weight: f64,
+    pub weight: Dual,
     /// ρ > 0.
-    pub limit: f64,
+    pub limit: Dual,
 }
 
 impl PrandtlIshlinskii {
@@ -42,8 +43,10 @@ impl PrandtlIshlinskii {
     ///
     /// # Panics
     /// Where there are not as many weights as half widths.
-    pub fn new(weights: &[f64], widths: &[f64]) -> Result<Self, RuleError> {
+    pub fn new<T: Copy + Into<Dual>>(weights: &[T], widths: &[T]) -> Result<Self, RuleError> {
         assert_eq!(weights.len(), widths.len(), "a weight for each half width");
+        let [a, r] = [weights, widths].map(|numbers| numbers.iter().map(|x| (*x).into()).collect::<Vec<Dual>>());
+        let [weights, widths] = [&a, &r].map(|numbers| Dual::values(numbers));
         RuleError::unless(weights.iter().all(|a| *a >= 0.0), "a_i ≥ 0", "a")?;
         let loss: f64 = weights.iter().sum();
         RuleError::unless(loss < 1.0, "Σ a_i < 1", "a")?;
@@ -52,15 +55,16 @@ impl PrandtlIshlinskii {
             "0 < r_1 < r_2 < …",
             "r",
         )?;
-        let (mut slope, mut at, mut value) = (1.0 - loss, 0.0, 0.0);
-        let stops = weights.iter().zip(widths).map(|(a, r)| {
-            value += slope * (r - at);
+        let one = Dual::from(1.0);
+        let (mut slope, mut at, mut value) = (one - a.iter().copied().sum(), Dual::default(), Dual::default());
+        let stops = a.iter().zip(&r).map(|(a, r)| {
+            value += slope * (*r - at);
             let before = slope;
-            (at, slope) = (*r, slope + a);
-            Stop { weight: before.recip() - slope.recip(), limit: value }
+            (at, slope) = (*r, slope + *a);
+            Stop { weight: one / before - one / slope, limit: value }
         });
         let stops = stops.collect();
-        Ok(Self { plays: weights.iter().zip(widths).map(|(a, r)| [*a, *r]).collect(), stops })
+        Ok(Self { plays: weights.into_iter().zip(widths).map(|(a, r)| [a, r]).collect(), stops })
     }
 
     /// The stops of the inverse.
@@ -88,7 +92,7 @@ impl PrandtlIshlinskii {
             let moved = y - std::mem::replace(&mut before, *y);
             let of_stops = held.iter_mut().zip(&self.stops).map(|(held, stop)| {
                 *held = stop.after(*held, moved);
-                stop.weight * *held
+                stop.weight.value * *held
             });
             y + of_stops.sum::<f64>()
         };
@@ -98,13 +102,20 @@ impl PrandtlIshlinskii {
 
 impl Stop {
     /// s after its stroke has moved one way.
-    pub fn after(&self, held: f64, moved: f64) -> f64 {
-        (held + moved).clamp(-self.limit, self.limit)
+    pub fn after<T: Real>(&self, held: T, moved: T) -> T {
+        let (s, limit) = (held + moved, T::of(self.limit));
+        if s.value() > limit.value() {
+            limit
+        } else if s.value() < -limit.value() {
+            -limit
+        } else {
+            s
+        }
     }
 
     /// Whether it slips there.
-    pub(super) fn slips(&self, held: f64, moved: f64) -> bool {
-        (held + moved).abs() >= self.limit
+    pub(super) fn slips<T: Real>(&self, held: T, moved: T) -> bool {
+        (held + moved).value().abs() >= self.limit.value
     }
 }
 

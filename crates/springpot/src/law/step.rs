@@ -6,29 +6,29 @@ use serde::{Deserialize, Serialize};
 
 /// Value and rate of one input at one time, SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct InputValue {
+pub struct InputValue<T = f64> {
     /// Value.
-    pub value: f64,
+    pub value: T,
     /// Time derivative.
-    pub rate: f64,
+    pub rate: T,
 }
 
-/// An element's kinematics and inputs at one time.
+/// An element's kinematics and inputs at one time: in numbers, or in numbers with a derivative ([`crate::dual::Dual`]).
 #[derive(Debug, Clone, Copy)]
-pub struct Point<'a> {
+pub struct Point<'a, T = f64> {
     /// Time, s.
     pub t: f64,
     /// x, m.
-    pub stroke: f64,
+    pub stroke: T,
     /// x', m/s.
-    pub rate: f64,
+    pub rate: T,
     /// Inputs in the order of the catalog.
-    pub inputs: &'a [InputValue],
+    pub inputs: &'a [InputValue<T>],
 }
 
-/// One step: its data at the start (index 0) and at the nodes (1 … s).
+/// One step: its data at the start (index 0) and at the nodes (1 … s), as [`Point`] has them.
 #[derive(Debug, Clone, Copy)]
-pub struct Step<'a> {
+pub struct Step<'a, T = f64> {
     /// Start t_n, s.
     pub t: f64,
     /// Size h, s.
@@ -40,11 +40,11 @@ pub struct Step<'a> {
     /// Which data make the memory's polynomial.
     pub form: Form,
     /// x, s + 1 values, m.
-    pub stroke: &'a [f64],
+    pub stroke: &'a [T],
     /// x', s + 1 values, m/s.
-    pub rate: &'a [f64],
+    pub rate: &'a [T],
     /// Inputs, (s + 1) × (number of inputs), point by point.
-    pub inputs: &'a [InputValue],
+    pub inputs: &'a [InputValue<T>],
     /// Rounding of the strokes, m: differences below it mean nothing.
     pub resolution: f64,
     /// Whether strokes and rates are given.
@@ -88,11 +88,11 @@ pub struct Response {
 
 /// Energy flows at one time, W.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Power {
+pub struct Power<T = f64> {
     /// Dissipated.
-    pub dissipation: f64,
+    pub dissipation: T,
     /// Supplied by the inputs.
-    pub input: f64,
+    pub input: T,
 }
 
 /// Powers at the start and at the nodes of a step.
@@ -100,15 +100,15 @@ pub type Powers = [Power; MAX_NODES + 1];
 
 /// A law at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Observation {
+pub struct Observation<T = f64> {
     /// D^alpha x of the springpot that a law reports, x' of a dashpot where it has none, else x; NaN where it is infinite.
-    pub derivative: f64,
+    pub derivative: T,
     /// F without the share of a singular start, N.
-    pub regular: f64,
+    pub regular: T,
     /// The share of a singular start in F, N; NaN at t = 0, where it is infinite, and 0 without one.
-    pub singular: f64,
+    pub singular: T,
     /// Stored energy, J; unknown (`None`) after a singular start, which takes infinite work.
-    pub stored: Option<f64>,
+    pub stored: Option<T>,
 }
 
 /// A leaf of a law at one time.
@@ -158,16 +158,16 @@ pub struct LocalError {
     pub sharpness: f64,
 }
 
-impl<'a> Step<'a> {
+impl<'a, T: Copy> Step<'a, T> {
     /// The step's data at its start (0) or at node `index`.
-    pub fn point(&self, index: usize) -> Point<'a> {
+    pub fn point(&self, index: usize) -> Point<'a, T> {
         let theta = if index == 0 { 0.0 } else { self.positions()[index - 1] };
         let (stroke, rate) = (self.stroke[index], self.rate[index]);
         Point { t: self.t + theta * self.h, stroke, rate, inputs: self.inputs_at(index) }
     }
 
     /// The inputs at its start (0) or at node `index`.
-    pub fn inputs_at(&self, index: usize) -> &'a [InputValue] {
+    pub fn inputs_at(&self, index: usize) -> &'a [InputValue<T>] {
         let count = self.inputs.len() / self.stroke.len();
         &self.inputs[index * count..(index + 1) * count]
     }
@@ -194,7 +194,9 @@ impl<'a> Step<'a> {
     pub fn quadrature_defect(&self, values: &[f64]) -> f64 {
         self.places.map_or_else(|| quadrature_defect(self.nodes, values), |places| places.quadrature_defect(values))
     }
+}
 
+impl Step<'_> {
     /// The polynomial of x', as the form says.
     pub fn polynomial(&self) -> RatePolynomial {
         match (self.form, self.places) {

@@ -314,7 +314,7 @@ mod tests {
 
     #[test]
     fn what_is_not_linear_answers_where_it_rests() {
-        let cubic = || Network::leaf(Polynomial { coefficients: [10.0, 0.0, 500.0] });
+        let cubic = || Network::leaf(Polynomial::new([10.0, 0.0, 500.0]));
         // In series with a spring of 40 N/m both have one force; behind a dashpot nothing remains.
         let rest = Network::series([cubic(), Network::spring(40.0)]).at_rest(&at(0.5), 0.0).unwrap();
         let x = 0.5 - rest.force / 40.0;

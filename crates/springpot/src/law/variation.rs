@@ -2,6 +2,8 @@
 
 use super::network::Network;
 use super::state::{State, StateSize};
+use super::step::{InputValue, Point, Step};
+use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::MemoryTangent;
 use serde::{Deserialize, Serialize};
@@ -39,6 +41,15 @@ pub struct ObservationVariation<'a> {
     pub force: &'a mut [f64],
     /// Of the stored energy.
     pub stored: &'a mut [f64],
+}
+
+/// What parameters change of energy flows at the start and at the nodes of a step: s + 1 blocks of derivatives, to which every leaf adds its own.
+#[derive(Debug)]
+pub struct PowersVariation<'a> {
+    /// Of what is dissipated.
+    pub dissipation: &'a mut [f64],
+    /// Of what inputs supply.
+    pub input: &'a mut [f64],
 }
 
 /// What parameters change of a law's own: its numbers, and what it keeps between steps.
@@ -81,11 +92,17 @@ pub struct VariationMut<'a> {
 }
 
 impl LawVariation {
-    /// At t = 0, where x(0) changes by `start`: of the law as each parameter has it, with its derivatives in its numbers, where it moves any.
+    /// At t = 0: of the law as each parameter has it, with its derivatives in its numbers, where it moves any; `told` is what changes of its start.
     ///
     /// # Errors
     /// The name of a leaf whose derivatives are not known.
-    pub(crate) fn begin(law: &Network, by: &[Option<Network>], start: &[f64], state: &State) -> Result<Self, String> {
+    pub fn begin(
+        law: &Network,
+        by: &[Option<Network>],
+        at: &Point,
+        told: &PointVariation,
+        state: &State,
+    ) -> Result<Self, String> {
         if let Some(leaf) = law.without_derivatives() {
             return Err(leaf);
         }
@@ -96,12 +113,18 @@ impl LawVariation {
                 numbers[k * count + p] = slope;
             }
         }
-        let mut begun =
-            Self { count, numbers, memories: Vec::new(), variables: vec![0.0; state.size().variables * count] };
+        let variables = vec![0.0; state.size().variables * count];
+        let mut begun = Self { count, numbers, memories: Vec::new(), variables };
         let mut memories = Vec::new();
-        law.begin_variation(start, state, &begun, &mut memories).map_err(|error| error.to_string())?;
+        law.begin_memories(told.stroke, state, &begun, &mut memories).map_err(|error| error.to_string())?;
         begun.memories = memories;
+        law.begin_variation(at, state, told, &mut begun);
         Ok(begun)
+    }
+
+    /// Of the inner variables of the law, a block for each.
+    pub fn variables(&self) -> &[f64] {
+        &self.variables
     }
 
     /// All of it.
@@ -135,6 +158,11 @@ impl<'a> VariationRef<'a> {
     pub fn number(&self, k: usize) -> &'a [f64] {
         &self.numbers[k * self.count..(k + 1) * self.count]
     }
+
+    /// The block of its inner variable `k`.
+    pub fn variable(&self, k: usize) -> &'a [f64] {
+        &self.variables[k * self.count..(k + 1) * self.count]
+    }
 }
 
 impl<'a> VariationMut<'a> {
@@ -145,6 +173,26 @@ impl<'a> VariationMut<'a> {
         let memories = self.memories.split_off_mut(..size.memories).expect("a state of this law");
         self.numbers = rest;
         VariationMut { count: self.count, numbers: own, memories, variables }
+    }
+
+    /// The same for a while.
+    pub(super) fn reborrow(&mut self) -> VariationMut<'_> {
+        VariationMut {
+            count: self.count,
+            numbers: self.numbers,
+            memories: self.memories,
+            variables: self.variables,
+        }
+    }
+
+    /// The same, to be looked at.
+    pub fn view(&self) -> VariationRef<'_> {
+        VariationRef {
+            count: self.count,
+            numbers: self.numbers,
+            memories: self.memories,
+            variables: self.variables,
+        }
     }
 }
 
@@ -165,6 +213,57 @@ impl<'a> StepVariation<'a> {
         let [values, rates] = self.inputs;
         Some([values.get(from..from + self.count)?, rates.get(from..from + self.count)?])
     }
+
+    /// As parameter `p` has it: strokes and rates at the nodes stay unless they are those that `told` says.
+    pub(super) fn column(&self, step: &Step, p: usize, at_nodes: AtNodes) -> Column {
+        let (count, inputs) = (step.nodes.count(), step.inputs_at(0).len());
+        let mut column = Column { stroke: [Dual::default(); MAX_NODES + 1], ..Column::default() };
+        for k in 0..=count {
+            let moves = k == 0 || at_nodes == AtNodes::AsTold;
+            let slope = |block: &[f64]| if moves { block[p] } else { 0.0 };
+            column.stroke[k] = Dual { value: step.stroke[k], slope: slope(self.stroke_at(k)) };
+            column.rate[k] = Dual { value: step.rate[k], slope: slope(self.rate_at(k)) };
+            for (i, InputValue { value, rate }) in step.inputs_at(k).iter().enumerate() {
+                let [by_value, by_rate] = self.input_at(k, i, inputs).map_or([0.0; 2], |of| of.map(|block| block[p]));
+                let [value, rate] = [(*value, by_value), (*rate, by_rate)].map(|(value, slope)| Dual { value, slope });
+                column.inputs.push(InputValue { value, rate });
+            }
+        }
+        column
+    }
+}
+
+/// Which strokes and rates of a step's nodes change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum AtNodes {
+    /// None.
+    Still,
+    /// Those that are told.
+    AsTold,
+}
+
+/// A step as one parameter has it.
+#[derive(Debug, Default)]
+pub(super) struct Column {
+    stroke: [Dual; MAX_NODES + 1],
+    rate: [Dual; MAX_NODES + 1],
+    inputs: Vec<InputValue<Dual>>,
+}
+
+impl Column {
+    /// Of the step that it was made of.
+    pub(super) fn step<'a>(&'a self, of: &Step<'a>) -> Step<'a, Dual> {
+        let &Step { t, h, nodes, places, form, resolution, course, .. } = of;
+        let known = ..=nodes.count();
+        let (stroke, rate) = (&self.stroke[known], &self.rate[known]);
+        Step { t, h, nodes, places, form, stroke, rate, inputs: &self.inputs, resolution, course }
+    }
+
+    /// Whether nothing of it changes.
+    pub(super) fn is_still(&self) -> bool {
+        let of_inputs = self.inputs.iter().flat_map(|input| [input.value, input.rate]);
+        self.stroke.iter().chain(&self.rate).copied().chain(of_inputs).all(|number| number.slope == 0.0)
+    }
 }
 
 impl<'a> PointVariation<'a> {
@@ -173,6 +272,17 @@ impl<'a> PointVariation<'a> {
         let [values, rates] = self.inputs;
         let own = input * count..(input + 1) * count;
         Some([values.get(own.clone())?, rates.get(own)?])
+    }
+
+    /// The inputs of `at` as parameter `p` of `count` has them.
+    pub(super) fn inputs_of(&self, at: &Point, p: usize, count: usize) -> Vec<InputValue<Dual>> {
+        let of = |(i, input): (usize, &InputValue)| {
+            let [by_value, by_rate] = self.input(i, count).map_or([0.0; 2], |of| of.map(|block| block[p]));
+            let [value, rate] =
+                [(input.value, by_value), (input.rate, by_rate)].map(|(value, slope)| Dual { value, slope });
+            InputValue { value, rate }
+        };
+        at.inputs.iter().enumerate().map(of).collect()
     }
 }
 

@@ -24,7 +24,7 @@ fn leaf_table() -> Table {
 /// Every leaf, of sizes that matter at strokes of some 0.1 m and rates of some 1 m/s.
 fn leaves() -> Vec<Network> {
     vec![
-        Network::leaf(Polynomial { coefficients: [20.0, -30.0, 900.0] }),
+        Network::leaf(Polynomial::new([20.0, -30.0, 900.0])),
         Network::leaf(leaf_table()),
         Network::leaf(Stop::tension(60.0)),
         Network::leaf(Stop::compression(60.0)),

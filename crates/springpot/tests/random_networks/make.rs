@@ -61,12 +61,10 @@ impl Tree {
             Self::Spring(k) => Network::spring(*k),
             Self::Dashpot(c) => Network::dashpot(*c),
             Self::Springpot(c, alpha) => Network::springpot(*c, *alpha, derivative),
-            Self::Stop(stiffness, lower, upper) => {
-                Network::leaf(Stop { stiffness: *stiffness, lower: *lower, upper: *upper })
-            }
+            Self::Stop(stiffness, lower, upper) => Network::leaf(Stop::new(*stiffness, *lower, *upper).unwrap()),
             Self::Tension(k) => Network::leaf(Stop::tension(*k)),
             Self::Compression(k) => Network::leaf(Stop::compression(*k)),
-            Self::Hardening(k, c) => Network::leaf(Polynomial { coefficients: [*k, 0.0, *c] }),
+            Self::Hardening(k, c) => Network::leaf(Polynomial::new([*k, 0.0, *c])),
             Self::Parallel(parts) => Network::parallel(all(parts)),
             Self::Series(parts) => Network::series(all(parts)),
         }

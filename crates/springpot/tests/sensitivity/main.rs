@@ -1,5 +1,7 @@
 //! Derivatives of whole runs by their parameters, against differences of whole runs.
 
+mod laws;
+mod replay;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -100,8 +102,7 @@ fn rows_of(text: &str) -> Vec<Vec<f64>> {
 }
 
 /// The fourth-order difference of all rows by a number.
-fn difference(what: &str, value: f64, rows: impl Fn(f64) -> Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let step = NAMES.iter().position(|name| *name == what).map_or(6e-3, |p| STEPS[p]);
+fn difference(step: f64, value: f64, rows: impl Fn(f64) -> Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let d = step * value.abs();
     let [a, b, c, e] = [1.0, -1.0, 2.0, -2.0].map(|steps| rows(value + steps * d));
     let of = |r: usize, k: usize| (8.0 * (a[r][k] - b[r][k]) - (c[r][k] - e[r][k])) / (12.0 * d);
@@ -124,14 +125,20 @@ fn law(name: &str, values: &[f64], which: usize) -> Network {
 }
 
 /// Derivatives of q and v at the end by all of [`NAMES`], and by differences.
-fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], more: &[(&str, usize)]) {
+fn compare(
+    [text, motion]: [&str; 2],
+    name: &str,
+    law_values: &[f64],
+    [k, c]: [usize; 2],
+    more: &[(&str, usize, f64)],
+) {
     let at = |values: &[f64; 8], rtol: f64| arm(values, [text, motion], rtol);
     let plan = cases(&at(&VALUES, 1e-9)).plan(0).unwrap();
     let mut system = plan.system();
     let heavier = cases(&at(&[&VALUES[..7], &[1.0]].concat().try_into().unwrap(), 1e-9)).plan(0).unwrap().system();
-    let seeds = |k: usize| match NAMES[k] {
-        "k" => Seed::Law { element: 0, law: law(name, law_values, 0) },
-        "c" => Seed::Law { element: 0, law: law(name, law_values, 1) },
+    let seeds = |p: usize| match NAMES[p] {
+        "k" => Seed::Law { element: 0, law: law(name, law_values, k) },
+        "c" => Seed::Law { element: 0, law: law(name, law_values, c) },
         "rest" => Seed::Rest { element: 0, by: 1.0 },
         "q2" | "v2" | "torque" if !motion.is_empty() => Seed::Rest { element: 0, by: 0.0 },
         "q2" => Seed::Position { velocity: 1, by: 1.0 },
@@ -145,7 +152,7 @@ fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], more: &[(&
     };
     let mut parameters: Vec<Parameter> =
         (0..NAMES.len()).map(|k| parameter(NAMES[k], VALUES[k], vec![seeds(k)])).collect();
-    for (what, which) in more {
+    for (what, which, _) in more {
         let seed = Seed::Law { element: 0, law: law(name, law_values, *which) };
         parameters.push(parameter(what, law_values[*which], vec![seed]));
     }
@@ -161,15 +168,15 @@ fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], more: &[(&
         let (what, truth) = match more.get(p.wrapping_sub(NAMES.len())) {
             None => (
                 NAMES[p],
-                difference(NAMES[p], VALUES[p], |value| {
+                difference(STEPS[p], VALUES[p], |value| {
                     let mut values = VALUES;
                     values[p] = value;
                     rows_of(&at(&values, 1e-12))
                 }),
             ),
-            Some((what, which)) => (
+            Some((what, which, step)) => (
                 *what,
-                difference(what, law_values[*which], |value| {
+                difference(*step, law_values[*which], |value| {
                     let [old, new] = [law_values[*which], value].map(|value| format!("{what} = {value:?}"));
                     rows_of(&arm(&VALUES, [&text.replace(&old, &new), motion], 1e-12))
                 }),
@@ -195,12 +202,28 @@ fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], more: &[(&
 
 #[test]
 fn an_arm_with_a_spring_and_a_dashpot() {
-    compare(["law = \"kelvin-voigt\"\nparameters = { k = {k}, c = {c} }", ""], "kelvin-voigt", &[120.0, 15.0], &[]);
+    compare(["law = \"kelvin-voigt\"\nparameters = { k = {k}, c = {c} }", ""], "kelvin-voigt", &[120.0, 15.0], [0, 1], &[]);
+}
+
+#[test]
+fn an_arm_with_parts_in_series() {
+    let text = "law = \"zener\"\nparameters = { k_e = 60.0, k_m = {k}, c = {c} }";
+    compare([text, ""], "zener", &[60.0, 120.0, 15.0], [1, 2], &[("k_e", 0, 1e-2)]);
+}
+
+#[test]
+fn an_arm_with_a_damper_behind_its_driver() {
+    let text = "law = \"bouc-wen-damper\"\nparameters = { c_0a = {k}, c_0b = {c}, k_0 = 60.0, x_0 = 0.01, alpha_a = 80.0, \
+                alpha_b = 5.0, A = 1.0, beta = 20.0, gamma = 50.0, n = 2.0, eta = 6.0 }\n\
+                inputs = { u = \"0.6 + 0.5*sin(9*t)\" }";
+    let values = [120.0, 15.0, 60.0, 0.01, 80.0, 5.0, 1.0, 20.0, 50.0, 2.0, 6.0];
+    let more = [("alpha_a", 4, 1e-2), ("beta", 7, 1e-2), ("n", 9, 4e-3), ("eta", 10, 1e-2)];
+    compare([text, ""], "bouc-wen-damper", &values, [0, 1], &more);
 }
 
 fn fractional(alpha: f64, motion: &str) {
     let text = format!("law = \"fractional-kelvin-voigt\"\nparameters = {{ k = {{k}}, c = {{c}}, alpha = {alpha:?} }}");
-    compare([&text, motion], "fractional-kelvin-voigt", &[120.0, 15.0, alpha], &[("alpha", 2)]);
+    compare([&text, motion], "fractional-kelvin-voigt", &[120.0, 15.0, alpha], [0, 1], &[("alpha", 2, 6e-3)]);
 }
 
 #[test]

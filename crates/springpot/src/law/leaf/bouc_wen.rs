@@ -1,17 +1,18 @@
 //! Hysteresis after Bouc and Wen.
 
+use super::columns::{ByColumns, Columns};
 use super::contract::Leaf;
 use super::hysteresis::{self, Hysteresis, Matrix, Values};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
 use crate::collocation::{MAX_NODES, Nodes};
-use crate::dual::Dual;
+use crate::dual::{Dual, Real};
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Guard, Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term};
 
 /// F = alpha_h·z, z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n, z(0) = 0 (Bouc 1967, Wen 1976).
 ///
@@ -28,8 +29,15 @@ impl BoucWen {
     ///
     /// # Errors
     /// [`RuleError`]: alpha_h ≥ 0, A > 0, n ≥ 1, gamma ≥ |beta| so that it dissipates, gamma + beta > 0 so that z is bounded.
-    pub fn new(alpha_h: f64, a: f64, beta: f64, gamma: f64, n: f64) -> Result<Self, RuleError> {
-        RuleError::unless(alpha_h >= 0.0, "alpha_h ≥ 0", "alpha_h")?;
+    pub fn new(
+        alpha_h: impl Into<Dual>,
+        a: impl Into<Dual>,
+        beta: impl Into<Dual>,
+        gamma: impl Into<Dual>,
+        n: impl Into<Dual>,
+    ) -> Result<Self, RuleError> {
+        let alpha_h = alpha_h.into();
+        RuleError::unless(alpha_h.value >= 0.0, "alpha_h ≥ 0", "alpha_h")?;
         Ok(Self { alpha_h: Coefficient::constant(alpha_h), hysteresis: Hysteresis::new(a, beta, gamma, n)? })
     }
 
@@ -42,15 +50,9 @@ impl BoucWen {
         self.hysteresis.solve((step.nodes.count(), &step.matrix()), step.h, step.rate, None, start)
     }
 
-    fn rates(&self, step: &Step, z: &Values) -> Values {
+    fn rates<T: Real>(&self, step: &Step<T>, z: &Values<T>) -> Values<T> {
         let last = step.nodes.count();
-        std::array::from_fn(|k| if k > last { 0.0 } else { self.hysteresis.rate(z[k], step.rate[k]) })
-    }
-
-    fn observation(&self, at: &Point, z: f64) -> Observation {
-        let alpha_h = self.alpha_h.at(at.inputs).value;
-        let stored = Some(0.5 * alpha_h * z * z / self.hysteresis.slope_at_rest());
-        Observation { derivative: at.stroke, regular: alpha_h * z, singular: 0.0, stored }
+        std::array::from_fn(|k| if k > last { 0.0.into() } else { self.hysteresis.rate(z[k], step.rate[k]) })
     }
 }
 
@@ -88,42 +90,43 @@ impl Leaf for BoucWen {
 
     fn commit(&self, step: &Step, state: StateMut) {
         let start = state.variables[0];
-        let last = self.solve(step, start).0[step.nodes.count()];
-        state.variables[0] = if step.nodes == Nodes::Midpoint { 2.0 * last - start } else { last };
+        let (z, _) = self.solve(step, start);
+        self.at_end(step, &[start], &z, &mut |z| state.variables[0] = z);
     }
 
     fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
         let (z, _) = self.solve(step, state.variables[0]);
         let defect = step.h * step.quadrature_defect(&self.rates(step, &z));
         // What rounding leaves of a stroke is no error of z.
-        let error = if defect <= self.hysteresis.slope_at_rest() * step.resolution { 0.0 } else { defect };
+        let error = if defect <= self.hysteresis.slope_at_rest::<f64>() * step.resolution { 0.0 } else { defect };
         errors.push(LocalError { error, value: z[step.nodes.count()], order: 0.0, sharpness: 1.0 });
     }
 
     fn powers(&self, step: &Step, state: StateRef, powers: &mut Powers) {
         let (z, _) = self.solve(step, state.variables[0]);
-        let a = self.hysteresis.slope_at_rest();
         for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            let alpha_h = self.alpha_h.at(step.point(k).inputs);
-            power.dissipation += alpha_h.value / a * self.hysteresis.lost(z[k], step.rate[k]);
-            power.input += 0.5 * alpha_h.rate * z[k] * z[k] / a;
+            let own = self.power(step, state.variables, &z, k);
+            power.dissipation += own.dissipation;
+            power.input += own.input;
         }
     }
 
     fn at(&self, step: &Step, theta: f64, at: &Point, state: StateRef) -> Observation {
         let (z, _) = self.solve(step, state.variables[0]);
-        let rates = self.rates(step, &z);
-        let moved: f64 = step.quadrature(theta).iter().zip(rates).map(|(weight, rate)| weight * rate).sum();
-        self.observation(at, state.variables[0] + step.h * moved)
+        self.within(step, theta, at, state.variables, &z)
     }
 
     fn now(&self, at: &Point, state: StateRef) -> Observation {
-        self.observation(at, state.variables[0])
+        self.between(at, state.variables)
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        Some(self)
     }
 
     /// About z = 0, so that at rest it gives no force and small motions meet the spring alpha_h·A.
     fn linearised(&self, at: &Point) -> Term {
-        Term { coefficient: self.alpha_h.at(at.inputs).value * self.hysteresis.slope_at_rest(), order: 0.0 }
+        Term { coefficient: self.alpha_h.at(at.inputs).value * self.hysteresis.slope_at_rest::<f64>(), order: 0.0 }
     }
 
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
@@ -146,6 +149,57 @@ impl Leaf for BoucWen {
     }
 }
 
+impl Columns for BoucWen {
+    /// z at the start and at the nodes.
+    type Solved<T: Real> = Values<T>;
+
+    fn each_number(&mut self, take: &mut dyn FnMut(&mut Dual)) {
+        self.alpha_h.numbers().into_iter().chain(self.hysteresis.numbers()).for_each(take);
+    }
+
+    fn at_start<T: Real>(&self, _: &Point<T>, take: &mut dyn FnMut(T)) {
+        take(0.0.into());
+    }
+
+    fn solved(&self, step: &Step, start: &[f64]) -> Values {
+        self.solve(step, start[0]).0
+    }
+
+    fn follow(&self, step: &Step<Dual>, start: &[Dual], found: &Values) -> Values<Dual> {
+        let nodes = (step.nodes.count(), &step.matrix());
+        self.hysteresis.follow(nodes, step.h, step.rate, None, start[0], found)
+    }
+
+    fn force<T: Real>(&self, step: &Step<T>, z: &Values<T>, k: usize) -> T {
+        self.alpha_h.at(step.inputs_at(k)).value * z[k]
+    }
+
+    fn power<T: Real>(&self, step: &Step<T>, _: &[T], z: &Values<T>, k: usize) -> Power<T> {
+        let (a, alpha_h) = (self.hysteresis.slope_at_rest(), self.alpha_h.at(step.inputs_at(k)));
+        Power {
+            dissipation: alpha_h.value / a * self.hysteresis.lost(z[k], step.rate[k]),
+            input: T::from(0.5) * alpha_h.rate * z[k] * z[k] / a,
+        }
+    }
+
+    fn at_end<T: Real>(&self, step: &Step<T>, start: &[T], z: &Values<T>, take: &mut dyn FnMut(T)) {
+        let last = z[step.nodes.count()];
+        take(if step.nodes == Nodes::Midpoint { T::from(2.0) * last - start[0] } else { last });
+    }
+
+    fn within<T: Real>(&self, step: &Step<T>, theta: f64, at: &Point<T>, start: &[T], z: &Values<T>) -> Observation<T> {
+        let rates = self.rates(step, z);
+        let moved: T = step.quadrature(theta).iter().zip(rates).map(|(weight, rate)| T::from(*weight) * rate).sum();
+        self.between(at, &[start[0] + T::from(step.h) * moved])
+    }
+
+    fn between<T: Real>(&self, at: &Point<T>, variables: &[T]) -> Observation<T> {
+        let (alpha_h, z) = (self.alpha_h.at(at.inputs).value, variables[0]);
+        let stored = T::from(0.5) * alpha_h * z * z / self.hysteresis.slope_at_rest();
+        Observation { derivative: at.stroke, regular: alpha_h * z, singular: 0.0.into(), stored: Some(stored) }
+    }
+}
+
 /// Its parameters, in the order of its arguments.
 pub(in crate::law) fn params() -> Vec<Param> {
     let alpha_h = Param::new("alpha_h", "N/m", "force per unit of the hysteretic variable z", Range::NOT_NEGATIVE);
@@ -159,8 +213,7 @@ pub(super) fn kind() -> LeafKind {
         equation: "F = alpha_h·z, z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n",
         params: params(),
         build: LeafBuild::Values(|numbers, _| {
-            let values = Dual::values(numbers);
-            let &[alpha_h, a, beta, gamma, n] = &values[..] else { unreachable!("values follow params") };
+            let &[alpha_h, a, beta, gamma, n] = numbers else { unreachable!("values follow params") };
             Ok(Network::leaf(BoucWen::new(alpha_h, a, beta, gamma, n)?))
         }),
     }

@@ -1,6 +1,7 @@
 //! What every leaf answers.
 
 use super::jenkins::Jenkins;
+use super::columns::ByColumns;
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::{KernelError, MemoryTangent};
@@ -9,7 +10,9 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Electric, InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{LeafAtRest, Tangent};
-use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef};
+use crate::law::variation::{
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+};
 use num_complex::Complex64;
 
 /// Which time a leaf is asked about.
@@ -202,17 +205,29 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         None
     }
 
+    /// Itself, where its formulas are asked for derivatives ([`super::Columns`]): the questions about derivatives are answered by that.
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        None
+    }
+
     /// Hands over the numbers of its parameters, which carry derivatives where its law was built of such; false of a leaf of which no derivative
     /// is known: a law with it is refused where one is asked for.
-    fn numbers(&self, _take: &mut dyn FnMut(Dual)) -> bool {
-        false
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        self.by_columns().map(|own| own.numbers(take)).is_some()
+    }
+
+    /// Puts what changes of its inner variables at t = 0, by its own numbers and by what is `told` of `at`.
+    fn begin_variation(&self, at: &Point, _state: StateRef, told: &PointVariation, own: VariationMut) {
+        if let Some(columns) = self.by_columns() {
+            columns.begin(at, told, own);
+        }
     }
 
     /// Appends what changes of its memories at t = 0, where x(0) changes by `start`, a block.
     ///
     /// # Errors
     /// [`KernelError`] where there is no derivative by its order.
-    fn begin_variation(
+    fn begin_memories(
         &self,
         _start: &[f64],
         _: StateRef,
@@ -225,21 +240,40 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// Adds to `forces`, blocks of derivatives node by node, what changes of its forces where strokes and rates at the nodes stay: by its own
     /// numbers, by the start of the step, by what it keeps, and by its inputs. What the strokes and rates of `told` at the nodes change is
     /// [`Response::d_stroke`] and [`Response::d_rate`].
-    fn vary(&self, _: &Step, _: StateRef, _told: &StepVariation, _own: VariationRef, _forces: &mut [f64]) {}
+    fn vary(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, forces: &mut [f64]) {
+        self.by_columns().into_iter().for_each(|columns| columns.vary(step, state, told, own, forces));
+    }
 
     /// Takes what changes of an accepted step, which is not in the state yet, into what changes of the state.
-    fn commit_variation(&self, _: &Step, _: StateRef, _told: &StepVariation, _own: VariationMut) {}
+    fn commit_variation(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationMut) {
+        if let Some(columns) = self.by_columns() {
+            columns.commit(step, state, told, own);
+        }
+    }
+
+    /// Adds what changes of its energy flows at the start and at the nodes ([`Leaf::powers`]), where strokes and rates change as told.
+    fn vary_powers(
+        &self,
+        step: &Step,
+        state: StateRef,
+        told: &StepVariation,
+        own: VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        self.by_columns().into_iter().for_each(|columns| columns.powers(step, state, told, own, sum));
+    }
 
     /// Adds what changes of it at one time ([`Leaf::at`], [`Leaf::now`]).
     fn vary_at(
         &self,
-        _: When,
-        _: &Point,
-        _: StateRef,
-        _told: &PointVariation,
-        _own: VariationRef,
-        _sum: &mut ObservationVariation,
+        when: When,
+        at: &Point,
+        state: StateRef,
+        told: &PointVariation,
+        own: VariationRef,
+        sum: &mut ObservationVariation,
     ) {
+        self.by_columns().into_iter().for_each(|columns| columns.at(when, at, state, told, own, sum));
     }
 
     /// Rules over the inputs, to hold at every time.

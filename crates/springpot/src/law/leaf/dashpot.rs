@@ -7,7 +7,7 @@ use crate::law::catalog::{Param, Range};
 use crate::law::network::Network;
 use crate::law::state::StateRef;
 use crate::law::step::{LocalError, Observation, Point, Powers, Response, Step, Term};
-use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationRef, add};
+use crate::law::variation::{ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationRef, add};
 
 /// F = c·x'. Dissipates c·x'².
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +50,21 @@ impl Leaf for Dashpot {
     fn vary(&self, step: &Step, _: StateRef, _: &StepVariation, own: VariationRef, forces: &mut [f64]) {
         for (i, forces) in forces.chunks_exact_mut(own.count).enumerate() {
             add(forces, step.rate[i + 1], own.number(0));
+        }
+    }
+
+    fn vary_powers(
+        &self,
+        step: &Step,
+        _: StateRef,
+        told: &StepVariation,
+        own: VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        for (k, power) in sum.dissipation.chunks_exact_mut(own.count).enumerate().take(step.nodes.count() + 1) {
+            let rate = step.rate[k];
+            add(power, rate * rate, own.number(0));
+            add(power, 2.0 * self.viscosity.value * rate, told.rate_at(k));
         }
     }
 

@@ -1,10 +1,12 @@
 //! The ends of a joint as stops.
 
+use super::columns::{ByColumns, Columns};
 use super::contract::Leaf;
+use crate::dual::{Dual, Real};
 use crate::law::network::Holds;
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
-use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
+use crate::law::step::{Observation, Point, Power, Powers, Response, Step, Term};
 use crate::law::tangent::LeafAtRest;
 
 /// F = max(k·e + d·x', 0) where x is e ≥ 0 above `upper`, F = min(k·e + d·x', 0) where it is e ≤ 0 below `lower`, 0 between them: it pushes back and
@@ -14,13 +16,13 @@ use crate::law::tangent::LeafAtRest;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndStop {
     /// Stiffness k > 0, N/m.
-    pub stiffness: f64,
+    pub stiffness: Dual,
     /// Damping d ≥ 0, N·s/m.
-    pub damping: f64,
+    pub damping: Dual,
     /// Where it is free, m: from `lower` to `upper` ≥ `lower`; an end that is infinite is no stop.
-    pub lower: f64,
+    pub lower: Dual,
     /// See `lower`.
-    pub upper: f64,
+    pub upper: Dual,
 }
 
 impl EndStop {
@@ -28,33 +30,44 @@ impl EndStop {
     ///
     /// # Errors
     /// [`RuleError`]: k > 0, d ≥ 0, lower ≤ upper.
-    pub fn new(stiffness: f64, damping: f64, lower: f64, upper: f64) -> Result<Self, RuleError> {
-        RuleError::unless(stiffness > 0.0, "k > 0", "k")?;
-        RuleError::unless(damping >= 0.0, "d ≥ 0", "d")?;
-        RuleError::unless(lower <= upper, "lower ≤ upper", "lower")?;
-        Ok(Self { stiffness, damping, lower, upper })
+    pub fn new(
+        stiffness: impl Into<Dual>,
+        damping: impl Into<Dual>,
+        lower: impl Into<Dual>,
+        upper: impl Into<Dual>,
+    ) -> Result<Self, RuleError> {
+        let (stiffness, damping) = (stiffness.into(), damping.into());
+        let own = Self { stiffness, damping, lower: lower.into(), upper: upper.into() };
+        RuleError::unless(stiffness.value > 0.0, "k > 0", "k")?;
+        RuleError::unless(damping.value >= 0.0, "d ≥ 0", "d")?;
+        RuleError::unless(own.lower.value <= own.upper.value, "lower ≤ upper", "lower")?;
+        Ok(own)
     }
 
     /// How far it is beyond an end, and on which side that is; on the end itself it is beyond.
-    fn beyond(&self, x: f64) -> Option<(f64, f64)> {
-        if x >= self.upper {
-            Some((x - self.upper, 1.0))
-        } else if x <= self.lower {
-            Some((x - self.lower, -1.0))
+    fn beyond<T: Real>(&self, x: T) -> Option<(T, f64)> {
+        let [lower, upper] = [self.lower, self.upper].map(T::of);
+        if x.value() >= upper.value() {
+            Some((x - upper, 1.0))
+        } else if x.value() <= lower.value() {
+            Some((x - lower, -1.0))
         } else {
             None
         }
     }
 
-    /// The force, and its derivatives by stroke and rate.
-    fn response(&self, x: f64, rate: f64) -> (f64, f64, f64) {
-        let Some((excess, side)) = self.beyond(x) else { return (0.0, 0.0, 0.0) };
-        let force = self.stiffness * excess + self.damping * rate;
-        if side * force > 0.0 { (force, self.stiffness, self.damping) } else { (0.0, 0.0, 0.0) }
+    fn force_at<T: Real>(&self, x: T, rate: T) -> T {
+        let Some((excess, side)) = self.beyond(x) else { return 0.0.into() };
+        let force = T::of(self.stiffness) * excess + T::of(self.damping) * rate;
+        if side * force.value() > 0.0 { force } else { 0.0.into() }
     }
 
-    fn stored(&self, x: f64) -> f64 {
-        self.beyond(x).map_or(0.0, |(excess, _)| 0.5 * self.stiffness * excess * excess)
+    /// The force, and its derivatives by stroke and rate.
+    fn response(&self, x: f64, rate: f64) -> (f64, f64, f64) {
+        match self.force_at(x, rate) {
+            0.0 => (0.0, 0.0, 0.0),
+            force => (force, self.stiffness.value, self.damping.value),
+        }
     }
 }
 
@@ -73,15 +86,17 @@ impl Leaf for EndStop {
     }
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
-        for ((power, x), rate) in powers.iter_mut().zip(step.stroke).zip(step.rate) {
-            let spring = self.beyond(*x).map_or(0.0, |(excess, _)| self.stiffness * excess);
-            power.dissipation += (self.response(*x, *rate).0 - spring) * rate;
+        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
+            power.dissipation += self.power(step, &[], &(), k).dissipation;
         }
     }
 
     fn now(&self, at: &Point, _: StateRef) -> Observation {
-        let regular = self.response(at.stroke, at.rate).0;
-        Observation { derivative: at.stroke, regular, singular: 0.0, stored: Some(self.stored(at.stroke)) }
+        self.between(at, &[])
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        Some(self)
     }
 
     fn linearised(&self, at: &Point) -> Term {
@@ -103,18 +118,49 @@ impl Leaf for EndStop {
     }
 
     fn jumps(&self) -> bool {
-        self.damping > 0.0
+        self.damping.value > 0.0
     }
 
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
         // Where it would begin to pull, as a stroke.
-        let lag = self.damping / self.stiffness * at.rate;
-        for end in [self.lower, self.upper].into_iter().filter(|end| end.is_finite()) {
+        let lag = self.damping.value / self.stiffness.value * at.rate;
+        for end in [self.lower.value, self.upper.value].into_iter().filter(|end| end.is_finite()) {
             take(at.stroke - end);
-            if self.damping > 0.0 {
+            if self.damping.value > 0.0 {
                 take(at.stroke - end + lag);
             }
         }
+    }
+}
+
+impl Columns for EndStop {
+    type Solved<T: Real> = ();
+
+    fn each_number(&mut self, take: &mut dyn FnMut(&mut Dual)) {
+        let Self { stiffness, damping, lower, upper } = self;
+        [stiffness, damping, lower, upper].into_iter().for_each(take);
+    }
+
+    fn solved(&self, _: &Step, _: &[f64]) {}
+
+    fn follow(&self, _: &Step<Dual>, _: &[Dual], (): &()) {}
+
+    fn force<T: Real>(&self, step: &Step<T>, (): &(), k: usize) -> T {
+        self.force_at(step.stroke[k], step.rate[k])
+    }
+
+    fn power<T: Real>(&self, step: &Step<T>, _: &[T], (): &(), k: usize) -> Power<T> {
+        let (x, rate) = (step.stroke[k], step.rate[k]);
+        let spring = self.beyond(x).map_or(0.0.into(), |(excess, _)| T::of(self.stiffness) * excess);
+        Power { dissipation: (self.force_at(x, rate) - spring) * rate, input: 0.0.into() }
+    }
+
+    fn between<T: Real>(&self, at: &Point<T>, _: &[T]) -> Observation<T> {
+        let stored = self
+            .beyond(at.stroke)
+            .map_or(0.0.into(), |(excess, _)| T::from(0.5) * T::of(self.stiffness) * excess * excess);
+        let regular = self.force_at(at.stroke, at.rate);
+        Observation { derivative: at.stroke, regular, singular: 0.0.into(), stored: Some(stored) }
     }
 }
 

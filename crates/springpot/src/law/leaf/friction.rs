@@ -1,14 +1,16 @@
 //! Smooth friction.
 
+use super::columns::{ByColumns, Columns};
 use super::contract::{Leaf, Slide};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
 use crate::collocation::MAX_NODES;
+use crate::dual::{Dual, Real};
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
-use crate::law::step::{InputValue, Observation, Point, Powers, Response, Step, Term};
+use crate::law::step::{InputValue, Observation, Point, Power, Powers, Response, Step, Term};
 
 /// F = f·tanh(x'/v0). Dissipates F·x'; creeps where it should stick, at rates of the order of v0. f may follow an input.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +18,7 @@ pub struct Friction {
     /// Force at speed f ≥ 0, N.
     pub force: Coefficient,
     /// Rate v0 > 0 about which it turns over, m/s.
-    pub rate: f64,
+    pub rate: Dual,
 }
 
 impl Friction {
@@ -24,18 +26,20 @@ impl Friction {
     ///
     /// # Errors
     /// [`RuleError`]: f ≥ 0, v0 > 0.
-    pub fn new(force: f64, rate: f64) -> Result<Self, RuleError> {
-        RuleError::unless(force >= 0.0, "f ≥ 0", "f")?;
-        RuleError::unless(rate > 0.0, "v0 > 0", "v0")?;
+    pub fn new(force: impl Into<Dual>, rate: impl Into<Dual>) -> Result<Self, RuleError> {
+        let (force, rate) = (force.into(), rate.into());
+        RuleError::unless(force.value >= 0.0, "f ≥ 0", "f")?;
+        RuleError::unless(rate.value > 0.0, "v0 > 0", "v0")?;
         Ok(Self { force: Coefficient::constant(force), rate })
     }
 
-    fn at(&self, at: &Point) -> f64 {
-        self.force.at(at.inputs).value * (at.rate / self.rate).tanh()
+    fn at<T: Real>(&self, at: &Point<T>) -> T {
+        self.force.at(at.inputs).value * (at.rate / T::of(self.rate)).tanh()
     }
 
     fn slope(&self, at: &Point) -> f64 {
-        self.force.at(at.inputs).value / self.rate * (at.rate / self.rate).cosh().powi(-2)
+        let turns = self.rate.value;
+        self.force.at(at.inputs).value / turns * (at.rate / turns).cosh().powi(-2)
     }
 }
 
@@ -54,20 +58,23 @@ impl Leaf for Friction {
 
     fn by_input(&self, step: &Step, _: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {
         if self.force.input == Some(input) {
-            let turned = |i: usize| (step.rate[i + 1] / self.rate).tanh();
+            let turned = |i: usize| (step.rate[i + 1] / self.rate.value).tanh();
             (0..step.nodes.count()).for_each(|i| slopes[i][i] += self.force.slope.value * turned(i));
         }
     }
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
         for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            let at = step.point(k);
-            power.dissipation += self.at(&at) * at.rate;
+            power.dissipation += self.power(step, &[], &(), k).dissipation;
         }
     }
 
     fn now(&self, at: &Point, _: StateRef) -> Observation {
-        Observation { derivative: at.rate, regular: self.at(at), singular: 0.0, stored: Some(0.0) }
+        self.between(at, &[])
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        Some(self)
     }
 
     fn linearised(&self, at: &Point) -> Term {
@@ -84,11 +91,35 @@ impl Leaf for Friction {
     }
 
     fn slides(&self, inputs: &[InputValue]) -> Option<Slide> {
-        (!self.force.is_none()).then(|| Slide { force: self.force.at(inputs).value, rate: self.rate })
+        (!self.force.is_none()).then(|| Slide { force: self.force.at(inputs).value, rate: self.rate.value })
     }
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
         self.force.check(inputs, "the coefficient of tanh(x'/v0)")
+    }
+}
+
+impl Columns for Friction {
+    type Solved<T: Real> = ();
+
+    fn each_number(&mut self, take: &mut dyn FnMut(&mut Dual)) {
+        self.force.numbers().into_iter().chain([&mut self.rate]).for_each(take);
+    }
+
+    fn solved(&self, _: &Step, _: &[f64]) {}
+
+    fn follow(&self, _: &Step<Dual>, _: &[Dual], (): &()) {}
+
+    fn force<T: Real>(&self, step: &Step<T>, (): &(), k: usize) -> T {
+        self.at(&step.point(k))
+    }
+
+    fn power<T: Real>(&self, step: &Step<T>, _: &[T], (): &(), k: usize) -> Power<T> {
+        Power { dissipation: self.at(&step.point(k)) * step.rate[k], input: 0.0.into() }
+    }
+
+    fn between<T: Real>(&self, at: &Point<T>, _: &[T]) -> Observation<T> {
+        Observation { derivative: at.rate, regular: self.at(at), singular: 0.0.into(), stored: Some(0.0.into()) }
     }
 }
 
@@ -102,6 +133,6 @@ pub(super) fn kind() -> LeafKind {
             Param::new("f", "N", "friction force", Range::NOT_NEGATIVE),
             Param::new("v0", "m/s", "rate about which it turns over", positive),
         ],
-        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Friction::new(values[0].value, values[1].value)?))),
+        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Friction::new(values[0], values[1])?))),
     }
 }

@@ -1,6 +1,7 @@
 //! The hysteretic variable of Bouc and Wen, whatever moves it.
 
 use crate::collocation::{MAX_NODES, Nodes};
+use crate::dual::{Dual, Real};
 use crate::law::catalog::{Param, Range};
 use crate::law::rule::RuleError;
 
@@ -11,7 +12,7 @@ const MOST_ITERATIONS: usize = 60;
 const ENOUGH: f64 = 1e-12;
 
 /// What is known at the start of a step and at its nodes.
-pub(super) type Values = [f64; MAX_NODES + 1];
+pub(super) type Values<T = f64> = [T; MAX_NODES + 1];
 
 /// How what is known at the nodes follows something there.
 pub(super) type Matrix = [[f64; MAX_NODES]; MAX_NODES];
@@ -22,10 +23,10 @@ pub(super) type Matrix = [[f64; MAX_NODES]; MAX_NODES];
 /// turns round.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hysteresis {
-    a: f64,
-    beta: f64,
-    gamma: f64,
-    n: f64,
+    a: Dual,
+    beta: Dual,
+    gamma: Dual,
+    n: Dual,
 }
 
 impl Hysteresis {
@@ -33,39 +34,60 @@ impl Hysteresis {
     ///
     /// # Errors
     /// [`RuleError`]: A > 0, n ≥ 1, gamma ≥ |beta| so that it dissipates, gamma + beta > 0 so that z is bounded.
-    pub fn new(a: f64, beta: f64, gamma: f64, n: f64) -> Result<Self, RuleError> {
+    pub fn new(
+        a: impl Into<Dual>,
+        beta: impl Into<Dual>,
+        gamma: impl Into<Dual>,
+        n: impl Into<Dual>,
+    ) -> Result<Self, RuleError> {
+        let own = Self { a: a.into(), beta: beta.into(), gamma: gamma.into(), n: n.into() };
+        let [a, beta, gamma, n] = own.of();
         RuleError::unless(a > 0.0, "A > 0", "A")?;
         RuleError::unless(n >= 1.0, "n ≥ 1", "n")?;
-        RuleError::unless(gamma >= beta.abs(), "gamma ≥ |beta|", "gamma")?;
+        RuleError::unless(gamma >= f64::abs(beta), "gamma ≥ |beta|", "gamma")?;
         RuleError::unless(gamma + beta > 0.0, "gamma + beta > 0", "beta")?;
-        Ok(Self { a, beta, gamma, n })
+        Ok(own)
+    }
+
+    /// A, beta, gamma and n.
+    fn of<T: Real>(&self) -> [T; 4] {
+        [self.a, self.beta, self.gamma, self.n].map(T::of)
+    }
+
+    /// The same, to be changed.
+    pub(super) fn numbers(&mut self) -> [&mut Dual; 4] {
+        [&mut self.a, &mut self.beta, &mut self.gamma, &mut self.n]
     }
 
     /// A: z' per unit of v where z = 0.
-    pub fn slope_at_rest(&self) -> f64 {
-        self.a
+    pub fn slope_at_rest<T: Real>(&self) -> T {
+        T::of(self.a)
     }
 
     /// z'.
-    pub fn rate(&self, z: f64, v: f64) -> f64 {
-        self.a * v - z.abs().powf(self.n) * (self.gamma * v.abs() * sign(z) + self.beta * v)
+    pub fn rate<T: Real>(&self, z: T, v: T) -> T {
+        let [a, beta, gamma, n] = self.of::<T>();
+        a * v - z.abs().powf(n) * (gamma * v.abs() * sign(z).into() + beta * v)
     }
 
     /// ∂z'/∂z and ∂z'/∂v.
     fn slopes(&self, z: f64, v: f64) -> [f64; 2] {
-        let power = z.abs().powf(self.n);
-        let by_z = -self.n * z.abs().powf(self.n - 1.0) * (self.gamma * v.abs() + self.beta * v * sign(z));
-        [by_z, self.a - power * (self.gamma * sign(v) * sign(z) + self.beta)]
+        let [a, beta, gamma, n] = self.of::<f64>();
+        let power = z.abs().powf(n);
+        let by_z = -n * z.abs().powf(n - 1.0) * (gamma * v.abs() + beta * v * sign(z));
+        [by_z, a - power * (gamma * sign(v) * sign(z) + beta)]
     }
 
     /// |z|^(n+1)·(gamma·|v| + beta·v·sgn z) ≥ 0: what it dissipates under a force A·z.
-    pub fn lost(&self, z: f64, v: f64) -> f64 {
-        z.abs().powf(self.n + 1.0) * (self.gamma * v.abs() + self.beta * v * sign(z))
+    pub fn lost<T: Real>(&self, z: T, v: T) -> T {
+        let [_, beta, gamma, n] = self.of::<T>();
+        z.abs().powf(n + 1.0.into()) * (gamma * v.abs() + beta * v * sign(z).into())
     }
 
     /// The largest |z| that strokes lead to.
     fn largest(&self) -> f64 {
-        (self.a / (self.gamma + self.beta)).powf(self.n.recip())
+        let [a, beta, gamma, n] = self.of::<f64>();
+        (a / (gamma + beta)).powf(n.recip())
     }
 
     /// z at the start and at the nodes of a step of size h, and ∂z_i/∂v_j: z_i = z_0 + h Σ_j A_ij z'_j by Newton's method; NaN where that
@@ -121,11 +143,47 @@ impl Hysteresis {
         }
         ([f64::NAN; MAX_NODES + 1], [[f64::NAN; MAX_NODES]; MAX_NODES])
     }
+
+    /// z with its derivatives, where [`Self::solve`] has found `z`; `moved` is v at the start and at the nodes with its derivatives where z stays.
+    pub(super) fn follow(
+        &self,
+        (count, matrix): (usize, &Matrix),
+        h: f64,
+        moved: &[Dual],
+        back: Option<&Matrix>,
+        start: Dual,
+        z: &Values,
+    ) -> Values<Dual> {
+        // (I − h A diag(∂z'/∂z)) δz = δz_0 + h A δz', of which v at the nodes follows z by −∂z'/∂v·back.
+        let mut system = [[0.0; MAX_NODES + 1]; MAX_NODES];
+        for (i, row) in system.iter_mut().enumerate().take(count) {
+            row[i] = 1.0;
+            row[MAX_NODES] = start.slope;
+            for j in 0..count {
+                let (weight, v) = (h * matrix[i][j], moved[j + 1]);
+                let [by_z, by_v] = self.slopes(z[j + 1], v.value);
+                row[j] -= weight * by_z;
+                if let Some(back) = back {
+                    (0..count).for_each(|k| row[k] += weight * by_v * back[j][k]);
+                }
+                row[MAX_NODES] += weight * self.rate(z[j + 1].into(), v).slope;
+            }
+        }
+        eliminate(&mut system, count);
+        std::array::from_fn(|k| match k {
+            0 => start,
+            _ if k <= count => Dual { value: z[k], slope: system[k - 1][MAX_NODES] },
+            _ => Dual::default(),
+        })
+    }
 }
 
 /// −1, 0 or 1.
-fn sign(x: f64) -> f64 {
-    if x == 0.0 { 0.0 } else { x.signum() }
+fn sign(x: impl Real) -> f64 {
+    match x.value() {
+        0.0 => 0.0,
+        x => x.signum(),
+    }
 }
 
 /// Solves the leading `count` rows for their right sides.

@@ -1,6 +1,7 @@
 //! The leaves of every law: what gives a force by itself.
 
 pub(super) mod bouc_wen;
+mod columns;
 mod contract;
 mod dashpot;
 mod elastic;
@@ -23,6 +24,7 @@ mod unshifted;
 mod viscous;
 
 pub use bouc_wen::BoucWen;
+pub use columns::{ByColumns, Columns};
 pub use contract::{Free, Leaf, Slide, When};
 pub use dashpot::Dashpot;
 pub use elastic::Elastic;

@@ -6,7 +6,7 @@ use crate::dual::Dual;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
 use crate::law::tangent::LeafAtRest;
-use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationRef, add};
+use crate::law::variation::{ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationRef, add};
 
 /// F = −gain·(input − reference): expansion by heat or voltage, turned into force by a stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,6 +72,25 @@ impl Leaf for Source {
             let at = step.point(i + 1);
             let input = told.input_at(i + 1, self.input, at.inputs.len()).map(|[value, _]| value);
             self.add_change(&at, input, own, forces);
+        }
+    }
+
+    fn vary_powers(
+        &self,
+        step: &Step,
+        _: StateRef,
+        told: &StepVariation,
+        own: VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        let mut change = vec![0.0; own.count];
+        for (k, power) in sum.input.chunks_exact_mut(own.count).enumerate().take(step.nodes.count() + 1) {
+            let at = step.point(k);
+            let input = told.input_at(k, self.input, at.inputs.len()).map(|[value, _]| value);
+            change.fill(0.0);
+            self.add_change(&at, input, own, &mut change);
+            add(power, -at.rate, &change);
+            add(power, -self.force(&at), told.rate_at(k));
         }
     }
 

@@ -4,7 +4,7 @@ use super::contract::{Leaf, When};
 use super::kind::{LeafBuild, LeafKind};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
-use crate::dual::Dual;
+use crate::dual::{Dual, Real};
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{
     EnergyTangent, Form, KernelError, Memory, MemoryTangent, RatePolynomial, Singular, StepStart, TangentEnd,
@@ -85,14 +85,17 @@ impl Coefficient {
     }
 
     /// Value and rate under the inputs.
-    pub fn at(&self, inputs: &[InputValue]) -> InputValue {
+    pub fn at<T: Real>(&self, inputs: &[InputValue<T>]) -> InputValue<T> {
+        let [constant, slope] = [self.constant, self.slope].map(T::of);
         match self.input {
-            None => InputValue { value: self.constant.value, rate: 0.0 },
-            Some(i) => InputValue {
-                value: self.constant.value + self.slope.value * inputs[i].value,
-                rate: self.slope.value * inputs[i].rate,
-            },
+            None => InputValue { value: constant, rate: 0.0.into() },
+            Some(i) => InputValue { value: constant + slope * inputs[i].value, rate: slope * inputs[i].rate },
         }
+    }
+
+    /// Its numbers.
+    pub(super) fn numbers(&mut self) -> [&mut Dual; 2] {
+        [&mut self.constant, &mut self.slope]
     }
 }
 

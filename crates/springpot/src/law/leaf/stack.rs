@@ -1,14 +1,18 @@
 //! A piezo stack and the circuit that drives it.
 
+use super::columns::{ByColumns, Columns};
 use super::contract::{Leaf, When};
 use super::hysteresis::{Hysteresis, Matrix, Values, eliminate, resolvent};
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
+use crate::dual::{Dual, Real};
 use crate::fractional::KernelError;
 use crate::law::network::{Guard, Holds};
 use crate::law::prandtl_ishlinskii::Stop;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{Electric, InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::step::{
+    Electric, InputValue, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term,
+};
 use crate::law::tangent::{LeafAtRest, Tangent};
 
 /// Iterations for the charge at the nodes where stops bend its way.
@@ -29,13 +33,13 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
     /// T > 0, N/V.
-    pub coupling: f64,
+    pub coupling: Dual,
     /// C > 0 at a fixed stroke, F.
-    pub capacitance: f64,
+    pub capacitance: Dual,
     /// R > 0, ohm.
-    pub resistance: f64,
+    pub resistance: Dual,
     /// k > 0 of what is beside it, N/m.
-    pub stiffness: f64,
+    pub stiffness: Dual,
     /// v_h.
     pub drop: VoltageDrop,
     /// Lowest and highest U, V.
@@ -50,7 +54,7 @@ pub enum VoltageDrop {
     /// alpha_h·z, z moved by e.
     BoucWen {
         /// alpha_h ≥ 0.
-        alpha_h: f64,
+        alpha_h: Dual,
         /// z, V.
         hysteresis: Hysteresis,
     },
@@ -65,34 +69,38 @@ pub enum VoltageDrop {
 }
 
 /// A step worked out.
-struct Solved {
+#[derive(Debug)]
+pub struct Solved<T> {
     /// Charge, current, U and v_h at the start and at the nodes.
-    charge: Values,
-    current: Values,
-    drive: Values,
-    drop: Values,
+    charge: Values<T>,
+    current: Values<T>,
+    drive: Values<T>,
+    drop: Values<T>,
     /// z of [`VoltageDrop::BoucWen`].
-    z: Values,
-    /// By how much the current at the nodes follows the voltages that drive it there.
+    z: Values<T>,
+    /// By how much the current at the nodes follows the voltages that drive it there; where z stays; and how z holds its own rate back.
     by_drive: Matrix,
+    by_drive_alone: Matrix,
+    back: Matrix,
     /// ∂U/∂u at the nodes.
     by_input: [f64; MAX_NODES],
 }
 
 /// What the state holds.
-struct Kept<'a> {
-    charge: f64,
+struct Kept<'a, T> {
+    charge: T,
     /// z, or the stops of e.
-    hysteresis: &'a [f64],
+    hysteresis: &'a [T],
     /// The last input and the stops of it.
-    wanted: f64,
-    inverse: &'a [f64],
+    wanted: T,
+    inverse: &'a [T],
 }
 
 impl Stack {
     /// C + T²/k: the capacitance where the stack may move.
-    fn free_capacitance(&self) -> f64 {
-        self.capacitance + self.coupling * self.coupling / self.stiffness
+    fn free_capacitance<T: Real>(&self) -> T {
+        let coupling = T::of(self.coupling);
+        T::of(self.capacitance) + coupling * coupling / T::of(self.stiffness)
     }
 
     fn stops(&self) -> (&[Stop], bool) {
@@ -102,43 +110,44 @@ impl Stack {
         }
     }
 
-    fn kept<'a>(&self, state: StateRef<'a>) -> Kept<'a> {
-        let (charge, rest) = state.variables.split_first().expect("a state of this law");
+    fn kept<'a, T: Real>(&self, variables: &'a [T]) -> Kept<'a, T> {
+        let (charge, rest) = variables.split_first().expect("a state of this law");
         let (stops, feed_forward) = self.stops();
         match (&self.drop, feed_forward) {
             (VoltageDrop::Stops { .. }, true) => {
                 let (hysteresis, rest) = rest.split_at(stops.len());
                 Kept { charge: *charge, hysteresis, wanted: rest[0], inverse: &rest[1..] }
             }
-            _ => Kept { charge: *charge, hysteresis: rest, wanted: 0.0, inverse: &[] },
+            _ => Kept { charge: *charge, hysteresis: rest, wanted: 0.0.into(), inverse: &[] },
         }
     }
 
     /// V of a charge.
-    fn voltage(&self, charge: f64, stroke: f64) -> f64 {
-        (charge - self.coupling * stroke) / self.capacitance
+    fn voltage<T: Real>(&self, charge: T, stroke: T) -> T {
+        (charge - T::of(self.coupling) * stroke) / T::of(self.capacitance)
     }
 
     /// Σ b_i·s_i, and how it follows its stroke, after that has moved one way.
-    fn held(stops: &[Stop], held: &[f64], moved: f64) -> [f64; 2] {
-        stops.iter().zip(held).fold([0.0; 2], |[sum, slope], (stop, held)| {
-            let own = if stop.slips(*held, moved) { 0.0 } else { stop.weight };
-            [sum + stop.weight * stop.after(*held, moved), slope + own]
+    fn held<T: Real>(stops: &[Stop], held: &[T], moved: T) -> [T; 2] {
+        stops.iter().zip(held).fold([0.0.into(); 2], |[sum, slope], (stop, held)| {
+            let weight = T::of(stop.weight);
+            let own = if stop.slips(*held, moved) { 0.0.into() } else { weight };
+            [sum + weight * stop.after(*held, moved), slope + own]
         })
     }
 
     /// U and ∂U/∂u.
-    fn driven(&self, kept: &Kept, input: f64) -> [f64; 2] {
+    fn driven<T: Real>(&self, kept: &Kept<T>, input: T) -> [T; 2] {
         match self.stops() {
             (stops, true) => {
                 let [sum, slope] = Self::held(stops, kept.inverse, input - kept.wanted);
-                [input + sum, 1.0 + slope]
+                [input + sum, T::from(1.0) + slope]
             }
-            _ => [input, 1.0],
+            _ => [input, 1.0.into()],
         }
     }
 
-    fn solve(&self, step: &Step, kept: &Kept) -> Solved {
+    fn solve(&self, step: &Step, kept: &Kept<f64>) -> Solved<f64> {
         let (nodes, count, h) = (step.nodes, step.nodes.count(), step.h);
         let mut drive = Values::default();
         let mut by_input = [1.0; MAX_NODES];
@@ -161,16 +170,18 @@ impl Stack {
             drop: Values::default(),
             z: Values::default(),
             by_drive: Matrix::default(),
+            by_drive_alone: Matrix::default(),
+            back: Matrix::default(),
             by_input,
         };
         match &self.drop {
             VoltageDrop::Stops { stops, .. } => self.along_stops(step, kept, stops, &left, &mut solved),
             VoltageDrop::None => self.along(step, &left, None, &mut solved),
             VoltageDrop::BoucWen { alpha_h, hysteresis } => {
-                self.along(step, &left, Some((*alpha_h, hysteresis, kept.hysteresis[0])), &mut solved);
+                self.along(step, &left, Some((alpha_h.value, hysteresis, kept.hysteresis[0])), &mut solved);
             }
         }
-        solved.current[0] = (left[0] - solved.drop[0]) / self.resistance;
+        solved.current[0] = (left[0] - solved.drop[0]) / self.resistance.value;
         for (i, row) in nodes.matrix().iter().enumerate().take(count) {
             solved.charge[i + 1] += h * (0..count).map(|j| row[j] * solved.current[j + 1]).sum::<f64>();
         }
@@ -178,9 +189,9 @@ impl Stack {
     }
 
     /// R q'_i + (h/C) Σ_j A_ij q'_j = left_i − alpha_h·z_i.
-    fn along(&self, step: &Step, left: &Values, of_z: Option<(f64, &Hysteresis, f64)>, solved: &mut Solved) {
+    fn along(&self, step: &Step, left: &Values, of_z: Option<(f64, &Hysteresis, f64)>, solved: &mut Solved<f64>) {
         let (nodes, count, h) = (step.nodes, step.nodes.count(), step.h);
-        let own = resolvent(nodes, &[self.resistance; MAX_NODES][..count], h / self.capacitance);
+        let own = resolvent(nodes, &[self.resistance.value; MAX_NODES][..count], h / self.capacitance.value);
         let current = |drop: &Values| -> Values {
             std::array::from_fn(|k| match (1..=count).contains(&k) {
                 true => (0..count).map(|j| own[k - 1][j] * (left[j + 1] - drop[j + 1])).sum(),
@@ -191,10 +202,11 @@ impl Stack {
             (solved.current, solved.by_drive) = (current(&Values::default()), own);
             return;
         };
-        let moves = self.free_capacitance().recip();
+        let moves = self.free_capacitance::<f64>().recip();
         let free = current(&Values::default()).map(|current| moves * current);
         let back = own.map(|row| row.map(|entry| moves * alpha_h * entry));
         let (z, tangent) = hysteresis.solve((nodes.count(), nodes.matrix()), h, &free, Some(&back), start);
+        (solved.by_drive_alone, solved.back) = (own, back);
         solved.z = z;
         solved.drop = z.map(|z| alpha_h * z);
         solved.current = current(&solved.drop);
@@ -208,9 +220,9 @@ impl Stack {
     }
 
     /// R q'_i + (h/C) Σ_j A_ij q'_j + v_h(e_i) = left_i, by Newton's method: v_h bends where stops begin to slip.
-    fn along_stops(&self, step: &Step, kept: &Kept, stops: &[Stop], left: &Values, solved: &mut Solved) {
+    fn along_stops(&self, step: &Step, kept: &Kept<f64>, stops: &[Stop], left: &Values, solved: &mut Solved<f64>) {
         let (nodes, count, h) = (step.nodes, step.nodes.count(), step.h);
-        let (matrix, moves) = (nodes.matrix(), self.free_capacitance().recip());
+        let (matrix, moves) = (nodes.matrix(), self.free_capacitance::<f64>().recip());
         solved.drop[0] = Self::held(stops, kept.hysteresis, 0.0)[0];
         let mut found = false;
         for _ in 0..MOST_ITERATIONS {
@@ -219,11 +231,11 @@ impl Stack {
                 let gone: f64 = (0..count).map(|j| h * matrix[i][j] * solved.current[j + 1]).sum();
                 let [drop, slope] = Self::held(stops, kept.hysteresis, moves * gone);
                 solved.drop[i + 1] = drop;
-                let stiffness = self.capacitance.recip() + moves * slope;
+                let stiffness = self.capacitance.value.recip() + moves * slope;
                 (0..count).for_each(|j| system[i][j] = h * matrix[i][j] * stiffness);
-                system[i][i] += self.resistance;
+                system[i][i] += self.resistance.value;
                 system[i][MAX_NODES + i] = 1.0;
-                let meets = self.resistance * solved.current[i + 1] + gone / self.capacitance + drop;
+                let meets = self.resistance.value * solved.current[i + 1] + gone / self.capacitance.value + drop;
                 system[i][2 * MAX_NODES] = left[i + 1] - meets;
             }
             eliminate(&mut system, count);
@@ -236,7 +248,8 @@ impl Stack {
                 size = size.max(solved.current[i + 1].abs());
                 solved.by_drive[i] = std::array::from_fn(|j| system[i][MAX_NODES + j]);
             }
-            let floor = ROUNDING * left.iter().fold(0.0, |most: f64, left| most.max(left.abs())) / self.resistance;
+            let floor =
+                ROUNDING * left.iter().fold(0.0, |most: f64, left| most.max(left.abs())) / self.resistance.value;
             if change <= (ENOUGH * size).max(floor) {
                 found = true;
                 break;
@@ -248,63 +261,68 @@ impl Stack {
     }
 
     /// How far e has gone since the start of the step.
-    fn gone(&self, kept: &Kept, charge: f64) -> f64 {
+    fn gone<T: Real>(&self, kept: &Kept<T>, charge: T) -> T {
         (charge - kept.charge) / self.free_capacitance()
     }
 
     /// ½C·V² and what z, or stops, hold.
-    fn stored(&self, voltage: f64, hysteresis: f64) -> f64 {
-        0.5 * (self.capacitance * voltage * voltage + self.free_capacitance() * hysteresis)
+    fn stored<T: Real>(&self, voltage: T, hysteresis: T) -> T {
+        let own = T::of(self.capacitance) * voltage * voltage;
+        T::from(0.5) * (own + self.free_capacitance::<T>() * hysteresis)
     }
 
     /// alpha_h·z²/A, or Σ b_i·s_i².
-    fn squares(&self, z: f64, held: impl Iterator<Item = f64>) -> f64 {
+    fn squares<T: Real>(&self, z: T, held: impl Iterator<Item = T>) -> T {
         match &self.drop {
-            VoltageDrop::None => 0.0,
-            VoltageDrop::BoucWen { alpha_h, hysteresis } => alpha_h * z * z / hysteresis.slope_at_rest(),
+            VoltageDrop::None => 0.0.into(),
+            VoltageDrop::BoucWen { alpha_h, hysteresis } => T::of(*alpha_h) * z * z / hysteresis.slope_at_rest(),
             VoltageDrop::Stops { stops, .. } => {
-                stops.iter().zip(held).map(|(stop, held)| stop.weight * held * held).sum()
+                stops.iter().zip(held).map(|(stop, held)| T::of(stop.weight) * held * held).sum()
             }
         }
     }
 
     /// Charge, and the hysteresis after it has gone there, at θ of a step.
-    fn until(&self, step: &Step, theta: f64, kept: &Kept, solved: &Solved) -> [f64; 2] {
+    fn until<T: Real>(&self, step: &Step<T>, theta: f64, kept: &Kept<T>, solved: &Solved<T>) -> [T; 2] {
         let weights = quadrature(step.nodes, theta);
-        let sum = |rates: Values| step.h * weights.iter().zip(rates).map(|(weight, rate)| weight * rate).sum::<f64>();
+        let sum = |rates: Values<T>| {
+            T::from(step.h) * weights.iter().zip(rates).map(|(weight, rate)| T::from(*weight) * rate).sum()
+        };
         let charge = kept.charge + sum(solved.current);
         let z = match &self.drop {
             VoltageDrop::BoucWen { hysteresis, .. } => {
-                let moves = self.free_capacitance().recip();
+                let moves = T::from(1.0) / self.free_capacitance();
                 let last = step.nodes.count();
                 let rate = |k: usize| hysteresis.rate(solved.z[k], moves * solved.current[k]);
-                solved.z[0] + sum(std::array::from_fn(|k| if k > last { 0.0 } else { rate(k) }))
+                solved.z[0] + sum(std::array::from_fn(|k| if k > last { 0.0.into() } else { rate(k) }))
             }
-            _ => 0.0,
+            _ => 0.0.into(),
         };
         [charge, z]
     }
 
     /// v_h where the charge has gone to `charge`, and z is `z`.
-    fn drop_at(&self, kept: &Kept, charge: f64, z: f64) -> f64 {
+    fn drop_at<T: Real>(&self, kept: &Kept<T>, charge: T, z: T) -> T {
         match &self.drop {
-            VoltageDrop::None => 0.0,
-            VoltageDrop::BoucWen { alpha_h, .. } => alpha_h * z,
+            VoltageDrop::None => 0.0.into(),
+            VoltageDrop::BoucWen { alpha_h, .. } => T::of(*alpha_h) * z,
             VoltageDrop::Stops { stops, .. } => Self::held(stops, kept.hysteresis, self.gone(kept, charge))[0],
         }
     }
 
-    fn observation(&self, kept: &Kept, at: &Point, [charge, z]: [f64; 2]) -> Observation {
+    fn observation<T: Real>(&self, kept: &Kept<T>, at: &Point<T>, [charge, z]: [T; 2]) -> Observation<T> {
         let voltage = self.voltage(charge, at.stroke);
         let gone = self.gone(kept, charge);
         let held = self.stops().0.iter().zip(kept.hysteresis).map(|(stop, held)| stop.after(*held, gone));
         let stored = Some(self.stored(voltage, self.squares(z, held)));
-        Observation { derivative: at.stroke, regular: -self.coupling * voltage, singular: 0.0, stored }
+        let regular = -T::of(self.coupling) * voltage;
+        Observation { derivative: at.stroke, regular, singular: 0.0.into(), stored }
     }
 
     /// Charge and z between two steps.
-    fn between(&self, kept: &Kept) -> [f64; 2] {
-        [kept.charge, if matches!(self.drop, VoltageDrop::BoucWen { .. }) { kept.hysteresis[0] } else { 0.0 }]
+    fn kept_now<T: Real>(&self, kept: &Kept<T>) -> [T; 2] {
+        let has_z = matches!(self.drop, VoltageDrop::BoucWen { .. });
+        [kept.charge, if has_z { kept.hysteresis[0] } else { 0.0.into() }]
     }
 }
 
@@ -325,21 +343,19 @@ impl Leaf for Stack {
     }
 
     fn begin(&self, start: &Start, state: &mut State) -> Result<(), KernelError> {
-        let voltage = start.inputs[0].value;
-        state.push_variable(self.capacitance * voltage + self.coupling * start.stroke);
-        let (stops, feed_forward) = self.stops();
-        let wanted = if feed_forward { Some(1 + stops.len()) } else { None };
-        (1..self.size().variables).for_each(|k| state.push_variable(if Some(k) == wanted { voltage } else { 0.0 }));
+        let at = Point { t: 0.0, stroke: start.stroke, rate: 0.0, inputs: start.inputs };
+        self.at_start(&at, &mut |variable| state.push_variable(variable));
         Ok(())
     }
 
     fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response) {
-        let Solved { charge, by_drive, .. } = self.solve(step, &self.kept(state));
+        let solved = self.solve(step, &self.kept(state.variables));
+        let by_drive = &solved.by_drive;
         let (count, matrix) = (step.nodes.count(), step.nodes.matrix());
-        let by_voltage = self.coupling / self.capacitance;
+        let by_voltage = self.coupling.value / self.capacitance.value;
         for i in 0..count {
-            response.force[i] -= self.coupling * self.voltage(charge[i + 1], step.stroke[i + 1]);
-            response.d_stroke[i][i] += self.coupling * by_voltage;
+            response.force[i] += self.force(step, &solved, i + 1);
+            response.d_stroke[i][i] += self.coupling.value * by_voltage;
             for j in 0..count {
                 let follows: f64 = (0..count).map(|m| step.h * matrix[i][m] * by_drive[m][j]).sum();
                 response.d_stroke[i][j] -= by_voltage * by_voltage * follows;
@@ -351,109 +367,76 @@ impl Leaf for Stack {
         if input != 0 {
             return;
         }
-        let Solved { by_drive, by_input, .. } = self.solve(step, &self.kept(state));
+        let Solved { by_drive, by_input, .. } = self.solve(step, &self.kept(state.variables));
         let (count, matrix) = (step.nodes.count(), step.nodes.matrix());
         for i in 0..count {
             for j in 0..count {
                 let follows: f64 = (0..count).map(|m| step.h * matrix[i][m] * by_drive[m][j]).sum();
-                slopes[i][j] -= self.coupling / self.capacitance * follows * by_input[j];
+                slopes[i][j] -= self.coupling.value / self.capacitance.value * follows * by_input[j];
             }
         }
     }
 
     fn commit(&self, step: &Step, state: StateMut) {
-        let kept = self.kept(state.view());
-        let solved = self.solve(step, &kept);
-        let last = step.nodes.count();
-        // The rates are constant, and the node in the middle.
-        let end = |values: &Values| match step.nodes {
-            Nodes::Midpoint => 2.0 * values[last] - values[0],
-            _ => values[last],
-        };
-        let charge = end(&solved.charge);
-        let gone = self.gone(&kept, charge);
-        let (stops, feed_forward) = self.stops();
-        let (wanted, count) = (step.point(last).inputs[0].value, stops.len());
-        let moved = wanted - kept.wanted;
-        state.variables[0] = charge;
-        if matches!(self.drop, VoltageDrop::BoucWen { .. }) {
-            state.variables[1] = end(&solved.z);
-        }
-        for (held, stop) in state.variables[1..].iter_mut().zip(stops) {
-            *held = stop.after(*held, gone);
-        }
-        if feed_forward {
-            state.variables[1 + count] = wanted;
-            for (held, stop) in state.variables[2 + count..].iter_mut().zip(stops) {
-                *held = stop.after(*held, moved);
-            }
-        }
+        let start = state.variables.to_vec();
+        let solved = self.solve(step, &self.kept(&start));
+        let mut variables = state.variables.iter_mut();
+        self.at_end(step, &start, &solved, &mut |end| variables.next().into_iter().for_each(|own| *own = end));
     }
 
     fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
-        let kept = self.kept(state);
+        let kept = self.kept(state.variables);
         let Solved { charge, current, drive, z, .. } = self.solve(step, &kept);
         let last = step.nodes.count();
         // A drive that begins at 0 V may be the difference of voltages as large as the stack takes: their rounding is in it.
         let most = self.range[0].abs().max(self.range[1].abs());
         let volts =
-            drive.iter().zip(&charge).map(|(u, q)| u.abs().max(q.abs() / self.capacitance)).fold(most, f64::max);
+            drive.iter().zip(&charge).map(|(u, q)| u.abs().max(q.abs() / self.capacitance.value)).fold(most, f64::max);
         let mut push = |rates: &Values, value: f64, rounding: f64| {
             let defect = step.h * quadrature_defect(step.nodes, rates);
             let error = if defect <= rounding { 0.0 } else { defect };
             errors.push(LocalError { error, value, order: 0.0, sharpness: 1.0 });
         };
-        push(&current, charge[last], ROUNDING * volts * self.capacitance);
+        push(&current, charge[last], ROUNDING * volts * self.capacitance.value);
         if let VoltageDrop::BoucWen { hysteresis, .. } = &self.drop {
-            let moves = self.free_capacitance().recip();
+            let moves = self.free_capacitance::<f64>().recip();
             let rates = std::array::from_fn(|k| if k > last { 0.0 } else { hysteresis.rate(z[k], moves * current[k]) });
-            push(&rates, z[last], ROUNDING * volts * hysteresis.slope_at_rest());
+            push(&rates, z[last], ROUNDING * volts * hysteresis.slope_at_rest::<f64>());
         }
     }
 
     fn powers(&self, step: &Step, state: StateRef, powers: &mut Powers) {
-        let kept = self.kept(state);
-        let Solved { charge, current, drive, z, .. } = self.solve(step, &kept);
-        let (free, gone) = (self.free_capacitance(), self.gone(&kept, charge[1]));
+        let solved = self.solve(step, &self.kept(state.variables));
         for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            let moves = current[k] / free;
-            let lost = match &self.drop {
-                VoltageDrop::None => 0.0,
-                VoltageDrop::BoucWen { alpha_h, hysteresis } => {
-                    alpha_h / hysteresis.slope_at_rest() * hysteresis.lost(z[k], moves)
-                }
-                // Steps end where stops begin and cease to slip: what they do at the first node they do all along.
-                VoltageDrop::Stops { stops, .. } => {
-                    let slipping = stops.iter().zip(kept.hysteresis).filter(|(stop, held)| stop.slips(**held, gone));
-                    slipping.map(|(stop, _)| stop.weight * stop.limit * moves.abs()).sum()
-                }
-            };
-            power.dissipation += self.resistance * current[k] * current[k] + free * lost;
-            power.input += drive[k] * current[k];
+            let own = self.power(step, state.variables, &solved, k);
+            power.dissipation += own.dissipation;
+            power.input += own.input;
         }
     }
 
     fn at(&self, step: &Step, theta: f64, at: &Point, state: StateRef) -> Observation {
-        let kept = self.kept(state);
-        let until = self.until(step, theta, &kept, &self.solve(step, &kept));
-        self.observation(&kept, at, until)
+        let solved = self.solve(step, &self.kept(state.variables));
+        self.within(step, theta, at, state.variables, &solved)
     }
 
     fn now(&self, at: &Point, state: StateRef) -> Observation {
-        let kept = self.kept(state);
-        self.observation(&kept, at, self.between(&kept))
+        self.between(at, state.variables)
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        Some(self)
     }
 
     fn electric(&self, when: When, at: &Point, state: StateRef) -> Option<Electric> {
-        let kept = self.kept(state);
+        let kept = self.kept(state.variables);
         let [charge, z] = match when {
             When::Within(step, theta) => self.until(step, theta, &kept, &self.solve(step, &kept)),
-            When::Between => self.between(&kept),
+            When::Between => self.kept_now(&kept),
         };
         let drop = self.drop_at(&kept, charge, z);
         let [drive, _] = self.driven(&kept, at.inputs[0].value);
         let voltage = self.voltage(charge, at.stroke) + drop;
-        Some(Electric { voltage, charge, current: (drive - voltage) / self.resistance })
+        Some(Electric { voltage, charge, current: (drive - voltage) / self.resistance.value })
     }
 
     fn is_electric(&self) -> bool {
@@ -462,31 +445,34 @@ impl Leaf for Stack {
 
     /// Faster than the circuit: its charge stays.
     fn linearised(&self, _: &Point) -> Term {
-        Term { coefficient: self.coupling * self.coupling / self.capacitance, order: 0.0 }
+        let coupling = self.coupling.value;
+        Term { coefficient: coupling * coupling / self.capacitance.value, order: 0.0 }
     }
 
     /// V has come to U.
     fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
-        let [force, input] = [-self.coupling * at.inputs[0].value, -self.coupling];
+        let coupling = self.coupling.value;
+        let [force, input] = [-coupling * at.inputs[0].value, -coupling];
         LeafAtRest { force, stiffness: None, term: self.linearised(at), input: Some((0, input)), damping: 0.0 }
     }
 
     /// The spring T²/C in series with the dashpot T²R, the hysteresis about 0 beside it, and the force −T·U.
     fn tangent(&self, _: &Point) -> Option<Tangent> {
-        let square = self.coupling * self.coupling;
+        let coupling = self.coupling.value;
+        let square = coupling * coupling;
         let leaf = |coefficient: f64, order: f64| Tangent::Leaf(Term { coefficient, order }, None);
         let (elastic, drive) = match &self.drop {
             VoltageDrop::None => (0.0, 1.0),
-            VoltageDrop::BoucWen { alpha_h, hysteresis } => (alpha_h * hysteresis.slope_at_rest(), 1.0),
+            VoltageDrop::BoucWen { alpha_h, hysteresis } => (alpha_h.value * hysteresis.slope_at_rest::<f64>(), 1.0),
             VoltageDrop::Stops { stops, feed_forward } => {
-                let all: f64 = stops.iter().map(|stop| stop.weight).sum();
+                let all: f64 = stops.iter().map(|stop| stop.weight.value).sum();
                 (all, if *feed_forward { 1.0 + all } else { 1.0 })
             }
         };
-        let source = Tangent::Leaf(Term { coefficient: 0.0, order: 0.0 }, Some((0, -self.coupling * drive)));
-        let inner =
-            vec![leaf(square * self.resistance, 1.0), leaf(square * elastic / self.free_capacitance(), 0.0), source];
-        Some(Tangent::Series(vec![leaf(square / self.capacitance, 0.0), Tangent::Parallel(inner)]))
+        let source = Tangent::Leaf(Term { coefficient: 0.0, order: 0.0 }, Some((0, -coupling * drive)));
+        let free = self.free_capacitance::<f64>();
+        let inner = vec![leaf(square * self.resistance.value, 1.0), leaf(square * elastic / free, 0.0), source];
+        Some(Tangent::Series(vec![leaf(square / self.capacitance.value, 0.0), Tangent::Parallel(inner)]))
     }
 
     fn has_clock(&self) -> bool {
@@ -514,24 +500,24 @@ impl Leaf for Stack {
         if self.drop == VoltageDrop::None {
             return;
         }
-        let kept = self.kept(state);
+        let kept = self.kept(state.variables);
         let Solved { charge, current, .. } = self.solve(step, &kept);
-        let (last, scale) = (step.nodes.count(), self.coupling / self.stiffness);
+        let (last, scale) = (step.nodes.count(), self.coupling.value / self.stiffness.value);
         let mut push = |of: &dyn Fn(usize) -> f64| {
             guards.push(std::array::from_fn(|k| if k <= last { scale * of(k) } else { 0.0 }));
         };
         let (stops, feed_forward) = self.stops();
         let mut bounds = |held: &[f64], moved: &dyn Fn(usize) -> f64| {
             for (stop, held) in stops.iter().zip(held) {
-                push(&|k| held + moved(k) - stop.limit);
-                push(&|k| held + moved(k) + stop.limit);
+                push(&|k| held + moved(k) - stop.limit.value);
+                push(&|k| held + moved(k) + stop.limit.value);
             }
         };
         bounds(kept.hysteresis, &|k| self.gone(&kept, charge[k]));
         if feed_forward {
             bounds(kept.inverse, &|k| step.point(k).inputs[0].value - kept.wanted);
         }
-        push(&|k| self.resistance * current[k]);
+        push(&|k| self.resistance.value * current[k]);
         if feed_forward {
             push(&|k| step.h * step.point(k).inputs[0].rate);
         }
@@ -545,5 +531,146 @@ impl Leaf for Stack {
         let (bound, parameter) = if voltage < low { (low, "V_min") } else { (high, "V_max") };
         let rule = format!("V_min ≤ U ≤ V_max is broken: the voltage is {voltage} V, {parameter} is {bound} V");
         Err(RuleError { rule, parameter: parameter.into() })
+    }
+}
+
+impl Columns for Stack {
+    type Solved<T: Real> = Solved<T>;
+
+    fn each_number(&mut self, take: &mut dyn FnMut(&mut Dual)) {
+        let Self { coupling, capacitance, resistance, stiffness, drop, .. } = self;
+        [coupling, capacitance, resistance, stiffness].into_iter().for_each(&mut *take);
+        match drop {
+            VoltageDrop::None => {}
+            VoltageDrop::BoucWen { alpha_h, hysteresis } => {
+                [alpha_h].into_iter().chain(hysteresis.numbers()).for_each(take);
+            }
+            VoltageDrop::Stops { stops, .. } => {
+                stops.iter_mut().flat_map(|stop| [&mut stop.weight, &mut stop.limit]).for_each(take);
+            }
+        }
+    }
+
+    fn at_start<T: Real>(&self, at: &Point<T>, take: &mut dyn FnMut(T)) {
+        let voltage = at.inputs[0].value;
+        take(T::of(self.capacitance) * voltage + T::of(self.coupling) * at.stroke);
+        let (stops, feed_forward) = self.stops();
+        let wanted = if feed_forward { Some(1 + stops.len()) } else { None };
+        (1..self.size().variables).for_each(|k| take(if Some(k) == wanted { voltage } else { 0.0.into() }));
+    }
+
+    fn solved(&self, step: &Step, start: &[f64]) -> Solved<f64> {
+        self.solve(step, &self.kept(start))
+    }
+
+    fn follow(&self, step: &Step<Dual>, start: &[Dual], found: &Solved<f64>) -> Solved<Dual> {
+        let (kept, count) = (self.kept(start), step.nodes.count());
+        let resistance = self.resistance;
+        let mut current: Values<Dual> = found.current.map(Dual::from);
+        let charges = |current: &Values<Dual>| -> Values<Dual> {
+            std::array::from_fn(|k| match k {
+                0 => kept.charge,
+                _ => {
+                    let row = step.nodes.matrix()[k - 1].iter().take(count).zip(&current[1..]);
+                    kept.charge + Dual::from(step.h) * row.map(|(weight, rate)| Dual::from(*weight) * *rate).sum()
+                }
+            })
+        };
+        let drive: Values<Dual> = std::array::from_fn(|k| self.driven(&kept, step.inputs_at(k.min(count))[0].value)[0]);
+        // What drives the current where it and z stay, and what comes of it where z stays.
+        let mut charge = charges(&current);
+        let left: Values = std::array::from_fn(|k| {
+            if k > count {
+                return 0.0;
+            }
+            let voltage = self.voltage(charge[k], step.stroke[k]);
+            (drive[k] - voltage - self.drop_at(&kept, charge[k], found.z[k].into()) - resistance * current[k]).slope
+        });
+        let by_left = match self.drop {
+            VoltageDrop::BoucWen { .. } => &found.by_drive_alone,
+            _ => &found.by_drive,
+        };
+        for i in 0..count {
+            current[i + 1].slope = (0..count).map(|j| by_left[i][j] * left[j + 1]).sum();
+        }
+        let mut z = Values::default();
+        if let VoltageDrop::BoucWen { alpha_h, hysteresis } = &self.drop {
+            let free = self.free_capacitance::<Dual>();
+            let moved = current.map(|current| current / free);
+            let nodes = (count, step.nodes.matrix());
+            z = hysteresis.follow(nodes, step.h, &moved, Some(&found.back), kept.hysteresis[0], &found.z);
+            for i in 0..count {
+                let held = (0..count).map(|j| by_left[i][j] * z[j + 1].slope).sum::<f64>();
+                current[i + 1].slope -= alpha_h.value * held;
+            }
+        }
+        charge = charges(&current);
+        let drop: Values<Dual> = std::array::from_fn(|k| self.drop_at(&kept, charge[k], z[k]));
+        current[0] = (drive[0] - self.voltage(charge[0], step.stroke[0]) - drop[0]) / resistance;
+        let Solved { by_drive, by_drive_alone, back, by_input, .. } = *found;
+        Solved { charge, current, drive, drop, z, by_drive, by_drive_alone, back, by_input }
+    }
+
+    fn force<T: Real>(&self, step: &Step<T>, solved: &Solved<T>, k: usize) -> T {
+        -T::of(self.coupling) * self.voltage(solved.charge[k], step.stroke[k])
+    }
+
+    fn power<T: Real>(&self, _: &Step<T>, start: &[T], solved: &Solved<T>, k: usize) -> Power<T> {
+        let (kept, Solved { charge, current, drive, z, .. }) = (self.kept(start), solved);
+        let (free, gone) = (self.free_capacitance(), self.gone(&kept, charge[1]));
+        let moves = current[k] / free;
+        let lost = match &self.drop {
+            VoltageDrop::None => 0.0.into(),
+            VoltageDrop::BoucWen { alpha_h, hysteresis } => {
+                T::of(*alpha_h) / hysteresis.slope_at_rest() * hysteresis.lost(z[k], moves)
+            }
+            // Steps end where stops begin and cease to slip: what they do at the first node they do all along.
+            VoltageDrop::Stops { stops, .. } => {
+                let slipping = stops.iter().zip(kept.hysteresis).filter(|(stop, held)| stop.slips(**held, gone));
+                slipping.map(|(stop, _)| T::of(stop.weight) * T::of(stop.limit) * moves.abs()).sum()
+            }
+        };
+        let dissipation = T::of(self.resistance) * current[k] * current[k] + free * lost;
+        Power { dissipation, input: drive[k] * current[k] }
+    }
+
+    fn at_end<T: Real>(&self, step: &Step<T>, start: &[T], solved: &Solved<T>, take: &mut dyn FnMut(T)) {
+        let (kept, last) = (self.kept(start), step.nodes.count());
+        // The rates are constant, and the node in the middle.
+        let end = |values: &Values<T>| match step.nodes {
+            Nodes::Midpoint => T::from(2.0) * values[last] - values[0],
+            _ => values[last],
+        };
+        let charge = end(&solved.charge);
+        take(charge);
+        if matches!(self.drop, VoltageDrop::BoucWen { .. }) {
+            take(end(&solved.z));
+        }
+        let (stops, feed_forward) = self.stops();
+        let gone = self.gone(&kept, charge);
+        stops.iter().zip(kept.hysteresis).for_each(|(stop, held)| take(stop.after(*held, gone)));
+        if feed_forward {
+            let wanted = step.inputs_at(last)[0].value;
+            take(wanted);
+            let moved = wanted - kept.wanted;
+            stops.iter().zip(kept.inverse).for_each(|(stop, held)| take(stop.after(*held, moved)));
+        }
+    }
+
+    fn within<T: Real>(
+        &self,
+        step: &Step<T>,
+        theta: f64,
+        at: &Point<T>,
+        start: &[T],
+        solved: &Solved<T>,
+    ) -> Observation<T> {
+        let kept = self.kept(start);
+        self.observation(&kept, at, self.until(step, theta, &kept, solved))
+    }
+
+    fn between<T: Real>(&self, at: &Point<T>, variables: &[T]) -> Observation<T> {
+        let kept = self.kept(variables);
+        self.observation(&kept, at, self.kept_now(&kept))
     }
 }

@@ -3,6 +3,7 @@
 use super::contract::Free;
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
+use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
@@ -11,43 +12,55 @@ use crate::law::rule::RuleError;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// Stiffness k ≥ 0, N/m.
-    pub stiffness: f64,
+    pub stiffness: Dual,
     /// Where it is free, m: from `lower` to `upper` ≥ `lower`; an end that is infinite is no stop.
-    pub lower: f64,
+    pub lower: Dual,
     /// See `lower`.
-    pub upper: f64,
+    pub upper: Dual,
 }
 
 impl Stop {
     /// F = k·max(x, 0): pulls only.
-    pub fn tension(stiffness: f64) -> Self {
-        Self { stiffness, lower: f64::NEG_INFINITY, upper: 0.0 }
+    pub fn tension(stiffness: impl Into<Dual>) -> Self {
+        Self { stiffness: stiffness.into(), lower: f64::NEG_INFINITY.into(), upper: 0.0.into() }
     }
 
     /// F = k·min(x, 0): pushes only.
-    pub fn compression(stiffness: f64) -> Self {
-        Self { stiffness, lower: 0.0, upper: f64::INFINITY }
+    pub fn compression(stiffness: impl Into<Dual>) -> Self {
+        Self { stiffness: stiffness.into(), lower: 0.0.into(), upper: f64::INFINITY.into() }
     }
 
     /// A stop whose parameters keep its rules.
     ///
     /// # Errors
     /// [`RuleError`]: k ≥ 0, lower ≤ upper.
-    pub fn new(stiffness: f64, lower: f64, upper: f64) -> Result<Self, RuleError> {
-        RuleError::unless(stiffness >= 0.0, "k ≥ 0", "k")?;
-        RuleError::unless(lower <= upper, "lower ≤ upper", "lower")?;
-        Ok(Self { stiffness, lower, upper })
+    pub fn new(stiffness: impl Into<Dual>, lower: impl Into<Dual>, upper: impl Into<Dual>) -> Result<Self, RuleError> {
+        let own = Self { stiffness: stiffness.into(), lower: lower.into(), upper: upper.into() };
+        RuleError::unless(own.stiffness.value >= 0.0, "k ≥ 0", "k")?;
+        RuleError::unless(own.lower.value <= own.upper.value, "lower ≤ upper", "lower")?;
+        Ok(own)
+    }
+
+    fn ends(&self) -> [f64; 2] {
+        [self.lower.value, self.upper.value]
+    }
+
+    /// How far below and above its free strokes it is.
+    fn beyond(&self, x: f64) -> [f64; 2] {
+        let [lower, upper] = self.ends();
+        [(x - lower).min(0.0), (x - upper).max(0.0)]
     }
 
     /// How far beyond its free strokes it is.
     fn excess(&self, x: f64) -> f64 {
-        (x - self.upper).max(0.0) + (x - self.lower).min(0.0)
+        let [below, above] = self.beyond(x);
+        above + below
     }
 }
 
 impl Elastic for Stop {
     fn name(&self) -> &'static str {
-        match [self.lower, self.upper] {
+        match self.ends() {
             [f64::NEG_INFINITY, 0.0] => "tension",
             [0.0, f64::INFINITY] => "compression",
             _ => "stop",
@@ -55,41 +68,56 @@ impl Elastic for Stop {
     }
 
     fn force(&self, x: f64) -> f64 {
-        self.stiffness * self.excess(x)
+        self.stiffness.value * self.excess(x)
     }
 
     fn slope(&self, x: f64) -> f64 {
+        let [lower, upper] = self.ends();
         // With no play it is a spring, at its end too.
-        if x > self.upper || x < self.lower || self.lower == self.upper { self.stiffness } else { 0.0 }
+        if x > upper || x < lower || lower == upper { self.stiffness.value } else { 0.0 }
     }
 
     fn energy(&self, x: f64) -> f64 {
         // From x = 0, where it may be engaged already.
-        0.5 * self.stiffness * (self.excess(x).powi(2) - self.excess(0.0).powi(2))
+        0.5 * self.stiffness.value * (self.excess(x).powi(2) - self.excess(0.0).powi(2))
+    }
+
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        [self.stiffness, self.lower, self.upper].into_iter().for_each(take);
+        true
+    }
+
+    fn by_numbers(&self, x: f64, take: &mut dyn FnMut([f64; 2])) {
+        take([self.excess(x), 0.5 * (self.excess(x).powi(2) - self.excess(0.0).powi(2))]);
+        let k = self.stiffness.value;
+        for (own, zero) in self.beyond(x).into_iter().zip(self.beyond(0.0)) {
+            take([if own == 0.0 { 0.0 } else { -k }, -k * (own - zero)]);
+        }
     }
 
     fn holds(&self) -> Holds {
-        match self.stiffness {
+        let [lower, upper] = self.ends();
+        match self.stiffness.value {
             0.0 => Holds::Never,
-            _ if self.lower == self.upper => Holds::Always,
+            _ if lower == upper => Holds::Always,
             _ => Holds::LetsGo,
         }
     }
 
     fn free(&self) -> Option<Free> {
-        let Self { stiffness, lower, upper } = *self;
+        let (stiffness, [lower, upper]) = (self.stiffness.value, self.ends());
         (Elastic::holds(self) == Holds::LetsGo).then_some(Free { stiffness, lower, upper })
     }
 
     fn is_linear(&self) -> bool {
-        self.stiffness == 0.0 || self.lower == self.upper
+        self.stiffness.value == 0.0 || self.lower.value == self.upper.value
     }
 
     fn guards(&self, x: f64, take: &mut dyn FnMut(f64)) {
         if Elastic::is_linear(self) {
             return;
         }
-        [self.lower, self.upper].into_iter().filter(|end| end.is_finite()).for_each(|end| take(x - end));
+        self.ends().into_iter().filter(|end| end.is_finite()).for_each(|end| take(x - end));
     }
 }
 
@@ -101,7 +129,7 @@ fn one_sided(name: &'static str, equation: &'static str, build: LeafBuild) -> Le
 pub(super) fn tension() -> LeafKind {
     let build = LeafBuild::Values(|values, _| {
         RuleError::unless(values[0].value >= 0.0, "k ≥ 0", "k")?;
-        Ok(Network::leaf(Stop::tension(values[0].value)))
+        Ok(Network::leaf(Stop::tension(values[0])))
     });
     one_sided("tension", "F = k·max(x, 0)", build)
 }
@@ -110,7 +138,7 @@ pub(super) fn tension() -> LeafKind {
 pub(super) fn compression() -> LeafKind {
     let build = LeafBuild::Values(|values, _| {
         RuleError::unless(values[0].value >= 0.0, "k ≥ 0", "k")?;
-        Ok(Network::leaf(Stop::compression(values[0].value)))
+        Ok(Network::leaf(Stop::compression(values[0])))
     });
     one_sided("compression", "F = k·min(x, 0)", build)
 }
@@ -127,7 +155,7 @@ pub(super) fn kind() -> LeafKind {
         ],
         build: LeafBuild::Values(|values, _| {
             let &[k, lower, upper] = values else { unreachable!("values follow params") };
-            Ok(Network::leaf(Stop::new(k.value, lower.value, upper.value)?))
+            Ok(Network::leaf(Stop::new(k, lower, upper)?))
         }),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
+use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Holds, Network};
 use std::sync::Arc;
@@ -180,6 +181,11 @@ impl Elastic for Table {
 
     fn energy(&self, x: f64) -> f64 {
         self.energy_from_first(x) - self.zero
+    }
+
+    /// Its points are no parameters.
+    fn numbers(&self, _: &mut dyn FnMut(Dual)) -> bool {
+        true
     }
 
     fn holds(&self) -> Holds {

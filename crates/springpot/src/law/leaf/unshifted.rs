@@ -1,13 +1,17 @@
 //! A leaf that temperature does not shift, in a law that is told in reduced time.
 
-use super::contract::{Leaf, Slide};
+use super::contract::{Leaf, Slide, When};
 use crate::collocation::MAX_NODES;
+use crate::dual::Dual;
 use crate::fractional::KernelError;
 use crate::law::network::{Holds, LeafPart};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::LeafAtRest;
+use crate::law::variation::{
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
+};
 
 /// A leaf that is told rates by the clock of the wall, x', where others are told dx/dξ = a_T x'; a_T is an input.
 ///
@@ -46,6 +50,31 @@ impl Unshifted {
 
     fn step<'a>(step: &Step<'a>, rates: &'a Rates) -> Step<'a> {
         Step { rate: &rates.rate[..step.rate.len()], ..*step }
+    }
+
+    /// What changes of x' at the start and at the nodes; without what is told of it at the nodes, unless `moves`.
+    fn vary_rates(&self, step: &Step, rates: &Rates, told: &StepVariation, moves: bool) -> Vec<f64> {
+        let mut changes = vec![0.0; step.rate.len() * told.count];
+        for (k, change) in changes.chunks_exact_mut(told.count).enumerate() {
+            if moves || k == 0 {
+                add(change, rates.factor[k].recip(), told.rate_at(k));
+            }
+            if let Some([factor, _]) = told.input_at(k, self.factor, step.inputs_at(k).len()) {
+                add(change, -rates.rate[k] / rates.factor[k], factor);
+            }
+        }
+        changes
+    }
+
+    /// What changes of x' at one time.
+    fn vary_rate(&self, at: &Point, told: &PointVariation, count: usize) -> Vec<f64> {
+        let factor = self.factor(at.inputs);
+        let mut change = vec![0.0; count];
+        add(&mut change, factor.recip(), told.rate);
+        if let Some([by_factor, _]) = told.input(self.factor, count) {
+            add(&mut change, -at.rate / (factor * factor), by_factor);
+        }
+        change
     }
 
     /// A term by its own clock in reduced time.
@@ -102,6 +131,93 @@ impl Leaf for Unshifted {
 
     fn now(&self, at: &Point, state: StateRef) -> Observation {
         self.leaf.now(&self.point(at), state)
+    }
+
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
+        self.leaf.numbers(take)
+    }
+
+    fn begin_variation(&self, at: &Point, state: StateRef, told: &PointVariation, own: VariationMut) {
+        let rate = self.vary_rate(at, told, own.count);
+        self.leaf.begin_variation(&self.point(at), state, &PointVariation { rate: &rate, ..*told }, own);
+    }
+
+    fn vary(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, forces: &mut [f64]) {
+        let rates = self.rates(step);
+        let (count, changes) = (told.count, self.vary_rates(step, &rates, told, false));
+        let inner = Self::step(step, &rates);
+        if changes[count..].iter().any(|change| *change != 0.0) {
+            // The rates that the leaf is told change with a_T.
+            let mut response = Response::default();
+            self.leaf.evaluate(&inner, state, &mut response);
+            for (forces, by_rate) in forces.chunks_exact_mut(count).zip(response.d_rate) {
+                for (change, by_rate) in changes[count..].chunks_exact(count).zip(by_rate) {
+                    add(forces, by_rate, change);
+                }
+            }
+        }
+        self.leaf.vary(&inner, state, &StepVariation { rate: &changes, ..*told }, own, forces);
+    }
+
+    fn commit_variation(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationMut) {
+        let rates = self.rates(step);
+        let changes = self.vary_rates(step, &rates, told, true);
+        let told = StepVariation { rate: &changes, ..*told };
+        self.leaf.commit_variation(&Self::step(step, &rates), state, &told, own);
+    }
+
+    /// P by ξ is a_T·P.
+    fn vary_powers(
+        &self,
+        step: &Step,
+        state: StateRef,
+        told: &StepVariation,
+        own: VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        let (rates, mut powers, count) = (self.rates(step), Powers::default(), told.count);
+        let changes = self.vary_rates(step, &rates, told, true);
+        let (inner, told_inside) = (Self::step(step, &rates), StepVariation { rate: &changes, ..*told });
+        self.leaf.powers(&inner, state, &mut powers);
+        let mut changes = [vec![0.0; sum.dissipation.len()], vec![0.0; sum.input.len()]];
+        let [dissipation, input] = &mut changes;
+        self.leaf.vary_powers(&inner, state, &told_inside, own, &mut PowersVariation { dissipation, input });
+        for k in 0..=step.nodes.count() {
+            let block = k * count..(k + 1) * count;
+            let by_factor = told.input_at(k, self.factor, step.inputs_at(k).len()).map(|[value, _]| value);
+            let own = [(powers[k].dissipation, &mut *sum.dissipation), (powers[k].input, &mut *sum.input)];
+            for ((power, sum), change) in own.into_iter().zip(&changes) {
+                let sum = &mut sum[block.clone()];
+                add(sum, rates.factor[k], &change[block.clone()]);
+                by_factor.into_iter().for_each(|by_factor| add(sum, power, by_factor));
+            }
+        }
+    }
+
+    fn vary_at(
+        &self,
+        when: When,
+        at: &Point,
+        state: StateRef,
+        told: &PointVariation,
+        own: VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        let rate = self.vary_rate(at, told, own.count);
+        let around = match (when, &told.step) {
+            (When::Within(step, theta), Some(around)) => {
+                let rates = self.rates(step);
+                let changes = self.vary_rates(step, &rates, around, true);
+                Some((step, theta, rates, changes, around))
+            }
+            _ => None,
+        };
+        let inner = around.as_ref().map(|(step, theta, rates, changes, around)| {
+            (Self::step(step, rates), *theta, StepVariation { rate: changes, ..**around })
+        });
+        let told = PointVariation { rate: &rate, step: inner.as_ref().map(|(.., told)| *told), ..*told };
+        let when = inner.as_ref().map_or(When::Between, |(step, theta, _)| When::Within(step, *theta));
+        self.leaf.vary_at(when, &self.point(at), state, &told, own, sum);
     }
 
     fn by_input(&self, step: &Step, state: StateRef, input: usize, slopes: &mut [[f64; MAX_NODES]; MAX_NODES]) {

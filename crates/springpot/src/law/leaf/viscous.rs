@@ -1,12 +1,14 @@
 //! A dashpot whose viscosity follows an input.
 
+use super::columns::{ByColumns, Columns};
 use super::contract::Leaf;
 use super::springpot::Coefficient;
 use crate::collocation::MAX_NODES;
+use crate::dual::{Dual, Real};
 use crate::law::network::Holds;
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
-use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Step, Term};
+use crate::law::step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Step, Term};
 
 /// F = c·x', c following an input. Dissipates c·x'².
 #[derive(Debug, Clone, PartialEq)]
@@ -40,13 +42,16 @@ impl Leaf for Viscous {
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
         for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            power.dissipation += self.viscosity.at(step.point(k).inputs).value * step.rate[k] * step.rate[k];
+            power.dissipation += self.power(step, &[], &(), k).dissipation;
         }
     }
 
     fn now(&self, at: &Point, _: StateRef) -> Observation {
-        let force = self.viscosity.at(at.inputs).value * at.rate;
-        Observation { derivative: at.rate, regular: force, singular: 0.0, stored: Some(0.0) }
+        self.between(at, &[])
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        Some(self)
     }
 
     fn linearised(&self, at: &Point) -> Term {
@@ -63,5 +68,31 @@ impl Leaf for Viscous {
 
     fn check_inputs(&self, inputs: &[InputValue]) -> Result<(), RuleError> {
         self.viscosity.check(inputs, "the coefficient of x'")
+    }
+}
+
+impl Columns for Viscous {
+    type Solved<T: Real> = ();
+
+    fn each_number(&mut self, take: &mut dyn FnMut(&mut Dual)) {
+        self.viscosity.numbers().into_iter().for_each(take);
+    }
+
+    fn solved(&self, _: &Step, _: &[f64]) {}
+
+    fn follow(&self, _: &Step<Dual>, _: &[Dual], (): &()) {}
+
+    fn force<T: Real>(&self, step: &Step<T>, (): &(), k: usize) -> T {
+        self.between(&step.point(k), &[]).regular
+    }
+
+    fn power<T: Real>(&self, step: &Step<T>, _: &[T], (): &(), k: usize) -> Power<T> {
+        let c = self.viscosity.at(step.inputs_at(k)).value;
+        Power { dissipation: c * step.rate[k] * step.rate[k], input: 0.0.into() }
+    }
+
+    fn between<T: Real>(&self, at: &Point<T>, _: &[T]) -> Observation<T> {
+        let force = self.viscosity.at(at.inputs).value * at.rate;
+        Observation { derivative: at.rate, regular: force, singular: 0.0.into(), stored: Some(0.0.into()) }
     }
 }

@@ -7,6 +7,7 @@
 
 mod answers;
 mod clock;
+mod vary;
 mod warming;
 
 use super::part::{Part, Seen};

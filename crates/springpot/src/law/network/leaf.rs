@@ -11,7 +11,9 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{AtRest, LeafAtRest, Tangent};
-use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef};
+use crate::law::variation::{
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -193,7 +195,7 @@ impl Part for LeafPart {
         (!known).then(|| self.name.as_ref().map_or(self.leaf.name(), |name| name).to_owned())
     }
 
-    fn begin_variation(
+    fn begin_memories(
         &self,
         start: &[f64],
         state: &mut StateRef,
@@ -201,7 +203,12 @@ impl Part for LeafPart {
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
         let size = self.leaf.size();
-        self.leaf.begin_variation(start, state.take(size), own.take(self.number_count(), size), memories)
+        self.leaf.begin_memories(start, state.take(size), own.take(self.number_count(), size), memories)
+    }
+
+    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
+        let size = self.leaf.size();
+        self.leaf.begin_variation(at, state.take(size), told, own.take(self.number_count(), size));
     }
 
     fn vary(
@@ -219,6 +226,18 @@ impl Part for LeafPart {
     fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
         let size = self.leaf.size();
         self.leaf.commit_variation(step, state.take(size), told, own.take(self.number_count(), size));
+    }
+
+    fn vary_powers(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        let size = self.leaf.size();
+        self.leaf.vary_powers(step, state.take(size), told, own.take(self.number_count(), size), sum);
     }
 
     fn vary_at(

@@ -11,7 +11,9 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{AtRest, Tangent};
-use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef};
+use crate::law::variation::{
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+};
 use num_complex::Complex64;
 
 /// A part of a network: a leaf, parts side by side or one behind the other, or a whole law under heat.
@@ -207,15 +209,20 @@ pub(in crate::law) trait Part: std::fmt::Debug {
         self.parts().iter().find_map(|part| part.ask().without_derivatives())
     }
 
-    /// Appends what changes of its memories at t = 0 ([`Leaf::begin_variation`]).
-    fn begin_variation(
+    /// Appends what changes of its memories at t = 0 ([`Leaf::begin_memories`]).
+    fn begin_memories(
         &self,
         start: &[f64],
         state: &mut StateRef,
         own: &mut VariationRef,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
-        self.parts().iter().try_for_each(|part| part.ask().begin_variation(start, state, own, memories))
+        self.parts().iter().try_for_each(|part| part.ask().begin_memories(start, state, own, memories))
+    }
+
+    /// Puts what changes of its state at t = 0 ([`Leaf::begin_variation`]).
+    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
+        self.parts().iter().for_each(|part| part.ask().begin_variation(at, state, told, own));
     }
 
     /// Adds what changes of its forces at the nodes ([`Leaf::vary`]).
@@ -233,6 +240,18 @@ pub(in crate::law) trait Part: std::fmt::Debug {
     /// Takes what changes of an accepted step into what changes of its state.
     fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
         self.parts().iter().for_each(|part| part.ask().commit_variation(step, state, told, own));
+    }
+
+    /// Adds what changes of its energy flows at the start and at the nodes ([`Leaf::vary_powers`]).
+    fn vary_powers(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        self.parts().iter().for_each(|part| part.ask().vary_powers(step, state, told, own, sum));
     }
 
     /// Adds what changes of it at one time.

@@ -14,18 +14,23 @@ mod play;
 mod slide;
 mod solve;
 mod start;
+mod vary;
+mod vary_start;
 
 use super::part::{self, Onset, Part, Reported, Take};
 use super::{Guard, Holds, MOST_IN_SERIES, Network};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Kind as Derivative};
-use crate::law::harmonic::{self, Sine};
-use crate::law::leaf::{Jenkins, Slide};
+use crate::law::harmonic::{Sine, self};
+use crate::law::leaf::{Jenkins, Slide, When};
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Course, InputValue, LocalError, Point, Power, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{self, AtRest};
+use crate::law::variation::{
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+};
 use asked::Asked;
 use loose::{Loose, Sought};
 use num_complex::Complex64;
@@ -177,12 +182,128 @@ impl Series {
         let at = |row: &Values| row.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
         TABLEAU_OF_FOUR.values.iter().rev().fold(0.0, |sum, row| sum * theta + at(row))
     }
+
+    /// What holds between two steps, where strokes do not jump; the state is at the shares of the parts.
+    fn settle(&self, at: &Point, strokes: &[f64], state: StateRef) -> Settled {
+        let slack = self.play().filter(|play| play.force(play.stroke(|k| strokes[k])) == 0.0);
+        let force = |part: &Network, stroke: f64, rate: f64, state: &StateRef| {
+            part.ask().now(&Point { stroke, rate, ..*at }, &mut state.clone(), &mut |_| ()).observation.regular
+        };
+        // F = a_m + b_m v_m, v = Σ v_m; of parts that are not linear b_m is that of the secant to v_m.
+        let (mut rates, mut whole) = ([1.0; MOST_IN_SERIES], f64::NAN);
+        let (mut lines, mut followed) = ([[0.0; 2]; MOST_IN_SERIES], None);
+        let iterations = if self.parts.iter().all(Network::is_linear) { 1 } else { MOST_SECANTS };
+        for _ in 0..iterations {
+            let (mut follows, mut yielding, mut owed): (Option<(f64, f64, usize)>, _, _) = (None, 0.0, 0.0);
+            let (mut ahead, before) = (state, whole);
+            for (k, (part, &stroke)) in self.parts.iter().zip(strokes).enumerate() {
+                let rest = force(part, stroke, 0.0, &ahead);
+                let slope = (force(part, stroke, rates[k], &ahead) - rest) / rates[k];
+                if slope == 0.0 {
+                    // What springpots have not begun to tell springs know.
+                    let order = part.ask().asymptote(at, Onset::Short).order;
+                    if follows.is_none_or(|(least, ..)| order < least) {
+                        follows = Some((order, rest, k));
+                    }
+                } else {
+                    (yielding, owed) = (yielding + slope.recip(), owed + rest / slope);
+                }
+                lines[k] = [rest, slope];
+                part.ask().pass(&mut ahead);
+            }
+            whole =
+                follows.map_or((at.rate + owed) / yielding, |(_, rest, _)| if slack.is_some() { 0.0 } else { rest });
+            followed = follows.map(|(.., k)| k);
+            for (rate, [rest, slope]) in rates.iter_mut().zip(lines) {
+                *rate = if slope == 0.0 { 0.0 } else { (whole - rest) / slope };
+            }
+            if (whole - before).abs() <= ENOUGH * whole.abs() {
+                break;
+            }
+            // A rate of 0 has no secant.
+            if iterations > 1 {
+                rates.iter_mut().filter(|rate| **rate == 0.0).for_each(|rate| *rate = f64::MIN_POSITIVE.sqrt());
+            }
+        }
+        for k in (0..self.parts.len()).filter(|k| self.slides(*k)) {
+            // Where it slides as fast as that no force tells its rate, and nothing else moves; behind a jump it is what gives way.
+            let slide = self.parts[k].ask().slides(at.inputs).unwrap_or(NO_FRICTION);
+            let others: f64 = (0..self.parts.len()).filter(|other| *other != k).map(|other| rates[other]).sum();
+            let unknown = || if at.t == 0.0 { slide.most(whole) } else { at.rate - others };
+            rates[k] = slide.rate_under(whole).unwrap_or_else(unknown);
+        }
+        if let Some(play) = slack {
+            // What is slack moves as the whole does but for how the others come back.
+            let others: f64 = (0..self.parts.len()).filter(|k| !play.has(*k)).map(|k| rates[k]).sum();
+            rates[play.first()] = at.rate - others;
+        }
+        Settled { rates, whole, lines, follows: followed, is_slack: slack.is_some() }
+    }
+}
+
+/// Rates and force between two steps.
+struct Settled {
+    /// Of the parts.
+    rates: [f64; MOST_IN_SERIES],
+    whole: f64,
+    /// The force of each part where its rate is 0, and how it follows that.
+    lines: [[f64; 2]; MOST_IN_SERIES],
+    /// The part that the force is that of, whatever the rates.
+    follows: Option<usize>,
+    is_slack: bool,
 }
 
 impl Part for Series {
-    /// None is known.
+    /// Of several that slide one alone can be looked for.
     fn without_derivatives(&self) -> Option<String> {
-        Some("what stands in series".to_owned())
+        if (0..self.parts.len()).filter(|k| self.slides(*k)).count() > 1 {
+            return Some("friction in series with friction".to_owned());
+        }
+        if self.size().memories > 0 {
+            return Some("a springpot in series".to_owned());
+        }
+        self.parts.iter().find_map(|part| part.ask().without_derivatives())
+    }
+
+    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
+        vary_start::begin(self, at, state, told, own);
+    }
+
+    fn vary(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        forces: &mut [f64],
+    ) {
+        self.vary_forces(step, state, told, own, forces);
+    }
+
+    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
+        self.commit_changes(step, state, told, own);
+    }
+
+    fn vary_powers(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        self.vary_flows(step, state, told, own, sum);
+    }
+
+    fn vary_at(
+        &self,
+        when: (When, &Point),
+        state: &mut StateRef,
+        told: &PointVariation,
+        own: &mut VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        self.vary_seen(when, state, told, own, sum);
     }
 
     fn parts(&self) -> &[Network] {
@@ -383,56 +504,7 @@ impl Part for Series {
     fn now(&self, at: &Point, state: &mut StateRef, take: Take) -> Reported {
         state.take_ready();
         let (strokes, _) = self.own(state);
-        let slack = self.play().filter(|play| play.force(play.stroke(|k| strokes[k])) == 0.0);
-        let force = |part: &Network, stroke: f64, rate: f64, state: &StateRef| {
-            part.ask().now(&Point { stroke, rate, ..*at }, &mut state.clone(), &mut |_| ()).observation.regular
-        };
-        // F = a_m + b_m v_m, v = Σ v_m; of parts that are not linear b_m is that of the secant to v_m.
-        let (mut rates, mut whole) = ([1.0; MOST_IN_SERIES], f64::NAN);
-        let iterations = if self.parts.iter().all(Network::is_linear) { 1 } else { MOST_SECANTS };
-        for _ in 0..iterations {
-            let (mut follows, mut yielding, mut owed): (Option<(f64, f64)>, _, _) = (None, 0.0, 0.0);
-            let (mut ahead, before) = (*state, whole);
-            let mut lines = [[0.0; 2]; MOST_IN_SERIES];
-            for (k, (part, &stroke)) in self.parts.iter().zip(strokes).enumerate() {
-                let rest = force(part, stroke, 0.0, &ahead);
-                let slope = (force(part, stroke, rates[k], &ahead) - rest) / rates[k];
-                if slope == 0.0 {
-                    // What springpots have not begun to tell springs know.
-                    let order = part.ask().asymptote(at, Onset::Short).order;
-                    if follows.is_none_or(|(least, _)| order < least) {
-                        follows = Some((order, rest));
-                    }
-                } else {
-                    (yielding, owed) = (yielding + slope.recip(), owed + rest / slope);
-                }
-                lines[k] = [rest, slope];
-                part.ask().pass(&mut ahead);
-            }
-            whole = follows.map_or((at.rate + owed) / yielding, |(_, rest)| if slack.is_some() { 0.0 } else { rest });
-            for (rate, [rest, slope]) in rates.iter_mut().zip(lines) {
-                *rate = if slope == 0.0 { 0.0 } else { (whole - rest) / slope };
-            }
-            if (whole - before).abs() <= ENOUGH * whole.abs() {
-                break;
-            }
-            // A rate of 0 has no secant.
-            if iterations > 1 {
-                rates.iter_mut().filter(|rate| **rate == 0.0).for_each(|rate| *rate = f64::MIN_POSITIVE.sqrt());
-            }
-        }
-        for k in (0..self.parts.len()).filter(|k| self.slides(*k)) {
-            // Where it slides as fast as that no force tells its rate, and nothing else moves; behind a jump it is what gives way.
-            let slide = self.parts[k].ask().slides(at.inputs).unwrap_or(NO_FRICTION);
-            let others: f64 = (0..self.parts.len()).filter(|other| *other != k).map(|other| rates[other]).sum();
-            let unknown = || if at.t == 0.0 { slide.most(whole) } else { at.rate - others };
-            rates[k] = slide.rate_under(whole).unwrap_or_else(unknown);
-        }
-        if let Some(play) = slack {
-            // What is slack moves as the whole does but for how the others come back.
-            let others: f64 = (0..self.parts.len()).filter(|k| !play.has(*k)).map(|k| rates[k]).sum();
-            rates[play.first()] = at.rate - others;
-        }
+        let Settled { rates, whole, .. } = self.settle(at, strokes, *state);
         let each = self.parts.iter().zip(strokes).zip(rates).map(|((part, &stroke), rate)| {
             let inside = Point { stroke, rate, ..*at };
             let owed = if at.t == 0.0 { start::owed(part, &inside, whole, state) } else { Vec::new() };

@@ -59,7 +59,7 @@ impl Inner {
 
 /// Parts about strokes of theirs: F = F_m + C_m⁻¹ δ_m.
 #[derive(Debug, Clone, Default)]
-struct Lines {
+pub(super) struct Lines {
     each: Vec<Line>,
     /// (Σ C_m)⁻¹; beside parts that let go Σ C_m of the others.
     tangent: Matrix,
@@ -73,7 +73,7 @@ struct Line {
 
 impl Lines {
     /// Forces and stiffnesses of all parts about `inner`; compliances are still to be found.
-    fn look(&mut self, series: &Series, inner: &[Inner; MOST_IN_SERIES], step: &Step, mut state: StateRef) {
+    pub(super) fn look(&mut self, series: &Series, inner: &[Inner; MOST_IN_SERIES], step: &Step, mut state: StateRef) {
         let (count, inverse) = (step.nodes.count(), step.nodes.inverse());
         self.each.clear();
         for (k, (part, inner)) in series.parts.iter().zip(inner).enumerate() {
@@ -95,7 +95,7 @@ impl Lines {
     }
 
     /// Makes compliances of the stiffnesses.
-    fn turn(&mut self, series: &Series, count: usize) {
+    pub(super) fn turn(&mut self, series: &Series, count: usize) {
         let entries = self.each.iter().flat_map(|line| line.compliance[..count].iter().flat_map(|row| &row[..count]));
         let stiffest = entries.fold(0.0f64, |stiffest, entry| stiffest.max(entry.abs()));
         let floor = (SOFTEST * stiffest).max(f64::MIN_POSITIVE);
@@ -162,6 +162,11 @@ impl Lines {
             let own = self.each.iter_mut().enumerate().filter(|(k, _)| play.has(*k));
             own.for_each(|(_, line)| line.force[i] = force);
         }
+    }
+
+    /// C of part `k`.
+    pub(super) fn compliance(&self, k: usize) -> Matrix {
+        self.each[k].compliance
     }
 
     fn share(&self, tangent: &Matrix, k: usize, count: usize) -> f64 {
@@ -399,7 +404,7 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     a.map(|row| std::array::from_fn(|j| row.iter().zip(b).map(|(entry, other)| entry * other[j]).sum()))
 }
 
-fn times(matrix: &Matrix, vector: &[f64; MAX_NODES]) -> [f64; MAX_NODES] {
+pub(super) fn times(matrix: &Matrix, vector: &[f64; MAX_NODES]) -> [f64; MAX_NODES] {
     matrix.each_ref().map(|row| row.iter().zip(vector).map(|(entry, value)| entry * value).sum())
 }
 

@@ -193,8 +193,8 @@ fn at_rest(part: &Network, stroke: f64, start: &Start) -> Result<[f64; 2], Kerne
 const SOFTEST: f64 = 1e-30;
 
 /// How the parts share a stroke.
-struct Shares {
-    of_parts: Vec<f64>,
+pub(super) struct Shares {
+    pub(super) of_parts: Vec<f64>,
     /// The order of the parts that take some.
     order: f64,
     /// Whether a part gives no force at all.
@@ -202,7 +202,7 @@ struct Shares {
 }
 
 /// What share of a stroke each part takes at once, or at last; a play as the spring that it is where it is engaged.
-fn shares(series: &Series, at: &Point, onset: Onset) -> Shares {
+pub(super) fn shares(series: &Series, at: &Point, onset: Onset) -> Shares {
     let parts = series.parts();
     let term = |(k, part): (usize, &Network)| match series.play() {
         Some(play) if play.has(k) => Term { coefficient: play.stiffness_of(k), order: 0.0 },

@@ -1,0 +1,96 @@
+//! What parameters change of the strokes of the parts at t = 0.
+
+use super::start::shares;
+use super::vary::number_count;
+use super::{Play, Series};
+use crate::law::leaf::When;
+use crate::law::network::part::{Onset, Part};
+use crate::law::state::StateRef;
+use crate::law::step::Point;
+use crate::law::variation::{ObservationVariation, PointVariation, VariationMut};
+
+/// [`Part::begin_variation`]: parts that hold at rest have one force, what is slack takes the rest; of parts that flow the one that was stretched
+/// does.
+pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
+    let parts = &series.parts;
+    let mut share = own.take(number_count(series), series.size());
+    let (of_strokes, count) = (share.take(0, series.own_size()), share.count);
+    state.take_ready();
+    let (strokes, _) = series.own(state);
+    let mut states = Vec::with_capacity(parts.len());
+    let mut each: Vec<VariationMut> = Vec::with_capacity(parts.len());
+    for part in parts {
+        states.push(*state);
+        part.ask().pass(state);
+        each.push(share.take(number_count(part.ask()), part.ask().size()));
+    }
+    let slack = series.play().filter(|play| play.force(play.stroke(|k| strokes[k])) == 0.0);
+    // What a play that is slack leaves to the others; where that is nothing it takes all.
+    let left = slack.map_or(0.0, |play| at.stroke - play.free(at.stroke));
+    let takes_all = slack.filter(|_| left == 0.0).map(Play::first);
+    let is_unstretched = strokes.iter().all(|stroke| *stroke == 0.0);
+    let of_parts = shares(series, at, Onset::Long).of_parts;
+    let holds = |k: &usize| if is_unstretched { of_parts[*k] != 0.0 } else { strokes[*k] != 0.0 };
+    let holding: Vec<usize> =
+        (0..parts.len()).filter(holds).filter(|k| slack.is_none() || !series.is_free(*k)).collect();
+    let [still, one] = [vec![0.0; count], vec![1.0; count]];
+    // What changes of part `k`, at rest at its stroke or next to it, which changes by so much: that of its force is told.
+    let mut begin_part = |k: usize, place: f64, stroke: &[f64]| -> Vec<f64> {
+        let inside = Point { stroke: place, rate: 0.0, ..*at };
+        let told = PointVariation { stroke, rate: &still, step: None, ..*told };
+        parts[k].ask().begin_variation(&inside, &mut states[k].clone(), &told, &mut each[k].reborrow());
+        let (mut force, mut spare) = (vec![0.0; count], vec![0.0; count]);
+        let mut sum = ObservationVariation { force: &mut force, stored: &mut spare };
+        let mut own = each[k].view();
+        parts[k].ask().vary_at((When::Between, &inside), &mut states[k].clone(), &told, &mut own, &mut sum);
+        force
+    };
+    // δF = slope·δx + what changes where its stroke stays.
+    let mut line = |k: usize, place: f64| {
+        let explicit = begin_part(k, place, &still);
+        let slope = begin_part(k, place, &one)[0] - explicit[0];
+        (k, explicit, slope)
+    };
+    let mut moved = vec![vec![0.0; count]; parts.len()];
+    let takes_rest = takes_all.or(match &holding[..] {
+        [only] => Some(*only),
+        _ => None,
+    });
+    if takes_all.is_some() || takes_rest.is_none() {
+        let mut lines: Vec<(usize, Vec<f64>, f64)> = holding.iter().map(|&k| line(k, strokes[k])).collect();
+        if takes_all.is_some() {
+            lines.retain(|(.., slope)| *slope != 0.0);
+        }
+        let compliance: f64 = lines.iter().map(|(.., slope)| slope.recip()).sum();
+        for p in 0..count {
+            let owed: f64 = lines.iter().map(|(_, explicit, slope)| explicit[p] / slope).sum();
+            let force = if takes_all.is_some() { 0.0 } else { (told.stroke[p] + owed) / compliance };
+            for (k, explicit, slope) in &lines {
+                moved[*k][p] = match compliance.is_finite() {
+                    true => (force - explicit[p]) / slope,
+                    // How parts that flow share a stroke follows from numbers that nobody tells.
+                    false if is_unstretched => of_parts[*k] * told.stroke[p],
+                    false => f64::NAN,
+                };
+            }
+        }
+    }
+    if left != 0.0 {
+        // On its end: where it begins to carry.
+        for k in (0..parts.len()).filter(|k| series.is_free(*k)) {
+            let beyond = if left > 0.0 { strokes[k].next_up() } else { strokes[k].next_down() };
+            let (_, explicit, slope) = line(k, beyond);
+            moved[k].iter_mut().zip(&explicit).for_each(|(moved, explicit)| *moved = -explicit / slope);
+        }
+    }
+    if let Some(rest) = takes_rest {
+        for p in 0..count {
+            let others: f64 = (0..parts.len()).filter(|k| *k != rest).map(|k| moved[k][p]).sum();
+            moved[rest][p] = told.stroke[p] - others;
+        }
+    }
+    for (k, moved) in moved.iter().enumerate() {
+        begin_part(k, strokes[k], moved);
+        of_strokes.variables[k * count..(k + 1) * count].copy_from_slice(moved);
+    }
+}
