@@ -177,22 +177,12 @@ impl<'a> VariationMut<'a> {
 
     /// The same for a while.
     pub(super) fn reborrow(&mut self) -> VariationMut<'_> {
-        VariationMut {
-            count: self.count,
-            numbers: self.numbers,
-            memories: self.memories,
-            variables: self.variables,
-        }
+        VariationMut { count: self.count, numbers: self.numbers, memories: self.memories, variables: self.variables }
     }
 
     /// The same, to be looked at.
     pub fn view(&self) -> VariationRef<'_> {
-        VariationRef {
-            count: self.count,
-            numbers: self.numbers,
-            memories: self.memories,
-            variables: self.variables,
-        }
+        VariationRef { count: self.count, numbers: self.numbers, memories: self.memories, variables: self.variables }
     }
 }
 

@@ -50,7 +50,7 @@ fn sums_are_closed_forms() {
     let springs = [
         Network::spring(k),
         Network::springpot(c, alpha, Derivative::Caputo),
-        Network::leaf(Polynomial { coefficients }),
+        Network::leaf(Polynomial { coefficients: coefficients.map(Into::into) }),
         Network::series([Network::spring(800.0), Network::dashpot(20.0)]),
     ];
     let law = Network::parallel(springs.into_iter().chain(slips));
@@ -74,7 +74,7 @@ fn sums_are_closed_forms() {
         assert!(departure(found, exact) < 1e-12, "{amplitude}: {found:?} {exact:?}");
     }
     // About another place a cubic is another spring.
-    let cubic = Network::leaf(Polynomial { coefficients: [0.0, 0.0, 7.0] });
+    let cubic = Network::leaf(Polynomial { coefficients: [0.0, 0.0, 7.0].map(Into::into) });
     let found = cubic.first_harmonic(&Point { stroke: 0.2, ..AT }, 0.1, 1.0);
     assert!(departure(found, [7.0 * (3.0 * 0.04 + 0.75 * 0.01), 0.0]) < 1e-13);
 }

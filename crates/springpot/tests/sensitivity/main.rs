@@ -125,13 +125,7 @@ fn law(name: &str, values: &[f64], which: usize) -> Network {
 }
 
 /// Derivatives of q and v at the end by all of [`NAMES`], and by differences.
-fn compare(
-    [text, motion]: [&str; 2],
-    name: &str,
-    law_values: &[f64],
-    [k, c]: [usize; 2],
-    more: &[(&str, usize, f64)],
-) {
+fn compare([text, motion]: [&str; 2], name: &str, law_values: &[f64], [k, c]: [usize; 2], more: &[(&str, usize, f64)]) {
     let at = |values: &[f64; 8], rtol: f64| arm(values, [text, motion], rtol);
     let plan = cases(&at(&VALUES, 1e-9)).plan(0).unwrap();
     let mut system = plan.system();
@@ -202,7 +196,13 @@ fn compare(
 
 #[test]
 fn an_arm_with_a_spring_and_a_dashpot() {
-    compare(["law = \"kelvin-voigt\"\nparameters = { k = {k}, c = {c} }", ""], "kelvin-voigt", &[120.0, 15.0], [0, 1], &[]);
+    compare(
+        ["law = \"kelvin-voigt\"\nparameters = { k = {k}, c = {c} }", ""],
+        "kelvin-voigt",
+        &[120.0, 15.0],
+        [0, 1],
+        &[],
+    );
 }
 
 #[test]

@@ -109,9 +109,9 @@ impl<L: Columns> ByColumns for L {
     }
 
     fn commit(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationMut) {
-        let VariationMut { count, numbers, variables } = own;
+        let VariationMut { count, numbers, variables, .. } = own;
         let before = variables.to_vec();
-        let own = VariationRef { count, numbers, variables: &before };
+        let own = VariationRef { count, numbers, memories: &[], variables: &before };
         variables.fill(0.0);
         each(self, (step, AtNodes::AsTold), state, told, &own, &mut |p, leaf, step, start, solved| {
             let mut variables = variables.iter_mut().skip(p).step_by(count);

@@ -1,7 +1,7 @@
 //! What every leaf answers.
 
-use super::jenkins::Jenkins;
 use super::columns::ByColumns;
+use super::jenkins::Jenkins;
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::{KernelError, MemoryTangent};

@@ -4,7 +4,7 @@ use super::contract::{Leaf, When};
 use super::hysteresis::{Matrix, Values, resolvent};
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
 use crate::dual::Dual;
-use crate::fractional::KernelError;
+use crate::fractional::{KernelError, MemoryTangent};
 use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
@@ -229,6 +229,17 @@ impl<L: Leaf> Leaf for Lagged<L> {
     fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
         take(self.rate);
         self.leaf.numbers(take)
+    }
+
+    fn begin_memories(
+        &self,
+        start: &[f64],
+        state: StateRef,
+        mut own: VariationRef,
+        memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        own.take(1, OWN);
+        self.leaf.begin_memories(start, Self::split(state).1, own, memories)
     }
 
     fn begin_variation(&self, at: &Point, state: StateRef, told: &PointVariation, mut own: VariationMut) {

@@ -280,7 +280,7 @@ impl Leaf for Springpot {
         true
     }
 
-    fn begin_variation(
+    fn begin_memories(
         &self,
         start: &[f64],
         state: StateRef,

@@ -3,7 +3,7 @@
 use super::contract::{Leaf, Slide, When};
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
-use crate::fractional::KernelError;
+use crate::fractional::{KernelError, MemoryTangent};
 use crate::law::network::{Holds, LeafPart};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
@@ -135,6 +135,16 @@ impl Leaf for Unshifted {
 
     fn numbers(&self, take: &mut dyn FnMut(Dual)) -> bool {
         self.leaf.numbers(take)
+    }
+
+    fn begin_memories(
+        &self,
+        start: &[f64],
+        state: StateRef,
+        own: VariationRef,
+        memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        self.leaf.begin_memories(start, state, own, memories)
     }
 
     fn begin_variation(&self, at: &Point, state: StateRef, told: &PointVariation, own: VariationMut) {

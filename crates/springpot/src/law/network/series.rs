@@ -22,7 +22,7 @@ use super::{Guard, Holds, MOST_IN_SERIES, Network};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Kind as Derivative};
-use crate::law::harmonic::{Sine, self};
+use crate::law::harmonic::{self, Sine};
 use crate::law::leaf::{Jenkins, Slide, When};
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
