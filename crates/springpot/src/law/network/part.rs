@@ -217,7 +217,8 @@ pub(in crate::law) trait Part: std::fmt::Debug {
         own: &mut VariationRef,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
-        (state.take(self.own_size()), own.take(0, self.own_size()));
+        state.take(self.own_size());
+        own.take(0, self.own_size());
         self.parts().iter().try_for_each(|part| part.ask().begin_memories(start, state, own, memories))
     }
 
