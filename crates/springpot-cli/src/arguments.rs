@@ -121,7 +121,7 @@ Examples:
   springpot modulus pad.toml pad --from '0.1 Hz' --to '1 kHz' --out pad.csv
   springpot modulus pad.toml pad --amplitude '2 mm' --out pad.svg
   springpot modulus rubber.toml mount --amplitude '0.1 mm,1 mm,5 mm'
-  springpot modulus rubber.toml mount --from 10 --to 10 --amplitude '0.1 mm,5 mm'
+  springpot modulus rubber.toml mount --from 10 --to 10 --amplitude '1 mm,5 mm'
 
 K* = K' + i K'' is the force over the stroke of a sine that has lasted for ever, of a law that is not linear the first harmonic \
 of the force; a cycle of the amplitude X loses pi K'' X^2. Inputs have their values at t = 0, sweeps their first ones. \
