@@ -128,6 +128,6 @@ fn a_controller_at_its_limit_all_along_is_told() {
 fn an_amplitude_beyond_the_element_is_told() {
     let place = Place::new();
     let told = place.done(&["modulus", "arm.toml", "damper", "--amplitude", "2"]);
-    assert!(told.said().contains("--amplitude 2 of element \"damper\": its rest length is 0.5 m"), "{}", told.stderr);
+    assert!(told.said().contains("--amplitude 2 m of element \"damper\": its rest length is 0.5 m"), "{}", told.stderr);
     assert_eq!(place.done(&["modulus", "arm.toml", "damper", "--amplitude", "2 mm"]).stderr, "");
 }
