@@ -5,12 +5,15 @@ use super::node::Node;
 use super::resistance::add_tangents;
 use super::solve::Solve;
 use crate::collocation::STAGES;
-use crate::dynamics::{Kinematics, RneaDerivatives, Workspace, gravity_into, point_jacobian, rnea_at_into};
+use crate::dynamics::{
+    Kinematics, RneaDerivatives, Workspace, coriolis, gravity, gravity_into, kinetic_energy, point_jacobian,
+    potential_energy, rnea_at_into,
+};
 use crate::elements::{Forces, Pull, Reading};
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Network, Response};
 use crate::model::{FrictionLaw, Model};
-use crate::observe::{Axis, ElementQuantity, Quantity, Snapshot};
+use crate::observe::{Axis, ElementQuantity, EnergyQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
 use serde::{Deserialize, Serialize};
@@ -84,6 +87,8 @@ pub(crate) struct NodeVariation {
     a_now: Vec<f64>,
     /// ∂y/∂q and ∂y'/∂q of every element.
     pub(crate) gradients: Vec<[Vec<f64>; 2]>,
+    /// ∂²y/∂q² (nv × nv).
+    hessians: Vec<Vec<f64>>,
     /// Blocks of q, v and a.
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
@@ -122,6 +127,7 @@ impl Variation {
             v_now: vec![0.0; model.nv()],
             a_now: vec![0.0; model.nv()],
             gradients: extended.elements.iter().map(|_| [vec![0.0; model.nv()], vec![0.0; model.nv()]]).collect(),
+            hessians: vec![Vec::new(); extended.elements.len()],
             q: zeros(),
             v: zeros(),
             a: zeros(),
@@ -330,13 +336,15 @@ impl Variation {
         forces.inverse_dynamics_derivatives_into(model, &node.kinematics, &node.a_now, workspace, slopes);
         add_tangents(system, &node.v_now, &mut slopes.d_v);
         let n = model.nv();
-        for (element, [gradient, bend]) in system.elements.iter().zip(&mut node.gradients) {
+        let measured = node.gradients.iter_mut().zip(&mut node.hessians);
+        for (element, ([gradient, bend], kept)) in system.elements.iter().zip(measured) {
             let mut reading = Reading::default();
             element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
             let hessian = element.measure.hessian(model, &node.kinematics);
             for (bend, line) in bend.iter_mut().zip(hessian.chunks_exact(n)) {
                 *bend = line.iter().zip(&node.v_now).map(|(h, v)| h * v).sum();
             }
+            *kept = hessian;
         }
         node.explicit.fill(0.0);
         for (p, parameter) in by.parameters.iter().enumerate() {
@@ -544,6 +552,14 @@ impl Variation {
                 ElementQuantity::Stroke => self.elements[e].stroke[ROW * count + p],
                 ElementQuantity::Rate => self.elements[e].rate[ROW * count + p],
                 ElementQuantity::Force => force(e),
+                ElementQuantity::GeneralizedForce(k) => {
+                    // Q_k = −F·∂y/∂q_k.
+                    let (row, n) = (self.own_v[k], self.nv());
+                    let line = &node.hessians[e][row * n..(row + 1) * n];
+                    let turned: f64 = line.iter().enumerate().map(|(c, h)| h * node.q[c * count + p]).sum();
+                    let [gradient, _] = &node.gradients[e];
+                    -(force(e) * gradient[row] + snapshot.force(e) * turned)
+                }
                 ElementQuantity::Stored => self.elements[e].row[1][p],
                 ElementQuantity::InputValue(i) => {
                     let [values, _] = &self.elements[e].inputs;
@@ -563,8 +579,40 @@ impl Variation {
                 };
                 (0..n).map(|k| jacobian[row * n + k] * node.q[k * count + p]).sum()
             }
+            Quantity::Energy(EnergyQuantity::Kinetic) => self.kinetic(p),
+            Quantity::Energy(EnergyQuantity::Potential) => self.potential(p),
             Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => return None,
         })
+    }
+
+    /// What changes of the kinetic energy at the row: (M v)·δv + (Cᵀ v)·δq, since Ṁ = C + Cᵀ, and what the inertias change.
+    fn kinetic(&self, p: usize) -> f64 {
+        let (count, n, node) = (self.count(), self.nv(), &self.nodes[ROW]);
+        let coriolis = coriolis(&self.system.model, &node.kinematics);
+        let of_motion: f64 = (0..n)
+            .map(|k| {
+                let momentum: f64 = (0..n).map(|c| node.slopes.d_a[k * n + c] * node.v_now[c]).sum();
+                let bent: f64 = (0..n).map(|c| coriolis[c * n + k] * node.v_now[c]).sum();
+                momentum * node.v[k * count + p] + bent * node.q[k * count + p]
+            })
+            .sum();
+        let of_inertias = self.by.parameters[p].seeds.iter().map(|seed| match seed {
+            Seed::Inertia(change) => kinetic_energy(change, &node.kinematics),
+            _ => 0.0,
+        });
+        of_motion + of_inertias.sum::<f64>()
+    }
+
+    /// What changes of the potential energy at the row.
+    fn potential(&self, p: usize) -> f64 {
+        let (count, node) = (self.count(), &self.nodes[ROW]);
+        let weights = gravity(&self.system.model, &node.kinematics);
+        let of_motion: f64 = weights.iter().enumerate().map(|(k, g)| g * node.q[k * count + p]).sum();
+        let of_robot = self.by.parameters[p].seeds.iter().map(|seed| match seed {
+            Seed::Inertia(change) | Seed::Gravity(change) => potential_energy(change, &node.kinematics),
+            _ => 0.0,
+        });
+        of_motion + of_robot.sum::<f64>()
     }
 
     /// What changes of the force of the actuator of velocity `k`.

@@ -141,15 +141,19 @@ pub enum SensitivityError {
 
 /// Whether derivatives of a quantity are known.
 pub fn has_derivative(quantity: Quantity) -> bool {
-    use crate::observe::ElementQuantity::{Force, InputValue, Length, Rate, Stored, Stroke};
+    use crate::observe::ElementQuantity::{Force, GeneralizedForce, InputValue, Length, Rate, Stored, Stroke};
+    use crate::observe::EnergyQuantity::{Kinetic, Potential};
     match quantity {
         Quantity::Time
         | Quantity::Coordinate(_)
         | Quantity::Velocity(_)
         | Quantity::Acceleration(_)
         | Quantity::Torque(_)
-        | Quantity::Gripper(_) => true,
-        Quantity::Element(_, of) => matches!(of, Length | Stroke | Rate | Force | Stored | InputValue(_)),
+        | Quantity::Gripper(_)
+        | Quantity::Energy(Kinetic | Potential) => true,
+        Quantity::Element(_, of) => {
+            matches!(of, Length | Stroke | Rate | Force | GeneralizedForce(_) | Stored | InputValue(_))
+        }
         Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => false,
     }
 }

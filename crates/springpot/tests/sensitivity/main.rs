@@ -8,7 +8,7 @@ mod support;
 use springpot::Simulation;
 use springpot::dual::Dual;
 use springpot::law::{Catalog, Derivative, Network};
-use springpot::observe::{ElementQuantity, Quantity};
+use springpot::observe::{ElementQuantity, EnergyQuantity, Quantity};
 use springpot::sensitivity::{Parameter, Seed, Sensitivity};
 use springpot::signal::Signal;
 use std::sync::Arc;
@@ -73,9 +73,10 @@ memory_rtol = 1e-12
 
 /// What is compared.
 fn quantities() -> Vec<Quantity> {
-    use ElementQuantity::{Force, Length, Rate, Stored, Stroke};
+    use ElementQuantity::{Force, GeneralizedForce, Length, Rate, Stored, Stroke};
     let of_robot = (0..3).flat_map(|k| [Quantity::Coordinate(k), Quantity::Velocity(k), Quantity::Acceleration(k)]);
-    let of_element = [Length, Stroke, Rate, Force, Stored].map(|of| Quantity::Element(0, of));
+    let of_element = [Length, Stroke, Rate, Force, GeneralizedForce(1), Stored].map(|of| Quantity::Element(0, of));
+    let of_robot = of_robot.chain([EnergyQuantity::Kinetic, EnergyQuantity::Potential].map(Quantity::Energy));
     of_robot.chain([0, 1, 2].map(Quantity::Torque)).chain(of_element).collect()
 }
 
