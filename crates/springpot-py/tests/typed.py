@@ -221,6 +221,14 @@ def runs(folder: Path) -> None:
         print(grid.plot(["strut.force", "strut.stroke"], cases=[0]).get_title())
 
 
+def master_curves() -> None:
+    frequency = np.tile(np.geomspace(1.0, 100.0, 9), 3)
+    temperature = np.repeat([283.15, 293.15, 303.15], 9)
+    grown = (frequency * 10.0 ** ((293.15 - temperature) / 20.0)) ** 0.4
+    curve: sp.Master = sp.master(frequency, 1e6 * (1.0 + grown), 4e5 * grown, temperature, "20 degC")
+    print(curve.shift, curve.log10_a_T, curve.wlf, curve.arrhenius["energy"])
+
+
 def mistakes() -> None:
     warnings.simplefilter("ignore", category=sp.SpringpotWarning)
     try:
@@ -241,6 +249,7 @@ def mistakes() -> None:
 robots()
 simulations()
 materials()
+master_curves()
 engines()
 calculus()
 with tempfile.TemporaryDirectory() as scratch:
