@@ -144,7 +144,7 @@ impl TangentStep<'_> {
 /// The derivative of one [`Memory`] by P parameters.
 ///
 /// Ask it and commit it before the memory commits the same step. Matrices of several rows have P numbers in a row; δ is ∂/∂θ, so that
-/// with x in m, t in s and θ in any unit [θ], δD^α x is in m/s^α/[θ]. Finite for 0 ≤ α ≤ 1 but at t = 0 of a singular start and at the time
+/// with x in m, t in s and θ in any unit \[θ\], δD^α x is in m/s^α/\[θ\]. Finite for 0 ≤ α ≤ 1 but at t = 0 of a singular start and at the time
 /// of a jump.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MemoryTangent {
