@@ -187,3 +187,23 @@ fn taken<'py>(out: &Bound<'py, PyAny>, shape: &[usize]) -> PyResult<Bound<'py, P
     }
     Ok(array.clone())
 }
+
+/// The numbers of an array in C order.
+pub(crate) fn flat(array: &Bound<'_, PyArrayDyn<f64>>) -> PyResult<Vec<f64>> {
+    match array.is_c_contiguous() {
+        true => Ok(array.to_vec()?),
+        false => {
+            let copied = array.call_method1("ravel", ("C",))?;
+            Ok(copied.cast::<numpy::PyArray1<f64>>().map_err(PyErr::from)?.to_vec()?)
+        }
+    }
+}
+
+/// The numbers of `name`, an array of shape (N,).
+pub(crate) fn column(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
+    let array = numbers(value, name)?;
+    match array.shape() {
+        [_] => flat(&array),
+        shape => Err(value_error(format!("{name} has shape {}; it must have shape (N,)", written(shape)))),
+    }
+}

@@ -1,9 +1,9 @@
 //! `springpot.fractional`: derivatives of samples, Mittag-Leffler functions.
 
-use crate::array::{Rows, numbers, written};
+use crate::array::{Rows, flat, numbers, written};
 use crate::error::{guarded, value_error};
 use crate::interrupt::left_behind;
-use crate::law::flat;
+
 use numpy::{Complex64, PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use springpot::fractional::mittag_leffler::MittagLeffler;

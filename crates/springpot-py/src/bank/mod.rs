@@ -4,9 +4,9 @@ mod core;
 mod told;
 
 use self::core::{Core, Settings};
-use crate::array::{Rows, numbers, written};
+use crate::array::{Rows, column, flat, numbers, written};
 use crate::error::{guarded, run_error_at, type_error, value_error};
-use crate::law::{described, flat};
+use crate::law::described;
 use crate::quantity::number;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -334,11 +334,7 @@ impl PyBank {
 
     /// Goes on from a state of a bank of the same elements and settings.
     fn set_state(&self, py: Python<'_>, state: &Bound<'_, PyAny>) -> PyResult<()> {
-        let array = numbers(state, "state")?;
-        let state = match array.shape() {
-            [_] => flat(&array)?,
-            shape => return Err(value_error(format!("state has shape {}; it must have shape (N,)", written(shape)))),
-        };
+        let state = column(state, "state")?;
         self.with(py, |core| core.set_state(&state).map_err(|error| self.told(py, error, 0.0)))
     }
 

@@ -3,11 +3,10 @@
 use super::PyLaw;
 use super::prony::angular;
 use super::read::described;
-use crate::array::{numbers, written};
+use crate::array::column;
 use crate::error::{guarded, value_error};
 use crate::quantity::number;
 use crate::scenario::CATALOG;
-use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use springpot::law::Entry;
@@ -132,13 +131,6 @@ fn fit_modulus<'py>(
     length: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(PyLaw, f64, Bound<'py, PyDict>)> {
     guarded(py, || {
-        let column = |value: &Bound<'py, PyAny>, name: &str| {
-            let array = numbers(value, name)?;
-            match array.shape() {
-                [_] => super::flat(&array),
-                shape => Err(value_error(format!("{name} has shape {}; it must have shape (N,)", written(shape)))),
-            }
-        };
         let omega = column(omega, "omega")?;
         let (storage, loss) = (column(modulus_real, "modulus")?, column(modulus_imag, "modulus")?);
         if storage.len() != omega.len() {

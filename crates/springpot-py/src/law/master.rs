@@ -1,9 +1,9 @@
 //! Master curves.
 
-use crate::array::{numbers, written};
+use crate::array::column;
 use crate::error::{guarded, run_error_at, value_error};
 use crate::quantity::number;
-use numpy::{PyArray1, PyUntypedArrayMethods};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyModule};
 use springpot::law::Shift;
@@ -26,13 +26,6 @@ fn master<'py>(
     vertical: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     guarded(py, || {
-        let column = |value: &Bound<'py, PyAny>, name: &str| {
-            let array = numbers(value, name)?;
-            match array.shape() {
-                [_] => super::flat(&array),
-                shape => Err(value_error(format!("{name} has shape {}; it must have shape (N,)", written(shape)))),
-            }
-        };
         let frequency = column(frequency, "frequency")?;
         let columns = [(storage, "storage"), (loss, "loss"), (temperature, "T")].map(|(value, name)| {
             let found = column(value, name)?;

@@ -7,7 +7,7 @@ mod read;
 
 pub(crate) use self::read::{Description, described};
 
-use crate::array::numbers;
+use crate::array::{flat, numbers};
 use crate::error::{guarded, value_error};
 use crate::notebook;
 use crate::scenario::CATALOG;
@@ -279,15 +279,4 @@ pub(crate) fn each<'py, T: numpy::Element + Clone>(
     let all: Vec<T> = flat(&array)?.into_iter().map(of).collect();
     let flat = numpy::PyArray1::from_vec(py, all);
     flat.reshape(&shape[..])
-}
-
-/// The numbers of an array in C order.
-pub(crate) fn flat(array: &Bound<'_, PyArrayDyn<f64>>) -> PyResult<Vec<f64>> {
-    match array.is_c_contiguous() {
-        true => Ok(array.to_vec()?),
-        false => {
-            let copied = array.call_method1("ravel", ("C",))?;
-            Ok(copied.cast::<numpy::PyArray1<f64>>().map_err(PyErr::from)?.to_vec()?)
-        }
-    }
 }

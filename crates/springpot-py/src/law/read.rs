@@ -1,11 +1,10 @@
 //! What a law is made of, as Python says it.
 
 use super::{PyLaw, definition_name};
-use crate::array::{numbers, written};
+use crate::array::column;
 use crate::error::{type_error, value_error};
 use crate::quantity::number_with;
 use crate::scenario::CATALOG;
-use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use springpot::law::{Derivative, Entry, NetworkText, Param, Table};
@@ -167,15 +166,6 @@ fn values(params: &[Param], files: &[String], given: &Bound<'_, PyDict>) -> PyRe
         values.push((file.clone(), Value::Points(column(&x, file)?, column(&force, file)?)));
     }
     Ok(values)
-}
-
-/// Numbers of an array of one dimension.
-fn column(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
-    let array = numbers(value, name)?;
-    match array.shape() {
-        [_] => Ok(super::flat(&array)?),
-        shape => Err(value_error(format!("{name} has shape {}; it must have shape (N,)", written(shape)))),
-    }
 }
 
 impl Description {
