@@ -7,7 +7,7 @@ use super::limits::settle;
 use super::look::Look;
 use super::parameter::Parameter;
 use super::problem::{Failed, Problem, Rows, Series};
-use super::random::Random;
+use crate::random::Random;
 use std::sync::atomic::AtomicBool;
 
 /// How residuals are drawn.

@@ -55,7 +55,6 @@ mod look;
 mod parameter;
 mod problem;
 mod profile;
-mod random;
 mod starts;
 mod student;
 mod undetermined;

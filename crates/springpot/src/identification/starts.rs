@@ -1,7 +1,7 @@
 //! Where fits begin: as the parameters say, and a Latin hypercube about that.
 
 use super::parameter::{Parameter, Scale};
-use super::random::Random;
+use crate::random::Random;
 
 /// Share of a finite range that lies between its ends and the outermost start.
 const MARGIN: f64 = 0.02;

@@ -4,6 +4,7 @@ use super::dimension::Dimension;
 use super::kind::Space;
 use super::robot::Model;
 use super::spec::Limits;
+use crate::random::Random;
 use crate::spatial::{Motion, Quaternion, Rotation, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -98,8 +99,8 @@ impl Model {
     /// A random configuration, the same for the same `seed`: within finite limits; else angles in (−π, π), shifts within one
     /// metre, all attitudes equally likely.
     pub fn random(&self, seed: u64) -> Vec<f64> {
-        let mut state = seed;
-        let mut uniform = || splitmix(&mut state);
+        let mut numbers = Random::of(seed);
+        let mut uniform = || numbers.share();
         let mut q = self.neutral();
         for (j, space) in self.own_joints_and_spaces() {
             let q = &mut q[self.q_range(j)];
@@ -262,15 +263,6 @@ fn bracket_factors(theta: f64) -> (f64, f64) {
     let (alpha, beta) = (half / half.tan(), (half / half.sin()).powi(2));
     let spread = 0.5 * (alpha - beta);
     ((2.0 * (1.0 - alpha) + spread) / square, (1.0 - alpha + spread) / (square * square))
-}
-
-/// The next number in [0, 1) of Steele, Lea and Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
-fn splitmix(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
 #[cfg(test)]
