@@ -4,6 +4,7 @@ mod heated;
 mod leaf;
 mod part;
 mod series;
+mod vary;
 
 pub use heated::{Heated, Warmth};
 pub use leaf::LeafPart;
@@ -29,6 +30,7 @@ use crate::fractional::{KernelError, MemoryTangent};
 use num_complex::Complex64;
 use part::Onset;
 use std::sync::Arc;
+use vary::Vary;
 
 /// Most parts side by side in one series; more of them are nested.
 const MOST_IN_SERIES: usize = 8;
@@ -88,7 +90,7 @@ pub enum Holds {
 impl Network {
     /// Whoever answers for it.
     #[inline]
-    pub(super) fn ask(&self) -> &dyn Part {
+    pub(super) fn ask(&self) -> &dyn Vary {
         match self {
             Self::Leaf(part) => part,
             Self::Parallel(parts) => parts,

@@ -3,7 +3,7 @@
 use super::part::{Onset, Part, Reported, Seen, Take};
 use super::{Guard, Holds, Network};
 use crate::collocation::{MAX_NODES, Nodes};
-use crate::fractional::{KernelError, Memory, MemoryTangent, RatePolynomial};
+use crate::fractional::{KernelError, Memory, RatePolynomial};
 use crate::law::harmonic::{self, Sine};
 use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::past::Recalled;
@@ -11,9 +11,6 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{AtRest, LeafAtRest, Tangent};
-use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
-};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -33,13 +30,6 @@ impl std::ops::Deref for LeafPart {
 }
 
 impl LeafPart {
-    /// How many numbers its parameters make.
-    fn number_count(&self) -> usize {
-        let mut count = 0;
-        self.leaf.numbers(&mut |_| count += 1);
-        count
-    }
-
     fn seen(&self, when: When, at: &Point, state: StateRef, observation: Observation, take: Take) -> Reported {
         take(Seen { leaf: &**self, when, at: *at, state, observation, factor: 1.0 });
         Reported { observation, rank: Part::report(self, at).0 }
@@ -188,68 +178,6 @@ impl Part for LeafPart {
 
     fn asymptote(&self, at: &Point, _: Onset) -> Term {
         self.leaf.linearised(at)
-    }
-
-    fn without_derivatives(&self) -> Option<String> {
-        let known = self.leaf.numbers(&mut |_| {});
-        (!known).then(|| self.name.as_ref().map_or(self.leaf.name(), |name| name).to_owned())
-    }
-
-    fn begin_memories(
-        &self,
-        start: &[f64],
-        state: &mut StateRef,
-        own: &mut VariationRef,
-        memories: &mut Vec<MemoryTangent>,
-    ) -> Result<(), KernelError> {
-        let size = self.leaf.size();
-        self.leaf.begin_memories(start, state.take(size), own.take(self.number_count(), size), memories)
-    }
-
-    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
-        let size = self.leaf.size();
-        self.leaf.begin_variation(at, state.take(size), told, own.take(self.number_count(), size));
-    }
-
-    fn vary(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationRef,
-        forces: &mut [f64],
-    ) {
-        let size = self.leaf.size();
-        self.leaf.vary(step, state.take(size), told, own.take(self.number_count(), size), forces);
-    }
-
-    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
-        let size = self.leaf.size();
-        self.leaf.commit_variation(step, state.take(size), told, own.take(self.number_count(), size));
-    }
-
-    fn vary_powers(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationRef,
-        sum: &mut PowersVariation,
-    ) {
-        let size = self.leaf.size();
-        self.leaf.vary_powers(step, state.take(size), told, own.take(self.number_count(), size), sum);
-    }
-
-    fn vary_at(
-        &self,
-        (when, at): (When, &Point),
-        state: &mut StateRef,
-        told: &PointVariation,
-        own: &mut VariationRef,
-        sum: &mut ObservationVariation,
-    ) {
-        let size = self.leaf.size();
-        self.leaf.vary_at(when, at, state.take(size), told, own.take(self.number_count(), size), sum);
     }
 
     fn at_rest(&self, at: &Point, held: f64) -> Option<AtRest> {

@@ -2,7 +2,7 @@
 
 use super::{LeafPart, Network};
 use crate::collocation::MAX_NODES;
-use crate::fractional::{KernelError, MemoryTangent};
+use crate::fractional::KernelError;
 use crate::law::harmonic::Sine;
 use crate::law::leaf::{Free, Leaf, Slide, When};
 use crate::law::network::{Guard, Holds};
@@ -11,9 +11,6 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{AtRest, Tangent};
-use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
-};
 use num_complex::Complex64;
 
 /// A part of a network: a leaf, parts side by side or one behind the other, or a whole law under heat.
@@ -202,70 +199,6 @@ pub(in crate::law) trait Part: std::fmt::Debug {
     /// What remains of it at short or at long times: the stiffest of parts side by side.
     fn asymptote(&self, at: &Point, onset: Onset) -> Term {
         asymptote(self.parts().iter().map(|part| part.ask().asymptote(at, onset)), onset, true)
-    }
-
-    /// The part of it of which no derivative is known ([`Leaf::numbers`]), as it is called.
-    fn without_derivatives(&self) -> Option<String> {
-        self.parts().iter().find_map(|part| part.ask().without_derivatives())
-    }
-
-    /// Appends what changes of its memories at t = 0 ([`Leaf::begin_memories`]).
-    fn begin_memories(
-        &self,
-        start: &[f64],
-        state: &mut StateRef,
-        own: &mut VariationRef,
-        memories: &mut Vec<MemoryTangent>,
-    ) -> Result<(), KernelError> {
-        state.take(self.own_size());
-        own.take(0, self.own_size());
-        self.parts().iter().try_for_each(|part| part.ask().begin_memories(start, state, own, memories))
-    }
-
-    /// Puts what changes of its state at t = 0 ([`Leaf::begin_variation`]).
-    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
-        self.parts().iter().for_each(|part| part.ask().begin_variation(at, state, told, own));
-    }
-
-    /// Adds what changes of its forces at the nodes ([`Leaf::vary`]).
-    fn vary(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationRef,
-        forces: &mut [f64],
-    ) {
-        self.parts().iter().for_each(|part| part.ask().vary(step, state, told, own, forces));
-    }
-
-    /// Takes what changes of an accepted step into what changes of its state.
-    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
-        self.parts().iter().for_each(|part| part.ask().commit_variation(step, state, told, own));
-    }
-
-    /// Adds what changes of its energy flows at the start and at the nodes ([`Leaf::vary_powers`]).
-    fn vary_powers(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationRef,
-        sum: &mut PowersVariation,
-    ) {
-        self.parts().iter().for_each(|part| part.ask().vary_powers(step, state, told, own, sum));
-    }
-
-    /// Adds what changes of it at one time.
-    fn vary_at(
-        &self,
-        (when, at): (When, &Point),
-        state: &mut StateRef,
-        told: &PointVariation,
-        own: &mut VariationRef,
-        sum: &mut ObservationVariation,
-    ) {
-        self.parts().iter().for_each(|part| part.ask().vary_at((when, at), state, told, own, sum));
     }
 
     /// At rest since ever ([`Network::at_rest`]).

@@ -23,14 +23,11 @@ use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Kind as Derivative};
 use crate::law::harmonic::{self, Sine};
-use crate::law::leaf::{Jenkins, Slide, When};
+use crate::law::leaf::{Jenkins, Slide};
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Course, InputValue, LocalError, Point, Power, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{self, AtRest};
-use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
-};
 use asked::Asked;
 use loose::{Loose, Sought};
 use num_complex::Complex64;
@@ -254,58 +251,6 @@ struct Settled {
 }
 
 impl Part for Series {
-    /// Of several that slide one alone can be looked for.
-    fn without_derivatives(&self) -> Option<String> {
-        if (0..self.parts.len()).filter(|k| self.slides(*k)).count() > 1 {
-            return Some("friction in series with friction".to_owned());
-        }
-        if self.size().memories > 0 {
-            return Some("a springpot in series".to_owned());
-        }
-        self.parts.iter().find_map(|part| part.ask().without_derivatives())
-    }
-
-    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
-        vary_start::begin(self, at, state, told, own);
-    }
-
-    fn vary(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationRef,
-        forces: &mut [f64],
-    ) {
-        self.vary_forces(step, state, told, own, forces);
-    }
-
-    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
-        self.commit_changes(step, state, told, own);
-    }
-
-    fn vary_powers(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationRef,
-        sum: &mut PowersVariation,
-    ) {
-        self.vary_flows(step, state, told, own, sum);
-    }
-
-    fn vary_at(
-        &self,
-        when: (When, &Point),
-        state: &mut StateRef,
-        told: &PointVariation,
-        own: &mut VariationRef,
-        sum: &mut ObservationVariation,
-    ) {
-        self.vary_seen(when, state, told, own, sum);
-    }
-
     fn parts(&self) -> &[Network] {
         &self.parts
     }

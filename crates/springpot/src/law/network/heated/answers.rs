@@ -4,7 +4,6 @@ use super::{Heated, SHARPNESS, by_the_wall};
 use crate::collocation::MAX_NODES;
 use crate::fractional::KernelError;
 use crate::law::harmonic::Sine;
-use crate::law::leaf::When;
 use crate::law::network::part::{Onset, Part, Reported, Seen, Take};
 use crate::law::network::{Guard, Network};
 use crate::law::past::Recalled;
@@ -12,63 +11,10 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Point, Power, Powers, Response, Start, Step, Term};
 use crate::law::tangent::AtRest;
-use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
-};
 use num_complex::Complex64;
 
 /// Its own law is asked in reduced time.
 impl Part for Heated {
-    /// None is known of a temperature that follows from the losses.
-    fn without_derivatives(&self) -> Option<String> {
-        match self.heat.thermal {
-            Some(_) => Some("a temperature that follows from losses".to_owned()),
-            None if self.size().memories > 0 => Some("a springpot under heat".to_owned()),
-            None => self.law.without_derivatives(),
-        }
-    }
-
-    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
-        self.begin_changes(at, state, told, own);
-    }
-
-    fn vary(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationRef,
-        forces: &mut [f64],
-    ) {
-        self.vary_forces(step, state, told, own, forces);
-    }
-
-    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
-        self.commit_changes(step, state, told, own);
-    }
-
-    fn vary_powers(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationRef,
-        sum: &mut PowersVariation,
-    ) {
-        self.vary_flows(step, state, told, own, sum);
-    }
-
-    fn vary_at(
-        &self,
-        when: (When, &Point),
-        state: &mut StateRef,
-        told: &PointVariation,
-        own: &mut VariationRef,
-        sum: &mut ObservationVariation,
-    ) {
-        self.vary_seen(when, state, told, own, sum);
-    }
-
     fn parts(&self) -> &[Network] {
         std::slice::from_ref(&self.law)
     }

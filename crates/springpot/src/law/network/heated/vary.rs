@@ -5,6 +5,7 @@
 use super::{Heated, Inside};
 use crate::law::leaf::When;
 use crate::law::network::part::Part;
+use crate::law::network::vary::Vary;
 use crate::law::state::StateRef;
 use crate::law::step::{Point, Response, Step};
 use crate::law::variation::{
@@ -75,14 +76,19 @@ impl Heated {
         let factors = &inside.clock.factor[..=step.nodes.count()];
         self.told_inside(told.rate, told.inputs, (factors, step.inputs_at(0).len(), told.count))
     }
+}
 
-    pub(super) fn begin_changes(
-        &self,
-        at: &Point,
-        state: &mut StateRef,
-        told: &PointVariation,
-        own: &mut VariationMut,
-    ) {
+impl Vary for Heated {
+    /// None is known of a temperature that follows from the losses.
+    fn without_derivatives(&self) -> Option<String> {
+        match self.heat.thermal {
+            Some(_) => Some("a temperature that follows from losses".to_owned()),
+            None if self.size().memories > 0 => Some("a springpot under heat".to_owned()),
+            None => self.law.without_derivatives(),
+        }
+    }
+
+    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
         let kept = self.own(state.take(self.own_size()).variables, at.t);
         own.take(0, self.own_size());
         let place = self.place(at, kept.xi, self.temperature(&kept, at.inputs));
@@ -90,7 +96,7 @@ impl Heated {
         self.law.ask().begin_variation(&place.point(), state, &inside.point(told), own);
     }
 
-    pub(super) fn vary_forces(
+    fn vary(
         &self,
         step: &Step,
         state: &mut StateRef,
@@ -108,13 +114,7 @@ impl Heated {
         changes.mark(forces, told.count);
     }
 
-    pub(super) fn commit_changes(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationMut,
-    ) {
+    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
         own.take(0, self.own_size());
         let Some((_, _, inside)) = self.look(step, state) else {
             own.variables.fill(f64::NAN);
@@ -125,7 +125,7 @@ impl Heated {
         changes.mark(own.variables, told.count);
     }
 
-    pub(super) fn vary_flows(
+    fn vary_powers(
         &self,
         step: &Step,
         state: &mut StateRef,
@@ -183,7 +183,7 @@ impl Heated {
         changes.mark(sum.input, count);
     }
 
-    pub(super) fn vary_seen(
+    fn vary_at(
         &self,
         (when, at): (When, &Point),
         state: &mut StateRef,

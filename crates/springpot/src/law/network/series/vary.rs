@@ -8,13 +8,14 @@
 use super::asked::Asked;
 use super::loose::Sought;
 use super::solve::{Inner, Lines, Solved, invert, solve, times};
-use super::{Matrix, Series, Settled, Values, is_near};
+use super::{Matrix, Series, Settled, Values, is_near, vary_start};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::dual::Dual;
 use crate::law::leaf::When;
 use crate::law::network::MOST_IN_SERIES;
 use crate::law::network::part::Part;
+use crate::law::network::vary::Vary;
 use crate::law::state::StateRef;
 use crate::law::step::{Course, InputValue, Point, Response, Step};
 use crate::law::variation::{
@@ -58,7 +59,7 @@ struct Looked {
 }
 
 /// How many numbers a part has.
-pub(super) fn number_count(part: &dyn Part) -> usize {
+pub(super) fn number_count(part: &dyn Vary) -> usize {
     let mut count = 0;
     part.for_each_leaf(&mut |leaf| {
         leaf.numbers(&mut |_| count += 1);
@@ -356,9 +357,25 @@ impl Series {
         };
         start.into_iter().zip(&changes.moved).map(at_theta).collect()
     }
+}
 
-    /// [`Part::vary`].
-    pub(super) fn vary_forces(
+impl Vary for Series {
+    /// Of several that slide one alone can be looked for.
+    fn without_derivatives(&self) -> Option<String> {
+        if (0..self.parts.len()).filter(|k| self.slides(*k)).count() > 1 {
+            return Some("friction in series with friction".to_owned());
+        }
+        if self.size().memories > 0 {
+            return Some("a springpot in series".to_owned());
+        }
+        self.parts.iter().find_map(|part| part.ask().without_derivatives())
+    }
+
+    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
+        vary_start::begin(self, at, state, told, own);
+    }
+
+    fn vary(
         &self,
         step: &Step,
         state: &mut StateRef,
@@ -377,14 +394,7 @@ impl Series {
         }
     }
 
-    /// [`Part::commit_variation`].
-    pub(super) fn commit_changes(
-        &self,
-        step: &Step,
-        state: &mut StateRef,
-        told: &StepVariation,
-        own: &mut VariationMut,
-    ) {
+    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
         let mut share = own.take(number_count(self), self.size());
         let count = share.count;
         let Looked { asked, solved, changes } = self.look(step, state, (told, AtNodes::AsTold), None, share.view());
@@ -402,8 +412,7 @@ impl Series {
         }
     }
 
-    /// [`Part::vary_powers`].
-    pub(super) fn vary_flows(
+    fn vary_powers(
         &self,
         step: &Step,
         state: &mut StateRef,
@@ -433,8 +442,7 @@ impl Series {
         }
     }
 
-    /// [`Part::vary_at`].
-    pub(super) fn vary_seen(
+    fn vary_at(
         &self,
         (when, at): (When, &Point),
         state: &mut StateRef,

@@ -1,0 +1,156 @@
+//! What every part of a network says of its derivatives by parameters.
+
+use super::part::Part;
+use super::{LeafPart, Network};
+use crate::fractional::{KernelError, MemoryTangent};
+use crate::law::leaf::When;
+use crate::law::state::StateRef;
+use crate::law::step::{Point, Step};
+use crate::law::variation::{
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+};
+
+/// A part whose derivatives can be asked for.
+///
+/// As of [`Part`]: what is provided is the answer of parts side by side, and each part takes its own share of state and changes from the front.
+pub(in crate::law) trait Vary: Part {
+    /// The part of it of which no derivative is known ([`crate::law::Leaf::numbers`]), as it is called.
+    fn without_derivatives(&self) -> Option<String> {
+        self.parts().iter().find_map(|part| part.ask().without_derivatives())
+    }
+
+    /// Appends what changes of its memories at t = 0 ([`crate::law::Leaf::begin_memories`]).
+    fn begin_memories(
+        &self,
+        start: &[f64],
+        state: &mut StateRef,
+        own: &mut VariationRef,
+        memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        state.take(self.own_size());
+        own.take(0, self.own_size());
+        self.parts().iter().try_for_each(|part| part.ask().begin_memories(start, state, own, memories))
+    }
+
+    /// Puts what changes of its state at t = 0 ([`crate::law::Leaf::begin_variation`]).
+    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
+        self.parts().iter().for_each(|part| part.ask().begin_variation(at, state, told, own));
+    }
+
+    /// Adds what changes of its forces at the nodes ([`crate::law::Leaf::vary`]).
+    fn vary(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        forces: &mut [f64],
+    ) {
+        self.parts().iter().for_each(|part| part.ask().vary(step, state, told, own, forces));
+    }
+
+    /// Takes what changes of an accepted step into what changes of its state.
+    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
+        self.parts().iter().for_each(|part| part.ask().commit_variation(step, state, told, own));
+    }
+
+    /// Adds what changes of its energy flows at the start and at the nodes ([`crate::law::Leaf::vary_powers`]).
+    fn vary_powers(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        self.parts().iter().for_each(|part| part.ask().vary_powers(step, state, told, own, sum));
+    }
+
+    /// Adds what changes of it at one time.
+    fn vary_at(
+        &self,
+        (when, at): (When, &Point),
+        state: &mut StateRef,
+        told: &PointVariation,
+        own: &mut VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        self.parts().iter().for_each(|part| part.ask().vary_at((when, at), state, told, own, sum));
+    }
+}
+
+/// Parts side by side.
+impl Vary for Vec<Network> {}
+
+impl LeafPart {
+    /// How many numbers its parameters make.
+    fn number_count(&self) -> usize {
+        let mut count = 0;
+        self.leaf.numbers(&mut |_| count += 1);
+        count
+    }
+}
+
+impl Vary for LeafPart {
+    fn without_derivatives(&self) -> Option<String> {
+        let known = self.leaf.numbers(&mut |_| {});
+        (!known).then(|| self.name.as_ref().map_or(self.leaf.name(), |name| name).to_owned())
+    }
+
+    fn begin_memories(
+        &self,
+        start: &[f64],
+        state: &mut StateRef,
+        own: &mut VariationRef,
+        memories: &mut Vec<MemoryTangent>,
+    ) -> Result<(), KernelError> {
+        let size = self.leaf.size();
+        self.leaf.begin_memories(start, state.take(size), own.take(self.number_count(), size), memories)
+    }
+
+    fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
+        let size = self.leaf.size();
+        self.leaf.begin_variation(at, state.take(size), told, own.take(self.number_count(), size));
+    }
+
+    fn vary(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        forces: &mut [f64],
+    ) {
+        let size = self.leaf.size();
+        self.leaf.vary(step, state.take(size), told, own.take(self.number_count(), size), forces);
+    }
+
+    fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
+        let size = self.leaf.size();
+        self.leaf.commit_variation(step, state.take(size), told, own.take(self.number_count(), size));
+    }
+
+    fn vary_powers(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        let size = self.leaf.size();
+        self.leaf.vary_powers(step, state.take(size), told, own.take(self.number_count(), size), sum);
+    }
+
+    fn vary_at(
+        &self,
+        (when, at): (When, &Point),
+        state: &mut StateRef,
+        told: &PointVariation,
+        own: &mut VariationRef,
+        sum: &mut ObservationVariation,
+    ) {
+        let size = self.leaf.size();
+        self.leaf.vary_at(when, at, state.take(size), told, own.take(self.number_count(), size), sum);
+    }
+}
