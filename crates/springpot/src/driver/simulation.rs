@@ -226,8 +226,8 @@ impl Simulation {
         }
         let theta = self.driver.read(self.events.cx(&self.system), t, 0, &mut snapshot)?;
         let variation = self.driver.vary(theta, &snapshot);
-        let value = |variation: &Variation, p: usize| variation.value(quantity, p, &snapshot).unwrap_or(f64::NAN);
-        Ok(variation.map_or_else(Vec::new, |all| (0..all.count()).map(|p| value(all, p)).collect()))
+        let unknown = |all: &Variation| vec![f64::NAN; all.count()];
+        Ok(variation.map_or_else(Vec::new, |all| all.values(quantity, &snapshot).unwrap_or_else(|| unknown(all))))
     }
 
     /// All that is known at a time of the last step, from [`Self::t_before`] to [`Self::t`].

@@ -8,7 +8,7 @@ use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, Sampler};
-use crate::equations::{Node, Variation, VariationState};
+use crate::equations::{Node, ROW, Variation, VariationState};
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
@@ -530,8 +530,12 @@ impl Driver {
         let mut derivatives = std::mem::take(&mut snapshot.derivatives);
         derivatives.clear();
         let variation = if by.columns.is_empty() { None } else { self.vary(theta, snapshot) };
-        let value = |of, by| variation.and_then(|variation| variation.value(of, by, snapshot)).unwrap_or(f64::NAN);
-        derivatives.extend(by.columns.iter().map(|derivative| value(derivative.of, derivative.by)));
+        // All parameters of a column stand together.
+        for columns in by.columns.chunk_by(|one, next| one.of == next.of) {
+            let values = variation.and_then(|variation| variation.values(columns[0].of, snapshot));
+            let value = |by: usize| values.as_ref().map_or(f64::NAN, |values| values[by]);
+            derivatives.extend(columns.iter().map(|column| value(column.by)));
+        }
         snapshot.derivatives = derivatives;
         Ok(theta)
     }
@@ -542,7 +546,7 @@ impl Driver {
         let variation = variation.as_deref_mut()?;
         match (theta, step) {
             (Some(theta), Some(step)) => solver.stepper_mut().vary_within(variation, theta, step.size),
-            _ => variation.take_start(),
+            _ => variation.take_start(ROW),
         }
         variation.read(equations, theta, snapshot);
         Some(variation)

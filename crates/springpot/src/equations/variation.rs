@@ -13,7 +13,7 @@ use crate::elements::{Forces, Pull, Reading};
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Network, Response};
 use crate::model::{FrictionLaw, Model};
-use crate::observe::{Axis, ElementQuantity, EnergyQuantity, Quantity, Snapshot};
+use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
 use serde::{Deserialize, Serialize};
@@ -239,9 +239,7 @@ impl Variation {
         if equations.is_singular() {
             return Err(SensitivityError::Unknown { what: "a singular start".to_owned() });
         }
-        let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
-        self.see(0, start, &force);
-        (0..self.elements.len()).for_each(|e| self.measure(e, 0));
+        self.see_start(equations, start);
         for (e, element) in self.system.elements.iter().enumerate() {
             let law = |seed: &Seed| match seed {
                 Seed::Law { element, law } if *element == e => Some(law.clone()),
@@ -260,67 +258,66 @@ impl Variation {
             }
             let at = equations.bank.point(e, 0);
             let own = &self.elements[e];
-            let begun = LawVariation::begin(&element.law, &laws, &at, &own.told_at_start(count), state);
+            let told = at_start(count, [&own.stroke, &own.rate], &own.inputs);
+            let begun = LawVariation::begin(&element.law, &laws, &at, &told, state);
             self.elements[e].law = begun.map_err(|leaf| SensitivityError::Unknown {
                 what: format!("{leaf} in the law of \"{}\"", element.name),
             })?;
         }
-        self.settle(equations, start);
+        self.accelerate(equations);
         self.take_sizes();
         Ok(())
     }
 
     /// What changes of the accelerations at the start of the step, where `start` may be the far side of a jump of them.
     pub(crate) fn settle(&mut self, equations: &Equations, start: Node) {
-        let count = self.count();
+        self.see_start(equations, start);
+        self.accelerate(equations);
+    }
+
+    /// Sees where the step starts, and what changes of the elements there.
+    fn see_start(&mut self, equations: &Equations, start: Node) {
         let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
         self.see(0, start, &force);
-        let free = self.of_run(equations.free());
-        for e in 0..self.elements.len() {
-            self.measure(e, 0);
-        }
-        // M δa = −(K δq + D δv + explicit + Σ g δF).
-        let Self { nodes: [node, ..], elements, solve, tau, .. } = self;
+        (0..self.elements.len()).for_each(|e| self.measure(e, 0));
+    }
+
+    /// Solves M δa = −(K δq + D δv + explicit + Σ g δF) at the start that was seen.
+    fn accelerate(&mut self, equations: &Equations) {
+        let (count, n, free) = (self.count(), self.nv(), self.of_run(equations.free()));
+        let [node, ..] = &mut self.nodes;
         node.a.fill(0.0);
-        let n = tau.len();
         if free.is_empty() {
             return;
         }
-        if !solve.factor_part(&node.slopes.d_a, n, &free) {
-            node.a.fill(f64::NAN);
-            return;
-        }
-        let mut forces = vec![0.0; elements.len() * count];
-        let (mut sum, mut spare) = (vec![0.0; count], vec![0.0; count]);
-        for (e, element) in elements.iter().enumerate() {
-            let told = element.told_at_start(count);
-            sum.fill(0.0);
-            let mut of = ObservationVariation { force: &mut sum, stored: &mut spare };
-            equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, &element.law, &mut of);
-            forces[e * count..(e + 1) * count].copy_from_slice(&sum);
-        }
-        let mut right = vec![0.0; free.len()];
-        for p in 0..count {
-            for (right, &row) in right.iter_mut().zip(&free) {
-                let line = row * n..(row + 1) * n;
-                let by_motion: f64 = node.slopes.d_q[line.clone()]
-                    .iter()
-                    .zip(&node.slopes.d_v[line])
-                    .enumerate()
-                    .map(|(k, (by_q, by_v))| by_q * node.q[k * count + p] + by_v * node.v[k * count + p])
-                    .sum();
-                let of_elements: f64 =
-                    node.gradients.iter().enumerate().map(|(e, [g, _])| g[row] * forces[e * count + p]).sum();
-                *right = -(by_motion + node.explicit[row * count + p] + of_elements);
+        let mut solve = std::mem::take(&mut self.solve);
+        if solve.factor_part(&node.slopes.d_a, n, &free) {
+            let mut spare = vec![0.0; count];
+            for (e, ElementVariation { law, stroke, rate, inputs, row: [force, _], .. }) in
+                self.elements.iter_mut().enumerate()
+            {
+                force.fill(0.0);
+                let mut sum = ObservationVariation { force, stored: &mut spare };
+                let told = at_start(count, [stroke, rate], inputs);
+                equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, law, &mut sum);
             }
-            solve.solve(&mut right);
-            free.iter().zip(&right).for_each(|(&k, a)| node.a[k * count + p] = *a);
+            let mut right = vec![0.0; free.len()];
+            for p in 0..count {
+                for (right, &row) in right.iter_mut().zip(&free) {
+                    *right = -(self.unbalanced(0, row, p) + self.pulled(0, row, |e| self.elements[e].row[0][p]));
+                }
+                solve.solve(&mut right);
+                free.iter().zip(&right).for_each(|(&k, a)| self.nodes[0].a[k * count + p] = *a);
+            }
+        } else {
+            node.a.fill(f64::NAN);
         }
+        self.solve = solve;
     }
 
-    /// Sees node `i` of the step, where the run is at `at` and its elements pull with `force`: slopes there, and what changes where the motion stays.
-    pub(crate) fn see(&mut self, i: usize, at: Node, force: &[f64]) {
-        let Self { by, system, own_q, own_v, q, nodes, forces, workspace, tau, elements, .. } = self;
+    /// Looks at node `i` of the step, where the run is at `at`: what its elements measure, and their inputs.
+    pub(crate) fn look(&mut self, i: usize, at: Node) {
+        let Self { by, system, own_q, own_v, q, nodes, elements, .. } = self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         own_q.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
         for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
@@ -328,13 +325,6 @@ impl Variation {
         }
         node.t = at.t;
         node.kinematics.update_velocity(model, q, &node.v_now);
-        forces.clear();
-        for (element, force) in system.elements.iter().zip(force) {
-            forces.push(&element.measure, Pull::constant(*force));
-        }
-        let slopes = &mut node.slopes;
-        forces.inverse_dynamics_derivatives_into(model, &node.kinematics, &node.a_now, workspace, slopes);
-        add_tangents(system, &node.v_now, &mut slopes.d_v);
         let n = model.nv();
         let measured = node.gradients.iter_mut().zip(&mut node.hessians);
         for (element, ([gradient, bend], kept)) in system.elements.iter().zip(measured) {
@@ -346,6 +336,29 @@ impl Variation {
             }
             *kept = hessian;
         }
+        for (p, parameter) in by.parameters.iter().enumerate() {
+            for seed in &parameter.seeds {
+                let Seed::Input { element, input, by } = seed else { continue };
+                let (inputs, change) = (system.elements[*element].inputs.len(), by.at(at.t));
+                let place = ((i * inputs) + input) * count + p;
+                let [values, rates] = &mut elements[*element].inputs;
+                (values[place], rates[place]) = (change.value, change.first);
+            }
+        }
+    }
+
+    /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
+    pub(crate) fn see(&mut self, i: usize, at: Node, force: &[f64]) {
+        self.look(i, at);
+        let Self { by, system, own_v, q, nodes, forces, workspace, tau, .. } = self;
+        let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
+        forces.clear();
+        for (element, force) in system.elements.iter().zip(force) {
+            forces.push(&element.measure, Pull::constant(*force));
+        }
+        let slopes = &mut node.slopes;
+        forces.inverse_dynamics_derivatives_into(model, &node.kinematics, &node.a_now, workspace, slopes);
+        add_tangents(system, &node.v_now, &mut slopes.d_v);
         node.explicit.fill(0.0);
         for (p, parameter) in by.parameters.iter().enumerate() {
             let mut add = |k: usize, value: f64| node.explicit[k * count + p] += value;
@@ -370,27 +383,19 @@ impl Variation {
                         gravity_into(change, &node.kinematics, workspace, tau);
                         tau.iter().enumerate().for_each(|(k, tau)| add(k, *tau));
                     }
-                    Seed::Input { element, input, by } => {
-                        let inputs = system.elements[*element].inputs.len();
-                        let change = by.at(at.t);
-                        let place = ((i * inputs) + input) * count + p;
-                        let [values, rates] = &mut elements[*element].inputs;
-                        (values[place], rates[place]) = (change.value, change.first);
-                    }
                     _ => {}
                 }
             }
         }
     }
 
-    /// The motion changes at node `i` as at the start: it is given.
-    pub(crate) fn follow(&mut self, i: usize) {
+    /// The motion changes at node `i`, from 1, as where the step starts.
+    pub(crate) fn take_start(&mut self, i: usize) {
         let [start, others @ ..] = &mut self.nodes;
         let node = &mut others[i - 1];
         node.q.copy_from_slice(&start.q);
         node.v.copy_from_slice(&start.v);
         node.a.copy_from_slice(&start.a);
-        (0..self.elements.len()).for_each(|e| self.measure(e, i));
     }
 
     /// What changes of stroke and rate of element `e` at node `i`.
@@ -425,6 +430,11 @@ impl Variation {
             })
             .sum();
         by_motion + node.explicit[row * count + p]
+    }
+
+    /// What the changed forces of the elements add to the equation of velocity `row` at node `i`.
+    pub(crate) fn pulled(&self, i: usize, row: usize, force: impl Fn(usize) -> f64) -> f64 {
+        self.nodes[i].gradients.iter().enumerate().map(|(e, [g, _])| g[row] * force(e)).sum()
     }
 
     /// Asks the laws what changes of their forces where strokes and rates at the nodes stay.
@@ -472,9 +482,7 @@ impl Variation {
         let [node, ..] = &mut self.nodes;
         (node.q, node.v, node.a, self.sizes) = (q, v, a, sizes);
         self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
-        let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
-        self.see(0, start, &force);
-        (0..self.elements.len()).for_each(|e| self.measure(e, 0));
+        self.see_start(equations, start);
         true
     }
 
@@ -488,14 +496,6 @@ impl Variation {
             })
             .sum();
         element.force[(i - 1) * count + p] + by_motion
-    }
-
-    /// The motion at the row changes as where the next step starts.
-    pub(crate) fn take_start(&mut self) {
-        let [start, .., row] = &mut self.nodes;
-        row.q.copy_from_slice(&start.q);
-        row.v.copy_from_slice(&start.v);
-        row.a.copy_from_slice(&start.a);
     }
 
     /// Works out what changes at a row where the run is at `snapshot`, whose motion changes as node [`ROW`] has it: at θ of the step at hand, or
@@ -527,92 +527,83 @@ impl Variation {
         }
     }
 
-    /// What changes of a quantity at the row that was read last by parameter `p`; `None` where nothing is known of it.
-    pub(crate) fn value(&self, quantity: Quantity, p: usize, snapshot: &Snapshot) -> Option<f64> {
-        let (count, node) = (self.count(), &self.nodes[ROW]);
-        let of_velocity = |block: &[f64], k: usize| block[self.own_v[k] * count + p];
-        let force = |e: usize| self.elements[e].row[0][p];
+    /// What changes of a quantity at the row that was read last, parameter by parameter; `None` where nothing is known of it.
+    pub(crate) fn values(&self, quantity: Quantity, snapshot: &Snapshot) -> Option<Vec<f64>> {
+        let (count, node, model) = (self.count(), &self.nodes[ROW], &self.system.model);
+        let block = |blocks: &[f64], k: usize| blocks[k * count..(k + 1) * count].to_vec();
+        let of_velocity = |blocks: &[f64], k: usize| block(blocks, self.own_v[k]);
+        let each = |value: &dyn Fn(usize) -> f64| (0..count).map(value).collect();
+        let along = |slopes: &[f64], blocks: &[f64], p: usize| -> f64 {
+            slopes.iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
+        };
         Some(match quantity {
-            Quantity::Time => 0.0,
+            Quantity::Time => vec![0.0; count],
             // One degree a joint: coordinates and velocities go together.
             Quantity::Coordinate(k) => of_velocity(&node.q, k),
             Quantity::Velocity(k) => of_velocity(&node.v, k),
             Quantity::Acceleration(k) => of_velocity(&node.a, k),
-            Quantity::Torque(k) if snapshot.evaluation.driven[k].is_some() => self.driven(k, p, node.t),
+            Quantity::Torque(k) if snapshot.evaluation.driven[k].is_some() => each(&|p| self.driven(k, p, node.t)),
             Quantity::Torque(k) => {
                 let row = self.own_v[k];
-                let pulls = node.gradients.iter().enumerate().map(|(e, [g, _])| g[row] * force(e)).sum::<f64>();
-                self.unbalanced(ROW, row, p) + pulls
+                each(&|p| self.unbalanced(ROW, row, p) + self.pulled(ROW, row, |e| self.elements[e].row[0][p]))
             }
-            Quantity::Element(e, of) => match of {
-                ElementQuantity::Length => {
-                    let [gradient, _] = &node.gradients[e];
-                    gradient.iter().enumerate().map(|(k, g)| g * node.q[k * count + p]).sum()
+            Quantity::Element(e, of) => {
+                let (element, [gradient, _]) = (&self.elements[e], &node.gradients[e]);
+                match of {
+                    ElementQuantity::Length => each(&|p| along(gradient, &node.q, p)),
+                    ElementQuantity::Stroke => block(&element.stroke, ROW),
+                    ElementQuantity::Rate => block(&element.rate, ROW),
+                    ElementQuantity::Force => element.row[0].clone(),
+                    ElementQuantity::GeneralizedForce(k) => {
+                        // Q_k = −F·∂y/∂q_k.
+                        let (row, n) = (self.own_v[k], self.nv());
+                        let turned = &node.hessians[e][row * n..(row + 1) * n];
+                        let force = snapshot.force(e);
+                        each(&|p| -(element.row[0][p] * gradient[row] + force * along(turned, &node.q, p)))
+                    }
+                    ElementQuantity::Stored => element.row[1].clone(),
+                    ElementQuantity::InputValue(i) => {
+                        let [values, _] = &element.inputs;
+                        let inputs = values.len() / ((ROW + 1) * count);
+                        if inputs == 0 { vec![0.0; count] } else { block(values, ROW * inputs + i) }
+                    }
+                    _ => return None,
                 }
-                ElementQuantity::Stroke => self.elements[e].stroke[ROW * count + p],
-                ElementQuantity::Rate => self.elements[e].rate[ROW * count + p],
-                ElementQuantity::Force => force(e),
-                ElementQuantity::GeneralizedForce(k) => {
-                    // Q_k = −F·∂y/∂q_k.
-                    let (row, n) = (self.own_v[k], self.nv());
-                    let line = &node.hessians[e][row * n..(row + 1) * n];
-                    let turned: f64 = line.iter().enumerate().map(|(c, h)| h * node.q[c * count + p]).sum();
-                    let [gradient, _] = &node.gradients[e];
-                    -(force(e) * gradient[row] + snapshot.force(e) * turned)
-                }
-                ElementQuantity::Stored => self.elements[e].row[1][p],
-                ElementQuantity::InputValue(i) => {
-                    let [values, _] = &self.elements[e].inputs;
-                    let inputs = values.len() / ((ROW + 1) * count);
-                    if inputs == 0 { 0.0 } else { values[(ROW * inputs + i) * count + p] }
-                }
-                _ => return None,
-            },
+            }
             Quantity::Gripper(axis) => {
-                let site = self.system.gripper.as_ref()?;
-                let jacobian = point_jacobian(&self.system.model, &node.kinematics, site);
-                let n = self.nv();
-                let row = match axis {
-                    Axis::X => 0,
-                    Axis::Y => 1,
-                    Axis::Z => 2,
-                };
-                (0..n).map(|k| jacobian[row * n + k] * node.q[k * count + p]).sum()
+                let jacobian = point_jacobian(model, &node.kinematics, self.system.gripper.as_ref()?);
+                let line = &jacobian[axis.index() * self.nv()..][..self.nv()];
+                each(&|p| along(line, &node.q, p))
             }
-            Quantity::Energy(EnergyQuantity::Kinetic) => self.kinetic(p),
-            Quantity::Energy(EnergyQuantity::Potential) => self.potential(p),
+            Quantity::Energy(EnergyQuantity::Kinetic) => {
+                // (M v)·δv + (Cᵀ v)·δq, since Ṁ = C + Cᵀ.
+                let (n, v) = (self.nv(), &node.v_now);
+                let coriolis = coriolis(model, &node.kinematics);
+                let sum =
+                    |entry: &dyn Fn(usize) -> f64| -> f64 { v.iter().enumerate().map(|(c, v)| entry(c) * v).sum() };
+                let momentum: Vec<f64> = (0..n).map(|k| sum(&|c| node.slopes.d_a[k * n + c])).collect();
+                let bent: Vec<f64> = (0..n).map(|k| sum(&|c| coriolis[c * n + k])).collect();
+                let of_inertias = self.of_seeds(|seed| match seed {
+                    Seed::Inertia(change) => kinetic_energy(change, &node.kinematics),
+                    _ => 0.0,
+                });
+                each(&|p| along(&momentum, &node.v, p) + along(&bent, &node.q, p) + of_inertias[p])
+            }
+            Quantity::Energy(EnergyQuantity::Potential) => {
+                let weights = gravity(model, &node.kinematics);
+                let of_robot = self.of_seeds(|seed| match seed {
+                    Seed::Inertia(change) | Seed::Gravity(change) => potential_energy(change, &node.kinematics),
+                    _ => 0.0,
+                });
+                each(&|p| along(&weights, &node.q, p) + of_robot[p])
+            }
             Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => return None,
         })
     }
 
-    /// What changes of the kinetic energy at the row: (M v)·δv + (Cᵀ v)·δq, since Ṁ = C + Cᵀ, and what the inertias change.
-    fn kinetic(&self, p: usize) -> f64 {
-        let (count, n, node) = (self.count(), self.nv(), &self.nodes[ROW]);
-        let coriolis = coriolis(&self.system.model, &node.kinematics);
-        let of_motion: f64 = (0..n)
-            .map(|k| {
-                let momentum: f64 = (0..n).map(|c| node.slopes.d_a[k * n + c] * node.v_now[c]).sum();
-                let bent: f64 = (0..n).map(|c| coriolis[c * n + k] * node.v_now[c]).sum();
-                momentum * node.v[k * count + p] + bent * node.q[k * count + p]
-            })
-            .sum();
-        let of_inertias = self.by.parameters[p].seeds.iter().map(|seed| match seed {
-            Seed::Inertia(change) => kinetic_energy(change, &node.kinematics),
-            _ => 0.0,
-        });
-        of_motion + of_inertias.sum::<f64>()
-    }
-
-    /// What changes of the potential energy at the row.
-    fn potential(&self, p: usize) -> f64 {
-        let (count, node) = (self.count(), &self.nodes[ROW]);
-        let weights = gravity(&self.system.model, &node.kinematics);
-        let of_motion: f64 = weights.iter().enumerate().map(|(k, g)| g * node.q[k * count + p]).sum();
-        let of_robot = self.by.parameters[p].seeds.iter().map(|seed| match seed {
-            Seed::Inertia(change) | Seed::Gravity(change) => potential_energy(change, &node.kinematics),
-            _ => 0.0,
-        });
-        of_motion + of_robot.sum::<f64>()
+    /// What the seeds of each parameter give in sum.
+    fn of_seeds(&self, of: impl Fn(&Seed) -> f64) -> Vec<f64> {
+        self.by.parameters.iter().map(|parameter| parameter.seeds.iter().map(&of).sum()).collect()
     }
 
     /// What changes of the force of the actuator of velocity `k`.
@@ -627,16 +618,10 @@ impl Variation {
     }
 }
 
-impl ElementVariation {
-    /// What changes of what its law is told of the start of the step.
-    fn told_at_start(&self, count: usize) -> PointVariation<'_> {
-        PointVariation {
-            stroke: &self.stroke[..count],
-            rate: &self.rate[..count],
-            inputs: self.inputs.each_ref().map(|inputs| &inputs[..inputs.len() / (ROW + 1)]),
-            step: None,
-        }
-    }
+/// What changes of what a law is told of the start of the step.
+fn at_start<'a>(count: usize, [stroke, rate]: [&'a Vec<f64>; 2], inputs: &'a [Vec<f64>; 2]) -> PointVariation<'a> {
+    let inputs = inputs.each_ref().map(|blocks| &blocks[..blocks.len() / (ROW + 1)]);
+    PointVariation { stroke: &stroke[..count], rate: &rate[..count], inputs, step: None }
 }
 
 /// What changes of what a law is told of a step, without the row behind.

@@ -82,6 +82,11 @@ impl Axis {
     /// All three.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
+    /// 0, 1 or 2: its place in a vector.
+    pub(crate) const fn index(self) -> usize {
+        self as usize
+    }
+
     /// `x`, `y` or `z`.
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,7 +1,7 @@
 //! Robot and elements at one time: what the quantities of a row are taken from.
 
 use super::evaluation::{ElementRow, Evaluation};
-use super::quantity::{Axis, EnergyQuantity, Quantity};
+use super::quantity::{EnergyQuantity, Quantity};
 
 /// All that is known at one time of a run.
 #[derive(Debug, Clone)]
@@ -63,9 +63,7 @@ impl Snapshot {
                 evaluation.rigid[k] - elements.iter().zip(&evaluation.elements).map(of_element).sum::<f64>()
             }),
             Quantity::Element(e, of_element) => of_element.value(&elements[e], &evaluation.elements[e]),
-            Quantity::Gripper(Axis::X) => evaluation.gripper[0],
-            Quantity::Gripper(Axis::Y) => evaluation.gripper[1],
-            Quantity::Gripper(Axis::Z) => evaluation.gripper[2],
+            Quantity::Gripper(axis) => evaluation.gripper[axis.index()],
             Quantity::GripperError => evaluation.gripper_error.unwrap_or(f64::NAN),
             Quantity::Energy(EnergyQuantity::Kinetic) => evaluation.kinetic,
             Quantity::Energy(EnergyQuantity::Potential) => evaluation.potential,

@@ -95,14 +95,14 @@ pub enum Seed {
     },
     /// The damping of a joint.
     Damping {
-        /// Which joint.
+        /// Which joint, of the robot of [`Sensitivity::extended`] where there is one.
         joint: usize,
         /// By how much.
         by: f64,
     },
     /// The friction of a joint.
     Friction {
-        /// Which joint.
+        /// Which joint, of the robot of [`Sensitivity::extended`] where there is one.
         joint: usize,
         /// By how much.
         by: f64,

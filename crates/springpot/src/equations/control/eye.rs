@@ -3,7 +3,6 @@
 use crate::collocation::MAX_NODES;
 use crate::control::Sense;
 use crate::dynamics::{Kinematics, point_jacobian, point_jacobian_rate};
-use crate::observe::Axis;
 use crate::signal::Jet;
 use crate::system::System;
 
@@ -36,14 +35,6 @@ pub(crate) struct InputSlopes {
     pub(crate) force: [[f64; MAX_NODES]; MAX_NODES],
 }
 
-fn axis(axis: Axis) -> usize {
-    match axis {
-        Axis::X => 0,
-        Axis::Y => 1,
-        Axis::Z => 2,
-    }
-}
-
 impl Eye<'_> {
     /// The value of a sense; NaN of one that follows from forces.
     pub(super) fn value(&self, sense: Sense) -> f64 {
@@ -54,8 +45,8 @@ impl Eye<'_> {
             Sense::Length(e) => (self.element)(e)[0],
             Sense::Stroke(e) => self.system.elements[e].stroke((self.element)(e)[0]),
             Sense::Rate(e) => (self.element)(e)[1],
-            Sense::Gripper(along) => self.kinematics.position(site()).0[axis(along)],
-            Sense::GripperVelocity(along) => self.kinematics.velocity(site()).0[axis(along)],
+            Sense::Gripper(along) => self.kinematics.position(site()).0[along.index()],
+            Sense::GripperVelocity(along) => self.kinematics.velocity(site()).0[along.index()],
             Sense::Acceleration(_) | Sense::Force(_) | Sense::Derivative(_) => f64::NAN,
         }
     }
@@ -110,10 +101,10 @@ impl Eye<'_> {
                 slopes[1] = measure.read(model, self.kinematics).1;
             }
             Sense::Gripper(along) => {
-                slopes[0].copy_from_slice(&point_jacobian(model, self.kinematics, site())[axis(along) * n..][..n]);
+                slopes[0].copy_from_slice(&point_jacobian(model, self.kinematics, site())[along.index() * n..][..n]);
             }
             Sense::GripperVelocity(along) => {
-                let row = axis(along) * n..(axis(along) + 1) * n;
+                let row = along.index() * n..(along.index() + 1) * n;
                 slopes[0].copy_from_slice(&point_jacobian_rate(model, self.kinematics, site())[row.clone()]);
                 slopes[1].copy_from_slice(&point_jacobian(model, self.kinematics, site())[row]);
             }

@@ -12,7 +12,7 @@ use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::kinks::Seen;
 use crate::equations::{Change, Look, Scale, on_grid};
-use crate::equations::{Node, Variation};
+use crate::equations::{Node, ROW, Variation};
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
@@ -310,17 +310,17 @@ impl Stepper for Prescribed {
     fn vary(&mut self, _: Context, recorder: &mut Recorder, _: &Target) -> Result<(), RunError> {
         let Recorder { evaluations, equations, variation, .. } = recorder;
         let Some(variation) = variation else { return Ok(()) };
-        let still = vec![0.0; equations.bank.len()];
         for (i, at) in evaluations.iter().enumerate().skip(1) {
-            variation.see(i, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a }, &still);
-            variation.follow(i);
+            variation.look(i, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a });
+            variation.take_start(i);
+            (0..equations.bank.len()).for_each(|e| variation.measure(e, i));
         }
         variation.ask(equations);
         Ok(())
     }
 
     fn vary_within(&mut self, variation: &mut Variation, _theta: f64, _size: f64) {
-        variation.take_start();
+        variation.take_start(ROW);
     }
 
     fn gives_up(&self, cx: Context, recorder: &Recorder, step: &Target, size: f64) -> Option<RunError> {

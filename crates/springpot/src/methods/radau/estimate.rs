@@ -1,8 +1,8 @@
 //! The embedded error estimate of a step.
 
 use super::step::RadauStep;
-use crate::collocation::MAX_NODES;
 use crate::collocation::radau::{ESTIMATE, GAMMA, LEFT, RIGHT};
+use crate::collocation::{MAX_NODES, STAGES};
 use crate::equations::Equations;
 
 impl RadauStep {
@@ -27,17 +27,14 @@ impl RadauStep {
             return (0.0, 0);
         }
         let step = h * GAMMA;
-        let raw = |start: f64, at: [f64; 3]| -> f64 {
-            h * (GAMMA * start + ESTIMATE.iter().zip(at).map(|(e, x)| e * x).sum::<f64>())
-        };
         let (stages, regular, is_one_degree) = (&self.stages, &self.fitted.regular, self.model.is_one_degree());
         let scratch = &mut self.scratch;
         scratch.velocities.clear();
         scratch.positions.clear();
         for &k in free {
-            scratch.velocities.push(raw(regular[0][k], [1, 2, 3].map(|i| regular[i][k])));
+            scratch.velocities.push(raw(h, regular[0][k], [1, 2, 3].map(|i| regular[i][k])));
             let rates = stages.each_ref().map(|stage| if is_one_degree { stage.v[k] } else { stage.xi_rate[k] });
-            scratch.positions.push(raw(self.origin.v[k], rates));
+            scratch.positions.push(raw(h, self.origin.v[k], rates));
         }
         // K with the elements' stiffness as the scheme sees it: lᵀ G r + lᵀ P r/(h γ_0).
         scratch.stiffness.clear();
@@ -49,14 +46,6 @@ impl RadauStep {
             let [stroke, rate] = coupling.gain.each_ref().map(along);
             coupling.add([stroke, rate / step], free, &mut scratch.stiffness, |r| r * count);
         }
-        scratch.error.clear();
-        for r in 0..count {
-            let row = (0..count).map(|c| {
-                let mass = slopes.d_a[free[r] * n + free[c]];
-                mass * scratch.velocities[c] - step * scratch.stiffness[r * count + c] * scratch.positions[c]
-            });
-            scratch.error.push(row.sum());
-        }
         let regular = self.filter.factor(count, |matrix| {
             for (k, entry) in matrix.iter_mut().enumerate() {
                 let at = free[k / count] * n + free[k % count];
@@ -66,8 +55,23 @@ impl RadauStep {
         if !regular {
             return (f64::INFINITY, free[0]);
         }
-        self.filter.solve(&mut scratch.error);
+        self.filter_error(equations, step);
         self.weigh(free, step)
+    }
+
+    /// M r_v − h γ_0 K r_q through the filter that was factored, of the raw r_v and r_q in `scratch`, whose error this leaves there.
+    pub(super) fn filter_error(&mut self, equations: &Equations, step: f64) {
+        let (n, free, mass) = (self.model.nv(), equations.free(), &equations.slopes().d_a);
+        let (count, scratch) = (free.len(), &mut self.scratch);
+        scratch.error.clear();
+        for r in 0..count {
+            let row = (0..count).map(|c| {
+                let mass = mass[free[r] * n + free[c]];
+                mass * scratch.velocities[c] - step * scratch.stiffness[r * count + c] * scratch.positions[c]
+            });
+            scratch.error.push(row.sum());
+        }
+        self.filter.solve(&mut scratch.error);
     }
 
     /// rms of the error in `scratch` in units of the tolerance.
@@ -84,4 +88,9 @@ impl RadauStep {
         }
         ((sum / (2 * free.len()) as f64).sqrt(), worst)
     }
+}
+
+/// The embedded formula, h (γ_0 x_0 + Σ e_i x_i), of a quantity at the start and at the nodes.
+pub(super) fn raw(h: f64, start: f64, at: [f64; STAGES]) -> f64 {
+    h * (GAMMA * start + ESTIMATE.iter().zip(at).map(|(e, x)| e * x).sum::<f64>())
 }

@@ -5,8 +5,9 @@
 //! accelerations stay.
 
 use super::dense::integrals;
+use super::estimate::raw;
 use super::step::RadauStep;
-use crate::collocation::radau::{A, A_SQUARED, ESTIMATE, GAMMA};
+use crate::collocation::radau::{A, A_SQUARED, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
 use crate::equations::{Equations, Variation};
 
@@ -36,7 +37,7 @@ impl RadauStep {
             }
         }
         for e in 0..elements {
-            (0..=STAGES).for_each(|i| variation.measure(e, i));
+            (1..=STAGES).for_each(|i| variation.measure(e, i));
         }
         variation.ask(equations);
         if !free.is_empty() && !self.solve_variation(equations, variation, &free, h) {
@@ -63,36 +64,25 @@ impl RadauStep {
     ///
     /// The embedded formula of the state, for changes, through the same filter.
     pub(super) fn estimate_variation(&mut self, equations: &Equations, variation: &Variation, h: f64) -> f64 {
-        let (count, n, own) = (variation.count(), self.model.nv(), equations.free());
-        let (free, step) = (variation.of_run(own), h * GAMMA);
-        let raw = |start: f64, at: [f64; STAGES]| -> f64 {
-            h * (GAMMA * start + ESTIMATE.iter().zip(at).map(|(e, x)| e * x).sum::<f64>())
-        };
-        let mass = &equations.slopes().d_a;
+        let (count, free, step) = (variation.count(), variation.of_run(equations.free()), h * GAMMA);
         let [start, stages @ .., _] = &variation.nodes;
-        let (mut r_v, mut r_q, mut error) = (vec![0.0; own.len()], vec![0.0; own.len()], vec![0.0; own.len()]);
         let mut worst: f64 = 0.0;
         for p in 0..count {
             for (r, &k) in free.iter().enumerate() {
                 let block = k * count + p;
-                r_v[r] = raw(start.a[block], stages.each_ref().map(|stage| stage.a[block]));
-                r_q[r] = raw(start.v[block], stages.each_ref().map(|stage| stage.v[block]));
+                self.scratch.velocities[r] = raw(h, start.a[block], stages.each_ref().map(|stage| stage.a[block]));
+                self.scratch.positions[r] = raw(h, start.v[block], stages.each_ref().map(|stage| stage.v[block]));
             }
-            for r in 0..own.len() {
-                let row = (0..own.len()).map(|c| {
-                    mass[own[r] * n + own[c]] * r_v[c] - step * self.scratch.stiffness[r * own.len() + c] * r_q[c]
-                });
-                error[r] = row.sum();
-            }
-            self.filter.solve(&mut error);
+            self.filter_error(equations, step);
             let mut sum = 0.0;
             for (r, &k) in free.iter().enumerate() {
                 let [speed, travel] = self.errors.sized[r];
                 let [q, v] = variation.size(k, p, [travel, speed]).map(|size| self.errors.tolerance.rtol * size);
                 let share = |error: f64, allowed: f64| if error == 0.0 { 0.0 } else { (error / allowed).powi(2) };
-                sum += share(error[r], v) + share(r_q[r] + step * error[r], q);
+                let (error, position) = (self.scratch.error[r], self.scratch.positions[r]);
+                sum += share(error, v) + share(position + step * error, q);
             }
-            let rms = (sum / (2 * own.len()).max(1) as f64).sqrt();
+            let rms = (sum / (2 * free.len()).max(1) as f64).sqrt();
             worst = if rms.is_nan() { f64::INFINITY } else { worst.max(rms) };
         }
         worst
@@ -165,11 +155,9 @@ impl RadauStep {
                     let forces: Vec<f64> = (0..variation.elements.len())
                         .map(|e| variation.force(equations.bank.response(e), e, i + 1, p))
                         .collect();
-                    let node = &variation.nodes[i + 1];
                     for (r, &row) in free.iter().enumerate() {
-                        let of_elements: f64 =
-                            node.gradients.iter().zip(&forces).map(|([g, _], force)| g[row] * force).sum();
-                        right[i * own + r] = -(variation.unbalanced(i + 1, row, p) + of_elements);
+                        let pulled = variation.pulled(i + 1, row, |e| forces[e]);
+                        right[i * own + r] = -(variation.unbalanced(i + 1, row, p) + pulled);
                     }
                 }
                 solve.solve(&mut right);
