@@ -291,3 +291,39 @@ fn states_take_derivatives_with_them() {
     };
     assert_eq!(all(&mut first), all(&mut second));
 }
+
+/// A force that jumps at a time that no parameter moves: of a linear system the derivative is half the difference of two runs.
+#[test]
+fn a_force_that_jumps_by_a_parameter() {
+    let text = |f: f64| {
+        let law = "law = \"fractional-kelvin-voigt\"\nparameters = { k = 50, c = 5, alpha = 0.5 }";
+        let motion = format!("{}\ntorque = {{ q = \"{f:?}*step(t - 0.3)\" }}", support::forward::state("0.1", "0"));
+        support::forward::slider("2", 0.0, law, &motion) + &support::forward::every(1.0, 0.5, 1e-10)
+    };
+    let plan = cases(&text(2.0)).plan(0).unwrap();
+    let by = Signal::expression(springpot::signal::Expression::parse("step(t - 0.3)").unwrap());
+    let force = parameter("f", 2.0, vec![Seed::Drive { velocity: 0, by }]);
+    let mut system = plan.system();
+    system.sensitivity =
+        Some(Arc::new(Sensitivity { parameters: vec![force], control: true, ..Sensitivity::default() }));
+    let mut run = Simulation::new(system, plan.settings.clone()).unwrap();
+    let mut others = [1.0, 3.0].map(|f| {
+        let plan = cases(&text(f)).plan(0).unwrap();
+        Simulation::new(plan.system(), plan.settings.clone()).unwrap()
+    });
+    for t in [0.2, 0.31, 0.5, 1.0] {
+        pass(&mut run, t);
+        for quantity in [Quantity::Coordinate(0), Quantity::Velocity(0)] {
+            let [low, high] = others.each_mut().map(|other| {
+                pass(other, t);
+                other.interpolate(t).unwrap().value(quantity)
+            });
+            let found = run.derivatives(t, quantity).unwrap()[0];
+            assert!(
+                (found - 0.5 * (high - low)).abs() < 1e-9,
+                "{quantity:?} at {t}: {found} for {}",
+                0.5 * (high - low)
+            );
+        }
+    }
+}

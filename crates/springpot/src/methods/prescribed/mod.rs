@@ -307,11 +307,12 @@ impl Stepper for Prescribed {
         Ok(Trial::Accepted { step, next })
     }
 
-    fn vary(&mut self, _: Context, recorder: &mut Recorder, _: &Target) -> Result<(), RunError> {
+    fn vary(&mut self, _: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
         let Recorder { evaluations, equations, variation, .. } = recorder;
         let Some(variation) = variation else { return Ok(()) };
         for (i, at) in evaluations.iter().enumerate().skip(1) {
-            variation.look(i, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a });
+            let t = if i == STAGES { step.end_inputs() } else { at.t };
+            variation.look(i, Node { t, q: &at.q, v: &at.v, a: &at.a });
             variation.take_start(i);
             (0..equations.bank.len()).for_each(|e| variation.measure(e, i));
         }

@@ -66,7 +66,7 @@ impl Radau {
             if whole || self.has_inner_variables {
                 (error, worst) = self.recorder_error(cx, recorder, h, whole, (error, worst));
             }
-            error = error.max(self.variation_error(recorder, h));
+            error = error.max(self.variation_error(recorder, target));
         }
         let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
         if error > 1.0 || error.is_nan() {
@@ -94,13 +94,13 @@ impl Radau {
     }
 
     /// The error of what parameters change over the step, where that shares in the choice of steps.
-    fn variation_error(&mut self, recorder: &mut Recorder, h: f64) -> f64 {
+    fn variation_error(&mut self, recorder: &mut Recorder, target: &Target) -> f64 {
         let Recorder { equations, variation, .. } = recorder;
         let Some(variation) = variation.as_deref_mut().filter(|variation| variation.shares_in_steps()) else {
             return 0.0;
         };
-        if self.step.vary(equations, variation, h) {
-            self.step.estimate_variation(equations, variation, h)
+        if self.step.vary(equations, variation, target.size, target.end_inputs()) {
+            self.step.estimate_variation(equations, variation, target.size)
         } else {
             f64::INFINITY
         }

@@ -189,7 +189,7 @@ impl Stepper for Radau {
         let Recorder { equations, variation, .. } = recorder;
         let Some(variation) = variation else { return Ok(()) };
         // What shares in the choice of steps was worked out with the step.
-        if variation.shares_in_steps() || self.step.vary(equations, variation, step.size) {
+        if variation.shares_in_steps() || self.step.vary(equations, variation, step.size, step.end_inputs()) {
             return Ok(());
         }
         Err(SensitivityError::Unknown { what: format!("a motion without inertia at t = {} s", step.from) }.into())

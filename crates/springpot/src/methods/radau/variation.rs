@@ -12,15 +12,16 @@ use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
 use crate::equations::{Equations, Variation};
 
 impl RadauStep {
-    /// Works out what changes over the step that was solved, of size `h`; false where nothing does so in one way.
-    pub(super) fn vary(&mut self, equations: &Equations, variation: &mut Variation, h: f64) -> bool {
+    /// Works out what changes over the step that was solved, of size `h`, where signals at its end are those at `t_end`; false where nothing does
+    /// so in one way.
+    pub(super) fn vary(&mut self, equations: &Equations, variation: &mut Variation, h: f64, t_end: f64) -> bool {
         let count = variation.count();
         let free = variation.of_run(equations.free());
         let elements = variation.elements.len();
         let mut force = vec![0.0; elements];
         for (i, stage) in self.stages.iter().enumerate() {
             force.iter_mut().enumerate().for_each(|(e, force)| *force = equations.bank.response(e).force[i]);
-            let t = self.origin.t + RADAU_NODES[i] * h;
+            let t = if i + 1 == STAGES { t_end } else { self.origin.t + RADAU_NODES[i] * h };
             variation.see(i + 1, stage.node(t), &force);
         }
         // The stages where the accelerations stay.
