@@ -1,5 +1,7 @@
 //! Derivatives by the numbers of a file: from paths to columns, against differences of whole runs, and what is refused.
 
+mod changes;
+
 use springpot::Simulation;
 use springpot::law::Catalog;
 use springpot::observe::Quantity;

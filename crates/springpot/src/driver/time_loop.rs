@@ -144,11 +144,19 @@ impl Driver {
         Ok(())
     }
 
-    /// What parameters change on the far side of what was crossed.
-    fn settle_variation(&mut self) {
+    /// What parameters change on the far side of what was crossed, where the accelerations were `before`.
+    fn settle_variation(&mut self, before: &[f64]) {
         let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
         if let Some(variation) = variation {
-            variation.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a });
+            variation.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a }, before);
+        }
+    }
+
+    /// How much later joints come to rest, for what was noted at the present time.
+    fn vary_stops(&mut self) {
+        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
+        if let Some(variation) = variation {
+            variation.stop(equations.stopping(), at);
         }
     }
 
@@ -293,8 +301,10 @@ impl Driver {
         }
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
+        let varies = self.recorder.variation.is_some();
+        let before = varies.then(|| self.recorder.evaluations[0].a.clone()).unwrap_or_default();
         self.solver.stepper_mut().cross(cx, &mut self.recorder, after)?;
-        self.settle_variation();
+        self.settle_variation(&before);
         self.t = after;
         // A little further, since a sign is 0 while it turns.
         let past = if self.has_fixed_steps() { after } else { cx.system.past_turns(after) };
@@ -328,6 +338,7 @@ impl Driver {
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
         self.recorder.commit(cx)?;
+        self.vary_stops();
         self.recorder.check_warmth(cx, step.to)?;
         self.t = step.to;
         self.crossing = step.crossing();
@@ -403,6 +414,7 @@ impl Driver {
                     }
                 }
                 Trial::Changes => {
+                    self.vary_stops();
                     self.crossing = Some(self.t);
                     return Ok(());
                 }

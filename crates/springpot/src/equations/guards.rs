@@ -8,6 +8,7 @@ use super::evaluate::{ElementEvaluation, Evaluation, Scratch};
 use super::friction::CHATTER;
 use super::kinks::{Kink, Seen};
 use super::node::Origin;
+use super::resistance::sign;
 use super::zero::{SAMPLES, first_zero};
 use crate::collocation::{Cubic, STAGES};
 use crate::system::error::RunError;
@@ -225,6 +226,22 @@ impl Equations {
     /// Whether friction starts or ceases to hold a joint at the end of the step.
     pub(crate) fn sticks_or_slips(&self) -> bool {
         self.friction.changes()
+    }
+
+    /// The velocities that come to rest at the end of the step, or at its start, for what was noted there.
+    pub(crate) fn stopping(&self) -> &[usize] {
+        &self.friction.stopping
+    }
+
+    /// Whether friction holds velocity `k`.
+    pub(crate) fn holds(&self, k: usize) -> bool {
+        self.friction.holds(k)
+    }
+
+    /// The direction in which velocity `k`, which is `v`, slides where its friction sticks: −1, 0 (held) or 1.
+    pub(crate) fn sliding(&self, k: usize, v: f64) -> f64 {
+        let found = self.friction.rubbing().find(|(other, _)| *other == k);
+        found.map_or_else(|| sign(v), |(_, direction)| f64::from(direction))
     }
 
     /// The first kink of a force in the step that the bank was told.

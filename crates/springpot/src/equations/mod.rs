@@ -18,6 +18,7 @@ mod pose;
 pub(crate) mod resistance;
 mod rounding;
 mod rows;
+mod saltation;
 mod scale;
 mod solve;
 mod state;

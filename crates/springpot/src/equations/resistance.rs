@@ -38,7 +38,7 @@ fn resisting<'a>(model: &'a Model, v: &'a [f64]) -> impl Iterator<Item = Resisti
 }
 
 /// −1, 0 or 1.
-fn sign(v: f64) -> f64 {
+pub(super) fn sign(v: f64) -> f64 {
     if v == 0.0 { 0.0 } else { v.signum() }
 }
 

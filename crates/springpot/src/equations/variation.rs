@@ -14,7 +14,7 @@ use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, 
 use crate::law::{Network, Response};
 use crate::model::{FrictionLaw, Model};
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
-use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
+use crate::sensitivity::{Lost, Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub(crate) struct Variation {
     system: Arc<System>,
     /// Of every coordinate and velocity of the run, which of the extended robot it is.
     own_q: Vec<usize>,
-    own_v: Vec<usize>,
+    pub(super) own_v: Vec<usize>,
     /// Coordinates of the extended robot.
     q: Vec<f64>,
     pub(crate) elements: Vec<ElementVariation>,
@@ -38,6 +38,10 @@ pub(crate) struct Variation {
     workspace: Workspace,
     tau: Vec<f64>,
     pub(crate) solve: Solve,
+    /// How much later the change at the present time comes, s, where the motion starts anew.
+    pub(super) later: Option<Vec<f64>>,
+    /// Where derivatives ended, parameter by parameter.
+    pub(super) lost: Vec<Option<Lost>>,
 }
 
 /// Share of what the motion comes to that a change by the whole of a parameter is expected to come to at least.
@@ -56,6 +60,8 @@ pub(crate) struct VariationState {
     motion: [Vec<f64>; 3],
     sizes: [Vec<f64>; 2],
     laws: Vec<LawVariation>,
+    later: Option<Vec<f64>>,
+    lost: Vec<Option<Lost>>,
 }
 
 /// An element over a step.
@@ -169,6 +175,8 @@ impl Variation {
             workspace: Workspace::new(model),
             tau: vec![0.0; model.nv()],
             solve: Solve::default(),
+            later: None,
+            lost: vec![None; count],
             by: by.clone(),
             system: extended.clone(),
         })
@@ -235,6 +243,7 @@ impl Variation {
                 }
             }
         }
+        self.hold(equations);
         // What laws keep begins at the strokes and inputs of t = 0.
         if equations.is_singular() {
             return Err(SensitivityError::Unknown { what: "a singular start".to_owned() });
@@ -269,21 +278,15 @@ impl Variation {
         Ok(())
     }
 
-    /// What changes of the accelerations at the start of the step, where `start` may be the far side of a jump of them.
-    pub(crate) fn settle(&mut self, equations: &Equations, start: Node) {
-        self.see_start(equations, start);
-        self.accelerate(equations);
-    }
-
     /// Sees where the step starts, and what changes of the elements there.
-    fn see_start(&mut self, equations: &Equations, start: Node) {
+    pub(super) fn see_start(&mut self, equations: &Equations, start: Node) {
         let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
-        self.see(0, start, &force);
+        self.see(equations, 0, start, &force);
         (0..self.elements.len()).for_each(|e| self.measure(e, 0));
     }
 
     /// Solves M δa = −(K δq + D δv + explicit + Σ g δF) at the start that was seen.
-    fn accelerate(&mut self, equations: &Equations) {
+    pub(super) fn accelerate(&mut self, equations: &Equations) {
         let (count, n, free) = (self.count(), self.nv(), self.of_run(equations.free()));
         let [node, ..] = &mut self.nodes;
         node.a.fill(0.0);
@@ -348,7 +351,7 @@ impl Variation {
     }
 
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
-    pub(crate) fn see(&mut self, i: usize, at: Node, force: &[f64]) {
+    pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
         self.look(i, at);
         let Self { by, system, own_v, q, nodes, forces, workspace, tau, .. } = self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
@@ -371,8 +374,12 @@ impl Variation {
                     }
                     Seed::Friction { joint, by } => {
                         let (k, ratio, speed) = felt(model, *joint, &node.v_now);
-                        if let FrictionLaw::Smooth { speed: width } = model.friction_laws()[*joint] {
-                            add(k, by * ratio * (speed / width).tanh());
+                        match model.friction_laws()[*joint] {
+                            FrictionLaw::Smooth { speed: width } => add(k, by * ratio * (speed / width).tanh()),
+                            FrictionLaw::Sticking => {
+                                let own = own_v.iter().position(|own| *own == k);
+                                add(k, by * ratio.abs() * own.map_or(0.0, |own| equations.sliding(own, at.v[own])));
+                            }
                         }
                     }
                     Seed::Inertia(change) => {
@@ -469,18 +476,23 @@ impl Variation {
     pub(crate) fn save(&self) -> VariationState {
         let [NodeVariation { q, v, a, .. }, ..] = &self.nodes;
         let laws = self.elements.iter().map(|element| element.law.clone()).collect();
-        VariationState { motion: [q.clone(), v.clone(), a.clone()], sizes: self.sizes.clone(), laws }
+        let (later, lost) = (self.later.clone(), self.lost.clone());
+        VariationState { motion: [q.clone(), v.clone(), a.clone()], sizes: self.sizes.clone(), laws, later, lost }
     }
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, laws } = state;
+        let VariationState { motion: [q, v, a], sizes, laws, later, lost } = state;
         let blocks = self.sizes[0].len();
-        if laws.len() != self.elements.len() || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks) {
+        if laws.len() != self.elements.len()
+            || lost.len() != self.lost.len()
+            || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks)
+        {
             return false;
         }
         let [node, ..] = &mut self.nodes;
         (node.q, node.v, node.a, self.sizes) = (q, v, a, sizes);
+        (self.later, self.lost) = (later, lost);
         self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
         self.see_start(equations, start);
         true
@@ -503,7 +515,12 @@ impl Variation {
     pub(crate) fn read(&mut self, equations: &Equations, theta: Option<f64>, snapshot: &Snapshot) {
         let evaluation = &snapshot.evaluation;
         let force: Vec<f64> = (0..self.elements.len()).map(|e| snapshot.force(e)).collect();
-        self.see(ROW, Node { t: evaluation.t, q: &evaluation.q, v: &evaluation.v, a: &evaluation.a }, &force);
+        self.see(
+            equations,
+            ROW,
+            Node { t: evaluation.t, q: &evaluation.q, v: &evaluation.v, a: &evaluation.a },
+            &force,
+        );
         let count = self.count();
         for e in 0..self.elements.len() {
             self.measure(e, ROW);
@@ -527,8 +544,15 @@ impl Variation {
         }
     }
 
-    /// What changes of a quantity at the row that was read last, parameter by parameter; `None` where nothing is known of it.
+    /// What changes of a quantity at the row that was read last, parameter by parameter, no number where that is lost; `None` where nothing is known
+    /// of it.
     pub(crate) fn values(&self, quantity: Quantity, snapshot: &Snapshot) -> Option<Vec<f64>> {
+        let mut values = self.finite_values(quantity, snapshot)?;
+        values.iter_mut().zip(&self.lost).filter(|(_, lost)| lost.is_some()).for_each(|(value, _)| *value = f64::NAN);
+        Some(values)
+    }
+
+    pub(super) fn finite_values(&self, quantity: Quantity, snapshot: &Snapshot) -> Option<Vec<f64>> {
         let (count, node, model) = (self.count(), &self.nodes[ROW], &self.system.model);
         let block = |blocks: &[f64], k: usize| blocks[k * count..(k + 1) * count].to_vec();
         let of_velocity = |blocks: &[f64], k: usize| block(blocks, self.own_v[k]);
@@ -648,11 +672,6 @@ fn check(system: &System) -> Result<(), SensitivityError> {
     }
     if !system.events.is_empty() {
         return unknown("events");
-    }
-    if (0..system.model.joint_count())
-        .any(|j| system.model.friction_laws()[j] == FrictionLaw::Sticking && system.model.friction()[j] > 0.0)
-    {
-        return unknown("friction that sticks");
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ use crate::observe::Quantity;
 use crate::signal::Signal;
 use crate::system::System;
 use crate::table::Column;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// By what a run is differentiated.
@@ -118,6 +119,15 @@ pub enum Seed {
         /// By how much its coordinate.
         by: f64,
     },
+}
+
+/// Where the derivatives by a parameter end: the solution has none there, or has another one on each side.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Lost {
+    /// From when on there are none, s.
+    pub t: f64,
+    /// Why.
+    pub why: String,
 }
 
 /// Why a run cannot be differentiated.

@@ -22,7 +22,7 @@ impl RadauStep {
         for (i, stage) in self.stages.iter().enumerate() {
             force.iter_mut().enumerate().for_each(|(e, force)| *force = equations.bank.response(e).force[i]);
             let t = if i + 1 == STAGES { t_end } else { self.origin.t + RADAU_NODES[i] * h };
-            variation.see(i + 1, stage.node(t), &force);
+            variation.see(equations, i + 1, stage.node(t), &force);
         }
         // The stages where the accelerations stay.
         let [start, stages @ .., _] = &mut variation.nodes;
@@ -68,7 +68,7 @@ impl RadauStep {
         let (count, free, step) = (variation.count(), variation.of_run(equations.free()), h * GAMMA);
         let [start, stages @ .., _] = &variation.nodes;
         let mut worst: f64 = 0.0;
-        for p in 0..count {
+        for p in (0..count).filter(|&p| variation.knows(p)) {
             for (r, &k) in free.iter().enumerate() {
                 let block = k * count + p;
                 self.scratch.velocities[r] = raw(h, start.a[block], stages.each_ref().map(|stage| stage.a[block]));
