@@ -25,7 +25,7 @@ impl Rows for Kept {
         Ok(())
     }
 
-    fn event(&mut self, event: usize, values: &[f64]) -> std::io::Result<()> {
+    fn event(&mut self, event: usize, values: &[f64], _: &[f64]) -> std::io::Result<()> {
         self.events.push((event, values.to_vec()));
         Ok(())
     }

@@ -5,7 +5,7 @@ use super::wanted::{FigureData, Total, Wanted, WantedCurve, WantedMetric, Wanted
 use crate::{figures, metrics};
 use springpot::observe::Quantity;
 use springpot::table::Column;
-use springpot_scenario::{Cases, Plan, Refusals};
+use springpot_scenario::{Cases, Plan, Refusals, SensitivityPlan};
 
 /// The columns of a sweep.
 #[derive(Debug, Clone)]
@@ -21,6 +21,8 @@ pub struct Layout {
     /// The names of the events.
     events: Vec<String>,
     metrics: Vec<WantedMetric>,
+    /// The derivatives of the time of an event.
+    times: Vec<Column>,
 }
 
 impl Layout {
@@ -52,8 +54,10 @@ impl Layout {
         let figures =
             cases.figures().iter().map(|figure| figures::data(cases, figure, &mut wanted)).collect::<Result<_, _>>()?;
         let metrics = cases.metrics().iter().map(|plan| wanted.metric(plan)).collect::<Result<_, _>>()?;
-        let events = plan.events.iter().map(|plan| plan.event.name.clone()).collect();
-        Ok(Self { written, swept, selected, wanted, figures, events, metrics })
+        let events: Vec<String> = plan.events.iter().map(|plan| plan.event.name.clone()).collect();
+        let sensitivity = plan.sensitivity.iter().filter(|sensitivity| sensitivity.is_asked() && !events.is_empty());
+        let times = sensitivity.flat_map(SensitivityPlan::times).collect();
+        Ok(Self { written, swept, selected, wanted, figures, events, metrics, times })
     }
 
     /// Columns of results.csv.
@@ -103,10 +107,11 @@ impl Layout {
     /// Columns of events.csv: all of the run.
     pub(super) fn event_columns(&self) -> Vec<Column> {
         let (time, others) = self.wanted.columns().split_first().expect("a run has a time");
+        let (others, derivatives) = others.split_at(others.partition_point(|column| !is_derivative(column)));
         let swept = self.written[..self.swept].iter().cloned();
         swept
             .chain([Column::new("event", "", "name of the event"), time.clone()])
-            .chain(others.iter().cloned())
+            .chain([others, &self.times[..], derivatives].concat())
             .collect()
     }
 

@@ -121,9 +121,17 @@ impl Rows for CaseRows<'_> {
         self.sink.row(if is_spread { &self.row } else { row })
     }
 
-    fn event(&mut self, event: usize, row: &[f64]) -> io::Result<()> {
+    fn event(&mut self, event: usize, row: &[f64], later: &[f64]) -> io::Result<()> {
         let is_spread = self.spread(row);
-        self.sink.event(self.system, event, if is_spread { &self.row } else { row });
+        let row = if is_spread { &self.row } else { row };
+        if later.is_empty() {
+            self.sink.event(self.system, event, row);
+            return Ok(());
+        }
+        // Derivatives stand behind all else, those of the time first.
+        let told = self.plan.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.columns.len());
+        let (own, derivatives) = row.split_at(row.len() - told);
+        self.sink.event(self.system, event, &[own, later, derivatives].concat());
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use super::gather::Slope;
 use crate::changes::path::Step;
 use crate::text::document::{Node, Value};
 use crate::units::{self, Unit};
-use springpot::signal::{Expression, Signal, SlopeError};
+use springpot::signal::{Expression, Signal, Slope as SignalSlope, SlopeError};
 
 /// Sections that say nothing to the equations at a time t.
 const SILENT: [&str; 10] =
@@ -57,8 +57,11 @@ pub(super) fn slopes(document: &Node, name: &str, values: &[(String, f64)]) -> R
 
 /// The derivative of a number that is an expression.
 fn number(text: &str, unit: Option<&std::sync::Arc<Node>>, constants: &Constants) -> Result<f64, SlopeError> {
-    let slope = Expression::slope(text, constants)?.value(0.0);
-    Ok(slope * scale(unit))
+    let slope = Expression::slope(text, constants)?;
+    if !slope.jumps.is_empty() {
+        return Err(SlopeError::Switch { function: "step" });
+    }
+    Ok(slope.function.value(0.0) * scale(unit))
 }
 
 fn scale(unit: Option<&std::sync::Arc<Node>>) -> f64 {
@@ -125,9 +128,10 @@ fn slope(text: &str, unit: Option<&std::sync::Arc<Node>>, constants: &Constants)
         other => other.to_string(),
     })?;
     let scale = scale(unit);
-    let slope = match slope.is_constant() {
+    let SignalSlope { function, jumps } = slope;
+    let slope = match function.is_constant().filter(|_| jumps.is_empty()) {
         Some(value) => Slope::Number(value * scale),
-        None => Slope::Signal(Signal::scaled(Signal::expression(slope), scale, 0.0)),
+        None => Slope::Signal { by: Signal::scaled(Signal::expression(function), scale, 0.0), jumps },
     };
     match &slope {
         Slope::Number(value) if !value.is_finite() => Err(format!("its derivative is {value}")),

@@ -3,12 +3,15 @@
 use super::extended::{Extended, Site, Virtual};
 use crate::elements::plan::ShapePlan;
 use crate::plan::Plan;
+use crate::robot::described::EndStops;
 use crate::text::document::Node;
 use springpot::actuation::Drive;
 use springpot::dual::Dual;
+use springpot::law::Network;
+use springpot::law::leaf::EndStop;
 use springpot::model::BodySpec;
-use springpot::sensitivity::Seed;
-use springpot::signal::Signal;
+use springpot::sensitivity::{Seed, Switched};
+use springpot::signal::{MovedJump, Signal};
 use springpot::spatial::{Inertia, Symmetric3, Vec3};
 use springpot::system::{Motion, System};
 use std::collections::BTreeMap;
@@ -21,22 +24,25 @@ pub(super) type Moved = Result<(), String>;
 #[derive(Debug, Clone)]
 pub(super) enum Slope {
     Number(f64),
-    /// As a function of time.
-    Signal(Signal),
+    /// As a function of time, which jumps at times that move.
+    Signal {
+        by: Signal,
+        jumps: Vec<MovedJump>,
+    },
 }
 
 impl Slope {
     pub(super) fn number(self) -> Result<f64, String> {
         match self {
             Self::Number(by) => Ok(by),
-            Self::Signal(_) => Err("it is a function of time".to_owned()),
+            Self::Signal { .. } => Err("it is a function of time".to_owned()),
         }
     }
 
-    pub(super) fn signal(self) -> Signal {
+    fn signal(self) -> (Signal, Vec<MovedJump>) {
         match self {
-            Self::Number(by) => Signal::constant(by),
-            Self::Signal(by) => by,
+            Self::Number(by) => (Signal::constant(by), Vec::new()),
+            Self::Signal { by, jumps } => (by, jumps),
         }
     }
 }
@@ -134,9 +140,14 @@ pub(super) struct Gather {
     pub(super) v: Vec<(usize, f64)>,
     /// By element, the slopes of its parameters.
     laws: BTreeMap<usize, Vec<f64>>,
+    /// By joint, the slopes of stiffness, damping, lower and upper end of its stop.
+    stops: BTreeMap<usize, [f64; 4]>,
     pub(super) rest: Vec<(usize, f64)>,
-    pub(super) inputs: Vec<(usize, usize, Signal)>,
-    pub(super) drives: Vec<(usize, Signal)>,
+    inputs: Vec<(usize, usize, Signal)>,
+    drives: Vec<(usize, Signal)>,
+    switches: Vec<(Switched, MovedJump)>,
+    /// Numbers of an event and of one of its settings.
+    pub(super) set: Vec<(usize, usize, f64)>,
     pub(super) damping: Vec<(usize, f64)>,
     pub(super) friction: Vec<(usize, f64)>,
     pub(super) armature: Vec<(usize, f64)>,
@@ -151,8 +162,30 @@ impl Gather {
         self.laws.entry(e).or_insert_with(|| vec![0.0; count])
     }
 
+    pub(super) fn stop(&mut self, joint: usize) -> &mut [f64; 4] {
+        self.stops.entry(joint).or_default()
+    }
+
     pub(super) fn body(&mut self, body: usize) -> &mut BodySlope {
         self.bodies.entry(body).or_default()
+    }
+
+    /// Moves input `input` of element `element`.
+    pub(super) fn input(&mut self, element: usize, input: usize, slope: Slope) {
+        let (by, jumps) = slope.signal();
+        self.inputs.push((element, input, by));
+        self.switch(Switched::Input { element, input }, jumps);
+    }
+
+    /// Moves the actuator force on a velocity.
+    pub(super) fn drive(&mut self, velocity: usize, slope: Slope) {
+        let (by, jumps) = slope.signal();
+        self.drives.push((velocity, by));
+        self.switch(Switched::Drive(velocity), jumps);
+    }
+
+    fn switch(&mut self, of: Switched, jumps: Vec<MovedJump>) {
+        self.switches.extend(jumps.into_iter().map(|jump| (of, jump)));
     }
 
     /// Shifts what stands at `site` along `axis`.
@@ -173,7 +206,8 @@ impl Gather {
     /// What the engine takes, of a robot that was extended by the joints of all parameters.
     pub(super) fn seeds(self, plan: &Plan, extended: &Extended) -> Vec<Seed> {
         let model = extended.model();
-        let joint = |j: usize| model.joint_index(&plan.model.joint_names()[j]).expect("a joint of the robot");
+        let joint_name = |j: usize| &*plan.model.joint_names()[j];
+        let joint = |j: usize| model.joint_index(joint_name(j)).expect("a joint of the robot");
         let mut seeds = Vec::new();
         // What the robot's coordinates at t = 0 change by.
         let mut start = vec![0.0; model.nv()];
@@ -195,6 +229,16 @@ impl Gather {
                 seeds.push(Seed::Law { element, law });
             }
         }
+        for (joint, slopes) in self.stops {
+            let limits = plan.model.limits(joint);
+            let stop = plan.end_stops.and_then(|EndStops { stiffness, damping }| {
+                let values = [stiffness, damping, limits.lower, limits.upper];
+                let [k, d, lower, upper] = std::array::from_fn(|i| Dual { value: values[i], slope: slopes[i] });
+                let element = extended.system.end_stop(joint_name(joint))?;
+                Some((element, EndStop::new(k, d, lower, upper).ok()?))
+            });
+            seeds.extend(stop.map(|(element, stop)| Seed::Law { element, law: Network::leaf(stop) }));
+        }
         seeds.extend(self.rest.iter().map(|&(element, by)| Seed::Rest { element, by }));
         let rests = plan.elements.iter().enumerate().filter(|(_, element)| element.rest_at_start);
         for (element, _) in rests.filter(|_| start.iter().any(|by| *by != 0.0)) {
@@ -203,6 +247,11 @@ impl Gather {
         }
         seeds.extend(self.inputs.into_iter().map(|(element, input, by)| Seed::Input { element, input, by }));
         seeds.extend(self.drives.into_iter().map(|(velocity, by)| Seed::Drive { velocity, by }));
+        seeds.extend(self.switches.into_iter().map(|(of, jump)| {
+            let [argument, by] = [jump.argument, jump.slope].map(Signal::expression);
+            Seed::Switch { of, argument, by }
+        }));
+        seeds.extend(self.set.iter().map(|&(event, setting, by)| Seed::Set { event, setting, by }));
         seeds.extend(self.damping.iter().map(|&(j, by)| Seed::Damping { joint: joint(j), by }));
         seeds.extend(self.friction.iter().map(|&(j, by)| Seed::Friction { joint: joint(j), by }));
         if !self.bodies.is_empty() || !self.armature.is_empty() {

@@ -259,7 +259,7 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
 }
 
 /// The unit of a quotient.
-fn over(unit: &str, by: &str) -> String {
+pub(super) fn over(unit: &str, by: &str) -> String {
     match (unit, by) {
         (unit, "" | "1") => unit.to_owned(),
         ("" | "1", by) if by.contains(['*', '/']) => format!("1/({by})"),

@@ -1,5 +1,6 @@
 //! By what a run is differentiated, as it is read.
 
+use super::judge::over;
 use crate::text::refusal::Place;
 use springpot::sensitivity::Sensitivity;
 use springpot::table::Column;
@@ -39,5 +40,13 @@ impl SensitivityPlan {
     /// Whether rows tell derivatives.
     pub fn is_asked(&self) -> bool {
         self.engine.is_some()
+    }
+
+    /// The derivatives of the time of an event, `d(t)/d(PARAMETER)`, in the order of the parameters.
+    pub fn times(&self) -> impl Iterator<Item = Column> {
+        self.parameters.iter().map(|ParameterPlan { name, unit, .. }| {
+            let meaning = format!("derivative of the time of the event by {name}");
+            Column::new(format!("d(t)/d({name})"), over("s", unit), meaning)
+        })
     }
 }

@@ -5,6 +5,8 @@ use crate::changes::path::Step;
 use springpot::actuation::Drive;
 use springpot::elements::Component;
 use springpot::model::JointKind;
+use springpot::observe::{ElementQuantity, Quantity};
+use springpot::system::{Action, Setting};
 
 /// A step of a path that a row is about.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +64,8 @@ const NONE: LeftOut = Vector([0.0; 3]);
 static ROWS: &[Row] = &[
     row(&[Key("robot"), Key("gravity"), Item], Vector([0.0, 0.0, -9.81]), gravity),
     row(&[Key("robot"), Key("gripper"), Key("point"), Item], Nothing, gripper),
+    row(&[Key("robot"), Key("limits"), Key("stiffness")], Nothing, stop),
+    row(&[Key("robot"), Key("limits"), Key("damping")], Zero, stop),
     row(&[Key("robot"), Key("body"), Item, Key("mass")], Nothing, mass),
     row(&[Key("robot"), Key("body"), Item, Key("com"), Item], NONE, com),
     row(&[Key("robot"), Key("body"), Item, Key("inertia"), Any], Zero, inertia),
@@ -76,6 +80,10 @@ static ROWS: &[Row] = &[
     row(&[Key("robot"), Key("body"), Item, Key("joint"), Key("friction"), Any, Key("force")], Nothing, friction),
     row(&[Key("robot"), Key("body"), Item, Key("joint"), Key("armature")], Zero, armature),
     row(&[Key("robot"), Key("body"), Item, Key("joint"), Key("armature"), Any], Zero, armature),
+    row(&[Key("robot"), Key("body"), Item, Key("joint"), Key("lower")], Nothing, end),
+    row(&[Key("robot"), Key("body"), Item, Key("joint"), Key("upper")], Nothing, end),
+    row(&[Key("robot"), Key("body"), Item, Key("joint"), Key("lower"), Any], Nothing, end),
+    row(&[Key("robot"), Key("body"), Item, Key("joint"), Key("upper"), Any], Nothing, end),
     row(&[Key("element"), Item, Key("parameters"), Any], OfLaw, law),
     row(&[Key("element"), Item, Key("parameters"), Any, Item], Nothing, law),
     row(&[Key("element"), Item, Key("bushing"), Any, Key("parameters"), Any], OfLaw, law),
@@ -96,6 +104,7 @@ static ROWS: &[Row] = &[
     row(&[Key("motion"), Key("start"), Key("v"), Any, Any], Zero, start_v),
     signal(row(&[Key("motion"), Key("torque"), Any], Zero, torque)),
     signal(row(&[Key("motion"), Key("torque"), Any, Any], Zero, torque)),
+    row(&[Key("event"), Item, Key("action"), Key("set"), Any], Nothing, event_value),
 ];
 
 /// The row of the number that `steps` lead to.
@@ -241,6 +250,22 @@ fn joints(scene: &Scene<'_>, steps: &[Step]) -> Result<Vec<usize>, String> {
     if found.is_empty() { Err("no derivative by it is known".to_owned()) } else { Ok(found) }
 }
 
+/// Stiffness or damping of all ends of joints.
+fn stop(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
+    let by = slope.number()?;
+    let number = usize::from(key(&steps[2]) == "damping");
+    (0..scene.plan.model.joint_count()).for_each(|joint| gather.stop(joint)[number] += by);
+    Ok(())
+}
+
+/// An end of a joint.
+fn end(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
+    let by = slope.number()?;
+    let number = if key(&steps[4]) == "lower" { 2 } else { 3 };
+    joints(scene, steps)?.into_iter().for_each(|joint| gather.stop(joint)[number] += by);
+    Ok(())
+}
+
 fn damping(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
     let by = slope.number()?;
     gather.damping.extend(joints(scene, steps)?.into_iter().map(|joint| (joint, by)));
@@ -351,7 +376,7 @@ fn input(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -
     for e in elements(scene, steps) {
         let inputs = &scene.plan.elements[e].element.entry.inputs;
         let input = inputs.iter().position(|input| input.name == name).ok_or("its law has no such input")?;
-        gather.inputs.push((e, input, slope.clone().signal()));
+        gather.input(e, input, slope.clone());
     }
     Ok(())
 }
@@ -393,6 +418,24 @@ fn start_v(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope)
 }
 
 fn torque(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
-    gather.drives.push((velocity(scene, &steps[2..])?, slope.signal()));
+    gather.drive(velocity(scene, &steps[2..])?, slope);
+    Ok(())
+}
+
+/// A value that an event sets.
+fn event_value(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
+    let (event, column) = (item(&steps[1]), key(&steps[4]));
+    let observables = scene.plan.acting_observables();
+    let is_named = |of: &Quantity| observables.named(*of).to_string() == column;
+    let Some(of) = observables.quantities().into_iter().find(is_named) else { return Ok(()) };
+    let Some(Action::Set(settings)) = scene.plan.events.get(event).map(|event| &event.event.action) else {
+        return Err("its event sets nothing".to_owned());
+    };
+    let is_set = |setting: &Setting| match *setting {
+        Setting::Input { element, input, .. } => of == Quantity::Element(element, ElementQuantity::InputValue(input)),
+        Setting::Torque { velocity, .. } => of == Quantity::Torque(velocity),
+    };
+    let setting = settings.iter().position(is_set).ok_or("its event does not set that")?;
+    gather.set.push((event, setting, slope.number()?));
     Ok(())
 }

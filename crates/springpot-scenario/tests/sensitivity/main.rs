@@ -119,6 +119,11 @@ fn rows(plan: &Plan, names: &[String]) -> Vec<Vec<f64>> {
 
 /// Compares derivatives of all columns by the numbers at these paths with differences of whole runs.
 fn compare(text: &str, columns: &[&str], paths: &[(&str, f64)]) {
+    compare_within(1e-7, text, columns, paths);
+}
+
+/// The same, to so much of the largest value.
+fn compare_within(share: f64, text: &str, columns: &[&str], paths: &[(&str, f64)]) {
     let mut asked = scenario(text);
     let all: Vec<&str> = paths.iter().map(|(path, _)| *path).collect();
     asked.differentiate(&all.join(",")).unwrap();
@@ -143,7 +148,7 @@ fn compare(text: &str, columns: &[&str], paths: &[(&str, f64)]) {
                 let of = found[r][k * paths.len() + p];
                 let miss = (of - truth(r)).abs();
                 // What the runs that are compared may be off.
-                let known = 1e-7 * size + 2e-12 * (1.0 + a[r][k].abs()) / step;
+                let known = share * size + 2e-12 * (1.0 + a[r][k].abs()) / step;
                 assert!(
                     miss < known,
                     "d({column})/d({path}) at {}: {of} for {}, {miss:e} > {known:e}",

@@ -21,6 +21,7 @@ pub(super) struct DriverState {
     pub(super) t: f64,
     pub(super) h: f64,
     pub(super) crossing: Option<f64>,
+    pub(super) is_own: bool,
     pub(super) tick: usize,
     pub(super) steps: u64,
     pub(super) rejected_steps: u64,

@@ -5,6 +5,7 @@
 //! the same run in the hands of somebody else, who takes its steps. Both stand on one driver over three [methods](crate::methods). Rows never
 //! change the accuracy. The [`Report`] tells steps, rows, the time reached, and the residual of the energy balance.
 
+mod changes;
 mod driver_state;
 mod equation;
 mod events;

@@ -71,7 +71,25 @@ impl<'a> Output<'a> {
     pub(super) fn event(&mut self, cx: Context, driver: &mut Driver, event: usize, at: f64) -> Result<(), RunError> {
         driver.show(cx, at, self.written.rows, &mut self.snapshot)?;
         self.take_row(cx, driver)?;
-        self.rows.event(event, &self.row)?;
+        let later = driver.passage(cx, &cx.system.watched_events()[event], at)?.unwrap_or_default();
+        self.follow_event(cx, driver, &later)?;
+        self.rows.event(event, &self.row, &later)?;
+        Ok(())
+    }
+
+    /// Adds what the time of an event, which comes later by so much, changes of the derivatives of its row.
+    fn follow_event(&mut self, cx: Context, driver: &mut Driver, later: &[f64]) -> Result<(), RunError> {
+        let Some(by) = cx.system.sensitivity.as_deref().filter(|by| !by.columns.is_empty()) else { return Ok(()) };
+        let mut of: Vec<Quantity> = by.columns.iter().map(|column| column.of).collect();
+        of.dedup();
+        let rates = driver.rates(cx, &of, &self.snapshot)?;
+        for (quantity, value) in self.quantities.iter().zip(&mut self.row) {
+            let Quantity::Derivative(k) = quantity else { continue };
+            let column = &by.columns[*k];
+            let rate = of.iter().position(|of| *of == column.of).map_or(f64::NAN, |at| rates[at]);
+            let later = later[column.by];
+            *value += if later == 0.0 { 0.0 } else { rate * later };
+        }
         Ok(())
     }
 
@@ -116,6 +134,11 @@ impl<'a> Output<'a> {
         let origin = driver.recorder.potential_origin().abs();
         let sizes = evaluation.potential.abs() + origin + forces.filter(|x| x.is_finite()).sum::<f64>();
         written.rounding = written.rounding.max(ROUNDING * sizes);
+    }
+
+    /// Tells where derivatives ended.
+    pub(super) fn tell_lost(&mut self, driver: &Driver) {
+        driver.lost().for_each(|(parameter, lost)| self.rows.lost(parameter, lost));
     }
 
     /// Whether the run may be believed; to be asked at its end.

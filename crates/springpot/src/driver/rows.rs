@@ -2,6 +2,7 @@
 
 use super::state::Checkpoint;
 use crate::observe::Table;
+use crate::sensitivity::Lost;
 
 /// Takes the rows of a run.
 pub trait Rows {
@@ -11,13 +12,17 @@ pub trait Rows {
     /// Whatever keeps the row from being kept; the run stops.
     fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
 
-    /// One complete row at the time of an event of [`crate::system::System::events`], by its number there, before what the event sets holds.
+    /// One complete row at the time of an event of [`crate::system::System::events`], by its number there, before what the event sets holds. Its
+    /// derivatives are along the event, whose time moves: `later` has those of the time, by each parameter of [`crate::system::System::sensitivity`].
     ///
     /// # Errors
     /// As [`Self::row`].
-    fn event(&mut self, _event: usize, _values: &[f64]) -> std::io::Result<()> {
+    fn event(&mut self, _event: usize, _values: &[f64], _later: &[f64]) -> std::io::Result<()> {
         Ok(())
     }
+
+    /// At the end, by which parameter of [`crate::system::System::sensitivity`] derivatives ended before, and where.
+    fn lost(&mut self, _parameter: usize, _lost: &Lost) {}
 
     /// Before the first row, how often the signals of the run will switch ([`super::Report::switches`]).
     fn looked_ahead(&mut self, _switches: u64) {}

@@ -11,6 +11,7 @@ use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::observe::Quantity;
 use crate::observe::Snapshot;
+use crate::sensitivity::Lost;
 use crate::system::error::RunError;
 use crate::system::row_times::RowTimes;
 use crate::system::settings::{Settings, Stop};
@@ -230,6 +231,11 @@ impl Simulation {
         Ok(variation.map_or_else(Vec::new, |all| all.values(quantity, &snapshot).unwrap_or_else(|| unknown(all))))
     }
 
+    /// By which parameters of [`System::sensitivity`] derivatives have ended, by their numbers, and where.
+    pub fn lost(&self) -> impl Iterator<Item = (usize, &Lost)> {
+        self.driver.lost()
+    }
+
     /// All that is known at a time of the last step, from [`Self::t_before`] to [`Self::t`].
     ///
     /// # Errors
@@ -295,6 +301,7 @@ impl Simulation {
         if held != *self.events.held_mut() {
             self.disturb()?;
             *self.events.held_mut() = held;
+            self.driver.hold_input([element, input], value.is_some());
         }
         Ok(())
     }

@@ -70,6 +70,8 @@ pub(super) struct Driver {
     step: Option<Target>,
     /// The far side of what is to be crossed before the next step.
     crossing: Option<f64>,
+    /// Whether that is a change of the robot's own.
+    is_own: bool,
     /// Number of the end of the next step, where they have one size.
     tick: usize,
     steps: u64,
@@ -144,22 +146,6 @@ impl Driver {
         Ok(())
     }
 
-    /// What parameters change on the far side of what was crossed, where the accelerations were `before`.
-    fn settle_variation(&mut self, before: &[f64]) {
-        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
-        if let Some(variation) = variation {
-            variation.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a }, before);
-        }
-    }
-
-    /// How much later joints come to rest, for what was noted at the present time.
-    fn vary_stops(&mut self) {
-        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
-        if let Some(variation) = variation {
-            variation.stop(equations.stopping(), at);
-        }
-    }
-
     /// What sampled laws said last.
     fn acting(&self) -> Arc<Held> {
         self.sampler.as_ref().map_or_else(Arc::default, |sampler| sampler.acting().clone())
@@ -232,6 +218,7 @@ impl Driver {
             planned: 0.0,
             step: None,
             crossing: None,
+            is_own: false,
             tick: 1,
             steps: 0,
             rejected_steps: 0,
@@ -302,9 +289,14 @@ impl Driver {
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
         let varies = self.recorder.variation.is_some();
-        let before = varies.then(|| self.recorder.evaluations[0].a.clone()).unwrap_or_default();
+        if varies {
+            self.vary_switches(cx, [self.t, after]);
+        }
+        let [at, ..] = &self.recorder.evaluations;
+        let before = if varies { [at.v.clone(), at.a.clone()] } else { Default::default() };
         self.solver.stepper_mut().cross(cx, &mut self.recorder, after)?;
-        self.settle_variation(&before);
+        let is_own = std::mem::take(&mut self.is_own);
+        self.settle_variation(before.each_ref().map(|own| &own[..]), is_own);
         self.t = after;
         // A little further, since a sign is 0 while it turns.
         let past = if self.has_fixed_steps() { after } else { cx.system.past_turns(after) };
@@ -337,8 +329,15 @@ impl Driver {
         let Some(step) = self.step.take() else { return Ok(()) };
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
+        let Recorder { evaluations: [start, ..], equations, variation, .. } = &mut self.recorder;
+        if let Some(variation) = variation
+            && equations.has_jumped_at_end()
+        {
+            variation.arrive(&start.a);
+        }
         self.recorder.commit(cx)?;
-        self.vary_stops();
+        self.is_own = step.behind == Behind::Change;
+        self.vary_changes(step.size);
         self.recorder.check_warmth(cx, step.to)?;
         self.t = step.to;
         self.crossing = step.crossing();
@@ -414,7 +413,8 @@ impl Driver {
                     }
                 }
                 Trial::Changes => {
-                    self.vary_stops();
+                    self.is_own = true;
+                    self.vary_changes(0.0);
                     self.crossing = Some(self.t);
                     return Ok(());
                 }
@@ -642,6 +642,7 @@ impl Driver {
             t: self.t,
             h: self.h,
             crossing: self.crossing,
+            is_own: self.is_own,
             tick: self.tick,
             steps: self.steps,
             rejected_steps: self.rejected_steps,
@@ -653,8 +654,20 @@ impl Driver {
     /// # Errors
     /// [`RunError::OtherRun`], and the driver as it was.
     pub(super) fn go_on(&mut self, cx: Context, state: DriverState) -> Result<(), RunError> {
-        let DriverState { system, recorder, variation, sampler, solver, t, h, crossing, tick, steps, rejected_steps } =
-            state;
+        let DriverState {
+            system,
+            recorder,
+            variation,
+            sampler,
+            solver,
+            t,
+            h,
+            crossing,
+            is_own,
+            tick,
+            steps,
+            rejected_steps,
+        } = state;
         if system != self.fingerprint(cx) || !self.solver.fits(&solver) || !self.recorder.go_on(recorder) {
             return Err(RunError::OtherRun);
         }
@@ -669,7 +682,7 @@ impl Driver {
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
         self.solver.load(cx, &mut self.recorder, solver)?;
-        (self.t, self.h, self.step, self.crossing) = (t, h, None, crossing);
+        (self.t, self.h, self.step, self.crossing, self.is_own) = (t, h, None, crossing, is_own);
         self.planned = h;
         (self.tick, self.steps, self.rejected_steps) = (tick, steps, rejected_steps);
         self.load_variation(cx, variation)

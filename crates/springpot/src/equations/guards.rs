@@ -25,6 +25,9 @@ const SHARE: f64 = 1e-3;
 /// A prescribed velocity below this share of its largest is at rest.
 const AT_REST: f64 = 1e-9;
 
+/// What a force must change by behind the others of a step to jump, in units of what it changes before.
+const JUMPS: f64 = 1e3;
+
 /// Where a velocity that leaves rest is first looked at.
 const START: f64 = 1e-9;
 
@@ -209,8 +212,7 @@ impl Equations {
 
     /// Whether what follows the step starts anew, for what was noted at its end.
     pub(crate) fn starts_anew(&self) -> bool {
-        let jumps = self.changes.is_at_kink && self.kinks.may_jump();
-        self.friction.changes() || jumps || self.switches()
+        self.friction.changes() || self.may_have_jumped() || self.switches()
     }
 
     /// Whether the step ends on a kink of a force, which is forgotten.
@@ -231,6 +233,22 @@ impl Equations {
     /// The velocities that come to rest at the end of the step, or at its start, for what was noted there.
     pub(crate) fn stopping(&self) -> &[usize] {
         &self.friction.stopping
+    }
+
+    /// Whether the step ends on a kink where the force of an element may jump.
+    pub(crate) fn may_have_jumped(&self) -> bool {
+        self.changes.is_at_kink && self.kinks.may_jump()
+    }
+
+    /// Whether the last node of the step alone is behind a jump of the force of an element; such a step is as short as the jump asks for.
+    pub(crate) fn has_jumped_at_end(&self) -> bool {
+        self.may_have_jumped()
+            && self.kinks.elements().iter().any(|&e| {
+                let [a, b, c, ..] = self.bank.response(e).force;
+                let start = self.force_at_start(e);
+                let before = (b - a).abs() + (a - start).abs();
+                (c - b).abs() > JUMPS * before.max(f64::EPSILON * c.abs())
+            })
     }
 
     /// Whether friction holds velocity `k`.

@@ -7,10 +7,52 @@ use super::assembly::Equations;
 use super::evaluate::Evaluation;
 use super::node::Node;
 use super::variation::Variation;
-use crate::sensitivity::Lost;
+use crate::dual::Dual;
+use crate::law::Network;
+use crate::sensitivity::{Lost, Seed, Switched};
+use crate::system::{Action, Event, Setting};
+use serde::{Deserialize, Serialize};
 
 /// Times of one change that differ by less than this share of them are one.
 const ONE_TIME: f64 = 1e-9;
+
+/// Accelerations and velocities that differ by less than this share of the largest do not jump.
+const JUMP: f64 = 1e-7;
+
+/// A guard this near its zero is on it, in units of what it goes over in the step.
+const ON_IT: f64 = 1e-6;
+
+/// A switch this near is here, as a share of the time.
+const HERE: f64 = 1e-12;
+
+/// What parameters change of what is held in place of signals: those that are not among them are held at what no parameter moves.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct HeldVariation {
+    drives: Vec<(usize, Vec<f64>)>,
+    inputs: Vec<([usize; 2], Vec<f64>)>,
+}
+
+impl HeldVariation {
+    /// The actuator forces that are held, by their velocities.
+    pub(super) fn drives(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.drives.iter().map(|(k, by)| (*k, &by[..]))
+    }
+
+    /// The inputs that are held, by their elements and numbers.
+    pub(super) fn inputs(&self) -> impl Iterator<Item = ([usize; 2], &[f64])> {
+        self.inputs.iter().map(|(at, by)| (*at, &by[..]))
+    }
+
+    /// Of the actuator force on velocity `k`, where it is held.
+    pub(super) fn drive(&self, k: usize) -> Option<&[f64]> {
+        self.drives.iter().find(|(held, _)| *held == k).map(|(_, by)| &by[..])
+    }
+
+    /// Of an input of an element, where it is held.
+    pub(super) fn input(&self, element: usize, input: usize) -> Option<&[f64]> {
+        self.inputs.iter().find(|(held, _)| *held == [element, input]).map(|(_, by)| &by[..])
+    }
+}
 
 impl Variation {
     /// Whether the derivatives by parameter `p` exist so far.
@@ -26,6 +68,10 @@ impl Variation {
     /// Derivatives by parameter `p` end at `t`.
     pub(crate) fn lose(&mut self, p: usize, t: f64, why: &str) {
         self.lost[p].get_or_insert_with(|| Lost { t, why: why.to_owned() });
+    }
+
+    fn lose_all(&mut self, t: f64, why: &str) {
+        (0..self.count()).for_each(|p| self.lose(p, t, why));
     }
 
     /// The change at the present time, `t`, comes later by δt* = −δγ/γ̇, parameter by parameter, where a function γ that changes by `of(p)` passes
@@ -61,19 +107,151 @@ impl Variation {
         }
     }
 
-    /// Goes to the far side of what was crossed, `start`, where the accelerations were `before`.
-    pub(crate) fn settle(&mut self, equations: &Equations, start: Node, before: &[f64]) {
-        let count = self.count();
-        if let Some(later) = self.later.take() {
-            for (k, (before, after)) in before.iter().zip(start.a).enumerate() {
-                let blocks = self.own_v[k] * count..;
-                let changes = self.nodes[0].v[blocks].iter_mut().zip(&later).filter(|(_, later)| later.is_finite());
-                changes.for_each(|(v, later)| *v += (before - after) * later);
+    /// Forces of elements may jump at the present time, where the robot is `at`, behind a step of size `h`.
+    pub(crate) fn hit(&mut self, at: &Evaluation, h: f64) {
+        for (e, element) in at.elements.iter().enumerate() {
+            if !self.system.elements[e].law.jumps() {
+                continue;
             }
+            let (value, rate) = (element.stroke, element.reading.rate);
+            let guards = |law: &Network, slope: f64| {
+                let mut all = Vec::new();
+                law.jumps_at(Dual { value, slope }, &mut |guard| all.push(guard));
+                all
+            };
+            let own = guards(&self.system.elements[e].law, rate);
+            for (g, guard) in own.iter().enumerate().filter(|(_, guard)| guard.value.abs() <= ON_IT * h * rate.abs()) {
+                let change = |own: &Self, p: usize| {
+                    let law = own.law_by(e, p).unwrap_or(&own.system.elements[e].law);
+                    guards(law, own.elements[e].stroke[p])[g].slope
+                };
+                self.passes(at.t, guard.slope, change);
+            }
+        }
+    }
+
+    /// Functions of time switch at `t`, those that `switches` says.
+    pub(crate) fn switch(&mut self, t: f64, switches: impl Fn(Switched) -> bool, sources: &[Switched]) {
+        let by = self.by.clone();
+        let mut later = vec![0.0; self.count()];
+        for (p, parameter) in by.parameters.iter().enumerate() {
+            let (mut own, mut moved) = (Vec::new(), false);
+            for seed in &parameter.seeds {
+                let Seed::Switch { of, argument, by } = seed else { continue };
+                let at = argument.at(t);
+                let is_here = (at.value / at.first).abs() <= HERE * t || at.first == 0.0 && at.value == 0.0;
+                if !is_here || !switches(*of) {
+                    continue;
+                }
+                let own_later = -by.value(t) / at.first;
+                if t == 0.0 || !own_later.is_finite() {
+                    self.lose(p, t, "a function of time switches there, and in another way beside it");
+                } else if moved && (own_later - later[p]).abs() > ONE_TIME * own_later.abs() {
+                    self.lose(p, t, "two functions of time switch at one time, which it moves apart");
+                }
+                (later[p], moved) = (own_later, true);
+                own.push(*of);
+            }
+            if moved && later[p] != 0.0 && sources.iter().any(|source| switches(*source) && !own.contains(source)) {
+                self.lose(p, t, "another function of time switches at the same time, which it does not move");
+            }
+        }
+        if later.iter().any(|later| *later != 0.0) {
+            self.comes_later(t, later);
+            for source in sources.iter().filter(|source| switches(**source)) {
+                if let Switched::Input { element, .. } = source {
+                    self.jump_of_input(*element, t);
+                }
+            }
+        }
+    }
+
+    /// An input of element `e` jumps with the change at the present time.
+    fn jump_of_input(&mut self, e: usize, t: f64) {
+        let law = &self.system.elements[e].law;
+        if !law.has_inner_variables() && law.hidden_errors() != usize::MAX && law.as_heated().is_none() {
+            return;
+        }
+        let why = format!(
+            "an input of \"{}\" jumps at a time that it moves, and the law keeps what it did",
+            self.system.elements[e].name
+        );
+        let later = self.later.clone().unwrap_or_default();
+        (0..later.len()).filter(|p| later[*p] != 0.0).for_each(|p| self.lose(p, t, &why));
+    }
+
+    /// An event sets what it sets, at `t`, later by so much, s.
+    pub(crate) fn set(&mut self, number: usize, event: &Event, t: f64, later: Vec<f64>) {
+        let Action::Set(settings) = &event.action else { return };
+        self.comes_later(t, later);
+        for (k, setting) in settings.iter().enumerate() {
+            let own = |seed: &Seed| match seed {
+                Seed::Set { event, setting, by } if (*event, *setting) == (number, k) => *by,
+                _ => 0.0,
+            };
+            let by = self.of_seeds(own);
+            match *setting {
+                Setting::Torque { velocity, .. } => {
+                    self.held.drives.retain(|(held, _)| *held != velocity);
+                    self.held.drives.push((velocity, by));
+                }
+                Setting::Input { element, input, .. } => {
+                    self.hold_input([element, input], Some(by));
+                    self.jump_of_input(element, t);
+                }
+            }
+        }
+    }
+
+    /// An input is held from outside, or given back to its signal; it changes by so much.
+    pub(crate) fn hold_input(&mut self, at: [usize; 2], by: Option<Vec<f64>>) {
+        self.held.inputs.retain(|(held, _)| *held != at);
+        self.held.inputs.extend(by.map(|by| (at, by)));
+    }
+
+    /// A step ends in which accelerations were `a` at its start, so short that they were so until the change behind it.
+    pub(crate) fn arrive(&mut self, a: &[f64]) {
+        self.arrived = Some(a.to_vec());
+    }
+
+    /// Goes to the far side of what was crossed, `start`, where velocities and accelerations were `before`; at a change of the robot's own, whose
+    /// time nobody gave beforehand, where `is_own`.
+    pub(crate) fn settle(&mut self, equations: &Equations, start: Node, before: [&[f64]; 2], is_own: bool) {
+        let count = self.count();
+        let jump = |before: &[f64], after: &[f64], counts: &dyn Fn(usize) -> bool| {
+            let largest = before.iter().chain(after).fold(0.0, |largest: f64, x| largest.max(x.abs()));
+            let pairs = before.iter().zip(after).enumerate().filter(|(k, _)| counts(*k));
+            pairs.fold(0.0, |jump: f64, (_, (before, after))| jump.max((before - after).abs())) > JUMP * largest
+        };
+        let [v, a] = before;
+        let arrived = self.arrived.take();
+        let a = arrived.as_deref().unwrap_or(a);
+        if jump(v, start.v, &|k| equations.free().contains(&k)) {
+            self.lose_all(start.t, "velocities jump with that of a joint that a signal moves");
+        }
+        match self.later.take() {
+            Some(later) => {
+                for (k, (before, after)) in a.iter().zip(start.a).enumerate() {
+                    let blocks = self.own_v[k] * count..;
+                    let changes = self.nodes[0].v[blocks].iter_mut().zip(&later).filter(|(_, later)| later.is_finite());
+                    changes.for_each(|(v, later)| *v += (before - after) * later);
+                }
+                self.last = Some((start.t, later));
+            }
+            None if is_own && jump(a, start.a, &|_| true) => self.lose_all(start.t, "forces jump there"),
+            None => self.last = None,
         }
         self.hold(equations);
         self.see_start(equations, start);
         self.accelerate(equations);
+    }
+
+    /// How much later what was crossed last comes, s, where that was at `t`.
+    pub(crate) fn crossed(&self, t: f64) -> Vec<f64> {
+        match &self.last {
+            Some((at, later)) if (t - at).abs() <= HERE * t => later.clone(),
+            _ => vec![0.0; self.count()],
+        }
     }
 
     /// What friction holds stays at rest.

@@ -3,6 +3,7 @@
 use super::assembly::Equations;
 use super::node::Node;
 use super::resistance::add_tangents;
+use super::saltation::HeldVariation;
 use super::solve::Solve;
 use crate::collocation::STAGES;
 use crate::dynamics::{
@@ -22,8 +23,8 @@ use std::sync::Arc;
 /// Derivatives of a run by its parameters, in blocks of one number for each parameter; velocities count as those of the extended robot.
 #[derive(Debug)]
 pub(crate) struct Variation {
-    by: Arc<Sensitivity>,
-    system: Arc<System>,
+    pub(super) by: Arc<Sensitivity>,
+    pub(super) system: Arc<System>,
     /// Of every coordinate and velocity of the run, which of the extended robot it is.
     own_q: Vec<usize>,
     pub(super) own_v: Vec<usize>,
@@ -40,6 +41,11 @@ pub(crate) struct Variation {
     pub(crate) solve: Solve,
     /// How much later the change at the present time comes, s, where the motion starts anew.
     pub(super) later: Option<Vec<f64>>,
+    /// The accelerations on the near side of that change, where the end of the step has those behind it.
+    pub(super) arrived: Option<Vec<f64>>,
+    /// The same of what was crossed last, and when that was.
+    pub(super) last: Option<(f64, Vec<f64>)>,
+    pub(super) held: HeldVariation,
     /// Where derivatives ended, parameter by parameter.
     pub(super) lost: Vec<Option<Lost>>,
 }
@@ -61,6 +67,9 @@ pub(crate) struct VariationState {
     sizes: [Vec<f64>; 2],
     laws: Vec<LawVariation>,
     later: Option<Vec<f64>>,
+    arrived: Option<Vec<f64>>,
+    last: Option<(f64, Vec<f64>)>,
+    held: HeldVariation,
     lost: Vec<Option<Lost>>,
 }
 
@@ -147,6 +156,7 @@ impl Variation {
                     match seed {
                         Seed::Rest { element, by } if *element == e => rest[p] -= by,
                         Seed::Input { element, .. } if *element == e => moves_inputs = true,
+                        Seed::Set { event, setting, .. } => moves_inputs |= system.sets_input_of(*event, *setting, e),
                         _ => {}
                     }
                 }
@@ -176,6 +186,9 @@ impl Variation {
             tau: vec![0.0; model.nv()],
             solve: Solve::default(),
             later: None,
+            arrived: None,
+            last: None,
+            held: HeldVariation::default(),
             lost: vec![None; count],
             by: by.clone(),
             system: extended.clone(),
@@ -320,7 +333,7 @@ impl Variation {
 
     /// Looks at node `i` of the step, where the run is at `at`: what its elements measure, and their inputs.
     pub(crate) fn look(&mut self, i: usize, at: Node) {
-        let Self { by, system, own_q, own_v, q, nodes, elements, .. } = self;
+        let Self { by, system, own_q, own_v, q, nodes, elements, held, .. } = self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         own_q.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
         for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
@@ -339,13 +352,30 @@ impl Variation {
             }
             *kept = hessian;
         }
+        for element in elements.iter_mut() {
+            for blocks in &mut element.inputs {
+                let own = blocks.len() / (ROW + 1);
+                blocks[i * own..(i + 1) * own].fill(0.0);
+            }
+        }
+        for ([element, input], by) in held.inputs() {
+            let place = ((i * system.elements[element].inputs.len()) + input) * count;
+            let [values, _] = &mut elements[element].inputs;
+            if !values.is_empty() {
+                values[place..place + count].copy_from_slice(by);
+            }
+        }
         for (p, parameter) in by.parameters.iter().enumerate() {
             for seed in &parameter.seeds {
                 let Seed::Input { element, input, by } = seed else { continue };
+                if held.input(*element, *input).is_some() {
+                    continue;
+                }
                 let (inputs, change) = (system.elements[*element].inputs.len(), by.at(at.t));
                 let place = ((i * inputs) + input) * count + p;
                 let [values, rates] = &mut elements[*element].inputs;
-                (values[place], rates[place]) = (change.value, change.first);
+                values[place] += change.value;
+                rates[place] += change.first;
             }
         }
     }
@@ -353,7 +383,7 @@ impl Variation {
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
     pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
         self.look(i, at);
-        let Self { by, system, own_v, q, nodes, forces, workspace, tau, .. } = self;
+        let Self { by, system, own_v, q, nodes, forces, workspace, tau, held, .. } = self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         forces.clear();
         for (element, force) in system.elements.iter().zip(force) {
@@ -363,11 +393,17 @@ impl Variation {
         forces.inverse_dynamics_derivatives_into(model, &node.kinematics, &node.a_now, workspace, slopes);
         add_tangents(system, &node.v_now, &mut slopes.d_v);
         node.explicit.fill(0.0);
+        for (velocity, by) in held.drives() {
+            let row = own_v[velocity] * count;
+            node.explicit[row..row + count].iter_mut().zip(by).for_each(|(sum, by)| *sum -= by);
+        }
         for (p, parameter) in by.parameters.iter().enumerate() {
             let mut add = |k: usize, value: f64| node.explicit[k * count + p] += value;
             for seed in &parameter.seeds {
                 match seed {
-                    Seed::Drive { velocity, by } => add(own_v[*velocity], -by.value(at.t)),
+                    Seed::Drive { velocity, by } if held.drive(*velocity).is_none() => {
+                        add(own_v[*velocity], -by.value(at.t));
+                    }
                     Seed::Damping { joint, by } => {
                         let (k, ratio, speed) = felt(model, *joint, &node.v_now);
                         add(k, by * ratio * speed);
@@ -476,13 +512,21 @@ impl Variation {
     pub(crate) fn save(&self) -> VariationState {
         let [NodeVariation { q, v, a, .. }, ..] = &self.nodes;
         let laws = self.elements.iter().map(|element| element.law.clone()).collect();
-        let (later, lost) = (self.later.clone(), self.lost.clone());
-        VariationState { motion: [q.clone(), v.clone(), a.clone()], sizes: self.sizes.clone(), laws, later, lost }
+        VariationState {
+            motion: [q.clone(), v.clone(), a.clone()],
+            sizes: self.sizes.clone(),
+            laws,
+            later: self.later.clone(),
+            arrived: self.arrived.clone(),
+            last: self.last.clone(),
+            held: self.held.clone(),
+            lost: self.lost.clone(),
+        }
     }
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, laws, later, lost } = state;
+        let VariationState { motion: [q, v, a], sizes, laws, later, arrived, last, held, lost } = state;
         let blocks = self.sizes[0].len();
         if laws.len() != self.elements.len()
             || lost.len() != self.lost.len()
@@ -492,7 +536,8 @@ impl Variation {
         }
         let [node, ..] = &mut self.nodes;
         (node.q, node.v, node.a, self.sizes) = (q, v, a, sizes);
-        (self.later, self.lost) = (later, lost);
+        (self.later, self.arrived, self.last) = (later, arrived, last);
+        (self.held, self.lost) = (held, lost);
         self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
         self.see_start(equations, start);
         true
@@ -625,13 +670,24 @@ impl Variation {
         })
     }
 
+    /// The law of element `e` built of numbers that change with parameter `p`, where it has any.
+    pub(super) fn law_by(&self, e: usize, p: usize) -> Option<&Network> {
+        self.by.parameters[p].seeds.iter().find_map(|seed| match seed {
+            Seed::Law { element, law } if *element == e => Some(law),
+            _ => None,
+        })
+    }
+
     /// What the seeds of each parameter give in sum.
-    fn of_seeds(&self, of: impl Fn(&Seed) -> f64) -> Vec<f64> {
+    pub(super) fn of_seeds(&self, of: impl Fn(&Seed) -> f64) -> Vec<f64> {
         self.by.parameters.iter().map(|parameter| parameter.seeds.iter().map(&of).sum()).collect()
     }
 
     /// What changes of the force of the actuator of velocity `k`.
     fn driven(&self, k: usize, p: usize, t: f64) -> f64 {
+        if let Some(held) = self.held.drive(k) {
+            return held[p];
+        }
         let seeds = self.by.parameters[p].seeds.iter();
         seeds
             .map(|seed| match seed {
@@ -669,9 +725,6 @@ fn check(system: &System) -> Result<(), SensitivityError> {
     }
     if !system.control.is_empty() {
         return unknown("what follows from the state");
-    }
-    if !system.events.is_empty() {
-        return unknown("events");
     }
     Ok(())
 }

@@ -399,6 +399,15 @@ impl Network {
         self.any_leaf(|leaf| leaf.jumps())
     }
 
+    /// Hands over functions of the stroke that pass zero where its force jumps ([`Leaf::jumps_at`]); in a series strokes are others, and none are known.
+    pub(crate) fn jumps_at(&self, stroke: Dual, take: &mut dyn FnMut(Dual)) {
+        match self {
+            Self::Leaf(leaf) => leaf.jumps_at(stroke, take),
+            Self::Parallel(parts) => parts.iter().for_each(|part| part.jumps_at(stroke, take)),
+            _ => {}
+        }
+    }
+
     /// The law at t_n + theta·h, 0 < theta ≤ 1, where its exact kinematics are those of `at`. Pure.
     pub fn at(&self, step: &Step, theta: f64, at: &Point, state: &State) -> Observation {
         self.ask().at(step, theta, at, &mut state.view(), &mut |_| ()).observation

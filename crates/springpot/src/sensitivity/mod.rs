@@ -94,6 +94,24 @@ pub enum Seed {
         /// By how much, as a function of time.
         by: Signal,
     },
+    /// When a function of time jumps.
+    Switch {
+        /// Which.
+        of: Switched,
+        /// A function that passes zero where it jumps.
+        argument: Signal,
+        /// By how much that.
+        by: Signal,
+    },
+    /// What an event sets.
+    Set {
+        /// Which of [`System::events`].
+        event: usize,
+        /// Which of its settings.
+        setting: usize,
+        /// By how much.
+        by: f64,
+    },
     /// The damping of a joint.
     Damping {
         /// Which joint, of the robot of [`Sensitivity::extended`] where there is one.
@@ -118,6 +136,20 @@ pub enum Seed {
         velocity: usize,
         /// By how much its coordinate.
         by: f64,
+    },
+}
+
+/// A function of time of a system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Switched {
+    /// The force of an actuator, by its velocity.
+    Drive(usize),
+    /// An input of an element.
+    Input {
+        /// Which element.
+        element: usize,
+        /// Which of its inputs.
+        input: usize,
     },
 }
 

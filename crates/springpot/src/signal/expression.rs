@@ -26,4 +26,4 @@ pub use formula::Expression;
 pub use of_columns::ColumnExpression;
 pub use parse::{is_of_module, number_length};
 pub use program::{MAX_DEPTH, MAX_KINKS, MAX_LENGTH, is_name};
-pub use slope::SlopeError;
+pub use slope::{MovedJump, Slope, SlopeError};

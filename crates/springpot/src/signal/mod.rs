@@ -17,7 +17,7 @@ mod scan;
 mod series;
 
 pub use agenda::{Agenda, AgendaError, Stop, Watched};
-pub use expression::{Branch, ColumnExpression, Expression, ExpressionError, SlopeError};
+pub use expression::{Branch, ColumnExpression, Expression, ExpressionError, MovedJump, Slope, SlopeError};
 pub use function::Signal;
 pub use jet::Jet;
 pub(crate) use passages::{Passages, passages};

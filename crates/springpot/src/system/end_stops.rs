@@ -31,10 +31,20 @@ impl System {
                 source: "".into(),
                 build: Arc::new(move |_, _| Ok(Network::leaf(stop))),
             };
-            let name = format!("ends of {}", model.joint_names()[joint]);
+            let name = name_of(&model.joint_names()[joint]);
             let stop = Element::new(name, measure, 0.0, &Arc::new(entry), &[], Derivative::Caputo)?;
             self.elements.push(Element { shown: false, ..stop });
         }
         Ok(self)
     }
+
+    /// The element that is the stop of a joint, where there is one.
+    pub fn end_stop(&self, joint: &str) -> Option<usize> {
+        let name = name_of(joint);
+        self.elements.iter().position(|element| !element.shown && *element.name == *name)
+    }
+}
+
+fn name_of(joint: &str) -> String {
+    format!("ends of {joint}")
 }

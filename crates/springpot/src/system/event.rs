@@ -2,6 +2,7 @@
 
 use crate::observe::Quantity;
 use crate::signal::ColumnExpression;
+use crate::system::System;
 
 /// What is watched, and what is done where it happens.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,5 +82,13 @@ impl Event {
     /// Whether a run goes on differently behind it.
     pub(crate) fn acts(&self) -> bool {
         self.action != Action::Record
+    }
+}
+
+impl System {
+    /// Whether a setting of an event is an input of this element.
+    pub(crate) fn sets_input_of(&self, event: usize, setting: usize, of: usize) -> bool {
+        let Some(Action::Set(settings)) = self.events.get(event).map(|event| &event.action) else { return false };
+        matches!(settings.get(setting), Some(Setting::Input { element, .. }) if *element == of)
     }
 }

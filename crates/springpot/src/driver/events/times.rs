@@ -112,7 +112,7 @@ fn named(event: &Event) -> String {
 
 impl System {
     /// The events of a motion that follows from forces; of one that is given in advance none happens.
-    pub(super) fn watched_events(&self) -> &[Event] {
+    pub(in crate::driver) fn watched_events(&self) -> &[Event] {
         match self.motion {
             Motion::Given(_) => &[],
             Motion::Forward(_) => &self.events,

@@ -252,6 +252,9 @@ impl Watch {
         for event in acting() {
             event.set(cx.system, &mut held);
         }
+        for passage in passages.iter().filter(|passage| matches!(events[passage.event].action, Action::Set(_))) {
+            driver.vary_event(cx, passage.event, passage.t)?;
+        }
         if let Some(event) = acting().next() {
             self.count(event, last.t, driver.recorder.settings.end)?;
         }

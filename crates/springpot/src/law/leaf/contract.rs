@@ -175,6 +175,9 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// Hands over functions of the stroke that pass zero where its force jumps, with what changes of them as the stroke and its own numbers do.
+    fn jumps_at(&self, _stroke: Dual, _take: &mut dyn FnMut(Dual)) {}
+
     /// [`Leaf::guards`] at the start and at the nodes of a step: of a leaf whose kinks depend on its inner variables what they are there.
     fn guards_in(&self, step: &Step, _state: StateRef, guards: &mut Vec<Guard>) {
         let first = guards.len();

@@ -121,6 +121,11 @@ impl Leaf for EndStop {
         self.damping.value > 0.0
     }
 
+    fn jumps_at(&self, stroke: Dual, take: &mut dyn FnMut(Dual)) {
+        let ends = [self.lower, self.upper].into_iter().filter(|end| end.value.is_finite() && self.jumps());
+        ends.for_each(|end| take(stroke - end));
+    }
+
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
         // Where it would begin to pull, as a stroke.
         let lag = self.damping.value / self.stiffness.value * at.rate;

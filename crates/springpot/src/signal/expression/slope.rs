@@ -15,8 +15,8 @@ pub enum SlopeError {
     /// It is no expression.
     #[error(transparent)]
     Expression(#[from] ExpressionError),
-    /// The number moves where a function bends or jumps.
-    #[error("`{function}` bends or jumps where the constant has it")]
+    /// The number moves where a function jumps, in one way or another.
+    #[error("`{function}` jumps where the constant has it")]
     Switch {
         /// The function.
         function: &'static str,
@@ -24,6 +24,24 @@ pub enum SlopeError {
     /// The derivative is too long.
     #[error("its derivative is too long an expression")]
     TooLong,
+}
+
+/// The derivative of an expression by a number that its constants follow from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slope {
+    /// The derivative at fixed t.
+    pub function: Expression,
+    /// Where it jumps at times that the number moves.
+    pub jumps: Vec<MovedJump>,
+}
+
+/// A jump at a time that a number moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MovedJump {
+    /// Passes zero at the jump.
+    pub argument: Expression,
+    /// Its derivative by the number.
+    pub slope: Expression,
 }
 
 /// An operand: its program, and that of its derivative where it has one.
@@ -34,23 +52,24 @@ struct Part {
 
 impl Expression {
     /// The derivative of `source` by a number with which each of `constants` (name, value, slope) changes by its slope: as a function of t. Exact:
-    /// the program of the expression is differentiated.
+    /// the program of the expression is differentiated. Where abs, min and max bend it jumps; what jumps itself, sign and step, is told with the
+    /// argument that passes zero there.
     ///
     /// ```
     /// use springpot::signal::Expression;
     ///
     /// // d/df of A·sin(2πft) at f = 2.
     /// let slope = Expression::slope("A*sin(2*pi*f*t)", &[("A".into(), 0.5, 0.0), ("f".into(), 2.0, 1.0)])?;
-    /// assert!((slope.value(0.5) - 0.5 * std::f64::consts::PI).abs() < 1e-15);
+    /// assert!((slope.function.value(0.5) - 0.5 * std::f64::consts::PI).abs() < 1e-15);
     /// # Ok::<(), springpot::signal::SlopeError>(())
     /// ```
     ///
     /// # Errors
-    /// What is no expression; abs, sign, step, min, max and atan2 of what the number moves, whose bends and jumps move with it.
-    pub fn slope(source: &str, constants: &[(String, f64, f64)]) -> Result<Self, SlopeError> {
+    /// What is no expression; atan2 of what the number moves, whose cut moves with it.
+    pub fn slope(source: &str, constants: &[(String, f64, f64)]) -> Result<Slope, SlopeError> {
         let names: Vec<&str> = constants.iter().map(|(name, ..)| name.as_str()).collect();
         let program = parse::program_of_open(source, &names)?;
-        let mut parts: Vec<Part> = Vec::new();
+        let (mut parts, mut jumps): (Vec<Part>, Vec<MovedJump>) = (Vec::new(), Vec::new());
         for op in program {
             let part = match op {
                 Op::Column(k) => {
@@ -59,6 +78,10 @@ impl Expression {
                 }
                 _ => {
                     let operands = parts.split_off(parts.len() - op.operands());
+                    if let (Op::Sign | Op::Step, [Part { value, slope: Some(slope) }]) = (op, &operands[..]) {
+                        let argument = Self::of_program(source, value.clone())?;
+                        jumps.push(MovedJump { argument, slope: Self::of_program(source, slope.clone())? });
+                    }
                     derived(op, operands)?
                 }
             };
@@ -68,11 +91,15 @@ impl Expression {
             parts.push(part);
         }
         let program = parts.pop().and_then(|part| part.slope).unwrap_or_else(|| vec![Op::Number(0.0)]);
+        Ok(Slope { function: Self::of_program(&format!("d({source})"), program)?, jumps })
+    }
+
+    fn of_program(source: &str, program: Vec<Op>) -> Result<Self, SlopeError> {
         if height(&program) > MAX_STACK {
             return Err(SlopeError::TooLong);
         }
         let kinks = program.iter().filter(|op| op.has_kink()).count();
-        Ok(Self { source: format!("d({source})"), program, kinks })
+        Ok(Self { source: source.to_owned(), program, kinks })
     }
 }
 
@@ -131,14 +158,21 @@ fn slope_of(op: Op, operands: &[Part]) -> Result<Option<Vec<Op>>, SlopeError> {
             let slope = smooth(function, u);
             du.map(|du| join(&[&slope, du, &[Multiply]]))
         }
-        Op::Abs => return switch("abs"),
-        Op::Sign => return switch("sign"),
-        Op::Step => return switch("step"),
-        Op::Min => return switch("min"),
-        Op::Max => return switch("max"),
+        Op::Abs => du.map(|du| join(&[u, &[Op::Sign], du, &[Multiply]])),
+        Op::AsinSin => du.map(|du| join(&[u, &[Op::Smooth(Smooth::Cos), Op::Sign], du, &[Multiply]])),
+        Op::AcosCos => du.map(|du| join(&[u, &[Op::Smooth(Smooth::Sin), Op::Sign], du, &[Multiply]])),
+        Op::Min | Op::Max => {
+            // The first one counts where v − u, u − v of a maximum, is positive.
+            let v = &operands[1].value[..];
+            let [first, second] = if op == Op::Min { [v, u] } else { [u, v] };
+            let chosen =
+                |one: &[Op], other: &[Op], slope: &[Op]| join(&[one, other, &[Subtract, Op::Step], slope, &[Multiply]]);
+            let dv = operands[1].slope.as_deref();
+            sum(du.map(|du| chosen(first, second, du)), dv.map(|dv| chosen(second, first, dv)))
+        }
+        // Constant but for the jump itself, which is told.
+        Op::Sign | Op::Step => None,
         Op::Atan2 => return switch("atan2"),
-        Op::AsinSin => return switch("asin"),
-        Op::AcosCos => return switch("acos"),
         Number(_) | Op::Time | Op::Column(_) => None,
     })
 }
@@ -189,6 +223,7 @@ mod tests {
             "tanh(A*t) + sinh(0.2*f) + cosh(A) + atan(f*t)",
             "asin(0.1*A) + acos(0.1*f*t)",
             "A*abs(sin(3*t)) + f*step(t - 0.2) - A*max(t, 0.1)",
+            "abs(A*t - f) + min(A*t, f)^2 - max(f*t, 0.3*A) + asin(sin(3*A*t)) + acos(cos(f*t - 4))",
             "-A - (3 - f)",
         ];
         let values = [1.3, 0.7];
@@ -209,7 +244,7 @@ mod tests {
                     };
                     let d = 1e-4;
                     let difference = (8.0 * (at(d) - at(-d)) - (at(2.0 * d) - at(-2.0 * d))) / (12.0 * d);
-                    let found = slope.value(t);
+                    let found = slope.function.value(t);
                     assert!(
                         (found - difference).abs() < 1e-9 * (1.0 + found.abs()),
                         "{text} by {which} at {t}: {found} {difference}"
@@ -220,13 +255,15 @@ mod tests {
     }
 
     #[test]
-    fn what_bends_where_the_constant_has_it_is_told() {
-        let by = [("A".to_owned(), 0.3, 1.0)];
-        for (text, function) in [("step(t - A)", "step"), ("min(A, t)", "min"), ("abs(t - A)", "abs")] {
-            assert_eq!(Expression::slope(text, &by).unwrap_err(), SlopeError::Switch { function });
-        }
+    fn jumps_that_move_are_told() {
+        let by = [("A".to_owned(), 0.3, 1.0), ("f".to_owned(), 2.0, 0.0)];
+        let slope = Expression::slope("f*step(t - 2*A) + A*sign(f*t - 1)*t", &by).unwrap();
+        let [jump] = &slope.jumps[..] else { panic!("{:?}", slope.jumps) };
+        assert_eq!([jump.argument.value(0.6), jump.argument.at(0.6).first, jump.slope.value(0.6)], [0.0, 1.0, -2.0]);
+        assert_eq!([0.2, 0.9].map(|t| slope.function.value(t)), [-0.2, 0.9]);
+        assert_eq!(Expression::slope("atan2(A, t - 1)", &by).unwrap_err(), SlopeError::Switch { function: "atan2" });
         assert!(matches!(Expression::slope("B", &by), Err(SlopeError::Expression(_))));
         // A constant that nothing follows from.
-        assert_eq!(Expression::slope("2*t", &by).unwrap().is_constant(), Some(0.0));
+        assert_eq!(Expression::slope("2*t", &by).unwrap().function.is_constant(), Some(0.0));
     }
 }
