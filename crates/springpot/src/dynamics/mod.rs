@@ -28,6 +28,7 @@ mod jacobian;
 mod joint;
 mod kinematics;
 mod moments;
+mod regressor;
 mod rnea;
 mod rnea_derivatives;
 mod workspace;
@@ -54,6 +55,7 @@ pub use jacobian::{
     point_jacobian_into, point_jacobian_rate, point_jacobian_rate_into,
 };
 pub use kinematics::Kinematics;
+pub(crate) use regressor::{add_gravity_effort, add_inertia_effort};
 pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_at_into, rnea_into};
 pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};
 pub use workspace::Workspace;
