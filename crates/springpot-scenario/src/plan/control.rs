@@ -29,7 +29,7 @@ const OF_GRIPPER: [(&str, Sense); 6] = [
 ];
 
 /// Everything that feedback may see of a plan, by name.
-fn senses(plan: &Plan) -> Vec<(String, Sense)> {
+pub(crate) fn senses(plan: &Plan) -> Vec<(String, Sense)> {
     let mut senses = Vec::new();
     let model = &plan.model;
     let (q_labels, v_labels) = (model.q_labels(), model.v_labels());

@@ -123,10 +123,11 @@ fn names(text: &str, constants: &Constants) -> bool {
 }
 
 fn slope(text: &str, unit: Option<&std::sync::Arc<Node>>, constants: &Constants) -> Result<Slope, String> {
-    let slope = Expression::slope(text, constants).map_err(|error| match error {
-        SlopeError::Expression(_) => "no derivative is known of what follows from the state".to_owned(),
-        other => other.to_string(),
-    })?;
+    let slope = match Expression::slope(text, constants) {
+        Ok(slope) => slope,
+        Err(SlopeError::Expression(_)) => return Ok(Slope::Feedback(constants.clone())),
+        Err(other) => return Err(other.to_string()),
+    };
     let scale = scale(unit);
     let SignalSlope { function, jumps } = slope;
     let slope = match function.is_constant().filter(|_| jumps.is_empty()) {

@@ -1,11 +1,13 @@
 //! What a parameter moves, before it is told to the engine.
 
+use super::constants::Constants;
 use super::extended::{Extended, Site, Virtual};
 use crate::elements::plan::ShapePlan;
 use crate::plan::Plan;
 use crate::robot::described::EndStops;
 use crate::text::document::Node;
 use springpot::actuation::Drive;
+use springpot::control::{ControllerNumber, FeedbackSlope};
 use springpot::dual::Dual;
 use springpot::law::Network;
 use springpot::law::leaf::EndStop;
@@ -29,21 +31,34 @@ pub(super) enum Slope {
         by: Signal,
         jumps: Vec<MovedJump>,
     },
+    /// As an expression of the state changes in which constants do so.
+    Feedback(Constants),
 }
+
+/// Why feedback cannot stand where it does not act.
+const OF_STATE: &str = "no derivative is known of what follows from the state";
 
 impl Slope {
     pub(super) fn number(self) -> Result<f64, String> {
         match self {
             Self::Number(by) => Ok(by),
             Self::Signal { .. } => Err("it is a function of time".to_owned()),
+            Self::Feedback(_) => Err(OF_STATE.to_owned()),
         }
     }
 
-    fn signal(self) -> (Signal, Vec<MovedJump>) {
+    fn switching(self) -> Result<(Signal, Vec<MovedJump>), String> {
         match self {
-            Self::Number(by) => (Signal::constant(by), Vec::new()),
-            Self::Signal { by, jumps } => (by, jumps),
+            Self::Number(by) => Ok((Signal::constant(by), Vec::new())),
+            Self::Signal { by, jumps } => Ok((by, jumps)),
+            Self::Feedback(_) => Err(OF_STATE.to_owned()),
         }
+    }
+
+    /// Of a function of time whose jumps do not move.
+    pub(super) fn signal(self) -> Result<Signal, String> {
+        let (by, jumps) = self.switching()?;
+        if jumps.is_empty() { Ok(by) } else { Err("it moves when a function of time jumps".to_owned()) }
     }
 }
 
@@ -148,6 +163,15 @@ pub(super) struct Gather {
     switches: Vec<(Switched, MovedJump)>,
     /// Numbers of an event and of one of its settings.
     pub(super) set: Vec<(usize, usize, f64)>,
+    /// Of feedback, by velocity, or by element and input.
+    pub(super) torques: Vec<(usize, FeedbackSlope)>,
+    pub(super) fed_back: Vec<(usize, usize, FeedbackSlope)>,
+    /// Of the controller: its numbers, where its reference wants velocities and the gripper, largest forces and how fast they change.
+    pub(super) controller: Vec<(ControllerNumber, f64)>,
+    pub(super) reference: Vec<(usize, Signal)>,
+    pub(super) point: Vec<(usize, Signal)>,
+    pub(super) limits: Vec<(usize, f64)>,
+    pub(super) rate_limits: Vec<(usize, f64)>,
     pub(super) damping: Vec<(usize, f64)>,
     pub(super) friction: Vec<(usize, f64)>,
     pub(super) armature: Vec<(usize, f64)>,
@@ -171,17 +195,19 @@ impl Gather {
     }
 
     /// Moves input `input` of element `element`.
-    pub(super) fn input(&mut self, element: usize, input: usize, slope: Slope) {
-        let (by, jumps) = slope.signal();
+    pub(super) fn input(&mut self, element: usize, input: usize, slope: Slope) -> Moved {
+        let (by, jumps) = slope.switching()?;
         self.inputs.push((element, input, by));
         self.switch(Switched::Input { element, input }, jumps);
+        Ok(())
     }
 
     /// Moves the actuator force on a velocity.
-    pub(super) fn drive(&mut self, velocity: usize, slope: Slope) {
-        let (by, jumps) = slope.signal();
+    pub(super) fn drive(&mut self, velocity: usize, slope: Slope) -> Moved {
+        let (by, jumps) = slope.switching()?;
         self.drives.push((velocity, by));
         self.switch(Switched::Drive(velocity), jumps);
+        Ok(())
     }
 
     fn switch(&mut self, of: Switched, jumps: Vec<MovedJump>) {
@@ -201,6 +227,12 @@ impl Gather {
     /// The joints that it moves beyond those of the robot.
     pub(super) fn virtuals(&self) -> impl Iterator<Item = &Virtual> {
         self.places.iter().map(|(joint, _)| joint)
+    }
+
+    /// Whether it moves what a path of the gripper is solved with: where the robot starts, or how it is built.
+    pub(super) fn moves_paths(&self) -> bool {
+        let moves = |(joint, _): &(Virtual, f64)| !matches!(joint.site, Site::Point(..));
+        !self.q.is_empty() || self.places.iter().any(moves)
     }
 
     /// What the engine takes, of a robot that was extended by the joints of all parameters.
@@ -252,6 +284,14 @@ impl Gather {
             Seed::Switch { of, argument, by }
         }));
         seeds.extend(self.set.iter().map(|&(event, setting, by)| Seed::Set { event, setting, by }));
+        seeds.extend(self.torques.into_iter().map(|(velocity, by)| Seed::TorqueFeedback { velocity, by }));
+        let fed_back = self.fed_back.into_iter();
+        seeds.extend(fed_back.map(|(element, input, by)| Seed::InputFeedback { element, input, by }));
+        seeds.extend(self.controller.into_iter().map(|(number, by)| Seed::Controller { number, by }));
+        seeds.extend(self.reference.into_iter().map(|(velocity, by)| Seed::Reference { velocity, by }));
+        seeds.extend(self.point.into_iter().map(|(axis, by)| Seed::ReferencePoint { axis, by }));
+        seeds.extend(self.limits.iter().map(|&(velocity, by)| Seed::Limit { velocity, by }));
+        seeds.extend(self.rate_limits.iter().map(|&(velocity, by)| Seed::RateLimit { velocity, by }));
         seeds.extend(self.damping.iter().map(|&(j, by)| Seed::Damping { joint: joint(j), by }));
         seeds.extend(self.friction.iter().map(|&(j, by)| Seed::Friction { joint: joint(j), by }));
         if !self.bodies.is_empty() || !self.armature.is_empty() {

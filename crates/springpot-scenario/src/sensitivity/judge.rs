@@ -73,6 +73,13 @@ fn gather(root: &Table<'_>, scene: &Scene<'_>, by: &By) -> Read<Gather> {
         })
     });
     all(moved.collect::<Vec<_>>())?;
+    if gather.moves_paths() && super::control::solves_path(scene) {
+        let target = &by.targets[0];
+        let why =
+            "the reference is a path of the gripper, solved for the joints, of whose derivatives nothing is known";
+        let message = format!("{} cannot be a parameter: {why}", target.written);
+        return Err(root.ctx.refuse(target.place.refuse(RefusalKind::Rule, message)));
+    }
     Ok(gather)
 }
 

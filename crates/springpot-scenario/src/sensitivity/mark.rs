@@ -97,6 +97,7 @@ fn left_out(ctx: &Context<'_>, document: &Node, target: &Target, row: LeftOut) -
     match row {
         LeftOut::Nothing => None,
         LeftOut::Zero => Some((target.clone(), Left::Number(0.0))),
+        LeftOut::One => Some((target.clone(), Left::Number(1.0))),
         LeftOut::Vector(vector) => {
             let (last, before) = target.steps.split_last()?;
             let Step::Key(key) = last else { return None };

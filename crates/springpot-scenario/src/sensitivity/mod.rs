@@ -2,6 +2,7 @@
 
 mod asked;
 mod constants;
+mod control;
 mod extended;
 mod gather;
 mod judge;

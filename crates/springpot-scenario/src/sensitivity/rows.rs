@@ -1,5 +1,6 @@
 //! Which numbers of a scenario may be parameters, and what each of them moves: one row for a family of keys.
 
+use super::control::{duration, gain, limit, reference, to};
 use super::gather::{Gather, Moved, Scene, Slope};
 use crate::changes::path::Step;
 use springpot::actuation::Drive;
@@ -26,6 +27,8 @@ pub(super) enum LeftOut {
     Nothing,
     /// 0.
     Zero,
+    /// 1.
+    One,
     /// The components of this.
     Vector([f64; 3]),
     /// What the law says.
@@ -56,7 +59,7 @@ const fn signal(row: Row) -> Row {
 }
 
 use At::{Any, Item, Key};
-use LeftOut::{Nothing, OfLaw, Vector, Zero};
+use LeftOut::{Nothing, OfLaw, One, Vector, Zero};
 
 const NONE: LeftOut = Vector([0.0; 3]);
 
@@ -105,6 +108,30 @@ static ROWS: &[Row] = &[
     signal(row(&[Key("motion"), Key("torque"), Any], Zero, torque)),
     signal(row(&[Key("motion"), Key("torque"), Any, Any], Zero, torque)),
     row(&[Key("event"), Item, Key("action"), Key("set"), Any], Nothing, event_value),
+    row(&[Key("motion"), Key("controller"), Key("kp")], Nothing, gain),
+    row(&[Key("motion"), Key("controller"), Key("kp"), Any], Zero, gain),
+    row(&[Key("motion"), Key("controller"), Key("kp"), Any, Any], Zero, gain),
+    row(&[Key("motion"), Key("controller"), Key("kd")], Zero, gain),
+    row(&[Key("motion"), Key("controller"), Key("kd"), Any], Zero, gain),
+    row(&[Key("motion"), Key("controller"), Key("kd"), Any, Any], Zero, gain),
+    row(&[Key("motion"), Key("controller"), Key("ki")], Zero, gain),
+    row(&[Key("motion"), Key("controller"), Key("ki"), Any], Zero, gain),
+    row(&[Key("motion"), Key("controller"), Key("ki"), Any, Any], Zero, gain),
+    row(&[Key("motion"), Key("controller"), Key("lambda")], One, gain),
+    row(&[Key("motion"), Key("controller"), Key("lambda"), Any], One, gain),
+    row(&[Key("motion"), Key("controller"), Key("lambda"), Any, Any], One, gain),
+    row(&[Key("motion"), Key("controller"), Key("mu")], One, gain),
+    row(&[Key("motion"), Key("controller"), Key("mu"), Any], One, gain),
+    row(&[Key("motion"), Key("controller"), Key("mu"), Any, Any], One, gain),
+    row(&[Key("motion"), Key("controller"), Key("limits"), Any], Nothing, limit),
+    row(&[Key("motion"), Key("controller"), Key("limits"), Any, Any], Nothing, limit),
+    row(&[Key("motion"), Key("controller"), Key("rate_limits"), Any], Nothing, limit),
+    row(&[Key("motion"), Key("controller"), Key("rate_limits"), Any, Any], Nothing, limit),
+    row(&[Key("motion"), Key("controller"), Key("reference"), Key("duration")], Nothing, duration),
+    row(&[Key("motion"), Key("controller"), Key("reference"), Key("to"), Any], Nothing, to),
+    row(&[Key("motion"), Key("controller"), Key("reference"), Key("to"), Any, Any], Nothing, to),
+    signal(row(&[Key("motion"), Key("controller"), Key("reference"), Any], Nothing, reference)),
+    signal(row(&[Key("motion"), Key("controller"), Key("reference"), Any, Any], Nothing, reference)),
 ];
 
 /// The row of the number that `steps` lead to.
@@ -131,7 +158,7 @@ fn item(step: &Step) -> usize {
     }
 }
 
-fn key(step: &Step) -> &str {
+pub(super) fn key(step: &Step) -> &str {
     match step {
         Step::Key(key) => key,
         Step::Index(_) => "",
@@ -376,13 +403,19 @@ fn input(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -
     for e in elements(scene, steps) {
         let inputs = &scene.plan.elements[e].element.entry.inputs;
         let input = inputs.iter().position(|input| input.name == name).ok_or("its law has no such input")?;
-        gather.input(e, input, slope.clone());
+        match slope.clone() {
+            Slope::Feedback(constants) => {
+                let text = scene.plan.elements[e].inputs[input].feedback.as_deref();
+                gather.fed_back.push((e, input, super::control::feedback(scene, text, &constants)?));
+            }
+            slope => gather.input(e, input, slope)?,
+        }
     }
     Ok(())
 }
 
 /// The velocity of the coordinate of its own that a path by joint leads to.
-fn velocity(scene: &Scene<'_>, steps: &[Step]) -> Result<usize, String> {
+pub(super) fn velocity(scene: &Scene<'_>, steps: &[Step]) -> Result<usize, String> {
     let name = steps.iter().map(key).collect::<Vec<_>>().join(".");
     let model = &scene.plan.model;
     let joint = model.own_joints().find(|&j| model.joint_names()[j] == name);
@@ -401,8 +434,9 @@ fn start_q(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope)
         Some(Drive::Prescribed(_)) => return Err(COASTS.to_owned()),
         _ => {}
     }
-    gather.q.push((velocity, slope.number()?));
-    Ok(())
+    let by = slope.number()?;
+    gather.q.push((velocity, by));
+    super::control::follow_start(gather, scene, velocity, by)
 }
 
 fn start_v(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
@@ -418,7 +452,14 @@ fn start_v(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope)
 }
 
 fn torque(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
-    gather.drive(velocity(scene, &steps[2..])?, slope);
+    let velocity = velocity(scene, &steps[2..])?;
+    match slope {
+        Slope::Feedback(constants) => {
+            let text = scene.plan.motion.feedback().iter().find(|(own, _)| *own == velocity).map(|(_, text)| &**text);
+            gather.torques.push((velocity, super::control::feedback(scene, text, &constants)?));
+        }
+        slope => gather.drive(velocity, slope)?,
+    }
     Ok(())
 }
 

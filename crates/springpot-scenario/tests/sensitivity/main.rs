@@ -1,6 +1,7 @@
 //! Derivatives by the numbers of a file: from paths to columns, against differences of whole runs, and what is refused.
 
 mod changes;
+mod control;
 
 use springpot::Simulation;
 use springpot::law::Catalog;
@@ -308,8 +309,8 @@ fn what_cannot_be_a_parameter_is_refused_by_its_path() {
 #[test]
 fn what_the_engine_does_not_know_is_refused_by_name() {
     let text = ARM.replace(
-        "torque = { q1 = 0.4, q2 = \"0.5*cos(2*pi*f*t)\" }",
-        "controller = { kind = \"pid\", kp = 20, ki = 1, kd = 2, reference = { kind = \"move\", to = { q1 = 0.5 }, duration = 0.3, profile = \"quintic\" } }",
+        "torque = { q1 = 0.4,",
+        "torque = { q1 = { expression = \"-v.q1\", unit = \"N*m\", sample = \"10 ms\" },",
     );
     let mut asked = scenario(&text);
     asked.differentiate("element.tendon.k").unwrap();

@@ -1,6 +1,7 @@
 //! Control by inverse dynamics.
 
 use super::controller::{At, Controller, Scratch, TorqueSlopes};
+use super::variation::ControllerVariation;
 use crate::dynamics::{rnea_at_into, rnea_derivatives_into};
 
 /// τ = a(q)·(q̈_d + kd·ė + kp·e) + Γq̇q̇ − Q_g, and with `compensate_elements` − Q_elements, e = q_d − q (Luh, Walker and Paul 1980).
@@ -18,7 +19,7 @@ pub struct ComputedTorque {
 
 impl ComputedTorque {
     /// q̈_d + kd·ė + kp·e.
-    fn accelerations(&self, at: &At, a: &mut [f64]) {
+    pub(super) fn accelerations(&self, at: &At, a: &mut [f64]) {
         for (k, a) in a.iter_mut().enumerate() {
             let [error, rate] = at.error(k);
             *a = at.aim.a[k] + self.kd[k] * rate + self.kp[k] * error;
@@ -49,5 +50,9 @@ impl Controller for ComputedTorque {
 
     fn follows_accelerations(&self) -> bool {
         true
+    }
+
+    fn variation(&self) -> Option<&dyn ControllerVariation> {
+        Some(self)
     }
 }

@@ -1,5 +1,6 @@
 //! What a law of control answers.
 
+use super::variation::ControllerVariation;
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::model::{Model, Site};
 use std::fmt;
@@ -42,6 +43,11 @@ pub trait Controller: fmt::Debug + Send + Sync {
     /// Whether it follows accelerations of its reference, which may not jump then.
     fn follows_accelerations(&self) -> bool {
         false
+    }
+
+    /// What it says where its run is differentiated; `None`: nothing is known of that, and such a run is refused.
+    fn variation(&self) -> Option<&dyn ControllerVariation> {
+        None
     }
 }
 

@@ -1,7 +1,7 @@
 //! Feedback by an expression.
 
 use super::sense::Sense;
-use crate::signal::{ColumnExpression, Jet, Signal};
+use crate::signal::{ColumnExpression, Jet, Signal, SlopeError};
 
 /// scale·f(t, s) + offset of what is seen of the state.
 #[derive(Debug, Clone)]
@@ -80,5 +80,60 @@ impl Feedback {
     pub(crate) fn slopes_on(&self, branch: u64, t: f64, seen: &[f64], slopes: &mut Vec<f64>) {
         self.expression.slopes_on(branch, t, seen, slopes);
         slopes.iter_mut().for_each(|slope| *slope *= self.scale);
+    }
+}
+
+/// By how much a feedback changes with a number that constants of its expression follow from.
+#[derive(Debug, Clone)]
+pub struct FeedbackSlope {
+    /// The expression with these constants as columns behind what it sees.
+    open: ColumnExpression,
+    /// Value and slope of each of them.
+    constants: Vec<[f64; 2]>,
+    scale: f64,
+}
+
+impl FeedbackSlope {
+    /// Of the expression `source` of a feedback of `scale`, read with `columns`, with each of whose `constants` (name, value, slope) changes by its
+    /// slope.
+    ///
+    /// # Errors
+    /// [`SlopeError::Expression`]; [`SlopeError::Switch`] where the number moves a bend or a jump that hangs on t alone, or on nothing.
+    pub fn new(
+        source: &str,
+        constants: &[(String, f64, f64)],
+        columns: &[&str],
+        scale: f64,
+    ) -> Result<Self, SlopeError> {
+        let (moved, still): (Vec<_>, Vec<_>) = constants.iter().partition(|(.., slope)| *slope != 0.0);
+        let values = |all: &[&(String, f64, f64)]| -> Vec<(String, f64)> {
+            all.iter().map(|(name, value, _)| (name.clone(), *value)).collect()
+        };
+        let names: Vec<&str> = moved.iter().map(|(name, ..)| name.as_str()).collect();
+        let open = ColumnExpression::parse_open(source, &values(&still), columns, &names)?;
+        let all: Vec<(String, f64)> = constants.iter().map(|(name, value, _)| (name.clone(), *value)).collect();
+        let closed = ColumnExpression::parse(source, &all, columns)?;
+        if open.kinks() != closed.kinks() || open.kinks_of_time() != closed.kinks_of_time() {
+            return Err(SlopeError::Switch { function: "a function of it" });
+        }
+        Ok(Self { open, constants: moved.iter().map(|(_, value, slope)| [*value, *slope]).collect(), scale })
+    }
+
+    /// ∂(feedback)/∂number on a branch, of what is seen.
+    pub(crate) fn value_on(&self, branch: u64, t: f64, seen: &[f64]) -> f64 {
+        let (mut values, mut moved) = (seen.to_vec(), vec![0.0; seen.len()]);
+        for [value, slope] in &self.constants {
+            values.push(*value);
+            moved.push(*slope);
+        }
+        self.scale * self.open.change_on(branch, t, &values, &moved)
+    }
+
+    /// ∂/∂number of the argument of kink `bit`.
+    pub(crate) fn guard_on(&self, branch: u64, bit: u32, t: f64, seen: &[f64]) -> f64 {
+        let jet = |value: f64, first: f64| Jet { value, first, second: 0.0 };
+        let mut values: Vec<Jet> = seen.iter().map(|value| jet(*value, 0.0)).collect();
+        values.extend(self.constants.iter().map(|[value, slope]| jet(*value, *slope)));
+        self.open.guard_jet(branch, bit, Jet::constant(t), &values).map_or(0.0, |jet| jet.first)
     }
 }

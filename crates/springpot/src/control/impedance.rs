@@ -2,6 +2,7 @@
 
 use super::controller::{At, Controller, Scratch, TorqueSlopes};
 use super::pd_gravity::gravity_slopes;
+use super::variation::ControllerVariation;
 use crate::dynamics::{gravity_into, point_jacobian_into, point_jacobian_rate_into};
 use crate::spatial::Vec3;
 
@@ -16,7 +17,7 @@ pub struct Impedance {
 
 impl Impedance {
     /// The force of spring and dashpot, N, in world axes.
-    fn force(&self, at: &At) -> Vec3 {
+    pub(super) fn force(&self, at: &At) -> Vec3 {
         let Some(site) = at.gripper else { return Vec3::default() };
         let [position, velocity] = at.aim.gripper.map(Vec3);
         let (off, slip) = (position - at.kinematics.position(site), velocity - at.kinematics.velocity(site));
@@ -51,5 +52,9 @@ impl Controller for Impedance {
                 }
             }
         }
+    }
+
+    fn variation(&self) -> Option<&dyn ControllerVariation> {
+        Some(self)
     }
 }

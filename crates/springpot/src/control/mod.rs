@@ -13,16 +13,18 @@ mod pd_gravity;
 mod pid;
 mod reference;
 mod sense;
+mod variation;
 
 pub use computed_torque::ComputedTorque;
 pub use controller::{Aim, At, Controller, ErrorTerm, Scratch, TorqueSlopes};
-pub use feedback::Feedback;
+pub use feedback::{Feedback, FeedbackSlope};
 pub use impedance::Impedance;
 pub use limits::{AntiWindup, Limit};
 pub use pd_gravity::PdGravity;
 pub use pid::Pid;
 pub use reference::{Profile, Reference};
 pub use sense::Sense;
+pub use variation::{ControllerNumber, ControllerVariation, RobotChange, TermChange};
 
 use std::sync::Arc;
 

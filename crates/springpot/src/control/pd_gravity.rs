@@ -1,6 +1,7 @@
 //! Proportional–derivative control with gravity.
 
 use super::controller::{At, Controller, Scratch, TorqueSlopes};
+use super::variation::ControllerVariation;
 use crate::dynamics::{gravity_into, rnea_derivatives_into};
 
 /// τ = kp·e + kd·ė − Q_g, e = q_d − q (Takegaki and Arimoto 1981).
@@ -28,6 +29,10 @@ impl Controller for PdGravity {
             slopes.d_q[k * n + k] -= self.kp[k];
             slopes.d_v[k * n + k] -= self.kd[k];
         }
+    }
+
+    fn variation(&self) -> Option<&dyn ControllerVariation> {
+        Some(self)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Proportional–integral–derivative control, of whole and of fractional orders.
 
 use super::controller::{At, Controller, ErrorTerm, Scratch, TorqueSlopes};
+use super::variation::ControllerVariation;
 
 /// τ = kp·e + ki·I^lambda e + kd·D^mu e of every joint by itself, e = q_d − q, terminal 0, Caputo (Podlubny 1999, PI^λD^μ); a PID controller
 /// where lambda = mu = 1. Gravity is not in it.
@@ -45,5 +46,9 @@ impl Controller for Pid {
             }
         }
         terms
+    }
+
+    fn variation(&self) -> Option<&dyn ControllerVariation> {
+        Some(self)
     }
 }

@@ -40,6 +40,18 @@ pub enum Sense {
 }
 
 impl Sense {
+    /// The same of another robot whose joints all have one degree, by the places of coordinates and velocities there.
+    pub(crate) fn of_robot(self, [coordinates, velocities]: [&[usize]; 2]) -> Self {
+        match self {
+            Self::Coordinate { place, velocity } => {
+                Self::Coordinate { place: coordinates[place], velocity: velocities[velocity] }
+            }
+            Self::Velocity(k) => Self::Velocity(velocities[k]),
+            Self::Acceleration(k) => Self::Acceleration(velocities[k]),
+            other => other,
+        }
+    }
+
     /// Whether it follows from forces, so that it is known only after a step: for sampled feedback alone.
     pub fn follows_from_forces(self) -> bool {
         matches!(self, Self::Acceleration(_) | Self::Force(_) | Self::Derivative(_))

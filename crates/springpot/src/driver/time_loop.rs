@@ -127,7 +127,7 @@ impl Driver {
         if !self.solver.stepper().varies() {
             return Err(SensitivityError::Unknown { what: "steps of one size".into() }.into());
         }
-        let mut begun = Variation::new(cx.system, by)?;
+        let mut begun = Variation::new(cx.system, by, equations)?;
         begun.begin(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a })?;
         *variation = Some(Box::new(begun));
         Ok(())
@@ -137,7 +137,7 @@ impl Driver {
     fn load_variation(&mut self, cx: Context, state: Option<VariationState>) -> Result<(), RunError> {
         let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
-        let mut loaded = Variation::new(cx.system, by)?;
+        let mut loaded = Variation::new(cx.system, by, equations)?;
         let start = Node { t: at.t, q: &at.q, v: &at.v, a: &at.a };
         if !state.is_some_and(|state| loaded.load(state, equations, start)) {
             return Err(RunError::OtherRun);

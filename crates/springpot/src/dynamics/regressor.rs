@@ -34,7 +34,7 @@ pub(crate) fn add_gravity_effort(
     change: [f64; 3],
     mut add: impl FnMut(usize, f64),
 ) {
-    let upwards = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(change) };
+    let upwards = Motion { angular: Vec3::ZERO, linear: -Vec3(change) };
     for joint in 0..model.joint_count() {
         // All that the joint carries.
         let force = workspace.composite[joint] * upwards;

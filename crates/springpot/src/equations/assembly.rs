@@ -20,7 +20,7 @@ use crate::collocation::{Nodes, RADAU_NODES, STAGES};
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::elements::{Element, ElementBank, Forces, NoDirection, Pull};
 use crate::fractional::Form;
-use crate::law::{InputValue, Point};
+use crate::law::{InputValue, Point, Response};
 use crate::model::Model;
 use crate::system::error::RunError;
 use crate::system::{Motion, System};
@@ -372,6 +372,11 @@ impl Equations {
         if let Some(control) = &mut self.control {
             control.take_input_forces(&self.bank);
         }
+    }
+
+    /// How the terms of errors answer to the step, by velocity.
+    pub(crate) fn term_responses(&self) -> impl Iterator<Item = (usize, Response)> {
+        self.control.iter().flat_map(|control| control.responses())
     }
 
     /// How all forces answered last to the motion within the step.

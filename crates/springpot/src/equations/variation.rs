@@ -1,6 +1,7 @@
 //! What parameters change at the nodes of a step: the equations of motion linearised there, and their right sides.
 
 use super::assembly::Equations;
+use super::control::{ControlVariation, ControlVariationState, Place};
 use super::node::Node;
 use super::resistance::add_tangents;
 use super::saltation::HeldVariation;
@@ -48,6 +49,8 @@ pub(crate) struct Variation {
     pub(super) held: HeldVariation,
     /// Where derivatives ended, parameter by parameter.
     pub(super) lost: Vec<Option<Lost>>,
+    /// Of what follows from the state, where anything does.
+    control: Option<Box<ControlVariation>>,
 }
 
 /// Share of what the motion comes to that a change by the whole of a parameter is expected to come to at least.
@@ -71,6 +74,7 @@ pub(crate) struct VariationState {
     last: Option<(f64, Vec<f64>)>,
     held: HeldVariation,
     lost: Vec<Option<Lost>>,
+    control: Option<ControlVariationState>,
 }
 
 /// An element over a step.
@@ -100,6 +104,8 @@ pub(crate) struct NodeVariation {
     /// v and a of the extended robot.
     v_now: Vec<f64>,
     a_now: Vec<f64>,
+    /// y and y' of every element.
+    readings: Vec<[f64; 2]>,
     /// ∂y/∂q and ∂y'/∂q of every element.
     pub(crate) gradients: Vec<[Vec<f64>; 2]>,
     /// ∂²y/∂q² (nv × nv).
@@ -117,7 +123,7 @@ impl Variation {
     ///
     /// # Errors
     /// What has no derivative.
-    pub(crate) fn new(system: &System, by: &Arc<Sensitivity>) -> Result<Self, SensitivityError> {
+    pub(crate) fn new(system: &System, by: &Arc<Sensitivity>, equations: &Equations) -> Result<Self, SensitivityError> {
         let extended = by.extended.clone().unwrap_or_else(|| Arc::new(system.clone()));
         check(system)?;
         let (model, count) = (&extended.model, by.parameters.len());
@@ -130,6 +136,9 @@ impl Variation {
             own_q.extend(model.q_range(other));
             own_v.extend(model.v_range(other));
         }
+        let control = equations.control.as_deref();
+        let control = control.map(|run| ControlVariation::new(run, system, by, &extended, [&own_q, &own_v]));
+        let control = control.transpose()?;
         let start = match &extended.motion {
             Motion::Forward(forward) => forward.q.clone(),
             Motion::Given(_) => model.neutral(),
@@ -141,6 +150,7 @@ impl Variation {
             slopes: RneaDerivatives::new(model),
             v_now: vec![0.0; model.nv()],
             a_now: vec![0.0; model.nv()],
+            readings: vec![[0.0; 2]; extended.elements.len()],
             gradients: extended.elements.iter().map(|_| [vec![0.0; model.nv()], vec![0.0; model.nv()]]).collect(),
             hessians: vec![Vec::new(); extended.elements.len()],
             q: zeros(),
@@ -150,7 +160,7 @@ impl Variation {
         };
         let element = |(e, inputs): (usize, usize)| {
             let mut rest = vec![0.0; count];
-            let mut moves_inputs = false;
+            let mut moves_inputs = control.iter().flat_map(|control| control.inputs()).any(|(own, _)| own == e);
             for (p, parameter) in by.parameters.iter().enumerate() {
                 for seed in &parameter.seeds {
                     match seed {
@@ -192,6 +202,7 @@ impl Variation {
             lost: vec![None; count],
             by: by.clone(),
             system: extended.clone(),
+            control,
         })
     }
 
@@ -262,6 +273,11 @@ impl Variation {
             return Err(SensitivityError::Unknown { what: "a singular start".to_owned() });
         }
         self.see_start(equations, start);
+        if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
+            let [node, ..] = &self.nodes;
+            control.begin(run, [&node.q, &node.v])?;
+            control.push_at(0, None, run, [&node.q, &node.v]);
+        }
         for (e, element) in self.system.elements.iter().enumerate() {
             let law = |seed: &Seed| match seed {
                 Seed::Law { element, law } if *element == e => Some(law.clone()),
@@ -295,7 +311,10 @@ impl Variation {
     pub(super) fn see_start(&mut self, equations: &Equations, start: Node) {
         let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
         self.see(equations, 0, start, &force);
+        self.steer(0, equations, &force);
         (0..self.elements.len()).for_each(|e| self.measure(e, 0));
+        self.feed_back(0);
+        self.push_at(0, None, equations);
     }
 
     /// Solves M δa = −(K δq + D δv + explicit + Σ g δF) at the start that was seen.
@@ -342,10 +361,11 @@ impl Variation {
         node.t = at.t;
         node.kinematics.update_velocity(model, q, &node.v_now);
         let n = model.nv();
-        let measured = node.gradients.iter_mut().zip(&mut node.hessians);
-        for (element, ([gradient, bend], kept)) in system.elements.iter().zip(measured) {
+        let measured = node.gradients.iter_mut().zip(&mut node.hessians).zip(&mut node.readings);
+        for (element, (([gradient, bend], kept), told)) in system.elements.iter().zip(measured) {
             let mut reading = Reading::default();
             element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
+            *told = [reading.coordinate, reading.rate];
             let hessian = element.measure.hessian(model, &node.kinematics);
             for (bend, line) in bend.iter_mut().zip(hessian.chunks_exact(n)) {
                 *bend = line.iter().zip(&node.v_now).map(|(h, v)| h * v).sum();
@@ -432,6 +452,63 @@ impl Variation {
         }
     }
 
+    /// Sees what follows from the state at node `i`, which was seen, where the elements pull with `force`.
+    pub(crate) fn steer(&mut self, i: usize, equations: &Equations, force: &[f64]) {
+        let (Some(control), Some(run)) = (&mut self.control, &equations.control) else { return };
+        let NodeVariation { t, kinematics, slopes, v_now, a_now, readings, hessians, explicit, .. } =
+            &mut self.nodes[i];
+        let rests = |e: usize| &self.elements[e].rest[..];
+        let at = Place { t: *t, motion: [&self.q, v_now, a_now], kinematics, readings, rests: &rests };
+        control.see(i, run, at, (force, hessians), (slopes, explicit));
+    }
+
+    /// What changes of the inputs that follow from the state at node `i`, where the motion changes as the node has it.
+    pub(crate) fn feed_back(&mut self, i: usize) {
+        let (count, Some(control)) = (self.count(), &self.control) else { return };
+        let node = &self.nodes[i];
+        for (e, input, [by_q, by_v], own) in control.input_slopes(i) {
+            let [values, _] = &mut self.elements[e].inputs;
+            let inputs = values.len() / ((ROW + 1) * count);
+            let change = &mut values[(i * inputs + input) * count..][..count];
+            change.copy_from_slice(own);
+            for (k, (by_q, by_v)) in by_q.iter().zip(by_v).enumerate() {
+                let (q, v) = (&node.q[k * count..][..count], &node.v[k * count..][..count]);
+                change.iter_mut().zip(q.iter().zip(v)).for_each(|(change, (q, v))| *change += by_q * q + by_v * v);
+            }
+        }
+    }
+
+    /// Follows the motion at the nodes, as they have it, with all that is told of it.
+    pub(crate) fn follow(&mut self, equations: &Equations) {
+        for i in 1..=STAGES {
+            (0..self.elements.len()).for_each(|e| self.measure(e, i));
+            self.feed_back(i);
+        }
+        if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
+            let [nodes @ .., _] = &self.nodes;
+            control.follow(run, nodes.each_ref().map(|node| [&node.q[..], &node.v[..]]));
+        }
+    }
+
+    /// What the terms of a controller do at the start (0) or at a row, at θ of the step at hand or between two.
+    fn push_at(&mut self, i: usize, theta: Option<f64>, equations: &Equations) {
+        if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
+            let node = &self.nodes[i];
+            control.push_at(i, theta, run, [&node.q, &node.v]);
+        }
+    }
+
+    /// How inputs that follow from the state answer to it at node `i`: element, input, ∂u/∂q and ∂u/∂v.
+    pub(crate) fn input_slopes(&self, i: usize) -> impl Iterator<Item = (usize, usize, &[Vec<f64>; 2])> {
+        let slopes = self.control.iter().flat_map(move |control| control.input_slopes(i));
+        slopes.map(|(e, input, by_state, _)| (e, input, by_state))
+    }
+
+    /// Whether elements count for nothing in the equation of velocity `row` at node `i`, since its actuator takes their forces off.
+    pub(crate) fn relieves(&self, i: usize, row: usize) -> bool {
+        self.control.as_ref().is_some_and(|control| control.relieves(i, row))
+    }
+
     /// The motion changes at node `i`, from 1, as where the step starts.
     pub(crate) fn take_start(&mut self, i: usize) {
         let [start, others @ ..] = &mut self.nodes;
@@ -472,11 +549,15 @@ impl Variation {
                 slopes.d_q[at] * node.q[block] + slopes.d_v[at] * node.v[block] + slopes.d_a[at] * node.a[block]
             })
             .sum();
-        by_motion + node.explicit[row * count + p]
+        let pushed = self.control.as_ref().map_or(0.0, |control| control.pushed(i, row, p));
+        by_motion + node.explicit[row * count + p] - pushed
     }
 
     /// What the changed forces of the elements add to the equation of velocity `row` at node `i`.
     pub(crate) fn pulled(&self, i: usize, row: usize, force: impl Fn(usize) -> f64) -> f64 {
+        if self.relieves(i, row) {
+            return 0.0;
+        }
         self.nodes[i].gradients.iter().enumerate().map(|(e, [g, _])| g[row] * force(e)).sum()
     }
 
@@ -486,6 +567,10 @@ impl Variation {
         for (e, ElementVariation { law, stroke, rate, inputs, force, .. }) in self.elements.iter_mut().enumerate() {
             let told = of_step(count, [stroke, rate], inputs);
             equations.bank.vary(e, &told, law, force);
+        }
+        if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
+            control.ask(run);
+            (1..=STAGES).for_each(|i| control.push(i, run));
         }
     }
 
@@ -504,6 +589,9 @@ impl Variation {
                 blocks.copy_within(STAGES * own..(STAGES + 1) * own, 0);
             }
         }
+        if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
+            control.commit(run);
+        }
         self.nodes.swap(0, STAGES);
         self.take_sizes();
     }
@@ -512,10 +600,12 @@ impl Variation {
     pub(crate) fn save(&self) -> VariationState {
         let [NodeVariation { q, v, a, .. }, ..] = &self.nodes;
         let laws = self.elements.iter().map(|element| element.law.clone()).collect();
+        let control = self.control.as_ref().map(|control| control.save());
         VariationState {
             motion: [q.clone(), v.clone(), a.clone()],
             sizes: self.sizes.clone(),
             laws,
+            control,
             later: self.later.clone(),
             arrived: self.arrived.clone(),
             last: self.last.clone(),
@@ -526,12 +616,19 @@ impl Variation {
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, laws, later, arrived, last, held, lost } = state;
+        let VariationState { motion: [q, v, a], sizes, laws, control, later, arrived, last, held, lost } = state;
         let blocks = self.sizes[0].len();
         if laws.len() != self.elements.len()
             || lost.len() != self.lost.len()
             || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks)
         {
+            return false;
+        }
+        let controls = match (&mut self.control, control, &equations.control) {
+            (Some(own), Some(state), Some(run)) => own.load(run, state),
+            (own, state, _) => own.is_none() && state.is_none(),
+        };
+        if !controls {
             return false;
         }
         let [node, ..] = &mut self.nodes;
@@ -566,6 +663,9 @@ impl Variation {
             Node { t: evaluation.t, q: &evaluation.q, v: &evaluation.v, a: &evaluation.a },
             &force,
         );
+        self.steer(ROW, equations, &force);
+        self.feed_back(ROW);
+        self.push_at(ROW, theta, equations);
         let count = self.count();
         for e in 0..self.elements.len() {
             self.measure(e, ROW);
@@ -611,7 +711,9 @@ impl Variation {
             Quantity::Coordinate(k) => of_velocity(&node.q, k),
             Quantity::Velocity(k) => of_velocity(&node.v, k),
             Quantity::Acceleration(k) => of_velocity(&node.a, k),
-            Quantity::Torque(k) if snapshot.evaluation.driven[k].is_some() => each(&|p| self.driven(k, p, node.t)),
+            Quantity::Torque(k) if snapshot.evaluation.driven[k].is_some() => {
+                each(&|p| self.driven(k, p, node.t) + self.steered(k, p, snapshot))
+            }
             Quantity::Torque(k) => {
                 let row = self.own_v[k];
                 each(&|p| self.unbalanced(ROW, row, p) + self.pulled(ROW, row, |e| self.elements[e].row[0][p]))
@@ -683,6 +785,21 @@ impl Variation {
         self.by.parameters.iter().map(|parameter| parameter.seeds.iter().map(&of).sum()).collect()
     }
 
+    /// What changes of the force that follows from the state, on velocity `k` at the row that was read.
+    fn steered(&self, k: usize, p: usize, snapshot: &Snapshot) -> f64 {
+        let Some(control) = &self.control else { return 0.0 };
+        let (count, n, row, node) = (self.count(), self.nv(), self.own_v[k], &self.nodes[ROW]);
+        let mut sum = control.torque(row, p, [&node.q, &node.v]);
+        if control.relieves(ROW, row) {
+            for (e, ([gradient, _], hessian)) in node.gradients.iter().zip(&node.hessians).enumerate() {
+                let turned = hessian[row * n..][..n].iter().enumerate();
+                let turned: f64 = turned.map(|(k, second)| second * node.q[k * count + p]).sum();
+                sum += gradient[row] * self.elements[e].row[0][p] + snapshot.force(e) * turned;
+            }
+        }
+        sum
+    }
+
     /// What changes of the force of the actuator of velocity `k`.
     fn driven(&self, k: usize, p: usize, t: f64) -> f64 {
         if let Some(held) = self.held.drive(k) {
@@ -723,8 +840,8 @@ fn check(system: &System) -> Result<(), SensitivityError> {
     if !system.model.is_one_degree() {
         return unknown("joints with quaternions");
     }
-    if !system.control.is_empty() {
-        return unknown("what follows from the state");
+    if !system.control.is_empty() && matches!(system.motion, Motion::Given(_)) {
+        return unknown("what follows from the state along a given motion");
     }
     Ok(())
 }

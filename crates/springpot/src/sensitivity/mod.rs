@@ -1,5 +1,6 @@
 //! What a run is differentiated by: numbers of its system, and what each of them moves.
 
+use crate::control::{Controller, ControllerNumber, ErrorTerm, FeedbackSlope, TermChange};
 use crate::law::Network;
 use crate::model::Model;
 use crate::observe::Quantity;
@@ -21,6 +22,27 @@ pub struct Sensitivity {
     pub control: bool,
     /// The derivatives that rows tell, in their order.
     pub columns: Vec<DerivativeColumn>,
+}
+
+impl Sensitivity {
+    /// The numbers of the controller among them.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = &ControllerNumber> {
+        self.parameters.iter().flat_map(|parameter| &parameter.seeds).filter_map(|seed| match seed {
+            Seed::Controller { number, .. } => Some(number),
+            _ => None,
+        })
+    }
+
+    /// Adds the terms of a controller whose gain is 0 and moves.
+    pub(crate) fn add_terms(&self, law: &dyn Controller, terms: &mut Vec<ErrorTerm>) {
+        let Some(variation) = law.variation() else { return };
+        for TermChange { term, .. } in self.numbers().flat_map(|number| variation.terms_by_number(number)) {
+            let is_same = |own: &ErrorTerm| own.velocity == term.velocity && (own.order < 0.0) == (term.order < 0.0);
+            if !terms.iter().any(is_same) {
+                terms.push(term);
+            }
+        }
+    }
 }
 
 /// A derivative that rows tell.
@@ -130,6 +152,57 @@ pub enum Seed {
     Inertia(Arc<Model>),
     /// The field of gravity: that of this model is by how much.
     Gravity(Arc<Model>),
+    /// A number of the controller.
+    Controller {
+        /// Which.
+        number: ControllerNumber,
+        /// By how much.
+        by: f64,
+    },
+    /// Where its reference wants the coordinate of a velocity.
+    Reference {
+        /// Which velocity.
+        velocity: usize,
+        /// By how much, as a function of time.
+        by: Signal,
+    },
+    /// Where it wants the gripper, where it says that itself.
+    ReferencePoint {
+        /// Which coordinate: 0, 1, 2.
+        axis: usize,
+        /// By how much, as a function of time.
+        by: Signal,
+    },
+    /// The largest force of the controller on a velocity.
+    Limit {
+        /// Which velocity.
+        velocity: usize,
+        /// By how much.
+        by: f64,
+    },
+    /// How fast that force may change.
+    RateLimit {
+        /// Which velocity.
+        velocity: usize,
+        /// By how much.
+        by: f64,
+    },
+    /// An actuator force by feedback.
+    TorqueFeedback {
+        /// Which velocity.
+        velocity: usize,
+        /// By how much.
+        by: FeedbackSlope,
+    },
+    /// An input by feedback.
+    InputFeedback {
+        /// Which element.
+        element: usize,
+        /// Which of its inputs.
+        input: usize,
+        /// By how much.
+        by: FeedbackSlope,
+    },
     /// A locked joint of [`Sensitivity::extended`].
     Place {
         /// Which of its velocities.

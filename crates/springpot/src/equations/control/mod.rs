@@ -10,6 +10,7 @@ mod row;
 mod sampler;
 mod step;
 mod term;
+mod variation;
 
 pub(crate) use eye::{Eye, InputSlopes};
 pub(crate) use guards::ControlSeen;
@@ -17,6 +18,7 @@ pub(crate) use mode::Guard;
 pub(crate) use row::Misread;
 pub(crate) use sampler::{Sampler, SamplerState, Shown};
 pub(crate) use step::End;
+pub(crate) use variation::{ControlVariation, ControlVariationState, Place};
 
 use crate::collocation::STAGES;
 use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, TorqueSlopes};
@@ -265,10 +267,13 @@ impl ControlRun {
             }
         }
         self.aim_at(system, 0.0, 0)?;
-        let laws = controlled.law.error_terms();
+        let mut laws = controlled.law.error_terms();
+        if let Some(by) = &system.sensitivity {
+            by.add_terms(&*controlled.law, &mut laws);
+        }
         for law in laws {
             let Some(joint) = self.joints.iter_mut().find(|joint| joint.velocity == law.velocity) else { continue };
-            if law.order < 0.0 {
+            if law.order < 0.0 && law.gain != 0.0 {
                 joint.integral = Some(self.terms.len());
             }
             let [error, _] = self.nodes[0].aim.error(&system.model, law.velocity, q, v);

@@ -1,5 +1,9 @@
 //! What a run keeps of the error of one joint for its controller: an integral or a fractional derivative.
 
+mod variation;
+
+pub(super) use variation::TermVariation;
+
 use crate::collocation::{MAX_NODES, Nodes, STAGES};
 use crate::control::ErrorTerm;
 use crate::fractional::{Affine, Form, KernelError, Kind, Memory, RatePolynomial, StepStart};

@@ -23,6 +23,7 @@ impl RadauStep {
             force.iter_mut().enumerate().for_each(|(e, force)| *force = equations.bank.response(e).force[i]);
             let t = if i + 1 == STAGES { t_end } else { self.origin.t + RADAU_NODES[i] * h };
             variation.see(equations, i + 1, stage.node(t), &force);
+            variation.steer(i + 1, equations, &force);
         }
         // The stages where the accelerations stay.
         let [start, stages @ .., _] = &mut variation.nodes;
@@ -37,9 +38,7 @@ impl RadauStep {
                 }
             }
         }
-        for e in 0..elements {
-            (1..=STAGES).for_each(|i| variation.measure(e, i));
-        }
+        variation.follow(equations);
         variation.ask(equations);
         if !free.is_empty() && !self.solve_variation(equations, variation, &free, h) {
             return false;
@@ -55,9 +54,7 @@ impl RadauStep {
                 }
             }
         }
-        for e in 0..elements {
-            (1..=STAGES).for_each(|i| variation.measure(e, i));
-        }
+        variation.follow(equations);
         true
     }
 
@@ -129,6 +126,7 @@ impl RadauStep {
                         }
                     }
                 }
+                let felt = |row: usize| !variation.relieves(i + 1, row);
                 for e in 0..variation.elements.len() {
                     let response = equations.bank.response(e);
                     let [on, _] = &node.gradients[e];
@@ -138,7 +136,7 @@ impl RadauStep {
                             let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
                             let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
                             let [by_gradient, by_bend] = [twice * stroke + once * rate, twice * rate];
-                            for (r, &row) in free.iter().enumerate() {
+                            for (r, &row) in free.iter().enumerate().filter(|(_, row)| felt(**row)) {
                                 let line = &mut matrix[(i * own + r) * size + j * own..][..own];
                                 for (entry, &column) in line.iter_mut().zip(free) {
                                     *entry += on[row] * (by_gradient * gradient[column] + by_bend * bend[column]);
@@ -147,6 +145,7 @@ impl RadauStep {
                         }
                     }
                 }
+                self.answer_to_state(equations, variation, (i, free, h), matrix);
             }
         });
         if regular {
@@ -171,5 +170,41 @@ impl RadauStep {
         }
         variation.solve = solve;
         regular
+    }
+
+    /// Adds how what follows from the state answers to the accelerations to the lines of stage `i` of the matrix: terms of errors, and inputs.
+    fn answer_to_state(
+        &self,
+        equations: &Equations,
+        variation: &Variation,
+        (i, free, h): (usize, &[usize], f64),
+        matrix: &mut [f64],
+    ) {
+        let (own, size) = (free.len(), STAGES * free.len());
+        let through = |m: usize, j: usize| (h * h * A_SQUARED[m][j], h * A[m][j]);
+        for (velocity, response) in equations.term_responses() {
+            let row = variation.of_run(&[velocity])[0];
+            let Some(r) = free.iter().position(|k| *k == row) else { continue };
+            for (j, m) in (0..STAGES).flat_map(|j| (0..STAGES).map(move |m| (j, m))) {
+                let (twice, once) = through(m, j);
+                matrix[(i * own + r) * size + j * own + r] +=
+                    response.d_stroke[i][m] * twice + response.d_rate[i][m] * once;
+            }
+        }
+        for m in 0..STAGES {
+            for (e, input, [by_q, by_v]) in variation.input_slopes(m + 1) {
+                let force = equations.bank.by_input(e, input)[i][m];
+                let [on, _] = &variation.nodes[i + 1].gradients[e];
+                for (r, &row) in free.iter().enumerate().filter(|(_, row)| !variation.relieves(i + 1, **row)) {
+                    for j in 0..STAGES {
+                        let (twice, once) = through(m, j);
+                        let line = &mut matrix[(i * own + r) * size + j * own..][..own];
+                        for (entry, &column) in line.iter_mut().zip(free) {
+                            *entry += on[row] * force * (twice * by_q[column] + once * by_v[column]);
+                        }
+                    }
+                }
+            }
+        }
     }
 }

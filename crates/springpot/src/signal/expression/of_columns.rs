@@ -2,9 +2,9 @@
 
 use super::error::ExpressionError;
 use super::formula::Expression;
-use super::parse::program_of;
+use super::parse::{program_of, program_of_columns_and_open};
 use super::program::{MAX_KINKS, MAX_STACK, Op, Trace, carry_out, operands_from, run_on};
-use crate::signal::jet::Jet;
+use crate::signal::jet::{Jet, Smooth};
 use crate::signal::rounding::Rounded;
 use std::fmt;
 
@@ -33,7 +33,23 @@ impl ColumnExpression {
     /// # Errors
     /// As [`super::Expression::parse`].
     pub fn parse(source: &str, constants: &[(String, f64)], columns: &[&str]) -> Result<Self, ExpressionError> {
-        let (program, columns) = program_of(source, constants, columns)?;
+        Self::of(source, program_of(source, constants, columns)?)
+    }
+
+    /// The same where constants of the names `open` are columns behind those that it names ([`Self::columns`]), all of them.
+    ///
+    /// # Errors
+    /// As [`Self::parse`].
+    pub(crate) fn parse_open(
+        source: &str,
+        constants: &[(String, f64)],
+        columns: &[&str],
+        open: &[&str],
+    ) -> Result<Self, ExpressionError> {
+        Self::of(source, program_of_columns_and_open(source, constants, columns, open)?)
+    }
+
+    fn of(source: &str, (program, columns): (Vec<Op>, Vec<usize>)) -> Result<Self, ExpressionError> {
         let kinks = program.iter().filter(|op| op.has_kink()).count();
         if kinks > MAX_KINKS {
             return Err(ExpressionError::TooManyKinks { given: kinks, limit: MAX_KINKS });
@@ -81,6 +97,63 @@ impl ColumnExpression {
             let moved = |k: usize| Jet { value: values[k], first: if k == column { 1.0 } else { 0.0 }, second: 0.0 };
             run_on(&self.program, Jet::constant(t), &moved, &mut Trace::held(branch)).first
         }));
+    }
+
+    /// Its change where columns change by `moved`, on a branch.
+    pub(crate) fn change_on(&self, branch: u64, t: f64, values: &[f64], moved: &[f64]) -> f64 {
+        let jet = |k: usize| Jet { value: values[k], first: moved[k], second: 0.0 };
+        run_on(&self.program, Jet::constant(t), &jet, &mut Trace::held(branch)).first
+    }
+
+    /// The argument of kink `bit` ([`Self::guards`]) with time derivatives where time and columns have these.
+    pub(crate) fn guard_jet(&self, branch: u64, bit: u32, time: Jet, values: &[Jet]) -> Option<Jet> {
+        let columns = |k: usize| values[k];
+        let (mut stack, mut top, mut trace) = ([time; MAX_STACK], 0, Trace::held(branch));
+        let mut kinks = 0..;
+        for &op in &self.program {
+            if op.has_kink() && kinks.next() == Some(bit) {
+                let mut own = [time; 2];
+                let made = match op {
+                    Op::Min | Op::Max => {
+                        own.copy_from_slice(&stack[top - 2..top]);
+                        (2, Some(Op::Subtract))
+                    }
+                    Op::Atan2 if stack[top - 1].value < 0.0 => {
+                        own[0] = stack[top - 2];
+                        (1, None)
+                    }
+                    Op::Abs | Op::Sign | Op::Step | Op::AsinSin | Op::AcosCos => {
+                        own[0] = stack[top - 1];
+                        let through = match op {
+                            Op::AsinSin => Some(Op::Smooth(Smooth::Cos)),
+                            Op::AcosCos => Some(Op::Smooth(Smooth::Sin)),
+                            _ => None,
+                        };
+                        (1, through)
+                    }
+                    _ => return None,
+                };
+                let (mut height, through) = made;
+                let turned = (branch >> bit & 1 == 1).then_some(Op::Negate);
+                for op in through.into_iter().chain(turned) {
+                    carry_out(op, &mut own, &mut height, time, &columns, &mut Trace::default());
+                }
+                return Some(own[0]);
+            }
+            carry_out(op, &mut stack, &mut top, time, &columns, &mut trace);
+        }
+        None
+    }
+
+    /// Whether its value may jump at kink `bit`.
+    pub(crate) fn jumps_at(&self, bit: u32) -> bool {
+        let mut kinks = self.program.iter().filter(|op| op.has_kink());
+        kinks.nth(bit as usize).is_some_and(|op| matches!(op, Op::Sign | Op::Step | Op::Atan2))
+    }
+
+    /// How many kinks it has.
+    pub(crate) fn kinks(&self) -> usize {
+        self.program.iter().filter(|op| op.has_kink()).count()
     }
 
     /// A bit for each of its kinks: on which side it is just after t, where columns have these values and derivatives.

@@ -27,6 +27,28 @@ pub(super) fn program_of(
     Parser { constants, columns, ..Parser::of(text) }.whole()
 }
 
+/// The same where constants called `open` stay open: they are columns behind those that it names, each of them whether it occurs or not.
+pub(super) fn program_of_columns_and_open(
+    text: &str,
+    constants: &[(String, f64)],
+    columns: &[&str],
+    open: &[&str],
+) -> Result<(Vec<Op>, Vec<usize>), ExpressionError> {
+    if text.len() > MAX_LENGTH {
+        return Err(ExpressionError::TooLong { length: text.len(), limit: MAX_LENGTH });
+    }
+    let (mut program, mut named) = Parser { constants, columns, open, ..Parser::of(text) }.whole()?;
+    for op in &mut program {
+        if let Op::Column(k) = op
+            && *k >= columns.len()
+        {
+            *k = *k - columns.len() + named.len();
+        }
+    }
+    named.extend((0..open.len()).map(|k| columns.len() + k));
+    Ok((program, named))
+}
+
 /// The program of an expression in which constants of these names stay open: they are its columns, by their places here.
 pub(super) fn program_of_open(text: &str, open: &[&str]) -> Result<Vec<Op>, ExpressionError> {
     if text.len() > MAX_LENGTH {
@@ -191,7 +213,9 @@ impl<'a> Parser<'a> {
             Some(Name::Function(op)) if self.peek() == Some('(') => self.call(name, op, at.start),
             Some(Name::Function(_)) => Err(ExpressionError::NeedsParentheses { function: name.to_owned(), at }),
             None if self.open.contains(&name) => {
-                self.emit(Op::Column(self.open.iter().position(|open| *open == name).unwrap_or(0)))
+                // Behind all that may be named.
+                let place = self.open.iter().position(|open| *open == name).unwrap_or(0);
+                self.emit(Op::Column(self.columns.len() + place))
             }
             None => match self.constants.iter().find(|(constant, _)| constant == name) {
                 Some(&(_, value)) => self.emit(Op::Number(value)),

@@ -1,0 +1,178 @@
+//! Robots that are controlled: derivatives by gains, orders, references and limits, and by all else through them.
+
+use super::{ARM, compare, plan, said, scenario};
+
+/// The arm with a springpot across its second joint under this controller.
+fn arm(controller: &str) -> String {
+    let text = ARM.replace("torque = { q1 = 0.4, q2 = \"0.5*cos(2*pi*f*t)\" }", controller);
+    text.replace("law = \"kelvin-voigt\"\nparameters = { k = 40, c = 5 }", SPRINGPOT)
+}
+
+const SPRINGPOT: &str = "law = \"fractional-kelvin-voigt\"\nparameters = { k = 40, c = 5, alpha = 0.4 }";
+
+const COLUMNS: [&str; 8] = ["q.q1", "q.q2", "q.q3", "v.q3", "tau.q1", "tau.q2", "tau.q3", "gripper.y"];
+
+const PLANT: [(&str, f64); 9] = [
+    ("robot.body.two.mass", 5e-3),
+    ("robot.body.link.com.2", 1e-3),
+    ("robot.gravity.0", 1e-2),
+    ("element.tendon.alpha", 3e-3),
+    ("element.strut.to.point.1", 1e-3),
+    ("robot.body.three.joint.origin.1", 1e-3),
+    ("robot.body.two.joint.axis.2", 2e-3),
+    ("motion.start.q.q2", 2e-3),
+    ("motion.start.v.q3", 5e-3),
+];
+
+fn with_plant<'a>(own: &[(&'a str, f64)]) -> Vec<(&'a str, f64)> {
+    [own, &PLANT].concat()
+}
+
+const MOVE: &str = "reference = { kind = \"move\", to = { q1 = 0.6, q2 = 0.1, q3 = 0.1 }, duration = 0.3 }";
+
+#[test]
+fn proportional_derivative_with_gravity() {
+    let text = arm(&format!(
+        "controller = {{ kind = \"pd-gravity\", kp = {{ q1 = 60, q2 = 70, q3 = 300 }}, kd = 6, {MOVE} }}"
+    ));
+    let own = [
+        ("motion.controller.kp.q2", 0.1),
+        ("motion.controller.kd", 0.02),
+        ("motion.controller.reference.to.q1", 2e-3),
+        ("motion.controller.reference.duration", 1e-3),
+    ];
+    compare(&text, &COLUMNS, &with_plant(&own));
+}
+
+#[test]
+fn a_move_of_thirds() {
+    let text = arm(&format!(
+        "controller = {{ kind = \"pd-gravity\", kp = 60, kd = 6, {} }}",
+        MOVE.replace("0.3 }", "0.3, profile = \"trapezoid\" }")
+    ));
+    compare(&text, &COLUMNS, &[("motion.controller.reference.duration", 1e-3), ("motion.start.q.q1", 2e-3)]);
+}
+
+#[test]
+fn signals_of_joints_through_constants() {
+    let reference =
+        "reference = { kind = \"joints\", q1 = \"0.3 + 0.2*sin(2*pi*f*t)\", q2 = 0.2, q3 = \"0.05*cos(f*t)\" }";
+    let text = arm(&format!(
+        "controller = {{ kind = \"pd-gravity\", kp = {{ q1 = 60, q2 = {{ expression = \"k_0\" }}, q3 = 300 }}, kd = 6, {reference} }}"
+    ));
+    compare(
+        &text,
+        &COLUMNS,
+        &[("constants.f", 2e-3), ("constants.k_0", 0.1), ("motion.controller.reference.q2", 2e-3)],
+    );
+}
+
+#[test]
+fn inverse_dynamics() {
+    for compensates in [false, true] {
+        let text = arm(&format!(
+            "controller = {{ kind = \"computed-torque\", kp = 60, kd = 9, compensate_elements = {compensates}, {MOVE} }}"
+        ));
+        let own = [
+            ("motion.controller.kp", 0.1),
+            ("motion.controller.kd.q3", 0.02),
+            ("motion.controller.reference.to.q2", 2e-3),
+            ("motion.controller.reference.duration", 1e-3),
+        ];
+        let own = if compensates { &own[..1] } else { &own[..] };
+        let text = text.replace("kd = 9", "kd = { q1 = 9, q2 = 8, q3 = 7 }");
+        compare(&text, &COLUMNS, &with_plant(own));
+    }
+}
+
+#[test]
+fn proportional_integral_derivative() {
+    let text = arm(&format!("controller = {{ kind = \"pid\", kp = 60, ki = {{ q1 = 30, q2 = 40 }}, kd = 6, {MOVE} }}"));
+    let own = [
+        ("motion.controller.kp.q1", 0.1),
+        ("motion.controller.ki.q2", 0.1),
+        ("motion.controller.ki.q3", 0.1),
+        ("motion.controller.kd", 0.02),
+        ("motion.controller.reference.to.q3", 1e-3),
+        ("motion.controller.reference.duration", 1e-3),
+    ];
+    let text =
+        text.replace("kp = 60,", "kp = { q1 = 60, q2 = 60, q3 = 80 },").replace("q2 = 40 }", "q2 = 40, q3 = 20 }");
+    compare(&text, &COLUMNS, &with_plant(&own));
+}
+
+#[test]
+fn orders_of_errors() {
+    let text = arm(&format!(
+        "controller = {{ kind = \"fractional-pid\", kp = 60, ki = {{ q1 = 30, q2 = 40, q3 = 20 }}, kd = 6, lambda = {{ q1 = 0.8, q2 = 0.5, q3 = 1 }}, mu = {{ q1 = 0.7, q2 = 0.4, q3 = 1 }}, {MOVE} }}"
+    ));
+    let own = [
+        ("motion.controller.lambda.q1", 2e-3),
+        ("motion.controller.lambda.q2", 2e-3),
+        ("motion.controller.mu.q1", 2e-3),
+        ("motion.controller.mu.q2", 2e-3),
+        ("motion.controller.ki.q2", 0.1),
+        ("motion.controller.kd", 0.02),
+        ("motion.controller.reference.to.q1", 1e-3),
+        ("motion.controller.reference.duration", 1e-3),
+    ];
+    compare(&text, &COLUMNS, &with_plant(&own));
+}
+
+#[test]
+fn a_spring_at_the_gripper() {
+    for reference in
+        [MOVE, "reference = { kind = \"gripper-path\", x = \"0.2 + 0.1*sin(f*t)\", y = 0.9, z = \"0.4*exp(-t)\" }"]
+    {
+        let text = arm(&format!("controller = {{ kind = \"impedance\", kp = 80, kd = 9, {reference} }}"));
+        let own = [("motion.controller.kp", 0.1), ("motion.controller.kd", 0.02)];
+        let of_reference = if reference == MOVE {
+            [("motion.controller.reference.to.q2", 2e-3), ("motion.controller.reference.duration", 1e-3)]
+        } else {
+            [("motion.controller.reference.y", 2e-3), ("constants.f", 2e-3)]
+        };
+        let more = [("robot.gripper.point.0", 1e-3)];
+        compare(&text, &COLUMNS, &with_plant(&[&own[..], &of_reference, &more].concat()));
+    }
+}
+
+/// The arm with a damper whose input follows from the state, and with torques that do so.
+fn fed_back(input: &str, torque: &str) -> String {
+    let motion = "torque = { q1 = 0.4, q2 = \"0.5*cos(2*pi*f*t)\" }";
+    let text = ARM.replace(motion, &format!("torque = {{ {torque} }}"));
+    let law = "law = \"magnetorheological\"\nparameters = { E_c = 40, mu_0 = 5, mu = 6, alpha = 0.4 }";
+    let text = text.replace("law = \"kelvin-voigt\"\nparameters = { k = 40, c = 5 }", law);
+    let text = text.replace("rest_length = 0.2\n", &format!("rest_length = 0.2\ninputs = {{ u = \"{input}\" }}\n"));
+    text.replace("k_0 = 80", "k_0 = 80\ngain = 0.9\nlevel = 0.33")
+}
+
+const STATE: [(&str, f64); 11] = [
+    ("constants.gain", 3e-3),
+    ("constants.level", 2e-3),
+    ("element.tendon.mu", 1e-2),
+    ("element.tendon.alpha", 3e-3),
+    ("element.tendon.rest_length", 5e-4),
+    ("element.tendon.via.0.point.2", 5e-4),
+    ("robot.body.two.mass", 5e-3),
+    ("robot.gripper.point.0", 1e-3),
+    ("robot.gravity.0", 1e-2),
+    ("motion.start.q.q2", 2e-3),
+    ("motion.start.v.q3", 5e-3),
+];
+
+const SEEN: [&str; 8] = ["q.q1", "q.q2", "q.q3", "v.q3", "tau.q2", "tendon.force", "tendon.u", "gripper.y"];
+
+#[test]
+fn feedback_that_is_smooth() {
+    let input = "1 + gain*tanh(3*tendon.rate*v.q2) + level*tendon.stroke + 0.1*sin(2*pi*f*t)";
+    let torque = "q1 = \"-gain*v.q1 - level*q.q2*gripper.vx\", q2 = \"0.3*cos(tendon.length) + gripper.z*gain\"";
+    compare(&fed_back(input, torque), &SEEN, &STATE);
+}
+
+#[test]
+fn feedback_with_kinks() {
+    // A skyhook damper, and a spring with a dead zone.
+    let input = "min(1.5, max(0.1, gain*v.q2*tendon.rate + level))";
+    let torque = "q1 = \"-gain*abs(v.q1)\", q2 = \"-5*max(0, q.q2 - level) - 5*min(0, q.q2 + 0.1)\"";
+    compare(&fed_back(input, torque), &SEEN, &STATE);
+}

@@ -1,0 +1,577 @@
+//! What parameters change of what follows from the state: exact slopes at the nodes themselves, of the branches that the step is on.
+//!
+//! All is about the robot of [`Sensitivity::extended`], in blocks of one number for each parameter.
+
+use super::eye::{Eye, Read, Slopes};
+use super::mode::{Bound, Mode, Slew};
+use super::term::TermVariation;
+use super::{ControlRun, Target};
+use crate::collocation::STAGES;
+use crate::control::{
+    Aim, At, ControllerVariation, Feedback, FeedbackSlope, RobotChange, Scratch, Sense, TorqueSlopes,
+};
+use crate::dynamics::{Kinematics, RneaDerivatives, point_jacobian, point_jacobian_rate};
+use crate::fractional::KernelError;
+use crate::model::Model;
+use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
+use crate::system::System;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The start, the nodes and a row.
+const PLACES: usize = STAGES + 2;
+
+/// The node of a row.
+const ROW: usize = STAGES + 1;
+
+/// What is asked of one node of the variation of a run.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub(crate) t: f64,
+    /// q, v and a of the extended robot.
+    pub(crate) motion: [&'a [f64]; 3],
+    pub(crate) kinematics: &'a Kinematics,
+    /// Coordinate y and rate y' of every element, and what changes of its stroke where the robot stays.
+    pub(crate) readings: &'a [Read],
+    pub(crate) rests: &'a dyn Fn(usize) -> &'a [f64],
+}
+
+/// What parameters change of control.
+#[derive(Debug)]
+pub(crate) struct ControlVariation {
+    by: Arc<Sensitivity>,
+    system: Arc<System>,
+    run_model: Arc<Model>,
+    own_q: Vec<usize>,
+    own_v: Vec<usize>,
+    /// The law of the controller, of the extended robot.
+    law: Option<Box<dyn ControllerVariation>>,
+    /// Whether its reference says itself where the gripper is to be; else that follows from the joints.
+    leads_gripper: bool,
+    joints: Vec<JointVariation>,
+    terms: Vec<TermVariation>,
+    laws: Vec<LawSlopes>,
+    nodes: [NodeControl; PLACES],
+    scratch: Scratch,
+    /// Of the extended robot, where the reference has it.
+    wanted: Kinematics,
+    aims: [Aim; 2],
+}
+
+/// A joint that the controller drives.
+#[derive(Debug, Clone)]
+struct JointVariation {
+    /// Its velocity in the run, and in the extended robot.
+    velocity: usize,
+    row: usize,
+    /// Of the largest force and of how fast it may change.
+    limit: Vec<f64>,
+    rate_limit: Vec<f64>,
+    /// Of the force that goes at its largest rate, as seen from its beginning.
+    from: Vec<f64>,
+}
+
+/// An expression.
+#[derive(Debug, Clone)]
+struct LawSlopes {
+    law: Feedback,
+    /// What it sees of the extended robot.
+    senses: Vec<Sense>,
+    target: Target,
+    /// By the numbers of its own that each parameter moves.
+    own: Vec<Vec<FeedbackSlope>>,
+}
+
+/// The start, a node or a row.
+#[derive(Debug, Clone, Default)]
+struct NodeControl {
+    /// Of what acts, the terms apart: ∂τ/∂q and ∂τ/∂v, and where the motion stays.
+    slopes: TorqueSlopes,
+    explicit: Vec<f64>,
+    /// The same of the forces that the controller wants, before all limits.
+    wanted: TorqueSlopes,
+    wanted_explicit: Vec<f64>,
+    /// Of every velocity, whether its actuator takes the forces of the elements off.
+    relieved: Vec<bool>,
+    /// Of the terms, where the motion changes as it does.
+    pushed: Vec<f64>,
+    /// Where the reference wants each joint, and how fast.
+    aims: Vec<[Vec<f64>; 2]>,
+    /// Errors of the joints.
+    errors: Vec<[f64; 2]>,
+    /// Of every expression for an input: ∂u/∂q and ∂u/∂v, and where the motion stays.
+    inputs: Vec<(usize, usize, Slopes, Vec<f64>)>,
+}
+
+/// What outlasts a step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct ControlVariationState {
+    terms: Vec<TermVariation>,
+    from: Vec<Vec<f64>>,
+}
+
+impl ControlVariation {
+    /// Of a run that is controlled by `run`, differentiated by `by`.
+    ///
+    /// # Errors
+    /// What has no derivative.
+    pub(crate) fn new(
+        run: &ControlRun,
+        system: &System,
+        by: &Arc<Sensitivity>,
+        extended: &Arc<System>,
+        [own_q, own_v]: [&[usize]; 2],
+    ) -> Result<Box<Self>, SensitivityError> {
+        let unknown = |what: String| Err(SensitivityError::Unknown { what });
+        let (model, count) = (&extended.model, by.parameters.len());
+        let controller = run.control.controller.as_ref();
+        let law = match controller {
+            None => None,
+            Some(controlled) => match controlled.law.variation() {
+                None => return unknown(format!("the controller {:?}", controlled.law)),
+                Some(law) => {
+                    for number in by.numbers() {
+                        if !law.has(number) {
+                            return unknown(format!("`{}` of the controller", number.name));
+                        }
+                    }
+                    Some(law.on(own_v, model.nv()))
+                }
+            },
+        };
+        if run.control.laws().any(|(_, sampling)| sampling.is_some())
+            || controller.is_some_and(|controlled| controlled.sampling.is_some())
+        {
+            return unknown("what is sampled".to_owned());
+        }
+        let each = |of: &dyn Fn(&Seed) -> f64| -> Vec<f64> {
+            by.parameters.iter().map(|parameter| parameter.seeds.iter().map(of).sum()).collect()
+        };
+        let joints = run.joints.iter().map(|joint| {
+            let k = joint.velocity;
+            JointVariation {
+                velocity: k,
+                row: own_v[k],
+                limit: each(&|seed| match seed {
+                    Seed::Limit { velocity, by } if *velocity == k => *by,
+                    _ => 0.0,
+                }),
+                rate_limit: each(&|seed| match seed {
+                    Seed::RateLimit { velocity, by } if *velocity == k => *by,
+                    _ => 0.0,
+                }),
+                from: vec![0.0; count],
+            }
+        });
+        let joints: Vec<_> = joints.collect();
+        let mut laws = Vec::new();
+        for law in &run.laws {
+            if law.stretches {
+                return unknown(format!("a temperature by feedback that stretches, {}", law.law.expression()));
+            }
+            let senses = law.law.senses().iter().map(|sense| sense.of_robot([own_q, own_v]));
+            let target = match law.target {
+                Target::Torque(k) => Target::Torque(own_v[k]),
+                input @ Target::Input(..) => input,
+            };
+            let own = by.parameters.iter().map(|parameter| {
+                let slopes = parameter.seeds.iter().filter_map(|seed| match (seed, law.target) {
+                    (Seed::TorqueFeedback { velocity, by }, Target::Torque(k)) if *velocity == k => Some(by.clone()),
+                    (Seed::InputFeedback { element, input, by }, Target::Input(e, i))
+                        if [*element, *input] == [e, i] =>
+                    {
+                        Some(by.clone())
+                    }
+                    _ => None,
+                });
+                slopes.collect()
+            });
+            laws.push(LawSlopes { law: law.law.clone(), senses: senses.collect(), target, own: own.collect() });
+        }
+        let square = || TorqueSlopes { d_q: vec![0.0; model.nv().pow(2)], d_v: vec![0.0; model.nv().pow(2)] };
+        let blocks = || vec![0.0; model.nv() * count];
+        let node = NodeControl {
+            slopes: square(),
+            explicit: blocks(),
+            wanted: square(),
+            wanted_explicit: blocks(),
+            relieved: vec![false; model.nv()],
+            pushed: blocks(),
+            aims: joints.iter().map(|_| [vec![0.0; count], vec![0.0; count]]).collect(),
+            errors: vec![[0.0; 2]; joints.len()],
+            inputs: Vec::new(),
+        };
+        let [q, v] = [model.neutral(), vec![0.0; model.nv()]];
+        let aim = Aim { q, a: v.clone(), v, gripper: [[0.0; 3]; 2] };
+        Ok(Box::new(Self {
+            by: by.clone(),
+            run_model: system.model.clone(),
+            own_q: own_q.to_vec(),
+            own_v: own_v.to_vec(),
+            law,
+            leads_gripper: false,
+            joints,
+            terms: Vec::new(),
+            laws,
+            nodes: std::array::from_fn(|_| node.clone()),
+            scratch: Scratch::new(model),
+            wanted: Kinematics::new(model),
+            aims: [Aim::default(), aim],
+            system: extended.clone(),
+        }))
+    }
+
+    fn count(&self) -> usize {
+        self.by.parameters.len()
+    }
+
+    /// Elements and inputs that follow from the state.
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.laws.iter().filter_map(|law| match law.target {
+            Target::Input(e, i) => Some((e, i)),
+            Target::Torque(_) => None,
+        })
+    }
+
+    /// Begins what changes of the terms, where the start was seen.
+    ///
+    /// # Errors
+    /// An order that has no derivative.
+    pub(crate) fn begin(&mut self, run: &ControlRun, at: [&[f64]; 2]) -> Result<(), SensitivityError> {
+        let count = self.count();
+        self.terms.clear();
+        for term in &run.terms {
+            let (mut gain, mut order) = (vec![0.0; count], vec![0.0; count]);
+            let variation = run.controlled().and_then(|controlled| controlled.law.variation());
+            for (p, parameter) in self.by.parameters.iter().enumerate() {
+                for seed in &parameter.seeds {
+                    let (Seed::Controller { number, by }, Some(law)) = (seed, variation) else { continue };
+                    for change in law.terms_by_number(number) {
+                        if change.term.velocity == term.law.velocity
+                            && (change.term.order < 0.0) == (term.law.order < 0.0)
+                        {
+                            gain[p] += by * change.gain;
+                            order[p] += by * change.order;
+                        }
+                    }
+                }
+            }
+            let place = self.joints.iter().position(|joint| joint.velocity == term.law.velocity);
+            let Some(place) = place else { continue };
+            let error = self.error(0, place, at).0;
+            let begun = TermVariation::begin(term, gain, &order, &error);
+            self.terms.push(begun.map_err(|error: KernelError| SensitivityError::Unknown {
+                what: format!("the controller: {error}"),
+            })?);
+        }
+        Ok(())
+    }
+
+    /// What changes of the error of a joint and of its rate at node `i`, where coordinates and velocities change by these blocks.
+    fn error(&self, i: usize, joint: usize, [q, v]: [&[f64]; 2]) -> (Vec<f64>, Vec<f64>) {
+        let (count, row) = (self.count(), self.joints[joint].row);
+        let [place, speed] = &self.nodes[i].aims[joint];
+        let off = |aim: &[f64], own: &[f64]| -> Vec<f64> {
+            aim.iter().zip(&own[row * count..]).map(|(aim, own)| aim - own).collect()
+        };
+        (off(place, q), off(speed, v))
+    }
+
+    /// Looks at node `i`: what follows from the state there, and how. `slopes` are those of the equations of motion, from which it is taken, as from
+    /// `explicit`, what changes of them where the motion stays; elements pull with `force`, whose second derivatives are `hessians`.
+    pub(crate) fn see(
+        &mut self,
+        i: usize,
+        run: &ControlRun,
+        at: Place,
+        (force, hessians): (&[f64], &[Vec<f64>]),
+        (slopes, explicit): (&mut RneaDerivatives, &mut [f64]),
+    ) {
+        let n = self.system.model.nv();
+        let node = &mut self.nodes[i];
+        for blocks in [&mut node.slopes, &mut node.wanted] {
+            blocks.d_q.fill(0.0);
+            blocks.d_v.fill(0.0);
+        }
+        node.explicit.fill(0.0);
+        node.wanted_explicit.fill(0.0);
+        node.relieved.fill(false);
+        self.steer(i, run, at);
+        self.feed_back(i, run, at);
+        let node = &self.nodes[i];
+        slopes.d_q.iter_mut().zip(&node.slopes.d_q).for_each(|(sum, own)| *sum -= own);
+        slopes.d_v.iter_mut().zip(&node.slopes.d_v).for_each(|(sum, own)| *sum -= own);
+        explicit.iter_mut().zip(&node.explicit).for_each(|(sum, own)| *sum -= own);
+        for row in (0..n).filter(|row| node.relieved[*row]) {
+            for (force, hessian) in force.iter().zip(hessians) {
+                let lines = slopes.d_q[row * n..][..n].iter_mut().zip(&hessian[row * n..]);
+                lines.for_each(|(slope, second)| *slope -= force * second);
+            }
+        }
+    }
+
+    /// What the controller says at node `i`.
+    fn steer(&mut self, i: usize, run: &ControlRun, at: Place) {
+        let (Some(controlled), Some(law)) = (run.controlled().filter(|_| run.is_continuous), &self.law) else { return };
+        let (model, count) = (&self.system.model, self.by.parameters.len());
+        let [own, aim] = &mut self.aims;
+        // Where a reference cannot be followed the run says so.
+        own.gripper = [[f64::NAN; 3]; 2];
+        let _ = controlled.reference.at_into(&self.run_model, None, at.t, &mut self.wanted, own);
+        for (&place, q) in self.own_q.iter().zip(&own.q) {
+            aim.q[place] = *q;
+        }
+        for (&k, (v, a)) in self.own_v.iter().zip(own.v.iter().zip(&own.a)) {
+            (aim.v[k], aim.a[k]) = (*v, *a);
+        }
+        aim.gripper = own.gripper;
+        let site = self.system.gripper.as_ref();
+        self.leads_gripper = !own.gripper[0][0].is_nan();
+        let follows = site.filter(|_| !self.leads_gripper);
+        let mut jacobians = [Vec::new(), Vec::new()];
+        if let Some(site) = follows {
+            self.wanted.update_velocity(model, &aim.q, &aim.v);
+            aim.gripper = [self.wanted.position(site).0, self.wanted.velocity(site).0];
+            jacobians = [point_jacobian(model, &self.wanted, site), point_jacobian_rate(model, &self.wanted, site)];
+        }
+        let [q, v, _] = at.motion;
+        let asked = At { model, gripper: site, t: at.t, q, v, kinematics: at.kinematics, aim };
+        let node = &mut self.nodes[i];
+        node.errors.clear();
+        node.errors.extend(self.joints.iter().map(|joint| asked.error(joint.row)));
+        law.slopes(&asked, &mut self.scratch, &mut node.wanted);
+        let n = model.nv();
+        let mut change = Aim { q: vec![0.0; model.nq()], v: vec![0.0; n], a: vec![0.0; n], gripper: [[0.0; 3]; 2] };
+        let mut tau = vec![0.0; n];
+        for (p, parameter) in self.by.parameters.iter().enumerate() {
+            for blocks in [&mut change.q, &mut change.v, &mut change.a] {
+                blocks.fill(0.0);
+            }
+            change.gripper = [[0.0; 3]; 2];
+            tau.fill(0.0);
+            let mut moved = vec![0.0; n];
+            let mut leads = false;
+            for seed in &parameter.seeds {
+                match seed {
+                    Seed::Reference { velocity, by } => {
+                        let (k, by) = (self.own_v[*velocity], by.at(at.t));
+                        if let Some(place) = model.coordinate_of(k) {
+                            change.q[place] += by.value;
+                        }
+                        moved[k] += by.value;
+                        change.v[k] += by.first;
+                        change.a[k] += by.second;
+                        leads = true;
+                    }
+                    Seed::ReferencePoint { axis, by } => {
+                        let by = by.at(at.t);
+                        change.gripper[0][*axis] += by.value;
+                        change.gripper[1][*axis] += by.first;
+                        leads = true;
+                    }
+                    Seed::Place { velocity, by } => {
+                        moved[*velocity] += by;
+                        leads = true;
+                    }
+                    Seed::Controller { number, by } => {
+                        let number = number.of_robot(&self.own_v);
+                        law.add_by_number(&number, *by, &asked, &mut self.scratch, &mut tau);
+                    }
+                    Seed::Inertia(robot) => {
+                        law.add_by_robot(&asked, RobotChange::Inertia(robot), &mut self.scratch, &mut tau);
+                    }
+                    Seed::Gravity(robot) => {
+                        law.add_by_robot(&asked, RobotChange::Gravity(robot), &mut self.scratch, &mut tau);
+                    }
+                    _ => {}
+                }
+            }
+            if leads {
+                if follows.is_some() {
+                    let [jacobian, rate] = jacobians.each_ref().map(|columns| columns.chunks_exact(n));
+                    for (axis, (jacobian, rate)) in jacobian.zip(rate).enumerate() {
+                        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                        change.gripper[0][axis] = dot(jacobian, &moved);
+                        change.gripper[1][axis] = dot(jacobian, &change.v) + dot(rate, &moved);
+                    }
+                }
+                law.add_by_aim(&asked, &change, &mut self.scratch, &mut tau);
+            }
+            for (joint, [place, speed]) in self.joints.iter().zip(&mut node.aims) {
+                (place[p], speed[p]) = (moved[joint.row], change.v[joint.row]);
+            }
+            (0..n).for_each(|k| node.wanted_explicit[k * count + p] = tau[k]);
+        }
+        for (joint, state) in self.joints.iter().zip(&run.joints) {
+            let (row, Mode { bound, slew, .. }) = (joint.row, state.mode);
+            let blocks = row * count..(row + 1) * count;
+            if state.mode.follows() {
+                node.slopes.d_q[row * n..][..n].copy_from_slice(&node.wanted.d_q[row * n..][..n]);
+                node.slopes.d_v[row * n..][..n].copy_from_slice(&node.wanted.d_v[row * n..][..n]);
+                node.explicit[blocks.clone()].copy_from_slice(&node.wanted_explicit[blocks]);
+                node.relieved[row] = run.compensates;
+                continue;
+            }
+            for (p, explicit) in node.explicit[blocks].iter_mut().enumerate() {
+                *explicit = match (bound, slew) {
+                    (Bound::At(sign), _) => f64::from(sign) * joint.limit[p],
+                    (Bound::Free, Slew::Goes { sign, since, .. }) => {
+                        joint.from[p] + f64::from(sign) * (at.t - since) * joint.rate_limit[p]
+                    }
+                    (Bound::Free, Slew::Follows) => 0.0,
+                };
+            }
+        }
+    }
+
+    /// What expressions say at node `i`.
+    fn feed_back(&mut self, i: usize, run: &ControlRun, at: Place) {
+        let (n, count) = (self.system.model.nv(), self.by.parameters.len());
+        let [q, v, _] = at.motion;
+        let read = |e: usize| at.readings[e];
+        let eye = Eye { system: &self.system, t: at.t, q, v, kinematics: at.kinematics, element: &read };
+        let node = &mut self.nodes[i];
+        node.inputs.clear();
+        let mut slopes = Vec::new();
+        for (law, state) in self.laws.iter().zip(&run.laws) {
+            let seen: Vec<f64> = law.senses.iter().map(|sense| eye.value(*sense)).collect();
+            law.law.slopes_on(state.branch, at.t, &seen, &mut slopes);
+            let (mut by_state, mut own) = ([vec![0.0; n], vec![0.0; n]], vec![0.0; count]);
+            for (sense, slope) in law.senses.iter().zip(&slopes).filter(|(_, slope)| **slope != 0.0) {
+                add_sense(&eye, *sense, *slope, at, (&mut by_state, &mut own));
+            }
+            for (own, slopes) in own.iter_mut().zip(&law.own) {
+                *own += slopes.iter().map(|slope| slope.value_on(state.branch, at.t, &seen)).sum::<f64>();
+            }
+            match law.target {
+                Target::Torque(row) => {
+                    let [by_q, by_v] = by_state;
+                    let lines = [(&mut node.slopes.d_q, by_q), (&mut node.slopes.d_v, by_v)];
+                    for (matrix, line) in lines {
+                        matrix[row * n..][..n].iter_mut().zip(line).for_each(|(sum, own)| *sum += own);
+                    }
+                    node.explicit[row * count..][..count].iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+                }
+                Target::Input(e, input) => node.inputs.push((e, input, by_state, own)),
+            }
+        }
+    }
+
+    /// Of every expression for an input at node `i`: ∂u/∂q and ∂u/∂v, and what changes of u where the motion stays.
+    pub(crate) fn input_slopes(&self, i: usize) -> impl Iterator<Item = (usize, usize, &Slopes, &[f64])> {
+        self.nodes[i].inputs.iter().map(|(e, input, by_state, own)| (*e, *input, by_state, &own[..]))
+    }
+
+    /// What the terms and the errors do where the motion at the start and at the nodes changes by the blocks `motion` of q and v.
+    pub(crate) fn follow(&mut self, run: &ControlRun, motion: [[&[f64]; 2]; STAGES + 1]) {
+        for m in 0..self.terms.len() {
+            let Some((joint, mode)) = self.joint_of(run, m) else { continue };
+            for (i, motion) in motion.into_iter().enumerate() {
+                let (errors, rates) = self.error(i, joint, motion);
+                for (p, error) in errors.into_iter().zip(rates).enumerate() {
+                    self.terms[m].set_error(i, p, error.into());
+                }
+            }
+            self.terms[m].follow(&run.terms[m], mode.integrand);
+        }
+    }
+
+    /// The joint that term `m` belongs to, and what it does there.
+    fn joint_of(&self, run: &ControlRun, m: usize) -> Option<(usize, Mode)> {
+        let velocity = run.terms[m].law.velocity;
+        let joint = run.joints.iter().position(|joint| joint.velocity == velocity)?;
+        Some((joint, run.joints[joint].mode))
+    }
+
+    /// Asks the terms what changes of them where the motion at the nodes stays.
+    pub(crate) fn ask(&mut self, run: &ControlRun) {
+        self.terms.iter_mut().zip(&run.terms).for_each(|(own, term)| own.ask(term));
+    }
+
+    /// Works out what the terms do at node `i` (from 1), as [`Self::follow`] had the motion.
+    pub(crate) fn push(&mut self, i: usize, run: &ControlRun) {
+        let count = self.count();
+        self.nodes[i].pushed.fill(0.0);
+        for m in 0..self.terms.len() {
+            let Some((joint, mode)) = self.joint_of(run, m).filter(|(_, mode)| mode.follows()) else { continue };
+            let _ = mode;
+            let row = self.joints[joint].row;
+            for p in 0..count {
+                self.nodes[i].pushed[row * count + p] += self.terms[m].force(&run.terms[m], i, p);
+            }
+        }
+    }
+
+    /// The same at the start (0), or at a row, which is at θ of the step at hand or between two; the motion changes there by the blocks of q and v.
+    pub(crate) fn push_at(&mut self, i: usize, theta: Option<f64>, run: &ControlRun, motion: [&[f64]; 2]) {
+        let count = self.count();
+        self.nodes[i].pushed.fill(0.0);
+        for m in 0..self.terms.len() {
+            let Some((joint, mode)) = self.joint_of(run, m).filter(|(_, mode)| mode.follows()) else { continue };
+            let changes = self.error(i, joint, motion);
+            let (now, changes) = (self.nodes[i].errors[joint], [&changes.0[..], &changes.1[..]]);
+            let row = self.joints[joint].row;
+            let out = &mut self.nodes[i].pushed[row * count..][..count];
+            let (term, own) = (&run.terms[m], &self.terms[m]);
+            match theta {
+                Some(theta) => own.add_at(term, theta, now, changes, mode.integrand, out),
+                None => own.add_now(term, now, changes, mode.integrand, out),
+            }
+        }
+    }
+
+    /// What the terms add to the force on velocity `row` of the extended robot at node `i` by parameter `p`.
+    pub(crate) fn pushed(&self, i: usize, row: usize, p: usize) -> f64 {
+        self.nodes[i].pushed[row * self.count() + p]
+    }
+
+    /// Whether the actuator of velocity `row` takes the forces of the elements off at node `i`.
+    pub(crate) fn relieves(&self, i: usize, row: usize) -> bool {
+        self.nodes[i].relieved[row]
+    }
+
+    /// What changes of the force on velocity `row` at the row, the compensation of elements apart, where the motion changes by these blocks.
+    pub(crate) fn torque(&self, row: usize, p: usize, [q, v]: [&[f64]; 2]) -> f64 {
+        let (n, count, node) = (self.system.model.nv(), self.count(), &self.nodes[ROW]);
+        let along = |slopes: &[f64], blocks: &[f64]| -> f64 {
+            slopes[row * n..][..n].iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
+        };
+        let own = node.explicit[row * count + p] + node.pushed[row * count + p];
+        along(&node.slopes.d_q, q) + along(&node.slopes.d_v, v) + own
+    }
+
+    /// Takes the step into what changes of the terms; the run has not taken it yet.
+    pub(crate) fn commit(&mut self, run: &ControlRun) {
+        self.terms.iter_mut().zip(&run.terms).for_each(|(own, term)| own.commit(term));
+        self.nodes.swap(0, STAGES);
+    }
+
+    /// What outlasts the steps.
+    pub(crate) fn save(&self) -> ControlVariationState {
+        ControlVariationState {
+            terms: self.terms.clone(),
+            from: self.joints.iter().map(|joint| joint.from.clone()).collect(),
+        }
+    }
+
+    /// Goes on from what was saved; `false` where that is of another run.
+    pub(crate) fn load(&mut self, run: &ControlRun, state: ControlVariationState) -> bool {
+        let ControlVariationState { terms, from } = state;
+        if terms.len() != run.terms.len() || from.len() != self.joints.len() {
+            return false;
+        }
+        self.terms = terms;
+        self.joints.iter_mut().zip(from).for_each(|(joint, from)| joint.from = from);
+        true
+    }
+}
+
+/// Adds what a sense changes of an expression whose slope by it is `slope`: ∂/∂q and ∂/∂v, and where the motion stays.
+fn add_sense(eye: &Eye, sense: Sense, slope: f64, at: Place, (by_state, own): (&mut Slopes, &mut [f64])) {
+    for (sum, of_sense) in by_state.iter_mut().zip(eye.slopes(sense)) {
+        sum.iter_mut().zip(of_sense).for_each(|(sum, own)| *sum += slope * own);
+    }
+    if let Sense::Stroke(e) = sense {
+        own.iter_mut().zip((at.rests)(e)).for_each(|(sum, rest)| *sum += slope * rest);
+    }
+}
