@@ -176,3 +176,41 @@ fn feedback_with_kinks() {
     let torque = "q1 = \"-gain*abs(v.q1)\", q2 = \"-5*max(0, q.q2 - level) - 5*min(0, q.q2 + 0.1)\"";
     compare(&fed_back(input, torque), &SEEN, &STATE);
 }
+
+#[test]
+fn forces_that_jump() {
+    // A damper that is switched on where it brakes the second joint, and a relay.
+    let input = "0.2 + gain*step(v.q2*tendon.rate - 0.01*level)";
+    let torque = "q1 = \"-gain*sign(q.q1 - level)\", q2 = \"-2*step(gripper.z - 0.2*level)\"";
+    compare(&fed_back(input, torque), &SEEN, &STATE);
+}
+
+#[test]
+fn forces_at_their_limits() {
+    for more in ["limits = { q1 = 9, q2 = 12 }", "limits = { q1 = 9 }, rate_limits = { q1 = 60, q2 = 50, q3 = 200 }"] {
+        let text = arm(&format!("controller = {{ kind = \"pd-gravity\", kp = 60, kd = 6, {MOVE}, {more} }}"));
+        let limit = if more.contains("rate") {
+            ("motion.controller.rate_limits.q2", 0.05)
+        } else {
+            ("motion.controller.limits.q2", 0.02)
+        };
+        let own = [("motion.controller.kp", 0.1), ("motion.controller.limits.q1", 0.02), limit];
+        compare(&text, &COLUMNS, &with_plant(&own));
+    }
+}
+
+#[test]
+fn integrals_at_limits() {
+    for rule in ["conditional", "none"] {
+        let text = arm(&format!(
+            "controller = {{ kind = \"pid\", kp = 60, ki = 400, kd = 6, {MOVE}, limits = {{ q1 = 7, q2 = 9, q3 = 14 }}, anti_windup = \"{rule}\" }}"
+        ));
+        let own = [
+            ("motion.controller.kp", 0.1),
+            ("motion.controller.ki", 0.3),
+            ("motion.controller.limits.q1", 0.02),
+            ("motion.controller.limits.q2", 0.02),
+        ];
+        compare(&text, &COLUMNS, &with_plant(&own));
+    }
+}

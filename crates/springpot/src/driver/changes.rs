@@ -26,12 +26,16 @@ impl Driver {
 
     /// What parameters change on the far side of what was crossed, where velocities and accelerations were `before`; at a change of the robot's own
     /// where `is_own`.
-    pub(super) fn settle_variation(&mut self, before: [&[f64]; 2], is_own: bool) {
+    ///
+    /// # Errors
+    /// Where derivatives cannot go on.
+    pub(super) fn settle_variation(&mut self, before: [&[f64]; 2], is_own: bool) -> Result<(), RunError> {
         let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
         if let Some(variation) = variation {
             let start = Node { t: at.t, q: &at.q, v: &at.v, a: &at.a };
-            variation.settle(equations, start, before, is_own);
+            variation.settle(equations, start, before, is_own)?;
         }
+        Ok(())
     }
 
     /// How much later joints come to rest and forces of elements jump, for what was noted at the present time, behind a step of size `h`.

@@ -296,7 +296,7 @@ impl Driver {
         let before = if varies { [at.v.clone(), at.a.clone()] } else { Default::default() };
         self.solver.stepper_mut().cross(cx, &mut self.recorder, after)?;
         let is_own = std::mem::take(&mut self.is_own);
-        self.settle_variation(before.each_ref().map(|own| &own[..]), is_own);
+        self.settle_variation(before.each_ref().map(|own| &own[..]), is_own)?;
         self.t = after;
         // A little further, since a sign is 0 while it turns.
         let past = if self.has_fixed_steps() { after } else { cx.system.past_turns(after) };

@@ -9,7 +9,7 @@ use super::node::Node;
 use super::variation::Variation;
 use crate::dual::Dual;
 use crate::law::Network;
-use crate::sensitivity::{Lost, Seed, Switched};
+use crate::sensitivity::{Lost, Seed, SensitivityError, Switched};
 use crate::system::{Action, Event, Setting};
 use serde::{Deserialize, Serialize};
 
@@ -216,7 +216,16 @@ impl Variation {
 
     /// Goes to the far side of what was crossed, `start`, where velocities and accelerations were `before`; at a change of the robot's own, whose
     /// time nobody gave beforehand, where `is_own`.
-    pub(crate) fn settle(&mut self, equations: &Equations, start: Node, before: [&[f64]; 2], is_own: bool) {
+    ///
+    /// # Errors
+    /// What is kept of a controller's errors and cannot go on.
+    pub(crate) fn settle(
+        &mut self,
+        equations: &Equations,
+        start: Node,
+        before: [&[f64]; 2],
+        is_own: bool,
+    ) -> Result<(), SensitivityError> {
         let count = self.count();
         let jump = |before: &[f64], after: &[f64], counts: &dyn Fn(usize) -> bool| {
             let largest = before.iter().chain(after).fold(0.0, |largest: f64, x| largest.max(x.abs()));
@@ -242,8 +251,13 @@ impl Variation {
             None => self.last = None,
         }
         self.hold(equations);
+        if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
+            let [node, ..] = &self.nodes;
+            control.settle(run, start.t, [&node.q, &node.v])?;
+        }
         self.see_start(equations, start);
         self.accelerate(equations);
+        Ok(())
     }
 
     /// How much later what was crossed last comes, s, where that was at `t`.

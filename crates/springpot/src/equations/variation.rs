@@ -50,7 +50,7 @@ pub(crate) struct Variation {
     /// Where derivatives ended, parameter by parameter.
     pub(super) lost: Vec<Option<Lost>>,
     /// Of what follows from the state, where anything does.
-    control: Option<Box<ControlVariation>>,
+    pub(super) control: Option<Box<ControlVariation>>,
 }
 
 /// Share of what the motion comes to that a change by the whole of a parameter is expected to come to at least.
@@ -103,7 +103,7 @@ pub(crate) struct NodeVariation {
     pub(crate) slopes: RneaDerivatives,
     /// v and a of the extended robot.
     v_now: Vec<f64>,
-    a_now: Vec<f64>,
+    pub(super) a_now: Vec<f64>,
     /// y and y' of every element.
     readings: Vec<[f64; 2]>,
     /// ∂y/∂q and ∂y'/∂q of every element.
@@ -276,7 +276,7 @@ impl Variation {
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
             let [node, ..] = &self.nodes;
             control.begin(run, [&node.q, &node.v])?;
-            control.push_at(0, None, run, [&node.q, &node.v]);
+            control.push_at(0, None, (run, false), [&node.q, &node.v]);
         }
         for (e, element) in self.system.elements.iter().enumerate() {
             let law = |seed: &Seed| match seed {
@@ -304,6 +304,25 @@ impl Variation {
         }
         self.accelerate(equations);
         self.take_sizes();
+        Ok(())
+    }
+
+    /// Sees what control is about to leave at node `i`: the start, or the end of the step.
+    ///
+    /// # Errors
+    /// Where that has no derivative.
+    pub(crate) fn foresee(&mut self, i: usize, equations: &Equations) -> Result<(), SensitivityError> {
+        let (Some(control), Some(run)) = (&mut self.control, &equations.control) else { return Ok(()) };
+        if !run.changes() {
+            return Ok(());
+        }
+        let node = &self.nodes[i];
+        let rests = |e: usize| &self.elements[e].rest[..];
+        let motion = [&self.q[..], &node.v_now, &node.a_now];
+        let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
+        let found = control.foresee(i, run, at, [&node.q, &node.v])?;
+        let t = node.t;
+        found.into_iter().for_each(|(later, _)| self.comes_later(t, later));
         Ok(())
     }
 
@@ -494,7 +513,7 @@ impl Variation {
     fn push_at(&mut self, i: usize, theta: Option<f64>, equations: &Equations) {
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
             let node = &self.nodes[i];
-            control.push_at(i, theta, run, [&node.q, &node.v]);
+            control.push_at(i, theta, (run, false), [&node.q, &node.v]);
         }
     }
 
@@ -570,12 +589,16 @@ impl Variation {
         }
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
             control.ask(run);
-            (1..=STAGES).for_each(|i| control.push(i, run));
+            (1..=STAGES).for_each(|i| control.push(i, run, false));
         }
     }
 
     /// Takes the accepted step into what changes of the laws' states; the bank has not taken it yet.
-    pub(crate) fn commit(&mut self, equations: &Equations) {
+    ///
+    /// # Errors
+    /// Where what control is about to leave has no derivative.
+    pub(crate) fn commit(&mut self, equations: &Equations) -> Result<(), SensitivityError> {
+        self.foresee(STAGES, equations)?;
         let count = self.count();
         for (e, ElementVariation { law, stroke, rate, inputs, .. }) in self.elements.iter_mut().enumerate() {
             let told = of_step(count, [stroke, rate], inputs);
@@ -590,10 +613,12 @@ impl Variation {
             }
         }
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
-            control.commit(run);
+            let [nodes @ .., _] = &self.nodes;
+            control.commit(run, nodes.each_ref().map(|node| [&node.q[..], &node.v[..]]));
         }
         self.nodes.swap(0, STAGES);
         self.take_sizes();
+        Ok(())
     }
 
     /// What outlasts the steps.

@@ -178,7 +178,7 @@ impl ControlRun {
     }
 
     /// dτ/dt of the force that is wanted of a joint, at θ of the step.
-    fn drift(&self, joint: usize, theta: f64) -> f64 {
+    pub(super) fn drift(&self, joint: usize, theta: f64) -> f64 {
         let values: Values = std::array::from_fn(|node| self.nodes[node].wanted[joint]);
         let h = self.nodes[STAGES].t - self.nodes[0].t;
         Cubic::through(&values).slope(theta) / h

@@ -337,6 +337,11 @@ impl ControlRun {
         true
     }
 
+    /// Which branches are about to be left.
+    fn leaves(&self) -> &[Guard] {
+        &self.changing.at_end
+    }
+
     /// What is added to the actuator forces at the start (0) or at a node of the step (nv).
     pub(crate) fn torque(&self, node: usize) -> &[f64] {
         &self.nodes[node].torque

@@ -3,8 +3,8 @@
 //! All is about the robot of [`Sensitivity::extended`], in blocks of one number for each parameter.
 
 use super::eye::{Eye, Read, Slopes};
-use super::mode::{Bound, Mode, Slew};
-use super::term::TermVariation;
+use super::mode::{Bound, Guard, Mode, Slew};
+use super::term::{Integrand, TermVariation};
 use super::{ControlRun, Target};
 use crate::collocation::STAGES;
 use crate::control::{
@@ -14,6 +14,7 @@ use crate::dynamics::{Kinematics, RneaDerivatives, point_jacobian, point_jacobia
 use crate::fractional::KernelError;
 use crate::model::Model;
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
+use crate::signal::Jet;
 use crate::system::System;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -56,6 +57,19 @@ pub(crate) struct ControlVariation {
     /// Of the extended robot, where the reference has it.
     wanted: Kinematics,
     aims: [Aim; 2],
+    /// What branches of joints were left, and from where.
+    left: Vec<Left>,
+}
+
+/// A joint that was on another branch.
+#[derive(Debug)]
+struct Left {
+    joint: usize,
+    mode: Mode,
+    /// Of its force before the last limit.
+    shaped: Vec<f64>,
+    /// Of the time at which it was left.
+    moved: Vec<f64>,
 }
 
 /// A joint that the controller drives.
@@ -69,6 +83,8 @@ struct JointVariation {
     rate_limit: Vec<f64>,
     /// Of the force that goes at its largest rate, as seen from its beginning.
     from: Vec<f64>,
+    /// Its branch since the last change.
+    mode: Mode,
 }
 
 /// An expression.
@@ -99,6 +115,8 @@ struct NodeControl {
     aims: Vec<[Vec<f64>; 2]>,
     /// Errors of the joints.
     errors: Vec<[f64; 2]>,
+    /// How fast the forces change that are wanted of them, terms apart.
+    drifts: Vec<f64>,
     /// Of every expression for an input: ∂u/∂q and ∂u/∂v, and where the motion stays.
     inputs: Vec<(usize, usize, Slopes, Vec<f64>)>,
 }
@@ -108,6 +126,7 @@ struct NodeControl {
 pub(crate) struct ControlVariationState {
     terms: Vec<TermVariation>,
     from: Vec<Vec<f64>>,
+    modes: Vec<Mode>,
 }
 
 impl ControlVariation {
@@ -139,6 +158,9 @@ impl ControlVariation {
                 }
             },
         };
+        if run.compensates && run.joints.iter().any(|joint| joint.limit.rate.is_finite()) {
+            return unknown("limits of rates of forces that take the elements off".to_owned());
+        }
         if run.control.laws().any(|(_, sampling)| sampling.is_some())
             || controller.is_some_and(|controlled| controlled.sampling.is_some())
         {
@@ -161,6 +183,7 @@ impl ControlVariation {
                     _ => 0.0,
                 }),
                 from: vec![0.0; count],
+                mode: joint.mode,
             }
         });
         let joints: Vec<_> = joints.collect();
@@ -199,6 +222,7 @@ impl ControlVariation {
             pushed: blocks(),
             aims: joints.iter().map(|_| [vec![0.0; count], vec![0.0; count]]).collect(),
             errors: vec![[0.0; 2]; joints.len()],
+            drifts: vec![0.0; joints.len()],
             inputs: Vec::new(),
         };
         let [q, v] = [model.neutral(), vec![0.0; model.nv()]];
@@ -217,6 +241,7 @@ impl ControlVariation {
             scratch: Scratch::new(model),
             wanted: Kinematics::new(model),
             aims: [Aim::default(), aim],
+            left: Vec::new(),
             system: extended.clone(),
         }))
     }
@@ -334,7 +359,7 @@ impl ControlVariation {
             aim.gripper = [self.wanted.position(site).0, self.wanted.velocity(site).0];
             jacobians = [point_jacobian(model, &self.wanted, site), point_jacobian_rate(model, &self.wanted, site)];
         }
-        let [q, v, _] = at.motion;
+        let [q, v, a] = at.motion;
         let asked = At { model, gripper: site, t: at.t, q, v, kinematics: at.kinematics, aim };
         let node = &mut self.nodes[i];
         node.errors.clear();
@@ -401,6 +426,36 @@ impl ControlVariation {
                 (place[p], speed[p]) = (moved[joint.row], change.v[joint.row]);
             }
             (0..n).for_each(|k| node.wanted_explicit[k * count + p] = tau[k]);
+        }
+        if run.joints.iter().any(|joint| joint.limit.torque.is_finite() || joint.limit.rate.is_finite()) {
+            // The aim goes on, but for accelerations that change.
+            tau.fill(0.0);
+            for k in 0..n {
+                if let Some(place) = model.coordinate_of(k) {
+                    change.q[place] = aim.v[k];
+                }
+            }
+            change.v.copy_from_slice(&aim.a);
+            change.a.fill(0.0);
+            change.gripper = [aim.gripper[1], [f64::NAN; 3]];
+            if follows.is_some() {
+                let rows = jacobians.each_ref().map(|columns| columns.chunks_exact(n));
+                let [jacobian, rate] = rows;
+                for (axis, (jacobian, rate)) in jacobian.zip(rate).enumerate() {
+                    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                    change.gripper[1][axis] = dot(jacobian, &aim.a) + dot(rate, &aim.v);
+                }
+            }
+            law.add_by_aim(&asked, &change, &mut self.scratch, &mut tau);
+            let is_known = !run.controlled().is_some_and(|controlled| controlled.law.follows_accelerations());
+            for (drift, joint) in node.drifts.iter_mut().zip(&self.joints) {
+                let line = joint.row * n..(joint.row + 1) * n;
+                let along = |slopes: &[f64], by: &[f64]| -> f64 {
+                    slopes[line.clone()].iter().zip(by).map(|(slope, by)| slope * by).sum()
+                };
+                let by_state = along(&node.wanted.d_q, v) + along(&node.wanted.d_v, a);
+                *drift = if is_known { tau[joint.row] + by_state } else { f64::NAN };
+            }
         }
         for (joint, state) in self.joints.iter().zip(&run.joints) {
             let (row, Mode { bound, slew, .. }) = (joint.row, state.mode);
@@ -473,7 +528,25 @@ impl ControlVariation {
                 }
             }
             self.terms[m].follow(&run.terms[m], mode.integrand);
+            if mode.integrand == Integrand::Slides && run.joints[joint].integral == Some(m) {
+                motion.into_iter().enumerate().for_each(|(i, motion)| self.slide(i, joint, run, motion));
+            }
         }
+    }
+
+    /// The integral of a joint keeps its force at the limit at node `i`, whatever else changes of it.
+    fn slide(&mut self, i: usize, joint: usize, run: &ControlRun, [q, v]: [&[f64]; 2]) {
+        let (Some(m), Bound::At(sign)) = (run.joints[joint].integral, run.joints[joint].mode.bound) else { return };
+        let (n, count, node, own) = (self.system.model.nv(), self.count(), &self.nodes[i], &self.joints[joint]);
+        let along = |slopes: &[f64], blocks: &[f64], p: usize| -> f64 {
+            slopes[own.row * n..][..n].iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
+        };
+        let others = |p: usize| {
+            let still = node.wanted_explicit[own.row * count + p];
+            still + along(&node.wanted.d_q, q, p) + along(&node.wanted.d_v, v, p)
+        };
+        let wanted = (0..count).map(|p| f64::from(sign) * own.limit[p] - others(p)).collect::<Vec<_>>();
+        self.terms[m].slide(i, &run.terms[m], &wanted);
     }
 
     /// The joint that term `m` belongs to, and what it does there.
@@ -488,13 +561,12 @@ impl ControlVariation {
         self.terms.iter_mut().zip(&run.terms).for_each(|(own, term)| own.ask(term));
     }
 
-    /// Works out what the terms do at node `i` (from 1), as [`Self::follow`] had the motion.
-    pub(crate) fn push(&mut self, i: usize, run: &ControlRun) {
+    /// Works out what the terms do at node `i` (from 1), as [`Self::follow`] had the motion; also to forces that do not follow where `all` are asked.
+    pub(crate) fn push(&mut self, i: usize, run: &ControlRun, all: bool) {
         let count = self.count();
         self.nodes[i].pushed.fill(0.0);
         for m in 0..self.terms.len() {
-            let Some((joint, mode)) = self.joint_of(run, m).filter(|(_, mode)| mode.follows()) else { continue };
-            let _ = mode;
+            let Some((joint, _)) = self.joint_of(run, m).filter(|(_, mode)| all || mode.follows()) else { continue };
             let row = self.joints[joint].row;
             for p in 0..count {
                 self.nodes[i].pushed[row * count + p] += self.terms[m].force(&run.terms[m], i, p);
@@ -503,11 +575,17 @@ impl ControlVariation {
     }
 
     /// The same at the start (0), or at a row, which is at θ of the step at hand or between two; the motion changes there by the blocks of q and v.
-    pub(crate) fn push_at(&mut self, i: usize, theta: Option<f64>, run: &ControlRun, motion: [&[f64]; 2]) {
+    pub(crate) fn push_at(
+        &mut self,
+        i: usize,
+        theta: Option<f64>,
+        (run, all): (&ControlRun, bool),
+        motion: [&[f64]; 2],
+    ) {
         let count = self.count();
         self.nodes[i].pushed.fill(0.0);
         for m in 0..self.terms.len() {
-            let Some((joint, mode)) = self.joint_of(run, m).filter(|(_, mode)| mode.follows()) else { continue };
+            let Some((joint, mode)) = self.joint_of(run, m).filter(|(_, mode)| all || mode.follows()) else { continue };
             let changes = self.error(i, joint, motion);
             let (now, changes) = (self.nodes[i].errors[joint], [&changes.0[..], &changes.1[..]]);
             let row = self.joints[joint].row;
@@ -540,10 +618,184 @@ impl ControlVariation {
         along(&node.slopes.d_q, q) + along(&node.slopes.d_v, v) + own
     }
 
-    /// Takes the step into what changes of the terms; the run has not taken it yet.
-    pub(crate) fn commit(&mut self, run: &ControlRun) {
+    /// Takes the step into what changes of the terms, where the motion at the start and at the nodes changes by these blocks; the run has not taken
+    /// it yet.
+    pub(crate) fn commit(&mut self, run: &ControlRun, motion: [[&[f64]; 2]; STAGES + 1]) {
+        if run.joints.iter().any(|joint| joint.mode.integrand == Integrand::Slides) {
+            // What integrals take that keep forces at their limits is known once the step is solved.
+            self.follow(run, motion);
+        }
         self.terms.iter_mut().zip(&run.terms).for_each(|(own, term)| own.commit(term));
         self.nodes.swap(0, STAGES);
+    }
+
+    /// Looks at what `run` is about to leave at node `i`, where the motion changes by these blocks: by how much parameters move the times of jumps of
+    /// forces, and what jumps.
+    ///
+    /// # Errors
+    /// Where that has no derivative.
+    pub(crate) fn foresee(
+        &mut self,
+        i: usize,
+        run: &ControlRun,
+        at: Place,
+        motion: [&[f64]; 2],
+    ) -> Result<Vec<(Vec<f64>, String)>, SensitivityError> {
+        let mut found = Vec::new();
+        if i > 0 {
+            self.push(i, run, true);
+        } else {
+            self.push_at(i, None, (run, true), motion);
+        }
+        for &guard in run.leaves() {
+            match guard {
+                Guard::Branch { law, bit } if self.laws[law].law.expression().jumps_at(bit) => {
+                    let what = self.laws[law].target.column(&self.system);
+                    if let Target::Input(e, _) = self.laws[law].target
+                        && self.system.elements[e].law.hidden_errors() > 0
+                    {
+                        return Err(SensitivityError::Unknown {
+                            what: format!("jumps of {what}, of which the law remembers more than its stroke"),
+                        });
+                    }
+                    found.push((self.moved((law, bit), run, at, motion), what));
+                }
+                Guard::Branch { .. } => {}
+                Guard::Reaches { joint, .. }
+                | Guard::Returns { joint }
+                | Guard::Turns { joint }
+                | Guard::Empties { joint }
+                | Guard::Fills { joint }
+                | Guard::Outruns { joint, .. }
+                | Guard::Catches { joint } => {
+                    let mode = run.joints[joint].mode;
+                    let shaped = self.shaped(i, joint, mode, at.t, motion);
+                    let own = &self.joints[joint];
+                    let drift = self.drift(i, joint, run);
+                    let moved = match (guard, mode.bound, mode.slew) {
+                        (Guard::Reaches { sign, .. }, ..) | (Guard::Returns { .. }, Bound::At(sign), _) => {
+                            let over = shaped.iter().zip(&own.limit);
+                            over.map(|(shaped, limit)| (f64::from(sign) * limit - shaped) / drift).collect()
+                        }
+                        (Guard::Catches { .. }, _, Slew::Goes { sign, .. }) => {
+                            let follows = Mode { slew: Slew::Follows, ..mode };
+                            let wanted = self.shaped(i, joint, follows, at.t, motion);
+                            let rate = f64::from(sign) * run.joints[joint].limit.rate;
+                            let off = shaped.iter().zip(&wanted);
+                            off.map(|(shaped, wanted)| (shaped - wanted) / (drift - rate)).collect()
+                        }
+                        _ => vec![0.0; shaped.len()],
+                    };
+                    self.left.push(Left { joint, mode, shaped, moved });
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// By how much parameters move the time at which a kink of an expression is passed: δt* = −δγ/γ̇.
+    fn moved(&self, (law, bit): (usize, u32), run: &ControlRun, at: Place, motion: [&[f64]; 2]) -> Vec<f64> {
+        let (count, own, branch) = (self.count(), &self.laws[law], run.laws[law].branch);
+        let [q, v, a] = at.motion;
+        let read = |e: usize| at.readings[e];
+        let eye = Eye { system: &self.system, t: at.t, q, v, kinematics: at.kinematics, element: &read };
+        let jets: Vec<Jet> = own.senses.iter().map(|sense| eye.jet(*sense, a)).collect();
+        let seen: Vec<f64> = jets.iter().map(|jet| jet.value).collect();
+        let guard = |time: Jet, jets: &[Jet]| own.law.expression().guard_jet(branch, bit, time, jets);
+        let rate = guard(Jet::time(at.t), &jets).map_or(0.0, |jet| jet.first);
+        let (mut by_state, mut change) = ([vec![0.0; v.len()], vec![0.0; v.len()]], vec![0.0; count]);
+        for (k, sense) in own.senses.iter().enumerate() {
+            let alone = seen.iter().enumerate().map(|(j, value)| Jet {
+                value: *value,
+                first: if j == k { 1.0 } else { 0.0 },
+                second: 0.0,
+            });
+            let alone: Vec<Jet> = alone.collect();
+            let slope = guard(Jet::constant(at.t), &alone).map_or(0.0, |jet| jet.first);
+            add_sense(&eye, *sense, slope, at, (&mut by_state, &mut change));
+        }
+        for (p, change) in change.iter_mut().enumerate() {
+            *change += own.own[p].iter().map(|slope| slope.guard_on(branch, bit, at.t, &seen)).sum::<f64>();
+            for (slopes, blocks) in by_state.iter().zip(motion) {
+                *change += slopes.iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum::<f64>();
+            }
+            *change /= -rate;
+        }
+        change
+    }
+
+    /// How fast the force that is wanted of a joint changes at node `i`: at the end of the step, or at its start.
+    fn drift(&self, i: usize, joint: usize, run: &ControlRun) -> f64 {
+        let mut sum = self.nodes[i].drifts[joint];
+        for term in run.terms.iter().filter(|term| term.law.velocity == self.joints[joint].velocity) {
+            if term.law.order > -1.0 {
+                sum = f64::NAN;
+            }
+            let runs = run.joints[joint].mode.integrand == Integrand::Runs;
+            sum += if runs { term.law.gain * self.nodes[i].errors[joint][0] } else { 0.0 };
+        }
+        if sum.is_finite() { sum } else { run.drift(joint, if i == 0 { 0.0 } else { 1.0 }) }
+    }
+
+    /// What changes of the force of a joint before its last limit at node `i`, on a branch.
+    fn shaped(&self, i: usize, joint: usize, mode: Mode, t: f64, [q, v]: [&[f64]; 2]) -> Vec<f64> {
+        let (n, count, node, own) = (self.system.model.nv(), self.count(), &self.nodes[i], &self.joints[joint]);
+        let along = |slopes: &[f64], blocks: &[f64], p: usize| -> f64 {
+            slopes[own.row * n..][..n].iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
+        };
+        let of = |p: usize| match mode.slew {
+            Slew::Goes { sign, since, .. } => own.from[p] + f64::from(sign) * (t - since) * own.rate_limit[p],
+            Slew::Follows => {
+                let still = node.wanted_explicit[own.row * count + p] + node.pushed[own.row * count + p];
+                still + along(&node.wanted.d_q, q, p) + along(&node.wanted.d_v, v, p)
+            }
+        };
+        (0..count).map(of).collect()
+    }
+
+    /// Goes onto the branches that `run` is on at t, from those that were left.
+    ///
+    /// # Errors
+    /// Where that has no derivative.
+    pub(crate) fn settle(&mut self, run: &ControlRun, t: f64, motion: [&[f64]; 2]) -> Result<(), SensitivityError> {
+        let unknown = |what: &str| Err(SensitivityError::Unknown { what: format!("{what}, at t = {t} s") });
+        for Left { joint, mode, shaped, moved } in std::mem::take(&mut self.left) {
+            let (now, error) = (run.joints[joint].mode, self.nodes[0].errors[joint][0]);
+            if let Some(m) = run.joints[joint].integral.filter(|_| now.integrand != mode.integrand) {
+                let own = run.terms.iter().filter(|term| term.law.velocity == run.joints[joint].velocity);
+                if own.count() > 1 && [mode, now].iter().any(|mode| mode.integrand == Integrand::Slides) {
+                    return unknown("a fractional derivative of a controller beside an integral that keeps its limit");
+                }
+                if run.terms[m].law.order > -1.0 {
+                    return unknown("a fractional integral of a controller that stops at its limit");
+                }
+                let taken = |mode: Mode| if mode.integrand == Integrand::Runs { error } else { 0.0 };
+                match [mode.integrand, now.integrand] {
+                    [_, Integrand::Slides] => self.slide(0, joint, run, motion),
+                    [Integrand::Slides, _] => {}
+                    _ => self.terms[m].jump(taken(mode) - taken(now), &moved),
+                }
+            }
+            match (mode.slew, now.slew) {
+                (Slew::Follows, Slew::Goes { .. }) => self.joints[joint].from = shaped,
+                (Slew::Goes { sign: before, .. }, Slew::Goes { sign, .. }) if mode.slew != now.slew => {
+                    let turn = f64::from(before - sign) * run.joints[joint].limit.rate;
+                    let turned = shaped.iter().zip(&moved).map(|(shaped, moved)| shaped + turn * moved);
+                    self.joints[joint].from = turned.collect();
+                }
+                _ => {}
+            }
+            self.joints[joint].mode = now;
+        }
+        for joint in 0..self.joints.len() {
+            let (now, before) = (run.joints[joint].mode, self.joints[joint].mode);
+            if now.slew != before.slew && now.slew != Slew::Follows {
+                // The reference jumped.
+                self.joints[joint].from = self.shaped(0, joint, before, t, motion);
+            }
+            self.joints[joint].mode = now;
+        }
+        Ok(())
     }
 
     /// What outlasts the steps.
@@ -551,17 +803,19 @@ impl ControlVariation {
         ControlVariationState {
             terms: self.terms.clone(),
             from: self.joints.iter().map(|joint| joint.from.clone()).collect(),
+            modes: self.joints.iter().map(|joint| joint.mode).collect(),
         }
     }
 
     /// Goes on from what was saved; `false` where that is of another run.
     pub(crate) fn load(&mut self, run: &ControlRun, state: ControlVariationState) -> bool {
-        let ControlVariationState { terms, from } = state;
-        if terms.len() != run.terms.len() || from.len() != self.joints.len() {
+        let ControlVariationState { terms, from, modes } = state;
+        if terms.len() != run.terms.len() || [from.len(), modes.len()] != [self.joints.len(); 2] {
             return false;
         }
         self.terms = terms;
-        self.joints.iter_mut().zip(from).for_each(|(joint, from)| joint.from = from);
+        let kept = self.joints.iter_mut().zip(from.into_iter().zip(modes));
+        kept.for_each(|(joint, (from, mode))| (joint.from, joint.mode) = (from, mode));
         true
     }
 }

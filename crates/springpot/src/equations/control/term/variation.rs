@@ -87,6 +87,24 @@ impl TermVariation {
         }
     }
 
+    /// ∫e takes less by `jump` from a time on that moves so.
+    pub(in crate::equations::control) fn jump(&mut self, jump: f64, moved: &[f64]) {
+        self.integral.iter_mut().zip(moved).for_each(|(own, moved)| *own += jump * moved);
+    }
+
+    /// ∫e itself changes so at the start (0) or at a node that gain·∫e changes by `wanted`.
+    pub(in crate::equations::control) fn slide(&mut self, i: usize, term: &Term, wanted: &[f64]) {
+        let (count, gain) = (self.count(), term.law.gain);
+        let integral = if i == 0 { term.kept.integral } else { term.stroke[i] };
+        for (p, wanted) in wanted.iter().enumerate() {
+            let change = (wanted - self.gain[p] * integral) / gain;
+            self.stroke[i * count + p] = change;
+            if i == 0 {
+                self.integral[p] = change;
+            }
+        }
+    }
+
     fn step(term: &Term) -> TangentStep<'static> {
         let Term { start, nodes, form, .. } = *term;
         TangentStep { start, nodes, places: None, form, polynomial: term.polynomial() }
