@@ -56,35 +56,31 @@ fn carry(model: &Model, workspace: &Workspace, joint: usize, force: Force, add: 
 mod tests {
     use super::*;
     use crate::dynamics::{RneaDerivatives, rnea, rnea_derivatives_into};
-    use crate::model::{BodySpec, JointKind, JointSpec, ModelBuilder, Parent};
+    use crate::model::{BodySpec, JointSpec, ModelBuilder, Parent};
     use crate::spatial::Symmetric3;
 
     /// Two limbs on one body, a floating one among the joints.
     fn robot() -> Model {
-        let mut builder = ModelBuilder::new();
-        let kinds = [JointKind::Floating, JointKind::Revolute, JointKind::Prismatic, JointKind::Revolute];
-        for (k, (kind, parent)) in kinds.into_iter().zip([None, Some(0), Some(1), Some(0)]).enumerate() {
-            let parent = parent.map_or(Parent::World, |body: usize| Parent::Body(format!("b{body}").into()));
-            let joint = JointSpec {
-                name: format!("j{k}").into(),
-                kind,
-                axis: [0.3, -0.5, 1.0],
-                origin: [0.1, 0.2 * k as f64, -0.3],
-                rpy: [0.2, -0.4, 0.1 * k as f64],
-                ..JointSpec::default()
-            };
+        let mut builder = ModelBuilder::new([0.2, -0.1, -9.81]);
+        let (axis, origin) = ([0.3, -0.5, 1.0], [0.1, 0.2, -0.3]);
+        let joints = [
+            JointSpec::floating("j0", origin),
+            JointSpec::revolute("j1", axis, origin),
+            JointSpec::prismatic("j2", axis, origin),
+            JointSpec::revolute("j3", axis, origin),
+        ];
+        for (k, (joint, parent)) in joints.into_iter().zip([None, Some(0), Some(1), Some(0)]).enumerate() {
             let body = BodySpec {
-                name: format!("b{k}").into(),
+                name: format!("b{k}"),
+                parent: parent.map_or(Parent::World, Parent::Body),
+                joint,
                 mass: 1.0 + k as f64,
                 com: [0.1, -0.2, 0.05],
                 inertia: [[0.2, 0.01, 0.0], [0.01, 0.3, 0.02], [0.0, 0.02, 0.25]],
-                joint,
-                parent,
-                ..BodySpec::default()
             };
-            builder.add(body).unwrap();
+            builder.push(body).unwrap();
         }
-        builder.finish([0.2, -0.1, -9.81]).unwrap()
+        builder.finish().unwrap()
     }
 
     #[test]
@@ -106,10 +102,14 @@ mod tests {
             let change = Inertia {
                 mass: random(),
                 first_moment: Vec3([random(), random(), random()]),
-                rotational: Symmetric3::from_upper([[random(), random(), random()], [0.0, random(), random()], [0.0, 0.0, random()]]),
+                rotational: Symmetric3::from_upper([
+                    [random(), random(), random()],
+                    [0.0, random(), random()],
+                    [0.0, 0.0, random()],
+                ]),
             };
             let mut changes = vec![Inertia::ZERO; bodies];
-            changes[model.body_index(&format!("b{joint}")).unwrap()] = change;
+            changes[model.body_names().iter().position(|name| **name == format!("b{joint}")).unwrap()] = change;
             let moved = model.with_inertias(&changes, &vec![0.0; model.joint_count()]);
             let expected = rnea(&moved, &q, &v, &a, &[]);
             let mut found = vec![0.0; n];

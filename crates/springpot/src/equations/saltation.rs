@@ -16,8 +16,8 @@ use serde::{Deserialize, Serialize};
 /// Times of one change that differ by less than this share of them are one.
 const ONE_TIME: f64 = 1e-9;
 
-/// Accelerations and velocities that differ by less than this share of the largest do not jump.
-const JUMP: f64 = 1e-7;
+/// Accelerations and velocities that differ by less than this share of the largest do not jump: the end of a step knows them as well as its iteration.
+const JUMP: f64 = 1e-5;
 
 /// A guard this near its zero is on it, in units of what it goes over in the step.
 const ON_IT: f64 = 1e-6;
@@ -27,12 +27,12 @@ const HERE: f64 = 1e-12;
 
 /// What parameters change of what is held in place of signals: those that are not among them are held at what no parameter moves.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(super) struct HeldVariation {
+pub(super) struct SetVariation {
     drives: Vec<(usize, Vec<f64>)>,
     inputs: Vec<([usize; 2], Vec<f64>)>,
 }
 
-impl HeldVariation {
+impl SetVariation {
     /// The actuator forces that are held, by their velocities.
     pub(super) fn drives(&self) -> impl Iterator<Item = (usize, &[f64])> {
         self.drives.iter().map(|(k, by)| (*k, &by[..]))
@@ -250,7 +250,7 @@ impl Variation {
             None if is_own && jump(a, start.a, &|_| true) => self.lose_all(start.t, "forces jump there"),
             None => self.last = None,
         }
-        self.hold(equations);
+        self.hold_still(equations);
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
             let [node, ..] = &self.nodes;
             control.settle(run, start.t, [&node.q, &node.v])?;
@@ -269,7 +269,7 @@ impl Variation {
     }
 
     /// What friction holds stays at rest.
-    pub(super) fn hold(&mut self, equations: &Equations) {
+    pub(super) fn hold_still(&mut self, equations: &Equations) {
         let count = self.count();
         for (k, &row) in self.own_v.iter().enumerate() {
             if equations.holds(k) {

@@ -28,4 +28,9 @@ impl Solve {
     pub(crate) fn solve(&mut self, x: &mut [f64]) {
         self.lu.solve(x);
     }
+
+    /// Solves for `count` right-hand sides at once, which stand side by side in the rows of `x`.
+    pub(crate) fn solve_rows(&mut self, x: &mut [f64], count: usize) {
+        self.lu.solve_rows(x, count);
+    }
 }

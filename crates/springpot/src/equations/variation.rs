@@ -4,12 +4,12 @@ use super::assembly::Equations;
 use super::control::{ControlVariation, ControlVariationState, Place};
 use super::node::Node;
 use super::resistance::add_tangents;
-use super::saltation::HeldVariation;
+use super::saltation::SetVariation;
 use super::solve::Solve;
 use crate::collocation::STAGES;
 use crate::dynamics::{
-    Kinematics, RneaDerivatives, Workspace, coriolis, gravity, gravity_into, kinetic_energy, point_jacobian,
-    potential_energy, rnea_at_into,
+    Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_effort, coriolis, gravity, kinetic_energy,
+    point_jacobian, potential_energy,
 };
 use crate::elements::{Forces, Pull, Reading};
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
@@ -17,8 +17,10 @@ use crate::law::{Network, Response};
 use crate::model::{FrictionLaw, Model};
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Lost, Seed, Sensitivity, SensitivityError};
+use crate::spatial::Inertia;
 use crate::system::{Motion, System};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Derivatives of a run by its parameters, in blocks of one number for each parameter; velocities count as those of the extended robot.
@@ -32,25 +34,58 @@ pub(crate) struct Variation {
     /// Coordinates of the extended robot.
     q: Vec<f64>,
     pub(crate) elements: Vec<ElementVariation>,
+    /// What moves geometry, for good: velocity of the extended robot, parameter, by how much.
+    placed: Vec<(usize, usize, f64)>,
+    inertias: Inertias,
     /// At the start of the step, at its nodes, and at a row.
     pub(crate) nodes: [NodeVariation; ROW + 1],
     /// How large q and v have changed so far, in the blocks of the nodes.
     sizes: [Vec<f64>; 2],
     forces: Forces,
     workspace: Workspace,
-    tau: Vec<f64>,
     pub(crate) solve: Solve,
+    /// Right-hand sides of a step, side by side.
+    pub(crate) right: Vec<f64>,
     /// How much later the change at the present time comes, s, where the motion starts anew.
     pub(super) later: Option<Vec<f64>>,
     /// The accelerations on the near side of that change, where the end of the step has those behind it.
     pub(super) arrived: Option<Vec<f64>>,
     /// The same of what was crossed last, and when that was.
     pub(super) last: Option<(f64, Vec<f64>)>,
-    pub(super) held: HeldVariation,
+    pub(super) held: SetVariation,
     /// Where derivatives ended, parameter by parameter.
     pub(super) lost: Vec<Option<Lost>>,
     /// Of what follows from the state, where anything does.
     pub(super) control: Option<Box<ControlVariation>>,
+}
+
+/// What parameters change of inertias and gravity: parameter, joint or velocity of the extended robot, by how much.
+#[derive(Debug, Default)]
+struct Inertias {
+    links: Vec<(usize, usize, Inertia)>,
+    rotors: Vec<(usize, usize, f64)>,
+    fields: Vec<(usize, [f64; 3])>,
+}
+
+impl Inertias {
+    fn of(by: &Sensitivity) -> Self {
+        let mut own = Self::default();
+        for (p, parameter) in by.parameters.iter().enumerate() {
+            for seed in &parameter.seeds {
+                match seed {
+                    Seed::Inertia(change) => {
+                        let links = (0..change.joint_count()).map(|j| (p, j, *change.link_inertia(j)));
+                        own.links.extend(links.filter(|(_, _, inertia)| *inertia != Inertia::ZERO));
+                        let rotors = change.felt_rotors().iter().enumerate().map(|(k, rotor)| (p, k, *rotor));
+                        own.rotors.extend(rotors.filter(|(_, _, rotor)| *rotor != 0.0));
+                    }
+                    Seed::Gravity(change) => own.fields.push((p, change.gravity())),
+                    _ => {}
+                }
+            }
+        }
+        own
+    }
 }
 
 /// Share of what the motion comes to that a change by the whole of a parameter is expected to come to at least.
@@ -72,7 +107,7 @@ pub(crate) struct VariationState {
     later: Option<Vec<f64>>,
     arrived: Option<Vec<f64>>,
     last: Option<(f64, Vec<f64>)>,
-    held: HeldVariation,
+    held: SetVariation,
     lost: Vec<Option<Lost>>,
     control: Option<ControlVariationState>,
 }
@@ -152,7 +187,7 @@ impl Variation {
             a_now: vec![0.0; model.nv()],
             readings: vec![[0.0; 2]; extended.elements.len()],
             gradients: extended.elements.iter().map(|_| [vec![0.0; model.nv()], vec![0.0; model.nv()]]).collect(),
-            hessians: vec![Vec::new(); extended.elements.len()],
+            hessians: vec![vec![0.0; model.nv() * model.nv()]; extended.elements.len()],
             q: zeros(),
             v: zeros(),
             a: zeros(),
@@ -183,22 +218,30 @@ impl Variation {
                 row: [vec![0.0; count], vec![0.0; count]],
             }
         };
+        let seeds = by.parameters.iter().enumerate().flat_map(|(p, own)| own.seeds.iter().map(move |seed| (p, seed)));
+        let placed = seeds.filter_map(|(p, seed)| match seed {
+            Seed::Place { velocity, by } => Some((*velocity, p, *by)),
+            _ => None,
+        });
+        let placed = placed.collect();
         let elements = extended.elements.iter().map(|element| element.inputs.len()).enumerate().map(element).collect();
         Ok(Self {
             own_q,
             own_v,
             q: start,
             elements,
+            placed,
+            inertias: Inertias::of(by),
             nodes: std::array::from_fn(|_| node()),
             sizes: [zeros(), zeros()],
             forces: Forces::default(),
             workspace: Workspace::new(model),
-            tau: vec![0.0; model.nv()],
             solve: Solve::default(),
+            right: Vec::new(),
             later: None,
             arrived: None,
             last: None,
-            held: HeldVariation::default(),
+            held: SetVariation::default(),
             lost: vec![None; count],
             by: by.clone(),
             system: extended.clone(),
@@ -214,17 +257,23 @@ impl Variation {
     /// How large q and v of velocity `row` have changed by parameter `p`, those at the end of the step at hand among them. What hardly changes
     /// beside the others is measured by them, and what begins like no power of t, alike on every scale of it, by the travel and the speed of the
     /// motion itself, `moved`.
-    pub(crate) fn size(&self, row: usize, p: usize, moved: [f64; 2]) -> [f64; 2] {
-        let (count, last) = (self.count(), &self.nodes[STAGES]);
+    pub(crate) fn size(&self, row: usize, p: usize, largest: [f64; 2], moved: [f64; 2]) -> [f64; 2] {
         let typical = self.by.parameters[p].typical.abs();
         let expected = |size: f64| if typical > 0.0 { BEGUN * size / typical } else { 0.0 };
-        let of = |sizes: &[f64], end: &[f64]| {
-            let own = |k: usize| sizes[k * count + p].max(end[k * count + p].abs());
-            let largest = (0..self.nv()).map(own).fold(0.0, f64::max);
-            own(row).max(BESIDE * largest)
-        };
-        let ([q, v], [travel, speed]) = (&self.sizes, moved.map(expected));
-        [of(q, &last.q).max(travel), of(v, &last.v).max(speed)]
+        let [q, v] = self.sized(row, p);
+        let ([most_q, most_v], [travel, speed]) = (largest.map(|size| BESIDE * size), moved.map(expected));
+        [q.max(most_q).max(travel), v.max(most_v).max(speed)]
+    }
+
+    /// How large q and v of any velocity have changed by parameter `p`.
+    pub(crate) fn largest(&self, p: usize) -> [f64; 2] {
+        let own = self.own_v.iter().map(|&k| self.sized(k, p));
+        own.fold([0.0; 2], |[q, v]: [f64; 2], [own_q, own_v]| [q.max(own_q), v.max(own_v)])
+    }
+
+    fn sized(&self, row: usize, p: usize) -> [f64; 2] {
+        let (at, last, [q, v]) = (row * self.count() + p, &self.nodes[STAGES], &self.sizes);
+        [q[at].max(last.q[at].abs()), v[at].max(last.v[at].abs())]
     }
 
     /// Takes in how large the changes where the next step starts are.
@@ -242,7 +291,7 @@ impl Variation {
 
     /// Number of velocities of the extended robot.
     pub(crate) fn nv(&self) -> usize {
-        self.tau.len()
+        self.system.model.nv()
     }
 
     /// Which velocity of the extended robot each of these of the run is.
@@ -267,7 +316,7 @@ impl Variation {
                 }
             }
         }
-        self.hold(equations);
+        self.hold_still(equations);
         // What laws keep begins at the strokes and inputs of t = 0.
         if equations.is_singular() {
             return Err(SensitivityError::Unknown { what: "a singular start".to_owned() });
@@ -355,13 +404,15 @@ impl Variation {
                 let told = at_start(count, [stroke, rate], inputs);
                 equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, law, &mut sum);
             }
-            let mut right = vec![0.0; free.len()];
-            for p in 0..count {
-                for (right, &row) in right.iter_mut().zip(&free) {
-                    *right = -(self.unbalanced(0, row, p) + self.pulled(0, row, |e| self.elements[e].row[0][p]));
-                }
-                solve.solve(&mut right);
-                free.iter().zip(&right).for_each(|(&k, a)| self.nodes[0].a[k * count + p] = *a);
+            let mut right = vec![0.0; free.len() * count];
+            for (sum, &row) in right.chunks_exact_mut(count).zip(&free) {
+                self.add_unbalanced(0, row, sum);
+                self.add_pulled(0, row, |e| &self.elements[e].row[0], sum);
+            }
+            solve.solve_rows(&mut right, count);
+            let [node, ..] = &mut self.nodes;
+            for (own, &k) in right.chunks_exact(count).zip(&free) {
+                node.a[k * count..][..count].iter_mut().zip(own).for_each(|(a, own)| *a = -own);
             }
         } else {
             node.a.fill(f64::NAN);
@@ -371,7 +422,7 @@ impl Variation {
 
     /// Looks at node `i` of the step, where the run is at `at`: what its elements measure, and their inputs.
     pub(crate) fn look(&mut self, i: usize, at: Node) {
-        let Self { by, system, own_q, own_v, q, nodes, elements, held, .. } = self;
+        let Self { by, system, own_q, own_v, q, nodes, elements, held, workspace, .. } = self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         own_q.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
         for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
@@ -385,11 +436,10 @@ impl Variation {
             let mut reading = Reading::default();
             element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
             *told = [reading.coordinate, reading.rate];
-            let hessian = element.measure.hessian(model, &node.kinematics);
-            for (bend, line) in bend.iter_mut().zip(hessian.chunks_exact(n)) {
+            element.measure.hessian_into(model, &node.kinematics, workspace, kept);
+            for (bend, line) in bend.iter_mut().zip(kept.chunks_exact(n)) {
                 *bend = line.iter().zip(&node.v_now).map(|(h, v)| h * v).sum();
             }
-            *kept = hessian;
         }
         for element in elements.iter_mut() {
             for blocks in &mut element.inputs {
@@ -422,7 +472,7 @@ impl Variation {
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
     pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
         self.look(i, at);
-        let Self { by, system, own_v, q, nodes, forces, workspace, tau, held, .. } = self;
+        let Self { by, system, own_v, nodes, forces, workspace, held, inertias, .. } = self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         forces.clear();
         for (element, force) in system.elements.iter().zip(force) {
@@ -457,17 +507,19 @@ impl Variation {
                             }
                         }
                     }
-                    Seed::Inertia(change) => {
-                        rnea_at_into(change, &node.kinematics, q, &node.a_now, &[], workspace, tau);
-                        tau.iter().enumerate().for_each(|(k, tau)| add(k, *tau));
-                    }
-                    Seed::Gravity(change) => {
-                        gravity_into(change, &node.kinematics, workspace, tau);
-                        tau.iter().enumerate().for_each(|(k, tau)| add(k, *tau));
-                    }
                     _ => {}
                 }
             }
+        }
+        let Inertias { links, rotors, fields } = inertias;
+        let explicit = &mut node.explicit;
+        for (p, joint, change) in links {
+            let add = |k: usize, value: f64| explicit[k * count + *p] += value;
+            add_inertia_effort(model, &node.kinematics, workspace, *joint, change, add);
+        }
+        rotors.iter().for_each(|(p, k, rotor)| explicit[k * count + p] += rotor * node.a_now[*k]);
+        for (p, change) in fields {
+            add_gravity_effort(model, workspace, *change, |k, value| explicit[k * count + *p] += value);
         }
     }
 
@@ -539,45 +591,61 @@ impl Variation {
 
     /// What changes of stroke and rate of element `e` at node `i`.
     pub(crate) fn measure(&mut self, e: usize, i: usize) {
-        let (count, Self { nodes, elements, .. }) = (self.count(), self);
+        let (count, Self { nodes, elements, own_v, placed, .. }) = (self.count(), self);
         let (node, element) = (&nodes[i], &mut elements[e]);
         let [gradient, bend] = &node.gradients[e];
         let stroke = &mut element.stroke[i * count..(i + 1) * count];
         let rate = &mut element.rate[i * count..(i + 1) * count];
         stroke.copy_from_slice(&element.rest);
         rate.fill(0.0);
-        for (k, (g, y)) in gradient.iter().zip(bend).enumerate() {
-            let (q, v) = (&node.q[k * count..(k + 1) * count], &node.v[k * count..(k + 1) * count]);
-            for p in 0..count {
-                stroke[p] += g * q[p];
-                rate[p] += y * q[p] + g * v[p];
+        for &k in own_v.iter() {
+            let (q, v) = (&node.q[k * count..][..count], &node.v[k * count..][..count]);
+            let (g, y) = (gradient[k], bend[k]);
+            for ((stroke, rate), (q, v)) in stroke.iter_mut().zip(&mut *rate).zip(q.iter().zip(v)) {
+                *stroke += g * q;
+                *rate += y * q + g * v;
             }
         }
-    }
-
-    /// What changes of the equation of velocity `row` at node `i` by parameter `p`, the forces of the elements apart, where q, v and a change as
-    /// the node has them.
-    pub(crate) fn unbalanced(&self, i: usize, row: usize, p: usize) -> f64 {
-        let (count, n, node) = (self.count(), self.nv(), &self.nodes[i]);
-        let line = row * n..(row + 1) * n;
-        let slopes = &node.slopes;
-        let by_motion: f64 = (0..n)
-            .zip(line)
-            .map(|(k, at)| {
-                let block = k * count + p;
-                slopes.d_q[at] * node.q[block] + slopes.d_v[at] * node.v[block] + slopes.d_a[at] * node.a[block]
-            })
-            .sum();
-        let pushed = self.control.as_ref().map_or(0.0, |control| control.pushed(i, row, p));
-        by_motion + node.explicit[row * count + p] - pushed
-    }
-
-    /// What the changed forces of the elements add to the equation of velocity `row` at node `i`.
-    pub(crate) fn pulled(&self, i: usize, row: usize, force: impl Fn(usize) -> f64) -> f64 {
-        if self.relieves(i, row) {
-            return 0.0;
+        for &(k, p, by) in placed.iter() {
+            stroke[p] += gradient[k] * by;
+            rate[p] += bend[k] * by;
         }
-        self.nodes[i].gradients.iter().enumerate().map(|(e, [g, _])| g[row] * force(e)).sum()
+    }
+
+    /// Adds what changes of the equation of velocity `row` at node `i`, the forces of the elements apart, where q, v and a change as the node has
+    /// them: parameter by parameter.
+    pub(crate) fn add_unbalanced(&self, i: usize, row: usize, sum: &mut [f64]) {
+        let (count, n, node) = (self.count(), self.nv(), &self.nodes[i]);
+        let block = |blocks: &'_ [f64], k: usize| -> Range<usize> { k * count..((k + 1) * count).min(blocks.len()) };
+        let explicit = &node.explicit[block(&node.explicit, row)];
+        sum.iter_mut().zip(explicit).for_each(|(sum, own)| *sum += own);
+        let slopes = &node.slopes;
+        for &k in &self.own_v {
+            let at = row * n + k;
+            let (by_q, by_v, by_a) = (slopes.d_q[at], slopes.d_v[at], slopes.d_a[at]);
+            let own = block(&node.q, k);
+            let (q, v, a) = (&node.q[own.clone()], &node.v[own.clone()], &node.a[own]);
+            for ((sum, q), (v, a)) in sum.iter_mut().zip(q).zip(v.iter().zip(a)) {
+                *sum += by_q * q + by_v * v + by_a * a;
+            }
+        }
+        self.placed.iter().for_each(|(k, p, by)| sum[*p] += slopes.d_q[row * n + k] * by);
+        if let Some(control) = &self.control {
+            sum.iter_mut().enumerate().for_each(|(p, sum)| *sum -= control.pushed(i, row, p));
+        }
+    }
+
+    /// Adds what the changed forces of the elements do to the equation of velocity `row` at node `i`; those of element `e` change by `force(e)`.
+    pub(crate) fn add_pulled<'f>(&self, i: usize, row: usize, force: impl Fn(usize) -> &'f [f64], sum: &mut [f64]) {
+        if self.relieves(i, row) {
+            return;
+        }
+        for (e, [gradient, _]) in self.nodes[i].gradients.iter().enumerate() {
+            let g = gradient[row];
+            if g != 0.0 {
+                sum.iter_mut().zip(force(e)).for_each(|(sum, force)| *sum += g * force);
+            }
+        }
     }
 
     /// Asks the laws what changes of their forces where strokes and rates at the nodes stay.
@@ -665,16 +733,21 @@ impl Variation {
         true
     }
 
-    /// What changes of the force of element `e` at node `i` (from 1) by parameter `p`.
-    pub(crate) fn force(&self, response: &Response, e: usize, i: usize, p: usize) -> f64 {
+    /// What changes of the force of element `e` at node `i` (from 1), parameter by parameter.
+    pub(crate) fn force(&self, response: &Response, e: usize, i: usize, force: &mut [f64]) {
         let (count, element) = (self.count(), &self.elements[e]);
-        let by_motion: f64 = (0..STAGES)
-            .map(|m| {
-                let block = (m + 1) * count + p;
-                response.d_stroke[i - 1][m] * element.stroke[block] + response.d_rate[i - 1][m] * element.rate[block]
-            })
-            .sum();
-        element.force[(i - 1) * count + p] + by_motion
+        force.copy_from_slice(&element.force[(i - 1) * count..][..count]);
+        for m in 0..STAGES {
+            let (by_stroke, by_rate) = (response.d_stroke[i - 1][m], response.d_rate[i - 1][m]);
+            let own = (m + 1) * count..(m + 2) * count;
+            let told = element.stroke[own.clone()].iter().zip(&element.rate[own]);
+            force.iter_mut().zip(told).for_each(|(force, (x, rate))| *force += by_stroke * x + by_rate * rate);
+        }
+    }
+
+    /// Whether what changes of a quantity is what changes of the motion alone.
+    pub(crate) fn is_of_motion(of: Quantity) -> bool {
+        matches!(of, Quantity::Time | Quantity::Coordinate(_) | Quantity::Velocity(_) | Quantity::Acceleration(_))
     }
 
     /// Works out what changes at a row where the run is at `snapshot`, whose motion changes as node [`ROW`] has it: at θ of the step at hand, or
@@ -741,7 +814,10 @@ impl Variation {
             }
             Quantity::Torque(k) => {
                 let row = self.own_v[k];
-                each(&|p| self.unbalanced(ROW, row, p) + self.pulled(ROW, row, |e| self.elements[e].row[0][p]))
+                let mut sum = vec![0.0; count];
+                self.add_unbalanced(ROW, row, &mut sum);
+                self.add_pulled(ROW, row, |e| &self.elements[e].row[0], &mut sum);
+                sum
             }
             Quantity::Element(e, of) => {
                 let (element, [gradient, _]) = (&self.elements[e], &node.gradients[e]);

@@ -77,6 +77,36 @@ impl Lu {
         }
         x.copy_from_slice(y);
     }
+
+    /// Solves for `count` right-hand sides at once, which stand side by side: row k of `x` has component k of all of them.
+    pub(crate) fn solve_rows(&mut self, x: &mut [f64], count: usize) {
+        let n = self.n;
+        self.scratch.resize(n * count, 0.0);
+        for (slot, &source) in self.scratch.chunks_exact_mut(count.max(1)).zip(&self.order) {
+            slot.copy_from_slice(&x[source * count..][..count]);
+        }
+        let y = &mut self.scratch;
+        for k in 0..n {
+            let (above, rest) = y.split_at_mut(k * count);
+            let own = &mut rest[..count];
+            for (j, row) in above.chunks_exact(count.max(1)).enumerate() {
+                let factor = self.entries[k * n + j];
+                own.iter_mut().zip(row).for_each(|(own, row)| *own -= factor * row);
+            }
+        }
+        for k in (0..n).rev() {
+            let (rest, below) = y.split_at_mut((k + 1) * count);
+            let own = &mut rest[k * count..];
+            for (j, row) in below.chunks_exact(count.max(1)).enumerate() {
+                let factor = self.entries[k * n + k + 1 + j];
+                own.iter_mut().zip(row).for_each(|(own, row)| *own -= factor * row);
+            }
+            let pivot = self.entries[k * n + k];
+            own.iter_mut().for_each(|own| *own /= pivot);
+        }
+        x.copy_from_slice(y);
+        self.scratch.truncate(n);
+    }
 }
 
 #[cfg(test)]
@@ -93,6 +123,14 @@ mod tests {
         assert!(lu.factor(n, |m| (0..n * n).for_each(|k| m[k] = entry(k / n, k % n))));
         lu.solve(&mut y);
         assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-14), "{y:?}");
+        let mut rows: Vec<f64> = (0..2 * n).map(|k| ((k * k) as f64).sin()).collect();
+        let each = [0, 1].map(|side| {
+            let mut one: Vec<f64> = (0..n).map(|k| rows[2 * k + side]).collect();
+            lu.solve(&mut one);
+            one
+        });
+        lu.solve_rows(&mut rows, 2);
+        assert!((0..2 * n).all(|k| (rows[k] - each[k % 2][k / 2]).abs() < 1e-14), "{rows:?}");
         assert!(!lu.factor(2, |m| m.copy_from_slice(&[1.0, 2.0, 2.0, 4.0])));
         assert!(!lu.factor(1, |m| m[0] = f64::NAN));
     }

@@ -9,7 +9,7 @@ mod forces;
 mod joint;
 mod line;
 
-use crate::dynamics::{CoincidentAnchors, Kinematics, Pair, Workspace, hessian_into, pair_hessian};
+use crate::dynamics::{CoincidentAnchors, Kinematics, Pair, Workspace, hessian_into, pair_hessian_into};
 use crate::model::Model;
 use crate::spatial::Vec3;
 pub use bushing::{Bushing, Component};
@@ -106,18 +106,18 @@ impl Measure {
     /// Needs positions; NaN where the force has no direction.
     pub fn hessian(&self, model: &Model, kinematics: &Kinematics) -> Vec<f64> {
         let mut hessian = vec![0.0; model.nv() * model.nv()];
-        let mut workspace = Workspace::new(model);
-        match self {
-            Self::Line(line) => hessian = pair_hessian(model, kinematics, &line.from, &line.to),
-            Self::Joint(_) => {}
-            Self::Cable(cable) => {
-                hessian_into(model, kinematics, &cable.coordinate(), &mut workspace, &mut hessian);
-            }
-            Self::Bushing(bushing) => {
-                hessian_into(model, kinematics, bushing.coordinate(), &mut workspace, &mut hessian);
-            }
-        }
+        self.hessian_into(model, kinematics, &mut Workspace::new(model), &mut hessian);
         hessian
+    }
+
+    /// [`Self::hessian`] into nv × nv values, which does not allocate.
+    pub fn hessian_into(&self, model: &Model, kinematics: &Kinematics, workspace: &mut Workspace, hessian: &mut [f64]) {
+        match self {
+            Self::Line(line) => pair_hessian_into(model, kinematics, &line.from, &line.to, workspace, hessian),
+            Self::Joint(_) => hessian.fill(0.0),
+            Self::Cable(cable) => hessian_into(model, kinematics, &cable.coordinate(), workspace, hessian),
+            Self::Bushing(bushing) => hessian_into(model, kinematics, bushing.coordinate(), workspace, hessian),
+        }
     }
 
     /// Whether y is an angle (rad, F in N·m), not a length (m, F in N).

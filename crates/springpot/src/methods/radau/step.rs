@@ -81,6 +81,8 @@ pub(super) struct EstimateScratch {
     pub(super) velocities: Vec<f64>,
     pub(super) stiffness: Vec<f64>,
     pub(super) error: Vec<f64>,
+    /// Of what parameters change, in blocks: raw estimates of velocities and places, and the filtered ones.
+    pub(super) changes: [Vec<f64>; 3],
 }
 
 impl RadauStep {

@@ -6,10 +6,13 @@
 
 use super::dense::integrals;
 use super::estimate::raw;
-use super::step::RadauStep;
+use super::step::{EstimateScratch, RadauStep};
 use crate::collocation::radau::{A, A_SQUARED, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
 use crate::equations::{Equations, Variation};
+
+/// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
+const TANGENTS: f64 = 4.0;
 
 impl RadauStep {
     /// Works out what changes over the step that was solved, of size `h`, where signals at its end are those at `t_end`; false where nothing does
@@ -44,14 +47,12 @@ impl RadauStep {
             return false;
         }
         let [_, stages @ .., _] = &mut variation.nodes;
-        let changes = stages.each_ref().map(|stage| stage.a.clone());
-        for (i, stage) in stages.iter_mut().enumerate() {
-            for &k in &free {
-                for block in k * count..(k + 1) * count {
-                    let sum = |row: &[f64; STAGES]| -> f64 { (0..STAGES).map(|j| row[j] * changes[j][block]).sum() };
-                    stage.v[block] += h * sum(&A[i]);
-                    stage.q[block] += h * h * sum(&A_SQUARED[i]);
-                }
+        for block in free.iter().flat_map(|&k| k * count..(k + 1) * count) {
+            let a = stages.each_ref().map(|stage| stage.a[block]);
+            let sum = |row: &[f64; STAGES]| -> f64 { row.iter().zip(&a).map(|(weight, a)| weight * a).sum() };
+            for (i, stage) in stages.iter_mut().enumerate() {
+                stage.v[block] += h * sum(&A[i]);
+                stage.q[block] += h * h * sum(&A_SQUARED[i]);
             }
         }
         variation.follow(equations);
@@ -63,24 +64,48 @@ impl RadauStep {
     /// The embedded formula of the state, for changes, through the same filter.
     pub(super) fn estimate_variation(&mut self, equations: &Equations, variation: &Variation, h: f64) -> f64 {
         let (count, free, step) = (variation.count(), variation.of_run(equations.free()), h * GAMMA);
+        let (n, own, mass) = (self.model.nv(), equations.free(), &equations.slopes().d_a);
+        if free.is_empty() || count == 0 {
+            return 0.0;
+        }
         let [start, stages @ .., _] = &variation.nodes;
-        let mut worst: f64 = 0.0;
-        for p in (0..count).filter(|&p| variation.knows(p)) {
-            for (r, &k) in free.iter().enumerate() {
-                let block = k * count + p;
-                self.scratch.velocities[r] = raw(h, start.a[block], stages.each_ref().map(|stage| stage.a[block]));
-                self.scratch.positions[r] = raw(h, start.v[block], stages.each_ref().map(|stage| stage.v[block]));
+        let EstimateScratch { changes: [speeds, places, errors], stiffness, .. } = &mut self.scratch;
+        for (blocks, of) in [(&mut *speeds, 0), (&mut *places, 1)] {
+            blocks.clear();
+            for block in free.iter().flat_map(|&k| k * count..(k + 1) * count) {
+                let told = if of == 0 {
+                    [&start.a, &stages[0].a, &stages[1].a, &stages[2].a]
+                } else {
+                    [&start.v, &stages[0].v, &stages[1].v, &stages[2].v]
+                };
+                let [first, a, b, c] = told.map(|told| told[block]);
+                blocks.push(raw(h, first, [a, b, c]));
             }
-            self.filter_error(equations, step);
-            let mut sum = 0.0;
+        }
+        // M r_v − h γ_0 K r_q.
+        errors.clear();
+        errors.resize(free.len() * count, 0.0);
+        for (r, error) in errors.chunks_exact_mut(count).enumerate() {
+            for (c, (speed, place)) in speeds.chunks_exact(count).zip(places.chunks_exact(count)).enumerate() {
+                let (mass, stiffness) = (mass[own[r] * n + own[c]], step * stiffness[r * free.len() + c]);
+                for (error, (speed, place)) in error.iter_mut().zip(speed.iter().zip(place)) {
+                    *error += mass * speed - stiffness * place;
+                }
+            }
+        }
+        self.filter.solve_rows(errors, count);
+        let mut worst: f64 = 0.0;
+        let share = |error: f64, allowed: f64| if error == 0.0 { 0.0 } else { (error / allowed).powi(2) };
+        for p in (0..count).filter(|&p| variation.knows(p)) {
+            let (largest, mut sum) = (variation.largest(p), 0.0);
             for (r, &k) in free.iter().enumerate() {
                 let [speed, travel] = self.errors.sized[r];
-                let [q, v] = variation.size(k, p, [travel, speed]).map(|size| self.errors.tolerance.rtol * size);
-                let share = |error: f64, allowed: f64| if error == 0.0 { 0.0 } else { (error / allowed).powi(2) };
-                let (error, position) = (self.scratch.error[r], self.scratch.positions[r]);
+                let sizes = variation.size(k, p, largest, [travel, speed]);
+                let [q, v] = sizes.map(|size| TANGENTS * self.errors.tolerance.rtol * size);
+                let (error, position) = (errors[r * count + p], places[r * count + p]);
                 sum += share(error, v) + share(position + step * error, q);
             }
-            let rms = (sum / (2 * free.len()).max(1) as f64).sqrt();
+            let rms = (sum / (2 * free.len()) as f64).sqrt();
             worst = if rms.is_nan() { f64::INFINITY } else { worst.max(rms) };
         }
         worst
@@ -149,24 +174,27 @@ impl RadauStep {
             }
         });
         if regular {
-            let mut right = vec![0.0; size];
-            for p in 0..count {
-                for i in 0..STAGES {
-                    let forces: Vec<f64> = (0..variation.elements.len())
-                        .map(|e| variation.force(equations.bank.response(e), e, i + 1, p))
-                        .collect();
-                    for (r, &row) in free.iter().enumerate() {
-                        let pulled = variation.pulled(i + 1, row, |e| forces[e]);
-                        right[i * own + r] = -(variation.unbalanced(i + 1, row, p) + pulled);
-                    }
+            let mut right = std::mem::take(&mut variation.right);
+            right.clear();
+            right.resize(size * count, 0.0);
+            let mut forces = vec![0.0; variation.elements.len() * count];
+            for (i, stage) in right.chunks_exact_mut((own * count).max(1)).enumerate() {
+                for (e, force) in forces.chunks_exact_mut(count.max(1)).enumerate() {
+                    variation.force(equations.bank.response(e), e, i + 1, force);
                 }
-                solve.solve(&mut right);
-                for i in 0..STAGES {
-                    for (r, &k) in free.iter().enumerate() {
-                        variation.nodes[i + 1].a[k * count + p] = right[i * own + r];
-                    }
+                for (sum, &row) in stage.chunks_exact_mut(count.max(1)).zip(free) {
+                    variation.add_unbalanced(i + 1, row, sum);
+                    variation.add_pulled(i + 1, row, |e| &forces[e * count..][..count], sum);
                 }
             }
+            solve.solve_rows(&mut right, count);
+            for (i, stage) in right.chunks_exact((own * count).max(1)).enumerate() {
+                for (own, &k) in stage.chunks_exact(count.max(1)).zip(free) {
+                    let a = &mut variation.nodes[i + 1].a[k * count..][..count];
+                    a.iter_mut().zip(own).for_each(|(a, own)| *a = -own);
+                }
+            }
+            variation.right = right;
         }
         variation.solve = solve;
         regular
