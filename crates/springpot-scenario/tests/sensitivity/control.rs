@@ -1,6 +1,7 @@
 //! Robots that are controlled: derivatives by gains, orders, references and limits, and by all else through them.
 
 use super::{ARM, compare, plan, said, scenario};
+use springpot::Simulation;
 
 /// The arm with a springpot across its second joint under this controller.
 fn arm(controller: &str) -> String {
@@ -213,4 +214,93 @@ fn integrals_at_limits() {
         ];
         compare(&text, &COLUMNS, &with_plant(&own));
     }
+}
+
+#[test]
+fn what_is_sampled() {
+    let controller = |more: &str| {
+        arm(&format!(
+            "controller = {{ kind = \"pid\", kp = 60, ki = 90, kd = 6, {MOVE}, limits = {{ q1 = 8, q2 = 11 }}, rate_limits = {{ q3 = 60 }}, {more} }}"
+        ))
+    };
+    let own = [
+        ("motion.controller.kp", 0.1),
+        ("motion.controller.ki", 0.1),
+        ("motion.controller.limits.q2", 1e-3),
+        ("motion.controller.rate_limits.q3", 1e-2),
+        ("motion.controller.reference.to.q1", 1e-3),
+    ];
+    for more in ["sample = \"20 ms\"", "sample = \"20 ms\", delay = \"40 ms\""] {
+        // So little that no sample goes to the other side of a limit.
+        let little = with_plant(&own).into_iter().map(|(path, step)| (path, 0.04 * step));
+        compare(&controller(more), &COLUMNS, &little.collect::<Vec<_>>());
+    }
+    let text = arm(&format!(
+        "controller = {{ kind = \"computed-torque\", kp = 60, kd = 9, compensate_elements = true, {MOVE}, sample = \"15 ms\" }}"
+    ));
+    compare(&text, &COLUMNS, &with_plant(&own[..1]));
+}
+
+#[test]
+fn feedback_that_is_sampled() {
+    let input =
+        "{ expression = \\\"0.4 + gain*tanh(tendon.force) + 0.01*a.q2\\\", unit = \\\"V\\\", sample = \\\"20 ms\\\" }";
+    let input = input.replace("\\\"", "\"");
+    let torque = "q1 = { expression = \"-gain*v.q1 - level*tendon.stroke + 0.1*strut.force\", unit = \"N*m\", sample = \"10 ms\" }, q2 = \"-level*v.q2\"";
+    let text = fed_back("INPUT", torque).replace("\"INPUT\"", &input);
+    compare(&text, &SEEN, &STATE);
+}
+
+#[test]
+fn states_take_what_control_changes_with_them() {
+    let pid = "kind = \"fractional-pid\", kp = 60, ki = 90, kd = 6, lambda = 0.8, mu = 0.6";
+    for controller in [
+        format!("{{ {pid}, {MOVE}, rate_limits = {{ q1 = 60, q2 = 50, q3 = 200 }} }}"),
+        format!("{{ {pid}, {MOVE}, sample = \"20 ms\", delay = \"20 ms\" }}"),
+    ] {
+        let mut asked = scenario(&arm(&format!("controller = {controller}")));
+        asked.differentiate("motion.controller.kp,motion.controller.mu,element.strut.c").unwrap();
+        let plan = plan(&asked).unwrap();
+        let begin = || Simulation::new(plan.system(), plan.settings.clone()).unwrap();
+        let (mut first, mut second) = (begin(), begin());
+        let pass = |simulation: &mut Simulation, t: f64| {
+            while simulation.t() < t {
+                simulation.step().unwrap();
+            }
+        };
+        pass(&mut first, 0.15);
+        let state = first.state().unwrap();
+        second.set_state(&state).unwrap();
+        let all = |simulation: &mut Simulation| {
+            pass(simulation, 0.35);
+            let snapshot = simulation.interpolate(0.35).unwrap();
+            let quantities = plan.system().observables().quantities();
+            quantities.into_iter().map(|of| snapshot.value(of).to_bits()).collect::<Vec<_>>()
+        };
+        assert_eq!(all(&mut first), all(&mut second));
+    }
+}
+
+#[test]
+fn what_controllers_do_not_know_is_refused() {
+    let path = "reference = { kind = \"gripper-path\", x = \"0.2 + 0.1*t\", y = 0.9, z = 0.4 }";
+    let joints = "kind = \"fractional-pid\", kp = 60, ki = 9, kd = 6, lambda = 1, mu = 0.6";
+    for (controller, path, words) in [
+        (format!("{{ {joints}, {MOVE} }}"), "motion.controller.lambda", "start at 0.99"),
+        (format!("{{ {joints}, {MOVE} }}"), "motion.controller.sample", "cannot be a parameter"),
+        (format!("{{ {joints}, {MOVE} }}"), "motion.controller.reference.profile", "cannot be a parameter"),
+        (format!("{{ {joints}, {MOVE} }}"), "motion.controller.limits.q1", "the file does not say it"),
+        (format!("{{ {joints}, {path} }}"), "motion.controller.reference.y", "solved for the joints"),
+        (format!("{{ {joints}, {path} }}"), "motion.start.q.q1", "solved for the joints"),
+        (format!("{{ {joints}, {path} }}"), "robot.body.two.joint.origin.1", "solved for the joints"),
+    ] {
+        let mut asked = scenario(&arm(&format!("controller = {controller}")));
+        asked.differentiate(path).unwrap();
+        let said = said(&asked);
+        assert!(said.contains(words), "{path}: {said}");
+    }
+    let mut asked = scenario(&fed_back("0.2*step(t - level)*abs(v.q2)", "q1 = 0.1"));
+    asked.differentiate("constants.level").unwrap();
+    let said = said(&asked);
+    assert!(said.contains("bends or jumps"), "{said}");
 }

@@ -310,7 +310,7 @@ fn what_cannot_be_a_parameter_is_refused_by_its_path() {
 fn what_the_engine_does_not_know_is_refused_by_name() {
     let text = ARM.replace(
         "torque = { q1 = 0.4,",
-        "torque = { q1 = { expression = \"-v.q1\", unit = \"N*m\", sample = \"10 ms\" },",
+        "torque = { q1 = { expression = \"-strut.derivative\", unit = \"N*m\", sample = \"10 ms\" },",
     );
     let mut asked = scenario(&text);
     asked.differentiate("element.tendon.k").unwrap();

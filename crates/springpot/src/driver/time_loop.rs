@@ -122,12 +122,14 @@ impl Driver {
 
     /// What parameters change at t = 0, where any are asked for.
     fn begin_variation(&mut self, cx: Context) -> Result<(), RunError> {
-        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
+        let Self { sampler, recorder, .. } = self;
+        let Recorder { evaluations: [at, ..], equations, variation, .. } = recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
         if !self.solver.stepper().varies() {
             return Err(SensitivityError::Unknown { what: "steps of one size".into() }.into());
         }
         let mut begun = Variation::new(cx.system, by, equations)?;
+        begun.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
         begun.begin(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a })?;
         *variation = Some(Box::new(begun));
         Ok(())
@@ -135,9 +137,11 @@ impl Driver {
 
     /// Goes on with what parameters changed, where any are asked for.
     fn load_variation(&mut self, cx: Context, state: Option<VariationState>) -> Result<(), RunError> {
-        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
+        let Self { sampler, recorder, .. } = self;
+        let Recorder { evaluations: [at, ..], equations, variation, .. } = recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
         let mut loaded = Variation::new(cx.system, by, equations)?;
+        loaded.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
         let start = Node { t: at.t, q: &at.q, v: &at.v, a: &at.a };
         if !state.is_some_and(|state| loaded.load(state, equations, start)) {
             return Err(RunError::OtherRun);
@@ -155,13 +159,15 @@ impl Driver {
     fn sample(&mut self, cx: Context, t: f64) -> Result<(), RunError> {
         let mut shown = Snapshot::new(cx.system);
         self.read(cx, self.t, 0, &mut shown)?;
+        self.vary(None, &shown);
         let Snapshot { evaluation, .. } = &shown;
         let kinematics = Kinematics::at_velocity(&cx.system.model, &evaluation.q, &evaluation.v);
         let read = |e: usize| [evaluation.elements[e].reading.coordinate, evaluation.elements[e].reading.rate];
         let (system, q, v) = (cx.system, &evaluation.q[..], &evaluation.v[..]);
         let eye = Eye { system, t, q, v, kinematics: &kinematics, element: &read };
         let sampler = self.sampler.as_mut();
-        sampler.map_or(Ok(()), |sampler| self.recorder.equations.sample(sampler, &eye, &shown))
+        let Recorder { equations, variation, .. } = &mut self.recorder;
+        sampler.map_or(Ok(()), |sampler| equations.sample(sampler, &eye, &shown, variation.as_deref_mut()))
     }
 
     /// Where a run of the same system was.

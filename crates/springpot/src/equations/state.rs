@@ -4,6 +4,7 @@ use super::assembly::Equations;
 use super::context::Context;
 use super::control::{ControlState, End, Eye, Sampler, Shown};
 use super::friction::Sliding;
+use super::variation::Variation;
 use crate::elements::Kept;
 use crate::system::System;
 use crate::system::error::RunError;
@@ -48,9 +49,15 @@ impl Equations {
     ///
     /// # Errors
     /// Where a reference cannot be followed.
-    pub(crate) fn sample(&mut self, sampler: &mut Sampler, eye: &Eye, shown: &dyn Shown) -> Result<(), RunError> {
+    pub(crate) fn sample(
+        &mut self,
+        sampler: &mut Sampler,
+        eye: &Eye,
+        shown: &dyn Shown,
+        variation: Option<&mut Variation>,
+    ) -> Result<(), RunError> {
         if let Some(control) = &mut self.control {
-            sampler.take(eye, shown, control)?;
+            sampler.take(eye, shown, control, variation)?;
             control.set_sides(sampler.sides());
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! What parameters change at the nodes of a step: the equations of motion linearised there, and their right sides.
 
 use super::assembly::Equations;
-use super::control::{ControlVariation, ControlVariationState, Place};
+use super::control::{ControlRun, ControlVariation, ControlVariationState, HeldVariation, Place, Shown, Sides, Target};
 use super::node::Node;
 use super::resistance::add_tangents;
 use super::saltation::SetVariation;
@@ -559,6 +559,43 @@ impl Variation {
             let [nodes @ .., _] = &self.nodes;
             control.follow(run, nodes.each_ref().map(|node| [&node.q[..], &node.v[..]]));
         }
+    }
+
+    /// From now on what sampled laws said changes so.
+    pub(crate) fn hold(&mut self, held: Option<&HeldVariation>) {
+        if let (Some(control), Some(held)) = (&mut self.control, held) {
+            control.hold(held);
+        }
+    }
+
+    /// What changes of what the sampled expression for `target` says of the row that was read.
+    pub(crate) fn say(&self, target: Target, shown: &dyn Shown) -> Vec<f64> {
+        let (node, Some(control)) = (&self.nodes[ROW], &self.control) else { return Vec::new() };
+        let rests = |e: usize| &self.elements[e].rest[..];
+        let motion = [&self.q[..], &node.v_now, &node.a_now];
+        let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
+        let forces = |e: usize| (shown.force(e), self.elements[e].row[0].clone());
+        control.say(target, at, &forces, [&node.q, &node.v, &node.a])
+    }
+
+    /// The same of a sampled controller, ahead of its last limit and behind it.
+    pub(crate) fn say_of_controller(
+        &mut self,
+        run: &ControlRun,
+        told: (&[Sides], &[f64], f64),
+        shown: &dyn Shown,
+    ) -> [Vec<f64>; 2] {
+        let Self { nodes, elements, control, system, .. } = self;
+        let (n, node, Some(control)) = (system.model.nv(), &nodes[ROW], control) else { return Default::default() };
+        let pull = |row: usize, p: usize| {
+            let of = |(e, ([gradient, _], hessian)): (usize, (&[Vec<f64>; 2], &Vec<f64>))| {
+                let blocks = node.q.chunks_exact(node.q.len() / n);
+                let turned: f64 = hessian[row * n..][..n].iter().zip(blocks).map(|(second, q)| second * q[p]).sum();
+                gradient[row] * elements[e].row[0][p] + shown.force(e) * turned
+            };
+            node.gradients.iter().zip(&node.hessians).enumerate().map(of).sum::<f64>()
+        };
+        control.say_of_controller(run, told, &pull, [&node.q, &node.v], node.t)
     }
 
     /// What the terms of a controller do at the start (0) or at a row, at θ of the step at hand or between two.

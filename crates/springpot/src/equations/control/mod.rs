@@ -18,7 +18,7 @@ pub(crate) use mode::Guard;
 pub(crate) use row::Misread;
 pub(crate) use sampler::{Sampler, SamplerState, Shown};
 pub(crate) use step::End;
-pub(crate) use variation::{ControlVariation, ControlVariationState, Place};
+pub(crate) use variation::{ControlVariation, ControlVariationState, Held as HeldVariation, Place, Sides};
 
 use crate::collocation::STAGES;
 use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, TorqueSlopes};
@@ -104,7 +104,7 @@ struct LawRun {
 
 /// What an expression says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Target {
+pub(crate) enum Target {
     /// The actuator force on a velocity.
     Torque(usize),
     /// Input `1` of element `0`.

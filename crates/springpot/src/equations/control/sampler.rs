@@ -1,9 +1,11 @@
 //! Sampled laws: when they are due, what they say, and when it acts.
 
 use super::eye::Eye;
+use super::variation::{Held as HeldVariation, Sides};
 use super::{ControlRun, Target};
 use crate::control::{Aim, At, Control, Feedback, Sampling, Scratch, Sense};
 use crate::equations::context::Held;
+use crate::equations::variation::Variation;
 use crate::observe::Snapshot;
 use crate::system::System;
 use crate::system::error::RunError;
@@ -49,6 +51,19 @@ pub(crate) struct Sampler {
     due: Vec<bool>,
     said: Vec<Vec<f64>>,
     seen: Vec<f64>,
+    /// On which sides of their limits the forces of the controller are (nv).
+    limited: Vec<Sides>,
+    /// What changes of what each law says; nothing where nothing is differentiated.
+    changes: Vec<Vec<f64>>,
+}
+
+/// What changes of samples, in blocks of one number for each parameter.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+struct Changes {
+    waiting: Vec<VecDeque<Vec<f64>>>,
+    acting: HeldVariation,
+    /// Of what the controller said last before its limit.
+    said: Vec<f64>,
 }
 
 /// A law that is sampled.
@@ -79,6 +94,8 @@ pub(crate) struct SamplerState {
     said: Vec<f64>,
     has_said: bool,
     sides: Vec<i8>,
+    /// What parameters change of it, where any are asked for.
+    changes: Option<Changes>,
 }
 
 impl Sampler {
@@ -126,6 +143,7 @@ impl Sampler {
             said: vec![0.0; nv],
             has_said: false,
             sides: vec![0; nv],
+            changes: None,
         };
         let size = |law: &Law| if matches!(law.what, What::Controller) { nv } else { 1 };
         let driven = system.driven_velocities();
@@ -140,6 +158,8 @@ impl Sampler {
             aim: Aim::default(),
             scratch: Scratch::new(&system.model),
             seen: Vec::new(),
+            limited: vec![Sides::default(); nv],
+            changes: Vec::new(),
         })))
     }
 
@@ -168,8 +188,17 @@ impl Sampler {
     ///
     /// # Errors
     /// Where the reference cannot be followed, or a law says no number.
-    pub(crate) fn take(&mut self, eye: &Eye, shown: &dyn Shown, run: &ControlRun) -> Result<(), RunError> {
+    ///
+    /// What parameters change of that follows from `variation`, where the row was read.
+    pub(crate) fn take(
+        &mut self,
+        eye: &Eye,
+        shown: &dyn Shown,
+        run: &ControlRun,
+        mut variation: Option<&mut Variation>,
+    ) -> Result<(), RunError> {
         let t = eye.t;
+        self.changes.clear();
         // All of one instant see what was before any of them acts.
         for k in 0..self.laws.len() {
             let at = multiple(self.state.counts[k], self.laws[k].sampling.period);
@@ -189,6 +218,9 @@ impl Sampler {
                 return Err(RunError::NotFinite { t, what: self.named(k, eye.system), value });
             }
         }
+        if let Some(variation) = variation.as_deref_mut() {
+            self.take_changes(variation, shown, run);
+        }
         let mut changed = false;
         for k in (0..self.laws.len()).filter(|k| self.due[*k]) {
             self.state.counts[k] += 1;
@@ -200,6 +232,12 @@ impl Sampler {
                 let size = self.said[k].len();
                 let now = std::mem::replace(&mut self.said[k], first.unwrap_or_else(|| vec![0.0; size]));
                 waiting.push_back(now);
+                if let (Some(own), Some(changes)) = (self.changes.get_mut(k), &mut self.state.changes) {
+                    let waiting = &mut changes.waiting[k];
+                    let first = if full { waiting.pop_front() } else { None };
+                    let none = vec![0.0; own.len()];
+                    waiting.push_back(std::mem::replace(own, first.unwrap_or(none)));
+                }
                 if !full {
                     continue;
                 }
@@ -231,13 +269,82 @@ impl Sampler {
                 }
             }
         }
+        if let Some(variation) = variation {
+            self.let_changes_act(nv);
+            variation.hold(self.held_changes());
+        }
         Ok(())
+    }
+
+    /// What changes of what acts, where anything is differentiated.
+    pub(crate) fn held_changes(&self) -> Option<&HeldVariation> {
+        self.state.changes.as_ref().map(|changes| &changes.acting)
+    }
+
+    /// Works out what parameters change of the samples that are due.
+    fn take_changes(&mut self, variation: &mut Variation, shown: &dyn Shown, run: &ControlRun) {
+        let (count, nv) = (variation.count(), self.state.said.len());
+        let Self { laws, state, due, control, limited, .. } = self;
+        let changes = state.changes.get_or_insert_with(|| Changes {
+            waiting: vec![VecDeque::new(); laws.len()],
+            acting: HeldVariation::default(),
+            said: vec![0.0; nv * count],
+        });
+        self.changes = laws
+            .iter()
+            .zip(&*due)
+            .map(|(law, due)| match law.what {
+                _ if !due => Vec::new(),
+                What::Torque(i) => variation.say(Target::Torque(control.torques[i].velocity), shown),
+                What::Input(i) => {
+                    let own = &control.inputs[i];
+                    variation.say(Target::Input(own.element, own.input), shown)
+                }
+                What::Controller => {
+                    let told = (&limited[..], &changes.said[..], law.sampling.period);
+                    let [ahead, behind] = variation.say_of_controller(run, told, shown);
+                    changes.said = ahead;
+                    behind
+                }
+            })
+            .collect();
+    }
+
+    /// Lets what changes of the samples act that do so now.
+    fn let_changes_act(&mut self, nv: usize) {
+        let Some(changes) = &mut self.state.changes else { return };
+        for (k, own) in std::mem::take(&mut self.changes).into_iter().enumerate().filter(|(k, _)| self.due[*k]) {
+            if self.state.counts[k] <= self.laws[k].sampling.delay as u64 {
+                continue;
+            }
+            let acting = &mut changes.acting;
+            let mut act = |velocity: usize, own: &[f64]| {
+                let count = own.len();
+                acting.torques.resize(nv * count, 0.0);
+                acting.torques[velocity * count..][..count].copy_from_slice(own);
+            };
+            match self.laws[k].what {
+                What::Torque(i) => act(self.control.torques[i].velocity, &own),
+                What::Controller => {
+                    let count = own.len() / nv;
+                    self.driven.iter().for_each(|&k| act(k, &own[k * count..][..count]));
+                }
+                What::Input(i) => {
+                    let law = &self.control.inputs[i];
+                    let place = (law.element, law.input);
+                    match acting.inputs.iter_mut().find(|(e, i, _)| (*e, *i) == place) {
+                        Some((.., held)) => *held = own,
+                        None => acting.inputs.push((law.element, law.input, own)),
+                    }
+                }
+            }
+        }
     }
 
     /// Works out what the controller says (nv), all limits included.
     fn ask(&mut self, law: usize, t: f64, eye: &Eye, shown: &dyn Shown, run: &ControlRun) -> Result<(), RunError> {
         let (system, period) = (eye.system, self.laws[law].sampling.period);
-        let Self { control, aim, scratch, said, state, driven, .. } = self;
+        let Self { control, aim, scratch, said, state, driven, limited, .. } = self;
         let (tau, controlled) = (&mut said[law], control.controller.as_ref().expect("a controller that is sampled"));
         let site = system.gripper.as_ref();
         controlled.reference.at_into(&system.model, site, t, &mut scratch.kinematics, aim)?;
@@ -251,12 +358,15 @@ impl Sampler {
             let tau = &mut tau[k];
             *tau += run.terms_now(k, at.error(k));
             let limit = controlled.limits.get(k).copied().unwrap_or_default();
+            limited[k] = Sides::default();
             if state.has_said {
                 let reach = limit.rate * period;
+                limited[k].rate = i8::from(*tau > state.said[k] + reach) - i8::from(*tau < state.said[k] - reach);
                 *tau = tau.clamp(state.said[k] - reach, state.said[k] + reach);
             }
             let is_above = *tau > limit.torque;
             state.sides[k] = if is_above { 1 } else { -i8::from(*tau < -limit.torque) };
+            limited[k].force = state.sides[k];
             // Rates are those of the force before its limit, which acts last.
             state.said[k] = *tau;
             *tau = tau.clamp(-limit.torque, limit.torque);

@@ -52,6 +52,10 @@ pub(crate) struct ControlVariation {
     joints: Vec<JointVariation>,
     terms: Vec<TermVariation>,
     laws: Vec<LawSlopes>,
+    /// Expressions that are sampled.
+    sampled: Vec<LawSlopes>,
+    /// Of what sampled laws said last: torques (nv blocks), and inputs.
+    held: Held,
     nodes: [NodeControl; PLACES],
     scratch: Scratch,
     /// Of the extended robot, where the reference has it.
@@ -59,6 +63,22 @@ pub(crate) struct ControlVariation {
     aims: [Aim; 2],
     /// What branches of joints were left, and from where.
     left: Vec<Left>,
+}
+
+/// What changes of what sampled laws said last.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Held {
+    /// Of the torques, a block for each velocity of the run, or nothing.
+    pub(super) torques: Vec<f64>,
+    /// Of inputs: which, and a block.
+    pub(super) inputs: Vec<(usize, usize, Vec<f64>)>,
+}
+
+/// On which side of its limits a force of a sampled controller is: of its rate, and of itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Sides {
+    pub(super) rate: i8,
+    pub(super) force: i8,
 }
 
 /// A joint that was on another branch.
@@ -161,10 +181,8 @@ impl ControlVariation {
         if run.compensates && run.joints.iter().any(|joint| joint.limit.rate.is_finite()) {
             return unknown("limits of rates of forces that take the elements off".to_owned());
         }
-        if run.control.laws().any(|(_, sampling)| sampling.is_some())
-            || controller.is_some_and(|controlled| controlled.sampling.is_some())
-        {
-            return unknown("what is sampled".to_owned());
+        if !run.knows_nodes {
+            return unknown("control in steps of one size".to_owned());
         }
         let each = |of: &dyn Fn(&Seed) -> f64| -> Vec<f64> {
             by.parameters.iter().map(|parameter| parameter.seeds.iter().map(of).sum()).collect()
@@ -187,29 +205,19 @@ impl ControlVariation {
             }
         });
         let joints: Vec<_> = joints.collect();
-        let mut laws = Vec::new();
-        for law in &run.laws {
-            if law.stretches {
-                return unknown(format!("a temperature by feedback that stretches, {}", law.law.expression()));
-            }
-            let senses = law.law.senses().iter().map(|sense| sense.of_robot([own_q, own_v]));
-            let target = match law.target {
-                Target::Torque(k) => Target::Torque(own_v[k]),
-                input @ Target::Input(..) => input,
-            };
-            let own = by.parameters.iter().map(|parameter| {
-                let slopes = parameter.seeds.iter().filter_map(|seed| match (seed, law.target) {
-                    (Seed::TorqueFeedback { velocity, by }, Target::Torque(k)) if *velocity == k => Some(by.clone()),
-                    (Seed::InputFeedback { element, input, by }, Target::Input(e, i))
-                        if [*element, *input] == [e, i] =>
-                    {
-                        Some(by.clone())
-                    }
-                    _ => None,
-                });
-                slopes.collect()
-            });
-            laws.push(LawSlopes { law: law.law.clone(), senses: senses.collect(), target, own: own.collect() });
+        if let Some(law) = run.laws.iter().find(|law| law.stretches) {
+            return unknown(format!("a temperature by feedback that stretches, {}", law.law.expression()));
+        }
+        let laws = run.laws.iter().map(|law| LawSlopes::new(&law.law, law.target, by, [own_q, own_v]));
+        let laws = laws.collect();
+        let torques = run.control.torques.iter().filter(|own| own.sampling.is_some());
+        let torques = torques.map(|own| (&own.law, Target::Torque(own.velocity)));
+        let inputs = run.control.inputs.iter().filter(|own| own.sampling.is_some());
+        let inputs = inputs.map(|own| (&own.law, Target::Input(own.element, own.input)));
+        let sampled: Vec<LawSlopes> =
+            torques.chain(inputs).map(|(law, target)| LawSlopes::new(law, target, by, [own_q, own_v])).collect();
+        if sampled.iter().any(|law| law.senses.iter().any(|sense| matches!(sense, Sense::Derivative(_)))) {
+            return unknown("D^alpha x that feedback samples".to_owned());
         }
         let square = || TorqueSlopes { d_q: vec![0.0; model.nv().pow(2)], d_v: vec![0.0; model.nv().pow(2)] };
         let blocks = || vec![0.0; model.nv() * count];
@@ -237,6 +245,8 @@ impl ControlVariation {
             joints,
             terms: Vec::new(),
             laws,
+            sampled,
+            held: Held::default(),
             nodes: std::array::from_fn(|_| node.clone()),
             scratch: Scratch::new(model),
             wanted: Kinematics::new(model),
@@ -252,7 +262,7 @@ impl ControlVariation {
 
     /// Elements and inputs that follow from the state.
     pub(crate) fn inputs(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.laws.iter().filter_map(|law| match law.target {
+        self.laws.iter().chain(&self.sampled).filter_map(|law| match law.target {
             Target::Input(e, i) => Some((e, i)),
             Target::Torque(_) => None,
         })
@@ -323,6 +333,10 @@ impl ControlVariation {
         node.relieved.fill(false);
         self.steer(i, run, at);
         self.feed_back(i, run, at);
+        let (count, node) = (self.count(), &mut self.nodes[i]);
+        for (&row, held) in self.own_v.iter().zip(self.held.torques.chunks_exact(count)) {
+            node.explicit[row * count..][..count].iter_mut().zip(held).for_each(|(sum, own)| *sum += own);
+        }
         let node = &self.nodes[i];
         slopes.d_q.iter_mut().zip(&node.slopes.d_q).for_each(|(sum, own)| *sum -= own);
         slopes.d_v.iter_mut().zip(&node.slopes.d_v).for_each(|(sum, own)| *sum -= own);
@@ -337,7 +351,7 @@ impl ControlVariation {
 
     /// What the controller says at node `i`.
     fn steer(&mut self, i: usize, run: &ControlRun, at: Place) {
-        let (Some(controlled), Some(law)) = (run.controlled().filter(|_| run.is_continuous), &self.law) else { return };
+        let (Some(controlled), Some(law)) = (run.controlled(), &self.law) else { return };
         let (model, count) = (&self.system.model, self.by.parameters.len());
         let [own, aim] = &mut self.aims;
         // Where a reference cannot be followed the run says so.
@@ -457,7 +471,8 @@ impl ControlVariation {
                 *drift = if is_known { tau[joint.row] + by_state } else { f64::NAN };
             }
         }
-        for (joint, state) in self.joints.iter().zip(&run.joints) {
+        let acting = self.joints.iter().zip(&run.joints).filter(|_| run.is_continuous);
+        for (joint, state) in acting {
             let (row, Mode { bound, slew, .. }) = (joint.row, state.mode);
             let blocks = row * count..(row + 1) * count;
             if state.mode.follows() {
@@ -509,6 +524,9 @@ impl ControlVariation {
                 }
                 Target::Input(e, input) => node.inputs.push((e, input, by_state, own)),
             }
+        }
+        for (e, input, held) in &self.held.inputs {
+            node.inputs.push((*e, *input, [vec![0.0; n], vec![0.0; n]], held.clone()));
         }
     }
 
@@ -566,7 +584,10 @@ impl ControlVariation {
         let count = self.count();
         self.nodes[i].pushed.fill(0.0);
         for m in 0..self.terms.len() {
-            let Some((joint, _)) = self.joint_of(run, m).filter(|(_, mode)| all || mode.follows()) else { continue };
+            let Some((joint, _)) = self.joint_of(run, m).filter(|(_, mode)| all || run.is_continuous && mode.follows())
+            else {
+                continue;
+            };
             let row = self.joints[joint].row;
             for p in 0..count {
                 self.nodes[i].pushed[row * count + p] += self.terms[m].force(&run.terms[m], i, p);
@@ -585,7 +606,11 @@ impl ControlVariation {
         let count = self.count();
         self.nodes[i].pushed.fill(0.0);
         for m in 0..self.terms.len() {
-            let Some((joint, mode)) = self.joint_of(run, m).filter(|(_, mode)| all || mode.follows()) else { continue };
+            let Some((joint, mode)) =
+                self.joint_of(run, m).filter(|(_, mode)| all || run.is_continuous && mode.follows())
+            else {
+                continue;
+            };
             let changes = self.error(i, joint, motion);
             let (now, changes) = (self.nodes[i].errors[joint], [&changes.0[..], &changes.1[..]]);
             let row = self.joints[joint].row;
@@ -798,6 +823,88 @@ impl ControlVariation {
         Ok(())
     }
 
+    /// From now on what sampled laws said changes so.
+    pub(crate) fn hold(&mut self, held: &Held) {
+        self.held.clone_from(held);
+    }
+
+    /// What changes of what the sampled expression for a target of the run says of the row that was seen, where elements pull with forces that change
+    /// by `forces`, and the motion changes by these blocks of q, v and a.
+    pub(crate) fn say(
+        &self,
+        target: Target,
+        at: Place,
+        forces: &dyn Fn(usize) -> (f64, Vec<f64>),
+        [dq, dv, da]: [&[f64]; 3],
+    ) -> Vec<f64> {
+        let count = self.count();
+        let target = target.of_robot(&self.own_v);
+        let Some(law) = self.sampled.iter().find(|law| law.target == target) else { return vec![0.0; count] };
+        let [q, v, a] = at.motion;
+        let read = |e: usize| at.readings[e];
+        let eye = Eye { system: &self.system, t: at.t, q, v, kinematics: at.kinematics, element: &read };
+        let seen: Vec<f64> = law
+            .senses
+            .iter()
+            .map(|sense| match *sense {
+                Sense::Acceleration(k) => a[k],
+                Sense::Force(e) => forces(e).0,
+                sense => eye.value(sense),
+            })
+            .collect();
+        let jets: Vec<Jet> = seen.iter().map(|value| Jet::constant(*value)).collect();
+        let branch = law.law.expression().branch(at.t, &jets);
+        let (mut slopes, mut said) = (Vec::new(), vec![0.0; count]);
+        law.law.slopes_on(branch, at.t, &seen, &mut slopes);
+        let mut by_state = [vec![0.0; v.len()], vec![0.0; v.len()]];
+        let mut by_forces = vec![0.0; v.len()];
+        for (sense, slope) in law.senses.iter().zip(&slopes).filter(|(_, slope)| **slope != 0.0) {
+            match *sense {
+                Sense::Acceleration(k) => by_forces[k] += slope,
+                Sense::Force(e) => said.iter_mut().zip(forces(e).1).for_each(|(sum, own)| *sum += slope * own),
+                sense => add_sense(&eye, sense, *slope, at, (&mut by_state, &mut said)),
+            }
+        }
+        let [by_q, by_v] = &by_state;
+        for (p, said) in said.iter_mut().enumerate() {
+            for (slopes, blocks) in [(by_q, dq), (by_v, dv), (&by_forces, da)] {
+                *said += slopes.iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum::<f64>();
+            }
+            *said += law.own[p].iter().map(|slope| slope.value_on(branch, at.t, &seen)).sum::<f64>();
+        }
+        said
+    }
+
+    /// The same of a sampled controller, whose forces are on these sides of their limits, by velocity of the run; `before` is what changed of what it
+    /// said before, ahead of its last limit, and `pull` what changes of Σ F·∂y/∂q of a velocity of the extended robot. Gives what changes ahead of
+    /// the last limit and behind it.
+    pub(crate) fn say_of_controller(
+        &mut self,
+        run: &ControlRun,
+        (sides, before, period): (&[Sides], &[f64], f64),
+        pull: &dyn Fn(usize, usize) -> f64,
+        motion: [&[f64]; 2],
+        t: f64,
+    ) -> [Vec<f64>; 2] {
+        let count = self.count();
+        self.push_at(ROW, None, (run, true), motion);
+        let mut said = [vec![0.0; sides.len() * count], vec![0.0; sides.len() * count]];
+        for (joint, own) in self.joints.iter().enumerate() {
+            let Sides { rate, force } = sides[own.velocity];
+            let wanted = self.shaped(ROW, joint, Mode::default(), t, motion);
+            for (p, wanted) in wanted.into_iter().enumerate() {
+                let place = own.velocity * count + p;
+                let shaped = match rate {
+                    0 => wanted + if run.compensates { pull(own.row, p) } else { 0.0 },
+                    sign => before[place] + f64::from(sign) * period * own.rate_limit[p],
+                };
+                let behind = if force == 0 { shaped } else { f64::from(force) * own.limit[p] };
+                (said[0][place], said[1][place]) = (shaped, behind);
+            }
+        }
+        said
+    }
+
     /// What outlasts the steps.
     pub(crate) fn save(&self) -> ControlVariationState {
         ControlVariationState {
@@ -817,6 +924,33 @@ impl ControlVariation {
         let kept = self.joints.iter_mut().zip(from.into_iter().zip(modes));
         kept.for_each(|(joint, (from, mode))| (joint.from, joint.mode) = (from, mode));
         true
+    }
+}
+
+impl LawSlopes {
+    fn new(law: &Feedback, target: Target, by: &Sensitivity, [own_q, own_v]: [&[usize]; 2]) -> Self {
+        let senses = law.senses().iter().map(|sense| sense.of_robot([own_q, own_v]));
+        let own = by.parameters.iter().map(|parameter| {
+            let slopes = parameter.seeds.iter().filter_map(|seed| match (seed, target) {
+                (Seed::TorqueFeedback { velocity, by }, Target::Torque(k)) if *velocity == k => Some(by.clone()),
+                (Seed::InputFeedback { element, input, by }, Target::Input(e, i)) if [*element, *input] == [e, i] => {
+                    Some(by.clone())
+                }
+                _ => None,
+            });
+            slopes.collect()
+        });
+        Self { law: law.clone(), senses: senses.collect(), target: target.of_robot(own_v), own: own.collect() }
+    }
+}
+
+impl Target {
+    /// The same of another robot, whose velocities are these.
+    fn of_robot(self, velocities: &[usize]) -> Self {
+        match self {
+            Self::Torque(k) => Self::Torque(velocities[k]),
+            input @ Self::Input(..) => input,
+        }
     }
 }
 

@@ -53,7 +53,7 @@ impl LoopControl {
     pub(super) fn first(&mut self, system: &System, stage: &OneStage) -> Result<Arc<Held>, RunError> {
         let mut sampler = self.sampler.clone();
         let shown = Between { system, stage, bank: None };
-        shown.look(|eye| sampler.take(eye, &shown, &self.run))?;
+        shown.look(|eye| sampler.take(eye, &shown, &self.run, None))?;
         Ok(sampler.acting().clone())
     }
 
@@ -63,7 +63,7 @@ impl LoopControl {
             return Ok(());
         }
         let shown = Between { system, stage, bank: Some(bank) };
-        shown.look(|eye| self.sampler.take(eye, &shown, &self.run))?;
+        shown.look(|eye| self.sampler.take(eye, &shown, &self.run, None))?;
         self.run.set_sides(self.sampler.sides());
         Ok(())
     }
