@@ -415,6 +415,7 @@ impl Driver {
                         // Strokes inside a series may change faster than the memories are built for, whose energies take that for still.
                         self.recorder.begin(cx)?;
                         self.recorder.open(cx, size)?;
+                        self.begin_variation(cx)?;
                         self.planned = size;
                     }
                 }
