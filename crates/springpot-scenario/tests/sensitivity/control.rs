@@ -11,7 +11,7 @@ fn arm(controller: &str) -> String {
 
 const SPRINGPOT: &str = "law = \"fractional-kelvin-voigt\"\nparameters = { k = 40, c = 5, alpha = 0.4 }";
 
-const COLUMNS: [&str; 8] = ["q.q1", "q.q2", "q.q3", "v.q3", "tau.q1", "tau.q2", "tau.q3", "gripper.y"];
+const COLUMNS: [&str; 9] = ["q.q1", "q.q2", "q.q3", "v.q3", "tau.q1", "tau.q2", "tau.q3", "gripper.y", "gripper.error"];
 
 const PLANT: [(&str, f64); 9] = [
     ("robot.body.two.mass", 5e-3),
@@ -25,8 +25,13 @@ const PLANT: [(&str, f64); 9] = [
     ("motion.start.v.q3", 5e-3),
 ];
 
+/// The numbers of a controller with all that is not its own, or with some of that.
 fn with_plant<'a>(own: &[(&'a str, f64)]) -> Vec<(&'a str, f64)> {
     [own, &PLANT].concat()
+}
+
+fn with_some<'a>(own: &[(&'a str, f64)]) -> Vec<(&'a str, f64)> {
+    [own, &[PLANT[0], PLANT[3], PLANT[5], PLANT[8]]].concat()
 }
 
 const MOVE: &str = "reference = { kind = \"move\", to = { q1 = 0.6, q2 = 0.1, q3 = 0.1 }, duration = 0.3 }";
@@ -68,6 +73,7 @@ fn signals_of_joints_through_constants() {
     );
 }
 
+// The gripper is so near to where it should be that differences of its distance know less.
 #[test]
 fn inverse_dynamics() {
     for compensates in [false, true] {
@@ -82,7 +88,7 @@ fn inverse_dynamics() {
         ];
         let own = if compensates { &own[..1] } else { &own[..] };
         let text = text.replace("kd = 9", "kd = { q1 = 9, q2 = 8, q3 = 7 }");
-        compare(&text, &COLUMNS, &with_plant(own));
+        compare(&text, &COLUMNS[..8], &with_some(own));
     }
 }
 
@@ -99,7 +105,7 @@ fn proportional_integral_derivative() {
     ];
     let text =
         text.replace("kp = 60,", "kp = { q1 = 60, q2 = 60, q3 = 80 },").replace("q2 = 40 }", "q2 = 40, q3 = 20 }");
-    compare(&text, &COLUMNS, &with_plant(&own));
+    compare(&text, &COLUMNS, &with_some(&own));
 }
 
 #[test]
@@ -147,18 +153,14 @@ fn fed_back(input: &str, torque: &str) -> String {
     text.replace("k_0 = 80", "k_0 = 80\ngain = 0.9\nlevel = 0.33")
 }
 
-const STATE: [(&str, f64); 11] = [
+const STATE: [(&str, f64); 7] = [
     ("constants.gain", 3e-3),
     ("constants.level", 2e-3),
-    ("element.tendon.mu", 1e-2),
     ("element.tendon.alpha", 3e-3),
     ("element.tendon.rest_length", 5e-4),
-    ("element.tendon.via.0.point.2", 5e-4),
     ("robot.body.two.mass", 5e-3),
     ("robot.gripper.point.0", 1e-3),
-    ("robot.gravity.0", 1e-2),
     ("motion.start.q.q2", 2e-3),
-    ("motion.start.v.q3", 5e-3),
 ];
 
 const SEEN: [&str; 8] = ["q.q1", "q.q2", "q.q3", "v.q3", "tau.q2", "tendon.force", "tendon.u", "gripper.y"];
@@ -196,7 +198,7 @@ fn forces_at_their_limits() {
             ("motion.controller.limits.q2", 0.02)
         };
         let own = [("motion.controller.kp", 0.1), ("motion.controller.limits.q1", 0.02), limit];
-        compare(&text, &COLUMNS, &with_plant(&own));
+        compare(&text, &COLUMNS, &with_some(&own));
     }
 }
 
@@ -212,7 +214,7 @@ fn integrals_at_limits() {
             ("motion.controller.limits.q1", 0.02),
             ("motion.controller.limits.q2", 0.02),
         ];
-        compare(&text, &COLUMNS, &with_plant(&own));
+        compare(&text, &COLUMNS, &with_some(&own));
     }
 }
 
@@ -232,13 +234,13 @@ fn what_is_sampled() {
     ];
     for more in ["sample = \"20 ms\"", "sample = \"20 ms\", delay = \"40 ms\""] {
         // So little that no sample goes to the other side of a limit.
-        let little = with_plant(&own).into_iter().map(|(path, step)| (path, 0.04 * step));
-        compare(&controller(more), &COLUMNS, &little.collect::<Vec<_>>());
+        let little = with_some(&own).into_iter().map(|(path, step)| (path, 0.04 * step));
+        compare(&controller(more), &COLUMNS[..8], &little.collect::<Vec<_>>());
     }
     let text = arm(&format!(
         "controller = {{ kind = \"computed-torque\", kp = 60, kd = 9, compensate_elements = true, {MOVE}, sample = \"15 ms\" }}"
     ));
-    compare(&text, &COLUMNS, &with_plant(&own[..1]));
+    compare(&text, &COLUMNS[..8], &with_some(&own[..1]));
 }
 
 #[test]

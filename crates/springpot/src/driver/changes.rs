@@ -2,8 +2,8 @@
 
 use super::time_loop::Driver;
 use crate::account::recorder::Recorder;
-use crate::equations::Node;
 use crate::equations::context::Context;
+use crate::equations::{Node, Variation};
 use crate::observe::{ElementQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Lost, Switched};
 use crate::signal::{Jet, Signal};
@@ -109,7 +109,9 @@ impl Driver {
         when.slopes_on(branch, t, &values, &mut slopes);
         let speed = when.jet_on(branch, t, &jets).first;
         let parts = slopes.iter().zip(&rates).map(|(slope, rate)| (slope * rate).abs()).sum::<f64>();
-        let Some(variation) = self.vary(theta, &shown, columns.iter().copied()) else { return Ok(None) };
+        let Some(variation) = self.vary(theta, &shown, columns.iter().copied().all(Variation::is_of_motion)) else {
+            return Ok(None);
+        };
         let mut changes = vec![0.0; count];
         for (column, slope) in columns.iter().zip(&slopes) {
             match variation.values(*column, &shown) {

@@ -226,7 +226,7 @@ impl Simulation {
             self.cross()?;
         }
         let theta = self.driver.read(self.events.cx(&self.system), t, 0, &mut snapshot)?;
-        let variation = self.driver.vary(theta, &snapshot, [quantity].into_iter());
+        let variation = self.driver.vary(theta, &snapshot, Variation::is_of_motion(quantity));
         let unknown = |all: &Variation| vec![f64::NAN; all.count()];
         Ok(variation.map_or_else(Vec::new, |all| all.values(quantity, &snapshot).unwrap_or_else(|| unknown(all))))
     }

@@ -11,7 +11,7 @@ use crate::equations::control::{Eye, Sampler};
 use crate::equations::{Node, ROW, Variation, VariationState};
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
-use crate::observe::{Needs, Quantity, Snapshot};
+use crate::observe::{Needs, Snapshot};
 use crate::sensitivity::SensitivityError;
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
@@ -159,7 +159,7 @@ impl Driver {
     fn sample(&mut self, cx: Context, t: f64) -> Result<(), RunError> {
         let mut shown = Snapshot::new(cx.system);
         self.read(cx, self.t, 0, &mut shown)?;
-        self.vary(None, &shown);
+        self.vary(None, &shown, false);
         let Snapshot { evaluation, .. } = &shown;
         let kinematics = Kinematics::at_velocity(&cx.system.model, &evaluation.q, &evaluation.v);
         let read = |e: usize| [evaluation.elements[e].reading.coordinate, evaluation.elements[e].reading.rate];
@@ -548,8 +548,8 @@ impl Driver {
         let Some(by) = &cx.system.sensitivity else { return Ok(theta) };
         let mut derivatives = std::mem::take(&mut snapshot.derivatives);
         derivatives.clear();
-        let of = by.columns.iter().map(|column| column.of);
-        let variation = if by.columns.is_empty() { None } else { self.vary(theta, snapshot, of) };
+        let is_of_motion = by.columns.iter().all(|column| Variation::is_of_motion(column.of));
+        let variation = if by.columns.is_empty() { None } else { self.vary(theta, snapshot, is_of_motion) };
         // All parameters of a column stand together.
         for columns in by.columns.chunk_by(|one, next| one.of == next.of) {
             let values = variation.and_then(|variation| variation.values(columns[0].of, snapshot));
@@ -560,20 +560,16 @@ impl Driver {
         Ok(theta)
     }
 
-    /// What parameters change of these quantities at the row that was read into `snapshot` last, at θ of the step at hand or between two.
-    pub(super) fn vary(
-        &mut self,
-        theta: Option<f64>,
-        snapshot: &Snapshot,
-        mut of: impl Iterator<Item = Quantity>,
-    ) -> Option<&Variation> {
+    /// What parameters change at the row that was read into `snapshot` last, at θ of the step at hand or between two; of the motion alone where
+    /// nothing else is asked for.
+    pub(super) fn vary(&mut self, theta: Option<f64>, snapshot: &Snapshot, is_of_motion: bool) -> Option<&Variation> {
         let Self { solver, recorder: Recorder { equations, variation, .. }, step, .. } = self;
         let variation = variation.as_deref_mut()?;
         match (theta, step) {
             (Some(theta), Some(step)) => solver.stepper_mut().vary_within(variation, theta, step.size),
             _ => variation.take_start(ROW),
         }
-        if !of.all(Variation::is_of_motion) {
+        if !is_of_motion {
             variation.read(equations, theta, snapshot);
         }
         Some(variation)

@@ -906,7 +906,25 @@ impl Variation {
                 });
                 each(&|p| along(&weights, &node.q, p) + of_robot[p])
             }
-            Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => return None,
+            Quantity::GripperError => {
+                // (H − H_d)·(δH − δH_d)/|H − H_d|. Along a given motion nothing moves.
+                let Some(control) = &self.control else { return Some(vec![0.0; count]) };
+                let (wanted, moves) = control.gripper();
+                let site = self.system.gripper.as_ref()?;
+                let (jacobian, at) = (point_jacobian(model, &node.kinematics, site), node.kinematics.position(site).0);
+                let off: [f64; 3] = std::array::from_fn(|axis| at[axis] - wanted[axis]);
+                let distance = off.iter().map(|off| off * off).sum::<f64>().sqrt();
+                let moved = |axis: usize, p: usize| {
+                    along(&jacobian[axis * self.nv()..][..self.nv()], &node.q, p) - moves[axis][p]
+                };
+                each(&|p| {
+                    let moved: [f64; 3] = std::array::from_fn(|axis| moved(axis, p));
+                    let stays = moved == [0.0; 3];
+                    let sum: f64 = off.iter().zip(moved).map(|(off, moved)| off * moved).sum();
+                    if stays { 0.0 } else { sum / distance }
+                })
+            }
+            Quantity::Energy(_) | Quantity::Derivative(_) => return None,
         })
     }
 

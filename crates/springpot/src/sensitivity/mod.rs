@@ -265,10 +265,11 @@ pub fn has_derivative(quantity: Quantity) -> bool {
         | Quantity::Acceleration(_)
         | Quantity::Torque(_)
         | Quantity::Gripper(_)
+        | Quantity::GripperError
         | Quantity::Energy(Kinetic | Potential) => true,
         Quantity::Element(_, of) => {
             matches!(of, Length | Stroke | Rate | Force | GeneralizedForce(_) | Stored | InputValue(_))
         }
-        Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => false,
+        Quantity::Energy(_) | Quantity::Derivative(_) => false,
     }
 }

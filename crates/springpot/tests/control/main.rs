@@ -9,3 +9,4 @@ mod order;
 mod readings;
 #[path = "../support/mod.rs"]
 mod support;
+mod variation;

@@ -133,6 +133,9 @@ struct NodeControl {
     pushed: Vec<f64>,
     /// Where the reference wants each joint, and how fast.
     aims: Vec<[Vec<f64>; 2]>,
+    /// Where the gripper is wanted, and what changes of that, a block for each coordinate.
+    gripper: [f64; 3],
+    gripper_moves: [Vec<f64>; 3],
     /// Errors of the joints.
     errors: Vec<[f64; 2]>,
     /// How fast the forces change that are wanted of them, terms apart.
@@ -229,6 +232,8 @@ impl ControlVariation {
             relieved: vec![false; model.nv()],
             pushed: blocks(),
             aims: joints.iter().map(|_| [vec![0.0; count], vec![0.0; count]]).collect(),
+            gripper: [f64::NAN; 3],
+            gripper_moves: std::array::from_fn(|_| vec![0.0; count]),
             errors: vec![[0.0; 2]; joints.len()],
             drifts: vec![0.0; joints.len()],
             inputs: Vec::new(),
@@ -376,6 +381,7 @@ impl ControlVariation {
         let [q, v, a] = at.motion;
         let asked = At { model, gripper: site, t: at.t, q, v, kinematics: at.kinematics, aim };
         let node = &mut self.nodes[i];
+        node.gripper = aim.gripper[0];
         node.errors.clear();
         node.errors.extend(self.joints.iter().map(|joint| asked.error(joint.row)));
         law.slopes(&asked, &mut self.scratch, &mut node.wanted);
@@ -435,6 +441,9 @@ impl ControlVariation {
                     }
                 }
                 law.add_by_aim(&asked, &change, &mut self.scratch, &mut tau);
+            }
+            for (moves, change) in node.gripper_moves.iter_mut().zip(change.gripper[0]) {
+                moves[p] = change;
             }
             for (joint, [place, speed]) in self.joints.iter().zip(&mut node.aims) {
                 (place[p], speed[p]) = (moved[joint.row], change.v[joint.row]);
@@ -631,6 +640,11 @@ impl ControlVariation {
     /// Whether the actuator of velocity `row` takes the forces of the elements off at node `i`.
     pub(crate) fn relieves(&self, i: usize, row: usize) -> bool {
         self.nodes[i].relieved[row]
+    }
+
+    /// Where the gripper is wanted at the row, and what changes of that, a block for each coordinate.
+    pub(crate) fn gripper(&self) -> ([f64; 3], &[Vec<f64>; 3]) {
+        (self.nodes[ROW].gripper, &self.nodes[ROW].gripper_moves)
     }
 
     /// What changes of the force on velocity `row` at the row, the compensation of elements apart, where the motion changes by these blocks.
